@@ -1,0 +1,141 @@
+"""`gcs fly`: the keyboard ground station, or its words as plain lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, with_options
+
+if TYPE_CHECKING:
+    from gcs.config import LinkConfig
+
+EPILOG = """\
+Examples:
+
+\b
+  gcs fly --sim
+  gcs fly --link udpin://127.0.0.1:14550 --policy lab
+  printf 'arm\\ntakeoff 2\\ngoto 3 0 2\\nland\\n' | gcs fly --sim --plain
+
+With --plain, answers go to standard output and the log to standard error. The next line is read
+when the one before has its ending or its refusal; a line that ends in & is not waited for. The
+exit code is 0 when the session ended in order, whatever was refused; with --strict it is 6 when
+something was refused and 8 when something accepted was not completed. A line that cannot be
+understood is passed over and makes it 2.
+"""
+
+
+def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
+    """LAT,LON,ALT, looked at before anything is started."""
+    if not text:
+        return text
+    try:
+        lat_deg, lon_deg, alt_m = (float(part) for part in text.split(","))
+    except ValueError:
+        raise click.BadParameter(f"{text!r} is not as in 47.397742,8.545594,488") from None
+    if not (abs(lat_deg) < 90.0 and abs(lon_deg) <= 180.0 and -500.0 <= alt_m <= 9000.0):
+        raise click.BadParameter(
+            f"{text!r} is not on Earth: latitude within 90, longitude within 180 degrees, "
+            "height from -500 to 9000 m"
+        )
+    return text
+
+
+@click.command(epilog=EPILOG)
+@with_options(LINK)
+@click.option("--sim", is_flag=True, help="Start a vehicle of our own, on a private port.")
+@click.option(
+    "--autopilot",
+    type=click.Choice(["px4", "ardupilot"]),
+    default="px4",
+    show_default=True,
+    help="Which autopilot the --sim vehicle speaks like.",
+)
+@click.option(
+    "--home",
+    default="",
+    callback=_place,
+    metavar="LAT,LON,ALT",
+    help="Where the --sim vehicle stands: degrees, degrees, metres above mean sea level.",
+)
+@click.option("--seed", default=1, show_default=True, help="Seed of the --sim vehicle.")
+@click.option(
+    "--speedup",
+    type=click.FloatRange(min=0, max=200, min_open=True),
+    default=1.0,
+    show_default=True,
+    help="Times real time, for vehicle and ground station.",
+)
+@with_options(POLICY, LOG_DIR, TIMEOUT)
+@click.option("--name", default="flight", show_default=True, help="Goes into the log's file name.")
+@click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
+@click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
+@click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
+@click.option("--verbose", "-v", is_flag=True, help="--plain: debug lines too.")
+@click.option("--quiet", "-q", is_flag=True, help="--plain: warnings and errors only.")
+@click.pass_context
+def fly(
+    ctx: click.Context,
+    links: tuple[str, ...],
+    sim: bool,
+    autopilot: str,
+    home: str,
+    seed: int,
+    speedup: float,
+    policy: str,
+    log_dir: str,
+    timeout: float,
+    name: str,
+    plain: bool,
+    as_json: bool,
+    strict: bool,
+    verbose: bool,
+    quiet: bool,
+) -> None:
+    """Fly by keyboard: keys change a pending goal, Enter sends it through the gate."""
+    import msgspec
+
+    from gcs.cli.options import link_config
+    from gcs.config import SimConfig
+
+    if sim and links:
+        raise click.UsageError("--sim starts a vehicle of its own: leave out --link")
+    config = link_config(links, policy, log_dir, name=name, timeout_s=timeout)
+    if sim:
+        vehicle = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
+        config = msgspec.structs.replace(config, sim=vehicle, endpoints=[])
+    config = msgspec.structs.replace(config, speedup=speedup)
+    if plain:
+        level = 1 if verbose else 3 if quiet else 2
+        ctx.exit(_fly_plain(config, min_level=level, as_json=as_json, strict=strict))
+    ctx.exit(_fly_keyboard(config))
+
+
+def _fly_plain(config: LinkConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
+    from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
+    from gcs.shell.client import LinkClient
+    from gcs.shell.interrupts import Interrupts
+
+    how = PlainConfig(config.connect_timeout_s, min_level, as_json, strict, config.speedup)
+    with Interrupts() as interrupts:
+        link = LinkClient.start(config)
+        return Plain(link, interrupts, how, to_stdout, to_stderr).run(stdin_input())
+
+
+def _fly_keyboard(config: LinkConfig) -> int:
+    import sys
+
+    from gcs.cli.plain import stdin_is_a_terminal
+
+    if not (stdin_is_a_terminal() and sys.stdout.isatty() and sys.stderr.isatty()):
+        raise click.UsageError("the keyboard station needs a terminal; use --plain on a pipe")
+
+    from gcs.shell.client import LinkClient
+    from gcs.tui.app import FlyApp
+    from gcs.tui.result import tell
+
+    app = FlyApp(LinkClient.start(config))
+    app.run()
+    return tell(app.result, lambda line: click.echo(line, err=True))

@@ -1,0 +1,216 @@
+"""`gcs log`: recorded flights."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.exits import Exit, Fail
+
+if TYPE_CHECKING:
+    from gcs.record.info import FlightInfo
+    from gcs.record.reading import Condition
+
+_PROGRESS_FROM_BYTES = 20_000_000
+"""Smaller files are read in less than a second."""
+
+_RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
+
+
+@click.group()
+def log() -> None:
+    """Recorded flights: what is in them, how to look at them, how to save a broken one.
+
+    Example: gcs log info logs/20260101-120000_flight.mcap
+    """
+
+
+@log.command()
+@click.argument("file", type=_RECORD)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def info(file: Path, as_json: bool) -> None:
+    """What FILE holds: duration, topics and rates, states, decisions, gaps.
+
+    Works on a file whose writer was killed, and says so.
+
+    Example: gcs log info logs/20260101-120000_flight.mcap --json
+    """
+    import msgspec
+
+    from gcs.record.info import read_info
+
+    with _told(file), _progress(file, "reading") as progress:
+        flight = read_info(file, progress)
+    if as_json:
+        click.echo(msgspec.json.encode(flight).decode())
+    else:
+        _print(flight)
+
+
+@log.command()
+@click.argument("file", type=_RECORD, required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Where to write the layout; without it, it is printed.",
+)
+def layout(file: Path | None, output: Path | None) -> None:
+    """A Foxglove layout for FILE (without FILE: for any flight of vehicle 1).
+
+    Import it in Foxglove by Layouts > Import from file, then open the record.
+
+    Example: gcs log layout logs/20260101-120000_flight.mcap -o flight-layout.json
+    """
+    import json
+
+    from gcs.record.info import read_info
+    from gcs.record.layout import ANY_FLIGHT, layout
+
+    topics = set(ANY_FLIGHT)
+    if file is not None:
+        with _told(file), _progress(file, "reading") as progress:
+            topics = {topic.topic for topic in read_info(file, progress).topics}
+    text = json.dumps(layout(topics), indent=1) + "\n"
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    try:
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise _cannot_write(output, error) from error
+    click.echo(f"{output}: import it in Foxglove (Layouts > Import from file)")
+
+
+@log.command()
+@click.argument("file", type=_RECORD)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="The new file; it must not exist.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def recover(file: Path, output: Path, as_json: bool) -> None:
+    """Make a whole file of one whose writer was killed.
+
+    Everything that is complete in FILE goes to the new file, up to the last message that can
+    still be read.  FILE stays as it is.
+
+    Example: gcs log recover broken.mcap -o whole.mcap
+    """
+    import json
+
+    from gcs.record.recover import recover
+
+    with _told(file), _progress(file, "recovering") as progress:
+        try:
+            saved = recover(file, output, progress)
+        except FileExistsError as error:
+            raise Fail(Exit.USAGE, f"{output}: exists already", "choose another name") from error
+        except OSError as error:
+            if error.filename == str(file):
+                raise
+            raise _cannot_write(output, error) from error
+    condition = saved.condition
+    if as_json:
+        values = {
+            "path": str(output),
+            "messages": saved.messages,
+            "seconds": saved.seconds,
+            "attachments": saved.attachments,
+            "source_closed": condition.closed,
+            "broken_chunk": condition.broken_chunk,
+            "damaged": condition.damaged,
+            "orphans": saved.orphans,
+        }
+        click.echo(json.dumps(values))
+        return
+    click.echo(f"{output}: {saved.messages} messages, {saved.seconds:.1f} s recovered")
+    if condition.closed and not condition.damaged:
+        click.echo("the file was complete already; this is a copy")
+    if condition.broken_chunk:
+        click.echo("the last chunk breaks off: what could be decompressed of it is included")
+    if condition.damaged or saved.orphans:
+        click.echo(f"left out: {condition.damaged} damaged records, {saved.orphans} messages")
+
+
+def _print(flight: FlightInfo) -> None:
+    state = "complete" if flight.closed else "NOT CLOSED: its writer was killed or is still writing"
+    click.echo(f"{flight.path}: {flight.size / 1e6:.2f} MB, {state}")
+    if not flight.closed:
+        click.echo(f"  hint: gcs log recover {flight.path} -o whole.mcap")
+    if flight.damaged:
+        click.echo(f"  {flight.damaged} damaged records were skipped")
+    click.echo(f"{flight.messages} messages in {flight.seconds:.1f} s{_began(flight.start_ns)}")
+    if flight.topics:
+        width = max(len(topic.topic) for topic in flight.topics)
+        click.echo(f"\n{'topic':{width}}  {'messages':>8}  {'Hz':>7}  schema")
+        for topic in flight.topics:
+            rate = f"{topic.hz:7.1f}" if topic.hz else "      -"
+            click.echo(f"{topic.topic:{width}}  {topic.messages:8d}  {rate}  {topic.schema}")
+    if flight.states:
+        click.echo("\nstates")
+        for change in flight.states:
+            event = f"  ({change.event})" if change.event else ""
+            click.echo(f"  {change.t_s:8.2f} s  vehicle {change.vehicle}  {change.state}{event}")
+    if flight.decisions:
+        click.echo("\ndecisions")
+        for decision in flight.decisions:
+            why = "  ".join(part for part in (decision.code, decision.sentence) if part)
+            click.echo(
+                f"  {decision.t_s:8.2f} s  #{decision.request_id} {decision.word}: "
+                f"{decision.outcome}  {why}".rstrip()
+            )
+    for gap in flight.gaps:
+        click.echo(f"\ngap: nothing for {gap.seconds:.1f} s after {gap.t_s:.1f} s")
+    if flight.attachments:
+        click.echo(f"\nattachments: {', '.join(flight.attachments)}")
+
+
+def _began(start_ns: int | None) -> str:
+    from datetime import UTC, datetime
+
+    if start_ns is None:
+        return ""
+    try:
+        began = datetime.fromtimestamp(start_ns / 1e9, UTC)
+    except (OverflowError, ValueError, OSError):
+        return ""
+    return f", from {began:%Y-%m-%d %H:%M:%S} UTC"
+
+
+@contextmanager
+def _told(file: Path) -> Iterator[None]:
+    """What can be wrong with a record becomes one sentence and exit 4."""
+    from gcs.record.reading import BadRecordError
+
+    try:
+        yield
+    except BadRecordError as error:
+        raise Fail(
+            Exit.BAD_FILE, str(error), "gcs reads MCAP files, as it writes them into logs/"
+        ) from error
+    except OSError as error:
+        raise Fail(Exit.BAD_FILE, f"{file}: {error.strerror or error}") from error
+
+
+def _cannot_write(path: Path, error: OSError) -> Fail:
+    return Fail(Exit.RECORDER, f"{path}: cannot write: {error.strerror or error}")
+
+
+@contextmanager
+def _progress(file: Path, label: str) -> Iterator[Callable[[Condition], None] | None]:
+    """A bar on a terminal, for files that take over a second."""
+    size = file.stat().st_size
+    if size < _PROGRESS_FROM_BYTES or not sys.stderr.isatty():
+        yield None
+        return
+    with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
+        yield lambda condition: bar.update(condition.position - bar.pos)

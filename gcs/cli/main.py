@@ -1,0 +1,181 @@
+"""`gcs`: one table of commands, each imported only when it is called.
+
+This module is what every start pays for, so it imports click and nothing else of weight.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import NamedTuple, NoReturn
+
+import click
+
+from gcs.cli.exits import Exit
+
+
+class Entry(NamedTuple):
+    """One command: where it lives, its line in the help, and commands added to it if a group."""
+
+    target: str  # "module:attribute"
+    help: str
+    more: tuple[str, ...] = ()
+
+
+COMMANDS: dict[str, dict[str, Entry]] = {
+    "Fly": {
+        "demo": Entry("gcs.cli.demo:demo", "A whole flight in a minute, on a simulated vehicle."),
+        "fly": Entry("gcs.cli.fly:fly", "The keyboard ground station, or --plain lines."),
+    },
+    "One command, then leave": {
+        "status": Entry("gcs.cli.oneshot:status", "What the vehicle reports."),
+        "control": Entry("gcs.cli.oneshot:control", "Take control of a flying vehicle."),
+        "arm": Entry("gcs.cli.oneshot:arm", "Arm the motors."),
+        "takeoff": Entry("gcs.cli.oneshot:takeoff", "Climb above the take-off point and hover."),
+        "goto": Entry("gcs.cli.oneshot:goto", "Fly straight to a point, metres E N U."),
+        "land": Entry("gcs.cli.oneshot:land", "Land where it is."),
+        "rtl": Entry("gcs.cli.oneshot:rtl", "Return to home and land."),
+        "hold": Entry("gcs.cli.oneshot:hold", "Stop and hold, in the vehicle's own hold mode."),
+        "abort": Entry("gcs.cli.oneshot:abort", "Stop now and forget the goal."),
+        "resume": Entry("gcs.cli.oneshot:resume", "Hover under our control after a hold."),
+        "disarm": Entry("gcs.cli.oneshot:disarm", "Stop the motors on the ground."),
+        "mode": Entry("gcs.cli.oneshot:mode", "Ask for a flight mode by the autopilot's name."),
+        "photo": Entry("gcs.cli.oneshot:photo", "Take a picture."),
+    },
+    "Files": {
+        "mission": Entry(
+            "gcs.cli.mission:mission",
+            "Mission files: check, show, upload, download, fly, clear.",
+            more=(
+                "gcs.cli.mission_live:upload",
+                "gcs.cli.mission_live:download",
+                "gcs.cli.mission_live:fly",
+                "gcs.cli.mission_live:clear",
+            ),
+        ),
+        "log": Entry("gcs.cli.log:log", "Recorded flights: info, layout, recover."),
+        "fsa": Entry("gcs.cli.fsa:fsa", "The gate's state machine, printed from its table."),
+    },
+}
+
+
+def _load(target: str) -> click.Command:
+    module, attribute = target.split(":")
+    command = getattr(importlib.import_module(module), attribute)
+    assert isinstance(command, click.Command)
+    return command
+
+
+class LazyGroup(click.Group):
+    """A group that knows its commands' names and one-line helps without importing them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return [name for section in COMMANDS.values() for name in section]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        for section in COMMANDS.values():
+            if cmd_name in section:
+                return _with_additions(section[cmd_name])
+        return None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        for title, section in COMMANDS.items():
+            with formatter.section(title):
+                formatter.write_dl([(name, entry.help) for name, entry in section.items()])
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        name = args[0]
+        if name not in self.list_commands(ctx) and not name.startswith("-"):
+            ctx.fail(_unknown(name, self.list_commands(ctx)))
+        return super().resolve_command(ctx, args)
+
+
+def _with_additions(entry: Entry) -> click.Command:
+    command = _load(entry.target)
+    for target in entry.more:
+        assert isinstance(command, click.Group)
+        added = _load(target)
+        if added.name not in command.commands:
+            command.add_command(added)
+    return command
+
+
+def _unknown(name: str, known: Sequence[str]) -> str:
+    import difflib
+
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"no command {name!r}" + (f"; did you mean {near[0]!r}?" if near else "")
+
+
+def _print_version(ctx: click.Context, _param: click.Parameter, asked: bool) -> None:
+    if not asked:
+        return
+    from importlib.metadata import version
+
+    click.echo(f"gcs {version('mavgate')}")
+    ctx.exit()
+
+
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="Example: gcs demo\n\nExit codes: 0 done, 2 usage, 3 no link, 4 bad file, 5 refused by "
+    "the vehicle, 6 refused by the gate, 7 recorder, 8 accepted but not completed, 9 address in "
+    "use, 70 bug, 130 interrupted.",
+)
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_print_version,
+    help="Show the version and exit.",
+)
+def gcs() -> None:
+    """A MAVLink ground station that sends no command it cannot justify.
+
+    Positions are metres east, north and up of the vehicle's local origin (E N U).
+    """
+
+
+def run(args: Sequence[str] | None = None) -> int:
+    """Run one command line and give its exit code; users never see a traceback."""
+    try:
+        result = gcs.main(args=args, prog_name="gcs", standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("gcs: interrupted", err=True)
+        return Exit.INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read our output has gone; the interpreter must not trip over it at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return Exit.INTERRUPTED
+    except Exception as bug:  # noqa: BLE001  the one place: a bug is told, not spilled
+        click.echo(f"gcs: internal error: {type(bug).__name__}: {bug}", err=True)
+        click.echo(f"  details: {_keep_details(bug)}", err=True)
+        return Exit.BUG
+    return result if isinstance(result, int) else Exit.DONE
+
+
+def _keep_details(bug: Exception) -> str:
+    """Write the traceback where it does not disturb, and say where."""
+    import tempfile
+    import traceback
+
+    with tempfile.NamedTemporaryFile(
+        "w", prefix="gcs-bug-", suffix=".txt", delete=False, encoding="utf-8"
+    ) as file:
+        file.write(f"gcs {' '.join(sys.argv[1:])}\n\n")
+        traceback.print_exception(bug, file=file)
+    return file.name
+
+
+def main() -> NoReturn:
+    """The console script."""
+    sys.exit(run())

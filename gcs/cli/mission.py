@@ -1,0 +1,105 @@
+"""`gcs mission`: what can be done with a mission file without a vehicle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.exits import Exit, Fail
+from gcs.cli.options import AS_JSON, POLICY, with_options
+
+if TYPE_CHECKING:
+    from gcs.plan.model import Geodetic, Personality, Plan
+
+AUTOPILOT = click.Option(
+    ["--autopilot"],
+    type=click.Choice(["px4", "ardupilot"]),
+    help="Whose rules to read it by.  [default: what the file says, else px4]",
+)
+
+
+def _parse_home(ctx: click.Context, param: click.Parameter, value: str | None) -> Geodetic | None:
+    """`LAT,LON,ALT`: degrees, and metres above mean sea level."""
+    from gcs.plan.model import Geodetic
+
+    if value is None:
+        return None
+    try:
+        lat_deg, lon_deg, alt_amsl_m = (float(part) for part in value.split(","))
+    except ValueError:
+        raise click.BadParameter(f"{value!r} is not three numbers LAT,LON,ALT") from None
+    if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and abs(alt_amsl_m) <= 1.0e4):
+        raise click.BadParameter(f"{value!r} is no place on Earth")
+    return Geodetic(lat_deg, lon_deg, alt_amsl_m)
+
+
+HOME = click.Option(
+    ["--home"],
+    callback=_parse_home,
+    metavar="LAT,LON,ALT",
+    help="Where it will take off.  [default: the file's home, else the simulated vehicle's]",
+)
+
+
+@click.group()
+def mission() -> None:
+    """Mission files: check and show them, and fly them through the gate.
+
+    FILE is a QGroundControl .plan, a QGC WPL 110 table or a mission in TOML; a shipped mission
+    is found by its name (`gcs mission show demo`).
+    """
+
+
+@mission.command(
+    epilog="Example: gcs mission check survey.plan --policy default\n\n"
+    "Exit codes: 0 it may be flown, 4 the file is wrong, 6 the fence refuses it."
+)
+@click.argument("file")
+@with_options(AUTOPILOT, POLICY, HOME, AS_JSON)
+def check(
+    file: str,
+    autopilot: Personality | None,
+    policy: str,
+    home: Geodetic | None,
+    as_json: bool,
+) -> int:
+    """Check a mission file, and every leg of it against the fence, without a vehicle."""
+    from gcs.cli.mission_check import check_plan
+    from gcs.cli.mission_report import check_json, check_lines
+
+    result = check_plan(read_plan(file, autopilot), autopilot, policy, home)
+    click.echo(check_json(result) if as_json else "\n".join(check_lines(result)))
+    return result.exit_code
+
+
+@mission.command(epilog="Example: gcs mission show demo")
+@click.argument("file")
+@with_options(AUTOPILOT, AS_JSON)
+def show(file: str, autopilot: Personality | None, as_json: bool) -> int:
+    """Print what a mission file holds, item by item."""
+    from gcs.cli.mission_report import plan_json, print_plan
+
+    plan = read_plan(file, autopilot)
+    if as_json:
+        click.echo(plan_json(plan))
+    else:
+        print_plan(plan)
+    return Exit.DONE
+
+
+def read_plan(file: str, autopilot: Personality | None) -> Plan:
+    """The plan behind a path or the name of a shipped mission.  Fails with BAD_FILE."""
+    from gcs import resources
+    from gcs.plan.errors import PlanError
+    from gcs.plan.reader import read
+
+    try:
+        path = resources.find(file)
+        return read(str(path), path.read_bytes(), autopilot)
+    except resources.MissionNotFoundError as error:
+        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None
+    except OSError as error:
+        raise Fail(Exit.BAD_FILE, f"{file}: {error.strerror}") from None
+    except PlanError as error:
+        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None

@@ -1,0 +1,125 @@
+"""A plan, a policy and a place to take off from -> findings and verdicts, without a vehicle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gcs.cli.exits import Exit, Fail
+from gcs.gate.policy import Policy, parse_policy
+from gcs.gate.projection import Origin, Projection
+from gcs.gate.tomlfile import PolicyError
+from gcs.gate.types import Refusal
+from gcs.gate.verifier import check_start, verifier_for
+from gcs.gate.zonespec import FileSpec, ZoneSpec
+from gcs.plan.errors import Finding, Level, PlanError
+from gcs.plan.lint import lint, worst
+from gcs.plan.model import Geodetic, Personality, Plan
+from gcs.plan.path import Ground
+from gcs.plan.place import georeference
+from gcs.plan.reader import read
+from gcs.plan.verify import Verification, verify
+from gcs.plan.zones import zone_specs
+from gcs.resources import policy_path
+
+HOMES: dict[Personality, Geodetic] = {
+    "px4": Geodetic(47.397742, 8.545594, 488.0),
+    "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
+}
+"""Where the simulated vehicles stand."""
+
+RETURN_UP_M: dict[Personality, float] = {"px4": 30.0, "ardupilot": 15.0}
+"""The autopilots' own return heights, above home, while no vehicle has told another."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """`verification` is None where there is nothing to fly, or it has errors: neither is put to
+    the fence.  `home` is None only where nobody gave one and nothing flies."""
+
+    plan: Plan
+    personality: Personality
+    policy: Policy
+    home: Geodetic | None
+    findings: tuple[Finding, ...]
+    verification: Verification | None
+    start_refusal: Refusal | None
+
+    @property
+    def exit_code(self) -> Exit:
+        if worst(list(self.findings)) is Level.ERROR:
+            return Exit.BAD_FILE
+        flown = self.verification
+        if self.start_refusal is not None or (flown is not None and flown.refusal is not None):
+            return Exit.REFUSED_BY_GATE
+        return Exit.DONE
+
+
+def check_plan(
+    plan: Plan, autopilot: Personality | None, policy_name: str, home: Geodetic | None
+) -> Checked:
+    """Fails with BAD_FILE where the policy is wrong."""
+    personality = autopilot or plan.firmware or "px4"
+    policy, policy_zones = load_policy(policy_name)
+    at_home, notes = _choose_home(plan, personality, home)
+    findings = (*notes, *lint(plan, personality, at_home))
+    if at_home is None or not plan.items or worst(list(findings)) is Level.ERROR:
+        return Checked(plan, personality, policy, at_home, findings, None, None)
+    origin = Origin(at_home.lat_deg, at_home.lon_deg, at_home.alt_amsl_m or 0.0)
+    projection = Projection(origin, personality)
+    placed = georeference(plan, projection.lat_lon, home=at_home)
+    zones = (*policy_zones, *zone_specs(placed.fence))
+    home_ned = (0.0, 0.0, 0.0)
+    verifier = verifier_for(policy, personality, home_ned, origin, zones)
+    ground = Ground(
+        personality,
+        home_ned=home_ned,
+        start_ned=home_ned,
+        north_east_of=projection.north_east,
+        origin_alt_amsl_m=origin.alt_amsl_m,
+        return_up_m=RETURN_UP_M[personality],
+    )
+    verification = verify(placed, ground, verifier)
+    start = check_start(verifier, home_ned)
+    return Checked(plan, personality, policy, at_home, findings, verification, start)
+
+
+def _choose_home(
+    plan: Plan, personality: Personality, given: Geodetic | None
+) -> tuple[Geodetic | None, tuple[Finding, ...]]:
+    """As typed, else the file's, else for a mission the simulated vehicle's, which is told."""
+    if given is not None:
+        return given, ()
+    if not plan.items:
+        return plan.home, ()
+    usual = HOMES[personality]
+    if plan.home is None:
+        what = f"the file has none; taken is {usual.lat_deg}, {usual.lon_deg}, {usual.alt_amsl_m} m"
+        hint = "give --home LAT,LON,ALT"
+        return usual, (Finding(Level.NOTE, "", "home", what, hint),)
+    if plan.home.alt_amsl_m is None:
+        what = f"the file gives it no height; taken is {usual.alt_amsl_m} m AMSL"
+        home = Geodetic(plan.home.lat_deg, plan.home.lon_deg, usual.alt_amsl_m)
+        return home, (Finding(Level.NOTE, "", "home", what, "give --home LAT,LON,ALT"),)
+    return plan.home, ()
+
+
+def load_policy(name: str) -> tuple[Policy, tuple[ZoneSpec, ...]]:
+    """The policy, and the zones of the fence files that it names.  Fails with BAD_FILE."""
+    path = policy_path(name)
+    try:
+        policy = parse_policy(path.read_text(encoding="utf-8"), str(path))
+        zones: list[ZoneSpec] = []
+        for spec in policy.fence:
+            if isinstance(spec.shape, FileSpec):
+                fence_path = path.parent / spec.shape.path
+                zones += zone_specs(read(str(fence_path), fence_path.read_bytes()).fence)
+    except PolicyError as error:
+        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None
+    except PlanError as error:
+        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None
+    except OSError as error:
+        hint = "--policy takes `default`, `lab` or the path of a TOML file"
+        raise Fail(Exit.BAD_FILE, f"{error.filename}: {error.strerror}", hint) from None
+    except UnicodeDecodeError:
+        raise Fail(Exit.BAD_FILE, f"{path}: is not UTF-8") from None
+    return policy, tuple(zones)

@@ -1,0 +1,136 @@
+"""The `gcs mission` commands that need a vehicle: upload, download, fly, clear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, link_config, with_options
+
+if TYPE_CHECKING:
+    from gcs.ipc import Ask
+
+EXITS = (
+    "Exit codes: 0 done, 3 no vehicle, 4 bad file, 5 refused by the vehicle, 6 refused by the "
+    "gate, 8 accepted but not completed, 130 interrupted."
+)
+WAIT = click.Option(
+    ["--wait"],
+    type=click.FloatRange(min=0, min_open=True),
+    default=1800.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds to wait for the effect.",
+)
+LINK_OPTIONS = (LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON)
+
+
+@click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
+@click.argument("file")
+@with_options(*LINK_OPTIONS)
+def upload(
+    file: str,
+    links: tuple[str, ...],
+    policy: str,
+    log_dir: str,
+    timeout: float,
+    wait: float,
+    as_json: bool,
+) -> None:
+    """Verify a mission file, send it to the vehicle, read it back and compare."""
+    from gcs.ipc import Ask
+
+    asks = (Ask(0, "mission_upload", path=_readable(file)),)
+    _run(asks, links, policy, log_dir, timeout, wait, as_json)
+
+
+@click.command(epilog=f"Example: gcs mission download -o on_board.plan\n\n{EXITS}")
+@click.option(
+    "-o",
+    "--output",
+    default="mission.plan",
+    show_default=True,
+    type=click.Path(dir_okay=False, writable=True),
+    help="Where to write it; the suffix chooses the format.",
+)
+@with_options(*LINK_OPTIONS)
+def download(
+    output: str,
+    links: tuple[str, ...],
+    policy: str,
+    log_dir: str,
+    timeout: float,
+    wait: float,
+    as_json: bool,
+) -> None:
+    """Read the mission on board into a file."""
+    from gcs.ipc import Ask
+
+    asks = (Ask(0, "mission_download", path=output),)
+    _run(asks, links, policy, log_dir, timeout, wait, as_json)
+
+
+@click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
+@click.argument("file")
+@with_options(*LINK_OPTIONS)
+def fly(
+    file: str,
+    links: tuple[str, ...],
+    policy: str,
+    log_dir: str,
+    timeout: float,
+    wait: float,
+    as_json: bool,
+) -> None:
+    """Upload a mission file, then start it and wait for its end."""
+    from gcs.ipc import Ask
+
+    asks = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
+    _run(asks, links, policy, log_dir, timeout, wait, as_json)
+
+
+@click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
+@with_options(*LINK_OPTIONS)
+def clear(
+    links: tuple[str, ...],
+    policy: str,
+    log_dir: str,
+    timeout: float,
+    wait: float,
+    as_json: bool,
+) -> None:
+    """Remove the mission on board."""
+    from gcs.ipc import Ask
+
+    _run((Ask(0, "mission_clear"),), links, policy, log_dir, timeout, wait, as_json)
+
+
+def _readable(file: str) -> str:
+    """Path of the file as typed, or of the shipped mission of that name.
+
+    It is read here first, so that a file that is no plan is told before any link is started.
+    Fails with BAD_FILE.
+    """
+    from gcs import resources
+    from gcs.cli.mission import read_plan
+
+    read_plan(file, None)
+    return str(resources.find(file))
+
+
+def _run(
+    asks: tuple[Ask, ...],
+    links: tuple[str, ...],
+    policy: str,
+    log_dir: str,
+    timeout: float,
+    wait: float,
+    as_json: bool,
+) -> None:
+    from gcs.cli import errand, words
+
+    config = link_config(links, policy, log_dir, name="mission", timeout_s=timeout)
+    how = errand.ErrandConfig(timeout, wait, as_json, words.label(asks[0]))
+    code = errand.run(config, how, errand.asking(words.Request(asks), wait))
+    click.get_current_context().exit(code)

@@ -1,0 +1,102 @@
+"""The one-shot commands, made from the table of words: `gcs goto 3 0 2`, `gcs land`, ..."""
+
+from __future__ import annotations
+
+import click
+
+from gcs.cli import typed, words
+from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, link_config
+
+EXITS = (
+    "Exit codes: 0 done, 2 usage, 3 no vehicle, 5 refused by the vehicle, 6 refused by the gate, "
+    "8 accepted but not completed, 9 address in use, 130 interrupted."
+)
+WAIT = click.Option(
+    ["--wait"],
+    type=click.FloatRange(min=0, min_open=True),
+    default=300.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds to wait for the effect.",
+)
+
+
+def _command(name: str) -> click.Command:
+    word = words.BY_NAME[name]
+
+    def run_word(
+        arguments: tuple[str, ...],
+        links: tuple[str, ...],
+        policy: str,
+        log_dir: str,
+        timeout: float,
+        wait: float,
+        as_json: bool,
+    ) -> None:
+        try:
+            action = typed.parse_arguments(word, arguments)
+        except typed.WordError as error:
+            raise click.UsageError(f"{error.sentence}\n  hint: {error.hint}") from None
+        assert isinstance(action, words.Request)
+
+        from gcs.cli import errand
+
+        config = link_config(links, policy, log_dir, name=name, timeout_s=timeout)
+        how = errand.ErrandConfig(timeout, wait, as_json, name)
+        click.get_current_context().exit(errand.run(config, how, errand.asking(action, wait)))
+
+    return click.Command(
+        name,
+        callback=run_word,
+        params=[
+            click.Argument(
+                ["arguments"], nargs=-1, type=click.UNPROCESSED, metavar=word.usage or None
+            ),
+            LINK,
+            POLICY,
+            LOG_DIR,
+            TIMEOUT,
+            WAIT,
+            AS_JSON,
+        ],
+        help=word.help[0].upper() + word.help[1:] + ".",
+        epilog=f"Example: gcs {word.example}\n\n{EXITS}",
+        # Negative numbers look like options; what is no option of ours is an argument.
+        context_settings={"ignore_unknown_options": True},
+        options_metavar="[OPTIONS]",
+    )
+
+
+control = _command("control")
+arm = _command("arm")
+takeoff = _command("takeoff")
+goto = _command("goto")
+land = _command("land")
+rtl = _command("rtl")
+hold = _command("hold")
+abort = _command("abort")
+resume = _command("resume")
+disarm = _command("disarm")
+mode = _command("mode")
+photo = _command("photo")
+
+
+def _status(
+    links: tuple[str, ...], policy: str, log_dir: str, timeout: float, as_json: bool
+) -> None:
+    from gcs.cli import errand
+    from gcs.cli.status import report
+
+    config = link_config(links, policy, log_dir, name="status", timeout_s=timeout)
+    how = errand.ErrandConfig(timeout, 0.0, as_json, "status")
+    code = errand.run(config, how, lambda dialogue: report(dialogue, as_json=as_json))
+    click.get_current_context().exit(code)
+
+
+status = click.Command(
+    "status",
+    callback=_status,
+    params=[LINK, POLICY, LOG_DIR, TIMEOUT, AS_JSON],
+    help="What the vehicle reports: state, mode, position, battery, link.",
+    epilog=f"Example: gcs status --json\n\n{EXITS}",
+)

@@ -1,0 +1,84 @@
+"""Options that every command with a link of its own shares, and what they add up to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from gcs.cli.exits import Exit, Fail
+from gcs.config import LinkConfig
+
+DEFAULT_LINK = "udpin://127.0.0.1:14550"
+F = TypeVar("F", bound=Callable[..., Any])
+
+LINK = click.Option(
+    ["--link", "links"],
+    multiple=True,
+    metavar="URL",
+    help=f"Where the vehicle is: udpin:// udpout:// tcpin:// tcpout:// serial://, or pymavlink's "
+    f"forms. May be given more than once.  [default: {DEFAULT_LINK}]",
+)
+POLICY = click.Option(
+    ["--policy"],
+    default="default",
+    show_default=True,
+    metavar="FILE|default|lab",
+    help="What the gate allows.",
+)
+LOG_DIR = click.Option(
+    ["--log-dir"],
+    default="logs",
+    show_default=True,
+    metavar="DIR",
+    help="Where the flight is recorded.",
+)
+TIMEOUT = click.Option(
+    ["--timeout"],
+    type=click.FloatRange(min=0, min_open=True),
+    default=10.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds to wait for a vehicle to be heard.",
+)
+AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
+
+
+def with_options(*options: click.Option) -> Callable[[F], F]:
+    """The given options, in this order, on a command made by a decorator."""
+
+    def attach(function: F) -> F:
+        params = function.__dict__.setdefault("__click_params__", [])
+        params.extend(reversed(options))
+        return function
+
+    return attach
+
+
+def policy_path(name: str) -> str:
+    """The file behind `--policy`; empty for the built-in default.  Fails with BAD_FILE."""
+    if name == "default":
+        return ""
+    if name == "lab":
+        from importlib.resources import files
+
+        return str(files("gcs.gate") / "policies" / "lab.toml")
+    from pathlib import Path
+
+    if not Path(name).is_file():
+        raise Fail(Exit.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab")
+    return name
+
+
+def link_config(
+    links: tuple[str, ...], policy: str, log_dir: str, *, name: str, timeout_s: float
+) -> LinkConfig:
+    """For a link to a vehicle that somebody else has started."""
+    return LinkConfig(
+        endpoints=list(links) or [DEFAULT_LINK],
+        policy_path=policy_path(policy),
+        log_dir=log_dir,
+        name=name,
+        connect_timeout_s=timeout_s,
+    )

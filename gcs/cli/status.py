@@ -1,0 +1,74 @@
+"""`gcs status`: the latest snapshot as a table, or as JSON."""
+
+from __future__ import annotations
+
+import math
+
+import click
+import msgspec
+
+from gcs import ipc
+from gcs.cli import say
+from gcs.cli.dialogue import Dialogue
+from gcs.cli.exits import Exit
+
+SLOW_VALUES_WAIT_S = 1.5
+"""Battery and mode come less often than the position."""
+
+
+def report(dialogue: Dialogue, *, as_json: bool) -> Exit:
+    """Give the slower values a moment to arrive, then print."""
+    dialogue.until(
+        lambda: dialogue.snapshot is not None and dialogue.snapshot.battery_pct is not None,
+        SLOW_VALUES_WAIT_S,
+    )
+    return show(dialogue.snapshot, as_json=as_json)
+
+
+def show(seen: ipc.Snapshot | None, *, as_json: bool) -> Exit:
+    """Print it; NO_LINK where nothing was heard."""
+    if seen is None:
+        return Exit.NO_LINK
+    if as_json:
+        click.echo(msgspec.json.encode(seen).decode())
+        return Exit.DONE
+
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE, show_header=False, pad_edge=False)
+    table.add_column(style="dim")
+    table.add_column()
+    for name, value in rows(seen):
+        table.add_row(name, value)
+    Console(highlight=False, markup=False).print(table)
+    return Exit.DONE
+
+
+def rows(seen: ipc.Snapshot) -> list[tuple[str, str]]:
+    """What is shown, top to bottom; unknown values are a dash."""
+    armed = {None: "-", True: "armed", False: "disarmed"}[seen.armed]
+    conditions = f" ({', '.join(seen.conditions)})" if seen.conditions else ""
+    return [
+        ("vehicle", seen.vehicle),
+        ("state", f"{seen.state}, control {seen.control}"),
+        ("severity", f"{seen.severity}{conditions}"),
+        ("mode", f"{seen.mode or '-'}, {armed}, {seen.landed or '-'}"),
+        ("position", f"{say.enu(seen.pos_enu)} m, {_fixed(seen.position_age_s, 's', 2)} old"),
+        ("velocity", f"{say.enu(seen.v_enu)} m/s, {_speed(seen.v_enu)}"),
+        ("heading", _fixed(seen.yaw_deg, "deg", 0)),
+        ("home", f"{say.enu(seen.home_enu)} m"),
+        ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
+        ("link", f"{seen.rx_hz:.0f} messages/s, {seen.lost_pct:.1f} % lost"),
+        ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),
+        ("log", seen.log_path or "not recorded"),
+    ]
+
+
+def _fixed(value: float | None, unit: str, digits: int) -> str:
+    return "-" if value is None else f"{value:.{digits}f} {unit}"
+
+
+def _speed(v_enu: ipc.Vec3 | None) -> str:
+    return "-" if v_enu is None else f"{math.hypot(*v_enu):.2f} m/s"

@@ -1,0 +1,39 @@
+"""How a link process is to be started: one object, passed as JSON in its first argument."""
+
+from __future__ import annotations
+
+import msgspec
+
+
+class SimConfig(msgspec.Struct, frozen=True):
+    """A vehicle of the link's own (`--sim`): started with it, stopped once it holds or landed."""
+
+    autopilot: str = "px4"
+    home: str = ""  # LAT,LON,ALT; empty = the personality's own
+    seed: int = 1
+    speedup: float = 1.0
+
+
+class LinkConfig(msgspec.Struct, frozen=True):
+    """Everything a link needs to know.  Times in seconds, paths as typed by the user."""
+
+    endpoints: list[str] = []  # empty with `sim`: a private free port
+    sim: SimConfig | None = None
+    policy_path: str = ""  # empty = the built-in default
+    log_dir: str = "logs"
+    name: str = "flight"  # <YYYYMMDD-HHMMSS>_<name>.mcap
+    sysid: int = 255
+    compid: int = 190
+    target_sysid: int = 0  # 0 = the first vehicle heard
+    speedup: float = 1.0
+    connect_timeout_s: float = 10.0
+    snapshots_hz: float = 10.0
+
+
+def encode(config: LinkConfig) -> str:
+    return msgspec.json.encode(config).decode()
+
+
+def decode(text: str) -> LinkConfig:
+    """Raises msgspec.ValidationError."""
+    return msgspec.json.decode(text.encode(), type=LinkConfig)

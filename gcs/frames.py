@@ -1,0 +1,24 @@
+"""The one place where the operator's frame meets MAVLink's.
+
+The operator works in `map`: x = east, y = north, z = up (ENU, metres), labelled E N U
+everywhere.  MAVLink's MAV_FRAME_LOCAL_NED is x = north, y = east, z = down.  Converting is
+a swap of the first two axes and a change of sign; it is exact in IEEE-754, so a round trip
+gives the same bits (acceptance test L18).
+"""
+
+from __future__ import annotations
+
+Vec3 = tuple[float, float, float]
+"""Three metres (or metres per second) in the frame that the variable's name ends with."""
+
+
+def ned_from_enu(v_enu: Vec3) -> Vec3:
+    """East, north, up -> north, east, down.  Never yields -0.0, which nobody wants to read."""
+    east, north, up = v_enu
+    return (north, east, 0.0 - up)
+
+
+def enu_from_ned(v_ned: Vec3) -> Vec3:
+    """North, east, down -> east, north, up.  Never yields -0.0."""
+    north, east, down = v_ned
+    return (east, north, 0.0 - down)

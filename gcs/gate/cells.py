@@ -1,0 +1,56 @@
+"""What the rows of the table share: endings, common branches, and the plain cells.
+
+Read a cell from the top: the first branch whose guards hold is the one.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gcs.gate.rules import Answer, Branch, Cell, Do, End, Guard
+from gcs.gate.types import Code, Ended, State
+
+COMPLETE: Final = End(Ended.COMPLETE)
+STOPPED: Final = End(Ended.ABORTED, Code.OPERATOR)
+MISSED: Final = End(Ended.TIMED_OUT, Code.DEADLINE)
+SILENT: Final = End(Ended.TIMED_OUT, Code.NO_ANSWER)
+DENIED: Final = End(Ended.ABORTED, Code.VEHICLE_REFUSED)
+SEVERE: Final = End(Ended.ABORTED, Code.SEVERITY)
+DESERTED: Final = End(Ended.ABORTED, Code.OPERATOR_LOST)
+TAKEN: Final = End(Ended.TAKEN_OVER, Code.MODE_CHANGED)
+
+imposs: Final[Cell] = ()
+stay: Final[Cell] = (Branch(),)
+done: Final[Cell] = (Branch(answer=Answer.DONE),)
+sile: Final[Cell] = (Branch(ends=SILENT),)
+
+RETAKE: Final = (Guard.AIRBORNE, Guard.SEVERITY_PERMITS, Guard.HERE_CLEARS)
+"""What it takes to end a take-off or a mission in HOVERING."""
+
+
+def refuse(code: Code) -> Cell:
+    """Refused, whatever else."""
+    return (Branch(refuse=code),)
+
+
+def hold_then(end: End) -> Branch:
+    """End the request so, command HOLD, and stay in HOLDING until somebody resumes."""
+    return Branch(ends=end, do=(Do.HOLD,), to=State.HOLDING)
+
+
+def release_then(end: End, to: State) -> Branch:
+    """The vehicle does something else than we asked: end the request, let control go."""
+    return Branch(ends=end, do=(Do.RELEASE,), to=to)
+
+
+def grounded(end: End) -> Branch:
+    """Still on the ground, with a take-off or a mission under way: give it up."""
+    return Branch(when=(Guard.ON_GROUND,), ends=end, do=(Do.RELEASE,), to=State.GROUNDED)
+
+
+def lose_control(end: End) -> Branch:
+    """Control could not be taken; our command may yet take effect, so the vehicle is held."""
+    return Branch(when=(Guard.TAKING,), ends=end, do=(Do.RELEASE, Do.HOLD_ONCE), to=State.EXTERNAL)
+
+
+sile_ho: Final[Cell] = (lose_control(SILENT), Branch())

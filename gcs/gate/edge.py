@@ -1,0 +1,83 @@
+"""One step of a gate, seen from outside: before, input, effects, after."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from gcs.gate.memory import SECOND_NS, Memory
+from gcs.gate.policy import Policy
+from gcs.gate.types import (
+    CommandKind,
+    Effect,
+    Input,
+    Outcome,
+    Request,
+    SendCommand,
+    SendSetpoint,
+    Severity,
+    Verdict,
+    Wish,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Objection:
+    """Which invariant is broken (0: the machine's own soundness), and how."""
+
+    invariant: int
+    sentence: str
+
+    def __str__(self) -> str:
+        return f"invariant {self.invariant}: {self.sentence}"
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """One `handle` call."""
+
+    policy: Policy
+    before: Memory
+    given: Input
+    now_ns: int
+    effects: Sequence[Effect]
+    after: Memory
+
+    @property
+    def wish(self) -> Wish | None:
+        return self.given.wish if isinstance(self.given, Request) else None
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """The verdict on the request that this step brought, if it is in yet."""
+        if isinstance(self.given, Request):
+            for effect in self.effects:
+                if isinstance(effect, Verdict) and effect.request_id == self.given.request_id:
+                    return effect
+        return None
+
+    @property
+    def accepted(self) -> bool:
+        return self.verdict is not None and self.verdict.outcome is Outcome.ACCEPTED
+
+    @property
+    def commands(self) -> list[CommandKind]:
+        return [effect.kind for effect in self.effects if isinstance(effect, SendCommand)]
+
+    @property
+    def setpoints(self) -> list[SendSetpoint]:
+        return [effect for effect in self.effects if isinstance(effect, SendSetpoint)]
+
+    @property
+    def stale(self) -> bool:
+        """The position was too old (or absent) when the step came."""
+        age_ns = self.before.position_age_ns(self.now_ns)
+        return age_ns is None or age_ns > self.policy.position_age_s * SECOND_NS
+
+    @property
+    def severity(self) -> Severity:
+        """As it is after the step."""
+        severities = self.policy.severities
+        return max(
+            (severities[name] for name, _ in self.after.conditions), default=Severity.NOMINAL
+        )

@@ -1,0 +1,125 @@
+"""Rows of the table: ticks and deadlines, severity, and a lost operator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from gcs.gate.cells import (
+    COMPLETE,
+    DESERTED,
+    MISSED,
+    RETAKE,
+    SEVERE,
+    SILENT,
+    grounded,
+    hold_then,
+    imposs,
+    sile,
+    sile_ho,
+    stay,
+)
+from gcs.gate.events import Event
+from gcs.gate.rules import Branch, Cell, Do, End, Guard, Row
+from gcs.gate.types import Code, Ended, State
+
+
+def _disarmed(end: End) -> Branch:
+    """As `grounded`, and the motors may be turning: disarm."""
+    return Branch(when=(Guard.ON_GROUND,), ends=end, do=(Do.RELEASE, Do.DISARM), to=State.GROUNDED)
+
+
+def _let_go(end: End, when: Guard) -> Cell:
+    """STALE: no verified point is left to stream to; hold, and come back to HOLDING."""
+    return (Branch(when=(when,), ends=end, do=(Do.LET_GO, Do.HOLD)), Branch())
+
+
+# ------------------------------------------------------------------------------------ time
+
+tick_ho: Final[Cell] = (
+    Branch(when=(Guard.PENDING,), do=(Do.VERIFY,), to=State.VERIFYING),
+    Branch(),
+)
+tick_mo: Final[Cell] = (
+    tick_ho[0],
+    Branch(when=(Guard.ARRIVED,), ends=COMPLETE, do=(Do.KEEP_GOAL,), to=State.HOVERING),
+    Branch(),
+)
+tick_to: Final[Cell] = (
+    Branch(when=(Guard.AT_HEIGHT, *RETAKE), do=(Do.TAKE_CONTROL,), to=State.HOVERING),
+    Branch(
+        when=(Guard.AT_HEIGHT,),
+        ends=End(Ended.ABORTED, Code.TOO_CLOSE),
+        do=(Do.HOLD,),
+        to=State.HOLDING,
+    ),
+    Branch(),
+)
+_came_down: Final = Branch(when=(Guard.TASK_HAS_LANDED,), ends=COMPLETE)
+late_gr: Final[Cell] = (_came_down, Branch(ends=SILENT))
+late_to: Final[Cell] = (grounded(MISSED), hold_then(MISSED))
+late_mo: Final[Cell] = (hold_then(MISSED),)
+late_ph: Final[Cell] = (Branch(ends=MISSED, to=State.HOVERING),)
+late_la: Final[Cell] = (
+    Branch(when=(Guard.ON_GROUND,), ends=COMPLETE, do=(Do.RELEASE,), to=State.GROUNDED),
+    Branch(ends=MISSED),
+)
+late_st: Final[Cell] = (
+    Branch(when=(Guard.IN_GRACE,), ends=MISSED, do=(Do.LET_GO, Do.HOLD)),
+    *late_gr,
+)
+asks: Final[Cell] = (Branch(do=(Do.ASK_GUIDED,)),)
+again: Final[Cell] = (Branch(do=(Do.REPEAT_HOLD,)),)
+
+# -------------------------------------------------------------------------------- severity
+
+sev_gr: Final[Cell] = (Branch(when=(Guard.TASK_IS_ARM,), ends=SEVERE), Branch())
+sevh: Final[Cell] = (hold_then(SEVERE),)
+sevh_to: Final[Cell] = (_disarmed(SEVERE), *sevh)
+sevh_st: Final[Cell] = _let_go(SEVERE, Guard.IN_GRACE)
+sevr_hd: Final[Cell] = (
+    Branch(when=(Guard.PATH_CLEARS,), ends=SEVERE, do=(Do.RETURN,), to=State.RETURNING),
+    Branch(when=(Guard.RTL_FORWARD,), ends=SEVERE, do=(Do.RETURN,), to=State.RETURNING),
+    Branch(when=(Guard.RTL_LAND,), ends=SEVERE, do=(Do.LAND,), to=State.LANDING),
+    Branch(),
+)
+sevr: Final[Cell] = (*sevr_hd[:-1], *sevh)
+sevr_to: Final[Cell] = (_disarmed(SEVERE), *sevr)
+sevl: Final[Cell] = (Branch(ends=SEVERE, do=(Do.LAND,), to=State.LANDING),)
+sevl_to: Final[Cell] = (_disarmed(SEVERE), *sevl)
+sevl_re: Final[Cell] = (
+    Branch(when=(Guard.OURS,), ends=SEVERE, do=(Do.LAND,), to=State.LANDING),
+    Branch(),
+)
+sevl_st: Final[Cell] = (
+    Branch(when=(Guard.RETURNS_TO_STATE,), ends=SEVERE, do=(Do.LAND,), to=State.LANDING),
+    Branch(),
+)
+
+# ------------------------------------------------------------------------- a lost operator
+
+lost_gr: Final[Cell] = (Branch(ends=DESERTED),)
+lost_to: Final[Cell] = (_disarmed(DESERTED), hold_then(DESERTED))
+lost_fl: Final[Cell] = (hold_then(DESERTED),)
+lost_dn: Final[Cell] = (
+    Branch(when=(Guard.SEVERITY_RETURNS,)),
+    Branch(when=(Guard.OURS,), ends=DESERTED, do=(Do.HOLD,), to=State.HOLDING),
+    Branch(),
+)
+lost_st: Final[Cell] = _let_go(DESERTED, Guard.RETURNS_TO_STATE)
+
+# fmt: off
+# ruff: noqa: E501 - a table is read along its rows
+TIME_ROWS: Final[Mapping[Event, Row]] = {
+    #                     NO_VE  STALE    GROUN    TAKOF    HOVER    VERIF   MOVIN    STREA    PICTU    MISSI    RETUR    LANDI    HOLDI    EXTER
+    Event.TICK:           (stay,  stay,    stay,    tick_to, tick_ho, imposs, tick_mo, stay,    stay,    stay,    stay,    stay,    stay,    stay),
+    Event.DEADLINE:       (sile,  late_st, late_gr, late_to, sile_ho, imposs, late_mo, late_mo, late_ph, sile,    sile,    late_la, sile,    sile),
+    Event.CONTROL_DUE:    (stay,  stay,    stay,    stay,    asks,    imposs, stay,    stay,    stay,    stay,    stay,    stay,    stay,    stay),
+    Event.HOLD_DUE:       (again, again,   again,   stay,    stay,    imposs, stay,    stay,    stay,    stay,    stay,    stay,    again,   again),
+    Event.MUST_HOLD:      (stay,  sevh_st, sev_gr,  sevh_to, sevh,    imposs, sevh,    sevh,    sevh,    sevh,    stay,    stay,    stay,    stay),
+    Event.MUST_RETURN:    (stay,  sevh_st, sev_gr,  sevr_to, sevr,    imposs, sevr,    sevr,    sevr,    sevr,    stay,    stay,    sevr_hd, stay),
+    Event.MUST_LAND:      (stay,  sevl_st, sev_gr,  sevl_to, sevl,    imposs, sevl,    sevl,    sevl,    sevl,    sevl_re, stay,    sevl,    stay),
+    Event.EASED:          (stay,  stay,    stay,    stay,    stay,    imposs, stay,    stay,    stay,    stay,    stay,    stay,    stay,    stay),
+    Event.OPERATOR_LOST:  (stay,  lost_st, lost_gr, lost_to, lost_fl, imposs, lost_fl, lost_fl, lost_fl, lost_fl, lost_dn, lost_dn, stay,    stay),
+}
+# fmt: on

@@ -1,0 +1,52 @@
+"""What is wrong with a plan, told with file, place, item, expectation and hint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+
+class Level(IntEnum):
+    """NOTE: what was decided.  WARNING: look at it.  ERROR: it cannot be flown as it is."""
+
+    NOTE = 1
+    WARNING = 2
+    ERROR = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something to tell about a plan that could be read.
+
+    `where` is a line number or a JSON path, empty where the whole file is meant; `item` names
+    what it is about; `index` counts into `Plan.items` where it is about one of them.
+    """
+
+    level: Level
+    where: str
+    item: str
+    what: str
+    hint: str = ""
+    index: int | None = None
+
+
+class PlanError(Exception):
+    """A file that is no plan, or a plan that cannot become what was asked of it."""
+
+    def __init__(
+        self, file: str, where: str, item: str, what: str, expected: str = "", hint: str = ""
+    ) -> None:
+        super().__init__(file, where, item, what, expected, hint)
+        self.file = file
+        self.where = where
+        self.item = item
+        self.what = what
+        self.expected = expected
+        self.hint = hint
+
+    def __str__(self) -> str:
+        """`file:where: item: what, expected ...`; the hint is for a line of its own."""
+        place = f"{self.file}:{self.where}" if self.where else self.file
+        subject = f"{self.item}: " if self.item else ""
+        wanted = f", expected {self.expected}" if self.expected else ""
+        return f"{place}: {subject}{self.what}{wanted}"

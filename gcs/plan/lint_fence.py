@@ -1,0 +1,48 @@
+"""What is wrong with the shape of a fence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gcs.gate.geometry import polygon_fault
+from gcs.plan.errors import Finding, Level
+from gcs.plan.model import Circle, Geodetic, LatLon, Plan, Polygon, Zone
+from gcs.plan.sphere import distance_m, north_east_m
+
+_FAR_M = 20_000.0
+
+
+def lint_fence(plan: Plan, home: Geodetic | None) -> Iterator[Finding]:
+    """Polygons that are none, upside-down heights, zones far from home."""
+    for number, zone in enumerate(plan.fence.zones, start=1):
+        for level, what in _zone_faults(zone, home):
+            yield Finding(level, zone.where, f"fence zone {number}", what)
+
+
+def _zone_faults(zone: Zone, home: Geodetic | None) -> Iterator[tuple[Level, str]]:
+    if isinstance(zone.shape, Polygon):
+        if not zone.shape.corners:
+            yield Level.ERROR, "a polygon needs at least 3 corners, this one has 0"
+            return
+        fault = polygon_fault(_plane(zone.shape))
+        if fault is not None:
+            yield Level.ERROR, fault
+    floor_m, ceiling_m = zone.floor_above_home_m, zone.ceiling_above_home_m
+    if floor_m is not None and ceiling_m is not None and floor_m >= ceiling_m:
+        yield Level.ERROR, f"its ceiling of {ceiling_m:g} m is not above its floor of {floor_m:g} m"
+    if isinstance(zone.shape, Circle) and zone.shape.radius_m <= 0.0:
+        yield Level.ERROR, f"its radius is {zone.shape.radius_m:g} m"
+    first = zone.shape.centre if isinstance(zone.shape, Circle) else zone.shape.corners[0]
+    if home is not None and isinstance(first, LatLon):
+        far_m = distance_m(first, (home.lat_deg, home.lon_deg))
+        if far_m > _FAR_M:
+            yield Level.WARNING, f"is {far_m / 1000:.0f} km from home"
+
+
+def _plane(polygon: Polygon) -> tuple[tuple[float, float], ...]:
+    """Corners as (east, north) metres, geographic ones about the first."""
+    first = polygon.corners[0]
+    if not isinstance(first, LatLon):
+        return tuple((corner[0], corner[1]) for corner in polygon.corners)
+    places = (north_east_m(first, (corner[0], corner[1])) for corner in polygon.corners)
+    return tuple((east_m, north_m) for north_m, east_m in places)

@@ -1,0 +1,51 @@
+"""The traps of DO_JUMP."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gcs.plan.commands import KINDS, Kind
+from gcs.plan.errors import Finding, Level
+from gcs.plan.model import Item, Plan
+from gcs.wire.ids import Cmd
+
+_STAYS = (Kind.MOVE, Kind.RETURN, Kind.WAIT)
+
+
+def lint_jumps(plan: Plan) -> Iterator[Finding]:
+    """Jumps to nowhere, to themselves, round and round without flying, and for ever."""
+    for index, item in enumerate(plan.items):
+        if item.command == Cmd.DO_JUMP:
+            yield from _lint_jump(plan, index, item)
+
+
+def _lint_jump(plan: Plan, index: int, item: Item) -> Iterator[Finding]:
+    label = f"item {index + 1} (DO_JUMP)"
+    to, repeats = item.params[0], item.params[1]
+
+    def finding(level: Level, what: str, hint: str = "") -> Finding:
+        return Finding(level, item.where, label, what, hint, index)
+
+    target = plan.index_of(to)
+    if target is None:
+        ids = [other.do_jump_id for other in plan.items]
+        before = "before the start" if to < min(ids) else "not there"
+        yield finding(Level.ERROR, f"jumps to item {to:g}, which is {before}")
+        return
+    if target == index:
+        yield finding(Level.ERROR, "jumps to itself")
+        return
+    if repeats != repeats or repeats < -1 or repeats != repeats // 1:
+        hint = "-1 repeats for ever"
+        yield finding(Level.ERROR, f"its repeat count is {repeats:g}", hint)
+    elif repeats == 0:
+        yield finding(Level.NOTE, "repeats 0 times, so it never jumps")
+    elif repeats == -1:
+        what = "repeats for ever"
+        behind = index + 1 < len(plan.items)
+        yield finding(Level.WARNING, f"{what}; what follows is never flown" if behind else what)
+    if target < index:
+        passed = plan.items[target:index]
+        if not any(KINDS.get(other.command) in _STAYS for other in passed):
+            what = f"loops to item {target + 1} without a waypoint between them"
+            yield finding(Level.ERROR, what)

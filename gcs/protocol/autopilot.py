@@ -1,0 +1,273 @@
+"""What the autopilots call their modes, and how each wants to be asked: one row a personality.
+
+Sources: PX4 `px4_custom_mode.h` and `Commander.cpp`, ArduCopter `mode.h` and `GCS_Mavlink.cpp`,
+MAVLink common for the commands.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from types import MappingProxyType
+from typing import assert_never
+
+from gcs.gate.types import CommandKind, FlightMode
+from gcs.protocol.effects import Address
+from gcs.wire.ids import Autopilot, Cmd, ModeFlag
+from gcs.wire.messages import CommandLong
+
+FORCE_DISARM = 21196.0
+"""param2 of COMPONENT_ARM_DISARM that disarms in the air too (MAVLink common)."""
+IGNORED = math.nan
+"""A parameter that PX4 is to choose itself."""
+
+
+class ParamEncoding(Enum):
+    """How an integer travels in the float of PARAM_VALUE and PARAM_SET."""
+
+    BYTEWISE = "bytewise"
+    CAST = "cast"
+
+
+class CannotAskError(Exception):
+    """This autopilot cannot be asked for that; the message says why, for the operator."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A mode by the autopilot's own name."""
+
+    name: str
+    custom_mode: int
+    """HEARTBEAT.custom_mode."""
+    meaning: FlightMode
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """What the operator or the gate wants, with the numbers that some kinds need."""
+
+    kind: CommandKind
+    up_m: float = 0.0
+    """TAKE_OFF: metres above the take-off point."""
+    ground_amsl_m: float | None = None
+    """TAKE_OFF: the take-off point above mean sea level, which px4 needs."""
+    mode_name: str = ""
+    """SET_MODE: in any case of letters."""
+    photo_seq: int = 1
+    """PHOTO: counts up, so that a repeated command takes no second picture."""
+
+
+def _px4(main: int, sub: int = 0) -> int:
+    return main << 16 | sub << 24
+
+
+_M = FlightMode
+
+_PX4_MODES = (
+    Mode("MANUAL", _px4(1), _M.OTHER),
+    Mode("ALTCTL", _px4(2), _M.OTHER),
+    Mode("POSCTL", _px4(3), _M.OTHER),
+    Mode("POSCTL.ORBIT", _px4(3, 1), _M.OTHER),
+    Mode("POSCTL.SLOW", _px4(3, 2), _M.OTHER),
+    Mode("AUTO.READY", _px4(4, 1), _M.OTHER),
+    Mode("AUTO.TAKEOFF", _px4(4, 2), _M.TAKEOFF),
+    Mode("AUTO.LOITER", _px4(4, 3), _M.HOLD),
+    Mode("AUTO.MISSION", _px4(4, 4), _M.MISSION),
+    Mode("AUTO.RTL", _px4(4, 5), _M.RETURN),
+    Mode("AUTO.LAND", _px4(4, 6), _M.LAND),
+    Mode("AUTO.FOLLOW_TARGET", _px4(4, 8), _M.OTHER),
+    Mode("AUTO.PRECLAND", _px4(4, 9), _M.LAND),
+    Mode("ACRO", _px4(5), _M.OTHER),
+    Mode("OFFBOARD", _px4(6), _M.GUIDED),
+    Mode("STABILIZED", _px4(7), _M.OTHER),
+    Mode("TERMINATION", _px4(10), _M.OTHER),
+)
+
+_ARDUCOPTER_MODES = (
+    Mode("STABILIZE", 0, _M.OTHER),
+    Mode("ACRO", 1, _M.OTHER),
+    Mode("ALT_HOLD", 2, _M.OTHER),
+    Mode("AUTO", 3, _M.MISSION),
+    Mode("GUIDED", 4, _M.GUIDED),
+    Mode("LOITER", 5, _M.HOLD),
+    Mode("RTL", 6, _M.RETURN),
+    Mode("CIRCLE", 7, _M.OTHER),
+    Mode("LAND", 9, _M.LAND),
+    Mode("DRIFT", 11, _M.OTHER),
+    Mode("SPORT", 13, _M.OTHER),
+    Mode("FLIP", 14, _M.OTHER),
+    Mode("AUTOTUNE", 15, _M.OTHER),
+    Mode("POSHOLD", 16, _M.OTHER),
+    Mode("BRAKE", 17, _M.HOLD),
+    Mode("THROW", 18, _M.OTHER),
+    Mode("AVOID_ADSB", 19, _M.OTHER),
+    Mode("GUIDED_NOGPS", 20, _M.OTHER),
+    Mode("SMART_RTL", 21, _M.RETURN),
+    Mode("FLOWHOLD", 22, _M.OTHER),
+    Mode("FOLLOW", 23, _M.OTHER),
+    Mode("ZIGZAG", 24, _M.OTHER),
+    Mode("SYSTEMID", 25, _M.OTHER),
+    Mode("AUTOROTATE", 26, _M.OTHER),
+    Mode("AUTO_RTL", 27, _M.RETURN),
+    Mode("TURTLE", 28, _M.OTHER),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Personality:
+    """How one autopilot names its modes and wants to be asked."""
+
+    name: str
+    autopilot: int
+    """MAV_AUTOPILOT, HEARTBEAT.autopilot."""
+    modes: tuple[Mode, ...]
+    mode_of_kind: Mapping[CommandKind, str]
+    """The modes that HOLD and GUIDED mean."""
+    param_encoding: ParamEncoding
+    mode_in_two_parts: bool
+    """DO_SET_MODE takes main and sub mode (px4), or custom_mode as it is (ardupilot)."""
+    takeoff_above_sea: bool
+    """NAV_TAKEOFF's altitude is above mean sea level (px4), or above home (ardupilot)."""
+    blank: float
+    """What an unused position parameter is to be filled with."""
+
+
+PX4 = Personality(
+    name="px4",
+    autopilot=Autopilot.PX4,
+    modes=_PX4_MODES,
+    mode_of_kind=MappingProxyType(
+        {CommandKind.HOLD: "AUTO.LOITER", CommandKind.GUIDED: "OFFBOARD"}
+    ),
+    param_encoding=ParamEncoding.BYTEWISE,
+    mode_in_two_parts=True,
+    takeoff_above_sea=True,
+    blank=IGNORED,
+)
+
+ARDUPILOT = Personality(
+    name="ardupilot",
+    autopilot=Autopilot.ARDUPILOTMEGA,
+    modes=_ARDUCOPTER_MODES,
+    # BRAKE, as LOITER obeys the sticks.
+    mode_of_kind=MappingProxyType({CommandKind.HOLD: "BRAKE", CommandKind.GUIDED: "GUIDED"}),
+    param_encoding=ParamEncoding.CAST,
+    mode_in_two_parts=False,
+    takeoff_above_sea=False,
+    blank=0.0,
+)
+
+GENERIC = Personality(
+    name="of an unknown kind",
+    autopilot=Autopilot.GENERIC,
+    modes=(),
+    mode_of_kind=MappingProxyType({}),
+    param_encoding=ParamEncoding.CAST,
+    mode_in_two_parts=False,
+    takeoff_above_sea=False,
+    blank=0.0,
+)
+"""It can be watched, not asked: every mode is somebody else's, every order is refused."""
+
+_BY_AUTOPILOT = {row.autopilot: row for row in (PX4, ARDUPILOT, GENERIC)}
+
+
+def personality_of(autopilot: int) -> Personality:
+    """The row for HEARTBEAT.autopilot, GENERIC if there is none."""
+    return _BY_AUTOPILOT.get(autopilot, GENERIC)
+
+
+def mode_of(personality: Personality, base_mode: int, custom_mode: int) -> Mode:
+    """The mode of a heartbeat; one that is not in the table is flown by somebody else."""
+    if not base_mode & ModeFlag.CUSTOM_MODE_ENABLED:
+        return Mode(f"BASE_{base_mode}", custom_mode, _M.OTHER)
+    for mode in personality.modes:
+        if mode.custom_mode == custom_mode:
+            return mode
+    return Mode(f"MODE_{custom_mode}", custom_mode, _M.OTHER)
+
+
+def mode_named(personality: Personality, name: str) -> Mode | None:
+    """By the autopilot's own name, in any case; "loiter" finds AUTO.LOITER as well."""
+    wanted = name.upper()
+    for mode in personality.modes:
+        if wanted in (mode.name, mode.name.rpartition(".")[2]):
+            return mode
+    return None
+
+
+def ask(personality: Personality, order: Order, target: Address) -> CommandLong:
+    """The command that this autopilot understands as `order`.  Raises CannotAskError."""
+    if not personality.modes:
+        raise CannotAskError(f"the autopilot is {personality.name}: how to ask it is not known")
+    blank = personality.blank
+    match order.kind:
+        case CommandKind.HOLD | CommandKind.GUIDED:
+            return _set_mode(personality, personality.mode_of_kind[order.kind], target)
+        case CommandKind.SET_MODE:
+            return _set_mode(personality, order.mode_name, target)
+        case CommandKind.ARM:
+            return _command(target, Cmd.COMPONENT_ARM_DISARM, 1.0)
+        case CommandKind.DISARM:
+            return _command(target, Cmd.COMPONENT_ARM_DISARM, 0.0)
+        case CommandKind.FORCE_DISARM:
+            return _command(target, Cmd.COMPONENT_ARM_DISARM, 0.0, FORCE_DISARM)
+        case CommandKind.TAKE_OFF:
+            height_m = _takeoff_height_m(personality, order)
+            place = (0.0, 0.0, 0.0, blank, blank, blank, height_m)
+            return _command(target, Cmd.NAV_TAKEOFF, *place)
+        case CommandKind.LAND:
+            return _command(target, Cmd.NAV_LAND, 0.0, 0.0, 0.0, blank, blank, blank, 0.0)
+        case CommandKind.RETURN:
+            return _command(target, Cmd.NAV_RETURN_TO_LAUNCH)
+        case CommandKind.START_MISSION:
+            return _command(target, Cmd.MISSION_START)
+        case CommandKind.PHOTO:
+            camera, interval_s, count = 0.0, 0.0, 1.0
+            shot = (camera, interval_s, count, float(order.photo_seq))
+            return _command(target, Cmd.IMAGE_START_CAPTURE, *shot)
+        case _:
+            assert_never(order.kind)
+
+
+def _set_mode(personality: Personality, name: str, target: Address) -> CommandLong:
+    mode = mode_named(personality, name)
+    if mode is None:
+        names = ", ".join(mode.name for mode in personality.modes)
+        raise CannotAskError(f"{personality.name} has no mode {name!r}; it has: {names}")
+    flags = float(ModeFlag.CUSTOM_MODE_ENABLED)
+    if personality.mode_in_two_parts:
+        main, sub = mode.custom_mode >> 16 & 0xFF, mode.custom_mode >> 24
+        return _command(target, Cmd.DO_SET_MODE, flags, float(main), float(sub))
+    return _command(target, Cmd.DO_SET_MODE, flags, float(mode.custom_mode))
+
+
+def _takeoff_height_m(personality: Personality, order: Order) -> float:
+    if not personality.takeoff_above_sea:
+        return order.up_m
+    if order.ground_amsl_m is None:
+        raise CannotAskError(
+            f"{personality.name} takes off to a height above mean sea level, and that of the "
+            "ground is not known yet"
+        )
+    return order.ground_amsl_m + order.up_m
+
+
+def _command(target: Address, command: Cmd, *params: float) -> CommandLong:
+    p1, p2, p3, p4, p5, p6, p7 = params + (0.0,) * (7 - len(params))
+    return CommandLong(
+        param1=p1,
+        param2=p2,
+        param3=p3,
+        param4=p4,
+        param5=p5,
+        param6=p6,
+        param7=p7,
+        command=command,
+        target_system=target.sysid,
+        target_component=target.compid,
+        confirmation=0,
+    )

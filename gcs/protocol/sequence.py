@@ -1,0 +1,50 @@
+"""How many frames were lost, from the gaps in each sender's sequence numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+REORDERED = 128
+"""A step this large over the ring of 256 is a frame that came late, not a huge gap."""
+
+
+@dataclass(slots=True)
+class SequenceCount:
+    """One sender's tally."""
+
+    last_seq: int
+    received: int = 1
+    lost: int = 0
+
+
+class SequenceTracker:
+    """Per (sysid, compid).  A frame that comes late takes its loss back; a duplicate is no loss."""
+
+    def __init__(self) -> None:
+        self.senders: dict[tuple[int, int], SequenceCount] = {}
+
+    @property
+    def received(self) -> int:
+        return sum(count.received for count in self.senders.values())
+
+    @property
+    def lost(self) -> int:
+        return sum(count.lost for count in self.senders.values())
+
+    def seen(self, sysid: int, compid: int, seq: int) -> int:
+        """Count a frame; how many were lost just before it (negative: one that was lost came)."""
+        count = self.senders.get((sysid, compid))
+        if count is None:
+            self.senders[sysid, compid] = SequenceCount(seq)
+            return 0
+        count.received += 1
+        step = (seq - count.last_seq) & 0xFF
+        if step == 0:
+            return 0
+        if step >= REORDERED:
+            found = min(1, count.lost)
+            count.lost -= found
+            return -found
+        count.last_seq = seq
+        count.lost += step - 1
+        return step - 1

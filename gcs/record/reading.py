@@ -1,0 +1,213 @@
+"""Reads an MCAP from its beginning, as far as it goes: also one whose writer was killed.
+
+The library's readers want a file that was finished.  This loop takes every complete record, and
+of a last chunk that breaks off every message that can still be decompressed.  Formats: the MCAP
+specification, https://mcap.dev/spec.
+"""
+
+from __future__ import annotations
+
+import mmap
+import struct
+import zlib
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Metadata, Schema
+
+MAGIC = b"\x89MCAP0\r\n"
+_RECORD = struct.Struct("<BQ")
+_MESSAGE = struct.Struct("<HIQQ")
+_CHUNK = struct.Struct("<QQQII")
+_PIECE_BYTES = 16 * 1024
+
+_READERS: dict[int, Callable[[ReadDataStream], Schema | Channel | Attachment | Metadata]] = {
+    Opcode.SCHEMA: Schema.read,
+    Opcode.CHANNEL: Channel.read,
+    Opcode.ATTACHMENT: Attachment.read,
+    Opcode.METADATA: Metadata.read,
+}
+
+
+class BadRecordError(Exception):
+    """The file is no MCAP: `path` and what is wrong with it."""
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"{path}: {reason}")
+        self.path = path
+        self.reason = reason
+
+
+class Message(NamedTuple):
+    channel_id: int
+    sequence: int
+    log_time_ns: int
+    publish_time_ns: int
+    data: bytes
+
+
+Record: TypeAlias = Schema | Channel | Message | Attachment | Metadata
+
+
+@dataclass(slots=True)
+class Condition:
+    """What was found out about the file itself; whole once the iteration has ended."""
+
+    size: int
+    position: int = 0
+    """How far the file has been read."""
+    closed: bool = False
+    """Footer and closing magic are there: the writer finished it."""
+    broken_chunk: bool = False
+    """The last chunk breaks off."""
+    damaged: int = 0
+    """Records and chunks in the middle that could not be used."""
+
+
+class Reading:
+    """`for record in Reading(path)`: everything in file order, then look at `condition`.
+
+    Raises BadRecordError for what is no MCAP at all, and OSError.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.condition = Condition(path.stat().st_size)
+
+    def __iter__(self) -> Generator[Record, None, None]:
+        if self.condition.size == 0:
+            raise BadRecordError(self.path, "the file is empty")
+        with (
+            open(self.path, "rb") as file,
+            mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data,
+        ):
+            if data[: len(MAGIC)] != MAGIC:
+                raise BadRecordError(self.path, "not an MCAP file (wrong first bytes)")
+            yield from self._records(data)
+
+    def _records(self, data: mmap.mmap) -> Iterator[Record]:
+        condition = self.condition
+        start = len(MAGIC)
+        while start + _RECORD.size <= condition.size:
+            opcode, length = _RECORD.unpack_from(data, start)
+            body = start + _RECORD.size
+            end = body + length
+            if opcode == Opcode.FOOTER:
+                condition.closed = data[end : end + len(MAGIC)] == MAGIC
+                break
+            if end > condition.size:
+                if opcode == Opcode.CHUNK:
+                    condition.broken_chunk = True
+                    yield from self._inner(_inflate_what_is_there(data[body:]))
+                break
+            if opcode == Opcode.CHUNK:
+                records = _inflate(data[body:end])
+                condition.damaged += records is None
+                yield from self._inner(records or b"")
+            elif opcode == 0:
+                break
+            else:
+                yield from self._take(opcode, data[body:end])
+            start = condition.position = end
+        condition.position = condition.size
+
+    def _inner(self, records: bytes) -> Iterator[Record]:
+        """The records of a chunk, as far as they are whole."""
+        start = 0
+        while start + _RECORD.size <= len(records):
+            opcode, length = _RECORD.unpack_from(records, start)
+            body = start + _RECORD.size
+            start = body + length
+            if start <= len(records):
+                yield from self._take(opcode, records[body:start])
+
+    def _take(self, opcode: int, body: bytes) -> Iterator[Record]:
+        try:
+            record = _parse(opcode, body)
+        except (McapError, struct.error, UnicodeDecodeError):
+            self.condition.damaged += 1
+        else:
+            if record is not None:
+                yield record
+
+
+def _message(body: bytes) -> Message:
+    channel_id, sequence, log_time_ns, publish_time_ns = _MESSAGE.unpack_from(body)
+    return Message(channel_id, sequence, log_time_ns, publish_time_ns, body[_MESSAGE.size :])
+
+
+def _parse(opcode: int, body: bytes) -> Record | None:
+    if opcode == Opcode.MESSAGE:
+        return _message(body)
+    reader = _READERS.get(opcode)
+    return reader(ReadDataStream(BytesIO(body))) if reader is not None else None
+
+
+def _inflate(chunk: bytes) -> bytes | None:
+    """The records of a whole chunk; None if they are not what was written."""
+    if len(chunk) < _CHUNK.size:
+        return None
+    _, _, size, crc, _ = _CHUNK.unpack_from(chunk)
+    records = _inflate_what_is_there(chunk)
+    if len(records) != size or (crc and zlib.crc32(records) != crc):
+        return None
+    return records
+
+
+def _inflate_what_is_there(chunk: bytes) -> bytes:
+    """The records of a chunk that may break off anywhere: all that can be decompressed.
+
+    The lengths and the checksum in its header are not looked at: a writer that seeks fills them
+    in when the chunk is finished, until then they are 2^64-1.
+    """
+    if len(chunk) < _CHUNK.size:
+        return b""
+    name_length = _CHUNK.unpack_from(chunk)[-1]
+    name_end = _CHUNK.size + name_length
+    compression = chunk[_CHUNK.size : name_end]
+    packed = chunk[name_end + 8 :]
+    match compression:
+        case b"":
+            return packed
+        case b"lz4":
+            return _unpack_lz4(packed)
+        case b"zstd":
+            return _unpack_zstd(packed)
+        case _:
+            return b""
+
+
+def _unpack_lz4(packed: bytes) -> bytes:
+    import lz4.frame  # type: ignore[import-untyped]  # the package has no types
+
+    unpacker = lz4.frame.LZ4FrameDecompressor()
+    records = bytearray()
+    for start in range(0, len(packed), _PIECE_BYTES):
+        if unpacker.eof:
+            break
+        try:
+            records += unpacker.decompress(packed[start : start + _PIECE_BYTES])
+        except RuntimeError:  # what lz4 raises for damaged input
+            break
+    return bytes(records)
+
+
+def _unpack_zstd(packed: bytes) -> bytes:
+    import zstandard
+
+    unpacker = zstandard.ZstdDecompressor().decompressobj()
+    records = bytearray()
+    for start in range(0, len(packed), _PIECE_BYTES):
+        if unpacker.eof:
+            break
+        try:
+            records += unpacker.decompress(packed[start : start + _PIECE_BYTES])
+        except zstandard.ZstdError:
+            break
+    return bytes(records)

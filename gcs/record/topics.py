@@ -1,0 +1,63 @@
+"""What derived topics are made of: a message bound for a channel, and how often one may be sent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Protocol
+
+from gcs.record.backend import Channel
+from gcs.record.items import RecordItem
+
+
+@dataclass(frozen=True, slots=True)
+class Out:
+    """One message to record.
+
+    `latch` names what this message is the last word on: the next part of a record begins with
+    the latest message of every latch of every topic.  "" = it is not repeated.
+    """
+
+    channel: Channel
+    message: bytes
+    latch: str = ""
+
+
+class Deriver(Protocol):
+    """Makes viewer's messages of the session's items; time is the log_time that is passed in."""
+
+    def handle(self, item: RecordItem, now_ns: int) -> list[Out]: ...
+    def tick(self, now_ns: int) -> list[Out]:
+        """What is due without an item: reminders."""
+        ...
+
+    def close(self, now_ns: int) -> list[Out]:
+        """Last words: a viewer's state bar ends at the last message."""
+        ...
+
+
+class Grid:
+    """At most one message a period.
+
+    Due times lie on a grid rather than one period after the last message, so that a 30 Hz input
+    under a 25 Hz limit comes out at 25 Hz and not at 15.
+    """
+
+    __slots__ = ("_next_ns", "_period_ns")
+
+    def __init__(self, hz: float) -> None:
+        self._period_ns = round(1e9 / hz)
+        self._next_ns: int | None = None
+
+    def due(self, now_ns: int) -> bool:
+        """Whether a message may go now; asking and being told yes counts as sending."""
+        if self._next_ns is not None and now_ns < self._next_ns:
+            return False
+        behind = self._next_ns is None or now_ns - self._next_ns >= self._period_ns
+        self._next_ns = (now_ns if behind else self._next_ns or now_ns) + self._period_ns
+        return True
+
+
+def finite(value: float | None) -> float | None:
+    """None for what JSON cannot say; viewers break on NaN."""
+    return value if value is not None and isfinite(value) else None

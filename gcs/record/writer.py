@@ -1,0 +1,305 @@
+"""The flight recorder: everything, losslessly, in one MCAP per session, whatever the disk does.
+
+    recording --OSError--> lost --5 s--> recording, in <name>_part2.mcap, _part3 ...
+
+Nothing here raises into the link.  A failing disk sets `failed` in the same call; `tick` then says
+since when nothing is recorded, and tries a new part on its own.  What a killed process loses is
+what was written since the last flush, at most `FLUSH_NS` and one tick.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+from gcs.record import ros1
+from gcs.record.backend import Backend, Channel, Log, best_backend
+from gcs.record.derived import Derived
+from gcs.record.guarded_file import GuardedFile, Opener, open_exclusive
+from gcs.record.items import (
+    AttachmentItem,
+    FrameItem,
+    GarbageItem,
+    MetadataItem,
+    RecordItem,
+)
+from gcs.record.topics import Out
+
+FLUSH_NS = 500_000_000
+RETRY_NS = 5_000_000_000
+MAX_FRAME_CHANNELS = 4096
+"""An MCAP numbers channels with 16 bits; forged system ids must not use them up."""
+
+_SAME_SECOND_NAMES = 100
+
+
+class RecorderError(Exception):
+    """The record could not be opened at start: `path` and what the system said."""
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"{path}: cannot record: {reason}")
+        self.path = path
+        self.reason = reason
+
+
+@dataclass(frozen=True, slots=True)
+class RecordLost:
+    """Nothing is recorded since `since_ns` (log_time of the last flush that reached the disk)."""
+
+    path: Path
+    since_ns: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class RecordResumed:
+    """Recording goes on in `path`; what happened from `since_ns` to `now_ns` is in no file."""
+
+    path: Path
+    since_ns: int
+    now_ns: int
+
+
+RecordNews: TypeAlias = RecordLost | RecordResumed
+
+
+class Recorder:
+    """Items in, MCAP out.  Times are log_time: ns of the one clock, made strictly increasing."""
+
+    def __init__(
+        self,
+        directory: Path,
+        stem: str,
+        backend: Backend,
+        opener: Opener,
+        now_ns: int,
+    ) -> None:
+        """`Recorder.open` is the way in."""
+        self._directory = directory
+        self._stem = stem
+        self._backend = backend
+        self._opener = opener
+        self._derived = Derived()
+        self._logs: dict[str, Log] = {}
+        self._frame_logs: dict[bytes, tuple[Log, ros1.Encode]] = {}
+        self._latched: dict[tuple[str, str], Out] = {}
+        self._kept: dict[str, AttachmentItem | MetadataItem] = {}
+        self._last_ns = now_ns - 1
+        self._safe_ns = now_ns
+        self._flush_at_ns = now_ns + FLUSH_NS
+        self._retry_at_ns = 0
+        self._told = False
+        self._file: GuardedFile | None = None
+        self._bytes_before = 0
+        self.path = directory / f"{stem}.mcap"
+        self.parts: list[Path] = []
+
+    @classmethod
+    def open(
+        cls,
+        directory: Path,
+        name: str,
+        started_text: str,
+        now_ns: int,
+        *,
+        backend: Backend | None = None,
+        opener: Opener = open_exclusive,
+    ) -> Recorder:
+        """Start `<directory>/<started_text>_<name>.mcap`; `started_text` is YYYYMMDD-HHMMSS.
+
+        The folder is made where it is missing; a second session of the same second gets -2, -3.
+        Raises RecorderError.
+        """
+        base = f"{started_text}_{re.sub(r'[^A-Za-z0-9._-]+', '-', name) or 'flight'}"
+        backend = backend or best_backend()
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            for number in range(1, _SAME_SECOND_NAMES):
+                stem = base if number == 1 else f"{base}-{number}"
+                recorder = cls(directory, stem, backend, opener, now_ns)
+                try:
+                    recorder._start(recorder.path, now_ns)
+                except FileExistsError:
+                    continue
+                return recorder
+        except OSError as error:
+            raise RecorderError(directory, error.strerror or str(error)) from error
+        raise RecorderError(directory / f"{base}.mcap", "the name is taken")
+
+    # ------------------------------------------------------------------------------ state
+
+    @property
+    def failed(self) -> bool:
+        """Nothing is being recorded."""
+        return self._file is None or self._file.failure is not None
+
+    @property
+    def deadline_ns(self) -> int:
+        """When `tick` has something to do."""
+        if not self.failed:
+            return self._flush_at_ns
+        return self._retry_at_ns if self._told else self._last_ns
+
+    @property
+    def bytes_written(self) -> int:
+        """Of all parts."""
+        return self._bytes_before + (self._file.written if self._file is not None else 0)
+
+    # ------------------------------------------------------------------------------ input
+
+    def write(self, item: RecordItem, now_ns: int) -> None:
+        """Record one item.  Look at `failed` afterwards."""
+        if type(item) is not FrameItem:
+            self._write_other(item, now_ns)
+            return
+        # The hot path, in one piece: a bridge records every frame twice.
+        raw = item.raw
+        try:
+            key = raw[5:10] if raw[0] == ros1.MAGIC_V2 else raw[3:6]
+            log, encode = self._frame_logs.get(key) or self._new_frame_log(key, raw)
+            message = encode(raw, item.link, item.direction)
+        except (struct.error, IndexError):
+            # Not a whole frame, whatever the sender of the item believes: kept all the same.
+            self._write_other(GarbageItem(item.link, raw, "malformed"), now_ns)
+            return
+        if now_ns <= self._last_ns:
+            now_ns = self._last_ns + 1
+        self._last_ns = now_ns
+        log(message, now_ns)
+
+    def tick(self, now_ns: int) -> list[RecordNews]:
+        """Flush at 2 Hz, repeat what must be repeated, and come back after a failure."""
+        if not self.failed and now_ns >= self._flush_at_ns:
+            self._emit(self._derived.tick(now_ns), now_ns)
+            self._flush(now_ns)
+        return self._recover(now_ns) if self.failed else []
+
+    def close(self, now_ns: int) -> bool:
+        """Write the last words and finish the file; whether all of it reached the disk."""
+        if self._file is None:
+            return False
+        self._emit(self._derived.close(now_ns), now_ns)
+        self._finish()
+        return self._file.failure is None and len(self.parts) == 1
+
+    # --------------------------------------------------------------------------- recording
+
+    def _next_ns(self, now_ns: int) -> int:
+        self._last_ns = max(now_ns, self._last_ns + 1)
+        return self._last_ns
+
+    def _write_other(self, item: RecordItem, now_ns: int) -> None:
+        match item:
+            case GarbageItem(link, raw, reason):
+                log = self._log(ros1.garbage_channel(link))
+                log(ros1.encode_garbage(reason, raw), self._next_ns(now_ns))
+            case AttachmentItem(name):
+                self._kept[f"attachment {name}"] = item
+                self._keep(item, now_ns)
+            case MetadataItem(name):
+                self._kept[f"metadata {name}"] = item
+                self._keep(item, now_ns)
+            case _:
+                self._emit(self._derived.handle(item, now_ns), now_ns)
+
+    def _new_frame_log(self, key: bytes, raw: bytes) -> tuple[Log, ros1.Encode]:
+        if len(self._frame_logs) >= MAX_FRAME_CHANNELS:
+            return self._log(ros1.crowd_channel()), ros1.codec(0).encode
+        msgid = ros1.msgid_of(raw)
+        log = self._log(ros1.frame_channel(*ros1.source_of(raw), msgid))
+        known = self._frame_logs[key] = log, ros1.codec(ros1.full_length(msgid)).encode
+        return known
+
+    def _log(self, channel: Channel) -> Log:
+        log = self._logs.get(channel.topic)
+        if log is None:
+            log = self._logs[channel.topic] = self._backend.channel(channel)
+        return log
+
+    def _emit(self, outs: list[Out], now_ns: int) -> None:
+        for out in outs:
+            if out.latch:
+                self._latched[out.channel.topic, out.latch] = out
+            self._log(out.channel)(out.message, self._next_ns(now_ns))
+
+    def _keep(self, item: AttachmentItem | MetadataItem, now_ns: int) -> None:
+        match item:
+            case AttachmentItem(name, media_type, data):
+                self._backend.attach(name, media_type, data, now_ns)
+            case MetadataItem(name, values):
+                self._backend.metadata(name, dict(values))
+
+    # --------------------------------------------------------------------------- the file
+
+    def _start(self, path: Path, now_ns: int) -> None:
+        """Begin a part with everything that the parts before it said once.  Raises OSError."""
+        self._file = GuardedFile(self._opener(path))
+        self.path = path
+        self.parts.append(path)
+        self._backend.open(self._file)
+        for item in self._kept.values():
+            self._keep(item, now_ns)
+        self._emit(list(self._latched.values()), now_ns)
+
+    def _flush(self, now_ns: int) -> None:
+        # The grid is kept, a missed flush is not made up for.
+        late_ns = now_ns - self._flush_at_ns
+        self._flush_at_ns += FLUSH_NS * (late_ns // FLUSH_NS + 1)
+        self._backend.flush()
+        if not self.failed:
+            self._safe_ns = now_ns
+
+    def _finish(self) -> None:
+        assert self._file is not None
+        self._backend.close()
+        self._file.close()
+
+    def _recover(self, now_ns: int) -> list[RecordNews]:
+        if not self._told:
+            self._told = True
+            self._retry_at_ns = now_ns + RETRY_NS
+            reason = self._drop_file()
+            return [RecordLost(self.path, self._safe_ns, reason)]
+        if now_ns < self._retry_at_ns:
+            return []
+        self._retry_at_ns = now_ns + RETRY_NS
+        return self._retry(now_ns)
+
+    def _drop_file(self) -> str:
+        if self._file is None:
+            return "not open"
+        failure = self._file.failure
+        self._finish()
+        self._bytes_before += self._file.written
+        self._file = None
+        return (failure.strerror or str(failure)) if failure is not None else "closed"
+
+    def _retry(self, now_ns: int) -> list[RecordNews]:
+        """A part counts once its first flush is on the disk; a stillborn one is removed."""
+        path = self._directory / f"{self._stem}_part{len(self.parts) + 1}.mcap"
+        since_ns = self._safe_ns
+        try:
+            self._start(path, now_ns)
+        except OSError:
+            return []
+        self._backend.flush()
+        if self.failed:
+            self._forget_part(path)
+            return []
+        self._told = False
+        self._safe_ns = now_ns
+        self._flush_at_ns = now_ns + FLUSH_NS
+        return [RecordResumed(path, since_ns, now_ns)]
+
+    def _forget_part(self, path: Path) -> None:
+        bytes_before = self._bytes_before
+        self._drop_file()
+        self._bytes_before = bytes_before
+        self.parts.pop()
+        self.path = self.parts[-1]
+        with suppress(OSError):  # then the next part finds the name taken, and waits
+            path.unlink()

@@ -1,0 +1,1 @@
+"""The link's brain, without sockets, clocks or files: see `core.Session`."""

@@ -1,0 +1,110 @@
+"""Who asked for what: operator's numbers on one side, the gate's request ids on the other."""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass
+
+from gcs import ipc
+from gcs.frames import Vec3, ned_from_enu
+from gcs.gate import types as gate
+from gcs.protocol import autopilot
+from gcs.protocol.autopilot import Personality
+
+OPERATOR = "operator"
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """One request in the words that it was made in."""
+
+    client_id: int
+    word: str
+    source: str = OPERATOR
+
+
+class BadAskError(ValueError):
+    """The line is no request at all (a word or an argument is missing or unknown)."""
+
+
+def wish_of(ask: ipc.Ask, personality: Personality | None) -> gate.Wish:
+    """What the gate is asked for.  Raises BadAskError; mission transfers are not for the gate."""
+    match ask.word:
+        case "control":
+            return gate.TakeControl()
+        case "arm":
+            return gate.Arm()
+        case "disarm":
+            return gate.Disarm(ask.force)
+        case "takeoff":
+            return gate.TakeOff(math.nan if ask.up_m is None else ask.up_m)
+        case "goto":
+            if ask.goal_enu is None:
+                raise BadAskError("goto needs a goal: east, north, up")
+            goal_ned = ned_from_enu(finite_or_nan(ask.goal_enu))
+            yaw_rad = None if ask.yaw_deg is None else math.radians(ask.yaw_deg)
+            return gate.GoTo(goal_ned, yaw_rad)
+        case "land":
+            return gate.Land()
+        case "rtl":
+            return gate.ReturnHome()
+        case "hold":
+            return gate.Hold()
+        case "abort":
+            return gate.Abort()
+        case "resume":
+            return gate.Resume()
+        case "photo":
+            return gate.TakePhoto()
+        case "fence":
+            return gate.SwitchFence(ask.on)
+        case "mission_start":
+            return gate.StartMission()
+        case "mode":
+            mode = autopilot.mode_named(personality, ask.mode) if personality else None
+            if mode is None:
+                raise BadAskError(f"no mode {ask.mode!r} here")
+            return gate.SetMode(mode.name, mode.meaning)
+        case _:
+            raise BadAskError(f"no such request: {ask.word!r}")
+
+
+def finite_or_nan(triple: ipc.Maybe3) -> Vec3:
+    """JSON has no NaN: null stands for it, and the gate refuses it by name."""
+    a, b, c = (math.nan if value is None else as_on_the_wire(value) for value in triple)
+    return (a, b, c)
+
+
+def as_on_the_wire(value: float) -> float:
+    """Rounded to float32, as SET_POSITION_TARGET carries it: what is verified is what flies."""
+    try:
+        rounded: float = struct.unpack("<f", struct.pack("<f", value))[0]
+    except OverflowError:
+        return math.inf
+    return rounded
+
+
+class Requests:
+    """Numbers requests and remembers them until their ending is told."""
+
+    def __init__(self) -> None:
+        self._next_id = 1
+        self._asked: dict[int, Asked] = {}
+
+    def open(self, client_id: int, word: str, source: str = OPERATOR) -> int:
+        request_id = self._next_id
+        self._next_id += 1
+        self._asked[request_id] = Asked(client_id, word, source)
+        return request_id
+
+    def get(self, request_id: int) -> Asked:
+        return self._asked[request_id]
+
+    def close(self, request_id: int) -> Asked:
+        """The request is over: refused, superseded, or ended."""
+        return self._asked.pop(request_id)
+
+    @property
+    def open_count(self) -> int:
+        return len(self._asked)

@@ -1,0 +1,223 @@
+"""What the station asks of a vehicle that it has just met: streams, origin, home, failsafes.
+
+An ArduPilot sends next to nothing until asked, a PX4 sends most of it unasked; asking both is
+harmless, and a refused request is no error: what is needed and does not come shows up as STALE
+or NO_ORIGIN, with its reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from gcs.config import LinkConfig
+from gcs.protocol.effects import (
+    Address,
+    Heard,
+    ParamAbsent,
+    ParamEffect,
+    ParamRead,
+    ParamsDone,
+    Send,
+    Wake,
+)
+from gcs.protocol.parameters import ParamReader
+from gcs.session.telemetry import Telemetry
+from gcs.wire.ids import Cmd, MsgId
+from gcs.wire.messages import CommandLong, Message
+
+WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
+    (MsgId.LOCAL_POSITION_NED, 30.0),
+    (MsgId.EXTENDED_SYS_STATE, 5.0),
+    (MsgId.ATTITUDE, 20.0),
+    (MsgId.GLOBAL_POSITION_INT, 5.0),
+    (MsgId.SYS_STATUS, 2.0),
+    (MsgId.MISSION_CURRENT, 2.0),
+    (MsgId.GPS_RAW_INT, 1.0),
+    (MsgId.BATTERY_STATUS, 1.0),
+    (MsgId.POSITION_TARGET_LOCAL_NED, 5.0),
+)
+
+FASTEST_HZ = 200.0
+"""Of real seconds; a sped-up vehicle is asked for its positions that much more often."""
+
+ASK_AGAIN_NS = 2_000_000_000
+"""Wait between two requests for what did not come."""
+READ_AGAIN_NS = 5_000_000_000
+"""The same for parameters that no answer came to; each has several tries a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failsafe:
+    """A parameter of the vehicle that says what it does without us; below `weak_below`: nothing."""
+
+    name: str
+    about: str
+    weak_below: float
+
+
+FAILSAFES: dict[str, tuple[Failsafe, ...]] = {
+    # PX4 parameter reference: 0 = disabled for the first three.
+    "px4": (
+        Failsafe("NAV_DLL_ACT", "ground-station loss", 1.0),
+        Failsafe("GF_ACTION", "geofence breach", 1.0),
+        Failsafe("COM_LOW_BAT_ACT", "low battery", 1.0),
+        Failsafe("COM_OF_LOSS_T", "offboard loss, seconds", 0.0),
+        Failsafe("COM_OBL_RC_ACT", "offboard loss, action", 0.0),
+    ),
+    # ArduCopter parameter list: 0 = disabled for each of these.
+    "ardupilot": (
+        Failsafe("FS_GCS_ENABLE", "ground-station loss", 1.0),
+        Failsafe("FENCE_ENABLE", "geofence breach", 1.0),
+        Failsafe("BATT_FS_LOW_ACT", "low battery", 1.0),
+    ),
+}
+
+RETURN_HEIGHT: dict[str, tuple[str, float]] = {
+    "px4": ("RTL_RETURN_ALT", 1.0),
+    "ardupilot": ("RTL_ALT", 0.01),  # centimetres
+}
+"""The parameter with the return height above home, and its scale to metres."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A parameter was read."""
+
+    name: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """All of them were: what is weak, in words; the return height above home, if it is known."""
+
+    weak: tuple[str, ...]
+    return_up_m: float | None
+
+
+Out = Message | Known | Read
+
+
+class Greeting:
+    """Once for each time that a vehicle appears; then only what is missing is asked for again."""
+
+    def __init__(self, config: LinkConfig) -> None:
+        self._own = Address(config.sysid, config.compid)
+        self._speedup = config.speedup
+        self._reader: ParamReader | None = None
+        self._values: dict[str, float] = {}
+        self._unanswered: list[str] = []
+        self._told: Read | None = None
+        self._asked_ns = 0
+        self._read_again_ns: int | None = None
+
+    @property
+    def deadline_ns(self) -> int | None:
+        return self._reader.deadline_ns if self._reader else self._read_again_ns
+
+    def start(self, seen: Telemetry, now_ns: int) -> list[Out]:
+        """Begin to read the failsafes; `missing` tells which commands to send."""
+        self._asked_ns = 0
+        self._values, self._told = {}, None
+        names = [failsafe.name for failsafe in FAILSAFES.get(seen.personality.name, ())]
+        if seen.personality.name in RETURN_HEIGHT:
+            names.append(RETURN_HEIGHT[seen.personality.name][0])
+        return self._read(names, seen, now_ns)
+
+    def heard(self, heard: Heard, seen: Telemetry, now_ns: int) -> list[Out]:
+        if self._reader is None:
+            return []
+        return self._out(self._reader.handle(heard, now_ns), seen, now_ns)
+
+    def wake(self, seen: Telemetry, now_ns: int) -> list[Out]:
+        if self._reader is not None:
+            return self._out(self._reader.handle(Wake(), now_ns), seen, now_ns)
+        if self._read_again_ns is not None and now_ns >= self._read_again_ns:
+            return self._read(self._unanswered, seen, now_ns)
+        return []
+
+    def _read(self, names: list[str], seen: Telemetry, now_ns: int) -> list[Out]:
+        self._unanswered = []
+        self._read_again_ns = None
+        self._reader = ParamReader(
+            self._own,
+            Address(seen.sysid, seen.compid),
+            seen.personality.param_encoding,
+            tuple(names),
+        )
+        return self._out(self._reader.start(now_ns), seen, now_ns)
+
+    def missing(self, seen: Telemetry, now_ns: int) -> Iterator[CommandLong]:
+        """Commands that ask for what is not there: all at first, then what did not come."""
+        first = self._asked_ns == 0
+        if not first and now_ns - self._asked_ns < ASK_AGAIN_NS:
+            return
+        self._asked_ns = now_ns
+        if seen.origin is None:
+            yield _request(seen, MsgId.GPS_GLOBAL_ORIGIN)
+        if seen.home is None:
+            yield _request(seen, MsgId.HOME_POSITION)
+        if first:
+            yield _request(seen, MsgId.AUTOPILOT_VERSION)
+        if first or seen.pos_ned is None:
+            for msgid, rate_hz in WANTED_HZ:
+                yield _interval(seen, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
+
+    def _out(self, effects: list[ParamEffect], seen: Telemetry, now_ns: int) -> list[Out]:
+        out: list[Out] = []
+        for effect in effects:
+            match effect:
+                case Send(message):
+                    out.append(message)
+                case ParamRead(name, value, _):
+                    self._values[name] = float(value)
+                    out.append(Known(name, float(value)))
+                case ParamAbsent(name, None):
+                    self._unanswered.append(name)
+                case ParamAbsent():
+                    pass
+                case ParamsDone():
+                    self._reader = None
+                    if self._unanswered:
+                        self._read_again_ns = now_ns + READ_AGAIN_NS
+                    told, self._told = self._told, self._summary(seen.personality.name)
+                    if self._told != told:
+                        out.append(self._told)
+        return out
+
+    def _summary(self, personality: str) -> Read:
+        weak = []
+        for failsafe in FAILSAFES.get(personality, ()):
+            value = self._values.get(failsafe.name)
+            if value is None:
+                weak.append(f"{failsafe.about}: {failsafe.name} could not be read")
+            elif value < failsafe.weak_below:
+                weak.append(f"{failsafe.about}: off ({failsafe.name} = {value:g})")
+        name, scale = RETURN_HEIGHT.get(personality, ("", 1.0))
+        height = self._values.get(name)
+        return Read(tuple(weak), None if height is None else height * scale)
+
+
+def _request(seen: Telemetry, msgid: MsgId) -> CommandLong:
+    return _command(seen, Cmd.REQUEST_MESSAGE, float(msgid), 0.0)
+
+
+def _interval(seen: Telemetry, msgid: MsgId, rate_hz: float) -> CommandLong:
+    return _command(seen, Cmd.SET_MESSAGE_INTERVAL, float(msgid), round(1e6 / rate_hz))
+
+
+def _command(seen: Telemetry, command: Cmd, param1: float, param2: float) -> CommandLong:
+    return CommandLong(
+        param1=param1,
+        param2=param2,
+        param3=0.0,
+        param4=0.0,
+        param5=0.0,
+        param6=0.0,
+        param7=0.0,
+        command=command,
+        target_system=seen.sysid,
+        target_component=seen.compid,
+        confirmation=0,
+    )

@@ -1,0 +1,399 @@
+"""Missions in the session: read, checked, verified whole, uploaded, read back, then flown.
+
+    asked -> READING -> (verdict) -> UPLOADING -> READING_BACK -> on board
+    asked -> DOWNLOADING -> WRITING -> done            asked -> CLEARING -> done
+
+A mission leaves only if every leg of it clears the fence; what the vehicle then holds is read
+back and compared in meaning; and before it is started it is verified anew from where the vehicle
+stands then.  One transfer at a time; a second is refused BUSY.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from gcs import ipc
+from gcs.config import LinkConfig
+from gcs.gate import types as gate
+from gcs.gate.types import Code, Ended, Level, Outcome, Refusal, State
+from gcs.plan import compare
+from gcs.plan.commands import KINDS, Kind
+from gcs.plan.errors import Level as PlanLevel
+from gcs.plan.errors import PlanError
+from gcs.plan.lint import lint
+from gcs.plan.model import Geodetic, Plan
+from gcs.plan.reader import read
+from gcs.plan.wire import WireItem, from_wire, to_wire
+from gcs.plan.writer import write
+from gcs.protocol.effects import (
+    Address,
+    Heard,
+    Send,
+    TransferDone,
+    TransferEffect,
+    TransferFailed,
+    TransferProgress,
+    Wake,
+)
+from gcs.protocol.mission import MissionClear, MissionDownload, MissionUpload
+from gcs.protocol.transfer import SPEC_TIMING, Timing
+from gcs.record.items import AttachmentItem, MissionItem
+from gcs.session.gatekeeper import Gatekeeper
+from gcs.session.outbox import Outbox
+from gcs.session.paths import on_earth, path_of, personality_of, verify
+from gcs.session.ports import FileRead, FileWritten, ReadFile, WriteFile
+from gcs.session.telemetry import Telemetry
+from gcs.wire.ids import Cmd, MissionState, MissionType
+from gcs.wire.messages import MissionCurrent, MissionItemInt, MissionItemReached
+
+MISSION_WORDS = frozenset({"mission_upload", "mission_download", "mission_clear", "mission_start"})
+NODE = "mission"
+EXIT_BAD_FILE = 4
+STOPS = (Kind.MOVE, Kind.WAIT, Kind.RETURN)
+"""Items whose reaching ends a mission, where they are the last of their kind."""
+
+Transfer: TypeAlias = MissionUpload | MissionDownload | MissionClear
+
+
+@dataclass(slots=True)
+class _Job:
+    """The one transfer under way, from its request to its ending."""
+
+    request_id: int
+    client_id: int
+    word: str
+    path: str
+    plan: Plan | None = None
+    sent: tuple[WireItem, ...] = ()
+    transfer: Transfer | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class OnBoard:
+    """The mission that we brought on board and read back equal."""
+
+    plan: Plan
+    last_seq: int | None
+    """Reaching this item ends it; None where it ends on the ground, which is seen by landing."""
+
+
+class MissionDesk:
+    """Takes the `mission_*` requests; everything that moves still goes through the gate."""
+
+    def __init__(self, config: LinkConfig, keeper: Gatekeeper, out: Outbox) -> None:
+        self._own = Address(config.sysid, config.compid)
+        self._timing = Timing(
+            round(SPEC_TIMING.wait_ns * config.speedup),
+            round(SPEC_TIMING.item_wait_ns * config.speedup),
+        )
+        self._keeper = keeper
+        self._out = out
+        self._job: _Job | None = None
+        self._on_board: OnBoard | None = None
+
+    @property
+    def deadline_ns(self) -> int | None:
+        """When a transfer's wait is over."""
+        transfer = self._job.transfer if self._job else None
+        return transfer.deadline_ns if transfer else None
+
+    # ------------------------------------------------------------------------------ input
+
+    def ask(self, ask: ipc.Ask, now_ns: int) -> None:
+        """One of `MISSION_WORDS`."""
+        request_id = self._keeper.requests.open(ask.id, ask.word)
+        refusal = self._cannot(ask)
+        if ask.word == "mission_start":
+            refusal = refusal or self._cannot_start()
+            if refusal is None:
+                self._keeper.request(request_id, gate.StartMission(), now_ns)
+        if refusal is not None:
+            self._told_refused(request_id, ask.word, refusal, now_ns)
+            return
+        job = _Job(request_id, ask.id, ask.word, ask.path)
+        match ask.word:
+            case "mission_upload":
+                self._job = job
+                self._out.put(ReadFile(request_id, ask.path))
+            case "mission_download":
+                self._accept(job)
+                self._begin(job, MissionDownload(*self._parties(), self._timing), now_ns)
+            case "mission_clear":
+                self._accept(job)
+                self._begin(job, MissionClear(*self._parties(), self._timing), now_ns)
+
+    def file(self, news: FileRead | FileWritten, now_ns: int) -> None:
+        """The answer to a ReadFile or WriteFile of ours."""
+        job = self._job
+        if job is None or news.token != job.request_id:
+            return
+        match news:
+            case FileRead(_, path, None, error):
+                self._bad_file(job, f"{path}: {error}", "", now_ns)
+            case FileRead(_, path, bytes() as data, _):
+                self._read(job, path, data, now_ns)
+            case FileWritten(_, path, ""):
+                self._end(job, Ended.COMPLETE, None, f"written to {path}", now_ns)
+            case FileWritten(_, path, error):
+                text = f"{path}: {error}"
+                self._out.emit(ipc.Trouble(text, "", EXIT_BAD_FILE))
+                self._end(job, Ended.ABORTED, Code.BAD_MISSION, text, now_ns)
+
+    def heard(self, heard: Heard, now_ns: int) -> None:
+        """A message of the vehicle: for the transfer under way, or about progress in flight."""
+        match heard.message:
+            case MissionCurrent(seq=seq, mission_state=state):
+                self._progress(seq, state == MissionState.COMPLETE, now_ns)
+            case MissionItemReached(seq=seq):
+                self._progress(seq, self._is_last(seq), now_ns)
+        job = self._job
+        if job is not None and job.transfer is not None:
+            self._follow(job, job.transfer.handle(heard, now_ns), now_ns)
+
+    def wake(self, now_ns: int) -> None:
+        job = self._job
+        if job is not None and job.transfer is not None:
+            self._follow(job, job.transfer.handle(Wake(), now_ns), now_ns)
+
+    def leave(self, now_ns: int) -> None:
+        """The session ends: what is under way ends with it, and is told so."""
+        job = self._job
+        if job is None:
+            return
+        sentence = "the station left before it was done"
+        if job.word == "mission_upload" and job.plan is None:
+            self._refuse(job, Refusal(Code.OPERATOR_LOST, sentence), now_ns)
+        else:
+            self._end(job, Ended.ABORTED, Code.OPERATOR_LOST, sentence, now_ns)
+
+    # ------------------------------------------------------------------------- judgements
+
+    def _cannot(self, ask: ipc.Ask) -> Refusal | None:
+        """What refuses any transfer before it begins."""
+        now = self._keeper.gate
+        if self._keeper.seen is None or now.state is State.NO_VEHICLE:
+            return Refusal(Code.NO_VEHICLE, "no vehicle is heard")
+        if self._job is not None:
+            return Refusal(Code.BUSY, f"{self._job.word} is still under way")
+        if ask.word == "mission_upload" and not ask.path:
+            return Refusal(Code.BAD_MISSION, "which file?")
+        changes = ask.word in ("mission_upload", "mission_clear")
+        if changes and now.state is State.FLYING_MISSION:
+            return Refusal(Code.BUSY, "the mission on board is being flown")
+        return None
+
+    def _cannot_start(self) -> Refusal | None:
+        """The mission is verified anew, from where the vehicle is now."""
+        seen, on_board = self._keeper.seen, self._on_board
+        if seen is None or on_board is None:
+            return None  # the gate refuses, with NO_MISSION
+        path = path_of(on_board.plan, seen)
+        if isinstance(path, Refusal):
+            return path
+        answer = verify(on_board.plan, path, self._keeper.policy, seen)
+        return answer if isinstance(answer, Refusal) else None
+
+    def _read(self, job: _Job, path: str, data: bytes, now_ns: int) -> None:
+        """From bytes to a verified plan on its way, or to the reason why not."""
+        seen = self._keeper.seen
+        assert seen is not None
+        who = personality_of(seen)
+        try:
+            written = read(path, data, who)
+            findings = lint(written, who, self._home(seen))
+            for finding in findings:
+                if finding.level is PlanLevel.ERROR:
+                    raise PlanError(
+                        path, finding.where, finding.item, finding.what, hint=finding.hint
+                    )
+                level = Level.WARNING if finding.level is PlanLevel.WARNING else Level.INFO
+                text = f"{path}: {finding.item}: {finding.what}"
+                self._out.say(level, NODE, text, now_ns)
+            plan = on_earth(written, seen)
+            if isinstance(plan, Refusal):
+                self._refuse(job, plan, now_ns)
+                return
+            sent = to_wire(plan, who, self._home(seen))
+        except PlanError as error:
+            self._bad_file(job, str(error), error.hint, now_ns)
+            return
+        flown = path_of(plan, seen)
+        answer = (
+            flown if isinstance(flown, Refusal) else verify(plan, flown, self._keeper.policy, seen)
+        )
+        if isinstance(answer, Refusal):
+            self._refuse(job, answer, now_ns)
+            return
+        job.plan, job.sent = plan, sent
+        self._out.record(AttachmentItem(path, "application/octet-stream", data))
+        self._accept(job, answer.evidence)
+        self._keeper.give(gate.MissionLoaded("", 0), now_ns)
+        self._on_board = None
+        items = tuple(_message(item) for item in sent)
+        self._begin(job, MissionUpload(*self._parties(), items, self._timing), now_ns)
+
+    @staticmethod
+    def _home(seen: Telemetry) -> Geodetic | None:
+        return Geodetic(*seen.home) if seen.home else None
+
+    # --------------------------------------------------------------------------- transfer
+
+    def _parties(self) -> tuple[Address, Address, MissionType]:
+        seen = self._keeper.seen
+        assert seen is not None
+        return self._own, Address(seen.sysid, seen.compid), MissionType.MISSION
+
+    def _begin(self, job: _Job, transfer: Transfer, now_ns: int) -> None:
+        self._job = job
+        job.transfer = transfer
+        self._follow(job, transfer.start(now_ns), now_ns)
+
+    def _follow(self, job: _Job, effects: list[TransferEffect], now_ns: int) -> None:
+        for effect in effects:
+            match effect:
+                case Send(message):
+                    self._keeper.send(message)
+                case TransferProgress(done, total):
+                    what = "reading back" if job.sent and self._fetching(job) else job.word
+                    self._out.emit(ipc.ProgressEvent(job.client_id, what, done, total, "items"))
+                case TransferDone(_, items):
+                    self._done(job, items, now_ns)
+                case TransferFailed(_, result, text):
+                    code = Code.NO_ANSWER if result is None else Code.VEHICLE_REFUSED
+                    self._end(job, Ended.ABORTED, code, text, now_ns)
+
+    @staticmethod
+    def _fetching(job: _Job) -> bool:
+        return isinstance(job.transfer, MissionDownload)
+
+    def _done(self, job: _Job, items: tuple[MissionItemInt, ...], now_ns: int) -> None:
+        match job.transfer:
+            case MissionUpload():
+                self._begin(job, MissionDownload(*self._parties(), self._timing), now_ns)
+            case MissionDownload() if job.word == "mission_upload":
+                self._compare(job, tuple(_item(message) for message in items), now_ns)
+            case MissionDownload():
+                self._downloaded(job, tuple(_item(message) for message in items), now_ns)
+            case _:
+                self._on_board = None
+                self._keeper.give(gate.MissionLoaded("", 0), now_ns)
+                self._end(job, Ended.COMPLETE, None, "no mission is on board", now_ns)
+
+    def _compare(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
+        """Believe what the vehicle holds, not what was sent."""
+        seen, plan = self._keeper.seen, job.plan
+        assert seen is not None
+        assert plan is not None
+        differences = compare.same_meaning(job.sent, received, personality_of(seen))
+        if differences:
+            text = f"read back, it is another mission: {differences[0]}"
+            self._end(job, Ended.ABORTED, Code.VEHICLE_REFUSED, text, now_ns)
+            return
+        home_items = len(job.sent) - len(plan.items)
+        self._on_board = OnBoard(plan, _last_stop(plan, home_items))
+        seen.mission_total = len(job.sent)
+        path = path_of(plan, seen)
+        if not isinstance(path, Refusal):
+            points = tuple(dict.fromkeys(end for leg in path.segments for end in leg))
+            self._out.record(MissionItem(plan.name, points))
+        self._keeper.give(gate.MissionLoaded(plan.name, len(plan.items)), now_ns)
+        text = f"{len(plan.items)} items are on board, read back equal"
+        self._end(job, Ended.COMPLETE, None, text, now_ns)
+
+    def _downloaded(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
+        seen = self._keeper.seen
+        assert seen is not None
+        try:
+            plan = from_wire(received, personality_of(seen))
+            data = write(job.path, plan, personality_of(seen)).data if job.path else b""
+        except PlanError as error:
+            self._end(job, Ended.ABORTED, Code.BAD_MISSION, str(error), now_ns)
+            return
+        if job.path:
+            job.transfer = None
+            self._out.put(WriteFile(job.request_id, job.path, data))
+        else:
+            self._end(job, Ended.COMPLETE, None, f"{len(plan.items)} items are on board", now_ns)
+
+    def _is_last(self, seq: int) -> bool:
+        last_seq = self._on_board.last_seq if self._on_board else None
+        return last_seq is not None and seq >= last_seq
+
+    def _progress(self, seq: int, finished: bool, now_ns: int) -> None:
+        seen, on_board = self._keeper.seen, self._on_board
+        if seen is not None and on_board is not None:
+            over = finished and on_board.last_seq is not None
+            self._keeper.give(gate.MissionSeen(seq, seen.mission_total or 0, over), now_ns)
+
+    # ------------------------------------------------------------------- verdict, ending
+
+    def _accept(self, job: _Job, evidence: tuple[tuple[str, float], ...] = ()) -> None:
+        self._keeper.verdict(job.request_id, Outcome.ACCEPTED, None, evidence)
+
+    def _refuse(self, job: _Job, refusal: Refusal, now_ns: int) -> None:
+        self._job = None
+        self._told_refused(job.request_id, job.word, refusal, now_ns)
+
+    def _told_refused(self, request_id: int, word: str, refusal: Refusal, now_ns: int) -> None:
+        self._keeper.verdict(request_id, Outcome.REFUSED, refusal)
+        text = f"{word}: refused {refusal.code.value}: {refusal.sentence}"
+        self._out.say(Level.WARNING, NODE, text, now_ns)
+
+    def _bad_file(self, job: _Job, text: str, hint: str, now_ns: int) -> None:
+        self._out.emit(ipc.Trouble(text, hint, EXIT_BAD_FILE))
+        self._refuse(job, Refusal(Code.BAD_MISSION, text), now_ns)
+
+    def _end(self, job: _Job, ended: Ended, code: Code | None, sentence: str, now_ns: int) -> None:
+        self._job = None
+        self._keeper.ending(gate.Ending(job.request_id, ended, code, sentence))
+        level = Level.INFO if ended is Ended.COMPLETE else Level.WARNING
+        self._out.say(level, NODE, f"{job.word}: {ended.value}: {sentence}", now_ns)
+
+
+def _last_stop(plan: Plan, home_items: int) -> int | None:
+    """The seq whose reaching ends the mission; None if it ends with a landing or a return."""
+    stops = [i for i, item in enumerate(plan.items) if KINDS.get(item.command) in STOPS]
+    if not stops:
+        return len(plan.items) - 1 + home_items
+    last = plan.items[stops[-1]]
+    lands = last.command == Cmd.NAV_LAND or KINDS.get(last.command) is Kind.RETURN
+    return None if lands else stops[-1] + home_items
+
+
+def _message(item: WireItem) -> MissionItemInt:
+    """Target and type are the transfer's to set."""
+    return MissionItemInt(
+        param1=item.param1,
+        param2=item.param2,
+        param3=item.param3,
+        param4=item.param4,
+        x=item.x,
+        y=item.y,
+        z=item.z,
+        seq=item.seq,
+        command=item.command,
+        target_system=0,
+        target_component=0,
+        frame=item.frame,
+        current=item.current,
+        autocontinue=item.autocontinue,
+    )
+
+
+def _item(message: MissionItemInt) -> WireItem:
+    return WireItem(
+        seq=message.seq,
+        frame=message.frame,
+        command=message.command,
+        current=message.current,
+        autocontinue=message.autocontinue,
+        param1=message.param1,
+        param2=message.param2,
+        param3=message.param3,
+        param4=message.param4,
+        x=message.x,
+        y=message.y,
+        z=message.z,
+        mission_type=message.mission_type,
+    )

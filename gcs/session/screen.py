@@ -1,0 +1,67 @@
+"""What the operator's screen is told ten times a second, from telemetry and the gate."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+
+from gcs import ipc
+from gcs.frames import enu_from_ned
+from gcs.gate.machine import Gate
+from gcs.protocol.sequence import SequenceTracker
+from gcs.session.telemetry import Telemetry
+
+
+def snapshot(
+    gate: Gate,
+    seen: Telemetry | None,
+    now_ns: int,
+    *,
+    losses: SequenceTracker,
+    log_path: str,
+    recording: bool,
+    recorded_bytes: int,
+) -> ipc.Snapshot:
+    """Everything a panel shows; what is not known is None, never a zero."""
+    goal_ned = gate.active_goal_ned
+    nobody = ipc.Snapshot(
+        time_ns=now_ns,
+        state=gate.state.name,
+        control=gate.control.name,
+        severity=gate.severity.name,
+        conditions=[condition.value for condition in gate.conditions],
+        active_goal_enu=None if goal_ned is None else enu_from_ned(goal_ned),
+        lost_pct=lost_pct(losses),
+        log_path=log_path,
+        recording=recording,
+        recorded_mb=recorded_bytes / 1e6,
+    )
+    if seen is None:
+        return nobody
+    placed = seen.pos_ned is not None
+    return msgspec.structs.replace(
+        nobody,
+        vehicle=seen.label,
+        mode=seen.mode_name,
+        armed=seen.armed,
+        landed=seen.landed.name,
+        pos_enu=enu_from_ned(seen.pos_ned) if seen.pos_ned else None,
+        v_enu=enu_from_ned(seen.v_ned) if placed else None,
+        yaw_deg=None if seen.yaw_rad is None else math.degrees(seen.yaw_rad) % 360.0,
+        position_age_s=(now_ns - seen.position_ns) / 1e9 if placed else None,
+        home_enu=enu_from_ned(seen.home_ned) if seen.home_ned else None,
+        battery_pct=seen.battery_pct,
+        battery_v=seen.battery_v,
+        heartbeat_age_s=(now_ns - seen.heartbeat_ns) / 1e9,
+        rx_hz=seen.rx_hz,
+        setpoint_hz=seen.setpoint_hz(now_ns),
+        mission_seq=seen.mission_seq,
+        mission_total=seen.mission_total,
+    )
+
+
+def lost_pct(losses: SequenceTracker) -> float:
+    """Frames of the vehicle that never came, of all that it sent."""
+    total = losses.received + losses.lost
+    return 100.0 * losses.lost / total if total else 0.0

@@ -1,0 +1,24 @@
+"""What a session is made of, fixed at its start and recorded first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gcs.config import LinkConfig
+from gcs.gate.policy import Policy
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """`policy` has the zones of any fence file in it already; `policy_text` is as it was read."""
+
+    config: LinkConfig
+    version: str
+    policy: Policy
+    policy_text: str
+    endpoints: tuple[str, ...]
+    log_path: str
+    streams: frozenset[int] = frozenset()
+    """Links that carry a byte stream (TCP, serial), not datagrams."""
+    waiting: frozenset[int] = frozenset()
+    """Links that reach nobody until somebody has spoken on them."""

@@ -1,0 +1,106 @@
+"""The vehicle as it reports itself: the latest of everything, and when it came.
+
+Reported, never assumed: nothing here is filled in from what was commanded.  Unknown is None.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from gcs.frames import Vec3
+from gcs.gate.projection import Origin
+from gcs.gate.types import LandedState
+from gcs.protocol.autopilot import Personality
+from gcs.record.items import Quat
+
+POSITION_RATE_WINDOW_NS = 2_000_000_000
+
+
+@dataclass(slots=True)
+class Telemetry:
+    """One vehicle's latest values; NED, metres, radians, integer ns of arrival."""
+
+    sysid: int
+    compid: int
+    personality: Personality
+    link: int
+
+    heartbeat_ns: int = 0
+    armed: bool | None = None
+    mode_name: str = ""
+    landed: LandedState = LandedState.UNDEFINED
+
+    pos_ned: Vec3 | None = None
+    v_ned: Vec3 = (0.0, 0.0, 0.0)
+    position_ns: int = 0
+    time_boot_ms: int = 0
+
+    q_ned_from_frd: Quat = (1.0, 0.0, 0.0, 0.0)
+    yaw_rad: float | None = None
+
+    global_ns: int = 0
+    lat_deg: float | None = None
+    lon_deg: float | None = None
+    alt_amsl_m: float | None = None
+    alt_rel_m: float | None = None
+
+    origin: Origin | None = None
+    home: tuple[float, float, float] | None = None
+    home_ned: Vec3 | None = None
+    return_up_m: float | None = None
+
+    battery_pct: float | None = None
+    battery_v: float | None = None
+
+    mission_seq: int | None = None
+    mission_total: int | None = None
+    mission_reached: int = -1
+
+    rx_count: int = 0
+    rx_window_start_ns: int = 0
+    rx_hz: float = 0.0
+    setpoints_sent: list[int] = field(default_factory=list)
+
+    @property
+    def label(self) -> str:
+        """Short name for a screen: ids and personality."""
+        return f"{self.sysid}/{self.compid} {self.personality.name} quadrotor"
+
+    def count_frame(self, now_ns: int) -> None:
+        """One more frame; the rate is renewed every two seconds."""
+        self.rx_count += 1
+        span_ns = now_ns - self.rx_window_start_ns
+        if span_ns >= POSITION_RATE_WINDOW_NS:
+            self.rx_hz = self.rx_count * 1e9 / span_ns
+            self.rx_count = 0
+            self.rx_window_start_ns = now_ns
+
+    def count_setpoint(self, now_ns: int) -> None:
+        """Times of the setpoints of the last two seconds, for the rate on the screen."""
+        self.setpoints_sent.append(now_ns)
+        while self.setpoints_sent[0] < now_ns - 2_000_000_000:
+            del self.setpoints_sent[0]
+
+    def setpoint_hz(self, now_ns: int) -> float:
+        """Rate over the intervals of the last two seconds, 0 once the stream has stopped."""
+        recent = [t for t in self.setpoints_sent if t > now_ns - 2_000_000_000]
+        if len(recent) < 2 or now_ns - recent[-1] > 250_000_000:
+            return 0.0
+        return (len(recent) - 1) * 1e9 / (recent[-1] - recent[0])
+
+
+def quat_from_euler(roll_rad: float, pitch_rad: float, yaw_rad: float) -> Quat:
+    """ATTITUDE's angles (yaw-pitch-roll, NED <- FRD) as w, x, y, z.
+
+    Diebel, "Representing Attitude" (2006), eq. 290 for the 1-2-3 sequence.
+    """
+    cr, sr = math.cos(roll_rad / 2), math.sin(roll_rad / 2)
+    cp, sp = math.cos(pitch_rad / 2), math.sin(pitch_rad / 2)
+    cy, sy = math.cos(yaw_rad / 2), math.sin(yaw_rad / 2)
+    return (
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )

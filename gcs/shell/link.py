@@ -1,0 +1,147 @@
+"""The link process: `python -m gcs.shell.link '<LinkConfig as JSON>'`.
+
+Opens what the configuration names, runs the one loop, closes in order: first the vehicle is seen
+safe (the session's affair), then the log, then a vehicle of our own.  Speaks JSON lines with its
+operator (`gcs.ipc`) and writes nothing else to standard output.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from gcs import __version__, config, ipc
+from gcs.config import LinkConfig
+from gcs.gate.policy import Policy, PolicyError, parse_policy
+from gcs.gate.zonespec import FileSpec, ZoneSpec
+from gcs.plan.errors import PlanError
+from gcs.plan.reader import read
+from gcs.plan.zones import zone_specs
+from gcs.record.writer import Recorder, RecorderError
+from gcs.resources import policy_path
+from gcs.session.core import Session
+from gcs.session.setup import Setup
+from gcs.shell import sockets
+from gcs.shell.clock import Clock
+from gcs.shell.endpoints import EndpointError, parse_endpoint
+from gcs.shell.loop import Loop
+from gcs.shell.pipes import LineSink, LineSource
+from gcs.shell.recording import Recording
+from gcs.shell.signals import SignalSource
+from gcs.shell.sim import SimProcess
+
+EXIT_USAGE = 2
+EXIT_BAD_FILE = 4
+EXIT_RECORDER = 7
+EXIT_ADDRESS = 9
+
+
+@dataclass(frozen=True, slots=True)
+class CannotStartError(Exception):
+    """What keeps the link from starting, in the operator's words."""
+
+    exit_code: int
+    text: str
+    hint: str
+
+
+def main(argument: str) -> int:
+    """Run one session; returns the process's exit code."""
+    signals = SignalSource()
+    screen = LineSink(sys.stdout.fileno())
+    try:
+        return _run(config.decode(argument), screen, signals)
+    except CannotStartError as error:
+        screen.put(ipc.encode(ipc.Trouble(error.text, error.hint, error.exit_code)))
+        screen.put(ipc.encode(ipc.Bye(error.exit_code, "", error.text)))
+        return error.exit_code
+
+
+def _run(setup: LinkConfig, screen: LineSink, signals: SignalSource) -> int:
+    policy, policy_text = _read_policy(setup.policy_path)
+    clock = Clock(setup.speedup)
+    with ExitStack() as opened:
+        links = _open_links(setup, opened)
+        recording = _open_recording(setup, clock)
+        opened.callback(lambda: recording.close(clock.now_ns()))
+        sim = None
+        if setup.sim is not None:
+            sim = SimProcess(setup.sim, links[0].port)
+            opened.callback(sim.stop)
+        session = Session(
+            Setup(
+                config=setup,
+                version=__version__,
+                policy=policy,
+                policy_text=policy_text,
+                endpoints=tuple(link.describe() for link in links),
+                log_path=recording.path,
+                streams=frozenset(n for n, link in enumerate(links) if link.stream),
+                waiting=frozenset(n for n, link in enumerate(links) if link.endpoint.listens),
+            ),
+            clock.now_ns(),
+        )
+        operator = LineSource(sys.stdin.fileno())
+        finish = Loop(session, clock, links, operator, screen, recording, signals, sim).run()
+        whole = recording.close(clock.now_ns())
+    exit_code = finish.exit_code or (0 if whole else EXIT_RECORDER)
+    screen.put(ipc.encode(ipc.Bye(exit_code, recording.path, finish.sentence)))
+    return exit_code
+
+
+def _read_policy(path: str) -> tuple[Policy, str]:
+    """The policy with the zones of every fence file that it names, and its text for the record."""
+    try:
+        file = policy_path(path or "default")
+        text = file.read_text(encoding="utf-8")
+        policy = parse_policy(text, str(file))
+        zones = [zone for spec in policy.fence for zone in _zones(spec, file.parent)]
+        return dataclasses.replace(policy, fence=tuple(zones)), text
+    except (PolicyError, PlanError) as error:
+        raise CannotStartError(EXIT_BAD_FILE, str(error), error.hint) from error
+    except (OSError, UnicodeDecodeError) as error:
+        hint = "--policy takes `default`, `lab` or the path of a TOML file"
+        raise CannotStartError(EXIT_BAD_FILE, f"{path}: {error}", hint) from error
+
+
+def _zones(spec: ZoneSpec, folder: Path) -> tuple[ZoneSpec, ...]:
+    """A zone as it is, or those of the plan file that it stands for."""
+    if not isinstance(spec.shape, FileSpec):
+        return (spec,)
+    file = folder / spec.shape.path
+    return zone_specs(read(str(file), file.read_bytes()).fence)
+
+
+def _open_links(setup: LinkConfig, opened: ExitStack) -> list[sockets.Link]:
+    urls = setup.endpoints or ["udpin://127.0.0.1:0"]
+    links = []
+    for url in urls:
+        try:
+            link = sockets.open_link(parse_endpoint(url))
+        except EndpointError as error:
+            raise CannotStartError(EXIT_USAGE, str(error), error.hint) from error
+        except sockets.AddressInUse as error:
+            hint = "another ground station may be running; choose another port with --link"
+            raise CannotStartError(EXIT_ADDRESS, str(error), hint) from error
+        except OSError as error:
+            hint = "is the address one of this machine's?"
+            raise CannotStartError(EXIT_USAGE, f"{url}: {error.strerror or error}", hint) from error
+        opened.callback(link.close)
+        links.append(link)
+    return links
+
+
+def _open_recording(setup: LinkConfig, clock: Clock) -> Recording:
+    try:
+        recorder = Recorder.open(Path(setup.log_dir), setup.name, clock.stamp(), clock.now_ns())
+    except RecorderError as error:
+        hint = "choose a folder that can be written with --log-dir"
+        raise CannotStartError(EXIT_RECORDER, str(error), hint) from error
+    return Recording(recorder)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

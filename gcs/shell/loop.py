@@ -1,0 +1,202 @@
+"""The only loop: wait for bytes or for the deadline, hand them to the session, do what it says.
+
+No threads of ours, no asyncio: one `select`, every readable socket drained, one owner of all
+state.  Whatever may block (the operator's pipe, a slow disk's flush) is bounded or dropped.
+"""
+
+from __future__ import annotations
+
+import select
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from gcs import ipc
+from gcs.resources import MissionNotFoundError, find
+from gcs.session.ports import (
+    Datagram,
+    Effect,
+    Emit,
+    FileRead,
+    FileWritten,
+    Finish,
+    Input,
+    LinkEvent,
+    OperatorGone,
+    OperatorLine,
+    OperatorNoise,
+    ReadFile,
+    Record,
+    SimGone,
+    SimLine,
+    Transmit,
+    Wake,
+    WriteFile,
+)
+from gcs.shell.clock import Clock
+from gcs.shell.pipes import LineSink, LineSource
+from gcs.shell.recording import Recording
+from gcs.shell.signals import SignalSource
+from gcs.shell.sim import SimProcess
+from gcs.shell.sockets import Link
+
+MAX_PLAN_BYTES = 16 << 20
+MAX_DATAGRAMS_A_TURN = 512
+
+
+class Core(Protocol):
+    """What the loop drives: `gcs.session.Session`, or a test's stand-in."""
+
+    @property
+    def deadline_ns(self) -> int: ...
+    def handle(self, given: Input, now_ns: int) -> Sequence[Effect]: ...
+
+
+class Source(Protocol):
+    """What `select` can wait for."""
+
+    def fileno(self) -> int: ...
+
+
+class Loop:
+    """Runs one session to its `Finish`."""
+
+    def __init__(
+        self,
+        core: Core,
+        clock: Clock,
+        links: Sequence[Link],
+        operator: LineSource,
+        screen: LineSink,
+        recording: Recording,
+        signals: SignalSource,
+        sim: SimProcess | None,
+    ) -> None:
+        self._core = core
+        self._clock = clock
+        self._links = links
+        self._operator = operator
+        self._screen = screen
+        self._recording = recording
+        self._signals = signals
+        self._sim = sim
+        self._operator_open = True
+        self._sim_open = sim is not None
+        self._finish: Finish | None = None
+
+    def run(self) -> Finish:
+        """Returns when the session says so; whoever called closes what it opened."""
+        while self._finish is None:
+            readable, writable = self._wait()
+            if self._screen in writable:
+                self._screen.flush()
+            self._read_links(readable)
+            if self._signals in readable:
+                for name in self._signals.read():
+                    self._feed(OperatorGone(name))
+            if self._operator_open and self._operator in readable:
+                self._read_operator()
+            if self._sim_open and self._sim is not None and self._sim.lines in readable:
+                self._read_sim(self._sim)
+            if self._screen.broken and self._operator_open:
+                self._operator_open = False
+                self._feed(OperatorGone("nobody reads the link's output"))
+            if self._clock.now_ns() >= self._core.deadline_ns:
+                self._feed(Wake())
+            for change in self._recording.upkeep(self._clock.now_ns()):
+                self._feed(change)
+        return self._finish
+
+    def _wait(self) -> tuple[list[Source], list[LineSink]]:
+        sources: list[Source] = [link for link in self._links if link.fileno() >= 0]
+        sources.append(self._signals)
+        if self._operator_open:
+            sources.append(self._operator)
+        if self._sim_open and self._sim is not None:
+            sources.append(self._sim.lines)
+        sinks = [self._screen] if self._screen.waiting else []
+        deadlines = [self._core.deadline_ns, self._recording.deadline_ns]
+        deadlines += [link.deadline_ns for link in self._links if link.deadline_ns is not None]
+        wait_s = self._clock.seconds_until(min(deadlines))
+        readable, writable, _ = select.select(sources, sinks, [], wait_s)
+        return readable, writable
+
+    def _read_links(self, readable: list[Source]) -> None:
+        for number, link in enumerate(self._links):
+            due = link.deadline_ns is not None and link.deadline_ns <= self._clock.now_ns()
+            if link in readable:
+                for data in link.drain(MAX_DATAGRAMS_A_TURN):
+                    self._feed(Datagram(number, data))
+            elif not due:
+                continue
+            for text in link.poke(self._clock.now_ns()):
+                self._feed(LinkEvent(number, text))
+
+    def _read_operator(self) -> None:
+        for line in self._operator.read():
+            try:
+                command = ipc.decode_command(line)
+            except ipc.DecodeError as error:
+                self._feed(OperatorNoise(f"{error}: {line[:200]!r}"))
+            else:
+                self._feed(OperatorLine(command))
+        if self._operator.ended:
+            self._operator_open = False
+            self._feed(OperatorGone("the command stream ended"))
+
+    def _read_sim(self, sim: SimProcess) -> None:
+        for line in sim.lines.read():
+            self._feed(SimLine(line.decode(errors="replace")))
+        if sim.lines.ended:
+            self._sim_open = False
+            self._feed(SimGone(sim.ended()))
+
+    def _feed(self, given: Input) -> None:
+        """One input, and whatever its effects lead back to."""
+        if self._finish is not None:
+            return
+        now_ns = self._clock.now_ns()
+        for effect in self._core.handle(given, now_ns):
+            self._perform(effect, now_ns)
+        for change in self._recording.changes():
+            self._feed(change)
+
+    def _perform(self, effect: Effect, now_ns: int) -> None:
+        match effect:
+            case Transmit(link, data):
+                self._links[link].send(data)
+            case Record(item):
+                self._recording.write(item, now_ns)
+            case Emit(event):
+                line = ipc.encode(event)
+                put: Callable[[bytes], None] = self._screen.put
+                if isinstance(event, ipc.Snapshot):
+                    put = self._screen.offer
+                put(line)
+            case ReadFile(token, path):
+                self._feed(_read(token, path))
+            case WriteFile(token, path, data):
+                self._feed(_write(token, path, data))
+            case Finish():
+                self._finish = effect
+
+
+def _read(token: int, path: str) -> FileRead:
+    try:
+        with find(path).open("rb") as file:
+            data = file.read(MAX_PLAN_BYTES + 1)
+    except MissionNotFoundError as error:
+        return FileRead(token, path, None, f"no such file; {error.hint}")
+    except OSError as error:
+        return FileRead(token, path, None, error.strerror or str(error))
+    if len(data) > MAX_PLAN_BYTES:
+        return FileRead(token, path, None, f"larger than {MAX_PLAN_BYTES >> 20} MiB")
+    return FileRead(token, path, data)
+
+
+def _write(token: int, path: str, data: bytes) -> FileWritten:
+    try:
+        Path(path).write_bytes(data)
+    except OSError as error:
+        return FileWritten(token, path, error.strerror or str(error))
+    return FileWritten(token, path)

@@ -1,0 +1,67 @@
+"""The recorder as the loop sees it: never in the way; its troubles are inputs to the session."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gcs.record.items import RecordItem
+from gcs.record.writer import Recorder, RecordLost, RecordResumed
+from gcs.session.ports import RecorderChanged, RecorderGrew
+
+GREW_STEP_BYTES = 50_000
+
+
+class Recording:
+    """A recorder, or none (`gcs status` and its like may go without)."""
+
+    def __init__(self, recorder: Recorder | None) -> None:
+        self._recorder = recorder
+        self._told_bytes = 0
+        self._told_failed = False
+        self._whole: bool | None = None
+
+    @property
+    def path(self) -> str:
+        """The file that is being written; empty where nothing is recorded."""
+        return str(self._recorder.path) if self._recorder else ""
+
+    @property
+    def deadline_ns(self) -> int:
+        """When `upkeep` has something to do."""
+        return self._recorder.deadline_ns if self._recorder else 1 << 62
+
+    def write(self, item: RecordItem, now_ns: int) -> None:
+        if self._recorder:
+            self._recorder.write(item, now_ns)
+
+    def changes(self) -> Iterator[RecorderChanged]:
+        """A failure, told in the turn in which it happened."""
+        if self._recorder and self._recorder.failed and not self._told_failed:
+            self._told_failed = True
+            yield RecorderChanged(False, self.path, "the recorder failed")
+
+    def upkeep(self, now_ns: int) -> Iterator[RecorderChanged | RecorderGrew]:
+        """Flush, retry, and what the session must hear of it."""
+        if self._recorder is None or now_ns < self._recorder.deadline_ns:
+            return
+        for news in self._recorder.tick(now_ns):
+            match news:
+                case RecordLost(path, since_ns, reason):
+                    self._told_failed = True
+                    ago_s = (now_ns - since_ns) / 1e9
+                    text = f"not recorded since {ago_s:.1f} s ago: {path}: {reason}"
+                    yield RecorderChanged(False, str(path), text)
+                case RecordResumed(path, since_ns, resumed_ns):
+                    self._told_failed = False
+                    gap_s = (resumed_ns - since_ns) / 1e9
+                    text = f"recording again in {path}; {gap_s:.1f} s are in no file"
+                    yield RecorderChanged(True, str(path), text)
+        if self._recorder.bytes_written - self._told_bytes >= GREW_STEP_BYTES:
+            self._told_bytes = self._recorder.bytes_written
+            yield RecorderGrew(self._told_bytes)
+
+    def close(self, now_ns: int) -> bool:
+        """Finish the file; whether every byte reached the disk.  Closing twice says the same."""
+        if self._whole is None:
+            self._whole = self._recorder is None or self._recorder.close(now_ns)
+        return self._whole

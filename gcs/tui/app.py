@@ -1,0 +1,240 @@
+"""`gcs fly`: the keyboard ground station.  A process of its own; the link never waits for it."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+import time
+from collections.abc import Callable
+from typing import ClassVar, Protocol
+
+from rich.console import RenderableType
+from rich.text import Text
+from textual.app import App, ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.events import Resize
+from textual.widget import Widget
+from textual.widgets import RichLog
+
+from gcs import ipc
+from gcs.cli import say
+from gcs.shell.client import Heard, LinkDown
+from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
+from gcs.tui.keyboard import PendingGoal
+from gcs.tui.keys import KEYS
+from gcs.tui.result import Result
+from gcs.tui.scene import Answer, Scene
+
+REDRAW_S = 0.1
+LEAVE_WAIT_S = 8.0
+SMALL_ROWS = 34
+LOG_LINES = 2000
+
+
+class Link(Protocol):
+    """What the station needs of a link; `LinkClient` is one."""
+
+    def send(self, command: ipc.Command) -> bool: ...
+    def listen(self, tell: Callable[[Heard], None]) -> None: ...
+    def close(self) -> LinkDown: ...
+
+
+class Panel(Widget):
+    """A drawing that fills whatever room it is given; redrawn on `refresh`."""
+
+    can_focus = False
+
+    def __init__(self, draw: Callable[[int, int], RenderableType], name: str, title: str = ""):
+        super().__init__(id=name)
+        self._draw = draw
+        self.border_title = title
+
+    def render(self) -> RenderableType:
+        return self._draw(self.content_size.width, self.content_size.height)
+
+
+class FlyApp(App[None]):
+    """Keys change a pending goal; Enter and the command keys send requests to the gate.
+
+    Events are heard in a thread and handled in the application's loop; the screen is drawn from
+    the latest snapshot at 10 Hz, whatever comes in.  Requests are written to the link in the key
+    handler itself, so that an abort waits for no drawing.
+    """
+
+    CSS_PATH = "fly.tcss"
+    TITLE = "mavgate"
+    ENABLE_COMMAND_PALETTE = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding(",".join(key.names), key.action, key.help, show=False, priority=True)
+        for key in KEYS
+    ]
+
+    def __init__(self, link: Link) -> None:
+        super().__init__()
+        self._link = link
+        self.scene = Scene()
+        self._next_id = 1
+        self._fence_on = True
+        self._leaving = False
+        self._down: LinkDown | None = None
+        self._trouble: ipc.Trouble | None = None
+
+    @property
+    def result(self) -> Result:
+        """How it ended, once `run` has returned; sees the link process end."""
+        return Result(self._down or self._link.close(), self._leaving, self._trouble)
+
+    # ------------------------------------------------------------------------- screen
+
+    def compose(self) -> ComposeResult:
+        scene = self.scene
+        yield Panel(lambda columns, _: frame_panels.header(scene, columns), "header")
+        with Horizontal(id="upper"):
+            yield Panel(lambda columns, rows: map_panel.draw(scene, columns, rows), "map", "map")
+            yield Panel(lambda _, rows: height_panel.draw(scene, rows), "height", "up m")
+            with Vertical(id="side"):
+                yield Panel(lambda _c, _r: fsa_panel.draw(scene), "fsa", "state")
+                yield Panel(lambda _c, _r: vehicle_panel.draw(scene), "vehicle", "vehicle")
+        yield Panel(lambda _c, _r: vehicle_panel.goals(scene), "goals")
+        yield Panel(lambda _c, _r: vehicle_panel.answer(scene), "answer")
+        log = RichLog(id="log", max_lines=LOG_LINES, wrap=True)
+        log.can_focus = False
+        yield log
+        yield Panel(lambda columns, _: frame_panels.footer(columns), "footer")
+        yield Panel(lambda _c, _r: frame_panels.help_table(), "help", "keys")
+        yield Panel(lambda _c, _r: frame_panels.farewell(scene), "farewell")
+
+    def on_mount(self) -> None:
+        loop = asyncio.get_running_loop()
+        self._link.listen(lambda heard: _tell_loop(loop, self._hear, heard))
+        self.set_interval(REDRAW_S, self.redraw)
+        if not self.is_headless and sys.platform != "win32":
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                loop.add_signal_handler(number, self._leave, number.name)
+
+    def on_resize(self, event: Resize) -> None:
+        self.screen.set_class(event.size.height < SMALL_ROWS, "-small")
+
+    def redraw(self) -> None:
+        """Draw every panel anew from the scene."""
+        for panel in self.query(Panel):
+            panel.refresh()
+
+    # -------------------------------------------------------------------------- events
+
+    def _hear(self, heard: Heard) -> None:
+        if isinstance(heard, LinkDown):
+            self._link_down(heard)
+            return
+        self.scene.hear(heard)
+        match heard:
+            case ipc.LogEvent():
+                self._log_line(say.log_line(heard), look.LEVEL[heard.level], heard.time_ns)
+            case ipc.Trouble():
+                self._trouble = heard
+                for line in say.trouble_lines(heard):
+                    self._log_line(line, look.BAD)
+            case ipc.EndingEvent(word="fence", ended="complete"):
+                self._fence_on = not self._fence_on
+            case _:
+                pass
+
+    def _link_down(self, down: LinkDown) -> None:
+        self._down = down
+        if self._leaving:
+            self.exit()
+            return
+        told = f"the link process has ended (exit code {down.exit_code}); q leaves"
+        self.scene.answer = Answer(told.upper(), "refused")
+        for line in [told, *down.stderr_tail.splitlines()]:
+            self._log_line(line, look.BAD)
+
+    def _log_line(self, text: str, style: str, time_ns: int | None = None) -> None:
+        seconds = None if time_ns is None else time_ns / 1e9
+        stamp = time.strftime("%H:%M:%S ", time.localtime(seconds))
+        self.query_one(RichLog).write(Text.assemble((stamp, look.DIM), (text, style)))
+
+    # --------------------------------------------------------------- keys: pending goal
+
+    def _set_pending(self, pending: PendingGoal) -> None:
+        before, self.scene.pending = self.scene.pending, pending
+        if (before.goal_enu, before.yaw_deg) != (pending.goal_enu, pending.yaw_deg):
+            self._link.send(ipc.Pending(pending.goal_enu, pending.yaw_deg))
+        self.redraw()
+
+    def action_move(self, direction: str) -> None:
+        self._set_pending(self.scene.pending.moved(direction))
+
+    def action_turn(self, by_deg: float) -> None:
+        seen = self.scene.snapshot
+        self._set_pending(self.scene.pending.turned(by_deg, None if seen is None else seen.yaw_deg))
+
+    def action_free_yaw(self) -> None:
+        self._set_pending(self.scene.pending.with_free_yaw())
+
+    def action_step(self) -> None:
+        self._set_pending(self.scene.pending.with_next_step())
+
+    def action_here(self) -> None:
+        seen = self.scene.snapshot
+        if seen is not None and seen.pos_enu is not None:
+            self._set_pending(self.scene.pending.at(seen.pos_enu))
+
+    # --------------------------------------------------------------------- keys: send
+
+    def _ask(self, ask: ipc.Ask) -> None:
+        self.scene.asked(ask)
+        self._next_id += 1
+        if not self._link.send(ask):
+            self.scene.answer = Answer(f"{ask.word}: not sent, the link is down", "refused")
+
+    def action_ask(self, word: str) -> None:
+        self._ask(ipc.Ask(self._next_id, word))
+
+    def action_send(self) -> None:
+        pending = self.scene.pending
+        goal = ipc.Ask(self._next_id, "goto", goal_enu=pending.goal_enu, yaw_deg=pending.yaw_deg)
+        self._ask(goal)
+
+    def action_take_off(self) -> None:
+        self._ask(ipc.Ask(self._next_id, "takeoff", up_m=self.scene.pending.take_off_up_m))
+
+    def action_switch_fence(self) -> None:
+        self._ask(ipc.Ask(self._next_id, "fence", on=not self._fence_on))
+
+    # ------------------------------------------------------------------- keys: station
+
+    def action_zoom(self, by: int) -> None:
+        self.scene.zoom += by
+        self.redraw()
+
+    def action_fit(self) -> None:
+        self.scene.zoom = 0
+        self.redraw()
+
+    def action_help(self) -> None:
+        page = self.query_one("#help")
+        page.display = not page.display
+
+    def action_leave(self) -> None:
+        self._leave("quit")
+
+    def _leave(self, reason: str) -> None:
+        """Once: say good-bye, show it, and go when the link has gone or after a few seconds."""
+        if self._down is not None:
+            self.exit()
+        elif not self._leaving:
+            self._leaving = True
+            self._link.send(ipc.Leave(reason))
+            self.query_one("#farewell").display = True
+            self.set_timer(LEAVE_WAIT_S, self.exit)
+
+
+def _tell_loop(
+    loop: asyncio.AbstractEventLoop, hear: Callable[[Heard], None], heard: Heard
+) -> None:
+    """From the reader's thread; a loop that has closed has nobody left to tell."""
+    if not loop.is_closed():
+        loop.call_soon_threadsafe(hear, heard)

@@ -1,0 +1,74 @@
+"""What frames the screen: header, footer, help, and the farewell."""
+
+from __future__ import annotations
+
+from rich.table import Table
+from rich.text import Text
+
+from gcs.tui import look
+from gcs.tui.keys import KEYS, MOVES, SECTIONS
+from gcs.tui.scene import Scene
+
+
+def header(scene: Scene, columns: int) -> Text:
+    """One line: who is flown, the state, and whether it is recorded."""
+    seen = scene.snapshot
+    left = Text(" mavgate ", "bold", end="", no_wrap=True)
+    right = Text("", end="", no_wrap=True)
+    if seen is None:
+        left.append(" starting the link …", look.DIM)
+        return left
+    left.append(f" {seen.vehicle or 'no vehicle'}  ", look.PLAIN)
+    left.append(f" {seen.state} ", f"reverse {look.SEVERITY.get(seen.severity, look.BAD)}")
+    if seen.recording:
+        name = seen.log_path.replace("\\", "/").rsplit("/", 1)[-1]
+        right.append("● ", look.BAD).append(f"{seen.recorded_mb:.1f} MB {name} ", look.DIM)
+    else:
+        right.append("NOT RECORDED ", look.BAD)
+    gap = columns - left.cell_len - right.cell_len
+    return Text.assemble(left, " " * max(1, gap), right, end="", no_wrap=True)
+
+
+def footer(columns: int) -> Text:
+    """The keys with a footer word, on as many lines as it takes."""
+    lines = Text(end="", no_wrap=True)
+    used = 0
+    items = [(key.shown, key.footer, key.loud) for key in KEYS if key.footer]
+    for shown, word, loud in ((MOVES, "move", False), *items):
+        size = len(shown) + len(word) + 3
+        if used and used + size > columns:
+            lines.append("\n")
+            used = 0
+        lines.append(f" {shown}", look.BAD if loud else look.PENDING)
+        lines.append(f" {word} ", look.BAD if loud else look.PLAIN)
+        used += size
+    return lines
+
+
+def help_table() -> Table:
+    """Every key, in two columns of sections; the keys go on working while it is shown."""
+    page = Table.grid(padding=(0, 3))
+    columns: list[Table] = []
+    for title, keys in SECTIONS:
+        section = Table.grid(padding=(0, 1))
+        section.add_row("", Text(title, "bold"))
+        for key in keys:
+            section.add_row(Text(key.shown, look.PENDING, justify="right"), key.help)
+        columns.append(section)
+    left = Table.grid()
+    for section in (columns[0], columns[2]):
+        left.add_row(section)
+        left.add_row("")
+    page.add_row(left, columns[1])
+    return page
+
+
+def farewell(scene: Scene) -> Text:
+    """While the link holds the vehicle and closes the log."""
+    state = scene.snapshot.state if scene.snapshot else "-"
+    return Text.assemble(
+        ("Leaving.\n\n", "bold"),
+        "Waiting until the vehicle is seen holding and the log is closed ",
+        (f"({state}).", look.DIM),
+        justify="center",
+    )

@@ -1,0 +1,91 @@
+"""THE keys: one table that feeds the bindings, the footer and the help.
+
+Directions are named by what the vehicle does.  Keys that move only change the pending goal;
+nothing is sent before Enter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """`names` as Textual calls them, the first one first; `shown` as the operator reads it.
+
+    `footer` is the short word in the footer, empty for keys that only the help lists.
+    """
+
+    names: tuple[str, ...]
+    shown: str
+    action: str
+    help: str
+    footer: str = ""
+    loud: bool = False
+
+
+SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
+    (
+        "Pending goal",
+        (
+            Key(("up", "w"), "↑ w", "move('north')", "north"),
+            Key(("down", "s"), "↓ s", "move('south')", "south"),
+            Key(("left", "a"), "← a", "move('west')", "west"),
+            Key(("right", "d"), "→ d", "move('east')", "east"),
+            Key(("pageup", "r"), "PgUp r", "move('up')", "up"),
+            Key(("pagedown", "f"), "PgDn f", "move('down')", "down"),
+            Key(("left_square_bracket",), "[", "turn(-15)", "yaw left 15°"),
+            Key(("right_square_bracket",), "]", "turn(15)", "yaw right 15°"),
+            Key(("backslash",), "\\", "free_yaw", "yaw left to the autopilot"),
+            Key(("x",), "x", "step", "step 0.1, 0.5, 1, 5, 10 m", "step"),
+            Key(("v",), "v", "here", "to where the vehicle is"),
+        ),
+    ),
+    (
+        "Send",
+        (
+            Key(("enter",), "Enter", "send", "go to the pending goal", "send"),
+            Key(
+                ("space", "escape"),
+                "Space",
+                "ask('abort')",
+                "abort: stop now (Esc too)",
+                "ABORT",
+                loud=True,
+            ),
+            Key(("h",), "h", "ask('hold')", "hold in the vehicle's own mode", "hold"),
+            Key(("e",), "e", "ask('resume')", "resume: hover under our control", "resume"),
+            Key(("c",), "c", "ask('control')", "take control of a flying vehicle", "control"),
+            Key(("m",), "m", "ask('arm')", "arm the motors", "arm"),
+            Key(("M",), "M", "ask('disarm')", "disarm on the ground"),
+            Key(
+                ("t",),
+                "t",
+                "take_off",
+                "take off to the pending height, at least 1.5 m",
+                "take off",
+            ),
+            Key(("l",), "l", "ask('land')", "land where it is", "land"),
+            Key(("b",), "b", "ask('rtl')", "back home and land", "back home"),
+            Key(("p",), "p", "ask('photo')", "take a picture", "picture"),
+            Key(("i",), "i", "ask('mission_start')", "fly the mission on board", "mission"),
+            Key(("k",), "k", "switch_fence", "fence off and on (lab policy only)"),
+        ),
+    ),
+    (
+        "Station",
+        (
+            Key(("plus", "equals_sign"), "+", "zoom(-1)", "map: closer"),
+            Key(("minus",), "-", "zoom(1)", "map: farther"),
+            Key(("z",), "z", "fit", "map: fit by itself"),
+            Key(("question_mark", "f1"), "?", "help", "this help", "help"),
+            Key(("q", "ctrl+c", "ctrl+q"), "q", "leave", "quit: the vehicle holds first", "quit"),
+        ),
+    ),
+)
+
+MOVES: Final = "↑↓←→ r f"
+"""The moving keys, as one item of the footer."""
+
+KEYS: Final[tuple[Key, ...]] = tuple(key for _, keys in SECTIONS for key in keys)

@@ -1,0 +1,38 @@
+"""Styles of the drawings, as Rich writes them, in one place."""
+
+from __future__ import annotations
+
+from typing import Final
+
+VEHICLE: Final = "bold bright_white"
+PENDING: Final = "bold #ffd75f"
+ACTIVE: Final = "bold #5fd7ff"
+HOME: Final = "#d7afff"
+FENCE: Final = "#5faf5f"
+NO_FLY: Final = "#ff5f5f"
+TRAIL: Final = "#5f87af"
+GRID: Final = "#3a3a4a"
+DIM: Final = "#8a8a9a"
+GOOD: Final = "#87d787"
+WARN: Final = "#ffaf5f"
+BAD: Final = "bold #ff5f5f"
+PLAIN: Final = "#d0d0d8"
+
+SEVERITY: Final[dict[str, str]] = {
+    "NOMINAL": GOOD,
+    "CAUTION": WARN,
+    "HOLD": WARN,
+    "RETURN": BAD,
+    "LAND": BAD,
+    "TERMINATE": BAD,
+}
+ANSWER: Final[dict[str, str]] = {
+    "accepted": ACTIVE,
+    "complete": GOOD,
+    "refused": BAD,
+    "aborted": WARN,
+    "superseded": WARN,
+    "timed out": BAD,
+    "taken over": WARN,
+}
+LEVEL: Final[tuple[str, ...]] = ("", DIM, PLAIN, WARN, BAD, "bold reverse #ff5f5f")

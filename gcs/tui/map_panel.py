@@ -1,0 +1,99 @@
+"""The top-down map: fence, trail, vehicle, home, pending and active goal, scale."""
+
+from __future__ import annotations
+
+from rich.text import Text
+
+from gcs.tui import look
+from gcs.tui.braille import Canvas
+from gcs.tui.scene import Scene
+from gcs.tui.view import View, fit, nice_length, outline
+
+ARROWS = "↑↗→↘↓↙←↖"
+HOME, PENDING, ACTIVE = "⌂", "◇", "◉"
+
+
+def draw(scene: Scene, columns: int, rows: int) -> Text:
+    """The map in so many cells; the last row is the legend."""
+    if columns < 8 or rows < 4:
+        return Text("")
+    canvas = Canvas(columns, rows - 1)
+    view = _view(scene, canvas)
+    _grid(canvas, view)
+    for zone in scene.zones:
+        style = look.FENCE if zone.inclusion else look.NO_FLY
+        every = 1 if zone.inclusion else 2
+        canvas.path([view.dots(e, n) for e, n in outline(zone)], style, every=every)
+    canvas.path([view.dots(e, n) for e, n, _ in scene.trail], look.TRAIL)
+    _markers(canvas, view, scene)
+    _scale(canvas, view)
+    return Text.assemble(canvas.render(), "\n", _legend(columns), end="", no_wrap=True)
+
+
+def arrow(yaw_deg: float) -> str:
+    """The arrow nearest to a heading, clockwise from north."""
+    return ARROWS[round(yaw_deg / 45.0) % 8]
+
+
+def _view(scene: Scene, canvas: Canvas) -> View:
+    seen = scene.snapshot
+    points = [scene.pending.goal_enu[:2]]
+    centre = (0.0, 0.0)
+    if seen is not None:
+        known = (seen.pos_enu, seen.active_goal_enu, seen.home_enu)
+        points += [point[:2] for point in known if point is not None]
+        centre = seen.home_enu[:2] if seen.home_enu is not None else centre
+    return fit(centre, points, canvas.width, canvas.height, scene.zoom)
+
+
+def _grid(canvas: Canvas, view: View) -> None:
+    step_m = nice_length(view.half_height_m / 2)
+    east_m, north_m = view.centre_en
+    across = int(view.half_width_m // step_m) + 1
+    along = int(view.half_height_m // step_m) + 1
+    first_e = round(east_m / step_m) * step_m
+    first_n = round(north_m / step_m) * step_m
+    for i in range(-across, across + 1):
+        for j in range(-along, along + 1):
+            canvas.dot(*view.dots(first_e + i * step_m, first_n + j * step_m), look.GRID)
+
+
+def _markers(canvas: Canvas, view: View, scene: Scene) -> None:
+    seen = scene.snapshot
+    if seen is not None and seen.home_enu is not None:
+        canvas.glyph(*view.dots(*seen.home_enu[:2]), HOME, look.HOME)
+    if seen is not None and seen.active_goal_enu is not None:
+        goal = view.dots(*seen.active_goal_enu[:2])
+        if seen.pos_enu is not None:
+            canvas.line(view.dots(*seen.pos_enu[:2]), goal, look.ACTIVE, every=3)
+        canvas.glyph(*goal, ACTIVE, look.ACTIVE)
+    canvas.glyph(*view.dots(*scene.pending.goal_enu[:2]), PENDING, look.PENDING)
+    if seen is not None and seen.pos_enu is not None:
+        char = "●" if seen.yaw_deg is None else arrow(seen.yaw_deg)
+        canvas.glyph(*view.dots(*seen.pos_enu[:2]), char, look.VEHICLE)
+
+
+def _scale(canvas: Canvas, view: View) -> None:
+    length_m = nice_length(view.half_width_m / 2)
+    cells = max(2, round(length_m / view.m_per_dot / 2))
+    bar = "├" + "─" * (cells - 2) + "┤"
+    canvas.text(1, canvas.rows - 1, f"{bar} {length_m:g} m", look.DIM)
+    canvas.text(canvas.columns // 2, 0, "N", look.DIM)
+    canvas.text(canvas.columns - 1, canvas.rows // 2, "E", look.DIM)
+
+
+def _legend(columns: int) -> Text:
+    parts = (
+        ("↑", look.VEHICLE, "vehicle"),
+        (PENDING, look.PENDING, "pending"),
+        (ACTIVE, look.ACTIVE, "active"),
+        (HOME, look.HOME, "home"),
+        ("─", look.FENCE, "fence"),
+        ("╌", look.NO_FLY, "no-fly"),
+    )
+    legend = Text(" ", end="", no_wrap=True)
+    for char, style, name in parts:
+        if legend.cell_len + len(name) + 3 > columns:
+            break
+        legend.append(char, style).append(f" {name}  ", look.DIM)
+    return legend

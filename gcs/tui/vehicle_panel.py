@@ -1,0 +1,101 @@
+"""Mode, position, battery and link, the two goals side by side, and the gate's last word."""
+
+from __future__ import annotations
+
+import math
+
+from rich.text import Text
+
+from gcs import ipc
+from gcs.cli import say
+from gcs.tui import look
+from gcs.tui.scene import Scene
+
+OLD_POSITION_S = 0.5
+OLD_HEARTBEAT_S = 2.5
+LOW_BATTERY_PCT = 25.0
+
+
+def draw(scene: Scene) -> Text:
+    """Seven rows of 32 cells, and one for conditions that are not nominal."""
+    seen = scene.snapshot
+    panel = Text(no_wrap=True, end="")
+    if seen is None or not seen.vehicle:
+        panel.append("no vehicle heard yet\n", look.WARN)
+        for endpoint in scene.hello.endpoints if scene.hello else ["starting the link …"]:
+            panel.append(f"{endpoint}\n", look.DIM)
+        return panel
+    for name, value, style in rows(seen):
+        panel.append(f"{name:<5}", look.DIM)
+        panel.append(value, style)
+        panel.append("\n")
+    return panel
+
+
+def rows(seen: ipc.Snapshot) -> list[tuple[str, str, str]]:
+    """Name, value, style."""
+    armed = {None: "arm?", True: "ARMED", False: "disarmed"}[seen.armed]
+    speed = "-" if seen.v_enu is None else f"{math.hypot(*seen.v_enu):.1f} m/s"
+    heading = "-" if seen.yaw_deg is None else f"{seen.yaw_deg % 360:03.0f}°"
+    position_age = _age(seen.position_age_s)
+    return [
+        ("mode", f"{seen.mode or '-'} {armed}", look.WARN if seen.armed else look.PLAIN),
+        ("ctrl", f"{seen.control} {seen.severity}", look.SEVERITY.get(seen.severity, look.BAD)),
+        ("pos", say.enu(seen.pos_enu), look.VEHICLE),
+        ("", f"{speed} {heading} age {position_age}", _if(seen.position_age_s, OLD_POSITION_S)),
+        ("batt", _battery(seen), _battery_style(seen.battery_pct)),
+        ("link", f"{seen.rx_hz:.0f} Hz, {seen.lost_pct:.1f} % lost", look.PLAIN),
+        (
+            "",
+            f"heard {_age(seen.heartbeat_age_s)}, sent {seen.setpoint_hz:.0f} Hz",
+            _if(seen.heartbeat_age_s, OLD_HEARTBEAT_S),
+        ),
+        *([("cond", ", ".join(seen.conditions), look.WARN)] if seen.conditions else []),
+    ]
+
+
+def goals(scene: Scene) -> Text:
+    """One line: what is pending, by which step, and what is flown."""
+    pending, seen = scene.pending, scene.snapshot
+    yaw = "" if pending.yaw_deg is None else f" {pending.yaw_deg:03.0f}°"
+    line = Text(no_wrap=True, end="", overflow="ellipsis")
+    line.append(f"◇ pending {say.enu(pending.goal_enu)}{yaw}", look.PENDING)
+    line.append(f" ±{pending.step_m:g} m", look.DIM)
+    active = None if seen is None else seen.active_goal_enu
+    line.append("  ◉ active ", look.ACTIVE)
+    line.append(say.enu(active) if active else "none", look.ACTIVE if active else look.DIM)
+    if seen is not None and seen.mission_total:
+        item = "-" if seen.mission_seq is None else str(seen.mission_seq)
+        line.append(f"  mission {item}/{seen.mission_total}", look.DIM)
+    return line
+
+
+def answer(scene: Scene) -> Text:
+    """One line: the gate's last word, or a transfer under way."""
+    if scene.progress is not None:
+        p = scene.progress
+        return Text(f"… {p.what}: {p.done:g} of {p.total:g} {p.unit}", look.ACTIVE, end="")
+    style = look.ANSWER.get(scene.answer.kind, look.DIM)
+    return Text(scene.answer.text or "nothing asked yet", style, no_wrap=True, overflow="ellipsis")
+
+
+def _age(age_s: float | None) -> str:
+    return "-" if age_s is None else f"{age_s:.1f} s"
+
+
+def _if(age_s: float | None, old_s: float) -> str:
+    return look.PLAIN if age_s is not None and age_s <= old_s else look.BAD
+
+
+def _battery(seen: ipc.Snapshot) -> str:
+    if seen.battery_pct is None:
+        return "-"
+    filled = round(min(max(seen.battery_pct, 0.0), 100.0) / 10)
+    volts = "" if seen.battery_v is None else f" {seen.battery_v:.1f} V"
+    return f"{'█' * filled}{'░' * (10 - filled)} {seen.battery_pct:.0f} %{volts}"
+
+
+def _battery_style(pct: float | None) -> str:
+    if pct is None:
+        return look.DIM
+    return look.BAD if pct < LOW_BATTERY_PCT else look.GOOD

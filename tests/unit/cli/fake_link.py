@@ -1,0 +1,290 @@
+"""A small scripted link that speaks `gcs.ipc`: a point that flies, and a gate of four rules.
+
+`FakeLink` is pure and runs on the time it is given.  `FakeClient` puts it in place of a
+`LinkClient` on a virtual clock.  Run as a program it takes the place of `gcs.shell.link`:
+the `name` in its configuration chooses the scenario (see `SCENARIOS`).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import select
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from gcs import config, ipc
+from gcs.shell.client import Heard, LinkDown, Polled, Readable
+
+TICK_S = 0.1
+SPEED_M_S = 2.0
+PHOTO_S = 2.0
+FENCE_M = 150.0
+MISSION = ((2.0, 0.0, 2.0), (2.0, 2.0, 2.0), (0.0, 0.0, 2.0))
+FREE = ("HOVERING",)
+SCENARIOS = ("flight", "airborne", "silent", "port in use", "crash")
+
+
+@dataclass
+class FakeLink:
+    """States carry the gate's names; every accepted request ends exactly once."""
+
+    scenario: str = "flight"
+    state: str = "GROUNDED"
+    armed: bool = False
+    control: str = "NONE"
+    pos: ipc.Vec3 = (0.0, 0.0, 0.0)
+    target: ipc.Vec3 | None = None
+    mission: tuple[ipc.Vec3, ...] = ()
+    left: list[ipc.Vec3] = field(default_factory=list)
+    current: ipc.Ask | None = None
+    photo_until_s: float = 0.0
+    done: bool = False
+
+    def hello(self) -> list[ipc.Event]:
+        fence = ipc.FenceShape(
+            "circle", True, centre_en=(0.0, 0.0), radius_m=FENCE_M, ceiling_up_m=50.0
+        )
+        if self.scenario == "port in use":
+            self.done = True
+            text = "udpin://127.0.0.1:14550: address in use"
+            return [ipc.Trouble(text, "close the other station", 9), ipc.Bye(9, "", text)]
+        if self.scenario == "airborne":
+            self.state, self.armed, self.pos = "EXTERNAL", True, (1.0, 1.0, 2.0)
+        return [
+            ipc.Hello("0.1.0", "logs/x.mcap", ["udpin://127.0.0.1:14550"], "default", [fence]),
+            self._log("link: up"),
+        ]
+
+    def handle(self, command: ipc.Command, now_s: float) -> list[ipc.Event]:
+        match command:
+            case ipc.Leave(reason):
+                self.done = True
+                self.state = "HOLDING" if self.pos[2] > 0.1 else self.state
+                return [*self._end("aborted", "OPERATOR"), ipc.Bye(0, "logs/x.mcap", reason)]
+            case ipc.Pending(goal_enu):
+                return [self._log(f"Keyboard: {goal_enu}")]
+            case ipc.Ask():
+                return self._asked(command, now_s)
+
+    def tick(self, now_s: float) -> list[ipc.Event]:
+        events: list[ipc.Event] = []
+        if self.state == "TAKING_PICTURE" and now_s >= self.photo_until_s:
+            events += [*self._to("HOVERING", "photo"), *self._end("complete")]
+        if self.target is not None:
+            self._move(self.target)
+            if self.pos == self.target:
+                events += self._arrive()
+        return [*events, self.snapshot()]
+
+    def _asked(self, ask: ipc.Ask, now_s: float) -> list[ipc.Event]:
+        if ask.word in ("abort", "hold"):
+            events = self._end("aborted", "OPERATOR")
+            self.target, self.left = None, []
+            return [*events, *self._quick(ask, "HOLDING" if self.pos[2] > 0.1 else self.state)]
+        if ask.word in ("arm", "disarm"):
+            self.armed = ask.word == "arm"
+            return self._quick(ask, self.state)
+        if ask.word in ("control", "resume"):
+            self.control = "OURS"
+            return self._quick(ask, "HOVERING")
+        if ask.word == "mission_upload":
+            self.mission = MISSION
+            return self._quick(ask, self.state, ipc.ProgressEvent(ask.id, "upload", 3, 3, "items"))
+        if ask.word in ("mission_download", "mission_clear", "mode", "fence"):
+            return self._quick(ask, self.state)
+        return self._motion(ask, now_s)
+
+    def _motion(self, ask: ipc.Ask, now_s: float) -> list[ipc.Event]:
+        goal = ask.goal_enu
+        if goal is not None and any(metres is None for metres in goal):
+            return [self._refuse(ask, "NON_FINITE", "the goal is not a number")]
+        if ask.word == "takeoff":
+            if not self.armed:
+                return [self._refuse(ask, "NOT_ARMED", "the vehicle is not armed")]
+            self.control = "OURS"
+            return self._begin(ask, "TAKING_OFF", (*self.pos[:2], ask.up_m or 0.0))
+        if ask.word in ("land", "rtl"):
+            ended = self._end("superseded")
+            return [*ended, *self._begin(ask, "LANDING", (*self.pos[:2], 0.0))]
+        if self.state not in FREE:
+            return [self._refuse(ask, "BUSY", f"the vehicle is {self.state}")]
+        if ask.word == "photo":
+            self.photo_until_s = now_s + PHOTO_S
+            return self._begin(ask, "TAKING_PICTURE", None)
+        if ask.word == "mission_start":
+            self.left = list(self.mission)
+            return self._begin(ask, "FLYING_MISSION", self.left.pop(0))
+        assert goal is not None
+        east, north, up = (metres or 0.0 for metres in goal)
+        if math.hypot(east, north) > FENCE_M:
+            distance_m = math.hypot(east, north) - FENCE_M
+            sentence = f"{distance_m:.0f} m outside the fence `circle`"
+            return [self._refuse(ask, "OUTSIDE_FENCE", sentence)]
+        return self._begin(ask, "MOVING", (east, north, up))
+
+    def _begin(self, ask: ipc.Ask, state: str, target: ipc.Vec3 | None) -> list[ipc.Event]:
+        self.current, self.target = ask, target
+        accepted = ipc.VerdictEvent(ask.id, ask.word, "accepted", goal_enu=ask.goal_enu)
+        return [accepted, *self._to(state, ask.word)]
+
+    def _quick(self, ask: ipc.Ask, state: str, *between: ipc.Event) -> list[ipc.Event]:
+        return [
+            ipc.VerdictEvent(ask.id, ask.word, "accepted"),
+            *between,
+            *self._to(state, ask.word),
+            ipc.EndingEvent(ask.id, ask.word, "complete"),
+        ]
+
+    def _refuse(self, ask: ipc.Ask, code: str, sentence: str) -> ipc.Event:
+        return ipc.VerdictEvent(ask.id, ask.word, "refused", code, sentence, goal_enu=ask.goal_enu)
+
+    def _end(self, how: str, code: str = "") -> list[ipc.Event]:
+        if self.current is None:
+            return []
+        ask, self.current = self.current, None
+        return [ipc.EndingEvent(ask.id, ask.word, how, code)]
+
+    def _to(self, state: str, event: str) -> list[ipc.Event]:
+        if state == self.state:
+            return []
+        before, self.state = self.state, state
+        return [
+            ipc.StateEvent(before, state, event, self.control, "NOMINAL"),
+            self._log(f"Current State: {state}"),
+        ]
+
+    def _arrive(self) -> list[ipc.Event]:
+        if self.left:
+            self.target = self.left.pop(0)
+            return []
+        self.target = None
+        landed = self.state == "LANDING"
+        self.armed = self.armed and not landed
+        return [*self._to("GROUNDED" if landed else "HOVERING", "there"), *self._end("complete")]
+
+    def _move(self, target: ipc.Vec3) -> None:
+        away_m = math.dist(self.pos, target)
+        step = min(1.0, SPEED_M_S * TICK_S / away_m) if away_m else 1.0
+        if step == 1.0:
+            self.pos = target
+            return
+        moved = [here + step * (there - here) for here, there in zip(self.pos, target, strict=True)]
+        self.pos = (moved[0], moved[1], moved[2])
+
+    def _log(self, text: str) -> ipc.LogEvent:
+        return ipc.LogEvent(0, 2, "gate", text)
+
+    def snapshot(self) -> ipc.Snapshot:
+        heard = self.scenario != "silent"
+        return ipc.Snapshot(
+            time_ns=0,
+            state=self.state if heard else "NO_VEHICLE",
+            control=self.control,
+            severity="NOMINAL",
+            conditions=[],
+            vehicle="1/1 px4 quadrotor" if heard else "",
+            mode="OFFBOARD" if self.control == "OURS" else "AUTO.LOITER",
+            armed=self.armed if heard else None,
+            landed="IN_AIR" if self.pos[2] > 0.1 else "ON_GROUND",
+            pos_enu=self.pos if heard else None,
+            v_enu=(0.0, 0.0, 0.0),
+            yaw_deg=30.0,
+            position_age_s=0.02,
+            active_goal_enu=self.target,
+            home_enu=(0.0, 0.0, 0.0),
+            battery_pct=98.0,
+            battery_v=16.4,
+            heartbeat_age_s=0.4,
+            rx_hz=120.0,
+            lost_pct=0.0,
+            setpoint_hz=20.0 if self.control == "OURS" else 0.0,
+            mission_seq=None,
+            mission_total=len(self.mission) or None,
+            log_path="logs/x.mcap",
+            recording=True,
+            recorded_mb=1.2,
+        )
+
+
+class FakeClient:
+    """In place of a `LinkClient`: each poll advances a virtual clock to the next tick."""
+
+    def __init__(self, link: FakeLink | None = None) -> None:
+        self.link = link or FakeLink()
+        self.sent: list[ipc.Command] = []
+        self.time_s = 0.0
+        self.closed = False
+        self._heard: list[Heard] = list(self.link.hello())
+
+    def now_s(self) -> float:
+        return self.time_s
+
+    def send(self, command: ipc.Command) -> bool:
+        wire = ipc.decode_command(ipc.encode(command))
+        self.sent.append(wire)
+        self._heard.extend(self.link.handle(wire, self.time_s))
+        return not self.link.done
+
+    def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
+        files = [source for source in also if source.fileno() >= 0]
+        ready = select.select(files, [], [], 0.0)[0] if files else []
+        if not self._heard and not ready:
+            self.time_s += TICK_S
+            self._heard.extend([self._down()] if self.link.done else self.link.tick(self.time_s))
+        heard, self._heard = self._heard, []
+        return Polled(heard, ready)
+
+    def close(self) -> LinkDown:
+        self.closed = True
+        return self._down()
+
+    def _down(self) -> LinkDown:
+        return LinkDown(ipc.Bye(0, "logs/x.mcap", "left"), 0, "")
+
+
+class NoInterrupts:
+    """Nobody presses Ctrl-C, unless `name` is set."""
+
+    def __init__(self) -> None:
+        self.name = ""
+
+    def fileno(self) -> int:
+        return -1
+
+    def forget(self) -> None:
+        self.name = ""
+
+
+def main() -> None:
+    """In place of `python -m gcs.shell.link`, in real time."""
+    link_config = config.decode(sys.argv[1])
+    link = FakeLink(link_config.name)
+    sys.stdout.buffer.write(b"".join(map(ipc.encode, link.hello())))
+    rest = b""
+    start_s = next_s = time.monotonic()
+    while not link.done:
+        sys.stdout.buffer.flush()
+        now_s = (time.monotonic() - start_s) * link_config.speedup
+        ready, _, _ = select.select([0], [], [], max(0.0, next_s - time.monotonic()))
+        events: list[ipc.Event] = []
+        if ready:
+            data = os.read(0, 65536)
+            if not data:
+                return
+            *lines, rest = (rest + data).split(b"\n")
+            for line in lines:
+                events += link.handle(ipc.decode_command(line), now_s)
+        if time.monotonic() >= next_s:
+            next_s += TICK_S / link_config.speedup
+            events += link.tick(now_s)
+        if link.scenario == "crash" and now_s > 0.3:
+            sys.exit("fake link: planted failure")
+        sys.stdout.buffer.write(b"".join(map(ipc.encode, events)))
+    sys.stdout.buffer.flush()
+
+
+if __name__ == "__main__":
+    main()

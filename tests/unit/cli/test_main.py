@@ -1,0 +1,127 @@
+"""The command line itself: lazy, with exit codes, and without tracebacks."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import click
+import pytest
+
+from gcs.cli import main, oneshot
+from gcs.cli.exits import Exit, Fail
+
+HEAVY = ("rich", "numpy", "msgspec", "pymavlink", "textual", "asyncio", "subprocess", "gcs.cli.fly")
+
+
+def run_python(code: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = (
+        "import sys\nfrom gcs.cli.main import run\nassert run(['--help']) == 0\n"
+        f"heavy = [name for name in {HEAVY!r} if name in sys.modules]\n"
+        "sys.exit(', '.join(heavy) or 0)"
+    )
+    result = run_python(code)
+    assert result.returncode == 0, result.stderr
+    for section in main.COMMANDS.values():
+        for name in section:
+            assert f"  {name} " in result.stdout
+
+
+def test_mavutil_is_never_loaded_by_a_command_line() -> None:
+    code = (
+        "import sys, gcs.cli.fly, gcs.cli.demo, gcs.cli.oneshot, gcs.cli.errand, gcs.tui.app\n"
+        "sys.exit('pymavlink.mavutil' in sys.modules)"
+    )
+    assert run_python(code).returncode == 0
+
+
+OURS = ("demo", "fly", *main.COMMANDS["One command, then leave"])
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_every_command_has_help_with_an_example(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main.run([name, "--help"]) == Exit.DONE
+    assert "Example" in capsys.readouterr().out
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main.run(["--version"]) == Exit.DONE
+    assert capsys.readouterr().out.startswith("gcs ")
+
+
+@pytest.mark.parametrize(
+    ("args", "told"),
+    [
+        (["got"], "no command 'got'; did you mean 'goto'?"),
+        (["goto", "1", "2"], "goto: expected 3 numbers EAST NORTH UP [YAW_DEG], got 2"),
+        (["goto", "-1", "x", "2"], "goto: NORTH: expected a number, got 'x'"),
+        (["takeoff"], "takeoff: expected 1 number UP, got nothing"),
+        (["fly", "--sim", "--link", "udpin://127.0.0.1:1"], "--sim starts a vehicle of its own"),
+        (["fly", "--autopilot", "px5"], "px5"),
+        (["fly", "--speedup", "0"], "--speedup"),
+    ],
+)
+def test_usage_errors_are_two_and_say_why(
+    args: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main.run(args) == Exit.USAGE
+    assert told in capsys.readouterr().err
+
+
+def test_a_keyboard_station_needs_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    result = subprocess.run(
+        [sys.executable, "-c", "from gcs.cli.main import main; main()", "fly", "--sim"],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == Exit.USAGE
+    assert "use --plain on a pipe" in result.stderr
+
+
+def _raising(error: BaseException) -> click.Command:
+    def callback() -> None:
+        raise error
+
+    return click.Command("land", callback=callback)
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "told"),
+    [
+        (Fail(Exit.BAD_FILE, "a.plan: no", "try b"), Exit.BAD_FILE, "gcs: a.plan: no\n  hint: try"),
+        (KeyboardInterrupt(), Exit.INTERRUPTED, "interrupted"),
+        (RuntimeError("boom"), Exit.BUG, "gcs: internal error: RuntimeError: boom\n  details: "),
+    ],
+    ids=["fail", "ctrl-c", "bug"],
+)
+def test_errors_become_sentences_and_exit_codes(
+    error: BaseException,
+    code: Exit,
+    told: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(oneshot, "land", _raising(error))
+    assert main.run(["land"]) == code
+    shown = capsys.readouterr().err
+    assert told in shown
+    assert "Traceback" not in shown
+
+
+def test_a_bug_leaves_its_details_in_a_file(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: object
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr(oneshot, "land", _raising(RuntimeError("boom")))
+    main.run(["land"])
+    path = capsys.readouterr().err.split("details: ")[1].strip()
+    with open(path, encoding="utf-8") as file:
+        assert "RuntimeError: boom" in file.read()

@@ -1,0 +1,173 @@
+"""`--plain`: one word at a time, one line for each verdict and each ending."""
+
+from __future__ import annotations
+
+import json
+import os
+
+import pytest
+
+from gcs import ipc
+from gcs.cli.exits import Exit, Fail
+from gcs.cli.plain import Input, Plain, PlainConfig
+from tests.unit.cli.fake_link import FakeClient, FakeLink, NoInterrupts
+
+
+class Session:
+    """One run of the console over a pipe and a fake link on a virtual clock."""
+
+    def __init__(self, script: str, config: PlainConfig | None = None, scenario: str = "flight"):
+        self.client = FakeClient(FakeLink(scenario))
+        self.interrupts = NoInterrupts()
+        self.out: list[str] = []
+        self.err: list[str] = []
+        reader, writer = os.pipe()
+        with os.fdopen(writer, "w") as file:
+            file.write(script)
+        plain = Plain(
+            self.client,
+            self.interrupts,
+            config or PlainConfig(),
+            self.out.append,
+            self.err.append,
+        )
+        try:
+            self.exit = plain.run(Input(reader, "<stdin>"))
+        finally:
+            os.close(reader)
+
+    @property
+    def asked(self) -> list[str]:
+        return [command.word for command in self.client.sent if isinstance(command, ipc.Ask)]
+
+
+FLIGHT = "arm\ntakeoff 2\ngoto 3 0 2\ngoto 500 0 2\nland\n"
+
+
+def test_a_flight_is_answered_line_by_line_and_ends_in_order() -> None:
+    session = Session(FLIGHT)
+    assert session.out == [
+        "arm: accepted",
+        "arm: complete",
+        "takeoff 2: accepted",
+        "takeoff 2: complete",
+        "goto 3 0 2: accepted",
+        "goto 3 0 2: complete",
+        "goto 500 0 2: refused OUTSIDE_FENCE: 350 m outside the fence `circle`",
+        "land: accepted",
+        "land: complete",
+    ]
+    assert session.exit == Exit.DONE
+    assert session.err[-1] == "log: logs/x.mcap"
+    assert session.client.sent[-1] == ipc.Leave("quit")
+    assert session.client.closed
+
+
+def test_the_next_word_waits_for_the_ending_of_the_one_before() -> None:
+    session = Session("arm\ntakeoff 2\nphoto\ngoto 1 0 2\n")
+    assert "goto 1 0 2: complete" in session.out
+
+
+def test_an_ampersand_lets_the_next_word_go_at_once() -> None:
+    session = Session("arm\ntakeoff 2\nphoto &\ngoto 1 0 2\nwait 3\n")
+    assert "goto 1 0 2: refused BUSY: the vehicle is TAKING_PICTURE" in session.out
+    assert session.out.index("photo: complete") > session.out.index("photo: accepted") + 1
+
+
+def test_a_word_not_understood_is_told_with_its_line_and_passed_over() -> None:
+    session = Session("# a flight\n\narm\ngoto 1 2\nland\n")
+    assert (
+        "<stdin>:4: goto: expected 3 numbers EAST NORTH UP [YAW_DEG], got 2\n"
+        "  hint: for example: goto 3 0 2" in session.err
+    )
+    assert session.asked == ["arm", "land"]
+    assert session.exit == Exit.USAGE
+
+
+def test_a_last_line_without_a_newline_counts() -> None:
+    assert Session("arm").out == ["arm: accepted", "arm: complete"]
+
+
+def test_quit_ends_it_before_the_end_of_the_input() -> None:
+    assert Session("arm\nquit\nland\n").asked == ["arm"]
+
+
+@pytest.mark.parametrize(
+    ("script", "code"),
+    [("arm\n", Exit.DONE), ("takeoff 2\n", Exit.REFUSED_BY_GATE), (FLIGHT, Exit.REFUSED_BY_GATE)],
+)
+def test_strict_makes_a_refusal_an_exit_code(script: str, code: Exit) -> None:
+    assert Session(script).exit == Exit.DONE
+    assert Session(script, PlainConfig(strict=True)).exit == code
+
+
+def test_strict_counts_what_was_left_undone() -> None:
+    script = "arm\ntakeoff 2\ngoto 9 0 2 &\nwait 1\nabort\n"
+    session = Session(script, PlainConfig(strict=True))
+    assert "goto 9 0 2: aborted OPERATOR" in session.out
+    assert session.exit == Exit.NOT_COMPLETED
+
+
+def test_mission_fly_starts_only_what_was_uploaded() -> None:
+    session = Session("arm\ntakeoff 2\nmission fly demo.toml\n")
+    assert session.asked[-2:] == ["mission_upload", "mission_start"]
+    assert session.out[-1] == "mission start: complete"
+
+
+def test_state_is_one_line() -> None:
+    assert Session("state\n").out == [
+        "state: GROUNDED NONE NOMINAL E +0.00 N +0.00 U +0.00 AUTO.LOITER disarmed battery 98 %"
+    ]
+
+
+def test_json_prints_the_events_and_snapshots_only_when_asked() -> None:
+    session = Session("arm\nstate\n", PlainConfig(as_json=True))
+    kinds = [json.loads(line)["type"] for line in session.out]
+    assert kinds.count("snapshot") == 1
+    assert kinds[0] == "hello"
+    assert kinds[-1] == "bye"
+    assert "verdict" in kinds
+
+
+@pytest.mark.parametrize(("level", "heard"), [(1, True), (2, True), (3, False)])
+def test_log_lines_are_told_by_level(level: int, heard: bool) -> None:
+    session = Session("arm\ntakeoff 2\n", PlainConfig(min_level=level))
+    assert ("INFO  gate: Current State: HOVERING" in session.err) == heard
+
+
+def test_without_a_vehicle_it_fails_and_asks_nothing() -> None:
+    with pytest.raises(Fail, match=r"no vehicle heard within 10 s \(.+\)") as failed:
+        Session("arm\n", scenario="silent")
+    assert failed.value.exit_code == Exit.NO_LINK
+
+
+def test_a_port_in_use_is_the_links_own_exit_code() -> None:
+    with pytest.raises(Fail, match="address in use") as failed:
+        Session("arm\n", scenario="port in use")
+    assert failed.value.exit_code == Exit.ADDRESS_IN_USE
+
+
+def test_ctrl_c_leaves_through_the_link_and_exits_130() -> None:
+    class PressedInFlight(NoInterrupts):
+        pass
+
+    client = FakeClient()
+    interrupts = PressedInFlight()
+    told: list[str] = []
+
+    def listen(line: str) -> None:
+        told.append(line)
+        if line == "goto 9 0 2: accepted":
+            interrupts.name = "SIGINT"
+
+    reader, writer = os.pipe()
+    os.write(writer, b"arm\ntakeoff 2\ngoto 9 0 2\n")
+    try:
+        plain = Plain(client, interrupts, PlainConfig(), listen, told.append)
+        assert plain.run(Input(reader, "<stdin>")) == Exit.INTERRUPTED
+    finally:
+        os.close(reader)
+        os.close(writer)
+    assert client.sent[-1] == ipc.Leave("SIGINT")
+    assert "goto 9 0 2: aborted OPERATOR" in told
+    assert client.link.state == "HOLDING"

@@ -1,0 +1,282 @@
+"""Links over loopback: real sockets on free ports, a clock that the test advances."""
+
+from __future__ import annotations
+
+import builtins
+import select
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing
+
+import pytest
+
+from gcs.shell.endpoints import Endpoint, Kind, parse_endpoint
+from gcs.shell.sockets import AddressInUse, Link, SerialUnavailable, TcpIn, TcpOut, UdpIn, open_link
+from gcs.shell.sockets.tcp import MAX_QUEUED, RECONNECT_NS
+from gcs.shell.sockets.udp import MAX_PEERS
+
+FRAME = b"\xfd\x01\x00\x00 a frame"
+PATIENCE_S = 5.0
+
+Opener = Callable[[Endpoint], Link]
+
+
+@pytest.fixture
+def opened() -> Iterator[Opener]:
+    with ExitStack() as stack:
+
+        def opener(endpoint: Endpoint) -> Link:
+            link = open_link(endpoint)
+            stack.callback(link.close)
+            return link
+
+        yield opener
+
+
+def read(link: Link, limit: int = 100) -> list[bytes]:
+    """Wait as the loop does, then drain."""
+    readable, _, _ = select.select([link], [], [], PATIENCE_S)
+    assert readable, "nothing came"
+    return link.drain(limit)
+
+
+def read_bytes(link: Link, size: int) -> bytes:
+    """From a stream, whatever pieces it comes in."""
+    data = b""
+    while len(data) < size:
+        data += b"".join(read(link))
+    return data
+
+
+def due_ns(link: Link) -> int | None:
+    return link.deadline_ns
+
+
+def free_port(kind: socket.SocketKind) -> int:
+    """One that was free a moment ago."""
+    with socket.socket(socket.AF_INET, kind) as sock:
+        sock.bind(("127.0.0.1", 0))
+        return int(sock.getsockname()[1])
+
+
+def udp_in(port: int = 0) -> Endpoint:
+    return Endpoint(Kind.UDP_IN, "127.0.0.1", port)
+
+
+def udp_out(port: int) -> Endpoint:
+    return Endpoint(Kind.UDP_OUT, "127.0.0.1", port)
+
+
+def tcp_in(port: int = 0) -> Endpoint:
+    return Endpoint(Kind.TCP_IN, "127.0.0.1", port)
+
+
+def tcp_out(port: int) -> Endpoint:
+    return Endpoint(Kind.TCP_OUT, "127.0.0.1", port)
+
+
+# ---------------------------------------------------------------------------------- udp
+
+
+def test_a_waiting_port_answers_whoever_sent(opened: Opener) -> None:
+    station = opened(udp_in())
+    vehicle = opened(udp_out(station.port))
+    station.send(FRAME)
+    assert station.counters.dropped == 1
+    vehicle.send(FRAME)
+    vehicle.send(FRAME + b"2")
+    assert read(station) == [FRAME, FRAME + b"2"]
+    station.send(b"\xfdanswer")
+    assert read(vehicle) == [b"\xfdanswer"]
+    (news,) = station.poke(0)
+    assert "sends to us" in news
+    assert station.poke(0) == []
+
+
+def test_two_vehicles_on_one_port_both_hear(opened: Opener) -> None:
+    station = opened(udp_in())
+    vehicles = [opened(udp_out(station.port)) for _ in range(2)]
+    for vehicle in vehicles:
+        vehicle.send(FRAME)
+        read(station)
+    station.send(b"\xfdall")
+    assert [read(vehicle) for vehicle in vehicles] == [[b"\xfdall"]] * 2
+
+
+def test_the_peer_heard_longest_ago_makes_room(opened: Opener) -> None:
+    station = opened(udp_in())
+    assert isinstance(station, UdpIn)
+    vehicles = [opened(udp_out(station.port)) for _ in range(MAX_PEERS + 1)]
+    for vehicle in [*vehicles[:MAX_PEERS], vehicles[0], vehicles[MAX_PEERS]]:
+        vehicle.send(FRAME)
+        read(station)
+    assert len(station.peers) == MAX_PEERS
+    station.send(b"\xfdall")
+    assert read(vehicles[0]) == [b"\xfdall"]
+    assert vehicles[1].drain(1) == []
+
+
+def test_garbage_makes_no_peer(opened: Opener) -> None:
+    station = opened(udp_in())
+    stranger = opened(udp_out(station.port))
+    stranger.send(b"GET / HTTP/1.1")
+    stranger.send(b"")
+    assert read(station) == [b"GET / HTTP/1.1", b""]
+    assert isinstance(station, UdpIn)
+    assert station.peers == ()
+
+
+def test_draining_takes_no_more_than_asked_and_never_waits(opened: Opener) -> None:
+    station = opened(udp_in())
+    vehicle = opened(udp_out(station.port))
+    for n in range(5):
+        vehicle.send(FRAME + bytes((n,)))
+    assert len(read(station, limit=3)) == 3
+    assert len(read(station, limit=3)) == 2
+    assert station.drain(3) == []
+
+
+def test_nobody_listening_is_counted_and_no_error(opened: Opener) -> None:
+    vehicle = opened(udp_out(free_port(socket.SOCK_DGRAM)))
+    for _ in range(3):
+        vehicle.send(FRAME)
+    vehicle.drain(10)
+    assert vehicle.counters.refused > 0
+
+
+def test_a_port_in_use_is_an_error_of_its_own(opened: Opener) -> None:
+    station = opened(udp_in())
+    with pytest.raises(AddressInUse, match=rf"udpin://127\.0\.0\.1:{station.port} is in use"):
+        opened(udp_in(station.port))
+    server = opened(tcp_in())
+    with pytest.raises(AddressInUse):
+        opened(tcp_in(server.port))
+
+
+def test_an_address_that_is_not_ours_is_another_error(opened: Opener) -> None:
+    with pytest.raises(OSError, match="address") as caught:
+        opened(Endpoint(Kind.UDP_IN, "192.0.2.1", 0))
+    assert not isinstance(caught.value, AddressInUse)
+
+
+def test_a_link_describes_itself_with_the_buffer_it_got(opened: Opener) -> None:
+    station = opened(udp_in())
+    assert isinstance(station, UdpIn)
+    assert station.rcvbuf > 0
+    assert f"127.0.0.1:{station.port}, receive buffer {station.rcvbuf >> 10} KiB" in (
+        station.describe()
+    )
+
+
+# ---------------------------------------------------------------------------------- tcp
+
+
+def connect(client: Link, now_ns: int = 0) -> int:
+    """Poke until it is connected; the time that it is then."""
+    assert isinstance(client, TcpOut)
+    for _ in range(20):
+        news = client.poke(now_ns)
+        if client.connected:
+            assert any("connected" in line for line in news)
+            return now_ns
+        now_ns = due_ns(client) or now_ns
+    raise AssertionError("not connected")
+
+
+def test_a_client_and_a_server_exchange_a_stream(opened: Opener) -> None:
+    server = opened(tcp_in())
+    client = opened(tcp_out(server.port))
+    assert client.fileno() == -1
+    assert due_ns(client) == 0
+    connect(client)
+    assert due_ns(client) is None
+    client.send(b"abc")
+    assert read_bytes(server, 3) == b"abc"
+    server.send(b"xyz")
+    assert read(client) == [b"xyz"]
+    assert "connected to tcp" in client.describe()
+
+
+def test_a_client_tries_again_once_a_second(opened: Opener) -> None:
+    port = free_port(socket.SOCK_STREAM)
+    client = opened(tcp_out(port))
+    now_ns = 0
+    while client.counters.refused == 0:
+        client.poke(now_ns)
+        assert client.deadline_ns is not None
+        now_ns = client.deadline_ns
+    failed_ns = now_ns - RECONNECT_NS
+    assert client.deadline_ns == failed_ns + RECONNECT_NS
+    client.send(FRAME)
+    assert client.counters.dropped == 1
+    client.poke(now_ns - 1)
+    assert client.counters.refused == 1
+    server = opened(tcp_in(port))
+    connect(client, now_ns)
+    select.select([server], [], [], PATIENCE_S)
+    server.drain(1)
+    assert isinstance(server, TcpIn)
+    assert server.connected
+
+
+def test_a_lost_connection_is_told_and_made_again(opened: Opener) -> None:
+    server = opened(tcp_in())
+    client = opened(tcp_out(server.port))
+    now_ns = connect(client)
+    server.drain(1)
+    server.close()
+    assert read(client) == []
+    assert client.fileno() == -1
+    assert due_ns(client) == 0
+    assert any("closed" in line for line in client.poke(now_ns))
+    again = opened(tcp_in(server.port))
+    connect(client, now_ns + RECONNECT_NS)
+    client.send(b"back")
+    assert read_bytes(again, 4) == b"back"
+
+
+def test_a_newer_client_takes_the_place_of_the_older(opened: Opener) -> None:
+    server = opened(tcp_in())
+    old, new = opened(tcp_out(server.port)), opened(tcp_out(server.port))
+    connect(old)
+    server.poke(0)
+    connect(new)
+    server.poke(RECONNECT_NS)
+    server.send(b"hello")
+    assert read(new) == [b"hello"]
+    assert read(old) == []
+
+
+def test_a_slow_reader_costs_whole_frames_and_no_memory(opened: Opener) -> None:
+    server = opened(tcp_in())
+    with closing(socket.create_connection(("127.0.0.1", server.port))) as reader:
+        server.poke(0)
+        frame = bytes(range(250)) * 4
+        for _ in range(20_000):
+            server.send(frame)
+        lost = server.counters.dropped
+        assert lost > 0
+        received = bytearray()
+        reader.settimeout(PATIENCE_S)
+        while len(received) < (20_000 - lost) * len(frame):
+            received += reader.recv(1 << 16)
+            server.poke(0)
+        assert received == frame * (20_000 - lost)
+    assert len(frame) < MAX_QUEUED
+
+
+# ------------------------------------------------------------------------------- serial
+
+
+def test_without_pyserial_the_hint_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    genuine = builtins.__import__
+
+    def without_serial(name: str, *rest: object) -> object:
+        if name == "serial":
+            raise ImportError(name)
+        return genuine(name, *rest)  # type: ignore[arg-type]  # passed through as they came
+
+    monkeypatch.setattr(builtins, "__import__", without_serial)
+    with pytest.raises(SerialUnavailable, match="pyserial") as caught:
+        open_link(parse_endpoint("/dev/ttyUSB0,57600"))
+    assert "pip install" in caught.value.hint

@@ -1,0 +1,200 @@
+"""L17 and the invariants over random runs: any interleaving, any order, any numbers."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field, replace
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from gcs.frames import Vec3
+from gcs.gate.alphabet import ALPHABET, TICK_NS, YARD
+from gcs.gate.edge import Edge
+from gcs.gate.events import Event
+from gcs.gate.invariants import objections
+from gcs.gate.machine import Gate
+from gcs.gate.memory import SECOND_NS
+from gcs.gate.policy import Policy
+from gcs.gate.rules import Answer, Branch
+from gcs.gate.table import TABLE, Table
+from gcs.gate.types import (
+    Ending,
+    FlightMode,
+    GoTo,
+    HeartbeatSeen,
+    HomeSeen,
+    Input,
+    LandedSeen,
+    LandedState,
+    MissionLoaded,
+    Outcome,
+    PositionSeen,
+    Request,
+    ReturnHeightSeen,
+    SendSetpoint,
+    State,
+    SwitchedFence,
+    TakeControl,
+    Tick,
+    Verdict,
+    VerifierChanged,
+)
+from gcs.gate.verifier import verifier_for
+
+HOME = (0.0, 0.0, 0.0)
+RADIUS_M, CEILING_M = 20.0, 30.0
+
+
+@dataclass
+class Run:
+    """Feeds a gate, checks every step, and keeps the books over the whole run."""
+
+    policy: Policy = YARD
+    personality: str = "px4"
+    table: Table = field(default_factory=lambda: TABLE)
+    now_ns: int = SECOND_NS
+    verdicts: Counter[int] = field(default_factory=Counter)
+    accepted: set[int] = field(default_factory=set)
+    endings: Counter[int] = field(default_factory=Counter)
+    goals: dict[int, Vec3] = field(default_factory=dict)
+    asked: set[int] = field(default_factory=set)
+    places: set[Vec3] = field(default_factory=set)
+    last_id: int = 0
+
+    def __post_init__(self) -> None:
+        self.gate = Gate(self.policy, self.personality, self.now_ns, self.table)
+        self.verifier = verifier_for(self.policy, self.personality, HOME, None)
+        for told in (
+            HomeSeen(HOME),
+            ReturnHeightSeen(10.0),
+            VerifierChanged(self.verifier),
+            MissionLoaded("square", 4),
+        ):
+            self.feed(told)
+
+    def hover(self) -> Run:
+        """In the middle of the yard, under our control."""
+        self.feed(HeartbeatSeen(True, FlightMode.HOLD, "hold"))
+        self.feed(LandedSeen(LandedState.IN_AIR))
+        self.feed(PositionSeen((0.0, 0.0, -5.0), (0.0, 0.0, 0.0), 0))
+        self.ask(TakeControl())
+        for _ in range(21):
+            self.feed(PositionSeen((0.0, 0.0, -5.0), (0.0, 0.0, 0.0), 0), TICK_NS)
+            self.feed(Tick(0))
+        self.feed(HeartbeatSeen(True, FlightMode.GUIDED, "guided"))
+        assert self.gate.state is State.HOVERING
+        return self
+
+    def ask(self, wish: GoTo | TakeControl) -> None:
+        self.last_id += 1
+        self.feed(Request(self.last_id, "test", wish))
+
+    def letter(self, name: str) -> None:
+        for passes_ns, told in ALPHABET[name](self.policy, self.gate.memory, self.now_ns):
+            if isinstance(told, Request):
+                self.last_id += 1
+                told = replace(told, request_id=self.last_id)
+            self.feed(told, passes_ns)
+
+    def feed(self, told: Input, passes_ns: int = 1) -> None:
+        self.now_ns += passes_ns
+        before = self.gate.memory
+        effects = self.gate.handle(told, self.now_ns)
+        edge = Edge(self.policy, before, told, self.now_ns, effects, self.gate.memory)
+        assert not list(objections(edge))
+        if isinstance(told, Request):
+            self.asked.add(told.request_id)
+        if isinstance(told, PositionSeen):
+            self.places.add(told.pos_ned)
+        for effect in effects:
+            match effect:
+                case Verdict(request_id, _, wish, outcome):
+                    self.verdicts[request_id] += 1
+                    if outcome is Outcome.ACCEPTED:
+                        self.accepted.add(request_id)
+                        if isinstance(wish, GoTo):
+                            self.goals[request_id] = wish.goal_ned
+                case Ending(request_id):
+                    self.endings[request_id] += 1
+                case SendSetpoint(permit):
+                    self.on_the_wire(permit.pos_ned, permit.reason)
+                case SwitchedFence():
+                    self.feed(VerifierChanged(self.verifier))
+                case _:
+                    pass
+
+    def on_the_wire(self, pos_ned: Vec3 | None, reason: str) -> None:
+        assert pos_ned is not None
+        north_m, east_m, down_m = pos_ned
+        assert math.hypot(north_m, east_m) <= RADIUS_M
+        assert 0.0 <= -down_m <= CEILING_M
+        if reason.startswith("brake"):
+            self.places.add(pos_ned)
+        assert pos_ned in self.places | set(self.goals.values())
+
+    def closed(self) -> None:
+        """Three minutes later nothing is open that could have ended."""
+        for _ in range(10):
+            self.feed(Tick(0), 20 * SECOND_NS)
+        assert self.gate.state is State.NO_VEHICLE
+        assert self.verdicts == dict.fromkeys(self.asked, 1)
+        assert self.endings == dict.fromkeys(self.accepted, 1)
+
+
+words = st.lists(st.sampled_from(sorted(ALPHABET)), max_size=80)
+numbers = st.floats(-60.0, 60.0) | st.sampled_from([math.nan, math.inf, -math.inf, 1e300])
+goals = st.tuples(numbers, numbers, numbers).map(GoTo)
+samples = st.builds(
+    PositionSeen,
+    st.tuples(st.floats(-25, 25), st.floats(-25, 25), st.floats(-35, 5)),
+    st.tuples(st.floats(-15, 15), st.floats(-15, 15), st.floats(-5, 5)),
+    st.just(0),
+    st.booleans(),
+)
+steps = st.lists(
+    st.sampled_from(sorted(ALPHABET)) | goals | samples | st.integers(0, 2 * SECOND_NS),
+    max_size=80,
+)
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(word=words)
+def test_L17_any_interleaving_from_nothing(personality: str, word: list[str]) -> None:
+    run = Run(personality=personality)
+    for name in word:
+        run.letter(name)
+    run.closed()
+
+
+@pytest.mark.parametrize("retarget", ["refuse", "replace"])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(steps=steps)
+def test_L17_any_interleaving_with_any_numbers_from_hovering(
+    retarget: str, steps: list[str | GoTo | PositionSeen | int]
+) -> None:
+    run = Run(replace(YARD, retarget="replace" if retarget == "replace" else "refuse")).hover()
+    for step in steps:
+        match step:
+            case str():
+                run.letter(step)
+            case GoTo():
+                run.ask(step)
+            case PositionSeen():
+                run.feed(step)
+            case passes_ns:
+                run.feed(Tick(0), passes_ns)
+    run.closed()
+
+
+def test_the_books_notice_a_goal_that_is_queued() -> None:
+    """A planted fault: what is sent while moving waits, and is flown later."""
+    queued = {**TABLE, (State.MOVING, Event.GOTO): (Branch(answer=Answer.PENDING),)}
+    run = Run(table=queued).hover()
+    run.ask(GoTo((3.0, 0.0, -5.0)))
+    run.feed(Tick(0), TICK_NS)
+    with pytest.raises(AssertionError, match="a goal is taken in MOVING"):
+        run.ask(GoTo((0.0, 3.0, -5.0)))

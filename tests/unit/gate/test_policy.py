@@ -1,0 +1,253 @@
+"""A policy file is strict: every mistake is told with file, line, key and a hint."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+import gcs.gate.policy
+from gcs.gate.policy import DEFAULT, Policy, PolicyError, parse_policy
+from gcs.gate.tomlfile import find_lines
+from gcs.gate.types import Condition, Severity
+from gcs.gate.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec
+
+SHIPPED = Path(gcs.gate.policy.__file__).parent / "policies"
+
+
+def shipped(name: str) -> str:
+    return (SHIPPED / name).read_text(encoding="utf-8")
+
+
+def error(text: str) -> PolicyError:
+    with pytest.raises(PolicyError) as caught:
+        parse_policy(text, "my.toml")
+    return caught.value
+
+
+def test_the_shipped_default_is_the_default() -> None:
+    assert parse_policy(shipped("default.toml"), "default.toml") == DEFAULT == Policy()
+
+
+def test_an_empty_file_is_the_default() -> None:
+    assert parse_policy("", "my.toml") == DEFAULT
+
+
+def test_the_shipped_default_names_every_key_there_is() -> None:
+    lines = find_lines(shipped("default.toml"))
+    for key in dataclasses.fields(Policy):
+        assert (key.name,) in lines or (key.name, 0) in lines, key.name
+    for condition in Condition:
+        assert ("severities", condition.value) in lines
+    for part in (DEFAULT.arrival, DEFAULT.speeds, DEFAULT.takeoff, DEFAULT.control):
+        name = next(f.name for f in dataclasses.fields(Policy) if getattr(DEFAULT, f.name) is part)
+        for key in dataclasses.fields(part):
+            assert (name, key.name) in lines, (name, key.name)
+    for personality, braking in DEFAULT.braking.items():
+        for key in dataclasses.fields(braking):
+            assert ("braking", personality, key.name) in lines
+
+
+def test_the_labs_policy_is_the_labs() -> None:
+    lab = parse_policy(shipped("lab.toml"), "lab.toml")
+    assert lab.name == "lab"
+    assert (lab.arrival.radius_m, lab.arrival.speed_m_s, lab.arrival.dwell_s) == (0.5, None, 0.0)
+    assert (lab.margin_h_m, lab.margin_v_m, lab.bounds_inclusive) == (0.0, 0.0, True)
+    assert (lab.brake_slack_h_m, lab.brake_slack_v_m, lab.fence_switchable) == (0.5, 0.5, True)
+    (cage,) = lab.fence
+    assert cage.shape == BoxSpec((-5.0, 5.0), (-5.0, 5.0))
+    assert (cage.frame, cage.floor_up_m, cage.ceiling_up_m) == ("local", 0.0, 2.0)
+
+
+def test_every_kind_of_zone() -> None:
+    policy = parse_policy(
+        """
+        [[fence]]
+        name = "field"
+        kind = "polygon"
+        frame = "geographic"
+        corners = [
+            [47.0, 8.0],  # a comment, and a ] in it
+            [47.0, 8.1],
+            [47.1, 8.0],
+        ]
+        [[fence]]
+        name = "tower"
+        kind = "circle"
+        inclusion = false
+        centre = [20, 35]
+        radius_m = 8
+        ceiling_up_m = "none"
+        [[fence]]
+        kind = "file"
+        path = "field.plan"
+        """,
+        "my.toml",
+    )
+    field, tower, file = policy.fence
+    assert field.shape == PolygonSpec(((47.0, 8.0), (47.0, 8.1), (47.1, 8.0)))
+    assert (tower.shape, tower.inclusion) == (CircleSpec(8.0, (20.0, 35.0)), False)
+    assert tower.ceiling_up_m is None
+    assert file.shape == FileSpec("field.plan")
+
+
+def test_severities_are_mapped_by_name() -> None:
+    policy = parse_policy('severities.battery_low = "land"', "my.toml")
+    assert policy.severities[Condition.BATTERY_LOW] is Severity.LAND
+    assert policy.severities[Condition.TICK_LATE] is Severity.CAUTION
+    assert set(DEFAULT.severities) == set(Condition)
+
+
+def test_an_error_reads_file_line_key_and_what() -> None:
+    found = error('name = "x"\n\nmargin_h = 3.0\n')
+    assert str(found) == "my.toml:3: margin_h: unknown key"
+    assert found.hint == "did you mean margin_h_m?"
+
+
+ZONE = '[[fence]]\nname = "a"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "key", "what"),
+    [
+        ("margin_h_m = -1", 1, "margin_h_m", "impossible"),
+        ("\nmargin_h_m = nan", 2, "margin_h_m", "not finite"),
+        ("\nmargin_v_m = inf", 2, "margin_v_m", "not finite"),
+        ('max_up_m = "high"', 1, "max_up_m", '"high" is not a number'),
+        ("max_up_m = true", 1, "max_up_m", "not a number"),
+        ("bounds_inclusive = 1", 1, "bounds_inclusive", "neither true nor false"),
+        ("name = 3", 1, "name", "not a text"),
+        ('rtl_blocked = "lnad"', 1, "rtl_blocked", "none of: hold, land, forward"),
+        ('[severities]\nbattery_lo = "land"', 2, "severities.battery_lo", "unknown key"),
+        ('[severities]\nbattery_low = "bad"', 2, "severities.battery_low", "none of"),
+        ("[arrival]\nradius_m = 0", 2, "arrival.radius_m", "impossible"),
+        ("arrival = 0.5", 1, "arrival", "is a table"),
+        ("[braking.vtol]\nreact_s = 1", 1, "braking.vtol", "unknown key"),
+        ("[braking.px4]\na_brake_h_m_s2 = 0", 2, "braking.px4.a_brake_h_m_s2", "impossible"),
+        ("[takeof]\nmax_up_m = 3", 1, "takeof", "unknown key"),
+        ("x = [1,\n2", 2, "", "not TOML"),
+        ("name = 'a'\nname = 'b'\n", 2, "", "not TOML"),
+        ("fence = []", 1, "fence", "no inclusion zone"),
+        ("[fence]\nradius_m = 5", 1, "fence", "list of tables"),
+        ("[[fence]]\nradius_m = 5", 1, "fence[1].name", "missing"),
+        (ZONE + 'kind = "circle"', 1, "fence[1].radius_m", "missing"),
+        (ZONE + "radius_m = 5\nradious = 1", 4, "fence[1].radious", "unknown key"),
+        (ZONE + "radius_m = 2", 3, "fence[1].radius_m", "leaves nothing"),
+        (ZONE + "radius_m = 5\neast_m = [0, 1]", 4, "fence[1].east_m", "unknown key"),
+        (ZONE + 'kind = "cube"', 3, "fence[1].kind", "none of"),
+        (ZONE + "inclusion = false\nradius_m = 5", 1, "fence", "no inclusion zone"),
+        (ZONE + "radius_m = 5\n" + ZONE + "radius_m = 6", 2, "fence[1].name", "two zones"),
+        (
+            ZONE + "radius_m = 5\n[[fence]]\nname = 'b'\nradius_m = 0",
+            6,
+            "fence[2].radius_m",
+            "impossible",
+        ),
+        (
+            ZONE + "radius_m = 5\nfloor_up_m = 5\nceiling_up_m = 5",
+            5,
+            "fence[1].ceiling_up_m",
+            "not above the floor",
+        ),
+        (
+            ZONE + "radius_m = 5\nfloor_up_m = 5\nceiling_up_m = 5.5",
+            5,
+            "fence[1].ceiling_up_m",
+            "leaves nothing",
+        ),
+        (
+            ZONE + 'kind = "box"\neast_m = [5, -5]\nnorth_m = [0, 9]',
+            4,
+            "fence[1].east_m",
+            "is empty",
+        ),
+        (
+            ZONE + 'kind = "box"\neast_m = [0, 3]\nnorth_m = [0, 9]',
+            4,
+            "fence[1].east_m",
+            "leaves nothing",
+        ),
+        (ZONE + 'kind = "box"\neast_m = [0]', 4, "fence[1].east_m", "not a pair"),
+        (
+            ZONE + 'kind = "box"\nframe = "geographic"\neast_m = [0, 3]',
+            4,
+            "fence[1].frame",
+            "metres",
+        ),
+        (ZONE + 'kind = "polygon"\ncorners = 3', 4, "fence[1].corners", "not a list"),
+        (ZONE + 'kind = "polygon"\ncorners = [[0, 0], [1, 1]]', 4, "fence[1].corners", "at least"),
+        (
+            ZONE + 'kind = "polygon"\ncorners = [[0, 0], [9, 9], [9, 0], [0, 9]]',
+            4,
+            "fence[1].corners",
+            "intersects itself",
+        ),
+        (
+            ZONE + 'frame = "geographic"\nradius_m = 9\ncentre = [147, 8]',
+            5,
+            "fence[1].centre",
+            "nowhere",
+        ),
+        (ZONE + 'frame = "geographic"\nradius_m = 9', 1, "fence[1].centre", "missing"),
+        ('[[fence]]\nkind = "file"', 1, "fence[1].path", "missing"),
+        ("min_up_m = 50\nmax_up_m = 50", 2, "max_up_m", "not above min_up_m"),
+        ("max_up_m = 20\n[takeoff]\nmax_up_m = 25", 3, "takeoff.max_up_m", "above the policy's"),
+        ("[control]\nstream_s = 5\ntimeout_s = 5", 3, "control.timeout_s", "before the stream"),
+        ("margin_h_m = 200", 1, "margin_h_m", "leaves nothing"),
+        ("margin_v_m = 25", 1, "margin_v_m", "leaves nothing"),
+    ],
+)
+def test_what_is_wrong_is_told_with_line_and_key(text: str, line: int, key: str, what: str) -> None:
+    found = error(text)
+    assert (found.line, found.key) == (line, key)
+    assert what in found.what
+    assert str(found).startswith(f"my.toml:{line}: ")
+
+
+def test_a_lower_ceiling_alone_does_not_quarrel_with_the_default_take_off() -> None:
+    assert parse_policy("max_up_m = 20", "my.toml").max_up_m == 20.0
+
+
+def test_lines_are_found_past_strings_comments_and_nested_lists() -> None:
+    text = '''a = "x # [no]" # [b]
+text = """
+[not.a.table]
+c = 1
+"""
+list = [
+  [1, 2],
+  ["]", 3],
+]
+["quoted"]
+d.e = 1
+[[items]]
+f = 1
+[items.sub]
+g = 1
+[[items]]
+f = 2
+'''
+    lines = find_lines(text)
+    assert lines[("a",)] == 1
+    assert lines[("text",)] == 2
+    assert lines[("list",)] == 6
+    assert lines[("quoted", "d", "e")] == 11
+    assert lines[("items", 0, "f")] == 13
+    assert lines[("items", 0, "sub", "g")] == 15
+    assert lines[("items", 1, "f")] == 17
+    assert ("not", "a", "table") not in lines
+    assert ("c",) not in lines
+
+
+def test_a_stranger_brakes_as_the_worst_of_all() -> None:
+    worst = DEFAULT.braking_of("betaflight")
+    assert worst.react_s == max(b.react_s for b in DEFAULT.braking.values())
+    assert worst.a_brake_h_m_s2 == min(b.a_brake_h_m_s2 for b in DEFAULT.braking.values())
+    assert DEFAULT.braking_of("px4") == DEFAULT.braking["px4"]
+
+
+def test_a_goal_at_the_margin_may_be_hovered_at_without_a_brake() -> None:
+    for braking in DEFAULT.braking.values():
+        assert braking.position_error_h_m <= DEFAULT.brake_slack_h_m <= DEFAULT.margin_h_m
+        assert braking.position_error_v_m <= DEFAULT.brake_slack_v_m <= DEFAULT.margin_v_m

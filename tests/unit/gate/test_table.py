@@ -1,0 +1,129 @@
+"""The table is literal, total, all of it is used, and its printed copy is true."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import gcs
+from gcs.cli.fsa import fsa
+from gcs.gate import render
+from gcs.gate.actions import ACTIONS
+from gcs.gate.events import REQUESTS, Event, event_of
+from gcs.gate.guards import CHECKS, GUARDS
+from gcs.gate.rules import COLUMNS, Answer, Branch, Check, Do, Guard
+from gcs.gate.table import ROWS, STREAMS, TABLE, Streams
+from gcs.gate.types import FlightMode, Land, SetMode, State, TakeControl
+from gcs.gate.words import ENDED, REFUSED
+
+GOLDEN = Path(__file__).parent / "golden"
+BRANCHES = [branch for cell in TABLE.values() for branch in cell]
+
+
+def test_every_state_and_event_has_its_cell() -> None:
+    assert set(TABLE) == {(state, event) for state in State for event in Event}
+    assert sorted(COLUMNS) == sorted(State)
+    assert set(ROWS) == set(Event)
+    assert set(STREAMS) == set(State)
+
+
+def test_the_last_branch_of_a_cell_has_no_condition_and_no_other_has_none() -> None:
+    for where, cell in TABLE.items():
+        if cell:
+            assert cell[-1].when == (), where
+            assert all(branch.when for branch in cell[:-1]), where
+
+
+def test_every_word_has_a_meaning_and_is_used() -> None:
+    assert set(GUARDS) == set(Guard) == {guard for b in BRANCHES for guard in b.when}
+    assert set(CHECKS) == set(Check) == {check for b in BRANCHES for check in b.needs}
+    assert set(ACTIONS) == set(Do) == {do for b in BRANCHES for do in b.do}
+
+
+@pytest.mark.parametrize("event", sorted(REQUESTS))
+def test_a_request_is_answered_by_every_branch_it_can_take(event: Event) -> None:
+    for state in State:
+        for branch in TABLE[state, event]:
+            answered = branch.answer is not Answer.NONE
+            assert answered != (branch.refuse is not None), (state, branch)
+
+
+def test_only_requests_are_answered() -> None:
+    for (_, event), cell in TABLE.items():
+        for branch in cell:
+            if event not in REQUESTS:
+                assert branch.answer is Answer.NONE
+                assert branch.refuse is None
+                assert branch.needs == ()
+
+
+def test_every_reason_in_the_table_has_its_sentence() -> None:
+    assert {b.refuse for b in BRANCHES if b.refuse is not None} == set(REFUSED)
+    codes = {b.ends.code for b in BRANCHES if b.ends is not None and b.ends.code is not None}
+    assert codes <= set(ENDED)
+
+
+def test_verifying_takes_nothing_but_the_verifiers_answer() -> None:
+    taken = {event for event in Event if TABLE[State.VERIFYING, event]}
+    assert taken == {Event.GOAL_CLEARED, Event.GOAL_REFUSED}
+
+
+def test_hold_land_and_abort_are_refused_by_no_branch_where_a_vehicle_is() -> None:
+    for state in set(State) - {State.NO_VEHICLE, State.VERIFYING}:
+        for event in (Event.HOLD, Event.LAND, Event.ABORT):
+            assert all(branch.refuse is None for branch in TABLE[state, event])
+
+
+def test_nothing_is_streamed_where_the_vehicle_flies_by_itself() -> None:
+    silent = {state for state, what in STREAMS.items() if what is Streams.NOTHING}
+    assert silent == {
+        State.NO_VEHICLE,
+        State.GROUNDED,
+        State.TAKING_OFF,
+        State.FLYING_MISSION,
+        State.RETURNING,
+        State.LANDING,
+        State.EXTERNAL,
+    }
+
+
+def test_a_mode_asked_for_by_name_is_the_request_it_means() -> None:
+    assert event_of(SetMode("OFFBOARD", FlightMode.GUIDED)) is event_of(TakeControl())
+    assert event_of(SetMode("AUTO.LAND", FlightMode.LAND)) is event_of(Land())
+    assert event_of(SetMode("ACRO", FlightMode.OTHER)) is Event.OTHER_MODE
+
+
+@pytest.mark.parametrize(
+    ("form", "printed"), [("text", render.text), ("dot", render.dot)], ids=["text", "dot"]
+)
+def test_the_printed_copy_is_the_table(form: str, printed: object) -> None:
+    """Where this fails and the change is meant: `gcs fsa --format F > tests/.../golden/fsa.F`."""
+    golden = (GOLDEN / f"fsa.{form}").read_text(encoding="utf-8")
+    result = CliRunner().invoke(fsa, ["--format", form])
+    assert result.exit_code == 0
+    assert result.output == golden
+
+
+def test_a_changed_cell_prints_differently() -> None:
+    changed = {**TABLE, (State.MOVING, Event.ABORT): (Branch(),)}
+    assert render.text(changed) != render.text()
+    assert "MOVING -> HOLDING" in render.dot(changed)
+
+
+def test_permits_are_issued_in_one_module_only() -> None:
+    package = Path(gcs.__file__).parent
+    users = set()
+    for path in package.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = {alias.name for alias in getattr(node, "names", []) if alias}
+            imported = isinstance(node, ast.ImportFrom) and node.module == "gcs.gate.permit"
+            if imported and names & {"issue", "_SEAL"}:
+                users.add(path.relative_to(package).as_posix())
+            if not isinstance(node, ast.Attribute) or node.attr != "issue":
+                continue
+            if isinstance(node.value, ast.Name) and node.value.id == "permit":
+                users.add(path.relative_to(package).as_posix())
+    assert users == {"gate/machine.py"}

@@ -1,0 +1,171 @@
+"""What lint says of a plan, with the item that it says it of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from gcs.plan.errors import Finding, Level
+from gcs.plan.lint import lint
+from gcs.plan.model import Geodetic, Personality
+from gcs.plan.reader import read
+from tests.unit.plan.samples import (
+    LOCAL,
+    box,
+    plan_document,
+    read_json,
+    read_text,
+    shared,
+    simple,
+    survey,
+    waypoint,
+)
+
+TAKEOFF = waypoint(1, 47.39775, 8.5456, 10, command=22)
+AWAY = waypoint(2, 47.39785, 8.5456, 10)
+
+
+def findings(*items: dict[str, Any], who: Personality = "px4") -> list[Finding]:
+    return lint(read_json(plan_document(*items)), who)
+
+
+def only(found: list[Finding]) -> Finding:
+    assert len(found) == 1, found
+    return found[0]
+
+
+def test_good_plans_are_clean() -> None:
+    assert lint(read_json(box()), "px4") == []
+    assert lint(read_json(survey()), "px4") == []
+    assert lint(read_text(LOCAL, name="a.toml"), "px4") == []
+
+
+@pytest.mark.parametrize(
+    ("jump", "words"),
+    [
+        ([3, 1], "itself"),
+        ([9, 1], "not there"),
+        ([0, 1], "before the start"),
+        ([2, -2], "repeat count"),
+        ([2, 1.5], "repeat count"),
+    ],
+)
+def test_bad_jumps(jump: list[float | None], words: str) -> None:
+    found = only(findings(TAKEOFF, AWAY, simple(3, 177, 2, [*jump, 0, 0, 0, 0, 0])))
+
+    assert (found.level, found.index, found.item) == (Level.ERROR, 2, "item 3 (DO_JUMP)")
+    assert words in found.what
+
+
+def test_a_loop_without_a_waypoint() -> None:
+    found = findings(
+        TAKEOFF,
+        AWAY,
+        simple(3, 178, 2, [1, 3, -1, 0, 0, 0, 0]),
+        simple(4, 177, 2, [3, 5, 0, 0, 0, 0, 0]),
+    )
+
+    assert "without a waypoint" in only(found).what
+
+
+def test_a_jump_for_ever_hides_what_follows() -> None:
+    last = waypoint(4, 47.39775, 8.5456, 0, command=21)
+    found = only(findings(TAKEOFF, AWAY, simple(3, 177, 2, [2, -1, 0, 0, 0, 0, 0]), last))
+
+    assert (found.level, "never flown" in found.what) == (Level.WARNING, True)
+
+
+@pytest.mark.parametrize(("who", "level"), [("px4", Level.ERROR), ("ardupilot", Level.WARNING)])
+def test_a_waypoint_at_0_0(who: Personality, level: Level) -> None:
+    document = plan_document(TAKEOFF, waypoint(2, 0, 0, 10))
+    document["mission"]["firmwareType"] = {"px4": 12, "ardupilot": 3}[who]
+
+    found = only(lint(read_json(document), who))
+
+    assert (found.level, found.index) == (level, 1)
+
+
+def test_a_landing_at_0_0_is_here() -> None:
+    assert findings(TAKEOFF, AWAY, waypoint(3, 0, 0, 0, command=21)) == []
+
+
+@pytest.mark.parametrize(
+    ("items", "level", "words"),
+    [
+        ([AWAY], Level.WARNING, "no take-off"),
+        ([TAKEOFF, waypoint(2, 47.39785, 8.5456, -3)], Level.WARNING, "3 m lower than home"),
+        ([TAKEOFF, waypoint(2, 47.39785, 8.5456, 600)], Level.WARNING, "600 m above home"),
+        ([TAKEOFF, waypoint(2, 47.39785, 8.5806, 10)], Level.WARNING, "2.6 km from item 1"),
+        ([TAKEOFF, waypoint(2, 8.5456, 47.39785, 10)], Level.ERROR, "km from item 1"),
+        ([TAKEOFF, simple(2, 16, 0, [0, 0, 0, 0, 47.3978, 8.5456, 100])], Level.ERROR, "388.0 m"),
+        ([TAKEOFF, simple(2, 16, 10, [0, 0, 0, 0, 47.3978, 8.5456, 9])], Level.WARNING, "terrain"),
+        ([TAKEOFF, simple(2, 30001, 2, [0] * 7)], Level.ERROR, "not known to fly"),
+        ([TAKEOFF, simple(2, 189, 2, [0] * 7)], Level.ERROR, "not known to fly"),
+        ([TAKEOFF, waypoint(2, 47.39785, 8.5456, 10, 82)], Level.WARNING, "curve"),
+        ([TAKEOFF, simple(2, 179, 2, [1, 0, 0, 0, 0, 0, 0])], Level.WARNING, "moves home"),
+        ([TAKEOFF, simple(2, 20, 2, [0] * 7), AWAY | {"doJumpId": 3}], Level.WARNING, "ends the"),
+    ],
+)
+def test_doubtful_items(items: list[dict[str, Any]], level: Level, words: str) -> None:
+    found = only(findings(*items))
+
+    assert found.level is level
+    assert words in found.what
+    assert found.where.startswith("mission.items[")
+
+
+def test_an_altitude_that_is_not_set() -> None:
+    document = box()
+    document["mission"]["items"][0]["params"][6] = None
+    plan = read_json(document)
+
+    assert only(lint(plan, "px4")).level is Level.WARNING
+    assert Level.ERROR in [found.level for found in lint(plan, "ardupilot")]
+
+
+def test_a_plan_for_the_other_autopilot_is_told() -> None:
+    assert "written for px4" in only(lint(read_json(box()), "ardupilot")).what
+
+
+def test_where_the_vehicle_stands_counts_more_than_the_planned_home() -> None:
+    document = plan_document(TAKEOFF, simple(2, 16, 0, [0, 0, 0, 0, 47.3978, 8.5456, 500]))
+    plan = read_json(document)
+
+    assert lint(plan, "px4") == []
+    assert "underground" in only(lint(plan, "px4", Geodetic(47.3977, 8.5456, 550.0))).what
+
+
+@pytest.mark.parametrize(
+    ("corners", "words"),
+    [
+        ([[0, 0], [1, 1], [1, 0], [0, 1]], "intersects itself"),
+        ([[0, 0], [1, 0], [1, 0], [0, 1]], "same point"),
+        ([[0, 0], [1, 0], [2, 0]], "lie on each other"),
+    ],
+)
+def test_a_fence_that_is_no_polygon(corners: list[list[float]], words: str) -> None:
+    document = box()
+    places = [[47.3977 + 1e-4 * north, 8.5456 + 1e-4 * east] for north, east in corners]
+    document["geoFence"]["polygons"] = [{"inclusion": True, "polygon": places, "version": 1}]
+
+    found = only(lint(read_json(document), "px4"))
+
+    assert (found.level, found.item) == (Level.ERROR, "fence zone 1")
+    assert found.where == "geoFence.polygons[0]"
+    assert words in found.what
+
+
+def test_the_real_file_that_is_underground_is_called_so() -> None:
+    path = shared("wpl", "mission_planner_sample.txt")
+
+    found = lint(read(path.name, path.read_bytes()), "px4", Geodetic(47.3977, 8.5456, 488.0))
+
+    underground = [finding.where for finding in found if "underground" in finding.what]
+    assert underground == ["2", "3", "4"]
+
+
+def test_without_a_home_amsl_heights_are_told_to_be_unchecked() -> None:
+    plan = read_text("QGC WPL 110\n0 1 0 22 0 0 0 0 47.3977 8.5456 500 1\n", "px4")
+
+    assert "home is not known" in only(lint(plan, "px4")).what

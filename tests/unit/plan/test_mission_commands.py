@@ -1,0 +1,165 @@
+"""`gcs mission check` and `show`: exit codes, and what they print."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from gcs.cli.exits import Exit
+from gcs.cli.main import run
+from tests.unit.plan.samples import LOCAL, box, plan_document, shared, simple, waypoint
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "box.plan"
+    path.write_text(json.dumps(box()))
+    return path
+
+
+def write(path: Path, document: dict[str, Any]) -> str:
+    path.write_text(json.dumps(document))
+    return str(path)
+
+
+def test_a_good_mission_is_cleared_leg_by_leg(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["mission", "check", str(file)]) == Exit.DONE
+
+    out = capsys.readouterr().out
+    assert "clear    item 2 (NAV_WAYPOINT): leg to E +0.00 N +11.12 U +10.00" in out
+    assert "verdict: may be flown" in out
+
+
+def test_a_mission_outside_the_fence_is_refused_with_distance_and_zone(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = box()
+    document["mission"]["items"][1]["params"][4] = 47.3997420
+    write(file, document)
+
+    assert run(["mission", "check", str(file)]) == Exit.REFUSED_BY_GATE
+
+    out = capsys.readouterr().out
+    assert "refused  item 2 (NAV_WAYPOINT)" in out
+    assert "72.4 m outside inclusion circle 'home'" in out
+
+
+def test_the_fence_of_the_file_counts_too(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    document = box()
+    circle = {"center": [47.3978, 8.545594], "radius": 3.0}
+    document["geoFence"]["circles"] = [{"inclusion": False, "circle": circle, "version": 1}]
+    write(file, document)
+
+    assert run(["mission", "check", str(file), "--json"]) == Exit.REFUSED_BY_GATE
+
+    legs = json.loads(capsys.readouterr().out)["legs"]
+    refused = [(leg["item"], leg["code"]) for leg in legs if not leg["cleared"]]
+    assert (2, "TOO_CLOSE") in refused
+
+
+def test_home_moves_the_fence(file: Path) -> None:
+    far = ["--home", "47.4010,8.5456,488"]
+
+    assert run(["mission", "check", str(file), *far]) == Exit.REFUSED_BY_GATE
+
+
+def test_what_cannot_be_known_is_refused(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    terrain = simple(2, 16, 10, [0, 0, 0, None, 47.3978, 8.5456, 10])
+    path = write(file, plan_document(waypoint(1, 47.397742, 8.545594, 10, 22), terrain))
+
+    assert run(["mission", "check", path]) == Exit.REFUSED_BY_GATE
+    assert "heights above terrain" in capsys.readouterr().out
+
+
+def test_an_own_failsafe_return_through_the_ceiling_is_warned_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a.toml").write_text(LOCAL.partition("[[fence.exclude]]")[0])
+
+    assert run(["mission", "check", str(tmp_path / "a.toml")]) == Exit.DONE
+    assert "failsafe return cannot be gated" in capsys.readouterr().out
+
+
+def test_an_error_of_lint_is_a_bad_file(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write(file, plan_document(simple(1, 177, 2, [1, 1, 0, 0, 0, 0, 0])))
+
+    assert run(["mission", "check", path]) == Exit.BAD_FILE
+    assert "mission.items[0]: item 1 (DO_JUMP): jumps to itself" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["check", "show"])
+def test_a_file_that_cannot_be_read_says_where_and_hints(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(LOCAL.replace("hold_s", "holds_s"))
+
+    assert run(["mission", command, str(path)]) == Exit.BAD_FILE
+
+    error = capsys.readouterr().err
+    assert f"{path}:10: waypoint[1].holds_s: " in error
+    assert "hint: did you mean hold_s?" in error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["nowhere.plan"], Exit.BAD_FILE),
+        (["demo", "--policy", "nowhere.toml"], Exit.BAD_FILE),
+        (["demo", "--home", "1,2"], Exit.USAGE),
+        (["demo", "--home", "100,2,3"], Exit.USAGE),
+        (["demo", "--autopilot", "other"], Exit.USAGE),
+        (["."], Exit.BAD_FILE),
+    ],
+)
+def test_wrong_arguments(arguments: list[str], code: Exit) -> None:
+    assert run(["mission", "check", *arguments]) == code
+
+
+def test_a_policy_of_ones_own_with_a_fence_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = box()
+    circle = {"center": [47.397742, 8.545594], "radius": 5.0}
+    document["geoFence"]["circles"] = [{"inclusion": True, "circle": circle, "version": 1}]
+    write(tmp_path / "yard.plan", document)
+    policy = tmp_path / "policy.toml"
+    policy.write_text('[[fence]]\nkind = "file"\npath = "yard.plan"\n')
+    mission = write(tmp_path / "box.plan", box())
+
+    code = run(["mission", "check", mission, "--policy", str(policy)])
+
+    assert code == Exit.REFUSED_BY_GATE
+    assert "inclusion circle" in capsys.readouterr().out
+
+
+def test_show_prints_every_item_and_the_notes(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["mission", "show", str(file)]) == Exit.DONE
+
+    out = capsys.readouterr().out
+    for word in ("NAV_TAKEOFF", "NAV_LAND", "above", "planned home: 47.3977420, 8.5455940, 488 m"):
+        assert word in out
+
+
+def test_show_prints_json_without_nan(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["mission", "show", str(file), "--json"]) == Exit.DONE
+
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["items"][1]["params"] == [0, 0, 0, None]
+    assert shown["items"][1]["place"] == {"lat_deg": 47.397842, "lon_deg": 8.545594, "alt_m": 10}
+
+
+def test_a_real_mission_keeps_to_a_real_fence(capsys: pytest.CaptureFixture[str]) -> None:
+    box_file = shared("plans", "MC_mission_box.plan")
+    avoid = shared("plans", "multicopter_mission_geofence_avoid.plan")
+
+    assert run(["mission", "check", str(box_file)]) == Exit.DONE
+    assert run(["mission", "check", str(avoid)]) == Exit.REFUSED_BY_GATE
+    assert "outside inclusion circle 'home'" in capsys.readouterr().out

@@ -1,0 +1,205 @@
+"""The geometric path of a plan, in local NED metres."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from gcs.frames import Vec3
+from gcs.gate.projection import Origin, Projection
+from gcs.plan.model import Frame, Geographic, Item, Local, Personality, Plan
+from gcs.plan.path import FlightPath, Ground, LegKind, ProblemKind, flight_path
+
+ORIGIN = Origin(47.397742, 8.545594, 488.0)
+PROJECTION = Projection(ORIGIN, "px4")
+GROUND = Ground(
+    "px4",
+    home_ned=(0.0, 0.0, 0.0),
+    start_ned=(0.0, 0.0, 0.0),
+    north_east_of=PROJECTION.north_east,
+    origin_alt_amsl_m=488.0,
+    return_up_m=30.0,
+)
+NOTHING = (0.0, 0.0, 0.0, 0.0)
+
+
+def at(
+    north: float, east: float, up: float, command: int = 16, p: tuple[float, ...] = NOTHING
+) -> Item:
+    place = Local(north, east, up)
+    return Item(command, Frame.LOCAL, (p[0], p[1], p[2], p[3]), place, 0)
+
+
+def jump(to: int, repeats: float = 1.0) -> Item:
+    return replace(at(0, 0, 0), command=177, frame=Frame.MISSION, params=(to, repeats, 0.0, 0.0))
+
+
+def path(*items: Item, ground: Ground = GROUND) -> FlightPath:
+    numbered = tuple(replace(item, do_jump_id=i) for i, item in enumerate(items, start=1))
+    return flight_path(Plan("a", None, None, numbered), ground)
+
+
+def legs(flown: FlightPath) -> list[tuple[int, str, Vec3]]:
+    return [(leg.item, leg.kind.name, leg.to_ned) for leg in flown.legs]
+
+
+def test_take_off_waypoints_and_landing() -> None:
+    flown = path(at(0, 0, 5, 22), at(10, 0, 5), at(10, 10, 8), at(0, 0, 0, 21))
+
+    assert legs(flown) == [
+        (0, "CLIMB", (0, 0, -5)),
+        (1, "STRAIGHT", (10, 0, -5)),
+        (2, "STRAIGHT", (10, 10, -8)),
+        (3, "STRAIGHT", (0, 0, -8)),
+        (3, "DESCENT", (0, 0, 0)),
+    ]
+    assert flown.floor_free == {0, 4}
+    assert flown.problems == ()
+    assert flown.item_of(4) == 3
+
+
+def test_px4_flies_from_its_climb_to_the_take_off_position_and_ardupilot_does_not() -> None:
+    items = (at(4, 0, 5, 22), at(10, 0, 5))
+
+    px4, ardupilot = path(*items), path(*items, ground=replace(GROUND, personality="ardupilot"))
+
+    assert [leg.to_ned for leg in px4.legs] == [(0, 0, -5), (4, 0, -5), (10, 0, -5)]
+    assert [leg.to_ned for leg in ardupilot.legs] == [(0, 0, -5), (10, 0, -5)]
+
+
+def test_a_take_off_in_the_air_does_not_descend() -> None:
+    flown = path(at(0, 0, 5, 22), ground=replace(GROUND, start_ned=(0.0, 0.0, -9.0)))
+
+    assert flown.legs == ()
+
+
+def test_heights_count_from_their_own_datum() -> None:
+    lat, lon = PROJECTION.lat_lon(10.0, 0.0)
+    relative = Item(16, Frame.HOME, NOTHING, Geographic(lat, lon, 7.0), 1)
+    amsl = Item(16, Frame.AMSL, NOTHING, Geographic(lat, lon, 500.0), 2)
+    high_home = replace(GROUND, home_ned=(0.0, 0.0, -2.0))
+
+    flown = flight_path(Plan("a", None, None, (relative, amsl)), high_home)
+
+    assert [round(leg.to_ned[2], 6) for leg in flown.legs] == [-9.0, -12.0]
+
+
+@pytest.mark.parametrize(("up", "return_down"), [(5.0, -30.0), (40.0, -40.0)])
+def test_a_return_climbs_to_its_height_or_stays_above_it(up: float, return_down: float) -> None:
+    flown = path(at(0, 0, up, 22), at(20, 0, up), replace(at(0, 0, 0), command=20))
+
+    home_legs = [leg for leg in flown.legs if leg.item == 2]
+    assert home_legs[-2].to_ned == pytest.approx((0, 0, return_down))
+    assert home_legs[-2].kind is LegKind.RETURN
+    assert home_legs[-1].to_ned == pytest.approx((0, 0, 0))
+
+
+def test_what_follows_a_return_is_not_flown() -> None:
+    flown = path(at(0, 0, 5, 22), replace(at(0, 0, 0), command=20), at(500, 0, 5))
+
+    assert {leg.item for leg in flown.legs} == {0, 1}
+
+
+def test_a_jump_adds_the_leg_that_only_it_flies() -> None:
+    flown = path(at(0, 0, 5, 22), at(10, 0, 5), at(10, 10, 5), jump(2), at(0, 10, 5))
+
+    assert ((10, 10, -5), (10, 0, -5)) in flown.segments
+    assert ((10, 10, -5), (0, 10, -5)) in flown.segments
+    assert len(flown.segments) == len(set(flown.segments)) == 5
+
+
+def test_a_jump_that_never_jumps_adds_nothing() -> None:
+    flown = path(at(0, 0, 5, 22), at(10, 0, 5), at(10, 10, 5), jump(2, repeats=0.0))
+
+    assert len(flown.legs) == 3
+
+
+def test_a_jump_forward_shows_both_ways() -> None:
+    flown = path(at(0, 0, 5, 22), jump(4), at(10, 0, 5), at(0, 10, 5))
+
+    assert ((0, 0, -5), (0, 10, -5)) in flown.segments
+    assert ((0, 0, -5), (10, 0, -5)) in flown.segments
+
+
+def test_a_jump_loop_without_a_waypoint_ends() -> None:
+    assert path(at(0, 0, 5, 22), jump(3), jump(2)).problems == ()
+
+
+def test_a_circle_is_entered_at_its_nearest_point_and_left_there_after_whole_turns() -> None:
+    flown = path(at(0, 0, 5, 22), at(20, 0, 5, 18, (2.0, 0.0, 6.0, 0.0)), at(20, 30, 5))
+
+    assert flown.discs == (((20.0, 0.0, -5.0), 6.0),)
+    assert flown.segments[1][1] == pytest.approx((14, 0, -5))
+    assert flown.segments[2][0] == pytest.approx((14, 0, -5))
+    assert flown.item_of(len(flown.legs)) == 1
+
+
+@pytest.mark.parametrize(("radius", "east"), [(6.0, -6.0), (-6.0, 6.0)])
+def test_a_quarter_turn_leaves_the_circle_on_the_side_it_turns_to(
+    radius: float, east: float
+) -> None:
+    flown = path(at(0, 0, 5, 22), at(20, 0, 5, 18, (0.25, 0.0, radius, 0.0)), at(20, 0, 9))
+
+    assert flown.segments[2][0] == pytest.approx((20, east, -5))
+
+
+def test_turns_without_end_through_a_jump_are_given_up_and_said() -> None:
+    flown = path(at(0, 0, 5, 22), at(20, 0, 5, 18, (0.123, 0.0, 6.0, 0.0)), jump(2, -1.0))
+
+    assert [problem.kind for problem in flown.problems] == [ProblemKind.TOO_MANY_WAYS]
+
+
+def geographic(frame: Frame, place: Geographic, command: int = 16) -> Item:
+    return Item(command, frame, NOTHING, place, 1)
+
+
+@pytest.mark.parametrize(
+    ("item", "ground", "kind"),
+    [
+        (geographic(Frame.TERRAIN, Geographic(47.4, 8.5, 5.0)), GROUND, ProblemKind.TERRAIN),
+        (
+            geographic(Frame.HOME, Geographic(47.4, 8.5, 5.0)),
+            replace(GROUND, north_east_of=None),
+            ProblemKind.NO_ORIGIN,
+        ),
+        (
+            geographic(Frame.AMSL, Geographic(47.4, 8.5, 500.0)),
+            replace(GROUND, origin_alt_amsl_m=None),
+            ProblemKind.NO_ORIGIN,
+        ),
+        (geographic(Frame.HOME, Geographic(0.0, 0.0, 5.0)), GROUND, ProblemKind.NO_POSITION),
+        (geographic(Frame.HOME, Geographic(47.4, 8.5, math.nan)), GROUND, ProblemKind.NO_HEIGHT),
+        (at(1, 0, 5, 82), GROUND, ProblemKind.SPLINE),
+        (at(1, 0, 5, 18), GROUND, ProblemKind.NO_RADIUS),
+        (at(1, 0, 5, 30001), GROUND, ProblemKind.NOT_FLOWN),
+        (at(1, 0, 5, 5001), GROUND, ProblemKind.NOT_FLOWN),
+        (at(1, 0, 5, 179), GROUND, ProblemKind.HOME_MOVES),
+        (jump(9), GROUND, ProblemKind.JUMP_NOWHERE),
+        (at(1, 0, 5, 20), replace(GROUND, return_up_m=None), ProblemKind.NO_RETURN_HEIGHT),
+    ],
+)
+def test_what_cannot_be_known_is_a_problem(item: Item, ground: Ground, kind: ProblemKind) -> None:
+    flown = path(item, ground=ground)
+
+    assert [(problem.item, problem.kind) for problem in flown.problems] == [(0, kind)]
+    assert "item 1" in flown.problems[0].sentence
+
+
+def test_without_an_origin_a_plan_in_metres_still_has_a_path() -> None:
+    ground = replace(GROUND, north_east_of=None, origin_alt_amsl_m=None)
+
+    assert path(at(0, 0, 5, 22), at(3, 0, 5), ground=ground).problems == ()
+
+
+@pytest.mark.parametrize(("personality", "down"), [("px4", 0.0), ("ardupilot", -5.0)])
+def test_a_height_of_0_is_the_present_one_for_ardupilot(
+    personality: Personality, down: float
+) -> None:
+    lat, lon = PROJECTION.lat_lon(10.0, 0.0)
+    level = geographic(Frame.HOME, Geographic(lat, lon, 0.0))
+
+    flown = path(at(0, 0, 5, 22), level, ground=replace(GROUND, personality=personality))
+
+    assert flown.legs[-1].to_ned[2] == down

@@ -1,0 +1,147 @@
+"""Mission items on the wire, for either personality, and what a vehicle gives back of them."""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+
+import pytest
+
+from gcs.plan.compare import same_meaning
+from gcs.plan.errors import PlanError
+from gcs.plan.model import Geodetic, Personality, Plan
+from gcs.plan.reader import read
+from gcs.plan.wire import WireItem, from_wire, to_wire
+from tests.unit.plan.samples import box, plan_document, read_json, simple, survey, waypoint
+
+
+def jumping() -> Plan:
+    """Ids that are not positions: the jump goes to the item with id 7, the second."""
+    return read_json(
+        plan_document(
+            waypoint(5, 47.39775, 8.5456, 10, command=22),
+            waypoint(7, 47.39785, 8.5456, 10),
+            simple(9, 177, 2, [7, 2, 0, 0, 0, 0, 0]),
+        )
+    )
+
+
+def test_px4_counts_from_the_first_item_and_keeps_nan() -> None:
+    first, second, *_ = to_wire(read_json(box()), "px4")
+
+    assert (first.seq, first.command, first.current) == (0, 22, 1)
+    assert (second.frame, second.x, second.y, second.z) == (6, 473978420, 85455940, 10.0)
+    assert math.isnan(second.param4)
+
+
+def test_ardupilot_has_home_at_index_0_and_gets_no_nan() -> None:
+    items = to_wire(read_json(box()), "ardupilot")
+
+    assert len(items) == 5
+    assert (items[0].seq, items[0].command, items[0].frame) == (0, 16, 5)
+    assert (items[0].x, items[0].y, items[0].z) == (473977420, 85455940, 488.0)
+    assert items[1].command == 22
+    assert not any(math.isnan(item.param4) for item in items)
+
+
+@pytest.mark.parametrize(("personality", "seq"), [("px4", 1.0), ("ardupilot", 2.0)])
+def test_a_jump_names_the_seq_of_its_target(personality: Personality, seq: float) -> None:
+    items = to_wire(jumping(), personality)
+
+    assert items[-1].param1 == seq
+    assert from_wire(items, personality).items[-1].params[0] == 2.0
+
+
+def test_a_jump_to_nowhere_does_not_leave() -> None:
+    plan = read_json(plan_document(simple(1, 177, 2, [9, 1, 0, 0, 0, 0, 0])))
+
+    with pytest.raises(PlanError, match="no item"):
+        to_wire(plan, "px4")
+
+
+def test_a_height_that_is_not_set_goes_to_px4_alone() -> None:
+    document = box()
+    document["mission"]["items"][0]["params"][6] = None
+    plan = read_json(document)
+
+    assert math.isnan(to_wire(plan, "px4")[0].z)
+    with pytest.raises(PlanError, match="altitude"):
+        to_wire(plan, "ardupilot")
+
+
+def test_an_empty_plan_is_no_item_not_even_home() -> None:
+    assert to_wire(Plan("a", "ardupilot", Geodetic(1.0, 1.0, 1.0)), "ardupilot") == ()
+
+
+def test_items_out_of_order_are_no_plan() -> None:
+    items = to_wire(read_json(box()), "px4")
+
+    with pytest.raises(PlanError, match="expected 1"):
+        from_wire((items[0], items[2]), "px4")
+
+
+def as_ardupilot_keeps(item: WireItem) -> WireItem:
+    """What an ArduCopter gives back of an item, as seen on one."""
+    frame = {6: 3, 5: 0, 2: 0}[item.frame]
+    one = struct.unpack("<f", struct.pack("<f", item.param1))[0]
+    unused = 0.0 if item.param3 == -1.0 else item.param3
+    if item.seq == 0:
+        return item._replace(frame=0, x=-353632621, y=1491652374, z=584.1)
+    return item._replace(frame=frame, param1=one, param3=unused, z=round(item.z, 2))
+
+
+def test_what_ardupilot_gives_back_means_the_same() -> None:
+    document = survey()
+    document["mission"]["items"].insert(1, simple(9, 178, 2, [1, 4.1, -1, 0, 0, 0, 0]))
+    document["mission"]["items"][0]["params"][6] = 10.004
+    sent = to_wire(read_json(document), "ardupilot")
+
+    received = [as_ardupilot_keeps(item) for item in sent]
+
+    assert list(sent) != received
+    assert same_meaning(sent, received, "ardupilot") == []
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"command": 21}, "command"),
+        ({"frame": 5}, "frame"),
+        ({"x": 473978423}, "latitude"),
+        ({"y": 0}, "longitude"),
+        ({"z": 10.5}, "altitude"),
+        ({"z": math.nan}, "altitude"),
+        ({"param1": 3.0}, "param1"),
+        ({"param4": 1.0}, "param4"),
+        ({"autocontinue": 0}, "autocontinue"),
+    ],
+)
+def test_what_would_be_flown_otherwise_is_a_difference(
+    change: dict[str, float], field: str
+) -> None:
+    sent = list(to_wire(read_json(box()), "px4"))
+    received = list(sent)
+    received[1] = received[1]._replace(**change)  # type: ignore[arg-type]  # fields of one row
+
+    differences = same_meaning(sent, received, "px4")
+
+    assert [(difference.seq, difference.field) for difference in differences] == [(1, field)]
+    assert str(differences[0]).startswith("item 1: " + field)
+
+
+def test_a_missing_item_is_a_difference() -> None:
+    sent = to_wire(read_json(box()), "px4")
+
+    differences = same_meaning(sent, sent[:-1], "px4")
+
+    assert [(d.field, d.sent, d.received) for d in differences] == [("items", "4", "3")]
+
+
+def test_reading_what_was_written_from_the_wire_is_the_same_plan() -> None:
+    plan = read_json(box())
+
+    again = from_wire(to_wire(plan, "px4"), "px4")
+
+    assert again.items == plan.items
+    assert read("a.plan", json.dumps(box()).encode()).items == again.items

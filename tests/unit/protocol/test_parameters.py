@@ -1,0 +1,233 @@
+"""The parameter protocol, asking side: what values mean, and how a read or a change ends."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gcs.protocol.autopilot import ParamEncoding
+from gcs.protocol.effects import (
+    Address,
+    Heard,
+    ParamAbsent,
+    ParamRead,
+    ParamRefused,
+    ParamsDone,
+    ParamStored,
+    Send,
+    Wake,
+)
+from gcs.protocol.parameters import (
+    READ_TRIES,
+    READ_WAIT_NS,
+    SET_TRIES,
+    SET_WAIT_NS,
+    ParamReader,
+    ParamSetter,
+    decode_value,
+    encode_value,
+)
+from gcs.wire.ids import ParamError, ParamType
+from gcs.wire.messages import Message, ParamRequestRead, ParamSet, ParamValue
+from gcs.wire.messages import ParamError as ParamErrorMessage
+
+OWN = Address(255, 190)
+VEHICLE = Address(1, 1)
+BYTEWISE, CAST = ParamEncoding.BYTEWISE, ParamEncoding.CAST
+
+
+def value(name: str, wire: float, type_: ParamType, index: int = 0) -> ParamValue:
+    return ParamValue(
+        param_value=wire, param_count=872, param_index=index, param_id=name, param_type=type_
+    )
+
+
+def error(name: str, why: ParamError, to: Address = OWN) -> ParamErrorMessage:
+    return ParamErrorMessage(
+        param_index=-1,
+        target_system=to.sysid,
+        target_component=to.compid,
+        param_id=name,
+        error=why,
+    )
+
+
+def from_vehicle(message: Message) -> Heard:
+    return Heard(1, 1, message)
+
+
+def ask(name: str) -> Send:
+    return Send(
+        ParamRequestRead(param_index=-1, target_system=1, target_component=1, param_id=name)
+    )
+
+
+# ------------------------------------------------------------------------------- values
+
+
+def test_px4_puts_an_integers_bytes_into_the_float() -> None:
+    (wire,) = struct.unpack("<f", struct.pack("<i", 2))
+    assert decode_value(wire, ParamType.INT32, BYTEWISE) == 2
+    assert decode_value(wire, ParamType.INT32, CAST) == 0
+
+
+def test_ardupilot_casts() -> None:
+    assert decode_value(1500.0, ParamType.INT16, CAST) == 1500
+    assert isinstance(decode_value(1500.0, ParamType.INT16, CAST), int)
+    assert decode_value(0.25, ParamType.REAL32, CAST) == 0.25
+
+
+SIZES = {
+    ParamType.UINT8: (0, 2**8 - 1),
+    ParamType.INT8: (-(2**7), 2**7 - 1),
+    ParamType.UINT16: (0, 2**16 - 1),
+    ParamType.INT16: (-(2**15), 2**15 - 1),
+    ParamType.UINT32: (0, 2**31 - 2**23),
+    ParamType.INT32: (-(2**22), 2**31 - 2**23 - 1),
+}
+
+
+@given(st.data(), st.sampled_from(sorted(SIZES)))
+def test_integers_survive_bytewise(data: st.DataObject, type_: ParamType) -> None:
+    number = data.draw(st.integers(*SIZES[type_]))
+    wire = encode_value(number, type_, BYTEWISE)
+    over_the_wire: float = struct.unpack("<f", struct.pack("<f", wire))[0]
+    assert decode_value(over_the_wire, type_, BYTEWISE) == number
+
+
+@pytest.mark.parametrize(
+    ("number", "type_"), [(256, ParamType.UINT8), (-1, ParamType.UINT32), (1.5, ParamType.INT32)]
+)
+@pytest.mark.parametrize("encoding", ParamEncoding)
+def test_what_a_type_cannot_hold_is_refused(
+    number: float, type_: ParamType, encoding: ParamEncoding
+) -> None:
+    with pytest.raises(ValueError, match=r"fit|whole"):
+        encode_value(number, type_, encoding)
+
+
+# -------------------------------------------------------------------------------- reads
+
+
+def test_names_are_read_one_by_one() -> None:
+    reader = ParamReader(OWN, VEHICLE, CAST, ("RTL_ALT", "FS_GCS_ENABLE"))
+    assert reader.start(0) == [ask("RTL_ALT")]
+    first = reader.handle(from_vehicle(value("RTL_ALT", 1500.0, ParamType.INT32)), 5)
+    assert first == [ParamRead("RTL_ALT", 1500, ParamType.INT32), ask("FS_GCS_ENABLE")]
+    second = reader.handle(from_vehicle(value("FS_GCS_ENABLE", 1.0, ParamType.INT8)), 9)
+    assert second == [ParamRead("FS_GCS_ENABLE", 1, ParamType.INT8), ParamsDone()]
+    assert reader.ended
+    assert reader.deadline_ns is None
+
+
+def test_no_names_are_read_at_once() -> None:
+    assert ParamReader(OWN, VEHICLE, CAST, ()).start(0) == [ParamsDone()]
+
+
+def test_a_lost_request_is_sent_again_and_silence_means_absent() -> None:
+    reader = ParamReader(OWN, VEHICLE, CAST, ("NO_SUCH", "RTL_ALT"))
+    effects = reader.start(0)
+    for n in range(1, READ_TRIES + 1):
+        assert reader.handle(Wake(), n * READ_WAIT_NS - 1) == []
+        effects += reader.handle(Wake(), n * READ_WAIT_NS)
+    asked = [ask("NO_SUCH")] * READ_TRIES
+    assert effects == [*asked, ParamAbsent("NO_SUCH", None), ask("RTL_ALT")]
+
+
+def test_an_error_means_absent_at_once() -> None:
+    reader = ParamReader(OWN, VEHICLE, CAST, ("NO_SUCH",))
+    reader.start(0)
+    to_others = error("NO_SUCH", ParamError.DOES_NOT_EXIST, Address(254, 1))
+    assert reader.handle(from_vehicle(to_others), 1) == []
+    assert reader.handle(from_vehicle(error("NO_SUCH", ParamError.DOES_NOT_EXIST)), 1) == [
+        ParamAbsent("NO_SUCH", ParamError.DOES_NOT_EXIST),
+        ParamsDone(),
+    ]
+
+
+def test_values_of_other_names_and_other_vehicles_are_not_the_answer() -> None:
+    reader = ParamReader(OWN, VEHICLE, CAST, ("RTL_ALT",))
+    reader.start(0)
+    other = value("WPNAV_SPEED", 500.0, ParamType.REAL32)
+    assert reader.handle(from_vehicle(other), 1) == []
+    assert reader.handle(Heard(2, 1, value("RTL_ALT", 1.0, ParamType.INT32)), 1) == []
+
+
+def test_after_the_end_nothing_is_heard() -> None:
+    reader = ParamReader(OWN, VEHICLE, CAST, ("A",))
+    reader.start(0)
+    reader.handle(from_vehicle(value("A", 1.0, ParamType.INT8)), 1)
+    assert reader.handle(from_vehicle(value("A", 1.0, ParamType.INT8)), 2) == []
+    assert reader.handle(Wake(), 10**12) == []
+
+
+def test_a_type_that_does_not_exist_is_a_float() -> None:
+    reader = ParamReader(OWN, VEHICLE, CAST, ("A",))
+    reader.start(0)
+    odd = ParamValue(param_value=2.5, param_count=1, param_index=0, param_id="A", param_type=99)
+    assert reader.handle(from_vehicle(odd), 1)[0] == ParamRead("A", 2.5, ParamType.REAL32)
+
+
+# ------------------------------------------------------------------------------ changes
+
+
+def setter(number: float, encoding: ParamEncoding = CAST, check: bool = True) -> ParamSetter:
+    return ParamSetter(OWN, VEHICLE, encoding, "RTL_ALT", number, ParamType.INT32, check)
+
+
+def test_a_change_ends_with_the_vehicles_echo() -> None:
+    change = setter(2000)
+    (sent,) = change.start(0)
+    assert isinstance(sent, Send)
+    assert isinstance(sent.message, ParamSet)
+    assert sent.message.param_value == 2000.0
+    # ArduPilot echoes with the index 65535.
+    echo = value("RTL_ALT", 2000.0, ParamType.INT32, index=65_535)
+    assert change.handle(from_vehicle(echo), 1) == [ParamStored("RTL_ALT", 2000)]
+    assert change.ended
+
+
+def test_an_echo_of_the_old_value_is_a_refusal() -> None:
+    change = setter(2000)
+    change.start(0)
+    echo = value("RTL_ALT", 1500.0, ParamType.INT32)
+    (refused,) = change.handle(from_vehicle(echo), 1)
+    assert isinstance(refused, ParamRefused)
+    assert refused.kept == 1500
+
+
+def test_without_the_check_any_echo_will_do() -> None:
+    change = setter(2000, check=False)
+    change.start(0)
+    echo = value("RTL_ALT", 1500.0, ParamType.INT32)
+    assert change.handle(from_vehicle(echo), 1) == [ParamStored("RTL_ALT", 1500)]
+
+
+def test_a_float_is_equal_to_its_float32() -> None:
+    change = ParamSetter(OWN, VEHICLE, BYTEWISE, "MPC_XY_P", 0.95, ParamType.REAL32)
+    change.start(0)
+    rounded: float = struct.unpack("<f", struct.pack("<f", 0.95))[0]
+    echo = value("MPC_XY_P", rounded, ParamType.REAL32)
+    assert change.handle(from_vehicle(echo), 1) == [ParamStored("MPC_XY_P", rounded)]
+
+
+def test_an_error_and_silence_are_refusals() -> None:
+    told = setter(2000)
+    told.start(0)
+    read_only = from_vehicle(error("RTL_ALT", ParamError.READ_ONLY))
+    expected = ParamRefused("RTL_ALT", None, "the vehicle answered READ_ONLY")
+    assert told.handle(read_only, 1) == [expected]
+    silent = setter(2000)
+    effects = silent.start(0)
+    for n in range(1, SET_TRIES + 1):
+        effects += silent.handle(Wake(), n * SET_WAIT_NS)
+    assert len([effect for effect in effects if isinstance(effect, Send)]) == SET_TRIES
+    assert effects[-1] == ParamRefused("RTL_ALT", None, "the vehicle did not answer")
+
+
+def test_a_name_that_is_too_long_is_refused() -> None:
+    with pytest.raises(ValueError, match="longer"):
+        ParamSetter(OWN, VEHICLE, CAST, "SEVENTEEN_LETTERS", 1, ParamType.INT8)

@@ -1,0 +1,39 @@
+"""Loss, counted from gaps in sequence numbers."""
+
+from __future__ import annotations
+
+import pytest
+
+from gcs.protocol.sequence import SequenceTracker
+
+
+@pytest.mark.parametrize(
+    ("seqs", "lost"),
+    [
+        ([5], 0),
+        ([5, 6, 7], 0),
+        ([254, 255, 0, 1], 0),
+        ([5, 8], 2),
+        ([250, 3], 8),
+        ([5, 5, 6], 0),
+        ([5, 7, 6, 8], 0),
+        ([5, 9, 6, 10], 2),
+    ],
+)
+def test_gaps_are_losses_and_latecomers_are_not(seqs: list[int], lost: int) -> None:
+    tracker = SequenceTracker()
+    for seq in seqs:
+        tracker.seen(1, 1, seq)
+    assert tracker.lost == lost
+    assert tracker.received == len(seqs)
+
+
+def test_senders_do_not_disturb_each_other() -> None:
+    tracker = SequenceTracker()
+    assert tracker.seen(1, 1, 10) == 0
+    assert tracker.seen(1, 100, 200) == 0
+    assert tracker.seen(2, 1, 0) == 0
+    assert tracker.seen(1, 1, 12) == 1
+    assert tracker.seen(1, 100, 201) == 0
+    assert tracker.senders[1, 1].lost == 1
+    assert tracker.lost == 1

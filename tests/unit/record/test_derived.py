@@ -1,0 +1,375 @@
+"""What a viewer sees: frames, trail, fence, states, decisions, at modest rates."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+
+from gcs.frames import Vec3, enu_from_ned
+from gcs.record.items import (
+    DecisionItem,
+    FenceItem,
+    FsaItem,
+    GeodeticItem,
+    InputItem,
+    LogItem,
+    MissionItem,
+    PoseItem,
+    Quat,
+    RecordItem,
+    SetpointItem,
+    StatusItem,
+)
+from gcs.record.pictures import PATH_POINTS, Trail
+from gcs.record.readings import euler_deg
+from gcs.record.topics import Grid
+from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
+
+UPRIGHT: Quat = (1.0, 0.0, 0.0, 0.0)
+
+
+def pose(pos_ned: Vec3, sysid: int = 1, q: Quat = UPRIGHT) -> PoseItem:
+    return PoseItem(sysid, pos_ned, (0.0, 0.0, 0.0), q)
+
+
+def fsa(state: str, number: int = 1) -> FsaItem:
+    return FsaItem(1, number, state, "", "event", "ours", "nominal", None)
+
+
+def pictures(path: Path, topic: str) -> list[Any]:
+    """The decoded protobuf messages of a topic."""
+    with open(path, "rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        return [decoded for *_, decoded in reader.iter_decoded_messages(topics=[topic])]
+
+
+def readings(path: Path, topic: str) -> list[Any]:
+    """The JSON messages of a topic; NaN and infinity are an error, as in a viewer."""
+
+    def refuse(word: str) -> None:
+        raise ValueError(f"{word} is no JSON")
+
+    found = [message for message in messages_of(path) if message.topic == topic]
+    return [json.loads(message.data, parse_constant=refuse) for message in found]
+
+
+def turned(q: Any, v: Vec3) -> Vec3:
+    """The vector `v` rotated by the quaternion `q` (Rodrigues)."""
+    x, y, z, w = q.x, q.y, q.z, q.w
+    vx, vy, vz = v
+    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
+    return (
+        vx + w * tx + y * tz - z * ty,
+        vy + w * ty + z * tx - x * tz,
+        vz + w * tz + x * ty - y * tx,
+    )
+
+
+def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None:
+    path = record(tmp_path, a_flight())
+    with open(path, "rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        summary = reader.get_summary()
+    assert summary is not None
+    schemas = {
+        channel.topic: summary.schemas[channel.schema_id].name
+        for channel in summary.channels.values()
+    }
+    assert schemas == {
+        "/mavlink/1/1/LOCAL_POSITION_NED": "mavlink/LOCAL_POSITION_NED",
+        "/link/0/garbage": "mavlink/Garbage",
+        "/session/input": "session.Input",
+        "/gate/decision": "gate.Decision",
+        "/geofence": "foxglove.SceneUpdate",
+        "/geofence/geojson": "foxglove.GeoJSON",
+        "/mission": "foxglove.SceneUpdate",
+        "/log": "foxglove.Log",
+        "/tf_static": "foxglove.FrameTransforms",
+        "/vehicle/1/tf": "foxglove.FrameTransforms",
+        "/vehicle/1/model": "foxglove.SceneUpdate",
+        "/vehicle/1/path": "foxglove.PosesInFrame",
+        "/vehicle/1/setpoint": "foxglove.PoseInFrame",
+        "/vehicle/1/location": "foxglove.LocationFix",
+        "/vehicle/1/state": "vehicle.State",
+        "/vehicle/1/fsa": "gate.Fsa",
+        "/vehicle/1/param": "vehicle.Param",
+    }
+    for topic, schema in schemas.items():
+        if schema.startswith("foxglove."):
+            assert pictures(path, topic)
+
+
+# --------------------------------------------------------------------------------- frames
+
+
+def test_the_static_frames_turn_ned_into_the_operators_enu(tmp_path: Path) -> None:
+    path = record(tmp_path, [pose((1.0, 2.0, -3.0))])
+    (static,) = pictures(path, "/tf_static")
+    chain = {(t.parent_frame_id, t.child_frame_id): t.rotation for t in static.transforms}
+    assert set(chain) == {("map", "local_ned"), ("base_link_frd", "base_link")}
+    for v_ned in [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 2.0, -3.0)]:
+        in_map = turned(chain["map", "local_ned"], v_ned)
+        assert in_map == pytest.approx(enu_from_ned(v_ned), abs=1e-12)
+    assert turned(chain["base_link_frd", "base_link"], (1.0, 1.0, 1.0)) == (1.0, -1.0, -1.0)
+
+
+def test_the_body_frame_has_mavlinks_values_unchanged(tmp_path: Path) -> None:
+    q = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
+    path = record(tmp_path, [pose((1.0, 2.0, -3.0), q=q)])
+    (message,) = pictures(path, "/vehicle/1/tf")
+    (body,) = message.transforms
+    assert (body.parent_frame_id, body.child_frame_id) == ("local_ned", "base_link_frd")
+    assert (body.translation.x, body.translation.y, body.translation.z) == (1.0, 2.0, -3.0)
+    assert (body.rotation.w, body.rotation.x, body.rotation.y, body.rotation.z) == q
+
+
+def test_a_second_vehicle_has_frames_and_topics_of_its_own(tmp_path: Path) -> None:
+    path = record(tmp_path, [pose((0.0, 0.0, 0.0)), pose((5.0, 0.0, 0.0), sysid=2)])
+    (message,) = pictures(path, "/vehicle/2/tf")
+    assert message.transforms[0].child_frame_id == "base_link_frd_2"
+    (model,) = pictures(path, "/vehicle/2/model")
+    assert model.entities[0].frame_id == "base_link_2"
+    last_static = pictures(path, "/tf_static")[-1]
+    assert [t.child_frame_id for t in last_static.transforms] == [
+        "local_ned",
+        "base_link",
+        "base_link_2",
+    ]
+
+
+def test_a_pose_that_is_not_finite_is_not_drawn(tmp_path: Path) -> None:
+    path = record(tmp_path, [pose((math.nan, 0.0, 0.0)), pose((0.0, 0.0, math.inf))])
+    topics = {message.topic for message in messages_of(path)}
+    assert "/vehicle/1/tf" not in topics
+    assert "/vehicle/1/path" not in topics
+    (state, *_) = readings(path, "/vehicle/1/state")
+    assert "north_m" not in state
+
+
+# ---------------------------------------------------------------------------------- rates
+
+
+def test_a_fast_vehicle_is_recorded_at_modest_rates(tmp_path: Path) -> None:
+    flight: list[RecordItem] = []
+    for number in range(1000):  # ten seconds at 100 Hz
+        flight.append(pose((number / 100, 0.0, -2.0)))
+        flight.append(GeodeticItem(1, 47.0, 8.0, 490.0, 2.0))
+    path = record(tmp_path, flight, step_ns=5 * MS)
+    count: dict[str, int] = {}
+    for message in messages_of(path):
+        count[message.topic] = count.get(message.topic, 0) + 1
+    assert count["/vehicle/1/tf"] == pytest.approx(250, abs=2)
+    assert count["/vehicle/1/state"] == pytest.approx(50, abs=1)
+    assert count["/vehicle/1/location"] == pytest.approx(50, abs=1)
+    assert count["/vehicle/1/path"] == pytest.approx(10, abs=1)
+    assert count["/vehicle/1/model"] == 1
+
+
+def test_a_rate_limit_does_not_halve_an_input_just_above_it() -> None:
+    grid = Grid(25.0)
+    sent = sum(grid.due(START_NS + number * SECOND // 30) for number in range(300))
+    assert sent == pytest.approx(250, abs=1)
+
+
+def test_a_rate_limit_does_not_catch_up_after_silence() -> None:
+    grid = Grid(10.0)
+    assert grid.due(START_NS)
+    later = START_NS + 10 * SECOND
+    assert [grid.due(later + n * MS) for n in (0, 1, 2, 99, 100)] == [1, 0, 0, 0, 1]
+
+
+def test_every_setpoint_is_recorded_heights_up(tmp_path: Path) -> None:
+    path = record(tmp_path, [SetpointItem(1, (1.0, 2.0, -3.0), 0.0)] * 20)
+    found = pictures(path, "/vehicle/1/setpoint")
+    assert len(found) == 20
+    at = found[0].pose.position
+    assert found[0].frame_id == "map"
+    assert (at.x, at.y, at.z) == (2.0, 1.0, 3.0)
+    facing = turned(found[0].pose.orientation, (1.0, 0.0, 0.0))
+    assert facing == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)  # heading 0 is north
+
+
+def test_the_trail_grows_and_stays_repeatable() -> None:
+    trail = Trail()
+    for number in range(10_000):
+        trail.add((number * 0.25, 0.0, 1.0))
+    assert len(trail.points_enu) <= PATH_POINTS
+    assert trail.points_enu[0] == (0.0, 0.0, 1.0)
+    assert trail.points_enu[-1][0] > 2400
+    gaps = [b[0] - a[0] for a, b in pairwise(trail.points_enu)]
+    assert max(gaps) <= 4 * min(gaps)
+
+
+def test_a_hovering_vehicle_does_not_repeat_its_trail(tmp_path: Path) -> None:
+    path = record(tmp_path, [pose((0.0, 0.0, -2.0))] * 500)
+    assert len(pictures(path, "/vehicle/1/path")) == 1
+
+
+# ----------------------------------------------------------------------------- state bars
+
+
+def test_the_state_is_recorded_on_change_every_second_and_at_close(tmp_path: Path) -> None:
+    silence: list[RecordItem] = [InputItem("tick", b"{}")] * 125  # 2.5 s
+    path = record(tmp_path, [fsa("HOVERING"), *silence, fsa("MOVING", 3), *silence[:3]])
+    found = [
+        (message.log_time_ns - START_NS, json.loads(message.data)["state"])
+        for message in messages_of(path)
+        if message.topic == "/vehicle/1/fsa"
+    ]
+    assert [state for _, state in found] == ["HOVERING"] * 3 + ["MOVING"] * 2
+    times_s = [round(at_ns / SECOND, 1) for at_ns, _ in found]
+    assert times_s == [0.0, 1.0, 2.0, 2.5, 2.6]
+
+
+def test_reminders_from_the_session_do_not_double_the_rate(tmp_path: Path) -> None:
+    path = record(tmp_path, [fsa("HOVERING")] * 150)  # 3 s at 50 Hz
+    assert len(readings(path, "/vehicle/1/fsa")) == pytest.approx(4, abs=1)
+
+
+def test_heights_are_up_and_angles_degrees(tmp_path: Path) -> None:
+    half = math.sqrt(0.5)
+    item = PoseItem(1, (1.0, 2.0, -3.0), (3.0, 4.0, -0.5), (half, 0.0, 0.0, -half))
+    status = StatusItem(1, True, "OFFBOARD", "in_air", 80.0, None, 98.0, math.nan)
+    path = record(tmp_path, [status, item, item], step_ns=300 * MS)
+    state = readings(path, "/vehicle/1/state")[-1]
+    assert (state["east_m"], state["north_m"], state["up_m"]) == (2.0, 1.0, 3.0)
+    assert (state["groundspeed_mps"], state["climb_mps"]) == (5.0, 0.5)
+    assert state["yaw_deg"] == pytest.approx(270.0)
+    assert (state["mode"], state["armed"], state["battery_pct"]) == ("OFFBOARD", True, 80.0)
+    assert "battery_v" not in state  # not known
+    assert "lost_pct" not in state  # JSON has no NaN
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "yaw"), [(0, 0, 0), (30, 0, 0), (0, 20, 0), (0, 0, 90), (10, -20, 200)]
+)
+def test_euler_angles_of_known_rotations(roll: float, pitch: float, yaw: float) -> None:
+    (cr, sr), (cp, sp), (cy, sy) = (
+        (math.cos(math.radians(a) / 2), math.sin(math.radians(a) / 2)) for a in (roll, pitch, yaw)
+    )
+    q = (
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )
+    assert euler_deg(q) == pytest.approx((roll, pitch, yaw), abs=1e-9)
+
+
+# ------------------------------------------------------------------ decisions, log, scenes
+
+
+def test_a_refused_goal_is_recorded_with_reason_and_numbers(tmp_path: Path) -> None:
+    path = record(tmp_path, a_flight())
+    (decision,) = readings(path, "/gate/decision")
+    assert decision["goal"] == {"east_m": 500.0, "north_m": 0.0, "up_m": 2.0}
+    assert decision["outcome"] == "refused"
+    assert decision["code"] == "OUTSIDE_FENCE"
+    assert decision["numbers"] == {"distance_m": 350.0}
+    assert decision["zone"] == "home"
+
+
+def test_a_goal_that_is_no_number_is_still_json(tmp_path: Path) -> None:
+    item = DecisionItem(
+        1,
+        1,
+        "operator",
+        "goto",
+        "verdict",
+        "refused",
+        "NON_FINITE",
+        "north is not a number",
+        "",
+        (math.nan, 1.0, -math.inf),
+        (("distance_m", math.nan),),
+    )
+    (decision,) = readings(record(tmp_path, [item]), "/gate/decision")
+    assert decision["goal"] == {"east_m": 1.0, "north_m": None, "up_m": None}
+    assert decision["numbers"] == {"distance_m": None}
+
+
+def test_inputs_are_recorded_as_they_came(tmp_path: Path) -> None:
+    items = [InputItem("ask", b'{"word":"goto"}'), InputItem('odd "kind"', b"[1,2]")]
+    found = readings(record(tmp_path, items), "/session/input")
+    assert found == [
+        {"kind": "ask", "data": {"word": "goto"}},
+        {"kind": 'odd "kind"', "data": [1, 2]},
+    ]
+
+
+def test_log_lines_keep_node_and_level(tmp_path: Path) -> None:
+    path = record(tmp_path, [LogItem(level, "gate", f"line {level}") for level in range(1, 6)])
+    found = pictures(path, "/log")
+    assert [(line.level, line.name, line.message) for line in found] == [
+        (level, "gate", f"line {level}") for level in range(1, 6)
+    ]
+    assert found[0].timestamp.seconds == START_NS // SECOND
+
+
+def test_the_fence_is_drawn_with_its_walls_in_map(tmp_path: Path) -> None:
+    path = record(tmp_path, a_flight())
+    (scene,) = pictures(path, "/geofence")
+    assert len(scene.deletions) == 1  # the fence before it goes
+    home, tower = scene.entities
+    assert {home.frame_id, tower.frame_id} == {"map"}
+    assert {point.z for point in home.triangles[0].points} == {0.0, 50.0}
+    assert max(point.x for point in home.triangles[0].points) == pytest.approx(150.0)
+    assert len(tower.triangles[0].indices) == 3 * 6  # three walls of two triangles
+    assert all(math.isfinite(point.z) for point in tower.triangles[0].points)
+    assert home.triangles[0].color.g > home.triangles[0].color.r  # keeps in
+    assert tower.triangles[0].color.r > tower.triangles[0].color.g  # keeps out
+
+
+def test_the_fence_is_on_the_map_where_the_origin_is_known(tmp_path: Path) -> None:
+    path = record(tmp_path, a_flight())
+    (message,) = pictures(path, "/geofence/geojson")
+    home, tower = json.loads(message.geojson)["features"]
+    ring = home["geometry"]["coordinates"][0]
+    assert ring[0] == ring[-1]
+    top_lat = max(lat for _, lat in ring)
+    assert (top_lat - 47.397742) * 111_194.9 == pytest.approx(150.0, abs=0.1)
+    assert len(tower["geometry"]["coordinates"][0]) == 4
+
+
+def test_without_an_origin_there_is_no_fence_on_the_map(tmp_path: Path) -> None:
+    path = record(tmp_path, [FenceItem((), None)])
+    assert {message.topic for message in messages_of(path)} == {"/geofence"}
+
+
+def test_a_mission_is_a_line_of_numbered_points(tmp_path: Path) -> None:
+    path = record(tmp_path, [MissionItem("m", ((0.0, 0.0, -5.0), (10.0, 0.0, -5.0)))])
+    (scene,) = pictures(path, "/mission")
+    points = scene.entities[0].lines[0].points
+    assert [(point.x, point.y, point.z) for point in points] == [(0, 0, 5), (0, 10, 5)]
+    assert [text.text for text in scene.entities[0].texts] == ["1", "2"]
+
+
+def test_a_cleared_mission_disappears(tmp_path: Path) -> None:
+    (scene,) = pictures(record(tmp_path, [MissionItem("", ())]), "/mission")
+    assert not scene.entities
+    assert scene.deletions
+
+
+def test_json_schemas_use_only_what_viewers_read(tmp_path: Path) -> None:
+    with open(record(tmp_path, a_flight()), "rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    found = [s for s in summary.schemas.values() if s.encoding == "jsonschema"]
+    assert len(found) == 5
+
+    def check(schema: dict[str, Any]) -> None:
+        if schema["type"] == "object":
+            for inner in schema["properties"].values():
+                check(inner)
+        else:
+            assert schema["type"] in ("string", "number", "integer", "boolean")
+
+    for schema in found:
+        check(json.loads(schema.data))

@@ -1,0 +1,233 @@
+"""`gcs log info | layout | recover`, as a user calls them."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from gcs.cli.log import log
+from gcs.record.layout import ANY_FLIGHT, layout
+from gcs.record.writer import Recorder
+from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
+
+
+def gcs_log(*args: str | Path) -> Result:
+    return CliRunner().invoke(log, [str(arg) for arg in args])
+
+
+@pytest.fixture
+def flight(tmp_path: Path) -> Path:
+    return record(tmp_path, a_flight(), step_ns=100 * MS)
+
+
+@pytest.fixture
+def killed_flight(tmp_path: Path) -> Path:
+    """Flushed, and never closed."""
+    recorder = Recorder.open(tmp_path, "killed", "20260101-000000", START_NS)
+    for number, item in enumerate(a_flight()):
+        recorder.write(item, START_NS + number * 30 * MS)
+    recorder.tick(START_NS + SECOND)
+    killed = tmp_path / "killed.mcap"
+    killed.write_bytes(recorder.path.read_bytes())
+    recorder.close(START_NS + SECOND)
+    return killed
+
+
+# ----------------------------------------------------------------------------------- info
+
+
+def test_info_tells_what_is_in_a_flight(flight: Path) -> None:
+    result = gcs_log("info", flight)
+    assert result.exit_code == 0
+    assert "complete" in result.output
+    assert "2026-01-01 00:00:00 UTC" in result.output
+    assert "/mavlink/1/1/LOCAL_POSITION_NED" in result.output
+    assert "OUTSIDE_FENCE" in result.output
+    assert "vehicle 1  MOVING" in result.output
+    assert "policy.toml" in result.output
+
+
+def test_info_json_is_for_programs(flight: Path) -> None:
+    found = json.loads(gcs_log("info", flight, "--json").output)
+    assert found["closed"] is True
+    assert found["messages"] == len(messages_of(flight))
+    assert found["seconds"] == pytest.approx(1.4)
+    assert {topic["topic"] for topic in found["topics"]} == {m.topic for m in messages_of(flight)}
+    assert [state["state"] for state in found["states"]] == ["HOVERING", "MOVING"]
+    (decision,) = found["decisions"]
+    assert (decision["request_id"], decision["outcome"]) == (7, "refused")
+    assert found["metadata"] == {"versions": {"mavgate": "0"}}
+    assert found["gaps"] == []
+
+
+def test_info_works_on_a_killed_file_and_says_what_to_do(killed_flight: Path) -> None:
+    result = gcs_log("info", killed_flight)
+    assert result.exit_code == 0
+    assert "NOT CLOSED" in result.output
+    assert f"hint: gcs log recover {killed_flight}" in result.output
+    assert "OUTSIDE_FENCE" in result.output
+
+
+def test_info_reports_silence_as_a_gap(tmp_path: Path) -> None:
+    recorder = Recorder.open(tmp_path, "gap", "20260101-000000", START_NS)
+    item = a_flight()[5]
+    for at_s in (0, 1, 5, 6):
+        recorder.write(item, START_NS + at_s * SECOND)
+    recorder.close(START_NS + 6 * SECOND)
+    found = json.loads(gcs_log("info", recorder.path, "--json").output)
+    assert found["gaps"] == [{"t_s": 1.0, "seconds": 4.0}]
+
+
+def test_the_rate_of_a_topic_is_its_mean(tmp_path: Path) -> None:
+    path = record(tmp_path, [a_flight()[5]] * 101, step_ns=20 * MS)
+    (topic,) = json.loads(gcs_log("info", path, "--json").output)["topics"]
+    assert (topic["messages"], topic["hz"]) == (101, pytest.approx(50.0))
+
+
+@pytest.mark.parametrize("command", ["info", "layout"])
+@pytest.mark.parametrize("data", [b"", b"#!/bin/sh\n"])
+def test_a_file_that_is_no_record_is_a_clear_error(
+    tmp_path: Path, command: str, data: bytes
+) -> None:
+    bad = tmp_path / "bad.mcap"
+    bad.write_bytes(data)
+    result = gcs_log(command, bad)
+    assert result.exit_code == 4
+    assert "bad.mcap: " in result.output
+    assert "hint:" in result.output
+
+
+def test_a_file_that_is_not_there_is_a_usage_error(tmp_path: Path) -> None:
+    assert gcs_log("info", tmp_path / "nothing.mcap").exit_code == 2
+
+
+# --------------------------------------------------------------------------------- layout
+
+
+def topics_in(value: Any) -> set[str]:
+    """Every string in a layout that names a topic or a path into one."""
+    if isinstance(value, dict):
+        return {t for k, v in value.items() for t in topics_in(v) | topics_in(k)}
+    if isinstance(value, list):
+        return {t for v in value for t in topics_in(v)}
+    if isinstance(value, str) and re.match(r"/\w", value):
+        return {value.split(".")[0]}
+    return set()
+
+
+def panels_in(tree: Any) -> list[str]:
+    if isinstance(tree, str):
+        return [tree]
+    return panels_in(tree["first"]) + panels_in(tree["second"])
+
+
+def test_the_layout_names_only_topics_that_the_file_has(flight: Path, tmp_path: Path) -> None:
+    out = tmp_path / "layout.json"
+    assert gcs_log("layout", flight, "-o", out).exit_code == 0
+    made = json.loads(out.read_text())
+    existing = {message.topic for message in messages_of(flight)}
+    assert topics_in(made) <= existing
+    for topic in ("/geofence", "/vehicle/1/path", "/vehicle/1/setpoint", "/gate/decision", "/log"):
+        assert topic in topics_in(made)
+    assert set(panels_in(made["layout"])) == set(made["configById"])
+    kinds = {panel.split("!")[0] for panel in made["configById"]}
+    assert kinds == {
+        "3D",
+        "map",
+        "Plot",
+        "StateTransitions",
+        "RosOut",
+        "RawMessages",
+        "Indicator",
+        "Gauge",
+    }
+
+
+def test_paths_into_json_topics_name_fields_of_their_schema(flight: Path) -> None:
+    from gcs.record.readings import DECISION_SHAPE, FSA_SHAPE, STATE_SHAPE
+
+    text = gcs_log("layout", flight).output
+    shapes = {"state": STATE_SHAPE, "fsa": FSA_SHAPE, "decision": DECISION_SHAPE}
+    paths = re.findall(r'"/(?:vehicle/1|gate)/(state|fsa|decision)\.(\w+)"', text)
+    assert len(paths) >= 8
+    assert all(name in shapes[leaf] for leaf, name in paths)
+
+
+@pytest.mark.parametrize(
+    "topics",
+    [
+        set(),
+        {"/log"},
+        {"/vehicle/3/state", "/mavlink/3/1/HEARTBEAT"},
+        {"/geofence", "/vehicle/2/location", "/vehicle/10/location"},
+    ],
+)
+def test_a_layout_is_made_of_whatever_there_is(topics: set[str]) -> None:
+    made: Any = layout(topics)
+    assert topics_in(made) <= topics
+    panels = set(panels_in(made["layout"])) - {""}
+    assert panels == made["configById"].keys()
+
+
+def test_without_a_file_the_layout_is_for_any_flight() -> None:
+    result = gcs_log("layout")
+    assert result.exit_code == 0
+    assert topics_in(json.loads(result.output)) <= ANY_FLIGHT
+
+
+def test_a_layout_that_cannot_be_written_is_said(flight: Path, tmp_path: Path) -> None:
+    result = gcs_log("layout", flight, "-o", tmp_path / "no folder" / "layout.json")
+    assert result.exit_code == 7
+    assert "cannot write" in result.output
+
+
+# -------------------------------------------------------------------------------- recover
+
+
+def test_recover_makes_a_killed_file_whole(killed_flight: Path, tmp_path: Path) -> None:
+    whole = tmp_path / "whole.mcap"
+    result = gcs_log("recover", killed_flight, "-o", whole)
+    assert result.exit_code == 0
+    assert re.search(r"\d+ messages, 0\.\d s recovered", result.output)
+    assert messages_of(whole) == messages_of(killed_flight)
+    assert "complete" in gcs_log("info", whole).output
+
+
+def test_recover_json(killed_flight: Path, tmp_path: Path) -> None:
+    result = gcs_log("recover", killed_flight, "-o", tmp_path / "whole.mcap", "--json")
+    found = json.loads(result.output)
+    assert found["source_closed"] is False
+    assert found["messages"] == len(messages_of(killed_flight))
+
+
+def test_recover_does_not_overwrite(flight: Path, killed_flight: Path) -> None:
+    before = flight.read_bytes()
+    result = gcs_log("recover", killed_flight, "-o", flight)
+    assert result.exit_code == 2
+    assert "exists already" in result.output
+    assert flight.read_bytes() == before
+
+
+def test_recover_to_an_impossible_place_is_a_recorder_error(
+    killed_flight: Path, tmp_path: Path
+) -> None:
+    result = gcs_log("recover", killed_flight, "-o", tmp_path / "no folder" / "x.mcap")
+    assert result.exit_code == 7
+
+
+def test_recover_of_what_is_no_record(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.mcap"
+    bad.write_bytes(b"\0" * 100)
+    result = gcs_log("recover", bad, "-o", tmp_path / "x.mcap")
+    assert result.exit_code == 4
+    assert not (tmp_path / "x.mcap").exists()
+
+
+def test_a_copy_of_a_complete_file_is_said_to_be_one(flight: Path, tmp_path: Path) -> None:
+    result = gcs_log("recover", flight, "-o", tmp_path / "copy.mcap")
+    assert "complete already" in result.output

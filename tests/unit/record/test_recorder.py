@@ -1,0 +1,357 @@
+"""The recorder under a working disk, a full one, and one that comes back."""
+
+from __future__ import annotations
+
+import errno
+import logging
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mcap.reader import make_reader
+
+from gcs.record import ros1, writer
+from gcs.record.backend import FoxgloveBackend, McapBackend
+from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
+from gcs.record.items import (
+    AttachmentItem,
+    Direction,
+    FrameItem,
+    GarbageItem,
+    InputItem,
+    LogItem,
+    MetadataItem,
+    ParamItem,
+    PoseItem,
+)
+from gcs.record.reading import Reading
+from gcs.record.writer import Recorder, RecorderError, RecordLost, RecordResumed
+from tests.unit.record.flights import (
+    MS,
+    SECOND,
+    START_NS,
+    a_flight,
+    frame_v2,
+    messages_of,
+    position_frame,
+    record,
+)
+
+BACKENDS = [FoxgloveBackend, McapBackend]
+
+
+class Disk:
+    """A disk with `free` bytes, shared by all files opened through it."""
+
+    def __init__(self, free: int) -> None:
+        self.free = free
+        self.files: list[Path] = []
+
+    def open(self, path: Path) -> RawFile:
+        self.files.append(path)
+        return _DiskFile(self, open_exclusive(path))
+
+
+class _DiskFile:
+    def __init__(self, disk: Disk, raw: RawFile) -> None:
+        self._disk = disk
+        self._raw = raw
+
+    def write(self, data: memoryview, /) -> int:
+        if self._disk.free == 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        fits = min(len(data), self._disk.free)
+        self._disk.free -= fits
+        self._raw.write(data[:fits])
+        return fits
+
+    def close(self) -> None:
+        self._raw.close()
+
+
+# ------------------------------------------------------------------------------ a good disk
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_what_was_written_is_read_back_in_order(
+    tmp_path: Path, backend: type[FoxgloveBackend | McapBackend]
+) -> None:
+    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS, backend=backend())
+    items = [position_frame(number) for number in range(100)]
+    for number, item in enumerate(items):
+        recorder.write(item, START_NS + number * MS)
+    assert recorder.close(START_NS + SECOND)
+    found = messages_of(recorder.path)
+    assert [ros1.rebuild(message.data) for message in found] == [item.raw for item in items]
+    assert [message.log_time_ns for message in found] == [START_NS + n * MS for n in range(100)]
+    with open(recorder.path, "rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    assert summary.statistics.message_count == 100
+
+
+def test_the_file_is_named_after_start_and_session(tmp_path: Path) -> None:
+    logs = tmp_path / "made" / "on demand"
+    recorder = Recorder.open(logs, "lab 3/../x", "20260101-123456", START_NS)
+    recorder.close(START_NS)
+    assert recorder.path == logs / "20260101-123456_lab-3-..-x.mcap"
+
+
+def test_two_sessions_of_one_second_do_not_share_a_file(tmp_path: Path) -> None:
+    first = Recorder.open(tmp_path, "flight", "20260101-000000", START_NS)
+    second = Recorder.open(tmp_path, "flight", "20260101-000000", START_NS)
+    assert first.path.name == "20260101-000000_flight.mcap"
+    assert second.path.name == "20260101-000000_flight-2.mcap"
+    assert first.close(START_NS)
+    assert second.close(START_NS)
+
+
+def test_an_unwritable_folder_is_an_error_at_start(tmp_path: Path) -> None:
+    blocked = tmp_path / "logs"
+    blocked.write_text("a file where the folder should be")
+    with pytest.raises(RecorderError, match="logs: cannot record"):
+        Recorder.open(blocked, "flight", "20260101-000000", START_NS)
+
+
+@settings(max_examples=30, deadline=None)
+@given(steps=st.lists(st.sampled_from([0, 0, 1, -5, 1_000_000]), min_size=1, max_size=40))
+def test_log_time_is_strictly_increasing_whatever_the_clock_does(
+    tmp_path_factory: pytest.TempPathFactory, steps: list[int]
+) -> None:
+    folder = tmp_path_factory.mktemp("ties")
+    recorder = Recorder.open(folder, "ties", "20260101-000000", START_NS)
+    now_ns = START_NS
+    for number, step_ns in enumerate(steps):
+        now_ns += step_ns
+        recorder.write(position_frame(number), now_ns)
+        recorder.write(PoseItem(1, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)), now_ns)
+    recorder.close(now_ns)
+    times = [message.log_time_ns for message in messages_of(recorder.path)]
+    assert len(times) > len(steps)
+    assert all(later > earlier for earlier, later in pairwise(times))
+
+
+def test_flushes_are_due_twice_a_second_on_a_grid(tmp_path: Path) -> None:
+    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
+    assert recorder.deadline_ns == START_NS + 500 * MS
+    recorder.tick(START_NS + 730 * MS)  # late: the next is not put off, and none is made up for
+    assert recorder.deadline_ns == START_NS + 1000 * MS
+    recorder.tick(START_NS + 2600 * MS)
+    assert recorder.deadline_ns == START_NS + 3000 * MS
+    recorder.close(START_NS + 3 * SECOND)
+
+
+def test_what_was_flushed_is_in_the_file_without_closing_it(tmp_path: Path) -> None:
+    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
+    for number in range(10):
+        recorder.write(position_frame(number), START_NS + number * 40 * MS)
+    recorder.tick(START_NS + 500 * MS)
+    recorder.write(position_frame(10), START_NS + 600 * MS)
+    assert len(messages_of(recorder.path)) == 10
+    recorder.close(START_NS + SECOND)
+    assert len(messages_of(recorder.path)) == 11
+
+
+def test_garbage_and_malformed_frames_are_kept_with_their_reason(tmp_path: Path) -> None:
+    cut = FrameItem(2, Direction.RECEIVED, b"\xfd\x30abc")
+    path = record(tmp_path, [GarbageItem(2, b"NMEA?", "text"), cut])
+    found = messages_of(path)
+    assert [message.topic for message in found] == ["/link/2/garbage"] * 2
+    assert b"NMEA?" in found[0].data
+    assert b"malformed" in found[1].data
+    assert found[1].data.endswith(cut.raw)
+
+
+def test_forged_sources_cannot_use_up_the_channels(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(writer, "MAX_FRAME_CHANNELS", 3)
+    raws = [frame_v2(0, b"\1\2\3\4\5\6\7\10\11", source=(sysid, 1)) for sysid in range(1, 7)]
+    path = record(tmp_path, [FrameItem(0, Direction.RECEIVED, raw) for raw in raws])
+    found = messages_of(path)
+    assert [message.topic for message in found[3:]] == ["/mavlink/more"] * 3
+    assert [ros1.rebuild(message.data, payload_length=0) for message in found[3:]] == raws[3:]
+
+
+def test_the_sdk_logger_does_not_reach_root_handlers() -> None:
+    FoxgloveBackend()
+    assert logging.getLogger("foxglove").propagate is False
+
+
+def test_without_an_sdk_the_readings_and_frames_are_still_recorded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("gcs.record.derived.find_spec", lambda _: None)
+    monkeypatch.setattr("gcs.record.backend.find_spec", lambda _: None)
+    path = record(tmp_path, a_flight())
+    topics = {message.topic for message in messages_of(path)}
+    assert {"/mavlink/1/1/LOCAL_POSITION_NED", "/vehicle/1/state", "/gate/decision"} <= topics
+    assert "/vehicle/1/tf" not in topics
+
+
+# ------------------------------------------------------------------------------ a full disk
+
+
+def test_a_guarded_file_keeps_the_error_and_swallows_what_follows(tmp_path: Path) -> None:
+    disk = Disk(free=10)
+    file = GuardedFile(disk.open(tmp_path / "x"))
+    assert file.write(b"12345678") == 8
+    assert file.written == 8
+    assert file.write(b"12345678") == 8  # two fit, then the disk is full
+    assert file.failure is not None
+    assert file.failure.errno == errno.ENOSPC
+    disk.free = 100
+    assert file.write(b"more") == 4
+    file.close()
+    assert (tmp_path / "x").read_bytes() == b"1234567812"
+    assert (file.written, file.tell()) == (10, 20)
+
+
+def test_a_guarded_file_refuses_to_move() -> None:
+    file = GuardedFile(_Nowhere())
+    file.write(b"abc")
+    assert file.seek(0, 1) == 3
+    assert file.seek(3) == 3
+    with pytest.raises(ValueError, match="from its beginning to its end"):
+        file.seek(0)
+
+
+class _Nowhere:
+    def write(self, data: memoryview, /) -> int:
+        return len(data)
+
+    def close(self) -> None:
+        raise OSError(errno.EIO, "gone")
+
+
+def test_an_error_while_closing_is_kept_too() -> None:
+    file = GuardedFile(_Nowhere())
+    file.close()
+    assert file.failure is not None
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_full_disk_is_told_at_once_and_a_second_part_begins_when_there_is_room(
+    tmp_path: Path, backend: type[FoxgloveBackend | McapBackend]
+) -> None:
+    disk = Disk(free=6_000)
+    recorder = Recorder.open(
+        tmp_path, "flight", "20260101-000000", START_NS, backend=backend(), opener=disk.open
+    )
+    now_ns, number, failed_ns = START_NS, 0, 0
+    while not failed_ns and number < 2000:
+        recorder.write(position_frame(number), now_ns)
+        number += 1
+        now_ns += 10 * MS
+        if now_ns < recorder.deadline_ns:
+            continue
+        news = recorder.tick(now_ns)
+        if recorder.failed:
+            failed_ns = now_ns
+            assert news == [
+                RecordLost(recorder.path, failed_ns - 500 * MS, "No space left on device")
+            ]
+    assert failed_ns
+    saved = len(messages_of(recorder.path))
+    assert saved >= (failed_ns - 500 * MS - START_NS) // (10 * MS)
+
+    recorder.write(position_frame(9000), now_ns)  # the link goes on and does not notice
+    assert recorder.tick(now_ns + SECOND) == []
+    assert recorder.deadline_ns == failed_ns + 5 * SECOND
+    assert recorder.tick(failed_ns + 5 * SECOND) == []  # still full
+    assert recorder.deadline_ns == failed_ns + 10 * SECOND
+    assert list(tmp_path.glob("*_part2*")) == []
+    assert recorder.path.name == "20260101-000000_flight.mcap"
+
+    disk.free = 1_000_000
+    now_ns = failed_ns + 10 * SECOND
+    part2 = tmp_path / "20260101-000000_flight_part2.mcap"
+    assert recorder.tick(now_ns) == [RecordResumed(part2, failed_ns - 500 * MS, now_ns)]
+    assert not recorder.failed
+    recorder.write(position_frame(10_000), now_ns + MS)
+    assert not recorder.close(now_ns + SECOND)  # something is missing, and close says so
+    assert [ros1.rebuild(m.data) for m in messages_of(part2)] == [position_frame(10_000).raw]
+    assert recorder.parts == [tmp_path / "20260101-000000_flight.mcap", part2]
+
+
+def test_a_disk_that_fails_again_leads_to_a_third_part(tmp_path: Path) -> None:
+    disk = Disk(free=0)
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    now_ns = START_NS
+    names = []
+    for _ in range(2):
+        disk.free = 0
+        recorder.write(position_frame(0), now_ns)
+        recorder.tick(now_ns + SECOND)
+        assert recorder.failed
+        disk.free = 100_000
+        now_ns += 7 * SECOND
+        (resumed,) = recorder.tick(now_ns)
+        names.append(resumed.path.name)
+    assert names == ["20260101-000000_f_part2.mcap", "20260101-000000_f_part3.mcap"]
+    recorder.close(now_ns)
+
+
+def test_a_new_part_begins_with_what_was_said_once(tmp_path: Path) -> None:
+    disk = Disk(free=1_000_000)
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    for item in a_flight():
+        recorder.write(item, START_NS)
+    disk.free = 0
+    recorder.tick(START_NS + SECOND)
+    recorder.write(ParamItem(1, "MPC_XY_VEL_MAX", 5.0), START_NS + 2 * SECOND)  # while lost
+    disk.free = 1_000_000
+    recorder.tick(START_NS + 6 * SECOND)
+    recorder.close(START_NS + 7 * SECOND)
+    part2 = recorder.path
+    found = messages_of(part2)
+    topics = {message.topic for message in found}
+    assert {"/tf_static", "/vehicle/1/model", "/geofence", "/mission"} <= topics
+    params = [message.data for message in found if message.topic == "/vehicle/1/param"]
+    assert params == [b'{"name":"MPC_XY_VEL_MAX","value":5.0}']
+    others = [type(entry).__name__ for entry in Reading(part2)]
+    assert "Attachment" in others
+    assert "Metadata" in others
+    times = [message.log_time_ns for message in found]
+    assert times == sorted(set(times))
+
+
+def test_a_disk_that_is_full_when_the_file_is_closed_is_reported(tmp_path: Path) -> None:
+    disk = Disk(free=1_000_000)
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder.write(position_frame(0), START_NS)
+    disk.free = 0
+    assert recorder.close(START_NS) is False
+
+
+def test_closing_while_nothing_is_recorded_is_harmless(tmp_path: Path) -> None:
+    disk = Disk(free=0)
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder.write(LogItem(2, "gate", "hello"), START_NS)
+    recorder.tick(START_NS + SECOND)
+    disk.free = 20  # room for a beginning, not for a part
+    assert recorder.tick(START_NS + 6 * SECOND) == []
+    assert disk.files[-1].name == "20260101-000000_f_part2.mcap"
+    assert not disk.files[-1].exists()
+    assert recorder.close(START_NS + 7 * SECOND) is False
+    assert recorder.bytes_written == 0
+
+
+def test_every_part_keeps_attachments_and_metadata_once(tmp_path: Path) -> None:
+    path = record(
+        tmp_path,
+        [
+            AttachmentItem("fence.plan", "application/json", b"{}"),
+            MetadataItem("endpoints", (("vehicle", "udpin://127.0.0.1:14540"),)),
+            InputItem("tick", b'{"lateness_ns":3}'),
+        ],
+    )
+    with open(path, "rb") as file:
+        reader = make_reader(file)
+        assert [(a.name, a.data) for a in reader.iter_attachments()] == [("fence.plan", b"{}")]
+        assert [m.metadata for m in reader.iter_metadata()] == [
+            {"vehicle": "udpin://127.0.0.1:14540"}
+        ]

@@ -1,0 +1,60 @@
+"""From the operator's words to what the gate is asked."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from gcs import ipc
+from gcs.gate.types import Abort, FlightMode, GoTo, SetMode, TakeOff
+from gcs.protocol.autopilot import ARDUPILOT, PX4
+from gcs.session.desk import BadAskError, Requests, as_on_the_wire, wish_of
+
+
+def test_a_goal_is_turned_into_ned_once() -> None:
+    wish = wish_of(ipc.Ask(1, "goto", goal_enu=(1.0, 2.0, 3.0), yaw_deg=90.0), PX4)
+    assert wish == GoTo((2.0, 1.0, -3.0), math.pi / 2)
+
+
+def test_null_is_no_number_and_is_for_the_gate_to_refuse() -> None:
+    wish = wish_of(ipc.Ask(1, "goto", goal_enu=(None, 0.0, 1.0)), PX4)
+    assert isinstance(wish, GoTo)
+    assert math.isnan(wish.goal_ned[1])
+
+
+def test_a_take_off_without_a_height_is_no_number_either() -> None:
+    wish = wish_of(ipc.Ask(1, "takeoff"), PX4)
+    assert isinstance(wish, TakeOff)
+    assert math.isnan(wish.up_m)
+
+
+@pytest.mark.parametrize("value", [5.01, 0.1, -3.3333])
+def test_what_is_verified_is_what_the_wire_can_carry(value: float) -> None:
+    assert as_on_the_wire(as_on_the_wire(value)) == as_on_the_wire(value)
+    assert as_on_the_wire(value) == pytest.approx(value, rel=1e-7)
+
+
+def test_what_the_wire_cannot_carry_is_infinite() -> None:
+    assert as_on_the_wire(1e300) == math.inf
+
+
+@pytest.mark.parametrize("word", ["fly", "", "mission_upload"])
+def test_an_unknown_word_is_no_request(word: str) -> None:
+    with pytest.raises(BadAskError):
+        wish_of(ipc.Ask(1, word), PX4)
+
+
+def test_a_mode_is_named_as_its_autopilot_names_it() -> None:
+    assert wish_of(ipc.Ask(1, "mode", mode="brake"), ARDUPILOT) == SetMode("BRAKE", FlightMode.HOLD)
+    with pytest.raises(BadAskError):
+        wish_of(ipc.Ask(1, "mode", mode="brake"), PX4)
+
+
+def test_a_request_is_known_until_it_is_over() -> None:
+    requests = Requests()
+    first, second = requests.open(10, "arm"), requests.open(11, "land")
+    assert first != second
+    assert requests.close(first).client_id == 10
+    assert requests.open_count == 1
+    assert wish_of(ipc.Ask(1, "abort"), PX4) == Abort()

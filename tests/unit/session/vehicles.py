@@ -1,0 +1,34 @@
+"""Telemetry and messages for the session's tests."""
+
+from __future__ import annotations
+
+from gcs.gate.projection import Origin
+from gcs.protocol.autopilot import PX4, Personality
+from gcs.session.telemetry import Telemetry
+from gcs.wire.messages import GlobalPositionInt, LocalPositionNed
+
+SECOND_NS = 1_000_000_000
+HOME = Origin(47.397742, 8.545594, 488.0)
+
+
+def vehicle(personality: Personality = PX4) -> Telemetry:
+    """A vehicle that has only just been heard."""
+    return Telemetry(1, 1, personality, link=0)
+
+
+def position(time_boot_ms: int, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> LocalPositionNed:
+    return LocalPositionNed(time_boot_ms=time_boot_ms, x=x, y=y, z=z, vx=0.0, vy=0.0, vz=0.0)
+
+
+def global_position(lat_deg: float, lon_deg: float) -> GlobalPositionInt:
+    return GlobalPositionInt(
+        time_boot_ms=0,
+        lat=round(lat_deg * 1e7),
+        lon=round(lon_deg * 1e7),
+        alt=488_000,
+        relative_alt=0,
+        vx=0,
+        vy=0,
+        vz=0,
+        hdg=0,
+    )

@@ -1,0 +1,176 @@
+"""The drawings: braille dots, the map's scale, markers, the height bar, the state chart."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gcs import ipc
+from gcs.gate.types import State
+from gcs.tui import fsa_panel, height_panel, map_panel, vehicle_panel
+from gcs.tui.braille import Canvas, clip
+from gcs.tui.frame_panels import footer
+from gcs.tui.keyboard import PendingGoal
+from gcs.tui.keys import KEYS
+from gcs.tui.scene import Scene
+from gcs.tui.view import HALF_SPANS_M, fit, nice_length, outline
+from tests.unit.cli.fake_link import FakeLink
+
+metres = st.floats(-1e4, 1e4)
+points = st.tuples(metres, metres)
+
+
+def scene_at(pos_enu: ipc.Vec3, goal_enu: ipc.Vec3 | None = None) -> Scene:
+    scene = Scene()
+    link = FakeLink()
+    for event in link.hello():
+        scene.hear(event)
+    link.pos = pos_enu
+    link.target = goal_enu
+    scene.hear(link.snapshot())
+    return scene
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "char"),
+    [(0, 0, "⠁"), (0, 1, "⠂"), (0, 2, "⠄"), (0, 3, "⡀"), (1, 0, "⠈"), (1, 1, "⠐"), (1, 2, "⠠"),
+     (1, 3, "⢀")],
+)  # fmt: skip
+def test_each_dot_of_a_cell_is_its_own_braille_bit(x: int, y: int, char: str) -> None:
+    canvas = Canvas(1, 1)
+    canvas.dot(x, y, "")
+    assert canvas.render().plain == char
+
+
+def test_a_diagonal_line_is_drawn_from_corner_to_corner() -> None:
+    canvas = Canvas(2, 1)
+    canvas.line((0, 0), (3, 3), "")
+    assert canvas.render().plain == "⠑⢄"
+
+
+def test_what_lies_outside_is_not_drawn_and_does_no_harm() -> None:
+    canvas = Canvas(3, 2)
+    canvas.dot(-1, 0, "")
+    canvas.dot(6, 8, "")
+    canvas.glyph(-2, -4, "X", "")
+    canvas.line((-50, -50), (-10, -10), "")
+    assert canvas.render().plain.split() == []
+
+
+@given(points, points)
+def test_a_clipped_line_lies_inside_and_on_the_line(
+    start: tuple[float, float], end: tuple[float, float]
+) -> None:
+    clipped = clip(start, end, 100.0, 60.0)
+    if clipped is None:
+        return
+    length = math.dist(start, end) or 1.0
+    for x, y in clipped:
+        assert -1e-6 <= x <= 100 + 1e-6
+        assert -1e-6 <= y <= 60 + 1e-6
+        cross = (end[0] - start[0]) * (y - start[1]) - (end[1] - start[1]) * (x - start[0])
+        assert abs(cross) / length < 1e-6
+
+
+@given(st.lists(st.tuples(st.floats(-4000, 4000), st.floats(-4000, 4000)), max_size=5))
+def test_every_point_is_inside_the_view(cloud: list[tuple[float, float]]) -> None:
+    view = fit((0.0, 0.0), cloud, 100, 60)
+    for east_m, north_m in cloud:
+        x, y = view.dots(east_m, north_m)
+        assert 0 <= x <= 100
+        assert 0 <= y <= 60
+
+
+def test_north_is_up_and_east_is_right() -> None:
+    view = fit((0.0, 0.0), [], 100, 60)
+    assert view.dots(0, 0) == (50, 30)
+    assert view.dots(1, 0)[0] > 50
+    assert view.dots(0, 1)[1] < 30
+
+
+def test_zooming_stops_at_both_ends() -> None:
+    closest, farthest = (fit((0.0, 0.0), [], 100, 60, zoom) for zoom in (-99, 99))
+    assert closest.half_height_m == pytest.approx(HALF_SPANS_M[0])
+    assert farthest.half_height_m == pytest.approx(HALF_SPANS_M[-1])
+
+
+@given(st.floats(1e-3, 1e5))
+def test_a_scale_bar_is_a_round_number_of_at_least_two_fifths(most_m: float) -> None:
+    length_m = nice_length(most_m)
+    assert 0.4 * most_m * (1 - 1e-9) <= length_m <= most_m
+    assert f"{length_m:e}"[0] in "125"
+
+
+def test_outlines_are_closed() -> None:
+    circle = outline(ipc.FenceShape("c", True, centre_en=(1.0, 2.0), radius_m=3.0))
+    assert circle[0] == pytest.approx(circle[-1])
+    assert all(math.dist(point, (1.0, 2.0)) == pytest.approx(3.0) for point in circle)
+    square = outline(ipc.FenceShape("p", True, corners_en=[(0, 0), (1, 0), (1, 1)]))
+    assert square == [(0, 0), (1, 0), (1, 1), (0, 0)]
+
+
+def test_the_map_shows_vehicle_home_and_both_goals_apart() -> None:
+    scene = scene_at((1.0, 1.0, 2.0), goal_enu=(-1.0, -1.0, 2.0))
+    scene.pending = PendingGoal((1.5, -1.0, 0.5))
+    drawing = map_panel.draw(scene, 60, 20).plain.splitlines()
+    picture = "\n".join(drawing[:-1])
+    for glyph in (map_panel.HOME, map_panel.PENDING, map_panel.ACTIVE, "↗"):
+        assert picture.count(glyph) == 1
+    assert len(drawing) == 20
+    assert all(len(row) <= 60 for row in drawing)
+
+
+@pytest.mark.parametrize(
+    ("yaw_deg", "arrow"), [(0, "↑"), (44, "↗"), (90, "→"), (180, "↓"), (-90, "←"), (359, "↑")]
+)
+def test_the_arrow_points_where_the_vehicle_heads(yaw_deg: float, arrow: str) -> None:
+    assert map_panel.arrow(yaw_deg) == arrow
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(0, 0), (7, 3), (8, 4), (200, 60)])
+def test_panels_draw_in_whatever_room_there_is(columns: int, rows: int) -> None:
+    scene = scene_at((1.0, 1.0, 2.0))
+    map_panel.draw(scene, columns, rows)
+    height_panel.draw(scene, rows)
+    map_panel.draw(Scene(), columns, rows)
+    height_panel.draw(Scene(), rows)
+
+
+def test_the_height_bar_puts_the_higher_above_the_lower() -> None:
+    scene = scene_at((0.0, 0.0, 2.5), goal_enu=(0.0, 0.0, 1.5))
+    scene.pending = PendingGoal((0.0, 0.0, 0.5))
+    rows = height_panel.draw(scene, 20).plain.splitlines()
+    order = [next(i for i, row in enumerate(rows) if mark in row) for mark in "◀◉◇"]
+    assert order == sorted(order)
+    assert rows[0].strip().startswith("3┤")
+
+
+def test_every_state_has_its_place_in_the_chart_and_one_is_lit() -> None:
+    assert {state for row in fsa_panel.ROWS for state in row} == set(State)
+    chart = fsa_panel.draw(scene_at((0.0, 0.0, 0.0)))
+    lit = [
+        chart.plain[span.start : span.end] for span in chart.spans if "reverse" in str(span.style)
+    ]
+    assert [text.strip() for text in lit] == ["GROUNDED"]
+
+
+def test_unknown_values_are_dashes_not_zeros() -> None:
+    scene = Scene()
+    scene.hear(FakeLink("silent").snapshot())
+    assert "no vehicle heard yet" in vehicle_panel.draw(scene).plain
+    scene = scene_at((0.0, 0.0, 0.0))
+    assert "active none" in vehicle_panel.goals(scene).plain
+
+
+def test_the_footer_fits_two_lines_of_eighty() -> None:
+    lines = footer(80).plain.splitlines()
+    assert len(lines) <= 2
+    assert all(len(line) <= 80 for line in lines)
+
+
+def test_no_key_is_bound_twice() -> None:
+    names = [name for key in KEYS for name in key.names]
+    assert len(names) == len(set(names))

@@ -1,0 +1,248 @@
+"""A vehicle that obeys at once and remembers what it was asked, and a bench to drive it on."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from vehicle_sim.autopilot.interface import (
+    AttitudeSetpoint,
+    Estimate,
+    Geodetic,
+    Landed,
+    PlanItem,
+    Power,
+    Result,
+    Setpoint,
+    Target,
+    Vec3,
+    VehicleEvent,
+)
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.codec import encode
+from vehicle_sim.wire.split import Counters, split
+from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
+
+HOME = Geodetic(47.397742, 8.545594, 488.0)
+MS = 1_000_000
+S = 1000 * MS
+
+
+class FakeVehicle:
+    """Every request is noted in `calls` and answered with `answers.get(name, ACCEPTED)`."""
+
+    dt_ns = 4 * MS
+
+    def __init__(self) -> None:
+        self.time_ns = 0
+        self.calls: list[tuple[object, ...]] = []
+        self.answers: dict[str, Result] = {}
+        self.pending: list[VehicleEvent] = []
+        self.armed = False
+        self.landed = Landed.ON_GROUND
+        self.custom_mode = 4 << 16 | 3 << 24
+        self.base_mode = 1
+        self.system_status = 3
+        self.origin: Geodetic | None = HOME
+        self.home: Geodetic | None = HOME
+        self.home_pos_ned: Vec3 | None = (0.0, 0.0, 0.0)
+        self.armable = True
+        self.motor_outputs = (0.0, 0.0, 0.0, 0.0)
+        self.mission_current = 0
+        self.mission_state = 1
+        self.capturing = False
+        self.images_captured = 0
+        self.plan: tuple[PlanItem, ...] = ()
+        self.power = Power(15.2, 4.0, 120.0, 96)
+        self.target = Target((0.0, 0.0, -2.0), None, 0.0)
+        self.pos_ned: Vec3 = (10.0, 20.0, -5.0)
+        self.q_ned_from_frd = (1.0, 0.0, 0.0, 0.0)
+
+    def step(self) -> None:
+        self.time_ns += self.dt_ns
+
+    def events(self) -> list[VehicleEvent]:
+        pending, self.pending = self.pending, []
+        return pending
+
+    @property
+    def estimate(self) -> Estimate:
+        return Estimate(
+            time_ns=self.time_ns,
+            pos_ned=self.pos_ned,
+            v_ned=(1.0, 0.0, 0.0),
+            q_ned_from_frd=self.q_ned_from_frd,
+            rates_frd=(0.0, 0.0, 0.0),
+            accel_frd=(0.0, 0.0, -9.8),
+            lat_deg=47.3978,
+            lon_deg=8.5459,
+            alt_amsl_m=493.0,
+            alt_rel_m=5.0,
+            heading_rad=0.0,
+            gps_ok=True,
+        )
+
+    def _note(self, name: str, *given: object) -> Result:
+        self.calls.append((name, *given))
+        return self.answers.get(name, Result.ACCEPTED)
+
+    def arm(self, force: bool) -> Result:
+        result = self._note("arm", force)
+        self.armed = self.armed or result is Result.ACCEPTED
+        return result
+
+    def disarm(self, force: bool) -> Result:
+        self.armed = False
+        return self._note("disarm", force)
+
+    def set_mode(self, base_mode: int, custom_mode: int) -> Result:
+        self.custom_mode = custom_mode
+        return self._note("set_mode", base_mode, custom_mode)
+
+    def set_mode_kind(self, kind: str) -> Result:
+        return self._note("set_mode_kind", kind)
+
+    def take_off(self, up_above_home_m: float | None) -> Result:
+        return self._note("take_off", up_above_home_m)
+
+    def land(self) -> Result:
+        return self._note("land")
+
+    def return_home(self) -> Result:
+        return self._note("return_home")
+
+    def reposition(
+        self, pos_ned: Vec3 | None, yaw_rad: float | None, speed_m_s: float | None
+    ) -> Result:
+        return self._note("reposition", pos_ned, yaw_rad, speed_m_s)
+
+    def pause(self) -> Result:
+        return self._note("pause")
+
+    def resume(self) -> Result:
+        return self._note("resume")
+
+    def change_speed(self, speed_m_s: float) -> Result:
+        return self._note("change_speed", speed_m_s)
+
+    def change_altitude(self, up_above_home_m: float) -> Result:
+        return self._note("change_altitude", up_above_home_m)
+
+    def condition_yaw(
+        self, yaw_rad: float, relative: bool, rate_rad_s: float, direction: int
+    ) -> Result:
+        return self._note("condition_yaw", yaw_rad, relative, rate_rad_s, direction)
+
+    def set_home(self, where: Geodetic | None) -> Result:
+        return self._note("set_home", where)
+
+    def set_setpoint(self, setpoint: Setpoint) -> None:
+        self._note("set_setpoint", setpoint)
+
+    def set_attitude(self, setpoint: AttitudeSetpoint) -> None:
+        self._note("set_attitude", setpoint)
+
+    def capture_image(self, interval_s: float, count: int) -> Result:
+        return self._note("capture_image", interval_s, count)
+
+    def stop_capture(self) -> Result:
+        return self._note("stop_capture")
+
+    def mission_start(self, first: int, last: int) -> Result:
+        return self._note("mission_start", first, last)
+
+    def mission_set_current(self, seq: int) -> Result:
+        if seq >= len(self.plan):
+            return Result.DENIED
+        self.mission_current = seq
+        return self._note("mission_set_current", seq)
+
+    def check_plan(self, items: tuple[PlanItem, ...]) -> tuple[int, str] | None:
+        bad = [item for item in items if item.command == 82]
+        return (bad[0].seq, "splines are not flown") if bad else None
+
+    def load_plan(self, items: tuple[PlanItem, ...]) -> None:
+        self.plan = items
+
+    def terminate(self) -> Result:
+        return self._note("terminate")
+
+    def reboot(self) -> Result:
+        return self._note("reboot")
+
+    def gcs_heard(self, wall_ns: int) -> None:
+        self._note("gcs_heard", wall_ns)
+
+    def wall(self, wall_ns: int) -> None:
+        pass
+
+    def named(self, name: str) -> list[tuple[object, ...]]:
+        """The calls of one name, without it."""
+        return [call[1:] for call in self.calls if call[0] == name]
+
+
+class Bench:
+    """One vehicle on one link, a clock, and clients that send messages and read the answers."""
+
+    def __init__(self, personality: Personality = "px4", speedup: Fraction = Fraction(1)) -> None:
+        self.vehicle = FakeVehicle()
+        self.parameters = Parameters(personality)
+        server = VehicleServer(
+            self.vehicle, PROFILES[personality], self.parameters, system=1, speedup=speedup
+        )
+        self.world = World([server], [LinkSpec()], speedup)
+        self.now_ns = 0
+        self.logs: list[Log] = []
+        self.sequence = 0
+        self.inbox: list[m.Message] = []
+        self.raw = b""
+
+    def send(
+        self,
+        message: m.Message,
+        system: int = 255,
+        component: int = 190,
+        peer: str = "ground",
+        sequence: int | None = None,
+    ) -> list[m.Message]:
+        """What comes back to that peer at once."""
+        self.sequence += 1
+        used = self.sequence if sequence is None else sequence
+        data = encode(message, used & 0xFF, system, component)
+        return self._take(self.world.handle(Datagram(0, peer, data), self.now_ns), peer)
+
+    def advance(self, ns: int, peer: str = "ground") -> list[m.Message]:
+        """Let time pass; what that peer hears meanwhile."""
+        heard: list[m.Message] = []
+        end_ns = self.now_ns + ns
+        while self.now_ns < end_ns:
+            self.now_ns = min(end_ns, max(self.now_ns + 1, self.world.deadline_ns))
+            heard += self._take(self.world.handle(Wake(), self.now_ns), peer)
+        return heard
+
+    def _take(self, outputs: list[Transmit | Log], peer: str) -> list[m.Message]:
+        heard: list[m.Message] = []
+        counters = Counters()
+        for output in outputs:
+            if isinstance(output, Log):
+                self.logs.append(output)
+                continue
+            self.raw += output.data
+            frames = split(output.data, counters)
+            if output.peer == peer:
+                heard += [known for frame in frames if (known := frame.message()) is not None]
+        assert counters == Counters(frames=counters.frames)
+        return heard
+
+
+def acks(heard: list[m.Message]) -> list[tuple[int, int]]:
+    """Command and result of every COMMAND_ACK."""
+    return [(ack.command, ack.result) for ack in heard if isinstance(ack, m.CommandAck)]
+
+
+def long(command: int, *params: float, confirmation: int = 0, target: int = 1) -> m.CommandLong:
+    p1, p2, p3, p4, p5, p6, p7 = (*params, *(0.0,) * (7 - len(params)))
+    return m.CommandLong(p1, p2, p3, p4, p5, p6, p7, command, target, 1, confirmation)

@@ -1,0 +1,127 @@
+"""The parameter protocol: every SET is answered with the value that holds."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S
+from vehicle_sim.services.parameters import decode, encode
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import ParamType
+
+
+def values(heard: list[m.Message]) -> list[m.ParamValue]:
+    return [each for each in heard if isinstance(each, m.ParamValue)]
+
+
+def name(value: m.ParamValue) -> str:
+    return value.param_id.rstrip(b"\0").decode()
+
+
+def read(text: str, index: int = -1) -> m.ParamRequestRead:
+    return m.ParamRequestRead(index, 1, 1, text.encode())
+
+
+def as_float(whole: int) -> float:
+    return float(struct.unpack("<f", struct.pack("<i", whole))[0])
+
+
+def test_a_list_comes_paced_complete_and_in_order() -> None:
+    bench = Bench("ardupilot")
+    first = values(bench.send(m.ParamRequestList(1, 1)))
+    rest = values(bench.advance(10 * MS))
+    assert len(first) + len(rest) <= 20, "not in one burst"
+    rest += values(bench.advance(2 * S))
+    total = len(bench.parameters)
+    assert [value.param_index for value in first + rest] == list(range(total))
+    assert {value.param_count for value in rest} == {total}
+
+
+def test_px4_begins_its_list_with_the_hash_and_a_client_that_knows_it_stops_the_list() -> None:
+    bench = Bench("px4")
+    (first,) = values(bench.send(m.ParamRequestList(1, 1)))
+    assert name(first) == "_HASH_CHECK"
+    bench.send(m.ParamSet(first.param_value, 1, 1, first.param_id, first.param_type))
+    assert values(bench.advance(1 * S)) == []
+
+
+def test_the_hash_changes_with_a_value() -> None:
+    bench = Bench("px4")
+    (before,) = values(bench.send(read("_HASH_CHECK")))
+    bench.parameters.set("MIS_TAKEOFF_ALT", 7.0)
+    (after,) = values(bench.send(read("_HASH_CHECK")))
+    assert before.param_value != after.param_value
+
+
+def test_a_parameter_is_read_by_name_and_by_index() -> None:
+    bench = Bench("px4")
+    (by_name,) = values(bench.send(read("MIS_TAKEOFF_ALT")))
+    (by_index,) = values(bench.send(read("", by_name.param_index)))
+    assert by_name == by_index
+    assert by_name.param_value == bench.parameters.get("MIS_TAKEOFF_ALT")
+
+
+def test_integers_travel_as_bytes_on_px4_and_as_numbers_on_ardupilot() -> None:
+    (px4,) = values(Bench("px4").send(read("MAV_SYS_ID")))
+    assert (px4.param_value, px4.param_type) == (as_float(1), ParamType.INT32)
+    (ardupilot,) = values(Bench("ardupilot").send(read("SYSID_THISMAV")))
+    assert ardupilot.param_value == 1.0
+
+
+def test_set_is_answered_with_the_new_value() -> None:
+    bench = Bench("px4")
+    asked = m.ParamSet(4.0, 1, 1, b"MIS_TAKEOFF_ALT", ParamType.REAL32)
+    (told,) = values(bench.send(asked))
+    assert told.param_value == 4.0
+    assert bench.parameters.get("MIS_TAKEOFF_ALT") == 4.0
+
+
+def test_ardupilot_leaves_the_index_out_of_the_echo() -> None:
+    bench = Bench("ardupilot")
+    (told,) = values(bench.send(m.ParamSet(2.0, 1, 1, b"SYSID_THISMAV", 4)))
+    assert (told.param_index, told.param_value) == (65535, 2.0)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e30, -1.0])
+def test_a_set_that_is_refused_is_answered_with_the_old_value(value: float) -> None:
+    bench = Bench("px4")
+    old = bench.parameters.get("MIS_TAKEOFF_ALT")
+    asked = m.ParamSet(value, 1, 1, b"MIS_TAKEOFF_ALT", ParamType.REAL32)
+    (told,) = values(bench.send(asked))
+    assert told.param_value == bench.parameters.get("MIS_TAKEOFF_ALT") == old
+    assert [line.level for line in bench.logs if "MIS_TAKEOFF_ALT" in line.text] == ["warning"]
+
+
+def test_px4_refuses_a_value_of_the_wrong_type() -> None:
+    bench = Bench("px4")
+    (told,) = values(bench.send(m.ParamSet(5.0, 1, 1, b"MAV_SYS_ID", ParamType.REAL32)))
+    assert told.param_value == as_float(1)
+
+
+def test_a_parameter_that_there_is_not() -> None:
+    """ArduPilot says so, PX4 is silent."""
+    (told,) = Bench("ardupilot").send(read("NO_SUCH"))[-1:]
+    assert isinstance(told, m.ParamError)
+    assert told.error == 1
+    heard = Bench("px4").send(read("NO_SUCH"))
+    assert not [each for each in heard if isinstance(each, m.ParamError | m.ParamValue)]
+
+
+def test_a_change_is_told_to_every_client() -> None:
+    bench = Bench("px4")
+    bench.send(m.Heartbeat(0, 6, 8, 0, 4, 3), peer="one")
+    asked = m.ParamSet(4.0, 1, 1, b"MIS_TAKEOFF_ALT", ParamType.REAL32)
+    bench.send(asked, peer="two")
+    assert bench.world.counters(0, "one") is not None
+    assert bench.raw.count(b"MIS_TAKEOFF_ALT") == 2
+
+
+@given(st.integers(-(2**31), 2**31 - 1).filter(lambda whole: whole & 0x7F800000 != 0x7F800000))
+def test_bytes_of_an_integer_come_back_whole(whole: int) -> None:
+    """Without those that are NaNs as floats, which processors may change on the way."""
+    assert decode(encode(whole, ParamType.INT32, True), ParamType.INT32, True) == whole

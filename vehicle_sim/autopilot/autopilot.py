@@ -1,0 +1,310 @@
+"""One vehicle as the services see it: the `Vehicle` of interface.py.
+
+Here is what it can be asked.  Requests answer at once; what they lead to is seen in the state.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from vehicle_sim.autopilot import plan as plans
+from vehicle_sim.autopilot.guided import AnySetpoint, Guided, is_sound
+from vehicle_sim.autopilot.interface import (
+    AttitudeSetpoint,
+    Geodetic,
+    PlanItem,
+    Result,
+    Setpoint,
+    Vec3,
+    Vehicle,
+)
+from vehicle_sim.autopilot.modes import KINDS, MODES, Behaviour, Flag, Mode, Personality, by_number
+from vehicle_sim.autopilot.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.tasks import Hold
+from vehicle_sim.autopilot.view import View
+
+_LOWEST_GOAL_UP_M = 0.5
+_FASTEST_M_S = 20.0
+
+
+class Autopilot(View):
+    """`Autopilot(personality, home, seed, index, params)`; `home` is where it stands at boot.
+
+    Local NED has its origin there; `index` tells vehicles of one seed apart.
+    """
+
+    # ------------------------------------------------------------------ arming and modes
+
+    @property
+    def _not_now(self) -> Result:
+        """How the personality answers what its own checks refuse."""
+        return Result.FAILED if self.personality == "ardupilot" else Result.TEMPORARILY_REJECTED
+
+    def arm(self, force: bool) -> Result:
+        if self._armed:
+            return Result.ACCEPTED
+        if self._terminated:
+            return Result.DENIED
+        reason = self._why_not_arm()
+        if reason is not None and not force:
+            self._say(2, reason)
+            return self._not_now
+        self._armed = True
+        self._auto_disarm.on_ground(False, self.time_ns)
+        if self._origin is not None:
+            self.move_home(None)
+        self._task.begin(self._look_around(), self._pilot.heading)
+        self._pilot.rest()
+        self._say(6, "Arming motors" if self.personality == "ardupilot" else "Armed by command")
+        return Result.ACCEPTED
+
+    def disarm(self, force: bool) -> Result:
+        if not self._armed:
+            return Result.ACCEPTED
+        if self._pilot.flying and not force:
+            self._say(4, "Disarming denied: not landed")
+            return Result.FAILED if self.personality == "ardupilot" else Result.DENIED
+        word = "Disarming motors" if self.personality == "ardupilot" else "Disarmed by command"
+        self._disarm(word)
+        return Result.ACCEPTED
+
+    def set_mode(self, base_mode: int, custom_mode: int) -> Result:
+        if not base_mode & Flag.CUSTOM_MODE_ENABLED:
+            return Result.UNSUPPORTED
+        mode = by_number(self.personality, custom_mode)
+        if mode is None:
+            self._say(4, f"No such mode: {custom_mode}")
+            return Result.DENIED if self.personality == "px4" else Result.FAILED
+        return self._change_mode(mode)
+
+    def set_mode_kind(self, kind: str) -> Result:
+        name = KINDS[self.personality].get(kind)
+        if name is None:
+            return Result.UNSUPPORTED
+        return self._change_mode(MODES[self.personality][name])
+
+    def _change_mode(self, mode: Mode) -> Result:
+        # Asked to hold while it holds it stops anew: it may be on its way to a reposition goal.
+        same = mode is self._mode and self._paused is None
+        if same and mode.behaviour is not Behaviour.HOLD:
+            return Result.ACCEPTED
+        if mode.needs_position and not self._position_ok:
+            self._say(4, f"{mode.name} refused: no position estimate")
+            return self._not_now
+        if mode.behaviour is Behaviour.MISSION and self._mission.empty:
+            self._say(4, f"{mode.name} refused: no mission")
+            return Result.DENIED if self.personality == "px4" else Result.FAILED
+        if mode.name == "OFFBOARD":
+            return self._ask_offboard(mode)
+        self._enter(mode)
+        return Result.ACCEPTED
+
+    def _ask_offboard(self, mode: Mode) -> Result:
+        """A stream of more than 2 Hz is a must; the mode follows when it has lasted a second."""
+        wall_ns = self._sense().wall_ns
+        if not self._stream.alive(wall_ns):
+            self._say(4, "Offboard refused: no setpoint stream")
+            return Result.TEMPORARILY_REJECTED
+        if self._stream.proven(wall_ns):
+            self._enter(mode)
+        else:
+            self._offboard_wanted = True
+        return Result.ACCEPTED
+
+    # -------------------------------------------------------------------------- flights
+
+    def take_off(self, up_above_home_m: float | None) -> Result:
+        up_m = up_above_home_m
+        if up_m is None:
+            up_m = self.parameters.si(Quantity.TAKEOFF_UP_M)
+        if not isfinite(up_m) or up_m < _LOWEST_GOAL_UP_M:
+            return Result.DENIED
+        if self._armed and self._pilot.flying:
+            return Result.ACCEPTED
+        if not self._position_ok:
+            return self._not_now
+        if self.personality == "px4":
+            self._enter(MODES["px4"]["AUTO.TAKEOFF"], self._take_off_task(up_m))
+            return Result.ACCEPTED
+        if not self._armed or not isinstance(self._task, Guided):
+            self._say(4, "Take-off refused: arm in GUIDED first")
+            return Result.FAILED
+        home_d = self._home_ned[2] if self._home_ned is not None else 0.0
+        self._task.take_off(home_d - up_m, self._look_around(), self._pilot.heading)
+        return Result.ACCEPTED
+
+    def land(self) -> Result:
+        return self.set_mode_kind("land")
+
+    def return_home(self) -> Result:
+        return self.set_mode_kind("return")
+
+    def reposition(
+        self, pos_ned: Vec3 | None, yaw_rad: float | None, speed_m_s: float | None
+    ) -> Result:
+        if not self._pilot.flying:
+            return Result.DENIED
+        if pos_ned is not None and not all(map(isfinite, pos_ned)):
+            return Result.DENIED
+        if speed_m_s is not None and speed_m_s > 0.0:
+            self.cruise_at(speed_m_s)
+        goal = pos_ned if pos_ned is not None else self._look_around().stop_ned
+        if self.personality == "px4":
+            self._enter_kind("hold", Hold(goal, yaw_rad))
+            return Result.ACCEPTED
+        if not isinstance(self._task, Guided):
+            self._enter_kind("guided")
+        self._stream.heard(Setpoint(pos_ned=goal, yaw_rad=yaw_rad), self._sense().wall_ns)
+        return Result.ACCEPTED
+
+    def pause(self) -> Result:
+        """PX4 goes from the mission to AUTO.LOITER; ArduCopter stops within AUTO or GUIDED."""
+        if not self._pilot.flying:
+            return Result.DENIED
+        if self._paused is not None:
+            return Result.ACCEPTED
+        task = self._task
+        if self.personality == "px4":
+            self._enter_kind("hold")
+            self._paused = task if task is self._mission else None
+            return Result.ACCEPTED
+        if self._mode.behaviour not in (Behaviour.MISSION, Behaviour.GUIDED):
+            return Result.DENIED
+        self._enter(self._mode, Hold())
+        self._paused = task
+        return Result.ACCEPTED
+
+    def resume(self) -> Result:
+        task = self._paused
+        if task is None:
+            return Result.DENIED
+        if self.personality == "px4":
+            self._enter_kind("mission", task)
+        else:
+            self._enter(self._mode, task)
+        return Result.ACCEPTED
+
+    def change_speed(self, speed_m_s: float) -> Result:
+        """Metres per second over ground; -1 keeps the speed, -2 goes back to the default."""
+        if speed_m_s == -1.0:
+            return Result.ACCEPTED
+        if speed_m_s == -2.0:
+            self.cruise_at(None)
+            return Result.ACCEPTED
+        if not isfinite(speed_m_s) or speed_m_s <= 0.0:
+            return Result.DENIED
+        self.cruise_at(min(speed_m_s, _FASTEST_M_S))
+        return Result.ACCEPTED
+
+    def change_altitude(self, up_above_home_m: float) -> Result:
+        if not self._pilot.flying or self._home_ned is None or not isfinite(up_above_home_m):
+            return Result.DENIED
+        s = self._look_around()
+        goal = self._task.target.pos_ned or s.stop_ned
+        return self.reposition((goal[0], goal[1], s.home_ned[2] - up_above_home_m), None, None)
+
+    def condition_yaw(
+        self, yaw_rad: float, relative: bool, rate_rad_s: float, direction: int
+    ) -> Result:
+        if not self._pilot.flying or not isfinite(yaw_rad):
+            return Result.DENIED
+        heading = self._pilot.heading
+        if relative:
+            yaw_rad = heading.yaw_rad + (-yaw_rad if direction < 0 else yaw_rad)
+        heading.turn(yaw_rad, rate_rad_s, direction)
+        return Result.ACCEPTED
+
+    def set_home(self, where: Geodetic | None) -> Result:
+        if self._origin is None:
+            return self._not_now
+        if where is not None and not _on_earth(where):
+            return Result.DENIED
+        self.move_home(None if where is None else self._projection.to_local(where))
+        return Result.ACCEPTED
+
+    def set_setpoint(self, setpoint: Setpoint) -> None:
+        self._hear(setpoint)
+
+    def set_attitude(self, setpoint: AttitudeSetpoint) -> None:
+        self._hear(setpoint)
+
+    def _hear(self, setpoint: AnySetpoint) -> None:
+        """What is not sound is as good as not sent; a take-off in GUIDED is not disturbed."""
+        taking_off = isinstance(self._task, Guided) and self._task.taking_off
+        if is_sound(setpoint) and not taking_off:
+            self._stream.heard(setpoint, self._sense().wall_ns)
+
+    # --------------------------------------------------------------------------- camera
+
+    def capture_image(self, interval_s: float, count: int) -> Result:
+        if count < 0 or not isfinite(interval_s) or interval_s < 0.0:
+            return Result.DENIED
+        if self._camera.busy:
+            return Result.TEMPORARILY_REJECTED
+        self.take_pictures(interval_s, count)
+        return Result.ACCEPTED
+
+    def stop_capture(self) -> Result:
+        self.stop_pictures()
+        return Result.ACCEPTED
+
+    # -------------------------------------------------------------------------- mission
+
+    def check_plan(self, items: tuple[PlanItem, ...]) -> tuple[int, str] | None:
+        return plans.check(items, self.personality)
+
+    def load_plan(self, items: tuple[PlanItem, ...]) -> None:
+        self._mission.load(items)
+        if self._task is self._mission:
+            if not self._mission.empty:
+                self._mission.begin(self._look_around(), self._pilot.heading)
+            else:
+                self._enter_kind("hold")
+
+    def mission_start(self, first: int, last: int) -> Result:
+        mission = self._mission
+        if mission.empty or (first > 0 and not mission.jump_to(first)):
+            return Result.DENIED
+        mission.limit(last)
+        if self.personality == "ardupilot" and not self._pilot.flying and not mission.takes_off:
+            self._say(4, "Mission refused: missing takeoff item")
+            return Result.FAILED
+        result = self.set_mode_kind("mission")
+        if result is Result.ACCEPTED:
+            self._auto_armed = True
+            if self.personality == "px4":
+                result = self.arm(False)
+        return result
+
+    def mission_set_current(self, seq: int) -> Result:
+        if not self._mission.jump_to(seq):
+            return Result.DENIED
+        return Result.ACCEPTED
+
+    # ------------------------------------------------------------------------ last things
+
+    def terminate(self) -> Result:
+        self._terminate()
+        return Result.ACCEPTED
+
+    def reboot(self) -> Result:
+        """Starts anew on the ground, disarmed; the clock goes on, so nobody's timers jump back."""
+        if self._armed:
+            return Result.DENIED
+        self._restart()
+        return Result.ACCEPTED
+
+
+def _on_earth(where: Geodetic) -> bool:
+    return abs(where.lat_deg) <= 90.0 and abs(where.lon_deg) <= 180.0 and isfinite(where.alt_amsl_m)
+
+
+def create(
+    personality: Personality,
+    home: Geodetic,
+    seed: int,
+    index: int = 0,
+    params: Parameters | None = None,
+) -> Vehicle:
+    """A vehicle, for whoever needs no more than the contract."""
+    return Autopilot(personality, home, seed, index, params)

@@ -1,0 +1,120 @@
+"""What a task asks of the pilot, and what it is told of the flight."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
+
+from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Target, Vec3
+from vehicle_sim.autopilot.trajectory import Limits
+
+STILL: Vec3 = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class FlyTo:
+    """To a goal [m, NED] that itself moves at `v_ned`; along a line where `straight`."""
+
+    pos_ned: Vec3
+    limits: Limits
+    v_ned: Vec3 = STILL
+    straight: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class FlyVelocity:
+    v_ned: Vec3
+    limits: Limits
+
+
+@dataclass(frozen=True, slots=True)
+class FlyAcceleration:
+    a_ned: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class FlyLevel:
+    """Level, at this height; horizontally free."""
+
+    down_m: float
+    limits: Limits
+
+
+@dataclass(frozen=True, slots=True)
+class FlyAttitude:
+    """An attitude or body rates from outside.
+
+    `thrust_is_climb`: 0.5 keeps the height and the rest is climb rate (ArduCopter's GUIDED);
+    otherwise thrust is a part of full throttle.
+    """
+
+    setpoint: AttitudeSetpoint
+    thrust_is_climb: bool
+    limits: Limits
+
+
+Demand: TypeAlias = FlyTo | FlyVelocity | FlyAcceleration | FlyLevel | FlyAttitude
+
+
+class Situation:
+    """The flight as the estimator and the pilot see it, rewritten at 50 Hz.
+
+    `stop_ned` is where the vehicle comes to rest if it brakes now.  `limits` are those of the
+    vehicle's own flights.  `flying` = off the ground, by the land detector.
+    """
+
+    __slots__ = (
+        "flying",
+        "heading_rad",
+        "home_ned",
+        "limits",
+        "pos_ned",
+        "stop_ned",
+        "time_ns",
+        "v_ned",
+        "wall_ns",
+    )
+
+    def __init__(self, limits: Limits) -> None:
+        self.time_ns = 0
+        self.wall_ns = 0
+        self.pos_ned: Vec3 = STILL
+        self.v_ned: Vec3 = STILL
+        self.stop_ned: Vec3 = STILL
+        self.home_ned: Vec3 = STILL
+        self.heading_rad = 0.0
+        self.limits = limits
+        self.flying = False
+
+
+class Turner(Protocol):
+    """Where a task sets the heading; without a word it stays as it is."""
+
+    def turn_to(self, yaw_rad: float) -> None: ...
+    def turn_by_rate(self, rate_rad_s: float) -> None: ...
+
+
+class Task(Protocol):
+    """What a mode flies.  `begin` when it is entered, then `update` at 50 Hz while armed."""
+
+    @property
+    def landed_word(self) -> Landed:
+        """What EXTENDED_SYS_STATE says while flying: IN_AIR, TAKEOFF or LANDING."""
+        ...
+
+    @property
+    def done(self) -> bool:
+        """Nothing left to do but to stay."""
+        ...
+
+    @property
+    def target(self) -> Target:
+        """What is flown to, for POSITION_TARGET_LOCAL_NED."""
+        ...
+
+    def lifts_off(self, s: Situation) -> bool:
+        """Whether it takes the vehicle off the ground now."""
+        ...
+
+    def begin(self, s: Situation, turner: Turner) -> None: ...
+    def update(self, s: Situation, turner: Turner) -> Demand: ...

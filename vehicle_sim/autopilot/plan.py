@@ -1,0 +1,195 @@
+"""What mission items mean: which can be flown, where they are, and what of them is refused."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+from math import isfinite
+
+from vehicle_sim.autopilot.geo import Projection
+from vehicle_sim.autopilot.interface import Geodetic, PlanItem, Vec3
+from vehicle_sim.autopilot.modes import Personality
+
+
+class Cmd:
+    """MAV_CMD of the items that are understood, with their numbers."""
+
+    WAYPOINT = 16
+    LOITER_UNLIM = 17
+    LOITER_TURNS = 18
+    LOITER_TIME = 19
+    RETURN = 20
+    LAND = 21
+    TAKEOFF = 22
+    DELAY = 93
+    CONDITION_DELAY = 112
+    CONDITION_YAW = 115
+    JUMP = 177
+    CHANGE_SPEED = 178
+    SET_HOME = 179
+    ROI_LOCATION = 195
+    ROI_NONE = 197
+    ROI = 201
+    DIGICAM_CONTROL = 203
+    MOUNT_CONTROL = 205
+    CAM_TRIGG_DIST = 206
+    FENCE_ENABLE = 207
+    SET_CAMERA_MODE = 530
+    SET_CAMERA_ZOOM = 531
+    SET_CAMERA_FOCUS = 532
+    GIMBAL_PITCHYAW = 1000
+    IMAGE_START = 2000
+    IMAGE_STOP = 2001
+    FENCE_RETURN_POINT = 5000
+
+
+class Kind(Enum):
+    """FLOWN: takes the vehicle somewhere.  DONE: happens at once.  NOTHING: no such equipment."""
+
+    FLOWN = auto()
+    WAITED = auto()
+    DONE = auto()
+    NOTHING = auto()
+
+
+KINDS: dict[int, Kind] = {
+    Cmd.WAYPOINT: Kind.FLOWN,
+    Cmd.LOITER_UNLIM: Kind.FLOWN,
+    Cmd.LOITER_TURNS: Kind.FLOWN,
+    Cmd.LOITER_TIME: Kind.FLOWN,
+    Cmd.RETURN: Kind.FLOWN,
+    Cmd.LAND: Kind.FLOWN,
+    Cmd.TAKEOFF: Kind.FLOWN,
+    Cmd.DELAY: Kind.WAITED,
+    Cmd.CONDITION_DELAY: Kind.WAITED,
+    Cmd.CONDITION_YAW: Kind.WAITED,
+    Cmd.JUMP: Kind.DONE,
+    Cmd.CHANGE_SPEED: Kind.DONE,
+    Cmd.SET_HOME: Kind.DONE,
+    Cmd.ROI_LOCATION: Kind.DONE,
+    Cmd.ROI_NONE: Kind.DONE,
+    Cmd.ROI: Kind.DONE,
+    Cmd.DIGICAM_CONTROL: Kind.DONE,
+    Cmd.CAM_TRIGG_DIST: Kind.DONE,
+    Cmd.IMAGE_START: Kind.DONE,
+    Cmd.IMAGE_STOP: Kind.DONE,
+    Cmd.FENCE_ENABLE: Kind.DONE,
+    Cmd.MOUNT_CONTROL: Kind.NOTHING,
+    Cmd.SET_CAMERA_MODE: Kind.NOTHING,
+    Cmd.SET_CAMERA_ZOOM: Kind.NOTHING,
+    Cmd.SET_CAMERA_FOCUS: Kind.NOTHING,
+    Cmd.GIMBAL_PITCHYAW: Kind.NOTHING,
+    Cmd.FENCE_RETURN_POINT: Kind.NOTHING,
+}
+
+_PLACED = frozenset(
+    {Cmd.WAYPOINT, Cmd.LOITER_UNLIM, Cmd.LOITER_TURNS, Cmd.LOITER_TIME, Cmd.LAND, Cmd.TAKEOFF}
+) | {Cmd.ROI_LOCATION}
+_HERE_IF_ZERO = frozenset({Cmd.LAND, Cmd.TAKEOFF, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME})
+
+_GLOBAL = frozenset({0, 5})  # MAV_FRAME_GLOBAL, _INT: metres above mean sea level
+_RELATIVE = frozenset({3, 6})  # MAV_FRAME_GLOBAL_RELATIVE_ALT, _INT: metres above home
+_LOCAL_NED = 1
+_MISSION = 2  # without coordinates
+_NO_PLACE = 0x7FFFFFFF
+
+
+@dataclass(frozen=True, slots=True)
+class Datum:
+    """What positions are relative to."""
+
+    projection: Projection
+    origin: Geodetic
+    home_ned: Vec3
+
+
+def first_of(personality: Personality) -> int:
+    """The first item that is flown: ArduPilot keeps home at index 0."""
+    return 1 if personality == "ardupilot" else 0
+
+
+def check(items: tuple[PlanItem, ...], personality: Personality) -> tuple[int, str] | None:
+    """(seq, why) of the first item that cannot be flown, None when all can."""
+    for index, item in enumerate(items):
+        if index < first_of(personality):
+            continue
+        why = _why_not(item, len(items), first_of(personality))
+        if why is not None:
+            return (item.seq, why)
+    return None
+
+
+def _why_not(item: PlanItem, count: int, first: int) -> str | None:
+    if item.command not in KINDS:
+        return f"command {item.command} is not supported"
+    if item.command in _PLACED:
+        if item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED}:
+            return f"frame {item.frame} is not supported"
+        if not isfinite(item.z):
+            return "the altitude is not a number"
+        if item.frame != _LOCAL_NED and not _placeless(item) and not _on_earth(item):
+            return "the position is not on Earth"
+        if _placeless(item) and item.command not in _HERE_IF_ZERO:
+            return "the position is missing"
+    elif item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED, _MISSION}:
+        return f"frame {item.frame} is not supported"
+    return _why_not_values(item, count, first)
+
+
+def _why_not_values(item: PlanItem, count: int, first: int) -> str | None:
+    match item.command:
+        case Cmd.JUMP:
+            if not isfinite(item.p1) or not first <= item.p1 < count:
+                return f"jump to item {item.p1:g}, which is not there"
+            if not isfinite(item.p2) or item.p2 < -1:
+                return f"{item.p2:g} repetitions"
+        case Cmd.CHANGE_SPEED:
+            if not isfinite(item.p2) or (item.p2 <= 0.0 and item.p2 not in (-1.0, -2.0)):
+                return f"speed {item.p2:g} m/s"
+        case Cmd.WAYPOINT | Cmd.LOITER_TIME | Cmd.DELAY | Cmd.CONDITION_DELAY:
+            if isfinite(item.p1) and item.p1 < 0.0:
+                return f"time {item.p1:g} s"
+        case Cmd.LOITER_TURNS:
+            if not isfinite(item.p1) or item.p1 <= 0.0:
+                return f"{item.p1:g} turns"
+        case Cmd.CONDITION_YAW:
+            if not isfinite(item.p1):
+                return "the heading is not a number"
+        case Cmd.FENCE_ENABLE:
+            if item.p1 != 0.0:
+                return "this vehicle has no geofence"
+        case Cmd.ROI:
+            if item.p1 not in (0.0, 3.0):
+                return f"region of interest of mode {item.p1:g}"
+        case Cmd.IMAGE_START:
+            if isfinite(item.p3) and item.p3 < 0.0:
+                return f"{item.p3:g} pictures"
+        case _:
+            pass
+    return None
+
+
+def _placeless(item: PlanItem) -> bool:
+    if item.frame == _LOCAL_NED:
+        return False
+    return (item.x == 0 and item.y == 0) or item.x == _NO_PLACE or item.y == _NO_PLACE
+
+
+def _on_earth(item: PlanItem) -> bool:
+    return abs(item.x) <= 900_000_000 and abs(item.y) <= 1_800_000_000
+
+
+def place_of(item: PlanItem, datum: Datum, here_ned: Vec3) -> Vec3:
+    """Where the item is [m, NED]; without coordinates: over `here_ned`, at its height."""
+    if item.frame == _LOCAL_NED:
+        return (item.x * 1e-4, item.y * 1e-4, item.z)
+    if item.frame in _GLOBAL:
+        alt_amsl_m = item.z
+        down = datum.origin.alt_amsl_m - item.z
+    else:
+        down = datum.home_ned[2] - item.z
+        alt_amsl_m = datum.origin.alt_amsl_m - down
+    if _placeless(item):
+        return (here_ned[0], here_ned[1], down)
+    north, east, _ = datum.projection.to_local(Geodetic(item.x * 1e-7, item.y * 1e-7, alt_amsl_m))
+    return (north, east, down)

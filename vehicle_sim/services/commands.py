@@ -1,0 +1,127 @@
+"""COMMAND_LONG and COMMAND_INT: one table, one final ack for each frame.
+
+A frame is a *retry* if it repeats the last one of the same sender and command: the same frame
+again (a duplicate on the way: equal sequence number), or the same parameters with a
+`confirmation` above 0 within `RETRY_NS`.  A retry has no second effect: while the command is in
+progress it is answered IN_PROGRESS, afterwards with the result that the first one had.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from vehicle_sim.autopilot.interface import CommandDone, Result
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import Cmd
+
+from .effects import Client, Effect, Note, Send
+from .flight_commands import FLIGHT
+from .info_commands import INFO
+from .orders import Answer, Order, from_int, from_long
+from .ports import Desk, Entry, RefusedError
+
+RETRY_NS: Final = 3_500_000_000
+"""MAVSDK repeats after 0.5 s, QGroundControl after 3 s."""
+
+REMEMBERED_MAX: Final = 256
+"""Senders and commands, the oldest forgotten first."""
+
+TABLE: Final[dict[Cmd, Entry]] = {**FLIGHT, **INFO}
+"""Every command that this vehicle understands; all others are UNSUPPORTED."""
+
+
+@dataclass(slots=True)
+class _Memory:
+    """The last frame of one sender and command."""
+
+    asked: m.CommandLong | m.CommandInt  # with confirmation 0
+    sequence: int
+    heard_ns: int
+    result: Result
+
+
+class Commands:
+    """Wall time goes in; acks, and what follows them, come out."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+        self._memory: dict[tuple[Client, int], _Memory] = {}
+
+    def handle(
+        self, client: Client, sequence: int, asked: m.CommandLong | m.CommandInt, now_ns: int
+    ) -> list[Effect]:
+        confirmation = 0
+        if isinstance(asked, m.CommandLong):
+            confirmation = asked.confirmation
+            asked = asked._replace(confirmation=0)
+        key = (client, asked.command)
+        known = self._memory.get(key)
+        if known is not None and _is_retry(known, asked, sequence, confirmation, now_ns):
+            known.sequence, known.heard_ns = sequence, now_ns
+            return [self._ack(client, asked.command, known.result)]
+        order = (
+            from_long(client, asked)
+            if isinstance(asked, m.CommandLong)
+            else from_int(client, asked)
+        )
+        answer = self._answer(order)
+        while len(self._memory) >= REMEMBERED_MAX:
+            del self._memory[next(iter(self._memory))]
+        self._memory[key] = _Memory(asked, sequence, now_ns, answer.result)
+        return [self._ack(client, asked.command, answer.result), *answer.after]
+
+    def done(self, event: CommandDone) -> list[Effect]:
+        """A command that was IN_PROGRESS has ended."""
+        effects: list[Effect] = []
+        for (client, command), known in self._memory.items():
+            if command == event.command and known.result is Result.IN_PROGRESS:
+                known.result = event.result
+                effects.append(self._ack(client, command, event.result))
+        return effects
+
+    def forget(self, channel: int) -> None:
+        """The channel is gone."""
+        self._memory = {
+            key: known for key, known in self._memory.items() if key[0].channel != channel
+        }
+
+    def _answer(self, order: Order) -> Answer:
+        known = order.command in Cmd.__members__.values()
+        entry = TABLE.get(Cmd(order.command)) if known else None
+        if entry is None:
+            note = Note("warning", f"command {order.command} is not supported")
+            return Answer(Result.UNSUPPORTED, (note,))
+        if entry.place and not order.global_frame:
+            return Answer(Result.UNSUPPORTED_MAV_FRAME)
+        try:
+            return entry.handler(self._desk, order.located if entry.place else order)
+        except RefusedError as refusal:
+            level = "debug" if order.command in INFO else "warning"
+            note = Note(level, f"{Cmd(order.command).name} refused: {refusal}")
+            return Answer(refusal.result, (note,))
+
+    def _ack(self, client: Client, command: int, result: Result) -> Send:
+        ack = m.CommandAck(
+            command=command,
+            result=result,
+            progress=255 if result is Result.IN_PROGRESS else 0,
+            target_system=client.system,
+            target_component=client.component,
+        )
+        return Send(client.channel, ack)
+
+
+def _is_retry(
+    known: _Memory,
+    asked: m.CommandLong | m.CommandInt,
+    sequence: int,
+    confirmation: int,
+    now_ns: int,
+) -> bool:
+    """Compared by `repr`, to which one NaN equals another."""
+    return (
+        now_ns - known.heard_ns <= RETRY_NS
+        and (confirmation > 0 or sequence == known.sequence)
+        and repr(known.asked) == repr(asked)
+    )

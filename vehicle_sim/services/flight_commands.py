@@ -1,0 +1,218 @@
+"""Commands that move the vehicle or change how it flies."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from vehicle_sim.autopilot.geo import projection
+from vehicle_sim.autopilot.interface import Geodetic, Result, Vec3
+from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, Cmd
+
+from .orders import Answer, Order
+from .ports import Desk, Entry, RefusedError
+from .setpoints import FARTHEST
+
+FORCE: Final = 21196.0
+
+
+def _finite(value: float, what: str) -> float:
+    if not abs(value) <= FARTHEST:
+        raise RefusedError(Result.DENIED, f"{what} ({value}) is not finite, or beyond all measure")
+    return value
+
+
+def _home(desk: Desk) -> Geodetic:
+    if desk.vehicle.home is None:
+        raise RefusedError(Result.DENIED, "there is no home yet")
+    return desk.vehicle.home
+
+
+def _arm_disarm(desk: Desk, order: Order) -> Answer:
+    force = order.p2 == FORCE
+    if order.p1 == 1.0:
+        return Answer(desk.vehicle.arm(force))
+    if order.p1 == 0.0:
+        return Answer(desk.vehicle.disarm(force))
+    raise RefusedError(Result.DENIED, f"{order.p1} is neither arm (1) nor disarm (0)")
+
+
+def _take_off(desk: Desk, order: Order) -> Answer:
+    """px4: AMSL, anything at or below home or NaN = the default; ardupilot: above home."""
+    if not desk.profile.takeoff_amsl or order.relative:
+        return Answer(desk.vehicle.take_off(_finite(order.p7, "the height")))
+    if math.isnan(order.p7):
+        return Answer(desk.vehicle.take_off(None))
+    up_m = _finite(order.p7, "the height") - _home(desk).alt_amsl_m
+    return Answer(desk.vehicle.take_off(up_m if up_m > 0.0 else None))
+
+
+def _land(desk: Desk, order: Order) -> Answer:
+    return Answer(desk.vehicle.land())
+
+
+def _return(desk: Desk, order: Order) -> Answer:
+    return Answer(desk.vehicle.return_home())
+
+
+def _set_mode(desk: Desk, order: Order) -> Answer:
+    base, main, sub = (order.whole(value) for value in (order.p1, order.p2, order.p3))
+    if base is None or main is None or not 0 <= base <= 0xFF or not 0 <= main <= 0xFFFF:
+        raise RefusedError(Result.DENIED, "the mode is not a number")
+    if desk.profile.name == "px4":
+        # HEARTBEAT.custom_mode holds PX4's main mode in its third byte, the sub mode in its fourth.
+        main = (main & 0xFF) << 16 | ((sub or 0) & 0xFF) << 24
+    return Answer(desk.vehicle.set_mode(base, main))
+
+
+def _reposition(desk: Desk, order: Order) -> Answer:
+    """NaN in a coordinate = keep it.  p4 is a heading in radians."""
+    estimate = desk.vehicle.estimate
+    target: Vec3 | None = None
+    if not (math.isnan(order.p5) and math.isnan(order.p6) and math.isnan(order.p7)):
+        target = _place(desk, order)
+    return Answer(
+        desk.vehicle.reposition(
+            target if target is not None else estimate.pos_ned,
+            order.p4 if abs(order.p4) <= FARTHEST else None,
+            order.p1 if 0.0 < order.p1 <= FARTHEST else None,
+        )
+    )
+
+
+def _place(desk: Desk, order: Order) -> Vec3:
+    origin = desk.vehicle.origin
+    if origin is None:
+        raise RefusedError(Result.DENIED, "there is no origin yet")
+    here_n, here_e, here_d = desk.vehicle.estimate.pos_ned
+    north, east = here_n, here_e
+    if not (math.isnan(order.p5) and math.isnan(order.p6)):
+        lat_deg, lon_deg = latitude(order.p5), longitude(order.p6)
+        there = Geodetic(lat_deg, lon_deg, 0.0)
+        north, east, _ = projection(desk.profile.name, origin).to_local(there)
+    if math.isnan(order.p7):
+        return (north, east, here_d)
+    alt_amsl_m = _finite(order.p7, "the height")
+    if order.relative:
+        alt_amsl_m += _home(desk).alt_amsl_m
+    return (north, east, origin.alt_amsl_m - alt_amsl_m)
+
+
+def latitude(value: float) -> float:
+    if not abs(value) <= 90.0:
+        raise RefusedError(Result.DENIED, f"{value} is no latitude")
+    return value
+
+
+def longitude(value: float) -> float:
+    if not abs(value) <= 180.0:
+        raise RefusedError(Result.DENIED, f"{value} is no longitude")
+    return value
+
+
+def _pause_continue(desk: Desk, order: Order) -> Answer:
+    if order.p1 == 0.0:
+        return Answer(desk.vehicle.pause())
+    if order.p1 == 1.0:
+        return Answer(desk.vehicle.resume())
+    raise RefusedError(Result.DENIED, f"{order.p1} is neither pause (0) nor continue (1)")
+
+
+def _change_speed(desk: Desk, order: Order) -> Answer:
+    if not 0.0 < order.p2 <= FARTHEST:
+        raise RefusedError(Result.DENIED, f"{order.p2} m/s is no speed")
+    return Answer(desk.vehicle.change_speed(order.p2))
+
+
+def _change_altitude(desk: Desk, order: Order) -> Answer:
+    height_m = _finite(order.p1, "the height")
+    if order.p2 in RELATIVE:
+        return Answer(desk.vehicle.change_altitude(height_m))
+    if order.p2 in ABSOLUTE:
+        return Answer(desk.vehicle.change_altitude(height_m - _home(desk).alt_amsl_m))
+    raise RefusedError(Result.UNSUPPORTED_MAV_FRAME, f"frame {order.p2} is not supported")
+
+
+def _condition_yaw(desk: Desk, order: Order) -> Answer:
+    return Answer(
+        desk.vehicle.condition_yaw(
+            math.radians(_finite(order.p1, "the angle")),
+            order.p4 == 1.0,
+            math.radians(_finite(order.p2, "the rate")),
+            int(_finite(order.p3, "the direction")),
+        )
+    )
+
+
+def _set_home(desk: Desk, order: Order) -> Answer:
+    if order.p1 == 1.0:
+        return Answer(desk.vehicle.set_home(None))
+    where = Geodetic(latitude(order.p5), longitude(order.p6), _finite(order.p7, "the height"))
+    return Answer(desk.vehicle.set_home(where))
+
+
+def _mission_start(desk: Desk, order: Order) -> Answer:
+    first, last = order.whole(order.p1), order.whole(order.p2)
+    return Answer(desk.vehicle.mission_start(first or 0, last or 0))
+
+
+def _set_mission_current(desk: Desk, order: Order) -> Answer:
+    seq = order.whole(order.p1)
+    if seq is None or seq < 0:
+        raise RefusedError(Result.DENIED, f"{order.p1} is no mission item")
+    return Answer(desk.vehicle.mission_set_current(seq))
+
+
+def _image_start(desk: Desk, order: Order) -> Answer:
+    count = order.whole(order.p3)
+    if count is None or count < 0 or not 0.0 <= order.p2 <= FARTHEST:
+        raise RefusedError(Result.DENIED, "interval or number of images makes no sense")
+    return Answer(desk.vehicle.capture_image(order.p2, count))
+
+
+def _image_stop(desk: Desk, order: Order) -> Answer:
+    return Answer(desk.vehicle.stop_capture())
+
+
+def _camera_mode(desk: Desk, order: Order) -> Answer:
+    """Still images are all that it takes."""
+    return Answer(Result.ACCEPTED if order.p2 == 0.0 else Result.DENIED)
+
+
+def _prearm_checks(desk: Desk, order: Order) -> Answer:
+    return Answer(Result.TEMPORARILY_REJECTED if desk.vehicle.armed else Result.ACCEPTED)
+
+
+def _terminate(desk: Desk, order: Order) -> Answer:
+    return Answer(desk.vehicle.terminate() if order.p1 > 0.5 else Result.ACCEPTED)
+
+
+def _reboot(desk: Desk, order: Order) -> Answer:
+    if order.p1 == 0.0:
+        return Answer(Result.ACCEPTED)
+    if order.p1 != 1.0:
+        raise RefusedError(Result.DENIED, "it can only be rebooted (1)")
+    return Answer(desk.vehicle.reboot())
+
+
+FLIGHT: Final[dict[Cmd, Entry]] = {
+    Cmd.COMPONENT_ARM_DISARM: Entry(_arm_disarm),
+    Cmd.NAV_TAKEOFF: Entry(_take_off, place=True),
+    Cmd.NAV_LAND: Entry(_land, place=True),
+    Cmd.NAV_RETURN_TO_LAUNCH: Entry(_return),
+    Cmd.DO_SET_MODE: Entry(_set_mode),
+    Cmd.DO_REPOSITION: Entry(_reposition, place=True),
+    Cmd.DO_PAUSE_CONTINUE: Entry(_pause_continue),
+    Cmd.DO_CHANGE_SPEED: Entry(_change_speed),
+    Cmd.DO_CHANGE_ALTITUDE: Entry(_change_altitude),
+    Cmd.CONDITION_YAW: Entry(_condition_yaw),
+    Cmd.DO_SET_HOME: Entry(_set_home, place=True),
+    Cmd.MISSION_START: Entry(_mission_start),
+    Cmd.DO_SET_MISSION_CURRENT: Entry(_set_mission_current),
+    Cmd.IMAGE_START_CAPTURE: Entry(_image_start),
+    Cmd.IMAGE_STOP_CAPTURE: Entry(_image_stop),
+    Cmd.SET_CAMERA_MODE: Entry(_camera_mode),
+    Cmd.RUN_PREARM_CHECKS: Entry(_prearm_checks),
+    Cmd.DO_FLIGHTTERMINATION: Entry(_terminate),
+    Cmd.PREFLIGHT_REBOOT_SHUTDOWN: Entry(_reboot),
+}

@@ -1,0 +1,160 @@
+"""The parameter protocol: list, read, set.
+
+Integers travel as their bytes (px4) or as a float of the same value (ardupilot).  Every PARAM_SET
+is answered with the value that now holds, the old one if the new one was refused.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+import zlib
+from dataclasses import dataclass
+from typing import Final
+
+from vehicle_sim.autopilot.parameters import ParameterError, Parameters
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import ParamType
+
+from .effects import Client, Effect, Note, Send
+from .profile import Profile
+from .streams import NEVER
+
+NO_INDEX: Final = 0xFFFF
+PACE_NS: Final = 1_000_000
+"""One PARAM_VALUE of a list per millisecond: a full list stays within a client's buffers."""
+BURST: Final = 8
+HASH_CHECK: Final = "_HASH_CHECK"
+DOES_NOT_EXIST: Final = 1  # MAV_PARAM_ERROR
+
+_FORMATS: Final = {ParamType.UINT32: "<I", ParamType.INT32: "<i", ParamType.REAL32: "<f"}
+
+
+def encode(value: float, kind: ParamType, bytewise: bool) -> float:
+    """The float that PARAM_VALUE carries."""
+    if kind is ParamType.REAL32 or not bytewise:
+        return value
+    (carried,) = struct.unpack("<f", struct.pack(_FORMATS[kind], int(value)))
+    return float(carried)
+
+
+def decode(carried: float, kind: ParamType, bytewise: bool) -> float:
+    """The value that a PARAM_SET means; NaN where an integer is meant and there is none."""
+    if kind is ParamType.REAL32:
+        return carried
+    if bytewise:
+        return float(struct.unpack(_FORMATS[kind], struct.pack("<f", carried))[0])
+    return float(round(carried)) if math.isfinite(carried) else math.nan
+
+
+@dataclass(slots=True)
+class _Listing:
+    client: Client
+    next_index: int
+    due_ns: int
+
+
+class ParameterServer:
+    """One vehicle's parameters; wall time paces the list."""
+
+    def __init__(self, parameters: Parameters, profile: Profile) -> None:
+        self._parameters = parameters
+        self._profile = profile
+        self._names: Final = tuple(spec.name for spec in parameters.specs)
+        self._index: Final = {name: index for index, name in enumerate(self._names)}
+        self._listings: dict[int, _Listing] = {}
+
+    @property
+    def deadline_ns(self) -> int:
+        return min((listing.due_ns for listing in self._listings.values()), default=NEVER)
+
+    def request_list(self, client: Client, now_ns: int) -> list[Effect]:
+        self._listings[client.channel] = _Listing(client, 0, now_ns)
+        return [Send(client.channel, self._hash_value())] if self._profile.hash_check else []
+
+    def tick(self, now_ns: int) -> list[Effect]:
+        effects: list[Effect] = []
+        for channel, listing in list(self._listings.items()):
+            burst = max(0, min(BURST, (now_ns - listing.due_ns) // PACE_NS + 1))
+            chunk = self._names[listing.next_index : listing.next_index + burst]
+            effects.extend(Send(channel, self._value(name)) for name in chunk)
+            listing.next_index += burst
+            listing.due_ns = max(listing.due_ns, now_ns + PACE_NS)
+            if listing.next_index >= len(self._names):
+                del self._listings[channel]
+        return effects
+
+    def forget(self, channel: int) -> None:
+        self._listings.pop(channel, None)
+
+    def read(self, client: Client, asked: m.ParamRequestRead) -> list[Effect]:
+        name = _name(asked.param_id)
+        if 0 <= asked.param_index < len(self._names):
+            name = self._names[asked.param_index]
+        elif asked.param_index >= 0:
+            return self._unknown(client, asked.param_id, asked.param_index)
+        elif name == HASH_CHECK and self._profile.hash_check:
+            return [Send(client.channel, self._hash_value())]
+        if name not in self._parameters:
+            return self._unknown(client, asked.param_id, asked.param_index)
+        return [Send(client.channel, self._value(name))]
+
+    def set(self, client: Client, asked: m.ParamSet) -> list[Effect]:
+        name = _name(asked.param_id)
+        if name == HASH_CHECK and self._profile.hash_check:
+            # QGroundControl knows these values already and needs no list.
+            self._listings.pop(client.channel, None)
+            return []
+        if name not in self._parameters:
+            return self._unknown(client, asked.param_id, -1)
+        kind = self._kind(name)
+        bytewise = self._profile.bytewise_parameters
+        note = Note("warning", f"{name} refused: its type is {kind.name}, not {asked.param_type}")
+        if not bytewise or asked.param_type == kind:
+            try:
+                stored = self._parameters.set(name, decode(asked.param_value, kind, bytewise))
+                note = Note("info", f"parameter {name} = {stored:g}")
+            except ParameterError as refusal:
+                note = Note("warning", f"parameter {refusal}")
+        return [Send(None, self._value(name, echo=True)), note]
+
+    def _kind(self, name: str) -> ParamType:
+        return ParamType.INT32 if self._parameters.spec(name).integer else ParamType.REAL32
+
+    def _value(self, name: str, echo: bool = False) -> m.ParamValue:
+        """`echo`: in answer to a PARAM_SET, where ArduPilot leaves the index out."""
+        kind = self._kind(name)
+        nameless = echo and not self._profile.bytewise_parameters
+        value = self._parameters.get(name)
+        return m.ParamValue(
+            param_value=encode(value, kind, self._profile.bytewise_parameters),
+            param_count=len(self._names),
+            param_index=NO_INDEX if nameless else self._index[name],
+            param_id=name.encode("ascii"),
+            param_type=kind,
+        )
+
+    def _hash_value(self) -> m.ParamValue:
+        """Two bits are cleared, so that no platform takes the float for a signalling NaN."""
+        text = repr([(name, self._parameters.get(name)) for name in self._names])
+        crc = zlib.crc32(text.encode()) & 0x3FFFFFFF
+        return m.ParamValue(
+            encode(crc, ParamType.UINT32, bytewise=True),
+            len(self._names),
+            NO_INDEX,
+            HASH_CHECK.encode("ascii"),
+            ParamType.UINT32,
+        )
+
+    def _unknown(self, client: Client, name: bytes, index: int) -> list[Effect]:
+        shown = _name(name) or f"number {index}"
+        effects: list[Effect] = [Note("warning", f"there is no parameter {shown}")]
+        if self._profile.unknown_parameter_error:
+            told = m.ParamError(index, client.system, client.component, name, DOES_NOT_EXIST)
+            effects.append(Send(client.channel, told))
+        return effects
+
+
+def _name(field: bytes) -> str:
+    """Up to 16 characters; the NUL is missing at 16."""
+    return field.split(b"\0", 1)[0].decode("ascii", "replace")

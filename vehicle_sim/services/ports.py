@@ -1,0 +1,41 @@
+"""What the handlers of commands are given, and how they say no."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from vehicle_sim.autopilot.interface import Result, Vehicle
+
+from .info import Info
+from .orders import Answer, Order
+from .profile import Profile
+from .streams import Streams
+
+
+class RefusedError(Exception):
+    """A command cannot be carried out; the reason goes to the log, the result to the ack."""
+
+    def __init__(self, result: Result, reason: str) -> None:
+        super().__init__(reason)
+        self.result = result
+
+
+@dataclass(frozen=True, slots=True)
+class Desk:
+    """One vehicle, as its command handlers see it."""
+
+    vehicle: Vehicle
+    profile: Profile
+    info: Info
+    streams: dict[int, Streams]  # by channel
+
+
+Handler: TypeAlias = Callable[[Desk, Order], Answer]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    handler: Handler
+    place: bool = False  # p5..p7 are a place: COMMAND_INT's frame must be a global one

@@ -1,0 +1,297 @@
+"""One vehicle's MAVLink side, composed: what comes in on a channel, and what time brings.
+
+A *channel* is one peer on one link, and has its own stream rates.  Messages for other systems or
+components are not for us; target 0 is for everybody.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Final
+
+from vehicle_sim.autopilot.interface import (
+    CommandDone,
+    HomeChanged,
+    ImageCaptured,
+    MissionReached,
+    StatusText,
+    Vehicle,
+    VehicleEvent,
+)
+from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.wire import messages as m
+
+from .clocks import ping, timesync
+from .commands import Commands
+from .effects import Client, Effect, Note, Send
+from .info import Info
+from .mission import MissionServer
+from .parameters import ParameterServer
+from .ports import Desk
+from .profile import Profile
+from .setpoints import BadSetpointError, attitude_setpoint, global_setpoint, local_setpoint
+from .streams import NEVER, Streams
+
+COMPONENT: Final = 1
+GROUND_STATION: Final = 6  # MAV_TYPE_GCS
+ACK_OF_SET_MODE: Final = 11  # ArduPilot acks SET_MODE under the message's own number
+REACHED_EVERY_NS: Final = 100_000_000
+REFUSAL_NOTED_EVERY_NS: Final = 1_000_000_000
+STATUSTEXT_CHARS: Final = 50
+
+LEVELS: Final = ("fatal", "fatal", "error", "error", "warning", "info", "info", "debug")
+"""By MAV_SEVERITY."""
+
+
+class VehicleServer:
+    """All services of one vehicle.  Pure; wall time comes in with every call."""
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        profile: Profile,
+        parameters: Parameters,
+        system: int,
+        speedup: Fraction = Fraction(1),
+        unix_start_ns: int = 0,
+    ) -> None:
+        self.vehicle: Final = vehicle
+        self.system: Final = system
+        self._profile = profile
+        self._speedup = speedup
+        self._missions = MissionServer(vehicle, profile)
+        self._parameters = ParameterServer(parameters, profile)
+        self._info = Info(vehicle, profile, system, unix_start_ns, self._missions.plan_ids)
+        self._streams: dict[int, Streams] = {}
+        self._commands = Commands(Desk(vehicle, profile, self._info, self._streams))
+        self._due_ns = NEVER
+        self._seen = self._look()
+        self._reached: list[tuple[int, int]] = []  # (due in vehicle's time, seq)
+        self._noted_ns = -REFUSAL_NOTED_EVERY_NS
+
+    # ---------------------------------------------------------------------------- channels
+
+    def open(self, channel: int) -> list[Effect]:
+        """A peer that was not there before: it is told at once who and where we are."""
+        self._streams[channel] = Streams(
+            self._profile, self._info.streamable, self._speedup, self.vehicle.time_ns
+        )
+        self._schedule()
+        greeting = (m.Heartbeat, m.GpsGlobalOrigin, m.HomePosition)
+        built = (self._info.build(m.IDS[kind]) for kind in greeting)
+        return [Send(channel, message) for message in built if message is not None]
+
+    def close(self, channel: int) -> None:
+        self._streams.pop(channel, None)
+        self._schedule()
+        self._commands.forget(channel)
+        self._missions.forget(channel)
+        self._parameters.forget(channel)
+
+    # --------------------------------------------------------------------------- messages
+
+    def handle(
+        self, client: Client, sequence: int, message: m.Message, wall_ns: int
+    ) -> list[Effect]:
+        """One message from a client."""
+        if not self._is_for_us(message):
+            return []
+        effects = self._dispatch(client, sequence, message, wall_ns)
+        self._schedule()
+        return effects
+
+    def _is_for_us(self, message: m.Message) -> bool:
+        system = getattr(message, "target_system", 0)
+        component = getattr(message, "target_component", 0)
+        if isinstance(message, m.Ping | m.Timesync):
+            return system in (0, self.system)
+        return system in (0, self.system) and component in (0, COMPONENT)
+
+    def _dispatch(
+        self, client: Client, sequence: int, message: m.Message, wall_ns: int
+    ) -> list[Effect]:
+        match message:
+            case m.Heartbeat():
+                if message.type == GROUND_STATION:
+                    self.vehicle.gcs_heard(wall_ns)
+                return []
+            case m.CommandLong() | m.CommandInt():
+                return self._commands.handle(client, sequence, message, wall_ns)
+            case (
+                m.SetPositionTargetLocalNed()
+                | m.SetPositionTargetGlobalInt()
+                | m.SetAttitudeTarget()
+            ):
+                return self._setpoint(client, message, wall_ns)
+            case m.SetMode():
+                return self._set_mode(client, message)
+            case m.MissionCount():
+                return self._missions.count(client, message, wall_ns)
+            case m.MissionItemInt() | m.MissionItem():
+                return self._missions.item(client, message, wall_ns)
+            case m.MissionRequestList():
+                return self._missions.request_list(client, message)
+            case m.MissionRequest() | m.MissionRequestInt():
+                return self._missions.request(client, message)
+            case m.MissionClearAll():
+                return self._missions.clear(client, message)
+            case m.MissionSetCurrent():
+                refused = self._missions.set_current(client, message)
+                return refused or [Send(None, self._info.mission_current())]
+            case m.ParamRequestList():
+                return self._parameters.request_list(client, wall_ns)
+            case m.ParamRequestRead():
+                return self._parameters.read(client, message)
+            case m.ParamSet():
+                return self._parameters.set(client, message)
+            case m.RequestDataStream():
+                self._streams[client.channel].request(message, self.vehicle.time_ns)
+                return []
+            case m.Timesync():
+                return [*timesync(client, message, self.vehicle.time_ns)]
+            case m.Ping():
+                return [*ping(client, message)]
+            case _:
+                # What vehicles say to each other and to ground stations.
+                return []
+
+    def _setpoint(
+        self,
+        client: Client,
+        asked: m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt | m.SetAttitudeTarget,
+        wall_ns: int,
+    ) -> list[Effect]:
+        try:
+            match asked:
+                case m.SetAttitudeTarget():
+                    self.vehicle.set_attitude(attitude_setpoint(asked))
+                case m.SetPositionTargetLocalNed():
+                    self.vehicle.set_setpoint(local_setpoint(self.vehicle, self._profile, asked))
+                case m.SetPositionTargetGlobalInt():
+                    self.vehicle.set_setpoint(global_setpoint(self.vehicle, self._profile, asked))
+        except BadSetpointError as refusal:
+            if wall_ns - self._noted_ns < REFUSAL_NOTED_EVERY_NS:
+                return []
+            self._noted_ns = wall_ns
+            return [Note("warning", f"setpoint of {client.system} refused: {refusal}")]
+        return []
+
+    def _set_mode(self, client: Client, asked: m.SetMode) -> list[Effect]:
+        result = self.vehicle.set_mode(asked.base_mode, asked.custom_mode)
+        if not self._profile.acks_set_mode:
+            return []
+        ack = m.CommandAck(
+            ACK_OF_SET_MODE,
+            result,
+            target_system=client.system,
+            target_component=client.component,
+        )
+        return [Send(client.channel, ack)]
+
+    # ------------------------------------------------------------------------------- time
+
+    @property
+    def stream_due_ns(self) -> int:
+        """In the vehicle's own time."""
+        return self._due_ns
+
+    @property
+    def deadline_ns(self) -> int:
+        """In wall time: what the other side's silence brings."""
+        return min(self._missions.deadline_ns, self._parameters.deadline_ns)
+
+    def step(self, wall_ns: int) -> list[Effect]:
+        """The vehicle moves on by one `dt_ns`, and says what there is to say."""
+        vehicle = self.vehicle
+        vehicle.wall(wall_ns)
+        vehicle.step()
+        effects: list[Effect] = []
+        for event in vehicle.events():
+            effects += self._event(event)
+        # The last item is reached before the mode that follows a mission is shown.
+        if self._reached and vehicle.time_ns >= self._reached[0][0]:
+            effects.append(Send(None, m.MissionItemReached(self._reached.pop(0)[1])))
+        effects += self._changes()
+        if wall_ns >= self.deadline_ns:
+            effects += self._missions.tick(wall_ns)
+            effects += self._parameters.tick(wall_ns)
+        if vehicle.time_ns >= self._due_ns:
+            effects += self._stream()
+        return effects
+
+    def _stream(self) -> list[Effect]:
+        effects: list[Effect] = []
+        now_ns = self.vehicle.time_ns
+        built: dict[int, m.Message | None] = {}
+        for channel, streams in self._streams.items():
+            for number in streams.due(now_ns):
+                if number not in built:
+                    built[number] = self._info.build(number)
+                message = built[number]
+                if message is not None:
+                    effects.append(Send(channel, message))
+        self._schedule()
+        return effects
+
+    def _schedule(self) -> None:
+        self._due_ns = min((streams.next_ns for streams in self._streams.values()), default=NEVER)
+
+    def _event(self, event: VehicleEvent) -> list[Effect]:
+        match event:
+            case StatusText():
+                return self._status_text(event)
+            case ImageCaptured():
+                note = Note("info", f"image {event.index} captured")
+                return [*(Send(None, image) for image in self._info.captured(event)), note]
+            case MissionReached():
+                now_ns = self.vehicle.time_ns
+                self._reached = [
+                    (now_ns + turn * REACHED_EVERY_NS, event.seq)
+                    for turn in range(self._profile.reached_repeats)
+                ]
+                return [Note("info", f"mission item {event.seq} reached")]
+            case HomeChanged():
+                home = self._info.build(m.IDS[m.HomePosition])
+                return [Send(None, home)] if home is not None else []
+            case CommandDone():
+                return self._commands.done(event)
+
+    def _status_text(self, event: StatusText) -> list[Effect]:
+        """Longer texts go out in chunks that share an id."""
+        raw = event.text.encode("ascii", "replace")
+        chunks = [raw[at : at + STATUSTEXT_CHARS] for at in range(0, len(raw), STATUSTEXT_CHARS)]
+        text_id = self.vehicle.time_ns // 1_000_000 % 0xFFFF + 1 if len(chunks) > 1 else 0
+        return [
+            *(
+                Send(None, m.Statustext(event.severity, chunk, text_id, number))
+                for number, chunk in enumerate(chunks)
+            ),
+            Note(LEVELS[event.severity], event.text),
+        ]
+
+    def _look(self) -> tuple[bool, int, bool]:
+        return (self.vehicle.armed, self.vehicle.custom_mode, self.vehicle.origin is not None)
+
+    def _changes(self) -> list[Effect]:
+        """What nobody asked for but everybody wants to know: arming, mode, origin.
+
+        A heartbeat is sent at once, as ArduPilot does: under speed-up the next one is far.
+        """
+        seen = self._look()
+        if seen == self._seen:
+            return []
+        armed, custom_mode, has_origin = self._seen
+        self._seen = seen
+        effects: list[Effect] = []
+        if seen[0] != armed:
+            effects.append(Note("info", "armed" if seen[0] else "disarmed"))
+        if seen[1] != custom_mode:
+            effects.append(Note("info", f"mode {self._info.mode_name}"))
+        if seen[:2] != (armed, custom_mode):
+            beat = self._info.build(m.IDS[m.Heartbeat])
+            effects.extend([Send(None, beat)] if beat is not None else [])
+        if seen[2] and not has_origin:
+            origin = self._info.build(m.IDS[m.GpsGlobalOrigin])
+            if origin is not None:
+                effects.append(Send(None, origin))
+        return effects

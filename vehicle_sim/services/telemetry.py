@@ -1,0 +1,168 @@
+"""Builders: the vehicle's state as messages, one function a message.
+
+A builder answers None while there is nothing true to say (no origin yet, no target).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Final, TypeAlias
+
+from vehicle_sim.autopilot.interface import Geodetic, Vehicle
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import PositionIgnore
+
+from . import sensor_telemetry as sensors
+from .profile import Profile
+from .units import boot_ms, clip_int16, degrees_e7, euler_rad, millimetres, usec
+
+Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
+
+QUADROTOR: Final = 2
+
+
+def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
+    return m.Heartbeat(
+        custom_mode=vehicle.custom_mode,
+        type=QUADROTOR,
+        autopilot=profile.autopilot,
+        base_mode=vehicle.base_mode,
+        system_status=vehicle.system_status,
+        mavlink_version=3,
+    )
+
+
+def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState:
+    return m.ExtendedSysState(vtol_state=0, landed_state=vehicle.landed)
+
+
+def attitude(vehicle: Vehicle, profile: Profile) -> m.Attitude:
+    estimate = vehicle.estimate
+    return m.Attitude(boot_ms(vehicle), *euler_rad(estimate.q_ned_from_frd), *estimate.rates_frd)
+
+
+def attitude_quaternion(vehicle: Vehicle, profile: Profile) -> m.AttitudeQuaternion:
+    estimate = vehicle.estimate
+    return m.AttitudeQuaternion(boot_ms(vehicle), *estimate.q_ned_from_frd, *estimate.rates_frd)
+
+
+def local_position_ned(vehicle: Vehicle, profile: Profile) -> m.LocalPositionNed | None:
+    if vehicle.origin is None:
+        return None
+    estimate = vehicle.estimate
+    return m.LocalPositionNed(boot_ms(vehicle), *estimate.pos_ned, *estimate.v_ned)
+
+
+def global_position_int(vehicle: Vehicle, profile: Profile) -> m.GlobalPositionInt | None:
+    if vehicle.origin is None:
+        return None
+    estimate = vehicle.estimate
+    north, east, down = estimate.v_ned
+    return m.GlobalPositionInt(
+        time_boot_ms=boot_ms(vehicle),
+        lat=degrees_e7(estimate.lat_deg),
+        lon=degrees_e7(estimate.lon_deg),
+        alt=millimetres(estimate.alt_amsl_m),
+        relative_alt=millimetres(estimate.alt_rel_m),
+        vx=clip_int16(north * 100.0),
+        vy=clip_int16(east * 100.0),
+        vz=clip_int16(down * 100.0),
+        hdg=round(math.degrees(estimate.heading_rad) * 100.0) % 36000,
+    )
+
+
+def gps_global_origin(vehicle: Vehicle, profile: Profile) -> m.GpsGlobalOrigin | None:
+    origin = vehicle.origin
+    if origin is None:
+        return None
+    return m.GpsGlobalOrigin(*_geodetic(origin), time_usec=usec(vehicle))
+
+
+def _geodetic(where: Geodetic) -> tuple[int, int, int]:
+    return (
+        degrees_e7(where.lat_deg),
+        degrees_e7(where.lon_deg),
+        millimetres(where.alt_amsl_m),
+    )
+
+
+def home_position(vehicle: Vehicle, profile: Profile) -> m.HomePosition | None:
+    home = vehicle.home
+    pos_ned = vehicle.home_pos_ned
+    if home is None or pos_ned is None:
+        return None
+    return m.HomePosition(
+        *_geodetic(home),
+        *pos_ned,
+        q=(1.0, 0.0, 0.0, 0.0),
+        approach_x=0.0,
+        approach_y=0.0,
+        approach_z=0.0,
+        time_usec=usec(vehicle),
+    )
+
+
+def vfr_hud(vehicle: Vehicle, profile: Profile) -> m.VfrHud:
+    estimate = vehicle.estimate
+    north, east, down = estimate.v_ned
+    speed = math.sqrt(north * north + east * east)
+    outputs = vehicle.motor_outputs
+    return m.VfrHud(
+        airspeed=speed,
+        groundspeed=speed,
+        alt=estimate.alt_amsl_m,
+        climb=-down,
+        heading=round(math.degrees(estimate.heading_rad)) % 360,
+        throttle=round((outputs[0] + outputs[1] + outputs[2] + outputs[3]) * 25.0),
+    )
+
+
+def position_target_local_ned(
+    vehicle: Vehicle, profile: Profile
+) -> m.PositionTargetLocalNed | None:
+    target = vehicle.target
+    ignored = PositionIgnore.ACCELERATION | PositionIgnore.YAW_RATE
+    if target.pos_ned is None:
+        ignored |= PositionIgnore.POSITION
+    if target.v_ned is None:
+        ignored |= PositionIgnore.VELOCITY
+    if target.yaw_rad is None:
+        ignored |= PositionIgnore.YAW
+    if target.pos_ned is None and target.v_ned is None:
+        return None
+    return m.PositionTargetLocalNed(
+        boot_ms(vehicle),
+        *(target.pos_ned or (0.0, 0.0, 0.0)),
+        *(target.v_ned or (0.0, 0.0, 0.0)),
+        *(0.0, 0.0, 0.0),
+        yaw=target.yaw_rad or 0.0,
+        yaw_rate=0.0,
+        type_mask=ignored,
+        coordinate_frame=1,
+    )
+
+
+STATE: Final[dict[int, Builder]] = {
+    m.IDS[kind]: builder
+    for kind, builder in (
+        (m.Heartbeat, heartbeat),
+        (m.SysStatus, sensors.sys_status),
+        (m.ExtendedSysState, extended_sys_state),
+        (m.Attitude, attitude),
+        (m.AttitudeQuaternion, attitude_quaternion),
+        (m.LocalPositionNed, local_position_ned),
+        (m.GlobalPositionInt, global_position_int),
+        (m.GpsGlobalOrigin, gps_global_origin),
+        (m.HomePosition, home_position),
+        (m.GpsRawInt, sensors.gps_raw_int),
+        (m.BatteryStatus, sensors.battery_status),
+        (m.VfrHud, vfr_hud),
+        (m.EstimatorStatus, sensors.estimator_status),
+        (m.EkfStatusReport, sensors.ekf_status_report),
+        (m.ServoOutputRaw, sensors.servo_output_raw),
+        (m.HighresImu, sensors.highres_imu),
+        (m.ScaledPressure, sensors.scaled_pressure),
+        (m.PositionTargetLocalNed, position_target_local_ned),
+    )
+}

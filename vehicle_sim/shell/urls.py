@@ -1,0 +1,61 @@
+"""Endpoint URLs: MAVSDK's form and pymavlink's, from one table.
+
+The URL says what the *vehicle* does: `udpout` sends to that address unasked, `udpin` waits there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+
+class Kind(Enum):
+    UDP_IN = "udpin"
+    UDP_OUT = "udpout"
+    TCP_IN = "tcpin"
+    TCP_OUT = "tcpout"
+
+
+KINDS: Final[dict[str, Kind]] = {
+    "udpin://": Kind.UDP_IN,
+    "udpout://": Kind.UDP_OUT,
+    "tcpin://": Kind.TCP_IN,
+    "tcpout://": Kind.TCP_OUT,
+    "udpin:": Kind.UDP_IN,
+    "udpout:": Kind.UDP_OUT,
+    "udp:": Kind.UDP_IN,
+    "tcpin:": Kind.TCP_IN,
+    "tcp:": Kind.TCP_OUT,
+}
+"""By prefix, longest first."""
+
+FORMS: Final = "udpin://HOST:PORT, udpout://HOST:PORT, tcpin://HOST:PORT or tcpout://HOST:PORT"
+
+
+class UrlError(ValueError):
+    """A URL that names no endpoint; the message says what is wrong with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Url:
+    kind: Kind
+    host: str
+    port: int
+
+    def __str__(self) -> str:
+        host = f"[{self.host}]" if ":" in self.host else self.host
+        return f"{self.kind.value}://{host}:{self.port}"
+
+
+def parse(text: str) -> Url:
+    """Without a host it is loopback.  Raises UrlError."""
+    for prefix, kind in KINDS.items():
+        if text.startswith(prefix):
+            host, colon, port = text.removeprefix(prefix).rpartition(":")
+            if not colon or not port.isascii() or not port.isdigit():
+                raise UrlError(f"{text}: a port is missing; use {FORMS}")
+            if not 0 < int(port) < 65536:
+                raise UrlError(f"{text}: {port} is no port (1 to 65535)")
+            return Url(kind, host.strip("[]") or "127.0.0.1", int(port))
+    raise UrlError(f"{text}: no such kind of link; use {FORMS}")

@@ -1,0 +1,134 @@
+"""Messages <-> payloads and whole MAVLink 2 frames.
+
+A payload is packed by one `struct` derived from the dialect; extensions are always packed and
+trailing zeros cut, as MAVLink 2 asks ("Empty-Byte Payload Truncation").
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from typing import Final, NamedTuple, cast
+
+from fastcrc.crc16 import mcrf4xx
+
+from .dialect import CRC_EXTRAS, LAYOUTS
+from .messages import IDS, TYPES, Message
+from .supplement import Field
+
+STX1: Final = 0xFE
+STX2: Final = 0xFD
+SIGNED: Final = 0x01  # incompat_flags
+
+_LETTERS: Final = {
+    "char": "c",
+    "uint8_t": "B",
+    "int8_t": "b",
+    "uint16_t": "H",
+    "int16_t": "h",
+    "uint32_t": "I",
+    "int32_t": "i",
+    "uint64_t": "Q",
+    "int64_t": "q",
+    "float": "f",
+    "double": "d",
+}
+_BYTES: Final = {"char", "uint8_t"}
+
+
+def _format(field: Field) -> str:
+    if not field.length:
+        return _LETTERS[field.kind]
+    if field.kind in _BYTES:
+        return f"{field.length}s"
+    return f"{field.length}{_LETTERS[field.kind]}"
+
+
+Value = float | bytes | tuple[float, ...]
+
+
+class Codec:
+    """One message's way to its payload and back."""
+
+    __slots__ = ("_arrays", "_pack", "_struct", "crc_extra", "id_bytes", "kind", "size")
+
+    def __init__(self, number: int) -> None:
+        layout = LAYOUTS[number]
+        self.kind = TYPES[number]
+        if [_plain(field.name) for field in layout.fields] != [*map(_plain, self.kind._fields)]:
+            raise AssertionError(f"{layout.name}: the message's fields are not the dialect's")
+        self._struct: Final = struct.Struct("<" + "".join(map(_format, layout.fields)))
+        self._pack: Final = self._struct.pack
+        self.size: Final = self._struct.size
+        self.crc_extra: Final = bytes((CRC_EXTRAS[number],))
+        self.id_bytes: Final = number.to_bytes(3, "little")
+        # Positions of the arrays that `struct` spreads over several values.
+        self._arrays: Final = tuple(
+            (index, field.length)
+            for index, field in enumerate(layout.fields)
+            if field.length and field.kind not in _BYTES
+        )
+
+    def payload(self, message: Message) -> bytes:
+        """Packed, trailing zeros cut, at least one byte.
+
+        Raises `struct.error` or OverflowError for a value that its field cannot hold.
+        """
+        packed = self._pack(*(_spread(message) if self._arrays else message))
+        return packed.rstrip(b"\0") or b"\0"
+
+    def message(self, payload: bytes) -> Message:
+        """Of a payload that may be cut or longer than this dialect knows."""
+        values = self._struct.unpack(payload[: self.size].ljust(self.size, b"\0"))
+        return self.kind._make(_gather(values, self._arrays) if self._arrays else values)
+
+
+def _plain(name: str) -> str:
+    """The dialect writes `zoomLevel`, and `count`, which a tuple has for something else."""
+    return name.replace("_", "").lower()
+
+
+def _spread(message: Message) -> Iterator[float | bytes]:
+    for value in cast(tuple[Value, ...], message):
+        if isinstance(value, tuple):
+            yield from value
+        else:
+            yield value
+
+
+def _gather(values: tuple[float | bytes, ...], arrays: tuple[tuple[int, int], ...]) -> list[Value]:
+    gathered: list[Value] = list(values)
+    for index, count in arrays:
+        gathered[index : index + count] = [
+            cast(tuple[float, ...], tuple(gathered[index : index + count]))
+        ]
+    return gathered
+
+
+CODECS: Final = {number: Codec(number) for number in TYPES}
+_BY_TYPE: Final = {kind: CODECS[number] for kind, number in IDS.items()}
+
+
+def encode(message: Message, sequence: int, system: int, component: int) -> bytes:
+    """One unsigned MAVLink 2 frame."""
+    codec = _BY_TYPE[type(message)]
+    payload = codec.payload(message)
+    body = bytes((len(payload), 0, 0, sequence, system, component)) + codec.id_bytes + payload
+    return b"\xfd" + body + mcrf4xx(body + codec.crc_extra).to_bytes(2, "little")
+
+
+class Frame(NamedTuple):
+    """One frame whose checksum was right."""
+
+    version: int  # 1 or 2
+    sequence: int
+    system: int
+    component: int
+    number: int
+    payload: bytes
+    signed: bool
+
+    def message(self) -> Message | None:
+        """None for a message that this vehicle has no use for."""
+        codec = CODECS.get(self.number)
+        return codec.message(self.payload) if codec is not None else None

@@ -1,0 +1,176 @@
+"""Numbers of the dialect that the services need by name; a test checks them against it.
+
+Only what is used: message numbers belong to `messages.TYPES`.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum, IntFlag
+
+
+class Cmd(IntEnum):
+    """MAV_CMD."""
+
+    NAV_WAYPOINT = 16
+    NAV_RETURN_TO_LAUNCH = 20
+    NAV_LAND = 21
+    NAV_TAKEOFF = 22
+    CONDITION_YAW = 115
+    DO_SET_MODE = 176
+    DO_CHANGE_SPEED = 178
+    DO_SET_HOME = 179
+    DO_FLIGHTTERMINATION = 185
+    DO_CHANGE_ALTITUDE = 186
+    DO_REPOSITION = 192
+    DO_PAUSE_CONTINUE = 193
+    DO_SET_MISSION_CURRENT = 224
+    PREFLIGHT_REBOOT_SHUTDOWN = 246
+    MISSION_START = 300
+    COMPONENT_ARM_DISARM = 400
+    RUN_PREARM_CHECKS = 401
+    GET_HOME_POSITION = 410
+    GET_MESSAGE_INTERVAL = 510
+    SET_MESSAGE_INTERVAL = 511
+    REQUEST_MESSAGE = 512
+    REQUEST_PROTOCOL_VERSION = 519
+    REQUEST_AUTOPILOT_CAPABILITIES = 520
+    REQUEST_CAMERA_INFORMATION = 521
+    REQUEST_STORAGE_INFORMATION = 525
+    REQUEST_CAMERA_CAPTURE_STATUS = 527
+    SET_CAMERA_MODE = 530
+    IMAGE_START_CAPTURE = 2000
+    IMAGE_STOP_CAPTURE = 2001
+
+
+class Frame(IntEnum):
+    """MAV_FRAME."""
+
+    GLOBAL = 0
+    LOCAL_NED = 1
+    MISSION = 2
+    GLOBAL_RELATIVE_ALT = 3
+    GLOBAL_INT = 5
+    GLOBAL_RELATIVE_ALT_INT = 6
+    LOCAL_OFFSET_NED = 7
+    BODY_NED = 8
+    BODY_OFFSET_NED = 9
+    GLOBAL_TERRAIN_ALT = 10
+    GLOBAL_TERRAIN_ALT_INT = 11
+
+
+ABSOLUTE = frozenset({Frame.GLOBAL, Frame.GLOBAL_INT})
+RELATIVE = frozenset({Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL_RELATIVE_ALT_INT})
+
+
+class Sensor(IntFlag):
+    """MAV_SYS_STATUS_SENSOR."""
+
+    GYRO_3D = 0x1
+    ACCEL_3D = 0x2
+    MAG_3D = 0x4
+    ABSOLUTE_PRESSURE = 0x8
+    GPS = 0x20
+    ANGULAR_RATE_CONTROL = 0x400
+    ATTITUDE_STABILIZATION = 0x800
+    YAW_POSITION = 0x1000
+    Z_ALTITUDE_CONTROL = 0x2000
+    XY_POSITION_CONTROL = 0x4000
+    MOTOR_OUTPUTS = 0x8000
+    AHRS = 0x200000
+    BATTERY = 0x2000000
+    PREARM_CHECK = 0x10000000
+
+
+class Capability(IntFlag):
+    """MAV_PROTOCOL_CAPABILITY."""
+
+    MISSION_FLOAT = 0x1
+    MISSION_INT = 0x4
+    COMMAND_INT = 0x8
+    PARAM_ENCODE_BYTEWISE = 0x10
+    SET_ATTITUDE_TARGET = 0x40
+    SET_POSITION_TARGET_LOCAL_NED = 0x80
+    SET_POSITION_TARGET_GLOBAL_INT = 0x100
+    FLIGHT_TERMINATION = 0x800
+    MAVLINK2 = 0x2000
+    MISSION_FENCE = 0x4000
+    MISSION_RALLY = 0x8000
+    PARAM_ENCODE_C_CAST = 0x20000
+
+
+class EstimatorFlag(IntFlag):
+    """ESTIMATOR_STATUS_FLAGS; EKF_STATUS_FLAGS has the same first ten bits."""
+
+    ATTITUDE = 0x1
+    VELOCITY_HORIZ = 0x2
+    VELOCITY_VERT = 0x4
+    POS_HORIZ_REL = 0x8
+    POS_HORIZ_ABS = 0x10
+    POS_VERT_ABS = 0x20
+    POS_VERT_AGL = 0x40
+    CONST_POS_MODE = 0x80
+    PRED_POS_HORIZ_REL = 0x100
+    PRED_POS_HORIZ_ABS = 0x200
+
+
+class PositionIgnore(IntFlag):
+    """POSITION_TARGET_TYPEMASK, grouped."""
+
+    POSITION = 0x007
+    VELOCITY = 0x038
+    ACCELERATION = 0x1C0
+    YAW = 0x400
+    YAW_RATE = 0x800
+
+
+class AttitudeIgnore(IntFlag):
+    """ATTITUDE_TARGET_TYPEMASK, grouped."""
+
+    RATES = 0x07
+    THRUST = 0x40
+    ATTITUDE = 0x80
+
+
+class MissionResult(IntEnum):
+    """MAV_MISSION_RESULT."""
+
+    ACCEPTED = 0
+    ERROR = 1
+    UNSUPPORTED_FRAME = 2
+    UNSUPPORTED = 3
+    NO_SPACE = 4
+    INVALID = 5
+    INVALID_SEQUENCE = 13
+    DENIED = 14
+    OPERATION_CANCELLED = 15
+
+
+class MissionType(IntEnum):
+    """MAV_MISSION_TYPE."""
+
+    MISSION = 0
+    FENCE = 1
+    RALLY = 2
+    ALL = 255
+
+
+class ParamType(IntEnum):
+    """MAV_PARAM_TYPE."""
+
+    UINT32 = 5
+    INT32 = 6
+    REAL32 = 9
+
+
+class Stream(IntEnum):
+    """MAV_DATA_STREAM."""
+
+    ALL = 0
+    RAW_SENSORS = 1
+    EXTENDED_STATUS = 2
+    RC_CHANNELS = 3
+    RAW_CONTROLLER = 4
+    POSITION = 6
+    EXTRA1 = 10
+    EXTRA2 = 11
+    EXTRA3 = 12
