@@ -64,8 +64,14 @@ late_la: Final[Cell] = (
     Branch(when=(Guard.ON_GROUND,), ends=COMPLETE, do=(Do.RELEASE,), to=State.GROUNDED),
     Branch(ends=MISSED),
 )
+# The request is over, the hold is not: it is repeated until it is shown.
+sile_hd: Final[Cell] = (
+    Branch(when=(Guard.HOLD_AWAITED,), ends=SILENT, do=(Do.REPEAT_HOLD,)),
+    *sile,
+)
 late_st: Final[Cell] = (
     Branch(when=(Guard.IN_GRACE,), ends=MISSED, do=(Do.LET_GO, Do.HOLD)),
+    sile_hd[0],
     *late_gr,
 )
 asks: Final[Cell] = (Branch(do=(Do.ASK_GUIDED,)),)
@@ -113,7 +119,7 @@ lost_st: Final[Cell] = _let_go(DESERTED, Guard.RETURNS_TO_STATE)
 TIME_ROWS: Final[Mapping[Event, Row]] = {
     #                     NO_VE  STALE    GROUN    TAKOF    HOVER    VERIF   MOVIN    STREA    PICTU    MISSI    RETUR    LANDI    HOLDI    EXTER
     Event.TICK:           (stay,  stay,    stay,    tick_to, tick_ho, imposs, tick_mo, stay,    stay,    stay,    stay,    stay,    stay,    stay),
-    Event.DEADLINE:       (sile,  late_st, late_gr, late_to, sile_ho, imposs, late_mo, late_mo, late_ph, sile,    sile,    late_la, sile,    sile),
+    Event.DEADLINE:       (sile,  late_st, late_gr, late_to, sile_ho, imposs, late_mo, late_mo, late_ph, sile,    sile,    late_la, sile_hd, sile_hd),
     Event.CONTROL_DUE:    (stay,  stay,    stay,    stay,    asks,    imposs, stay,    stay,    stay,    stay,    stay,    stay,    stay,    stay),
     Event.HOLD_DUE:       (again, again,   again,   stay,    stay,    imposs, stay,    stay,    stay,    stay,    stay,    stay,    again,   again),
     Event.MUST_HOLD:      (stay,  sevh_st, sev_gr,  sevh_to, sevh,    imposs, sevh,    sevh,    sevh,    sevh,    stay,    stay,    stay,    stay),

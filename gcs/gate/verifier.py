@@ -266,10 +266,8 @@ class Verifier:
                 is None
             ):
                 return point_ned
-        here = self._limits("brake", pos_ned, allow=self._error(), floor_applies=floor_applies)
-        if here is None and judge.outside("brake", pos_ned, floor_applies=floor_applies) is None:
-            return pos_ned
-        return None
+        here = self.hold_point(pos_ned, STANDING, floor_applies=floor_applies)
+        return pos_ned if isinstance(here, Cleared) else None
 
     def _return_leg(self, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusal | None:
         return self._judge.leg(subject, a_ned, b_ned, NO_WIDTHS, floor_applies=False)

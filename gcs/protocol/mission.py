@@ -66,6 +66,11 @@ class MissionUpload(Transfer):
         self._asked = 0
         """Items 0 up to this one were asked for."""
 
+    @property
+    def all_given(self) -> bool:
+        """Every item was asked for: what failed after that may be on board all the same."""
+        return self._asked == len(self._items)
+
     def start(self, now_ns: int) -> list[TransferEffect]:
         to = self._parties.target
         count = MissionCount(
@@ -96,7 +101,7 @@ class MissionUpload(Transfer):
                 return self._give(message.seq, now_ns)
             case MissionAck() if message.type != MissionResult.ACCEPTED:
                 return self._refused(message.type)
-            case MissionAck() if self._asked == len(self._items):
+            case MissionAck() if self.all_given:
                 return self._done(self._items)
             case _:
                 return []

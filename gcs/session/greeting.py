@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from gcs.config import LinkConfig
+from gcs.gate.types import LandedState
 from gcs.protocol.effects import (
     Address,
     Heard,
@@ -160,8 +161,9 @@ class Greeting:
             yield _request(seen, MsgId.HOME_POSITION)
         if first:
             yield _request(seen, MsgId.AUTOPILOT_VERSION)
-        if first or seen.pos_ned is None:
-            for msgid, rate_hz in WANTED_HZ:
+        for msgid, rate_hz in WANTED_HZ:
+            unknown = seen.landed is LandedState.UNDEFINED and msgid is MsgId.EXTENDED_SYS_STATE
+            if first or seen.pos_ned is None or unknown:
                 yield _interval(seen, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
 
     def _out(self, effects: list[ParamEffect], seen: Telemetry, now_ns: int) -> list[Out]:

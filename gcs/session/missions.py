@@ -260,8 +260,7 @@ class MissionDesk:
                 case TransferDone(_, items):
                     self._done(job, items, now_ns)
                 case TransferFailed(_, result, text):
-                    code = Code.NO_ANSWER if result is None else Code.VEHICLE_REFUSED
-                    self._end(job, Ended.ABORTED, code, text, now_ns)
+                    self._failed(job, result, text, now_ns)
 
     @staticmethod
     def _fetching(job: _Job) -> bool:
@@ -279,6 +278,15 @@ class MissionDesk:
                 self._on_board = None
                 self._keeper.give(gate.MissionLoaded("", 0), now_ns)
                 self._end(job, Ended.COMPLETE, None, "no mission is on board", now_ns)
+
+    def _failed(self, job: _Job, result: int | None, text: str, now_ns: int) -> None:
+        """Where only the last ack went missing, what is on board settles it."""
+        if isinstance(job.transfer, MissionUpload) and job.transfer.all_given:
+            self._out.say(Level.WARNING, NODE, f"upload: {text}: reading back", now_ns)
+            self._begin(job, MissionDownload(*self._parties(), self._timing), now_ns)
+            return
+        code = Code.NO_ANSWER if result is None else Code.VEHICLE_REFUSED
+        self._end(job, Ended.ABORTED, code, text, now_ns)
 
     def _compare(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
         """Believe what the vehicle holds, not what was sent."""

@@ -42,16 +42,25 @@ class Link(Protocol):
 
 
 class Panel(Widget):
-    """A drawing that fills whatever room it is given; redrawn on `refresh`."""
+    """A drawing that fills whatever room it is given; put on the screen only where it changed."""
 
     can_focus = False
 
     def __init__(self, draw: Callable[[int, int], RenderableType], name: str, title: str = ""):
         super().__init__(id=name)
         self._draw = draw
+        self._drawn: RenderableType = ""
         self.border_title = title
 
+    def redraw(self) -> None:
+        if self.display and self._drawing() != self._drawn:
+            self.refresh()
+
     def render(self) -> RenderableType:
+        self._drawn = self._drawing()
+        return self._drawn
+
+    def _drawing(self) -> RenderableType:
         return self._draw(self.content_size.width, self.content_size.height)
 
 
@@ -120,7 +129,7 @@ class FlyApp(App[None]):
     def redraw(self) -> None:
         """Draw every panel anew from the scene."""
         for panel in self.query(Panel):
-            panel.refresh()
+            panel.redraw()
 
     # -------------------------------------------------------------------------- events
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from operator import itemgetter
 from typing import Final
 
 from rich.text import Text
@@ -59,16 +60,21 @@ class Canvas:
                 self._glyphs[column + offset, row] = (char, style)
 
     def render(self) -> Text:
-        """The picture, one line a row of cells."""
+        """The picture, one line a row of cells; neighbours of one style are one span."""
         picture = Text(no_wrap=True, end="")
         for row in range(self.rows):
             if row:
                 picture.append("\n")
-            for column in range(self.columns):
-                dots = self._dots[row][column]
-                plain = (chr(_BLANK + dots) if dots else " ", self._styles[row][column])
-                picture.append(*self._glyphs.get((column, row), plain))
+            cells = [self._cell(column, row) for column in range(self.columns)]
+            for style, run in itertools.groupby(cells, key=itemgetter(1)):
+                picture.append("".join(char for char, _ in run), style)
         return picture
+
+    def _cell(self, column: int, row: int) -> tuple[str, str]:
+        """Character and style."""
+        dots = self._dots[row][column]
+        plain = (chr(_BLANK + dots), self._styles[row][column]) if dots else (" ", "")
+        return self._glyphs.get((column, row), plain)
 
 
 def clip(start: Point, end: Point, x_max: float, y_max: float) -> tuple[Point, Point] | None:

