@@ -109,9 +109,11 @@ class World:
             raise ValueError("all vehicles of a world take steps of the same length")
         self._servers = tuple(vehicles)
         self._links = tuple(links)
-        self._speedup = speedup
+        # Fractions are exact and slow: the two integers are as exact.
+        self._numerator, self._denominator = speedup.numerator, speedup.denominator
         self._start_ns = start_ns
         self._dt_ns = self._servers[0].vehicle.dt_ns
+        self._steps_ahead = max(1, int(STEPS_AHEAD_NS * speedup) // self._dt_ns)
         self._steps = 0
         self._channels: dict[int, _Channel] = {}
         self._by_peer: dict[tuple[int, Peer], _Channel] = {}
@@ -131,9 +133,8 @@ class World:
     @property
     def deadline_ns(self) -> int:
         """Wall time at which the next `Wake` is wanted at the latest: always that of a step."""
-        ahead = max(1, int(STEPS_AHEAD_NS * self._speedup) // self._dt_ns)
         steps = min(
-            self._steps + ahead,
+            self._steps + self._steps_ahead,
             *(-(-server.stream_due_ns // self._dt_ns) for server in self._servers),
             *(self._steps_until(server.deadline_ns) for server in self._servers),
         )
@@ -147,8 +148,7 @@ class World:
             for number, link in enumerate(self._links):
                 for peer in link.peers:
                     out += self._open(number, peer, now_ns, lasting=True)
-        numerator, denominator = self._speedup.numerator, self._speedup.denominator
-        steps = (now_ns - self._start_ns) * numerator // (denominator * self._dt_ns)
+        steps = (now_ns - self._start_ns) * self._numerator // (self._denominator * self._dt_ns)
         while self._steps < steps:
             self._steps += 1
             wall_ns = self._wall_ns(self._steps)
@@ -171,13 +171,12 @@ class World:
 
     def _wall_ns(self, steps: int) -> int:
         """When that step is over: the first nanosecond that reaches it."""
-        numerator, denominator = self._speedup.numerator, self._speedup.denominator
-        return self._start_ns - (-steps * self._dt_ns * denominator // numerator)
+        return self._start_ns - (-steps * self._dt_ns * self._denominator // self._numerator)
 
     def _steps_until(self, wall_ns: int) -> int:
         """Number of the first step that is over at that time or later."""
-        numerator, denominator = self._speedup.numerator, self._speedup.denominator
-        return -(-(wall_ns - self._start_ns) * numerator // (denominator * self._dt_ns))
+        steps_ns = (wall_ns - self._start_ns) * self._numerator
+        return -(-steps_ns // (self._denominator * self._dt_ns))
 
     def _servers_on(self, link: int) -> tuple[VehicleServer, ...]:
         only = self._links[link].vehicle
