@@ -13,8 +13,10 @@ class SequenceCount:
     """One sender's tally."""
 
     last_seq: int
+    last_number: int
     received: int = 1
     lost: int = 0
+    resume: bool = False
 
 
 class SequenceTracker:
@@ -31,13 +33,33 @@ class SequenceTracker:
     def lost(self) -> int:
         return sum(count.lost for count in self.senders.values())
 
+    def restart(self, sysid: int, compid: int) -> None:
+        """The sender was away and may have begun anew: its next frame follows its last one."""
+        count = self.senders.get((sysid, compid))
+        if count is not None:
+            count.resume = True
+
+    def number(self, sysid: int, compid: int, seq: int) -> int:
+        """`seq` of a frame that is not counted yet, without the wrap at 256: greater is newer."""
+        count = self.senders.get((sysid, compid))
+        if count is None:
+            return seq
+        if count.resume:
+            return count.last_number + 1
+        step = (seq - count.last_seq) & 0xFF
+        return count.last_number + (step if step < REORDERED else step - 256)
+
     def seen(self, sysid: int, compid: int, seq: int) -> int:
         """Count a frame; how many were lost just before it (negative: one that was lost came)."""
         count = self.senders.get((sysid, compid))
         if count is None:
-            self.senders[sysid, compid] = SequenceCount(seq)
+            self.senders[sysid, compid] = SequenceCount(seq, seq)
             return 0
         count.received += 1
+        if count.resume:
+            count.resume = False
+            count.last_seq, count.last_number = seq, count.last_number + 1
+            return 0
         step = (seq - count.last_seq) & 0xFF
         if step == 0:
             return 0
@@ -46,5 +68,6 @@ class SequenceTracker:
             count.lost -= found
             return -found
         count.last_seq = seq
+        count.last_number += step
         count.lost += step - 1
         return step - 1

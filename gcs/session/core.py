@@ -13,7 +13,7 @@ from gcs.gate import types as gate
 from gcs.gate.machine import Gate
 from gcs.gate.types import Level
 from gcs.protocol.autopilot import GENERIC
-from gcs.record.items import AttachmentItem, InputItem, MetadataItem
+from gcs.record.items import AttachmentItem, InputItem, LogItem, MetadataItem
 from gcs.session import teller
 from gcs.session.desk import BadAskError, wish_of
 from gcs.session.gatekeeper import Gatekeeper
@@ -46,11 +46,15 @@ TICK_NS = 50_000_000
 TICKS_A_SECOND = 20
 LATE_NS = 20_000_000
 """Of real time; a tick that is later than this is told."""
+VERY_LATE_NS = 250_000_000
+LATE_SHOWN_NS = 10_000_000_000
 LEAVING_NS = 3_000_000_000
 
 NODE = "link"
 EXIT_NO_LINK = 3
 EXIT_REFUSED_BY_GATE = 6
+EXIT_BUG = 70
+MAX_FAULTS = 10
 
 
 class Session:
@@ -72,6 +76,8 @@ class Session:
         self._recorded_bytes = 0
         self._leaving_since_ns: int | None = None
         self._told_no_vehicle = False
+        self._late_until_ns = 0
+        self._faults = 0
         self._introduced = False
         self._finished = False
 
@@ -123,6 +129,22 @@ class Session:
         self._settle(now_ns)
         return self._out.take()
 
+    def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
+        """A bug of ours, met while `given` was handled: the vehicle must not pay for it.
+
+        Bytes or words that we cannot take are dropped, said and recorded.  Where it happens on
+        the clock, or again and again, the vehicle is told to hold and the link goes.
+        """
+        self._out.take()
+        self._faults += 1
+        self._out.record(InputItem("Fault", msgspec.json.encode(report)))
+        self._out.say(Level.FATAL, NODE, f"internal error: {report.splitlines()[-1]}", now_ns)
+        if isinstance(given, Wake) or self._faults > MAX_FAULTS:
+            self._keeper.hold_blind(now_ns)
+            self._finished = True
+            self._out.put(Finish(EXIT_BUG, "an internal error: the vehicle was told to hold"))
+        return self._out.take()
+
     # ------------------------------------------------------------------------------ time
 
     def _wake(self, now_ns: int) -> None:
@@ -136,14 +158,23 @@ class Session:
 
     def _tick(self, lateness_ns: int, now_ns: int) -> None:
         self._keeper.give(gate.Tick(lateness_ns), now_ns)
-        if lateness_ns > LATE_NS * self._setup.config.speedup:
-            text = f"a tick came {lateness_ns / 1e6:.0f} ms late"
-            self._out.say(Level.WARNING, NODE, text, now_ns)
+        self._judge_lateness(lateness_ns, now_ns)
         if self._tick_no % TICKS_A_SECOND == 0:
             self._second(now_ns)
         if self._tick_no % 2 == 0:
             self._out.emit(self._snapshot(now_ns))
         self._tick_no += 1
+
+    def _judge_lateness(self, lateness_ns: int, now_ns: int) -> None:
+        """A late tick is told; one so late that the stream had a gap is a condition for a while."""
+        speedup = self._setup.config.speedup
+        text = f"a tick came {lateness_ns / 1e6 / speedup:.0f} ms late"
+        if lateness_ns > LATE_NS * speedup:
+            self._out.say(Level.DEBUG, NODE, text, now_ns)
+        if lateness_ns > VERY_LATE_NS * speedup:
+            self._late_until_ns = now_ns + LATE_SHOWN_NS
+        late = now_ns < self._late_until_ns
+        self._keeper.condition(gate.Condition.TICK_LATE, late, text, now_ns)
 
     def _second(self, now_ns: int) -> None:
         """Once a second: heartbeat, what is missing, and the slow half of the record."""
@@ -187,6 +218,10 @@ class Session:
             refused = ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
             self._out.emit(refused)
             return
+        if isinstance(wish, gate.SetMode) and wish.meaning is gate.FlightMode.MISSION:
+            # The mission mode by its name is a mission start, and is verified like one.
+            self._missions.ask(ask, now_ns)
+            return
         request_id = self._keeper.requests.open(ask.id, ask.word)
         self._keeper.request(request_id, wish, now_ns)
 
@@ -227,8 +262,10 @@ class Session:
             return "no vehicle was heard"
         if not self._keeper.gate.settled:
             return f"the vehicle was not seen to hold within {LEAVING_NS / 1e9:.0f} s"
-        standing = seen.landed is gate.LandedState.ON_GROUND
-        return "the vehicle is on the ground" if standing else f"the vehicle is in {seen.mode_name}"
+        if seen.landed is gate.LandedState.ON_GROUND:
+            return "the vehicle is on the ground" + (", still ARMED" if seen.armed else "")
+        height = "" if seen.pos_ned is None else f", {-seen.pos_ned[2]:.1f} m up"
+        return f"the vehicle is STILL FLYING in {seen.mode_name}{height}"
 
     # ---------------------------------------------------------------------------- record
 
@@ -275,7 +312,10 @@ class Session:
         """`LEVEL node: text`, as vehicle-sim prints it; anything else is an INFO line."""
         word, _, rest = text.partition(" ")
         node, colon, line = rest.partition(": ")
-        if word in Level.__members__ and colon:
+        if word in Level.__members__ and colon and node.startswith("vehicle"):
+            # The operator has it from the vehicle itself; the record keeps both.
+            self._out.record(LogItem(Level[word], f"sim.{node}", line))
+        elif word in Level.__members__ and colon:
             self._out.say(Level[word], f"sim.{node}", line, now_ns)
         else:
             self._out.say(Level.INFO, "sim", text, now_ns)

@@ -43,8 +43,7 @@ def wish_of(ask: ipc.Ask, personality: Personality | None) -> gate.Wish:
             if ask.goal_enu is None:
                 raise BadAskError("goto needs a goal: east, north, up")
             goal_ned = ned_from_enu(finite_or_nan(ask.goal_enu))
-            yaw_rad = None if ask.yaw_deg is None else math.radians(ask.yaw_deg)
-            return gate.GoTo(goal_ned, yaw_rad)
+            return gate.GoTo(goal_ned, None if ask.yaw_deg is None else heading_rad(ask.yaw_deg))
         case "land":
             return gate.Land()
         case "rtl":
@@ -64,7 +63,8 @@ def wish_of(ask: ipc.Ask, personality: Personality | None) -> gate.Wish:
         case "mode":
             mode = autopilot.mode_named(personality, ask.mode) if personality else None
             if mode is None:
-                raise BadAskError(f"no mode {ask.mode!r} here")
+                names = ", ".join(known.name for known in personality.modes) if personality else ""
+                raise BadAskError(f"no mode {ask.mode!r} here; there are: {names or 'none'}")
             return gate.SetMode(mode.name, mode.meaning)
         case _:
             raise BadAskError(f"no such request: {ask.word!r}")
@@ -74,6 +74,11 @@ def finite_or_nan(triple: ipc.Maybe3) -> Vec3:
     """JSON has no NaN: null stands for it, and the gate refuses it by name."""
     a, b, c = (math.nan if value is None else as_on_the_wire(value) for value in triple)
     return (a, b, c)
+
+
+def heading_rad(yaw_deg: float) -> float:
+    """Degrees of any number of turns -> -pi .. pi, as the wire carries it."""
+    return as_on_the_wire(math.radians(math.remainder(yaw_deg, 360.0)))
 
 
 def as_on_the_wire(value: float) -> float:

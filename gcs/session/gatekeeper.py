@@ -50,7 +50,10 @@ class Gatekeeper:
     def meet(self, seen: Telemetry, now_ns: int) -> None:
         """A vehicle was heard: from here on the gate knows whose rules apply."""
         self.seen = seen
+        before = self.gate
         self.gate = Gate(self.policy, seen.personality.name, now_ns)
+        for condition, text in before.memory.conditions:
+            self.condition(condition, True, text, now_ns)
 
     # --------------------------------------------------------------------------- towards it
 
@@ -67,8 +70,10 @@ class Gatekeeper:
         for effect in self.gate.handle(given, now_ns):
             self.carry_out(effect, now_ns)
         if isinstance(given, gate.HomeSeen | gate.GeodeticSeen):
-            self._place_fence(now_ns)
+            self.place_fence(now_ns)
         elif isinstance(given, gate.PositionSeen):
+            if given.reset:
+                self.place_fence(now_ns)
             self._check_start(given)
 
     def _news(self, given: gate.ConditionChanged) -> bool:
@@ -88,6 +93,14 @@ class Gatekeeper:
     def wake(self, now_ns: int) -> None:
         self._from_orders(self._orders.wake(now_ns), now_ns)
 
+    def hold_blind(self, now_ns: int) -> None:
+        """The last resort: HOLD, past a gate that may be broken, where control was ours."""
+        if self.seen is not None and self.gate.control is not gate.Control.NONE:
+            hold = gate.SendCommand(0, gate.CommandKind.HOLD, now_ns)
+            for item in self._orders.send(hold, self.seen, now_ns):
+                if isinstance(item, Message):
+                    self.send(item)
+
     # ---------------------------------------------------------------------------- from it
 
     def carry_out(self, effect: gate.Effect, now_ns: int) -> None:
@@ -103,7 +116,7 @@ class Gatekeeper:
                 self._from_orders(self._orders.cancel(request_id, kind, now_ns), now_ns)
             case gate.SwitchedFence(on):
                 self._fence_on = on
-                self._place_fence(now_ns)
+                self.place_fence(now_ns)
             case gate.Verdict(request_id, _, wish, outcome, refusal, _, evidence):
                 goal_ned = wish.goal_ned if isinstance(wish, gate.GoTo) else None
                 self.verdict(request_id, outcome, refusal, evidence, goal_ned)
@@ -181,10 +194,11 @@ class Gatekeeper:
 
     # -------------------------------------------------------------------------- the fence
 
-    def _place_fence(self, now_ns: int) -> None:
+    def place_fence(self, now_ns: int) -> None:
         """Home or origin became known, or moved: the fence stands anew, is shown and recorded."""
         seen = self.seen
-        assert seen is not None
+        if seen is None:
+            return
         self.verifier = verifier_for(
             self.policy,
             seen.personality.name,
@@ -197,8 +211,12 @@ class Gatekeeper:
         self._out.emit(fences_event(self.verifier.zones))
 
     def _check_start(self, position: gate.PositionSeen) -> None:
-        """Once: does the fence have the vehicle inside?  If not, the policy is for elsewhere."""
-        if self._start_checked or self.verifier is None or not self.verifier.zones:
+        """Once, on the ground: is the vehicle inside?  If not, the policy is for elsewhere.
+
+        A vehicle that is met in the air is judged request by request: it must not be left alone.
+        """
+        grounded = self.gate.state is gate.State.GROUNDED
+        if self._start_checked or not grounded or not (self.verifier and self.verifier.zones):
             return
         self._start_checked = True
         self.bad_start = check_start(self.verifier, position.pos_ned)

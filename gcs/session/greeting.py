@@ -22,14 +22,14 @@ from gcs.protocol.effects import (
     Send,
     Wake,
 )
-from gcs.protocol.parameters import ParamReader
+from gcs.protocol.parameters import ParamReader, decode_value
 from gcs.session.telemetry import Telemetry
-from gcs.wire.ids import Cmd, MsgId
-from gcs.wire.messages import CommandLong, Message
+from gcs.wire.ids import Cmd, MsgId, ParamType
+from gcs.wire.messages import CommandLong, Message, ParamValue
 
 WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
-    (MsgId.LOCAL_POSITION_NED, 30.0),
     (MsgId.EXTENDED_SYS_STATE, 5.0),
+    (MsgId.LOCAL_POSITION_NED, 30.0),
     (MsgId.ATTITUDE, 20.0),
     (MsgId.GLOBAL_POSITION_INT, 5.0),
     (MsgId.SYS_STATUS, 2.0),
@@ -41,6 +41,8 @@ WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
 
 FASTEST_HZ = 200.0
 """Of real seconds; a sped-up vehicle is asked for its positions that much more often."""
+
+PARAM_TYPES = frozenset(int(kind) for kind in ParamType)
 
 ASK_AGAIN_NS = 2_000_000_000
 """Wait between two requests for what did not come."""
@@ -127,9 +129,22 @@ class Greeting:
         return self._read(names, seen, now_ns)
 
     def heard(self, heard: Heard, seen: Telemetry, now_ns: int) -> list[Out]:
-        if self._reader is None:
+        if self._reader is not None:
+            return self._out(self._reader.handle(heard, now_ns), seen, now_ns)
+        if isinstance(heard.message, ParamValue):
+            return self._changed(heard.message, seen, now_ns)
+        return []
+
+    def _changed(self, news: ParamValue, seen: Telemetry, now_ns: int) -> list[Out]:
+        """Somebody asked for, or set, a parameter: what we have read of it must stay true."""
+        if news.param_id not in self._values or news.param_type not in PARAM_TYPES:
             return []
-        return self._out(self._reader.handle(heard, now_ns), seen, now_ns)
+        kind = ParamType(news.param_type)
+        value = float(decode_value(news.param_value, kind, seen.personality.param_encoding))
+        if value == self._values[news.param_id]:
+            return []
+        effects: list[ParamEffect] = [ParamRead(news.param_id, value, kind), ParamsDone()]
+        return self._out(effects, seen, now_ns)
 
     def wake(self, seen: Telemetry, now_ns: int) -> list[Out]:
         if self._reader is not None:

@@ -29,6 +29,9 @@ from gcs.wire.frame import Frame, Garbage, Item, StreamSplitter, split
 from gcs.wire.ids import Autopilot, Component, MavType, Severity
 
 VEHICLE_GONE_NS = 3_500_000_000
+LINK_SILENT_NS = 2_000_000_000
+ORIGIN_PATIENCE_NS = 10_000_000_000
+"""How long a vehicle may take to tell its origin before that is a condition."""
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
 
@@ -46,6 +49,10 @@ STATUSTEXT_LEVEL = {
 }
 
 
+STATE_MESSAGES = m.Heartbeat | m.ExtendedSysState | m.SysStatus | m.MissionCurrent
+"""What tells a state is void once a newer one was seen; answers and events are not."""
+
+
 class Intake:
     """Everything that the vehicle says, brought to whom it concerns."""
 
@@ -59,6 +66,8 @@ class Intake:
         self._greeting = Greeting(setup.config)
         self._splitters = {link: StreamSplitter() for link in setup.streams}
         self._other_station_ns = 0
+        self._met_ns = 0
+        self._newest: dict[tuple[int, int], int] = {}
         self._gone_ns = round(VEHICLE_GONE_NS * setup.config.speedup)
         self.losses = SequenceTracker()
 
@@ -94,10 +103,22 @@ class Intake:
         seen = self._keeper.seen
         if seen is None or frame.sysid != seen.sysid:
             return
+        number = self.losses.number(frame.sysid, frame.compid, frame.seq)
         self.losses.seen(frame.sysid, frame.compid, frame.seq)
         seen.count_frame(now_ns)
-        if message is not None:
+        if message is not None and not self._overtaken(frame, message, number):
             self._heard(seen, link, Heard(frame.sysid, frame.compid, message), now_ns)
+
+    def _overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
+        """A state that is older than one of the same kind that has come: void."""
+        if not isinstance(message, STATE_MESSAGES):
+            return False
+        key = (frame.compid, frame.msgid)
+        newest = self._newest.get(key)
+        if newest is not None and number <= newest:
+            return True
+        self._newest[key] = number
+        return False
 
     def _heard(self, seen: Telemetry, link: int, heard: Heard, now_ns: int) -> None:
         self._keeper.heard(heard, now_ns)
@@ -108,14 +129,22 @@ class Intake:
             level = STATUSTEXT_LEVEL.get(Severity(message.severity & 7), Level.INFO)
             self._out.say(level, "vehicle", message.text, now_ns)
         if heard.compid == seen.compid:
-            seen.link = link
+            self._choose_link(seen, link, now_ns)
         elif not isinstance(message, m.CameraImageCaptured | m.CameraFeedback):
             return
         for news in absorb(message, seen, now_ns):
+            if isinstance(news, gate.PositionSeen) and news.reset:
+                self._missions.forget(now_ns)
             if isinstance(news, gate.Input):
                 self._keeper.give(news, now_ns)
             else:
                 self._out.record(news)
+
+    @staticmethod
+    def _choose_link(seen: Telemetry, link: int, now_ns: int) -> None:
+        """Answer where it is heard; another link takes over only once that one is silent."""
+        if link == seen.link or now_ns - seen.link_ns > LINK_SILENT_NS:
+            seen.link, seen.link_ns = link, now_ns
 
     def _heartbeat(self, link: int, frame: Frame, beat: m.Heartbeat, now_ns: int) -> None:
         """Choose our vehicle: the first autopilot that is heard, or the one that was named."""
@@ -127,15 +156,22 @@ class Intake:
         seen = self._keeper.seen
         if seen is None:
             seen = Telemetry(frame.sysid, frame.compid, personality_of(beat.autopilot), link)
-            seen.rx_window_start_ns = now_ns
+            seen.rx_window_start_ns = seen.link_ns = now_ns
+            seen.position_age_ns = round(self._keeper.policy.position_age_s * 1e9)
+            self._met_ns = now_ns
             self._keeper.meet(seen, now_ns)
             news = f"vehicle {seen.label} on link {link}"
         elif seen.sysid == frame.sysid and now_ns - seen.heartbeat_ns > self._gone_ns:
             news = f"vehicle {seen.label} is back"
+            seen.forget_place()
+            self.losses.restart(frame.sysid, frame.compid)
+            self._missions.forget(now_ns)
+            self._keeper.place_fence(now_ns)
         else:
             return
         self._out.say(Level.INFO, NODE, news, now_ns)
         self._from_greeting(self._greeting.start(seen, now_ns), now_ns)
+        self._ask_for_missing(seen, now_ns)
 
     def _from_greeting(self, news: Iterable[greeting.Out], now_ns: int) -> None:
         for item in news:
@@ -160,13 +196,19 @@ class Intake:
         if self._keeper.seen is not None:
             self._from_greeting(self._greeting.wake(self._keeper.seen, now_ns), now_ns)
 
+    def _ask_for_missing(self, seen: Telemetry, now_ns: int) -> None:
+        for command in self._greeting.missing(seen, now_ns):
+            self._keeper.ask(command, now_ns)
+
     def second(self, seen: Telemetry, now_ns: int) -> None:
         """Once a second: ask for what is missing, and record how the vehicle is."""
         if now_ns - seen.heartbeat_ns <= self._gone_ns:
-            for command in self._greeting.missing(seen, now_ns):
-                self._keeper.ask(command, now_ns)
+            self._ask_for_missing(seen, now_ns)
         if now_ns - self._other_station_ns > OTHER_STATION_NS:
             self._keeper.condition(gate.Condition.OTHER_STATION, False, "it is gone", now_ns)
+        missing = seen.origin is None and now_ns - self._met_ns > ORIGIN_PATIENCE_NS
+        text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
+        self._keeper.condition(gate.Condition.ORIGIN_MISSING, missing, text, now_ns)
         self._out.record(
             StatusItem(
                 seen.sysid,

@@ -2,10 +2,12 @@
 
     asked -> READING -> (verdict) -> UPLOADING -> READING_BACK -> on board
     asked -> DOWNLOADING -> WRITING -> done            asked -> CLEARING -> done
+    start asked -> READING_BACK -> (verdict) -> the gate
 
 A mission leaves only if every leg of it clears the fence; what the vehicle then holds is read
-back and compared in meaning; and before it is started it is verified anew from where the vehicle
-stands then.  One transfer at a time; a second is refused BUSY.
+back and compared in meaning.  Before it is started that is done again, as another station may
+have put another mission in its place, and the path is verified anew from where the vehicle is
+then.  One job at a time; a second is refused BUSY.
 """
 
 from __future__ import annotations
@@ -17,17 +19,15 @@ from gcs import ipc
 from gcs.config import LinkConfig
 from gcs.gate import types as gate
 from gcs.gate.types import Code, Ended, Level, Outcome, Refusal, State
+from gcs.gate.verifier import Cleared
 from gcs.plan import compare
-from gcs.plan.commands import KINDS, Kind
-from gcs.plan.errors import Level as PlanLevel
 from gcs.plan.errors import PlanError
-from gcs.plan.lint import lint
-from gcs.plan.model import Geodetic, Plan
-from gcs.plan.reader import read
-from gcs.plan.wire import WireItem, from_wire, to_wire
+from gcs.plan.model import Plan
+from gcs.plan.wire import WireItem, from_wire
 from gcs.plan.writer import write
 from gcs.protocol.effects import (
     Address,
+    Cancel,
     Heard,
     Send,
     TransferDone,
@@ -41,17 +41,18 @@ from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.record.items import AttachmentItem, MissionItem
 from gcs.session.gatekeeper import Gatekeeper
 from gcs.session.outbox import Outbox
-from gcs.session.paths import on_earth, path_of, personality_of, verify
+from gcs.session.paths import path_of, personality_of, verify
+from gcs.session.plans import OnBoard, item_of, message_of, on_board, prepare
 from gcs.session.ports import FileRead, FileWritten, ReadFile, WriteFile
-from gcs.session.telemetry import Telemetry
-from gcs.wire.ids import Cmd, MissionState, MissionType
+from gcs.wire.ids import MissionState, MissionType
 from gcs.wire.messages import MissionCurrent, MissionItemInt, MissionItemReached
 
 MISSION_WORDS = frozenset({"mission_upload", "mission_download", "mission_clear", "mission_start"})
 NODE = "mission"
 EXIT_BAD_FILE = 4
-STOPS = (Kind.MOVE, Kind.WAIT, Kind.RETURN)
-"""Items whose reaching ends a mission, where they are the last of their kind."""
+JOB_NS = 60_000_000_000
+ITEM_NS = 1_000_000_000
+"""How long a job may take: a minute, and a second an item."""
 
 Transfer: TypeAlias = MissionUpload | MissionDownload | MissionClear
 
@@ -67,15 +68,8 @@ class _Job:
     plan: Plan | None = None
     sent: tuple[WireItem, ...] = ()
     transfer: Transfer | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class OnBoard:
-    """The mission that we brought on board and read back equal."""
-
-    plan: Plan
-    last_seq: int | None
-    """Reaching this item ends it; None where it ends on the ground, which is seen by landing."""
+    deadline_ns: int | None = None
+    """A vehicle that keeps asking for the same item must not keep a job open for ever."""
 
 
 class MissionDesk:
@@ -91,6 +85,9 @@ class MissionDesk:
         self._out = out
         self._job: _Job | None = None
         self._on_board: OnBoard | None = None
+        self._left = False
+        self._was_active = False
+        """Whether the vehicle was seen flying the mission that was started last."""
 
     @property
     def deadline_ns(self) -> int | None:
@@ -98,16 +95,18 @@ class MissionDesk:
         transfer = self._job.transfer if self._job else None
         return transfer.deadline_ns if transfer else None
 
+    def forget(self, now_ns: int) -> None:
+        """The vehicle restarted or was away: nothing is known of what it has on board."""
+        if self._on_board is not None:
+            self._on_board = None
+            self._keeper.give(gate.MissionLoaded("", 0), now_ns)
+
     # ------------------------------------------------------------------------------ input
 
     def ask(self, ask: ipc.Ask, now_ns: int) -> None:
         """One of `MISSION_WORDS`."""
         request_id = self._keeper.requests.open(ask.id, ask.word)
         refusal = self._cannot(ask)
-        if ask.word == "mission_start":
-            refusal = refusal or self._cannot_start()
-            if refusal is None:
-                self._keeper.request(request_id, gate.StartMission(), now_ns)
         if refusal is not None:
             self._told_refused(request_id, ask.word, refusal, now_ns)
             return
@@ -122,6 +121,17 @@ class MissionDesk:
             case "mission_clear":
                 self._accept(job)
                 self._begin(job, MissionClear(*self._parties(), self._timing), now_ns)
+            case _:
+                self._start(job, now_ns)
+
+    def _start(self, job: _Job, now_ns: int) -> None:
+        """What cannot be flown at all the gate refuses at once; else look at what is on board."""
+        on_board, now = self._on_board, self._keeper.gate
+        if on_board is None or now.state not in (State.HOVERING, State.GROUNDED):
+            self._keeper.request(job.request_id, gate.StartMission(), now_ns)
+            return
+        job.plan, job.sent = on_board.plan, on_board.sent
+        self._begin(job, MissionDownload(*self._parties(), self._timing), now_ns)
 
     def file(self, news: FileRead | FileWritten, now_ns: int) -> None:
         """The answer to a ReadFile or WriteFile of ours."""
@@ -144,9 +154,11 @@ class MissionDesk:
         """A message of the vehicle: for the transfer under way, or about progress in flight."""
         match heard.message:
             case MissionCurrent(seq=seq, mission_state=state):
-                self._progress(seq, state == MissionState.COMPLETE, now_ns)
+                self._was_active |= state == MissionState.ACTIVE
+                over = state == MissionState.COMPLETE and self._was_active
+                self._progress(seq, over, now_ns)
             case MissionItemReached(seq=seq):
-                self._progress(seq, self._is_last(seq), now_ns)
+                self._reached(seq, now_ns)
         job = self._job
         if job is not None and job.transfer is not None:
             self._follow(job, job.transfer.handle(heard, now_ns), now_ns)
@@ -154,15 +166,18 @@ class MissionDesk:
     def wake(self, now_ns: int) -> None:
         job = self._job
         if job is not None and job.transfer is not None:
-            self._follow(job, job.transfer.handle(Wake(), now_ns), now_ns)
+            overdue = job.deadline_ns is not None and now_ns >= job.deadline_ns
+            given = Cancel() if overdue else Wake()
+            self._follow(job, job.transfer.handle(given, now_ns), now_ns)
 
     def leave(self, now_ns: int) -> None:
         """The session ends: what is under way ends with it, and is told so."""
+        self._left = True
         job = self._job
         if job is None:
             return
         sentence = "the station left before it was done"
-        if job.word == "mission_upload" and job.plan is None:
+        if job.word == "mission_start" or (job.word == "mission_upload" and job.plan is None):
             self._refuse(job, Refusal(Code.OPERATOR_LOST, sentence), now_ns)
         else:
             self._end(job, Ended.ABORTED, Code.OPERATOR_LOST, sentence, now_ns)
@@ -170,72 +185,55 @@ class MissionDesk:
     # ------------------------------------------------------------------------- judgements
 
     def _cannot(self, ask: ipc.Ask) -> Refusal | None:
-        """What refuses any transfer before it begins."""
-        now = self._keeper.gate
-        if self._keeper.seen is None or now.state is State.NO_VEHICLE:
+        """What refuses any job before it begins."""
+        state = self._keeper.gate.state
+        if self._left:
+            return Refusal(Code.OPERATOR_LOST, "the station is leaving")
+        if self._keeper.seen is None or state is State.NO_VEHICLE:
             return Refusal(Code.NO_VEHICLE, "no vehicle is heard")
         if self._job is not None:
             return Refusal(Code.BUSY, f"{self._job.word} is still under way")
         if ask.word == "mission_upload" and not ask.path:
             return Refusal(Code.BAD_MISSION, "which file?")
-        changes = ask.word in ("mission_upload", "mission_clear")
-        if changes and now.state is State.FLYING_MISSION:
-            return Refusal(Code.BUSY, "the mission on board is being flown")
+        if ask.word in ("mission_upload", "mission_clear"):
+            if state is State.STALE:
+                return Refusal(Code.STALE, "the vehicle's position is too old")
+            if state is State.FLYING_MISSION:
+                return Refusal(Code.BUSY, "the mission on board is being flown")
         return None
 
-    def _cannot_start(self) -> Refusal | None:
-        """The mission is verified anew, from where the vehicle is now."""
-        seen, on_board = self._keeper.seen, self._on_board
-        if seen is None or on_board is None:
-            return None  # the gate refuses, with NO_MISSION
-        path = path_of(on_board.plan, seen)
-        if isinstance(path, Refusal):
-            return path
-        answer = verify(on_board.plan, path, self._keeper.policy, seen)
-        return answer if isinstance(answer, Refusal) else None
+    def _refusal_of(self, plan: Plan, now_ns: int) -> Refusal | Cleared:
+        """The whole path, from where the vehicle is now."""
+        seen, policy = self._keeper.seen, self._keeper.policy
+        assert seen is not None
+        path = path_of(plan, seen, now_ns, round(policy.position_age_s * 1e9))
+        return path if isinstance(path, Refusal) else verify(plan, path, policy, seen)
 
     def _read(self, job: _Job, path: str, data: bytes, now_ns: int) -> None:
         """From bytes to a verified plan on its way, or to the reason why not."""
         seen = self._keeper.seen
         assert seen is not None
-        who = personality_of(seen)
         try:
-            written = read(path, data, who)
-            findings = lint(written, who, self._home(seen))
-            for finding in findings:
-                if finding.level is PlanLevel.ERROR:
-                    raise PlanError(
-                        path, finding.where, finding.item, finding.what, hint=finding.hint
-                    )
-                level = Level.WARNING if finding.level is PlanLevel.WARNING else Level.INFO
-                text = f"{path}: {finding.item}: {finding.what}"
-                self._out.say(level, NODE, text, now_ns)
-            plan = on_earth(written, seen)
-            if isinstance(plan, Refusal):
-                self._refuse(job, plan, now_ns)
-                return
-            sent = to_wire(plan, who, self._home(seen))
+            prepared = prepare(path, data, seen)
         except PlanError as error:
             self._bad_file(job, str(error), error.hint, now_ns)
             return
-        flown = path_of(plan, seen)
-        answer = (
-            flown if isinstance(flown, Refusal) else verify(plan, flown, self._keeper.policy, seen)
-        )
+        if isinstance(prepared, Refusal):
+            self._refuse(job, prepared, now_ns)
+            return
+        for level, text in prepared.remarks:
+            self._out.say(level, NODE, f"{path}: {text}", now_ns)
+        answer = self._refusal_of(prepared.plan, now_ns)
         if isinstance(answer, Refusal):
             self._refuse(job, answer, now_ns)
             return
-        job.plan, job.sent = plan, sent
+        job.plan, job.sent = prepared.plan, prepared.sent
         self._out.record(AttachmentItem(path, "application/octet-stream", data))
         self._accept(job, answer.evidence)
         self._keeper.give(gate.MissionLoaded("", 0), now_ns)
         self._on_board = None
-        items = tuple(_message(item) for item in sent)
+        items = tuple(message_of(item) for item in job.sent)
         self._begin(job, MissionUpload(*self._parties(), items, self._timing), now_ns)
-
-    @staticmethod
-    def _home(seen: Telemetry) -> Geodetic | None:
-        return Geodetic(*seen.home) if seen.home else None
 
     # --------------------------------------------------------------------------- transfer
 
@@ -247,6 +245,7 @@ class MissionDesk:
     def _begin(self, job: _Job, transfer: Transfer, now_ns: int) -> None:
         self._job = job
         job.transfer = transfer
+        job.deadline_ns = now_ns + JOB_NS + ITEM_NS * len(job.sent)
         self._follow(job, transfer.start(now_ns), now_ns)
 
     def _follow(self, job: _Job, effects: list[TransferEffect], now_ns: int) -> None:
@@ -271,9 +270,11 @@ class MissionDesk:
             case MissionUpload():
                 self._begin(job, MissionDownload(*self._parties(), self._timing), now_ns)
             case MissionDownload() if job.word == "mission_upload":
-                self._compare(job, tuple(_item(message) for message in items), now_ns)
+                self._compare(job, tuple(item_of(message) for message in items), now_ns)
+            case MissionDownload() if job.word == "mission_start":
+                self._fly(job, tuple(item_of(message) for message in items), now_ns)
             case MissionDownload():
-                self._downloaded(job, tuple(_item(message) for message in items), now_ns)
+                self._downloaded(job, tuple(item_of(message) for message in items), now_ns)
             case _:
                 self._on_board = None
                 self._keeper.give(gate.MissionLoaded("", 0), now_ns)
@@ -286,7 +287,29 @@ class MissionDesk:
             self._begin(job, MissionDownload(*self._parties(), self._timing), now_ns)
             return
         code = Code.NO_ANSWER if result is None else Code.VEHICLE_REFUSED
+        if job.word == "mission_start":
+            self._refuse(job, Refusal(code, f"what is on board could not be read: {text}"), now_ns)
+            return
         self._end(job, Ended.ABORTED, code, text, now_ns)
+
+    def _fly(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
+        """It is still the mission that was verified, and its path still clears: the gate's turn."""
+        seen, plan = self._keeper.seen, job.plan
+        assert seen is not None
+        assert plan is not None
+        differences = compare.same_meaning(job.sent, received, personality_of(seen))
+        if differences:
+            self.forget(now_ns)
+            text = f"another mission is on board than was verified: {differences[0]}"
+            self._refuse(job, Refusal(Code.BAD_MISSION, text), now_ns)
+            return
+        answer = self._refusal_of(plan, now_ns)
+        if isinstance(answer, Refusal):
+            self._refuse(job, answer, now_ns)
+            return
+        self._job = None
+        self._was_active = False
+        self._keeper.request(job.request_id, gate.StartMission(), now_ns)
 
     def _compare(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
         """Believe what the vehicle holds, not what was sent."""
@@ -298,8 +321,7 @@ class MissionDesk:
             text = f"read back, it is another mission: {differences[0]}"
             self._end(job, Ended.ABORTED, Code.VEHICLE_REFUSED, text, now_ns)
             return
-        home_items = len(job.sent) - len(plan.items)
-        self._on_board = OnBoard(plan, _last_stop(plan, home_items))
+        self._on_board = on_board(plan, job.sent)
         seen.mission_total = len(job.sent)
         path = path_of(plan, seen)
         if not isinstance(path, Refusal):
@@ -324,9 +346,15 @@ class MissionDesk:
         else:
             self._end(job, Ended.COMPLETE, None, f"{len(plan.items)} items are on board", now_ns)
 
-    def _is_last(self, seq: int) -> bool:
-        last_seq = self._on_board.last_seq if self._on_board else None
-        return last_seq is not None and seq >= last_seq
+    def _reached(self, seq: int, now_ns: int) -> None:
+        seen, on_board = self._keeper.seen, self._on_board
+        if seen is None or on_board is None:
+            return
+        last = on_board.last_seq is not None and seq >= on_board.last_seq
+        if last and on_board.loops:
+            # It may be over now; whether it is, the vehicle's mode tells.
+            seq = (seen.mission_total or 1) - 1
+        self._progress(seq, last and not on_board.loops, now_ns)
 
     def _progress(self, seq: int, finished: bool, now_ns: int) -> None:
         seen, on_board = self._keeper.seen, self._on_board
@@ -357,51 +385,3 @@ class MissionDesk:
         self._keeper.ending(gate.Ending(job.request_id, ended, code, sentence))
         level = Level.INFO if ended is Ended.COMPLETE else Level.WARNING
         self._out.say(level, NODE, f"{job.word}: {ended.value}: {sentence}", now_ns)
-
-
-def _last_stop(plan: Plan, home_items: int) -> int | None:
-    """The seq whose reaching ends the mission; None if it ends with a landing or a return."""
-    stops = [i for i, item in enumerate(plan.items) if KINDS.get(item.command) in STOPS]
-    if not stops:
-        return len(plan.items) - 1 + home_items
-    last = plan.items[stops[-1]]
-    lands = last.command == Cmd.NAV_LAND or KINDS.get(last.command) is Kind.RETURN
-    return None if lands else stops[-1] + home_items
-
-
-def _message(item: WireItem) -> MissionItemInt:
-    """Target and type are the transfer's to set."""
-    return MissionItemInt(
-        param1=item.param1,
-        param2=item.param2,
-        param3=item.param3,
-        param4=item.param4,
-        x=item.x,
-        y=item.y,
-        z=item.z,
-        seq=item.seq,
-        command=item.command,
-        target_system=0,
-        target_component=0,
-        frame=item.frame,
-        current=item.current,
-        autocontinue=item.autocontinue,
-    )
-
-
-def _item(message: MissionItemInt) -> WireItem:
-    return WireItem(
-        seq=message.seq,
-        frame=message.frame,
-        command=message.command,
-        current=message.current,
-        autocontinue=message.autocontinue,
-        param1=message.param1,
-        param2=message.param2,
-        param3=message.param3,
-        param4=message.param4,
-        x=message.x,
-        y=message.y,
-        z=message.z,
-        mission_type=message.mission_type,
-    )

@@ -81,8 +81,8 @@ class Orders:
             self._photo_seq += 1
         wanted = Order(
             order.kind,
-            up_m=order.up_m,
-            ground_amsl_m=seen.alt_amsl_m,
+            up_m=order.up_m + _above_home_m(seen),
+            ground_amsl_m=_ground_amsl_m(seen),
             mode_name=order.mode_name,
             photo_seq=self._photo_seq,
         )
@@ -93,7 +93,11 @@ class Orders:
         token = self._next_token
         self._next_token += 1
         self._sent[token] = order, command
-        return self._lose_patience() + self._submit(token, now_ns)
+        out = self._lose_patience()
+        if order.kind is CommandKind.ARM and seen.prearm_ok is False:
+            self._patient = now_ns + ASK_AGAIN_NS, token, Result.TEMPORARILY_REJECTED
+            return [*out, "the vehicle's pre-arm checks are not through: asking a little later"]
+        return out + self._submit(token, now_ns)
 
     def _submit(self, token: int, now_ns: int) -> list[Out]:
         order, command = self._sent[token]
@@ -177,3 +181,17 @@ class Orders:
         self._patient = None
         order, _ = self._sent.pop(token)
         return [CommandEnded(order.request_id, order.kind, result)]
+
+
+def _ground_amsl_m(seen: Telemetry) -> float | None:
+    """Where it stands above mean sea level, from the position that the climb was verified from."""
+    if seen.origin is None or seen.pos_ned is None:
+        return None
+    return seen.origin.alt_amsl_m - seen.pos_ned[2]
+
+
+def _above_home_m(seen: Telemetry) -> float:
+    """How much higher than home it stands, for an autopilot that counts a climb from home."""
+    if seen.personality.takeoff_above_sea or seen.home_ned is None or seen.pos_ned is None:
+        return 0.0
+    return seen.home_ned[2] - seen.pos_ned[2]

@@ -39,8 +39,15 @@ def on_earth(plan: Plan, seen: Telemetry) -> Plan | Refusal:
     )
 
 
-def path_of(plan: Plan, seen: Telemetry) -> FlightPath | Refusal:
-    """The whole path from where the vehicle is now, local NED; refused where it is not known."""
+def path_of(
+    plan: Plan, seen: Telemetry, now_ns: int = 0, age_ns: int | None = None
+) -> FlightPath | Refusal:
+    """The whole path from where the vehicle is now, local NED; refused where it is not known.
+
+    With `age_ns`, also where its position is older than that at `now_ns`.
+    """
+    if age_ns is not None and now_ns - seen.position_ns > age_ns:
+        return Refusal(Code.STALE, "the vehicle's position is too old")
     if seen.origin is None or seen.home_ned is None or seen.pos_ned is None:
         return Refusal(Code.NO_ORIGIN, "the vehicle's origin, home or position is not known yet")
     path = flight_path(

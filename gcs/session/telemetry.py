@@ -25,6 +25,7 @@ class Telemetry:
     compid: int
     personality: Personality
     link: int
+    link_ns: int = 0
 
     heartbeat_ns: int = 0
     armed: bool | None = None
@@ -35,6 +36,10 @@ class Telemetry:
     v_ned: Vec3 = (0.0, 0.0, 0.0)
     position_ns: int = 0
     time_boot_ms: int = 0
+    position_age_ns: int = 1_000_000_000
+    restart_ms: int | None = None
+    quickest_ns: int | None = None
+    quickest_at_ns: int = 0
 
     q_ned_from_frd: Quat = (1.0, 0.0, 0.0, 0.0)
     yaw_rad: float | None = None
@@ -50,6 +55,7 @@ class Telemetry:
     home_ned: Vec3 | None = None
     return_up_m: float | None = None
 
+    prearm_ok: bool | None = None
     battery_pct: float | None = None
     battery_v: float | None = None
 
@@ -66,6 +72,12 @@ class Telemetry:
     def label(self) -> str:
         """Short name for a screen: ids and personality."""
         return f"{self.sysid}/{self.compid} {self.personality.name} quadrotor"
+
+    def forget_place(self) -> None:
+        """The vehicle restarted or was away: where its local frame lies is not known any more."""
+        self.origin = self.home = self.home_ned = None
+        self.quickest_ns = None
+        self.landed = LandedState.UNDEFINED
 
     def count_frame(self, now_ns: int) -> None:
         """One more frame; the rate is renewed every two seconds."""

@@ -7,6 +7,7 @@ state.  Whatever may block (the operator's pipe, a slow disk's flush) is bounded
 from __future__ import annotations
 
 import select
+import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol
@@ -41,7 +42,7 @@ from gcs.shell.sim import SimProcess
 from gcs.shell.sockets import Link
 
 MAX_PLAN_BYTES = 16 << 20
-MAX_DATAGRAMS_A_TURN = 512
+MAX_DATAGRAMS_A_TURN = 256
 
 
 class Core(Protocol):
@@ -50,6 +51,7 @@ class Core(Protocol):
     @property
     def deadline_ns(self) -> int: ...
     def handle(self, given: Input, now_ns: int) -> Sequence[Effect]: ...
+    def fault(self, given: Input, report: str, now_ns: int) -> Sequence[Effect]: ...
 
 
 class Source(Protocol):
@@ -101,8 +103,7 @@ class Loop:
             if self._screen.broken and self._operator_open:
                 self._operator_open = False
                 self._feed(OperatorGone("nobody reads the link's output"))
-            if self._clock.now_ns() >= self._core.deadline_ns:
-                self._feed(Wake())
+            self._wake_if_due()
             for change in self._recording.upkeep(self._clock.now_ns()):
                 self._feed(change)
         return self._finish
@@ -121,12 +122,17 @@ class Loop:
         readable, writable, _ = select.select(sources, sinks, [], wait_s)
         return readable, writable
 
+    def _wake_if_due(self) -> None:
+        if self._clock.now_ns() >= self._core.deadline_ns:
+            self._feed(Wake())
+
     def _read_links(self, readable: list[Source]) -> None:
         for number, link in enumerate(self._links):
             due = link.deadline_ns is not None and link.deadline_ns <= self._clock.now_ns()
             if link in readable:
                 for data in link.drain(MAX_DATAGRAMS_A_TURN):
                     self._feed(Datagram(number, data))
+                    self._wake_if_due()
             elif not due:
                 continue
             for text in link.poke(self._clock.now_ns()):
@@ -136,7 +142,7 @@ class Loop:
         for line in self._operator.read():
             try:
                 command = ipc.decode_command(line)
-            except ipc.DecodeError as error:
+            except (ValueError, RecursionError) as error:
                 self._feed(OperatorNoise(f"{error}: {line[:200]!r}"))
             else:
                 self._feed(OperatorLine(command))
@@ -156,7 +162,11 @@ class Loop:
         if self._finish is not None:
             return
         now_ns = self._clock.now_ns()
-        for effect in self._core.handle(given, now_ns):
+        try:
+            effects = self._core.handle(given, now_ns)
+        except Exception:  # noqa: BLE001 - the last resort: a bug of ours must not drop a vehicle
+            effects = self._core.fault(given, traceback.format_exc(), now_ns)
+        for effect in effects:
             self._perform(effect, now_ns)
         for change in self._recording.changes():
             self._feed(change)
@@ -187,8 +197,8 @@ def _read(token: int, path: str) -> FileRead:
             data = file.read(MAX_PLAN_BYTES + 1)
     except MissionNotFoundError as error:
         return FileRead(token, path, None, f"no such file; {error.hint}")
-    except OSError as error:
-        return FileRead(token, path, None, error.strerror or str(error))
+    except (OSError, ValueError) as error:
+        return FileRead(token, path, None, getattr(error, "strerror", None) or str(error))
     if len(data) > MAX_PLAN_BYTES:
         return FileRead(token, path, None, f"larger than {MAX_PLAN_BYTES >> 20} MiB")
     return FileRead(token, path, data)
@@ -196,7 +206,10 @@ def _read(token: int, path: str) -> FileRead:
 
 def _write(token: int, path: str, data: bytes) -> FileWritten:
     try:
-        Path(path).write_bytes(data)
-    except OSError as error:
-        return FileWritten(token, path, error.strerror or str(error))
+        file = Path(path)
+        if file.exists() and not file.is_file():
+            return FileWritten(token, path, "is no regular file")
+        file.write_bytes(data)
+    except (OSError, ValueError) as error:
+        return FileWritten(token, path, getattr(error, "strerror", None) or str(error))
     return FileWritten(token, path)

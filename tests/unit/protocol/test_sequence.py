@@ -37,3 +37,25 @@ def test_senders_do_not_disturb_each_other() -> None:
     assert tracker.seen(1, 100, 201) == 0
     assert tracker.senders[1, 1].lost == 1
     assert tracker.lost == 1
+
+
+def test_frames_are_numbered_without_a_wrap_and_late_ones_are_lower() -> None:
+    tracker = SequenceTracker()
+    for seq in (254, 255, 0, 1):
+        newest = tracker.number(1, 1, seq)
+        tracker.seen(1, 1, seq)
+    assert newest == 257
+    assert tracker.number(1, 1, 255) == 255
+    assert tracker.number(1, 1, 1) == 257
+    assert tracker.number(1, 1, 3) == 259
+    assert tracker.number(2, 1, 9) == 9
+
+
+def test_a_sender_that_was_away_may_begin_anew() -> None:
+    tracker = SequenceTracker()
+    tracker.seen(1, 1, 200)
+    tracker.restart(1, 1)
+    assert tracker.number(1, 1, 0) == 201
+    assert tracker.seen(1, 1, 0) == 0
+    assert tracker.number(1, 1, 1) == 202
+    assert tracker.lost == 0

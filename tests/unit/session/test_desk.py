@@ -9,12 +9,19 @@ import pytest
 from gcs import ipc
 from gcs.gate.types import Abort, FlightMode, GoTo, SetMode, TakeOff
 from gcs.protocol.autopilot import ARDUPILOT, PX4
-from gcs.session.desk import BadAskError, Requests, as_on_the_wire, wish_of
+from gcs.session.desk import BadAskError, Requests, as_on_the_wire, heading_rad, wish_of
 
 
 def test_a_goal_is_turned_into_ned_once() -> None:
     wish = wish_of(ipc.Ask(1, "goto", goal_enu=(1.0, 2.0, 3.0), yaw_deg=90.0), PX4)
-    assert wish == GoTo((2.0, 1.0, -3.0), math.pi / 2)
+    assert wish == GoTo((2.0, 1.0, -3.0), as_on_the_wire(math.pi / 2))
+
+
+@pytest.mark.parametrize(("turned_deg", "same_deg"), [(450.0, 90.0), (-90.0, 270.0), (1e300, None)])
+def test_a_heading_of_many_turns_is_a_heading(turned_deg: float, same_deg: float | None) -> None:
+    assert abs(heading_rad(turned_deg)) <= math.pi + 1e-6
+    if same_deg is not None:
+        assert heading_rad(turned_deg) == pytest.approx(heading_rad(same_deg), abs=1e-6)
 
 
 def test_null_is_no_number_and_is_for_the_gate_to_refuse() -> None:

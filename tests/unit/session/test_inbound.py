@@ -10,7 +10,15 @@ from gcs.gate import types as gate
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Personality
 from gcs.session.inbound import absorb
 from gcs.wire.messages import GpsGlobalOrigin, Heartbeat, HomePosition
-from tests.unit.session.vehicles import HOME, SECOND_NS, global_position, position, vehicle
+from tests.unit.session.vehicles import (
+    HOME,
+    SECOND_NS,
+    attitude,
+    global_position,
+    position,
+    system_status,
+    vehicle,
+)
 
 
 def origin() -> GpsGlobalOrigin:
@@ -44,9 +52,49 @@ def test_a_clock_that_went_back_is_a_restart_and_the_origin_is_asked_for_again()
     seen = vehicle()
     list(absorb(origin(), seen, SECOND_NS))
     list(absorb(position(60_000), seen, SECOND_NS))
-    heard = list(absorb(position(200), seen, 2 * SECOND_NS))
-    assert gate.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 200, reset=True) in heard
+    assert list(absorb(position(200), seen, 2 * SECOND_NS)) == []
+    heard = list(absorb(position(230), seen, 2 * SECOND_NS + 30_000_000))
+    assert gate.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 230, reset=True) in heard
     assert seen.origin is None
+    assert seen.home_ned is None
+
+
+def test_one_position_that_lost_its_way_for_long_is_no_restart() -> None:
+    seen = vehicle()
+    list(absorb(position(60_000), seen, SECOND_NS))
+    assert list(absorb(position(200), seen, SECOND_NS + 1)) == []
+    assert len(list(absorb(position(60_030), seen, SECOND_NS + 30_000_000))) == 2
+    assert list(absorb(position(231), seen, SECOND_NS + 40_000_000)) == []
+
+
+def test_a_position_that_waited_on_the_way_is_old_when_it_comes() -> None:
+    seen = vehicle()
+    list(absorb(position(1_000), seen, 10 * SECOND_NS))
+    assert list(absorb(position(1_100), seen, 13 * SECOND_NS)) == []
+    assert len(list(absorb(position(4_000), seen, 13 * SECOND_NS + 1))) == 2
+
+
+def test_an_attitude_that_is_no_number_is_none() -> None:
+    seen = vehicle()
+    list(absorb(attitude(math.inf), seen, SECOND_NS))
+    assert seen.yaw_rad is None
+    list(absorb(attitude(0.5), seen, SECOND_NS))
+    assert seen.yaw_rad == 0.5
+
+
+@pytest.mark.parametrize(("left_pct", "low", "critical"), [(80, 0, 0), (15, 1, 0), (5, 1, 1)])
+def test_a_low_battery_is_a_condition(left_pct: int, low: int, critical: int) -> None:
+    heard = list(absorb(system_status(left_pct), vehicle(), SECOND_NS))
+    told = {x.condition: x.active for x in heard if isinstance(x, gate.ConditionChanged)}
+    assert told[gate.Condition.BATTERY_LOW] is bool(low)
+    assert told[gate.Condition.BATTERY_CRITICAL] is bool(critical)
+
+
+def test_a_heartbeat_of_another_kind_from_the_same_ids_is_not_the_vehicle_s() -> None:
+    station = Heartbeat(
+        custom_mode=0, type=6, autopilot=8, base_mode=0, system_status=4, mavlink_version=3
+    )
+    assert list(absorb(station, vehicle(), SECOND_NS)) == []
 
 
 def test_home_is_placed_by_the_origin_and_never_by_its_own_local_fields() -> None:
@@ -112,6 +160,7 @@ def test_a_heartbeat_tells_what_its_mode_means(
         system_status=4,
         mavlink_version=3,
     )
-    (told,) = absorb(beat, vehicle(personality), SECOND_NS)
+    told, failsafe = absorb(beat, vehicle(personality), SECOND_NS)
     assert isinstance(told, gate.HeartbeatSeen)
     assert (told.armed, told.mode) == (True, meaning)
+    assert failsafe == gate.ConditionChanged(gate.Condition.VEHICLE_FAILSAFE_ACTIVE, False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcs.gate.projection import Origin
 from gcs.protocol.autopilot import PX4, Personality
 from gcs.session.telemetry import Telemetry
-from gcs.wire.messages import GlobalPositionInt, LocalPositionNed
+from gcs.wire.messages import Attitude, GlobalPositionInt, LocalPositionNed, SysStatus
 
 SECOND_NS = 1_000_000_000
 HOME = Origin(47.397742, 8.545594, 488.0)
@@ -31,4 +31,28 @@ def global_position(lat_deg: float, lon_deg: float) -> GlobalPositionInt:
         vy=0,
         vz=0,
         hdg=0,
+    )
+
+
+def attitude(yaw: float) -> Attitude:
+    return Attitude(
+        time_boot_ms=0, roll=0.0, pitch=0.0, yaw=yaw, rollspeed=0.0, pitchspeed=0.0, yawspeed=0.0
+    )
+
+
+def system_status(battery_pct: int) -> SysStatus:
+    return SysStatus(
+        onboard_control_sensors_present=0,
+        onboard_control_sensors_enabled=0,
+        onboard_control_sensors_health=0,
+        load=0,
+        voltage_battery=16_000,
+        current_battery=-1,
+        drop_rate_comm=0,
+        errors_comm=0,
+        errors_count1=0,
+        errors_count2=0,
+        errors_count3=0,
+        errors_count4=0,
+        battery_remaining=battery_pct,
     )

@@ -1,0 +1,139 @@
+"""A plan on its way to the vehicle and back: from a file to wire items, and what is on board.
+
+Everything here is about the plan alone; whether its path may be flown is `paths.verify`'s to say.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gcs.gate.types import Level, Refusal
+from gcs.plan.commands import KINDS, Kind
+from gcs.plan.errors import Level as PlanLevel
+from gcs.plan.errors import PlanError
+from gcs.plan.lint import lint
+from gcs.plan.model import Geodetic, Plan
+from gcs.plan.reader import read
+from gcs.plan.wire import WireItem, to_wire
+from gcs.session.paths import on_earth, personality_of
+from gcs.session.telemetry import Telemetry
+from gcs.wire.ids import Cmd
+from gcs.wire.messages import MissionItemInt
+
+MAX_ITEMS = 2_000
+"""More would keep the 20 Hz tick waiting while they are verified."""
+
+STOPS = (Kind.MOVE, Kind.WAIT, Kind.RETURN)
+"""Items whose reaching ends a mission, where they are the last of their kind."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A plan placed on Earth, its items as they will leave, and what its readers remarked."""
+
+    plan: Plan
+    sent: tuple[WireItem, ...]
+    remarks: tuple[tuple[Level, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class OnBoard:
+    """The mission that we brought on board and read back equal."""
+
+    plan: Plan
+    sent: tuple[WireItem, ...]
+    last_seq: int | None
+    """The last stop; None where the mission ends on the ground, which is seen by landing."""
+    loops: bool
+    """It jumps back: its last stop may be reached many times."""
+
+
+def prepare(path: str, data: bytes, seen: Telemetry) -> Prepared | Refusal:
+    """Read, lint and place the plan in `data`.
+
+    Raises PlanError for a file that is none, or none that can be flown; refuses where the
+    vehicle's origin or home is not known.
+    """
+    who = personality_of(seen)
+    home = Geodetic(*seen.home) if seen.home else None
+    written = read(path, data, who)
+    if not written.items:
+        hint = "`gcs mission clear` takes a mission off; fences are checked, not uploaded"
+        raise PlanError(path, "", "mission", "has no items", hint=hint)
+    if len(written.items) > MAX_ITEMS:
+        what = f"has {len(written.items)} items"
+        raise PlanError(path, "", "mission", what, f"at most {MAX_ITEMS}")
+    remarks = []
+    for finding in lint(written, who, home):
+        if finding.level is PlanLevel.ERROR:
+            raise PlanError(path, finding.where, finding.item, finding.what, hint=finding.hint)
+        level = Level.WARNING if finding.level is PlanLevel.WARNING else Level.INFO
+        remarks.append((level, f"{finding.item}: {finding.what}"))
+    plan = on_earth(written, seen)
+    if isinstance(plan, Refusal):
+        return plan
+    return Prepared(plan, to_wire(plan, who, home), tuple(remarks))
+
+
+def on_board(plan: Plan, sent: tuple[WireItem, ...]) -> OnBoard:
+    """What `sent` is once it was read back equal."""
+    home_items = len(sent) - len(plan.items)
+    return OnBoard(plan, sent, _last_stop(plan, home_items), _loops(plan))
+
+
+def _last_stop(plan: Plan, home_items: int) -> int | None:
+    """The seq whose reaching ends the mission; None if it ends with a landing or a return."""
+    stops = [i for i, item in enumerate(plan.items) if KINDS.get(item.command) in STOPS]
+    if not stops:
+        return len(plan.items) - 1 + home_items
+    return None if _lands(plan) else stops[-1] + home_items
+
+
+def _loops(plan: Plan) -> bool:
+    return any(KINDS.get(item.command) is Kind.JUMP for item in plan.items)
+
+
+def _lands(plan: Plan) -> bool:
+    """Whether it ends on the ground: that is seen by the landing, and by nothing before it."""
+    stops = [item for item in plan.items if KINDS.get(item.command) in STOPS]
+    if not stops:
+        return False
+    return stops[-1].command == Cmd.NAV_LAND or KINDS.get(stops[-1].command) is Kind.RETURN
+
+
+def message_of(item: WireItem) -> MissionItemInt:
+    """Target and type are the transfer's to set."""
+    return MissionItemInt(
+        param1=item.param1,
+        param2=item.param2,
+        param3=item.param3,
+        param4=item.param4,
+        x=item.x,
+        y=item.y,
+        z=item.z,
+        seq=item.seq,
+        command=item.command,
+        target_system=0,
+        target_component=0,
+        frame=item.frame,
+        current=item.current,
+        autocontinue=item.autocontinue,
+    )
+
+
+def item_of(message: MissionItemInt) -> WireItem:
+    return WireItem(
+        seq=message.seq,
+        frame=message.frame,
+        command=message.command,
+        current=message.current,
+        autocontinue=message.autocontinue,
+        param1=message.param1,
+        param2=message.param2,
+        param3=message.param3,
+        param4=message.param4,
+        x=message.x,
+        y=message.y,
+        z=message.z,
+        mission_type=message.mission_type,
+    )

@@ -1,0 +1,114 @@
+"""From an abort to its bytes on the wire: a key in a terminal, and a line into the link itself.
+
+Run: python -m tests.bench.measure_abort
+
+50 times each: resume, wait a moment of random length, abort, and see when the hold command
+passes an independent ear on the wire.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from pymavlink.dialects.v20 import all as dialect
+
+from gcs import ipc
+from gcs.cli.dialogue import Asked
+from tests.system.programs import GCS
+from tests.system.station import tapped
+from tests.system.terminal import terminal
+from tests.system.typed_flight import take_off
+from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.wire_tap import Crossing, WireTap
+
+ABORTS = 50
+PX4_AUTO, PX4_LOITER = 4, 3
+
+_rng = random.Random(1)
+
+
+class HoldWatch:
+    """Notes when a command to hold passes."""
+
+    def __init__(self) -> None:
+        self.passed_ns: list[int] = []
+
+    def hear(self, crossing: Crossing) -> None:
+        message = dialect.MAVLink(None).parse_char(crossing.data)
+        if message is not None and message.get_type() == "COMMAND_LONG":
+            asked = (message.command, message.param2, message.param3)
+            if asked == (dialect.MAV_CMD_DO_SET_MODE, PX4_AUTO, PX4_LOITER):
+                self.passed_ns.append(crossing.at_ns)
+
+    def latency_ms(self, abort: Callable[[], None]) -> float:
+        time.sleep(_rng.uniform(0.0, 0.2))
+        known = len(self.passed_ns)
+        start_ns = time.monotonic_ns()
+        abort()
+        until(lambda: len(self.passed_ns) > known, "the hold command", 5.0)
+        return (self.passed_ns[known] - start_ns) / 1e6
+
+
+def by_key(folder: str) -> list[float]:
+    watch, port = HoldWatch(), free_port()
+    found = []
+    with WireTap(watch.hear) as tap:
+        tap.connect(port)
+        link = ("--link", f"udpin://127.0.0.1:{port}", "--log-dir", folder)
+        with (
+            vehicle_sim("--link", f"udpout://127.0.0.1:{tap.vehicle_port}"),
+            terminal(GCS, "fly", *link) as screen,
+        ):
+            take_off(screen)
+            for _ in range(ABORTS):
+                found.append(watch.latency_ms(lambda: screen.press(" ")))
+                screen.until_text("abort: complete")
+                screen.press("e")
+                screen.until_text("resume: complete")
+            screen.press("\x03")
+            screen.process.wait(10.0)
+    return found
+
+
+def by_line(folder: Path) -> list[float]:
+    watch = HoldWatch()
+    found = []
+    with tapped(folder, tap=WireTap(watch.hear)) as (operator, _):
+        operator.fly("arm", "takeoff 1.5")
+        asked: list[Asked] = []
+
+        def abort() -> None:
+            asked.append(operator.dialogue.ask(ipc.Ask(0, "abort")))
+
+        for _ in range(ABORTS):
+            found.append(watch.latency_ms(abort))
+            operator.see_completed(asked[-1])
+            operator.fly("resume")
+        operator.leave()
+    return found
+
+
+def tell(name: str, found: list[float]) -> None:
+    found.sort()
+    print(
+        f"{name:22} best {found[0]:.2f}, median {found[len(found) // 2]:.2f}, "
+        f"p90 {found[len(found) * 9 // 10]:.2f}, worst of {len(found)} {found[-1]:.2f} ms"
+    )
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        tell("key in a terminal", by_key(folder))
+        print(f"load {os.getloadavg()[0]:.2f}")
+    with tempfile.TemporaryDirectory() as folder:
+        tell("line into the link", by_line(Path(folder)))
+        print(f"load {os.getloadavg()[0]:.2f}")
+
+
+if __name__ == "__main__":
+    main()

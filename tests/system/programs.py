@@ -1,0 +1,116 @@
+"""The programs as a user starts them, and what is left of them afterwards."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from tests.system.vehicle_program import until
+
+GCS = str(Path(sys.executable).with_name("gcs"))
+
+
+def gcs(*words: str, stdin: str = "", timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:
+    """Run it to its end."""
+    return subprocess.run(
+        [GCS, *words], input=stdin, capture_output=True, text=True, timeout=timeout_s, check=False
+    )
+
+
+class Running:
+    """A program under way; `out` and `err` are its lines so far."""
+
+    def __init__(self, command: Sequence[str]) -> None:
+        self.process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        self.out: list[str] = []
+        self.err: list[str] = []
+        self._readers = [
+            threading.Thread(target=lines.extend, args=(pipe,))
+            for lines, pipe in ((self.out, self.process.stdout), (self.err, self.process.stderr))
+        ]
+        for reader in self._readers:
+            reader.start()
+
+    @property
+    def pid(self) -> int:
+        return self.process.pid
+
+    def type(self, *lines: str) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.write("".join(f"{line}\n" for line in lines))
+        self.process.stdin.flush()
+
+    def until_out(self, text: str, timeout_s: float = 30.0) -> None:
+        """Wait for a line of standard output that contains `text`."""
+        until(lambda: any(text in line for line in self.out), f"{text!r} in {self.err}", timeout_s)
+
+    def close(self) -> None:
+        """The end of its input, then of itself, then of whatever it started."""
+        family = descendants(self.pid)
+        assert self.process.stdin is not None
+        with suppress(BrokenPipeError):
+            self.process.stdin.close()
+        try:
+            self.process.wait(10.0)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        try:
+            until(lambda: not any(map(alive, family)), "the end of its processes", 10.0)
+        finally:
+            for pid in filter(alive, family):
+                os.kill(pid, 9)
+            for reader in self._readers:
+                reader.join()
+            for pipe in (self.process.stdout, self.process.stderr):
+                assert pipe is not None
+                pipe.close()
+
+
+@contextmanager
+def running(*command: str) -> Iterator[Running]:
+    """A program that is gone at the end, and everything that it started with it."""
+    program = Running(command)
+    try:
+        yield program
+    finally:
+        program.close()
+
+
+def _processes() -> dict[int, tuple[int, str]]:
+    """Parent and state of every process."""
+    table = subprocess.run(
+        ["ps", "-A", "-o", "pid=,ppid=,state="], capture_output=True, text=True, check=True
+    ).stdout
+    rows = (line.split() for line in table.splitlines())
+    return {int(pid): (int(parent), state) for pid, parent, state in rows}
+
+
+def alive(pid: int) -> bool:
+    """Whether it still runs; a zombie that nobody has looked after yet does not."""
+    _, state = _processes().get(pid, (0, "Z"))
+    return not state.startswith("Z")
+
+
+def children(pid: int) -> list[int]:
+    return sorted(child for child, (parent, _) in _processes().items() if parent == pid)
+
+
+def descendants(pid: int) -> list[int]:
+    return [each for child in children(pid) for each in (child, *descendants(child))]
+
+
+def all_gone(pids: Sequence[int]) -> bool:
+    return not any(map(alive, pids))

@@ -1,0 +1,137 @@
+"""An operator in the test's own process, who speaks with a real link process."""
+
+from __future__ import annotations
+
+import re
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from gcs import ipc
+from gcs.cli import typed, words
+from gcs.cli.dialogue import Asked, Dialogue
+from gcs.config import LinkConfig, SimConfig
+from gcs.shell.client import LinkClient, LinkDown
+from tests.system.vehicle_program import vehicle_sim
+from tests.system.wire_tap import WireTap
+
+WAIT_S = 30.0
+
+
+class NoInterrupts:
+    """Nobody presses Ctrl-C here."""
+
+    def __init__(self) -> None:
+        self.name = ""
+        self._ear, self._mouth = socket.socketpair()
+
+    def fileno(self) -> int:
+        return self._ear.fileno()
+
+    def forget(self) -> None:
+        """There is nothing to forget."""
+
+    def close(self) -> None:
+        self._ear.close()
+        self._mouth.close()
+
+
+class Station:
+    """Types lines and waits for what becomes of them; keeps every event, in order."""
+
+    def __init__(self, config: LinkConfig) -> None:
+        self.events: list[ipc.Event] = []
+        self.link = LinkClient.start(config)
+        self.interrupts = NoInterrupts()
+        self.dialogue = Dialogue(self.link, self.interrupts, self._keep)
+
+    def _keep(self, event: ipc.Event, _asked: Asked | None) -> None:
+        self.events.append(event)
+
+    @property
+    def log_path(self) -> Path:
+        assert self.dialogue.hello is not None
+        return Path(self.dialogue.hello.log_path)
+
+    @property
+    def ports(self) -> list[int]:
+        """Where the link waits for datagrams, once it has said so."""
+        self.until(lambda: self.dialogue.hello is not None, "hello")
+        assert self.dialogue.hello is not None
+        told = " ".join(self.dialogue.hello.endpoints)
+        return [int(port) for port in re.findall(r"on udp [\d.]+:(\d+)", told)]
+
+    def until(self, condition: Callable[[], bool], what: str, timeout_s: float = WAIT_S) -> None:
+        self.dialogue.until(condition, timeout_s)
+        assert condition(), f"not within {timeout_s:g} s: {what}\n{self.events[-10:]}"
+
+    def connect(self) -> None:
+        self.dialogue.connect(WAIT_S)
+
+    def ask(self, line: str) -> Asked:
+        """Send it, wait for the verdict."""
+        parsed = typed.parse_line(line)
+        assert parsed is not None
+        assert isinstance(parsed.action, words.Request)
+        asked = self.dialogue.ask(parsed.action.asks[0], line)
+        self.until(lambda: asked.verdict is not None, f"a verdict on {line}")
+        return asked
+
+    def fly(self, *lines: str) -> None:
+        """Send each, and see it complete before the next."""
+        for line in lines:
+            self.see_completed(self.ask(line))
+
+    def see_completed(self, asked: Asked) -> None:
+        self.until(lambda: asked.settled, f"the ending of {asked.label}", 2 * WAIT_S)
+        assert asked.completed, f"{asked.label}: {asked.verdict} {asked.ending}"
+
+    def said(self, text: str) -> bool:
+        """Whether a log line so far contains `text`."""
+        return any(isinstance(event, ipc.LogEvent) and text in event.text for event in self.events)
+
+    def leave(self) -> LinkDown:
+        return self.dialogue.leave()
+
+    def close(self) -> None:
+        self.link.close()
+        self.interrupts.close()
+
+
+@contextmanager
+def station(config: LinkConfig) -> Iterator[Station]:
+    """A station whose link process is gone at the end, whatever happens."""
+    made = Station(config)
+    try:
+        yield made
+    finally:
+        made.close()
+
+
+@contextmanager
+def simulated(log_dir: Path, speedup: float = 1.0, policy_path: str = "") -> Iterator[Station]:
+    """A station with a vehicle of its own, connected."""
+    config = LinkConfig(
+        sim=SimConfig(speedup=speedup),
+        speedup=speedup,
+        log_dir=str(log_dir),
+        policy_path=policy_path,
+    )
+    with station(config) as made:
+        made.connect()
+        yield made
+
+
+@contextmanager
+def tapped(
+    log_dir: Path, speedup: float = 1.0, tap: WireTap | None = None
+) -> Iterator[tuple[Station, WireTap]]:
+    """A station and a vehicle, separate programs, with an ear on the wire between them."""
+    config = LinkConfig(endpoints=["udpin://127.0.0.1:0"], speedup=speedup, log_dir=str(log_dir))
+    with tap or WireTap() as ear, station(config) as made:
+        ear.connect(made.ports[0])
+        url = f"udpout://127.0.0.1:{ear.vehicle_port}"
+        with vehicle_sim("--speedup", f"{speedup:g}", "--link", url):
+            made.connect()
+            yield made, ear

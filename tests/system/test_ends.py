@@ -1,0 +1,94 @@
+"""How a flight ends when a program is killed, told to go, or left by its operator."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.system.flight_log import assert_held, only_log
+from tests.system.killed_link import kill_and_recover
+from tests.system.programs import GCS, Running, all_gone, children, descendants, running
+from tests.system.vehicle_program import until
+
+pytestmark = pytest.mark.system
+
+
+@pytest.mark.parametrize("recorded_s", [1.0, 1.3, 1.7])
+def test_a_killed_link_loses_at_most_a_second_and_recover_makes_its_record_whole(
+    recorded_s: float, tmp_path: Path
+) -> None:
+    loss = kill_and_recover(tmp_path, recorded_s)
+    assert max(loss.received_s, loss.sent_s) <= 1.0
+
+
+def in_mid_flight(log_dir: Path) -> tuple[str, ...]:
+    return (GCS, "fly", "--sim", "--plain", "--speedup", "2", "--log-dir", str(log_dir))
+
+
+def take_off_and_go(program: Running) -> tuple[int, int]:
+    """Flies; the process ids of the link and of its vehicle."""
+    program.type("arm", "takeoff 2", "goto 40 0 2")
+    program.until_out("goto 40 0 2: accepted")
+    (link,) = children(program.pid)
+    (vehicle,) = children(link)
+    return link, vehicle
+
+
+@pytest.mark.parametrize(
+    ("number", "exit_code"),
+    [(signal.SIGKILL, -9), (signal.SIGINT, 130), (signal.SIGTERM, 130), (signal.SIGHUP, 130)],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_when_the_operators_program_goes_the_link_holds_the_vehicle_and_closes_the_log(
+    number: signal.Signals, exit_code: int, tmp_path: Path
+) -> None:
+    with running(*in_mid_flight(tmp_path)) as program:
+        family = take_off_and_go(program)
+        if number is signal.SIGINT:
+            os.killpg(program.pid, number)  # a Ctrl-C reaches all of them
+        else:
+            os.kill(program.pid, number)
+        assert program.process.wait(10.0) == exit_code
+        until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
+
+    assert_held(only_log(tmp_path))
+
+
+def test_a_link_that_is_told_to_go_holds_the_vehicle_and_closes_the_log(tmp_path: Path) -> None:
+    with running(*in_mid_flight(tmp_path)) as program:
+        family = take_off_and_go(program)
+        os.kill(family[0], signal.SIGTERM)
+        program.process.wait(10.0)
+        until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
+
+    assert_held(only_log(tmp_path))
+    assert "Traceback" not in "".join(program.err)
+
+
+def test_a_vehicle_of_our_own_does_not_survive_a_killed_link(tmp_path: Path) -> None:
+    with running(*in_mid_flight(tmp_path)) as program:
+        link, vehicle = take_off_and_go(program)
+        os.kill(link, signal.SIGKILL)
+        program.process.wait(10.0)
+        until(lambda: all_gone([link, vehicle]), "the end of the vehicle", 10.0)
+
+    assert program.process.returncode == 70
+    assert any("the link process died" in line for line in program.err)
+    assert "Traceback" not in "".join(program.err)
+
+
+def test_an_end_of_input_in_mid_flight_leaves_in_good_order(tmp_path: Path) -> None:
+    with running(*in_mid_flight(tmp_path)) as program:
+        program.type("arm", "takeoff 2", "goto 40 0 2 &")
+        program.until_out("goto 40 0 2: accepted")
+        family = descendants(program.pid)
+        assert program.process.stdin is not None
+        program.process.stdin.close()
+        assert program.process.wait(10.0) == 0
+        until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
+
+    assert_held(only_log(tmp_path))
+    assert any("the vehicle is in AUTO.LOITER" in line for line in program.err)

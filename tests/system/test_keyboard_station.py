@@ -1,0 +1,144 @@
+"""`gcs fly` on a terminal: real keys, a look at the screen, and three ways to leave in flight."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.system.flight_log import assert_held, only_log, readings
+from tests.system.programs import GCS, all_gone, descendants
+from tests.system.terminal import COLUMNS, ROWS, Terminal, environment, terminal
+from tests.system.typed_flight import take_off, until_state
+from tests.system.vehicle_program import until
+
+pytestmark = pytest.mark.system
+
+
+def take_off_and_go(screen: Terminal) -> None:
+    """Up to 1.5 m, and off towards a goal so far east that it is not reached here."""
+    take_off(screen)
+    screen.press("r")
+    screen.press("xx" + 4 * "d")  # a step of 10 m
+    screen.until_text("pending E +40.00 N +0.00 U +1.50")
+    screen.press("\r")
+    screen.until_text("goto 40 0 1.5: accepted")
+    until_state(screen, "MOVING")
+
+
+def test_ctrl_c_in_mid_flight_holds_closes_the_log_and_restores_the_terminal(
+    tmp_path: Path,
+) -> None:
+    with terminal(GCS, "fly", "--sim", "--log-dir", str(tmp_path)) as screen:
+        take_off_and_go(screen)
+        assert screen.settings != screen.settings_before
+        family = descendants(screen.process.pid)
+        screen.press("\x03")
+        assert screen.process.wait(10.0) == 0
+        screen.until_text("the vehicle is in AUTO.LOITER", "log: ")
+        assert screen.settings == screen.settings_before
+        assert screen.seen.rfind(b"\x1b[?1049l") > screen.seen.rfind(b"\x1b[?1049h")
+        assert screen.seen.rfind(b"\x1b[?25h") > screen.seen.rfind(b"\x1b[?25l")
+        assert all_gone(family)
+
+    path = only_log(tmp_path)
+    assert_held(path)
+    asked = [d["word"] for _, d in readings(path, "/gate/decision") if d["phase"] == "verdict"]
+    assert asked == ["arm", "takeoff", "goto"]
+
+
+@pytest.mark.parametrize(
+    "number", [signal.SIGKILL, signal.SIGTERM, signal.SIGHUP], ids=lambda n: n.name
+)
+def test_when_the_station_goes_the_link_holds_the_vehicle_and_closes_the_log(
+    number: signal.Signals, tmp_path: Path
+) -> None:
+    with terminal(GCS, "fly", "--sim", "--log-dir", str(tmp_path)) as screen:
+        take_off_and_go(screen)
+        family = descendants(screen.process.pid)
+        os.kill(screen.process.pid, number)
+        screen.process.wait(10.0)
+        until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
+        if number is not signal.SIGKILL:
+            assert screen.settings == screen.settings_before
+
+    assert_held(only_log(tmp_path))
+
+
+class Tmux:
+    """A tmux server of our own with one window, in which a shell runs."""
+
+    def __init__(self) -> None:
+        self._socket = f"mavgate-test-{os.getpid()}"
+        size = ("-x", str(COLUMNS), "-y", str(ROWS))
+        self("-f", os.devnull, "new-session", "-d", *size, "env PS1=ready: sh")
+
+    def __call__(self, *words: str) -> str:
+        done = subprocess.run(
+            ["tmux", "-L", self._socket, *words],
+            capture_output=True,
+            text=True,
+            check=True,
+            env=environment(),
+        )
+        return done.stdout
+
+    def type(self, *keys: str) -> None:
+        self("send-keys", *keys)
+
+    @property
+    def lines(self) -> list[str]:
+        return self("capture-pane", "-p").splitlines()
+
+    def until(self, text: str) -> None:
+        until(lambda: any(text in line for line in self.lines), f"{text!r} on screen", 20.0)
+
+    def until_state(self, state: str) -> None:
+        """The state is what the first line shows, beside the vehicle."""
+        until(lambda: f"px4 quadrotor   {state} " in self.lines[0], state, 20.0)
+
+
+@pytest.fixture
+def tmux() -> Iterator[Tmux]:
+    if shutil.which("tmux") is None:
+        pytest.skip("tmux is not installed")
+    server = Tmux()
+    try:
+        yield server
+    finally:
+        server("kill-server")
+
+
+def test_a_flight_typed_in_tmux_looks_right_and_ends_with_a_prompt(
+    tmux: Tmux, tmp_path: Path
+) -> None:
+    tmux.until("ready:")
+    tmux.type(f"cd {tmp_path} && stty -g > before && {GCS} fly --sim; stty -g > after", "Enter")
+    tmux.until_state("GROUNDED")
+    tmux.type("m")
+    tmux.until("arm: complete")
+    tmux.type("t")
+    tmux.until("takeoff 1.5: complete")
+    tmux.until_state("HOVERING")
+    tmux.type("PageUp", "Right", "Right", "Up")
+    tmux.until("◇ pending E +2.00 N +1.00 U +1.50")
+    tmux.type("Enter")
+    tmux.until("goto 2 1 1.5: complete")
+    tmux.type("x", "x", "Left", "Left", "Enter")
+    tmux.until_state("MOVING")
+    tmux.until("◉ active E -18.00 N +1.00 U +1.50")
+    flown = tmux.lines
+    tmux.type("C-c")
+    tmux.until("gcs: the vehicle is in AUTO.LOITER")
+    tmux.type("echo back $((40 + 2))", "Enter")
+    tmux.until("back 42")
+
+    for shown in ("map", "state", "OFFBOARD ARMED", "OURS", "batt", "ABORT", "state_and_safety"):
+        assert any(shown in line for line in flown), "\n".join(flown)
+    assert (tmp_path / "after").read_text() == (tmp_path / "before").read_text()
+    assert_held(only_log(tmp_path / "logs"))

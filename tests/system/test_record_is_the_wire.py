@@ -1,0 +1,95 @@
+"""The demo's flight over a tapped wire: the record holds what crossed it, byte for byte."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from gcs import ipc, resources
+from gcs.cli.demo import run_over
+from gcs.record.items import Direction
+from gcs.shell.client import LinkClient
+from tests.system.flight_log import Json, decoded, frames, readings, whole, wire
+from tests.system.station import tapped
+from tests.system.wire_tap import Crossing, WireTap
+
+pytestmark = pytest.mark.system
+
+SETPOINT = "/mavlink/255/190/SET_POSITION_TARGET_LOCAL_NED"
+
+
+@dataclass(frozen=True)
+class Flight:
+    path: Path
+    exit_code: int
+    told: str
+    tap: WireTap
+
+
+class SilencingLink:
+    """A link before whose end the wire falls silent, so that both sides saw the same of it."""
+
+    def __init__(self, link: LinkClient, tap: WireTap) -> None:
+        self._link, self._tap = link, tap
+        self.poll, self.now_s, self.close = link.poll, link.now_s, link.close
+
+    def send(self, command: ipc.Command) -> bool:
+        if isinstance(command, ipc.Leave):
+            self._tap.silence_vehicle()
+        return self._link.send(command)
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Flight]:
+    folder = tmp_path_factory.mktemp("logs")
+    with tapped(folder, speedup=3.0) as (operator, tap):
+        told = StringIO()
+        link = SilencingLink(operator.link, tap)
+        mission = str(resources.find("demo.toml"))
+        exit_code = run_over(link, operator.interrupts, Console(file=told), mission, 10.0)
+        tap.drained()
+        yield Flight(operator.log_path, exit_code, told.getvalue(), tap)
+
+
+def joined(crossings: list[Crossing]) -> bytes:
+    return b"".join(crossing.data for crossing in crossings)
+
+
+def test_the_flight_went_as_scripted(flight: Flight) -> None:
+    assert flight.exit_code == 0, flight.told
+    assert whole(flight.path).gaps == []
+
+
+def test_the_frames_rebuilt_from_the_record_are_what_crossed_the_wire(flight: Flight) -> None:
+    found = frames(flight.path)
+    assert wire(found, Direction.SENT) == joined(flight.tap.to_vehicle)
+    assert wire(found, Direction.RECEIVED) == joined(flight.tap.to_station)
+
+
+def test_an_independent_decoder_reads_every_frame(flight: Flight) -> None:
+    topics = [topic for topic, _ in decoded(flight.path)]
+    assert len(topics) == len(frames(flight.path))
+    assert {"/mavlink/1/1/LOCAL_POSITION_NED", SETPOINT} <= set(topics)
+
+
+def test_the_refused_goal_is_on_record_with_its_numbers_and_in_no_setpoint(flight: Flight) -> None:
+    refused: list[dict[str, Json]] = [
+        decision
+        for _, decision in readings(flight.path, "/gate/decision")
+        if decision["code"] == "OUTSIDE_FENCE"
+    ]
+    (far,) = refused
+    assert far["goal"] == {"east_m": 500.0, "north_m": 0.0, "up_m": 2.0}
+    assert far["zone"] == "home"
+    assert isinstance(far["numbers"], dict)
+    assert far["numbers"]["outside_m"] == pytest.approx(350.0, abs=0.5)
+    assert "350" in str(far["sentence"])
+
+    flown = [message for topic, message in decoded(flight.path) if topic == SETPOINT]
+    assert len(flown) > 100
+    assert max(abs(setpoint.y) for setpoint in flown) < 20.0

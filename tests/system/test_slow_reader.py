@@ -1,0 +1,69 @@
+"""An operator's program that stops reading does not disturb the flight."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import signal
+import time
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from gcs import ipc
+from tests.system.flight_log import only_log, times_ns, whole
+from tests.system.programs import GCS, running
+from tests.system.station import simulated
+from tests.system.vehicle_program import until
+
+pytestmark = pytest.mark.system
+
+STOPPED_S = 3.0
+UNDISTURBED_S = 0.5
+"""What a loaded machine may do to the stream by itself; a link that waits stands for seconds."""
+
+
+def longest_gap_s(path: Path) -> float:
+    stream = times_ns(path, "SET_POSITION_TARGET_LOCAL_NED")
+    assert len(stream) > 20 * STOPPED_S
+    return max(after - before for before, after in pairwise(stream)) / 1e9
+
+
+def test_a_stopped_operators_program_leaves_the_setpoint_stream_alone(tmp_path: Path) -> None:
+    with running(GCS, "fly", "--sim", "--plain", "--log-dir", str(tmp_path)) as program:
+        program.type("arm", "takeoff 1.5")
+        program.until_out("takeoff 1.5: complete")
+        os.kill(program.pid, signal.SIGSTOP)
+        stop_ns = time.time_ns()
+        until(lambda: time.time_ns() > stop_ns + STOPPED_S * 1e9, "3 s without a reader")
+        os.kill(program.pid, signal.SIGCONT)
+        program.type("goto 1 0 1.5", "state")
+        program.until_out("goto 1 0 1.5: complete")
+        program.until_out("state: HOVERING OURS")
+        program.type("quit")
+        assert program.process.wait(10.0) == 0
+
+    path = only_log(tmp_path)
+    assert whole(path).states[-1].state == "HOLDING"
+    assert longest_gap_s(path) < UNDISTURBED_S
+
+
+@pytest.mark.skipif(not hasattr(fcntl, "F_SETPIPE_SZ"), reason="needs a pipe of chosen size")
+def test_a_pipe_that_is_full_costs_snapshots_and_nothing_else(tmp_path: Path) -> None:
+    with simulated(tmp_path) as operator:
+        process = operator.link._process
+        assert process.stdout is not None
+        fcntl.fcntl(process.stdout, fcntl.F_SETPIPE_SZ, 4096)
+        operator.fly("arm", "takeoff 1.5")
+        heard = len(operator.events)
+        resume_s = time.monotonic() + STOPPED_S
+        until(lambda: time.monotonic() > resume_s, "3 s in which nobody reads")
+        operator.fly("goto 1 0 1.5")
+        path = operator.log_path
+        operator.leave()
+
+    snapshots = [event for event in operator.events[heard:] if isinstance(event, ipc.Snapshot)]
+    ages_s = [(b.time_ns - a.time_ns) / 1e9 for a, b in pairwise(snapshots)]
+    assert max(ages_s) > STOPPED_S / 2, "some were dropped"
+    assert longest_gap_s(path) < UNDISTURBED_S

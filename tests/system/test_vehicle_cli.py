@@ -1,0 +1,93 @@
+"""`vehicle-sim` as a program: how it starts, what it says, how it ends."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import subprocess
+import sys
+
+import pytest
+
+from tests.system.vehicle_program import free_port, until, vehicle_sim
+
+pytestmark = [pytest.mark.system, pytest.mark.skipif(sys.platform == "win32", reason="signals")]
+
+PROGRAM = [sys.executable, "-m", "vehicle_sim"]
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*PROGRAM, *arguments], capture_output=True, text=True, timeout=20, check=False
+    )
+
+
+@pytest.mark.parametrize("scheme", ["udpin", "tcpin"])
+def test_a_port_that_is_taken_is_a_clear_error_with_a_hint(scheme: str) -> None:
+    kind = socket.SOCK_DGRAM if scheme == "udpin" else socket.SOCK_STREAM
+    with socket.socket(socket.AF_INET, kind) as other:
+        other.bind(("127.0.0.1", 0))
+        if scheme == "tcpin":
+            other.listen()
+        url = f"{scheme}://127.0.0.1:{other.getsockname()[1]}"
+        ended = run("--link", url)
+    assert ended.returncode == 9
+    assert url in ended.stderr
+    assert "Hint:" in ended.stderr
+    assert "Traceback" not in ended.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--home", "47.4,8.5"),
+        ("--home", "147.4,8.5,100"),
+        ("--home", "nan,8.5,100"),
+        ("--link", "carrier-pigeon://home"),
+        ("--param", "NO_SUCH=1"),
+        ("--param", "MIS_TAKEOFF_ALT=1e9"),
+        ("--speedup", "0"),
+        ("--speedup", "inf"),
+        ("--port", "70000"),
+    ],
+)
+def test_wrong_use_ends_with_2_and_no_traceback(arguments: tuple[str, ...]) -> None:
+    ended = run(*arguments)
+    assert ended.returncode == 2
+    assert ended.stderr
+    assert "Traceback" not in ended.stderr
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 0)], ids=["SIGINT", "SIGTERM"]
+)
+def test_a_signal_ends_it_cleanly(number: signal.Signals, code: int) -> None:
+    process = subprocess.Popen(
+        [*PROGRAM, "--port", str(free_port())],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    process.stdout.readline()
+    process.stdout.readline()
+    process.send_signal(number)
+    _, errors = process.communicate(timeout=10)
+    assert (process.returncode, errors) == (code, "")
+
+
+def test_it_tells_what_to_connect_to_and_ends_with_its_lifeline() -> None:
+    port = free_port()
+    with vehicle_sim("--port", str(port)) as lines:
+        until(lambda: len(lines) >= 2, "two lines", 10.0)
+        assert lines[0].startswith("INFO vehicle1: px4 quadrotor at 47.397742, 8.545594")
+        assert lines[1].endswith(f"connect with udpout://127.0.0.1:{port}\n")
+
+
+def test_pymavlinks_mavutil_is_not_loaded() -> None:
+    code = (
+        "import sys, vehicle_sim.cli\n"
+        "import vehicle_sim.world, vehicle_sim.shell.pacer, vehicle_sim.autopilot.autopilot\n"
+        "assert 'pymavlink.mavutil' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=20)

@@ -1,0 +1,158 @@
+"""What users and networks get wrong: a clear error, the right exit code, and no traceback."""
+
+from __future__ import annotations
+
+import random
+import socket
+from pathlib import Path
+
+import pytest
+
+from gcs.cli.exits import Fail
+from gcs.config import LinkConfig, SimConfig
+from gcs.record.items import Direction
+from tests.system.flight_log import frames, readings, whole, wire
+from tests.system.programs import gcs
+from tests.system.station import station, tapped
+from tests.system.vehicle_program import free_port
+
+pytestmark = pytest.mark.system
+
+FAR_FENCE = """\
+name = "elsewhere"
+[[fence]]
+name = "there"
+kind = "circle"
+frame = "local"
+centre = [200.0, 0.0]
+radius_m = 50.0
+"""
+
+
+def refused(*words: str, stdin: str = "") -> tuple[int, str]:
+    """Exit code and standard error of a command that must fail as a user's error."""
+    ended = gcs(*words, stdin=stdin)
+    assert "Traceback" not in ended.stdout + ended.stderr
+    assert "internal error" not in ended.stderr
+    return ended.returncode, ended.stderr
+
+
+def test_no_vehicle(tmp_path: Path) -> None:
+    link = f"udpin://127.0.0.1:{free_port()}"
+    code, told = refused("status", "--link", link, "--timeout", "0.5", "--log-dir", str(tmp_path))
+    assert code == 3
+    assert "no vehicle heard within 0.5 s" in told
+    assert "hint: start one with `vehicle-sim`" in told
+
+
+def test_a_port_in_use(tmp_path: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        link = f"udpin://127.0.0.1:{other.getsockname()[1]}"
+        code, told = refused("status", "--link", link, "--log-dir", str(tmp_path))
+    assert code == 9
+    assert f"{link} is in use by another program" in told
+    assert "choose another port with --link" in told
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_link_that_is_no_url(tmp_path: Path) -> None:
+    code, told = refused("goto", "1", "0", "2", "--link", "pigeon://x", "--log-dir", str(tmp_path))
+    assert code == 2
+    assert "pigeon://x: no known kind of endpoint" in told
+    assert "hint: such as udpin://" in told
+
+
+def test_a_policy_with_an_unknown_key(tmp_path: Path) -> None:
+    policy = tmp_path / "mine.toml"
+    policy.write_text('name = "mine"\n\n[arrival]\nradius = 3\n')
+    code, told = refused("fly", "--sim", "--plain", "--policy", str(policy))
+    assert code == 4
+    assert f"{policy}:4: arrival.radius: unknown key" in told
+    assert "hint: did you mean radius_m?" in told
+
+
+def test_a_start_position_outside_the_fence(tmp_path: Path) -> None:
+    policy = tmp_path / "elsewhere.toml"
+    policy.write_text(FAR_FENCE)
+    logs = str(tmp_path / "logs")
+    code, told = refused("fly", "--sim", "--plain", "--policy", str(policy), "--log-dir", logs)
+    assert code == 6
+    assert "start position" in told
+    assert "outside inclusion circle 'there'" in told
+    assert "hint: fly from inside the fence" in told
+
+
+def test_a_log_folder_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    logs = tmp_path / "file" / "logs"
+    code, told = refused("fly", "--sim", "--plain", "--log-dir", str(logs))
+    assert code == 7
+    assert f"{logs}: cannot record: " in told
+    assert "hint: choose a folder that can be written with --log-dir" in told
+
+
+@pytest.mark.parametrize("home", ["47.4,8.5", "here", "91,0,0", "nan,8.5,488"])
+def test_a_home_that_is_no_place(home: str) -> None:
+    code, told = refused("fly", "--sim", "--plain", "--home", home)
+    assert code == 2
+    assert "Invalid value for '--home'" in told
+
+
+def test_a_vehicle_of_our_own_that_does_not_start_is_told_at_once(tmp_path: Path) -> None:
+    config = LinkConfig(sim=SimConfig(home="nowhere"), log_dir=str(tmp_path))
+    with station(config) as operator, pytest.raises(Fail, match="exit code 2") as failed:
+        operator.connect()
+    assert failed.value.exit_code == 3
+    assert operator.said("'nowhere' is not LAT,LON,ALT")
+
+
+def test_missions_that_are_none(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.plan"
+    bad.write_text('{"fileType": "Plan",\n "mission" 3}\n')
+    code, told = refused("mission", "check", str(bad))
+    assert code == 4
+    assert f"{bad}:2:12: JSON: " in told
+
+    sim = ("fly", "--sim", "--plain", "--strict", "--log-dir", str(tmp_path))
+    code, told = refused(*sim, stdin=f"mission upload {bad}\n")
+    assert code == 4
+    assert f"{bad}:2:12: JSON: " in told
+
+    code, told = refused(*sim, stdin="arm\nmission start\n")
+    assert code == 6
+    assert "NO_MISSION" in told
+
+
+def test_garbage_and_oversize_datagrams_at_both_programs_change_nothing(tmp_path: Path) -> None:
+    rng = random.Random(7)
+    with tapped(tmp_path, speedup=2.0) as (operator, tap):
+        whole_frame = tap.to_station[-1].data
+        nasty = [
+            b"",
+            b"\xfd",
+            b"\xfe" * 400,
+            b"hello, is anybody there?\n",
+            whole_frame[:-1],
+            whole_frame[:-2] + bytes(2),
+            b"\xfd" + whole_frame,
+            rng.randbytes(65_507),
+            b"\xfd\xff" * 32_000,
+            *(rng.randbytes(rng.randrange(300)) for _ in range(300)),
+        ]
+        for data in nasty:
+            tap.say_to_station(data)
+            tap.say_to_vehicle(data)
+        operator.fly("arm", "takeoff 1.5", "land")
+        tap.silence_vehicle()
+        operator.leave()
+        path = operator.log_path
+
+    info = whole(path)
+    assert info.states[-1].state == "GROUNDED"
+    garbage = {topic.topic: topic.messages for topic in info.topics}["/link/0/garbage"]
+    assert garbage >= 300
+    # A whole frame behind a stray magic byte is not swallowed with it.
+    received = wire(frames(path), Direction.RECEIVED)
+    assert received.count(whole_frame) >= 2
+    assert [d["outcome"] for _, d in readings(path, "/gate/decision")].count("refused") == 0
