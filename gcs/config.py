@@ -28,6 +28,7 @@ class LinkConfig(msgspec.Struct, frozen=True):
     speedup: float = 1.0
     connect_timeout_s: float = 10.0
     snapshots_hz: float = 10.0
+    record: bool = True  # False: nothing is written, as for a glance at the vehicle
 
 
 def encode(config: LinkConfig) -> str:

@@ -55,6 +55,7 @@ def run_over(
     link: Link, interrupts: Interrupt, console: Console, mission_path: str, timeout_s: float
 ) -> int:
     """Fly the script over a link that is there already; gives the exit code."""
+    from gcs.cli import say
     from gcs.cli.demo_script import SCRIPT, finish, perform
     from gcs.cli.demo_show import Narrator, show_table, show_what_to_do
     from gcs.cli.dialogue import Dialogue, Interrupted, final_exit
@@ -73,7 +74,9 @@ def run_over(
                 if step.wait and not flown[-1].as_expected:
                     break
         except Interrupted:
-            dialogue.leave("interrupted")
+            down = dialogue.leave("interrupted")
+            for line in say.farewell_lines(down.bye) if down.bye else ():
+                console.print(line, markup=False, soft_wrap=True)
             return Exit.INTERRUPTED
         except Fail:
             dialogue.leave("failed")

@@ -15,8 +15,8 @@ from gcs import ipc
 from gcs.cli import say
 from gcs.cli.demo_script import Flown
 from gcs.cli.dialogue import Asked
+from gcs.cli.hush import WARNING, Hush
 
-WARNING = 3
 STYLES = {
     "accepted": "cyan",
     "complete": "green",
@@ -36,6 +36,7 @@ class Narrator:
         self._now_s = now_s
         self._start_s = now_s()
         self._status: Status | None = None
+        self._hush = Hush(cautions=False)
 
     def __enter__(self) -> Narrator:
         if self._console.is_terminal:
@@ -62,6 +63,8 @@ class Narrator:
         self._console.print(Text(sentence, "bold"))
 
     def hear(self, event: ipc.Event, asked: Asked | None) -> None:
+        if self._hush.hides(event, asked):
+            return
         match event:
             case ipc.VerdictEvent() if asked is not None:
                 self._told(asked.label, event.outcome, event.code, event.sentence)
@@ -82,8 +85,8 @@ class Narrator:
         line = Text.assemble((label, "bold"), ": ", (what, STYLES.get(what, "")))
         if code:
             line.append(f" {code}", STYLES.get(what, ""))
-        if sentence:
-            line.append(f": {sentence}")
+        if why := say.reason(what, code, sentence):
+            line.append(f": {why}")
         self._line(line)
 
     def _line(self, text: Text) -> None:
@@ -101,7 +104,7 @@ def show_table(console: Console, flown: Sequence[Flown]) -> None:
         outcome = verdict.outcome if verdict else "-"
         ended = ending.ended if ending else ""
         told = ending if ending and ending.ended != "complete" else verdict
-        reason = f"{told.code} {told.sentence}".strip() if told else ""
+        reason = f"{told.code} {told.sentence}".strip() if told and told.code else ""
         table.add_row(
             Text("✓", "green") if one.as_expected else Text("✗", "bold red"),
             Text(one.asked.label),

@@ -15,12 +15,13 @@ import msgspec
 from gcs import ipc
 from gcs.cli import words
 from gcs.cli.exits import Exit, Fail
-from gcs.gate.types import Code, State
+from gcs.gate.types import Code, LandedState, State
 from gcs.shell.client import LinkDown, Polled, Readable
 
 LEAVE_WAIT_S = 20.0
-HOME_WAIT_S = 3.0
+SETTLE_WAIT_S = 3.0
 POLL_S = 0.5
+UNKNOWN_LANDED = ("", LandedState.UNDEFINED.name)
 
 
 class Link(Protocol):
@@ -138,10 +139,10 @@ class Dialogue:
         return [source for source in polled.ready if source is not self._interrupts]
 
     def connect(self, timeout_s: float) -> ipc.Snapshot:
-        """Wait for a vehicle with a position and a home.  Fails with NO_LINK where none is heard.
+        """Wait for a vehicle with a position, a home and a landed state.
 
-        A vehicle that was heard but is not complete in time is given back as it is: the gate
-        knows best what it can still do.
+        Fails with NO_LINK where none is heard.  A vehicle that was heard but is not complete in
+        time is given back as it is: the gate knows best what it can still do.
         """
         self.until(self._position_known, timeout_s)
         if self.snapshot is None or not self.snapshot.vehicle:
@@ -151,7 +152,7 @@ class Dialogue:
                 f"no vehicle heard within {timeout_s:g} s ({where})",
                 "start one with `vehicle-sim`, use `gcs fly --sim`, or name the link with --link",
             )
-        self.until(self._home_known, HOME_WAIT_S)
+        self.until(self._can_be_judged, SETTLE_WAIT_S)
         return self.snapshot
 
     # -------------------------------------------------------------------------- asking
@@ -232,8 +233,12 @@ class Dialogue:
         seen = self.snapshot
         return seen is not None and bool(seen.vehicle) and seen.pos_enu is not None
 
-    def _home_known(self) -> bool:
-        return self.snapshot is not None and self.snapshot.home_enu is not None
+    def _can_be_judged(self) -> bool:
+        """Before that a vehicle on the ground and one in the air look alike to the gate."""
+        seen = self.snapshot
+        if seen is None or seen.home_enu is None:
+            return False
+        return seen.landed not in UNKNOWN_LANDED and seen.state != State.STALE.name
 
     def _death(self) -> Fail:
         return death(self.down, self.trouble)

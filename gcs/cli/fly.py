@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, with_options
+from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, FiniteRange, with_options
 
 if TYPE_CHECKING:
     from gcs.config import LinkConfig
@@ -63,7 +63,7 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
 @click.option("--seed", default=1, show_default=True, help="Seed of the --sim vehicle.")
 @click.option(
     "--speedup",
-    type=click.FloatRange(min=0, max=200, min_open=True),
+    type=FiniteRange(min=0, max=200, min_open=True),
     default=1.0,
     show_default=True,
     help="Times real time, for vehicle and ground station.",
@@ -134,8 +134,9 @@ def _fly_keyboard(config: LinkConfig) -> int:
 
     from gcs.shell.client import LinkClient
     from gcs.tui.app import FlyApp
-    from gcs.tui.result import tell
+    from gcs.tui.result import tell, until_hello
 
-    app = FlyApp(LinkClient.start(config))
+    link = LinkClient.start(config)
+    app = FlyApp(link, until_hello(link))
     app.run()
     return tell(app.result, lambda line: click.echo(line, err=True))

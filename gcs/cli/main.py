@@ -5,6 +5,7 @@ This module is what every start pays for, so it imports click and nothing else o
 
 from __future__ import annotations
 
+import errno
 import importlib
 import os
 import sys
@@ -14,6 +15,8 @@ from typing import NamedTuple, NoReturn
 import click
 
 from gcs.cli.exits import Exit
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
 
 
 class Entry(NamedTuple):
@@ -152,15 +155,24 @@ def run(args: Sequence[str] | None = None) -> int:
     except (click.Abort, KeyboardInterrupt):
         click.echo("gcs: interrupted", err=True)
         return Exit.INTERRUPTED
-    except BrokenPipeError:
-        # Whoever read our output has gone; the interpreter must not trip over it at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (BrokenPipeError, SystemExit):
+        # Whoever read our output has gone; click and rich make a SystemExit of it.
+        _drop_output()
         return Exit.INTERRUPTED
     except Exception as bug:  # noqa: BLE001  the one place: a bug is told, not spilled
+        if isinstance(bug, OSError) and bug.errno in _NO_ROOM:
+            _drop_output()
+            click.echo(f"gcs: cannot write the output: {bug.strerror}", err=True)
+            return Exit.RECORDER
         click.echo(f"gcs: internal error: {type(bug).__name__}: {bug}", err=True)
         click.echo(f"  details: {_keep_details(bug)}", err=True)
         return Exit.BUG
     return result if isinstance(result, int) else Exit.DONE
+
+
+def _drop_output() -> None:
+    """What is still unwritten goes nowhere: the interpreter must not trip over it at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _keep_details(bug: Exception) -> str:

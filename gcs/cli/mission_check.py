@@ -33,12 +33,15 @@ RETURN_UP_M: dict[Personality, float] = {"px4": 30.0, "ardupilot": 15.0}
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """`verification` is None where there is nothing to fly, or it has errors: neither is put to
-    the fence.  `home` is None only where nobody gave one and nothing flies."""
+    """`policy_zones` counts the zones of the policy, fence files it names included.
+    `verification` is None where there is nothing to fly, or it has errors: neither is put to the
+    fence.  `home` is None only where nobody gave one and nothing flies.
+    """
 
     plan: Plan
     personality: Personality
     policy: Policy
+    policy_zones: int
     home: Geodetic | None
     findings: tuple[Finding, ...]
     verification: Verification | None
@@ -60,10 +63,11 @@ def check_plan(
     """Fails with BAD_FILE where the policy is wrong."""
     personality = autopilot or plan.firmware or "px4"
     policy, policy_zones = load_policy(policy_name)
+    own = sum(not isinstance(spec.shape, FileSpec) for spec in policy.fence) + len(policy_zones)
     at_home, notes = _choose_home(plan, personality, home)
     findings = (*notes, *lint(plan, personality, at_home))
     if at_home is None or not plan.items or worst(list(findings)) is Level.ERROR:
-        return Checked(plan, personality, policy, at_home, findings, None, None)
+        return Checked(plan, personality, policy, own, at_home, findings, None, None)
     origin = Origin(at_home.lat_deg, at_home.lon_deg, at_home.alt_amsl_m or 0.0)
     projection = Projection(origin, personality)
     placed = georeference(plan, projection.lat_lon, home=at_home)
@@ -80,7 +84,7 @@ def check_plan(
     )
     verification = verify(placed, ground, verifier)
     start = check_start(verifier, home_ned)
-    return Checked(plan, personality, policy, at_home, findings, verification, start)
+    return Checked(plan, personality, policy, own, at_home, findings, verification, start)
 
 
 def _choose_home(

@@ -6,7 +6,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, link_config, with_options
+from gcs.cli.exits import Exit, Fail
+from gcs.cli.options import (
+    AS_JSON,
+    LINK,
+    LOG_DIR,
+    POLICY,
+    TIMEOUT,
+    Seconds,
+    link_config,
+    with_options,
+)
 
 if TYPE_CHECKING:
     from gcs.ipc import Ask
@@ -17,7 +27,7 @@ EXITS = (
 )
 WAIT = click.Option(
     ["--wait"],
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     default=1800.0,
     show_default=True,
     metavar="S",
@@ -52,11 +62,13 @@ def upload(
     default="mission.plan",
     show_default=True,
     type=click.Path(dir_okay=False, writable=True),
-    help="Where to write it; the suffix chooses the format.",
+    help="Where to write it; the suffix chooses the format: .plan, .waypoints or .txt.",
 )
+@click.option("--force", is_flag=True, help="Write over a file that exists.")
 @with_options(*LINK_OPTIONS)
 def download(
     output: str,
+    force: bool,
     links: tuple[str, ...],
     policy: str,
     log_dir: str,
@@ -67,6 +79,7 @@ def download(
     """Read the mission on board into a file."""
     from gcs.ipc import Ask
 
+    _check_output(output, force)
     asks = (Ask(0, "mission_download", path=output),)
     _run(asks, links, policy, log_dir, timeout, wait, as_json)
 
@@ -104,6 +117,23 @@ def clear(
     from gcs.ipc import Ask
 
     _run((Ask(0, "mission_clear"),), links, policy, log_dir, timeout, wait, as_json)
+
+
+def _check_output(output: str, force: bool) -> None:
+    """Whether a mission may be written there: told before any link is started."""
+    from pathlib import Path
+
+    from gcs.plan.writer import SUFFIXES
+
+    path = Path(output)
+    if path.suffix.lower() not in SUFFIXES:
+        raise Fail(
+            Exit.USAGE,
+            f"{output}: the suffix names no format that can be written",
+            f"one of: {', '.join(SUFFIXES)}",
+        )
+    if path.exists() and not force:
+        raise Fail(Exit.USAGE, f"{output}: exists already", "--force writes over it")
 
 
 def _readable(file: str) -> str:

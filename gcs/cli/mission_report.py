@@ -6,6 +6,11 @@ import json
 import math
 from collections.abc import Iterator
 
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
 from gcs.cli.exits import Exit
 from gcs.cli.mission_check import Checked
 from gcs.cli.say import enu
@@ -33,9 +38,10 @@ def check_lines(checked: Checked) -> Iterator[str]:
     plan = checked.plan
     yield (
         f"{plan.source}: {plan.name}: {len(plan.items)} items, "
-        f"{len(plan.fence.zones)} fence zones, for {checked.personality}, "
-        f"under policy {checked.policy.name}"
+        f"for {checked.personality}, under policy {checked.policy.name}"
     )
+    from_policy = _zones(checked.policy_zones)
+    yield f"fence: {from_policy} from the policy, {len(plan.fence.zones)} from the file"
     for finding in checked.findings:
         yield from _finding_lines(plan, finding)
     if checked.verification is None:
@@ -47,6 +53,10 @@ def check_lines(checked: Checked) -> Iterator[str]:
         yield f"  refused  {problem.sentence}"
     yield from _return_lines(plan, checked.verification)
     yield f"verdict: {_summary(checked)}"
+
+
+def _zones(count: int) -> str:
+    return f"{count} zone" if count == 1 else f"{count} zones"
 
 
 def _finding_lines(plan: Plan, finding: Finding) -> Iterator[str]:
@@ -149,18 +159,12 @@ def _leg_json(verdict: LegVerdict) -> dict[str, object]:
 
 def print_plan(plan: Plan) -> None:
     """A table of the items, one of the fence, and the reader's notes."""
-    from rich.console import Console
-    from rich.table import Table
-
     console = Console(highlight=False)
-    items = Table(title=f"{plan.name}  ({plan.source})", title_justify="left")
-    for heading in ("#", "id", "item", "where", "height", "parameters 1-4"):
-        items.add_column(heading, overflow="fold")
-    for index, item in enumerate(plan.items, start=1):
-        params = " ".join("-" if math.isnan(p) else f"{p:g}" for p in item.params)
-        row = (str(index), str(item.do_jump_id), commands.name(item.command))
-        items.add_row(*row, _position(item), _height(item), params)
-    console.print(items)
+    title = Text(f"{plan.name}  ({plan.source})", "italic")
+    if plan.items:
+        console.print(title, _items(plan), sep="\n")
+    else:
+        console.print(title, Text("no items"), sep="\n")
     if plan.fence.zones:
         fence = Table(title="fence", title_justify="left")
         for heading in ("#", "zone", "shape", "heights above home"):
@@ -171,6 +175,22 @@ def print_plan(plan: Plan) -> None:
         console.print(fence)
     for line in _facts(plan):
         console.print(line, markup=False)
+
+
+def _items(plan: Plan) -> Table:
+    """One row an item; `id` only where a jump would not count the rows."""
+    numbered = any(item.do_jump_id != n for n, item in enumerate(plan.items, start=1))
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for heading in ("#", *(["id"] if numbered else []), "item"):
+        table.add_column(heading, no_wrap=True)
+    for heading in ("where", "height", "parameters 1-4"):
+        table.add_column(heading)
+    for index, item in enumerate(plan.items, start=1):
+        params = " ".join("-" if math.isnan(p) else f"{p:g}" for p in item.params)
+        numbers = (str(index), *([str(item.do_jump_id)] if numbered else []))
+        name = commands.name(item.command)
+        table.add_row(*numbers, name, _position(item), _height(item), params)
+    return table
 
 
 def _facts(plan: Plan) -> Iterator[str]:

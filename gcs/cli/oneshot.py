@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import click
 
 from gcs.cli import typed, words
-from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, link_config
+from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, Seconds, link_config
 
 EXITS = (
     "Exit codes: 0 done, 2 usage, 3 no vehicle, 5 refused by the vehicle, 6 refused by the gate, "
@@ -13,7 +15,7 @@ EXITS = (
 )
 WAIT = click.Option(
     ["--wait"],
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     default=300.0,
     show_default=True,
     metavar="S",
@@ -25,16 +27,16 @@ def _command(name: str) -> click.Command:
     word = words.BY_NAME[name]
 
     def run_word(
-        arguments: tuple[str, ...],
         links: tuple[str, ...],
         policy: str,
         log_dir: str,
         timeout: float,
         wait: float,
         as_json: bool,
+        arguments: tuple[str, ...] = (),
     ) -> None:
         try:
-            action = typed.parse_arguments(word, arguments)
+            action = typed.parse_arguments(word, arguments, finite=True)
         except typed.WordError as error:
             raise click.UsageError(f"{error.sentence}\n  hint: {error.hint}") from None
         assert isinstance(action, words.Request)
@@ -45,24 +47,16 @@ def _command(name: str) -> click.Command:
         how = errand.ErrandConfig(timeout, wait, as_json, name)
         click.get_current_context().exit(errand.run(config, how, errand.asking(action, wait)))
 
+    typed_here = click.Argument(["arguments"], nargs=-1, type=click.UNPROCESSED, metavar=word.usage)
+    options: list[click.Parameter] = [LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
     return click.Command(
         name,
         callback=run_word,
-        params=[
-            click.Argument(
-                ["arguments"], nargs=-1, type=click.UNPROCESSED, metavar=word.usage or None
-            ),
-            LINK,
-            POLICY,
-            LOG_DIR,
-            TIMEOUT,
-            WAIT,
-            AS_JSON,
-        ],
+        params=[typed_here, *options] if word.params else options,
         help=word.help[0].upper() + word.help[1:] + ".",
         epilog=f"Example: gcs {word.example}\n\n{EXITS}",
         # Negative numbers look like options; what is no option of ours is an argument.
-        context_settings={"ignore_unknown_options": True},
+        context_settings={"ignore_unknown_options": bool(word.params)},
         options_metavar="[OPTIONS]",
     )
 
@@ -87,9 +81,9 @@ def _status(
     from gcs.cli import errand
     from gcs.cli.status import report
 
-    config = link_config(links, policy, log_dir, name="status", timeout_s=timeout)
-    how = errand.ErrandConfig(timeout, 0.0, as_json, "status")
-    code = errand.run(config, how, lambda dialogue: report(dialogue, as_json=as_json))
+    config = link_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
+    how = errand.ErrandConfig(timeout, 0.0, as_json, "status", cautions=True)
+    code = errand.run(config, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)
 
 

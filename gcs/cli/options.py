@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -12,6 +13,26 @@ from gcs.config import LinkConfig
 
 DEFAULT_LINK = "udpin://127.0.0.1:14550"
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+class FiniteRange(click.FloatRange):
+    """`FloatRange` lets nan through whatever its limits, and inf where one is missing."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        number = float(super().convert(value, param, ctx))
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return number
+
+
+class Seconds(FiniteRange):
+    """More than none, less than for ever."""
+
+    def __init__(self) -> None:
+        super().__init__(min=0, min_open=True)
+
 
 LINK = click.Option(
     ["--link", "links"],
@@ -36,7 +57,7 @@ LOG_DIR = click.Option(
 )
 TIMEOUT = click.Option(
     ["--timeout"],
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     default=10.0,
     show_default=True,
     metavar="S",
@@ -72,7 +93,13 @@ def policy_path(name: str) -> str:
 
 
 def link_config(
-    links: tuple[str, ...], policy: str, log_dir: str, *, name: str, timeout_s: float
+    links: tuple[str, ...],
+    policy: str,
+    log_dir: str,
+    *,
+    name: str,
+    timeout_s: float,
+    record: bool = True,
 ) -> LinkConfig:
     """For a link to a vehicle that somebody else has started."""
     return LinkConfig(
@@ -81,4 +108,5 @@ def link_config(
         log_dir=log_dir,
         name=name,
         connect_timeout_s=timeout_s,
+        record=record,
     )

@@ -11,6 +11,7 @@ from gcs import ipc
 from gcs.cli import say, typed, words
 from gcs.cli.dialogue import Asked, Dialogue, Interrupt, Interrupted, Link, final_exit
 from gcs.cli.exits import Exit, Fail
+from gcs.cli.hush import Hush
 from gcs.shell.client import LinkDown
 from gcs.shell.pipes import LineSource
 
@@ -65,6 +66,7 @@ class Plain:
         self._config = config
         self._out, self._err = out, err
         self._dialogue = Dialogue(link, interrupts, self._watch)
+        self._hush = Hush(cautions=True)
         self._bad_lines = False
 
     def run(self, script: Input) -> int:
@@ -138,6 +140,8 @@ class Plain:
         if self._config.as_json:
             self._out(ipc.encode(event).decode().rstrip())
             return
+        if self._hush.hides(event, asked):
+            return
         match event:
             case ipc.VerdictEvent() if asked is not None:
                 self._out(say.verdict_line(asked.label, event))
@@ -154,10 +158,8 @@ class Plain:
         if down.bye is None:
             self._err(f"gcs: the link ended without a good-bye\n{down.stderr_tail}".rstrip())
             return
-        if down.bye.sentence:
-            self._err(f"gcs: {down.bye.sentence}")
-        if down.bye.log_path:
-            self._err(f"log: {down.bye.log_path}")
+        for line in say.farewell_lines(down.bye):
+            self._err(line)
 
     def _exit(self, down: LinkDown) -> int:
         if code := final_exit(down):

@@ -18,7 +18,8 @@ SHOW_AFTER_S = 1.0
 class Ticker:
     """A progress display on standard error that comes to life late and leaves no trace.
 
-    `hear` is given every event and the present time; it needs no thread of its own.
+    `hear` is given every event and the present time; it needs no thread of its own.  Whoever
+    prints a line calls `clear` first; the display comes back below it by itself.
     """
 
     def __init__(self, what: str, started_s: float, *, shown: bool | None = None) -> None:
@@ -38,8 +39,13 @@ class Ticker:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Take the display off the screen."""
         if self._progress is not None:
             self._progress.stop()
+            self._progress = self._task = None
 
     def hear(self, event: ipc.Event, now_s: float) -> None:
         if not self._shown or now_s - self._started_s < SHOW_AFTER_S:
@@ -49,33 +55,34 @@ class Ticker:
                 self._transfer = event
                 unit = f" {event.unit}" if event.unit else ""
                 text = f"{event.what}: {event.done:g} of {event.total:g}{unit}"
-                self._draw(text, event.done, event.total or None)
+                self._draw(text, event.done, event.total or None, now_s)
             case ipc.Snapshot() if self._transfer is None:
-                self._draw(f"{event.state}  {say.enu(event.pos_enu)}", 0.0, None)
+                self._draw(f"{event.state}  {say.enu(event.pos_enu)}", 0.0, None, now_s)
             case ipc.EndingEvent():
                 self._transfer = None
             case _:
                 pass
 
-    def _draw(self, text: str, done: float, total: float | None) -> None:
+    def _draw(self, text: str, done: float, total: float | None, now_s: float) -> None:
         if self._progress is None:
             self._progress, self._task = _start(self._what)
         assert self._task is not None
-        self._progress.update(self._task, completed=done, total=total, text=text)
+        elapsed = f"{now_s - self._started_s:.0f} s"
+        self._progress.update(self._task, completed=done, total=total, text=text, elapsed=elapsed)
 
 
 def _start(what: str) -> tuple[Progress, TaskID]:
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
     progress = Progress(
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
         TextColumn("{task.fields[text]}", markup=False),
-        TimeElapsedColumn(),
+        TextColumn("{task.fields[elapsed]}", markup=False),
         console=Console(stderr=True, force_terminal=True),
         transient=True,
     )
     progress.start()
-    return progress, progress.add_task(what, total=None, text="")
+    return progress, progress.add_task(what, total=None, text="", elapsed="")

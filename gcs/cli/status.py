@@ -11,17 +11,19 @@ from gcs import ipc
 from gcs.cli import say
 from gcs.cli.dialogue import Dialogue
 from gcs.cli.exits import Exit
+from gcs.cli.progress import Ticker
 
 SLOW_VALUES_WAIT_S = 1.5
 """Battery and mode come less often than the position."""
 
 
-def report(dialogue: Dialogue, *, as_json: bool) -> Exit:
+def report(dialogue: Dialogue, ticker: Ticker, *, as_json: bool) -> Exit:
     """Give the slower values a moment to arrive, then print."""
     dialogue.until(
         lambda: dialogue.snapshot is not None and dialogue.snapshot.battery_pct is not None,
         SLOW_VALUES_WAIT_S,
     )
+    ticker.clear()
     return show(dialogue.snapshot, as_json=as_json)
 
 
@@ -57,13 +59,19 @@ def rows(seen: ipc.Snapshot) -> list[tuple[str, str]]:
         ("mode", f"{seen.mode or '-'}, {armed}, {seen.landed or '-'}"),
         ("position", f"{say.enu(seen.pos_enu)} m, {_fixed(seen.position_age_s, 's', 2)} old"),
         ("velocity", f"{say.enu(seen.v_enu)} m/s, {_speed(seen.v_enu)}"),
-        ("heading", _fixed(seen.yaw_deg, "deg", 0)),
+        ("heading", "-" if seen.yaw_deg is None else f"{say.heading(seen.yaw_deg)} deg"),
         ("home", f"{say.enu(seen.home_enu)} m"),
         ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
-        ("link", f"{seen.rx_hz:.0f} messages/s, {seen.lost_pct:.1f} % lost"),
+        ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),
         ("log", seen.log_path or "not recorded"),
     ]
+
+
+def _link(seen: ipc.Snapshot) -> str:
+    """The rate is measured over two seconds; before that there is none."""
+    rate = f"{seen.rx_hz:.0f} messages/s, " if seen.rx_hz else ""
+    return f"{rate}{seen.lost_pct:.1f} % lost"
 
 
 def _fixed(value: float | None, unit: str, digits: int) -> str:

@@ -6,7 +6,7 @@ import difflib
 import math
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcs.cli.words import BY_NAME, Action, Kind, Param, Values, Word
 
@@ -49,8 +49,11 @@ def parse_line(text: str) -> Line | None:
     return Line(" ".join(tokens), parse_arguments(word, arguments), wait)
 
 
-def parse_arguments(word: Word, arguments: Sequence[str]) -> Action:
-    """What `word` means with these arguments.  Raises WordError."""
+def parse_arguments(word: Word, arguments: Sequence[str], *, finite: bool = False) -> Action:
+    """What `word` means with these arguments.  Raises WordError.
+
+    `finite`: refuse nan and inf here already, where nothing must be started for them.
+    """
     required = sum(not param.optional for param in word.params)
     if not required <= len(arguments) <= len(word.params):
         raise _wrong(word, f"expected {_expectation(word)}, got {len(arguments) or 'nothing'}")
@@ -59,7 +62,9 @@ def parse_arguments(word: Word, arguments: Sequence[str]) -> Action:
     for param, argument in zip(word.params, arguments, strict=False):
         match param.kind:
             case Kind.NUMBER | Kind.FINITE | Kind.SECONDS:
-                numbers.append(_number(word, param, argument))
+                plain = finite and param.kind is Kind.NUMBER
+                kind = Kind.FINITE if plain else param.kind
+                numbers.append(_number(word, replace(param, kind=kind), argument))
             case Kind.NAME | Kind.FILE:
                 text = argument
             case Kind.SWITCH:

@@ -142,7 +142,8 @@ def _forget_vehicle(core: Core) -> None:
     memory.pos_ned = memory.v_ned = None
     memory.armed = False
     memory.mode, memory.mode_name = None, ""
-    memory.landed = LandedState.UNDEFINED
+    memory.landed, memory.landed_ns = LandedState.UNDEFINED, None
+    memory.stood_down_m = None
     memory.lifted = False
     memory.back_to = None
     memory.grace_until_ns = None

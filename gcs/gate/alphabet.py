@@ -9,10 +9,13 @@ order in which things can become due is a word over this alphabet.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
 from gcs.frames import Vec3
+from gcs.gate.fence import Zone
+from gcs.gate.geometry import Circle
 from gcs.gate.memory import SECOND_NS, Memory
 from gcs.gate.policy import Arrival, Policy, TakeOffLimits
 from gcs.gate.types import (
@@ -27,6 +30,7 @@ from gcs.gate.types import (
     GoTo,
     HeartbeatSeen,
     Hold,
+    HomeSeen,
     Input,
     Land,
     LandedSeen,
@@ -47,6 +51,7 @@ from gcs.gate.types import (
     TakeOff,
     TakePhoto,
     Tick,
+    VerifierChanged,
     Wish,
 )
 from gcs.gate.zonespec import CircleSpec, ZoneSpec
@@ -57,6 +62,8 @@ SPOT: Final[Vec3] = (0.0, 0.0, -5.0)
 GOAL: Final[Vec3] = (3.0, 0.0, -5.0)
 EDGE: Final[Vec3] = (18.0, 0.0, -5.0)
 DASH: Final[Vec3] = (8.0, 0.0, 0.0)
+TOP: Final[Vec3] = (0.0, 0.0, -10.0)
+ABOVE: Final[Vec3] = (0.0, 0.0, -14.0)
 OUTSIDE: Final[Vec3] = (50.0, 0.0, -5.0)
 NOWHERE: Final[Vec3] = (float("nan"), 0.0, -5.0)
 
@@ -90,6 +97,8 @@ YARD: Final = Policy(
     allow_force_disarm=True,
 )
 """Every permission that opens a branch of the table is given; the rest is the default."""
+
+ELSEWHERE: Final = Zone("elsewhere", True, Circle((200.0, 0.0), 20.0), 0.0, 30.0)
 
 Step: TypeAlias = tuple[int, Input]
 """Nanoseconds that pass, then the input."""
@@ -170,14 +179,43 @@ def _tick(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
     yield TICK_NS, Tick(0)
 
 
-def _until(due: Callable[[Policy, Memory], int | None], *, told: bool = True) -> Letter:
-    """Just until something is due; `told`: the vehicle goes on reporting itself meanwhile."""
+def _picture(after: int, *, ok: bool) -> Letter:
+    """So many pictures after the last one."""
+
+    def letter(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+        if after or memory.photo_index is not None:
+            yield 1, PhotoSeen((memory.photo_index or 0) + after, ok)
+
+    return letter
+
+
+def _home_moves(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+    if memory.home_ned is not None:
+        yield 1, HomeSeen(OUTSIDE)
+        yield 1, HomeSeen(memory.home_ned)
+
+
+def _fence_moves(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+    if memory.verifier is not None:
+        yield 1, VerifierChanged(replace(memory.verifier, zones=(ELSEWHERE,)))
+        yield 1, VerifierChanged(memory.verifier)
+
+
+def _until(
+    due: Callable[[Policy, Memory], int | None], *, told: bool = True, landed: bool = True
+) -> Letter:
+    """Just until something is due; the vehicle goes on reporting its position (`told`) and
+    whether it has `landed` meanwhile."""
 
     def letter(policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
         due_ns = due(policy, memory)
         if due_ns is None or memory.mode is None:
             return
-        yield max(1, due_ns - now_ns), HeartbeatSeen(memory.armed, memory.mode, memory.mode.value)
+        passes_ns = max(1, due_ns - now_ns)
+        if landed and memory.landed_ns is not None:
+            yield passes_ns, LandedSeen(memory.landed)
+            passes_ns = 0
+        yield passes_ns, HeartbeatSeen(memory.armed, memory.mode, memory.mode.value)
         age_ns = memory.position_age_ns(now_ns)
         if told and age_ns is not None and age_ns <= policy.position_age_s * SECOND_NS:
             assert memory.pos_ned is not None
@@ -199,6 +237,12 @@ def _stale_ns(policy: Policy, memory: Memory) -> int | None:
     return memory.pos_ns + round(policy.position_age_s * SECOND_NS) + 1
 
 
+def _landed_old_ns(policy: Policy, memory: Memory) -> int | None:
+    if memory.landed_ns is None:
+        return None
+    return memory.landed_ns + round(policy.heartbeat_age_s * SECOND_NS)
+
+
 def _overdue_ns(policy: Policy, memory: Memory) -> int | None:
     return None if memory.asked_mode is None else memory.asked_until_ns
 
@@ -212,6 +256,8 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "tick": _tick,
         "position": _input(PositionSeen(SPOT, STILL, 0)),
         "position at the goal": _input(PositionSeen(GOAL, STILL, 0)),
+        "position at the top": _input(PositionSeen(TOP, STILL, 0)),
+        "position above the top": _input(PositionSeen(ABOVE, STILL, 0)),
         "position dashing for the fence": _input(PositionSeen(EDGE, DASH, 0)),
         "position after a reset": _input(PositionSeen(SPOT, STILL, 0, reset=True)),
         **{f"{mode.value} mode": _mode(mode) for mode in FlightMode},
@@ -223,14 +269,18 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "answer: refused": _answer(2),
         "answer: none": _answer(None),
         "answer: late": _input(CommandEnded(-1, CommandKind.ARM, 0)),
-        "picture": _input(PhotoSeen(0, ok=True)),
-        "no picture": _input(PhotoSeen(0, ok=False)),
+        "picture": _picture(1, ok=True),
+        "no picture": _picture(1, ok=False),
+        "a picture told again": _picture(0, ok=True),
         "mission loaded": _input(MissionLoaded("square", 4)),
         "mission at its last item": _input(MissionSeen(3, 4, finished=False)),
         "mission finished": _input(MissionSeen(3, 4, finished=True)),
         **{f"condition: {severity.name}": _condition(c) for c, severity in CONDITIONS.items()},
+        "home moves, and back": _home_moves,
+        "fence moves, and back": _fence_moves,
         "operator lost": _input(OperatorLost("explorer")),
         "wait: position too old": _until(_stale_ns, told=False),
+        "wait: landed too old": _until(_landed_old_ns, landed=False),
         "wait: grace": _until(lambda _, memory: memory.grace_until_ns, told=False),
         "wait: deadline": _until(_deadline_ns),
         "wait: mode overdue": _until(_overdue_ns),

@@ -17,7 +17,12 @@ SILENT: Final = End(Ended.TIMED_OUT, Code.NO_ANSWER)
 DENIED: Final = End(Ended.ABORTED, Code.VEHICLE_REFUSED)
 SEVERE: Final = End(Ended.ABORTED, Code.SEVERITY)
 DESERTED: Final = End(Ended.ABORTED, Code.OPERATOR_LOST)
+MOVED: Final = End(Ended.ABORTED, Code.HOME_MOVED)
+JUDGED: Final = End(Ended.ABORTED, judged=True)
 TAKEN: Final = End(Ended.TAKEN_OVER, Code.MODE_CHANGED)
+
+GONE: Final = Branch(when=(Guard.OPERATOR_GONE,), refuse=Code.OPERATOR_LOST)
+"""Nobody is there any more to want this: a late request withdraws no hold."""
 
 imposs: Final[Cell] = ()
 stay: Final[Cell] = (Branch(),)
@@ -46,6 +51,17 @@ def release_then(end: End, to: State) -> Branch:
 def grounded(end: End) -> Branch:
     """Still on the ground, with a take-off or a mission under way: give it up."""
     return Branch(when=(Guard.ON_GROUND,), ends=end, do=(Do.RELEASE,), to=State.GROUNDED)
+
+
+def give_up(end: End) -> Branch:
+    """As `grounded`, and what was commanded may come yet: hold what it may fly, and disarm."""
+    do = (Do.RELEASE, Do.HOLD_BLIND, Do.DISARM)
+    return Branch(when=(Guard.ON_GROUND,), ends=end, do=do, to=State.GROUNDED)
+
+
+def let_go(end: End, *when: Guard) -> Cell:
+    """STALE: no verified point is left to stream to; hold, and come back to HOLDING."""
+    return (Branch(when=when, ends=end, do=(Do.LET_GO, Do.HOLD)), Branch())
 
 
 def lose_control(end: End) -> Branch:

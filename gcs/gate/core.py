@@ -173,19 +173,29 @@ class Core:
         """End the request under way, and stop every command that was sent for it."""
         memory = self.memory
         task, memory.task = memory.task, None
-        if end.code is not None:
-            self.refuse_pending(Refusal(end.code, ended_because(end.code)))
+        why = self._why(end)
+        if why is not None:
+            self.refuse_pending(why)
         self.cancel_commands()
         if task is None:
             return
-        sentence = "Complete" if end.code is None else ended_because(end.code)
-        if end.code in (Code.VEHICLE_REFUSED, Code.FENCE_BREACH) and self.why is not None:
-            sentence = self.why.sentence
-        elif end.code is Code.SEVERITY:
-            sentence = self.severity_sentence()
-        self.out.append(Ending(task.request.request_id, end.ended, end.code, sentence))
+        code, sentence = (None, "Complete") if why is None else (why.code, why.sentence)
+        self.out.append(Ending(task.request.request_id, end.ended, code, sentence))
         level = Level.INFO if end.ended is Ended.COMPLETE else Level.WARNING
-        self.say(level, sentence if end.code is None else f"{task.kind}: {end.ended}: {sentence}")
+        self.say(level, sentence if code is None else f"{task.kind}: {end.ended}: {sentence}")
+
+    def _why(self, end: End) -> Refusal | None:
+        """Why a request ends otherwise than complete, in the words of whoever said so."""
+        if end.judged:
+            assert self.why is not None
+            return self.why
+        if end.code is None:
+            return None
+        if end.code in (Code.VEHICLE_REFUSED, Code.FENCE_BREACH) and self.why is not None:
+            return Refusal(end.code, self.why.sentence)
+        if end.code is Code.SEVERITY:
+            return Refusal(end.code, self.severity_sentence())
+        return Refusal(end.code, ended_because(end.code))
 
     def severity_sentence(self) -> str:
         names = ", ".join(condition.value for condition, _ in self.memory.conditions)
@@ -228,3 +238,4 @@ class Core:
         self.memory.outstanding = ()
         self.memory.asked_mode = None
         self.memory.hold_again_ns = None
+        self.memory.silence_told = None

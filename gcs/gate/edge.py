@@ -11,11 +11,13 @@ from gcs.gate.types import (
     CommandKind,
     Effect,
     Input,
+    LandedState,
     Outcome,
     Request,
     SendCommand,
     SendSetpoint,
     Severity,
+    State,
     Verdict,
     Wish,
 )
@@ -73,6 +75,21 @@ class Edge:
         """The position was too old (or absent) when the step came."""
         age_ns = self.before.position_age_ns(self.now_ns)
         return age_ns is None or age_ns > self.policy.position_age_s * SECOND_NS
+
+    @property
+    def stands(self) -> bool:
+        """Surely on the ground: disarmed and not reported to fly, or reported there of late and
+        seen no higher since, with nothing under way that lifts it."""
+        before = self.before
+        age_s = self.policy.heartbeat_age_s
+        fresh = before.landed_ns is not None and (
+            self.now_ns - before.landed_ns < age_s * SECOND_NS
+        )
+        if not before.armed:
+            return not (fresh and before.airborne)
+        lifts = self.now_ns < before.takeoff_until_ns or before.flies is State.TAKING_OFF
+        told = fresh and before.landed is LandedState.ON_GROUND
+        return told and not before.climbed and not lifts
 
     @property
     def severity(self) -> Severity:

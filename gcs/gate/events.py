@@ -58,6 +58,8 @@ class Event(StrEnum):
     AGED = "position aged"
     JUMPED = "position jumped"
     BREACH = "breach predicted"
+    HOME_MOVED = "home moved"
+    UNVERIFIED = "clears no more"
     ARMED = "armed"
     DISARMED = "disarmed"
     AIRBORNE = "airborne"
@@ -76,6 +78,7 @@ class Event(StrEnum):
     COMMAND_DONE = "command accepted"
     COMMAND_REFUSED = "command refused"
     COMMAND_SILENT = "command unanswered"
+    DISARM_REFUSED = "disarm refused"
     HOLD_REFUSED = "hold refused"
     HOLD_SILENT = "hold unanswered"
     COMMAND_LATE = "late answer"
@@ -115,6 +118,15 @@ REQUESTS: Final = frozenset(
     }
 )
 """Events that are somebody's wish: each is owed one verdict."""
+
+ATTENDED: Final = REQUESTS - {
+    Event.ABORT,
+    Event.HOLD,
+    Event.LAND,
+    Event.DISARM,
+    Event.FORCE_DISARM,
+}
+"""Requests that want an operator who is there; the others make it safer whoever asks."""
 
 ASKED: Final = {
     FlightMode.GUIDED: Event.CONTROL,

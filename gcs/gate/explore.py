@@ -13,7 +13,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from gcs.gate.alphabet import ALPHABET, EDGE, GOAL, YARD
+from gcs.gate.alphabet import ABOVE, ALPHABET, EDGE, GOAL, TOP, YARD
 from gcs.gate.edge import Edge, Objection
 from gcs.gate.events import Event
 from gcs.gate.invariants import objections
@@ -192,8 +192,10 @@ def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     """
     age_ns = memory.position_age_ns(now_ns)
     stale = age_ns is None or age_ns > policy.position_age_s * SECOND_NS
-    task, state = memory.task, memory.state
-    flies = memory.back_to or state
+    task, state, flies = memory.task, memory.state, memory.flies
+    told_ns = memory.landed_ns
+    aged = told_ns is not None and now_ns - told_ns >= policy.heartbeat_age_s * SECOND_NS
+    climbs = state in (State.GROUNDED, State.STALE) and now_ns < memory.takeoff_until_ns
     severities = [policy.severities[name] for name, _ in memory.conditions]
     worst = Severity.LAND if state is State.STALE else Severity.RETURN
     unanswered = [kind for _, kind in memory.outstanding if kind is not CommandKind.HOLD]
@@ -205,13 +207,16 @@ def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         memory.heard_before if state is State.NO_VEHICLE else None,
         memory.armed,
         memory.mode if memory.mode in MODES_THAT_MATTER.get(flies, ()) else None,
-        (memory.airborne, memory.on_ground),
+        (memory.airborne, memory.on_ground) if not aged else not memory.armed,
+        memory.climbed if flies is State.TAKING_OFF else None,
+        memory.pos_ned in (TOP, ABOVE) and memory.pos_ned if flies is State.TAKING_OFF else None,
+        memory.deserted,
         stale,
         memory.pos_ned == EDGE and state in PLACES_THAT_MATTER,
         memory.pos_ned == GOAL and memory.goal is not None,
         memory.mission_over if flies is State.FLYING_MISSION else None,
         None if task is None else (ALIKE.get(task.kind, task.kind), task.waiting),
-        memory.pending is not None,
+        None if memory.pending is None else memory.pending.wish,
         memory.hold is not None,
         memory.goal is not None,
         memory.goal is not None and memory.within_since_ns is not None,
@@ -219,7 +224,7 @@ def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         memory.asked_mode if awaited else None,
         awaited and now_ns < memory.asked_until_ns,
         state in LATE_GUIDED and now_ns < memory.guided_until_ns,
-        state is State.GROUNDED and now_ns < memory.takeoff_until_ns,
+        climbs,
         memory.ask_control_ns is not None,
         memory.hold_again_ns is not None,
         memory.lifted if flies in (State.TAKING_OFF, State.FLYING_MISSION) else None,

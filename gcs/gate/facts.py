@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TypeAlias, assert_never
+from typing import Final, TypeAlias, assert_never
 
+from gcs.frames import Vec3
 from gcs.gate.core import Core
 from gcs.gate.events import SAW, Event, event_of
-from gcs.gate.guards import within
+from gcs.gate.guards import cleared_no_more, within
 from gcs.gate.memory import SECOND_NS
 from gcs.gate.types import (
     Code,
@@ -36,14 +37,23 @@ from gcs.gate.types import (
     Tick,
     VerifierChanged,
 )
-from gcs.gate.verifier import Breach
-from gcs.gate.words import where
+from gcs.gate.verifier import Breach, Verifier
+from gcs.gate.words import ASKED_FOR, where
+
+HOME_MOVED_M = 1.0
+"""Arming moves home by centimetres; further, it is another place."""
 
 JUMP_LEAST_M = 0.5
 """Noise between two samples that arrive in one instant is no jump."""
 
 ACCEPTED = 0
 """MAV_RESULT_ACCEPTED"""
+
+REFUSED_AS: Final = {
+    CommandKind.HOLD: Event.HOLD_REFUSED,
+    CommandKind.DISARM: Event.DISARM_REFUSED,
+}
+"""What a refusal of these means is not what any other command's means."""
 
 Told: TypeAlias = tuple[Event, Refusal | None, Breach | None]
 """An event, why it happened where that has words, and the breach where it is one."""
@@ -77,16 +87,13 @@ def absorb(core: Core, given: Input) -> Iterator[Told]:
         case CommandEnded():
             yield from _answer(core, given)
         case HomeSeen(pos_ned):
-            memory.home_ned = pos_ned
+            yield from _home(core, pos_ned)
         case ReturnHeightSeen(up_m):
             memory.return_up_m = up_m
         case VerifierChanged(verifier):
-            memory.verifier = verifier
-            memory.personality = verifier.personality
-        case PhotoSeen(_, ok):
-            memory.photo_ok = ok
-            core.why = Refusal(Code.VEHICLE_REFUSED, "the camera took no picture")
-            yield Event.PHOTO_SEEN, core.why, None
+            yield from _verifier(core, verifier)
+        case PhotoSeen():
+            yield from _photo(core, given)
         case MissionLoaded(name, items):
             memory.mission_name, memory.mission_items = name, items
             memory.mission_over = False
@@ -97,6 +104,7 @@ def absorb(core: Core, given: Input) -> Iterator[Told]:
             _condition(core, given)
         case OperatorLost(reason):
             core.say(Level.INFO, f"The operator leaves: {reason}")
+            memory.deserted = True
             yield from _plain(Event.OPERATOR_LOST)
         case GeodeticSeen() | Tick():
             return
@@ -136,11 +144,47 @@ def _disarm_answered(core: Core) -> bool:
 def _landed(core: Core, landed: LandedState) -> Iterator[Told]:
     memory = core.memory
     was, flew = memory.landed, memory.airborne
-    memory.landed = landed
+    memory.landed, memory.landed_ns = landed, core.now_ns
+    climbs = memory.flies is State.TAKING_OFF or core.now_ns < memory.takeoff_until_ns
+    if landed is LandedState.ON_GROUND and memory.pos_ned is not None and not climbs:
+        memory.stood_down_m = memory.pos_ned[2]
     if landed is LandedState.ON_GROUND and was is not landed:
         yield from _plain(Event.LANDED)
     elif memory.airborne and not flew:
         yield from _plain(Event.AIRBORNE)
+
+
+def _home(core: Core, pos_ned: Vec3) -> Iterator[Told]:
+    memory = core.memory
+    was_ned, memory.home_ned = memory.home_ned, pos_ned
+    if was_ned is None or memory.on_ground or math.dist(was_ned, pos_ned) <= HOME_MOVED_M:
+        return
+    moved_m = math.dist(was_ned, pos_ned)
+    core.say(Level.WARNING, f"Home moved by {moved_m:.1f} m while the vehicle flies")
+    yield from _plain(Event.HOME_MOVED)
+
+
+def _verifier(core: Core, verifier: Verifier) -> Iterator[Told]:
+    """What was cleared by another fence is judged anew by this one."""
+    memory = core.memory
+    was, memory.verifier = memory.verifier, verifier
+    memory.personality = verifier.personality
+    if verifier == was or memory.control is Control.NONE:
+        return
+    why = cleared_no_more(memory, verifier, was)
+    if why is not None:
+        yield Event.UNVERIFIED, why, None
+
+
+def _photo(core: Core, seen: PhotoSeen) -> Iterator[Told]:
+    """One told before the picture was asked for is another picture, told again."""
+    memory = core.memory
+    told, memory.photo_index = memory.photo_index, seen.index
+    if seen.index == told:
+        return
+    memory.photo_ok = seen.ok
+    why = Refusal(Code.VEHICLE_REFUSED, "the camera took no picture")
+    yield Event.PHOTO_SEEN, why, None
 
 
 def _position(core: Core, seen: PositionSeen) -> Iterator[Told]:
@@ -151,6 +195,8 @@ def _position(core: Core, seen: PositionSeen) -> Iterator[Told]:
     if seen.time_boot_ms < memory.boot_ms and not seen.reset:
         return
     jumped = seen.reset or _faster_than_allowed(core, seen)
+    if jumped:
+        memory.stood_down_m = None
     memory.pos_ned, memory.v_ned = seen.pos_ned, seen.v_ned
     memory.pos_ns, memory.boot_ms = core.now_ns, seen.time_boot_ms
     if memory.goal is None or not within(core, memory.goal.pos_ned):
@@ -171,14 +217,21 @@ def _position(core: Core, seen: PositionSeen) -> Iterator[Told]:
 
 def _floor_applies(core: Core) -> bool:
     memory = core.memory
-    return memory.state not in FLOOR_FREE and memory.landed is LandedState.IN_AIR
+    return memory.flies not in FLOOR_FREE and memory.landed is LandedState.IN_AIR
 
 
 def _faster_than_allowed(core: Core, seen: PositionSeen) -> bool:
+    """By the vehicle's own clock, as samples may queue on their way; but one that comes in time
+    cannot have been queued for longer than a position stays fresh."""
     memory = core.memory
+    late_ns = round(core.policy.position_age_s * SECOND_NS)
     if memory.pos_ned is None or memory.pos_ns is None:
         return False
-    elapsed_ns = max(core.now_ns - memory.pos_ns, (seen.time_boot_ms - memory.boot_ms) * 1_000_000)
+    arrived_ns = core.now_ns - memory.pos_ns
+    stamped_ns = (seen.time_boot_ms - memory.boot_ms) * 1_000_000
+    if stamped_ns > arrived_ns + late_ns:
+        return True  # its clock stepped forward: a restart, or no clock
+    elapsed_ns = stamped_ns or arrived_ns
     allowed_m = core.policy.jump_speed_m_s * elapsed_ns / SECOND_NS + JUMP_LEAST_M
     return math.dist(seen.pos_ned, memory.pos_ned) > allowed_m
 
@@ -187,23 +240,27 @@ def _answer(core: Core, ended: CommandEnded) -> Iterator[Told]:
     """An answer ends a command and nothing else; one that nobody waits for is reported."""
     memory, key = core.memory, (ended.request_id, ended.kind)
     name = ended.kind.value.replace("_", " ")
+    asked_for = ASKED_FOR[ended.kind]
     said = f": {ended.text}" if ended.text else ""
     if key not in memory.outstanding:
         core.say(Level.INFO, f"A late answer to {name}, not acted on{said}")
         yield from _plain(Event.COMMAND_LATE)
         return
     memory.outstanding = tuple(other for other in memory.outstanding if other != key)
+    if ended.result is not None:
+        memory.silence_told = None
     if ended.result == ACCEPTED:
         yield from _plain(Event.COMMAND_DONE)
     elif ended.result is None:
-        core.say(Level.WARNING, f"No answer to {name}")
+        if memory.silence_told is not ended.kind:
+            core.say(Level.WARNING, f"No answer to the request for {asked_for}")
+        memory.silence_told = ended.kind
         silent = ended.kind is CommandKind.HOLD
         yield from _plain(Event.HOLD_SILENT if silent else Event.COMMAND_SILENT)
     else:
-        sentence = f"the vehicle refused to {name} (result {ended.result}){said}"
-        refused = ended.kind is CommandKind.HOLD
+        sentence = f"the vehicle refused {asked_for} (result {ended.result}){said}"
         why = Refusal(Code.VEHICLE_REFUSED, sentence, (("result", float(ended.result)),))
-        yield (Event.HOLD_REFUSED if refused else Event.COMMAND_REFUSED), why, None
+        yield REFUSED_AS.get(ended.kind, Event.COMMAND_REFUSED), why, None
 
 
 def _condition(core: Core, changed: ConditionChanged) -> None:

@@ -10,10 +10,12 @@ from typing import Final
 from gcs.frames import Vec3
 from gcs.gate.core import Core
 from gcs.gate.events import Event
+from gcs.gate.limits import STANDING
 from gcs.gate.memory import SECOND_NS, Memory
 from gcs.gate.rules import Check, Guard
 from gcs.gate.types import (
     Code,
+    CommandKind,
     Condition,
     Control,
     FlightMode,
@@ -22,10 +24,13 @@ from gcs.gate.types import (
     State,
     TakeOff,
 )
-from gcs.gate.verifier import Cleared
+from gcs.gate.verifier import Cleared, Verifier
 
 CLIMB_ENDED_M_S = 0.3
 """A climb is over when it is slower than this near its top: nothing overshoots from there."""
+
+OVERSHOOT_M = 1.0
+"""How much higher than the arrival radius above its top a climb may swing."""
 
 FORCE_REPEAT_S = 5.0
 """How soon a forced disarm in the air has to be asked for again, to be meant."""
@@ -117,6 +122,12 @@ def _armed(core: Core) -> Refusal | None:
     return Refusal(Code.NOT_ARMED, "the vehicle is not armed")
 
 
+def _on_ground(core: Core) -> Refusal | None:
+    if core.memory.on_ground:
+        return None
+    return Refusal(Code.IN_AIR, "the vehicle is not known to stand on the ground")
+
+
 def _mission(core: Core) -> Refusal | None:
     if core.memory.mission_items > 0:
         return None
@@ -132,12 +143,36 @@ CHECKS: Final[Mapping[Check, Callable[[Core], Refusal | None]]] = MappingProxyTy
         Check.SEVERITY: _severity,
         Check.RECORDER: _recorder,
         Check.ARMED: _armed,
+        Check.ON_GROUND: _on_ground,
         Check.HERE: here,
         Check.TAKE_OFF: _climb,
         Check.MISSION: _mission,
         Check.VERIFIER: _known,
     }
 )
+
+
+def cleared_no_more(memory: Memory, verifier: Verifier, was: Verifier | None) -> Refusal | None:
+    """Does what is flown still clear, now that `verifier` took the place of `was`?
+
+    Of a mission only its fence is known here: another one means that it was not verified.
+    """
+    if memory.pos_ned is None or memory.v_ned is None:
+        return None
+    judged: Cleared | Refusal | None = None
+    goal, hold = memory.goal, memory.hold
+    if memory.flies is State.TAKING_OFF:
+        top_ned = (*memory.pos_ned[:2], memory.top_down_m)
+        judged = verifier.hold_point(top_ned, STANDING, floor_applies=True)
+    elif memory.flies is State.FLYING_MISSION:
+        same = was is not None and (was.fence_on, len(was.zones)) == (True, len(verifier.zones))
+        if verifier.fence_on and not same:
+            return Refusal(Code.BAD_MISSION, "the mission was not verified by this fence")
+    elif goal is not None:
+        judged = verifier.goal(goal.pos_ned, goal.yaw_rad, memory.pos_ned, memory.v_ned)
+    elif hold is not None:
+        judged = verifier.hold_point(hold.pos_ned, STANDING, floor_applies=True)
+    return judged if isinstance(judged, Refusal) else None
 
 
 def within(core: Core, goal_ned: Vec3) -> bool:
@@ -156,16 +191,46 @@ def _arrived(core: Core) -> bool:
     return core.now_ns - since_ns >= round(core.policy.arrival.dwell_s * SECOND_NS)
 
 
-def _at_height(core: Core) -> bool:
-    """The vehicle says so by its mode (px4 holds when the climb is over), or is seen there."""
+def _above_top_m(core: Core) -> float | None:
+    """How high above the top of the climb it flies; None where nobody knows."""
     memory = core.memory
-    if not memory.airborne or core.stale or memory.pos_ned is None or memory.v_ned is None:
-        return False
+    if core.stale or memory.pos_ned is None:
+        return None
+    return memory.top_down_m - memory.pos_ned[2]
+
+
+def _slow(core: Core) -> bool:
+    v_ned = core.memory.v_ned
+    return v_ned is not None and math.hypot(*v_ned) < CLIMB_ENDED_M_S
+
+
+def _says_climbed(core: Core) -> bool:
+    """The vehicle says by its mode that the climb is over: px4 holds then."""
+    memory = core.memory
     shown = memory.asked_mode is None  # else the mode is still that of before the take-off
-    if memory.lifted and shown and memory.mode is FlightMode.HOLD:
-        return True
-    near = abs(memory.pos_ned[2] - memory.top_down_m) < core.policy.arrival.radius_m
-    return near and math.hypot(*memory.v_ned) < CLIMB_ENDED_M_S
+    return memory.lifted and shown and memory.mode is FlightMode.HOLD
+
+
+def _at_height(core: Core) -> bool:
+    above_m = _above_top_m(core)
+    if not core.memory.airborne or above_m is None:
+        return False
+    return abs(above_m) < core.policy.arrival.radius_m and (_says_climbed(core) or _slow(core))
+
+
+def _climb_short(core: Core) -> bool:
+    above_m = _above_top_m(core)
+    if not core.memory.airborne or above_m is None or not (_says_climbed(core) and _slow(core)):
+        return False
+    side = "below" if above_m < 0.0 else "above"
+    sentence = f"the vehicle ended its climb {abs(above_m):.1f} m {side} the height asked for"
+    core.why = Refusal(Code.VEHICLE_REFUSED, sentence, (("above_top_m", above_m),))
+    return True
+
+
+def _climbs_on(core: Core) -> bool:
+    above_m = _above_top_m(core)
+    return above_m is not None and above_m > core.policy.arrival.radius_m + OVERSHOOT_M
 
 
 def _task_in(*kinds: Event) -> Callable[[Core], bool]:
@@ -179,6 +244,22 @@ def _mode(mode: FlightMode) -> Callable[[Core], bool]:
 def _safe(core: Core) -> bool:
     memory = core.memory
     return not memory.armed and memory.task is None and not memory.outstanding
+
+
+def _late_take_off(core: Core) -> bool:
+    return core.now_ns < core.memory.takeoff_until_ns
+
+
+def _stands(core: Core) -> bool:
+    memory = core.memory
+    may_climb = memory.back_to is not None or (memory.armed and _late_take_off(core))
+    return memory.on_ground and not may_climb
+
+
+def _wants_hold(core: Core) -> bool:
+    """A hold that goes with a disarm is not what the request waits for."""
+    disarms = any(kind is CommandKind.DISARM for _, kind in core.memory.outstanding)
+    return not disarms and _task_in(Event.HOLD, Event.ABORT)(core)
 
 
 def _retarget(core: Core) -> bool:
@@ -198,8 +279,8 @@ def _force_unconfirmed(core: Core) -> bool:
 
 def _mode_natural(core: Core) -> bool:
     memory = core.memory
-    state = memory.back_to if memory.state is State.STALE else memory.state
-    if state is None or memory.mode is None:
+    state = memory.flies
+    if memory.mode is None:
         return False
     if state is State.HOVERING and memory.control is Control.TAKING:
         return memory.mode in (FlightMode.GUIDED, FlightMode.HOLD)
@@ -239,6 +320,8 @@ def _known_facts() -> dict[Guard, Callable[[Memory], bool]]:
         Guard.MISSION_OVER: lambda m: m.mission_over,
         Guard.IN_GRACE: lambda m: m.grace_until_ns is not None,
         Guard.RETURNS_TO_STATE: lambda m: m.back_to is not None,
+        Guard.FLIES_ON: lambda m: m.back_to not in (None, State.HOLDING),
+        Guard.OPERATOR_GONE: lambda m: m.deserted,
         Guard.PHOTO_OK: lambda m: m.photo_ok,
     }
 
@@ -250,14 +333,15 @@ def _of_memory(fact: Callable[[Memory], bool]) -> Callable[[Core], bool]:
 GUARDS: Final[Mapping[Guard, Callable[[Core], bool]]] = MappingProxyType(
     {
         **{guard: _of_memory(fact) for guard, fact in _known_facts().items()},
+        Guard.STANDS: _stands,
         Guard.SAFE: _safe,
-        Guard.LATE_TAKE_OFF: lambda core: core.now_ns < core.memory.takeoff_until_ns,
+        Guard.LATE_TAKE_OFF: _late_take_off,
         Guard.GUIDED_LATE: lambda core: core.now_ns < core.memory.guided_until_ns,
         Guard.TASK_IS_ARM: _task_in(Event.ARM),
         Guard.TASK_WANTS_MODE: lambda core: (
             core.memory.task is not None and core.memory.task.waiting is not None
         ),
-        Guard.TASK_WANTS_HOLD: _task_in(Event.HOLD, Event.ABORT),
+        Guard.TASK_WANTS_HOLD: _wants_hold,
         Guard.TASK_HAS_LANDED: _task_in(Event.LAND, Event.RETURN, Event.MISSION),
         Guard.TASK_ENDS_DISARMED: _task_in(
             Event.LAND,
@@ -270,6 +354,8 @@ GUARDS: Final[Mapping[Guard, Callable[[Core], bool]]] = MappingProxyType(
         Guard.MISSION_GOES_ON: _mission_goes_on,
         Guard.ARRIVED: _arrived,
         Guard.AT_HEIGHT: _at_height,
+        Guard.CLIMB_SHORT: _climb_short,
+        Guard.CLIMBS_ON: _climbs_on,
         Guard.HERE_CLEARS: lambda core: here(core) is None,
         Guard.PATH_CLEARS: lambda core: _path_home(core) is None,
         Guard.RTL_FORWARD: lambda core: core.policy.rtl_blocked == "forward",

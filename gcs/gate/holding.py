@@ -46,8 +46,8 @@ def repeat_hold(core: Core) -> None:
 
 
 def hold_shown(core: Core) -> None:
-    core.memory.hold_again_ns = None
-    core.memory.asked_mode = None
+    memory = core.memory
+    memory.hold_again_ns = memory.asked_mode = memory.silence_told = None
 
 
 def mode_settled(core: Core) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from gcs.gate.edge import Edge, Objection
+from gcs.gate.limits import STANDING
 from gcs.gate.memory import SECOND_NS, Memory
 from gcs.gate.types import (
     Abort,
@@ -24,10 +25,12 @@ from gcs.gate.types import (
     Ending,
     GoTo,
     Hold,
+    HomeSeen,
     Land,
     LandedState,
     Outcome,
     PositionSeen,
+    Refusal,
     Request,
     Resume,
     ReturnHome,
@@ -42,6 +45,7 @@ from gcs.gate.types import (
     Tick,
     Transition,
     Verdict,
+    VerifierChanged,
 )
 
 STREAMING_STATES: Final = frozenset(
@@ -72,12 +76,15 @@ GUARDED: Final = frozenset(
 NEEDS_POSITION: Final = GUARDED - {State.RETURNING}
 """Flown by us, so not without a position; a return and a landing are the vehicle's own."""
 
+HOME_MOVED_M: Final = 1.0
+OVERSHOOT_M: Final = 1.0
 SLACK_NS: Final = SECOND_NS // 5
 
 
 def objections(edge: Edge) -> Iterator[Objection]:
     """Every invariant that the step breaks."""
-    if not edge.effects and not isinstance(edge.given, Request | Tick | PositionSeen):
+    demanding = Request | Tick | PositionSeen | VerifierChanged
+    if not edge.effects and not isinstance(edge.given, demanding):
         return  # nothing came of something that demands nothing
     for number, check in CHECKS:
         for sentence in check(edge):
@@ -174,6 +181,8 @@ def _aborts(edge: Edge) -> Iterator[str]:
             yield "abort commands nothing"
         if after.goal is not None or after.pending is not None:
             yield "a goal outlives the abort"
+        if before.armed and not edge.stands and CommandKind.HOLD not in edge.commands:
+            yield f"abort in {before.state.name} does not hold what may fly"
     if not edge.effects:
         return
     resumed = isinstance(edge.wish, Resume)
@@ -197,9 +206,9 @@ def _brakes(edge: Edge) -> Iterator[str]:
     before, given = edge.before, edge.given
     if not isinstance(given, PositionSeen) or before.verifier is None:
         return
-    if before.control is Control.NONE or before.state not in GUARDED:
+    if before.control is Control.NONE or before.flies not in GUARDED:
         return
-    floor = before.landed is LandedState.IN_AIR and before.state not in (
+    floor = before.landed is LandedState.IN_AIR and before.flies not in (
         State.TAKING_OFF,
         State.RETURNING,
     )
@@ -208,8 +217,40 @@ def _brakes(edge: Edge) -> Iterator[str]:
         return
     if CommandKind.HOLD not in edge.commands:
         yield f"a breach is predicted in {before.state.name} and not held"
+    if edge.after.state is not State.HOLDING:
+        yield f"a breach is predicted and {edge.after.state.name} goes on"
     if breach.brake_pos_ned is not None and not edge.setpoints and not given.reset:
         yield f"a breach is predicted in {before.state.name} and not braked"
+
+
+def _verified(edge: Edge) -> Iterator[str]:
+    """2, where the machine has its part in it: what is flown is what was verified, and still is."""
+    before, after, verifier = edge.before, edge.after, edge.after.verifier
+    pos_ned, v_ned = after.pos_ned, after.v_ned
+    new = isinstance(edge.given, VerifierChanged) and before.verifier != verifier
+    if new and after.control is not Control.NONE and verifier and pos_ned and v_ned:
+        judged: object = None
+        silent = after.state is State.STALE and after.grace_until_ns is None
+        if silent or after.flies not in STREAMING_STATES:
+            judged = None
+        elif after.flies is State.MOVING and after.goal is not None:
+            judged = verifier.goal(after.goal.pos_ned, None, pos_ned, v_ned)
+        elif after.hold is not None:
+            judged = verifier.hold_point(after.hold.pos_ned, STANDING, floor_applies=True)
+        if isinstance(judged, Refusal):
+            yield f"{after.state.name} goes on in a fence that refuses it: {judged.code}"
+    if isinstance(edge.given, HomeSeen) and before.home_ned is not None and not before.on_ground:
+        far = math.dist(before.home_ned, edge.given.pos_ned) > HOME_MOVED_M
+        if far and after.control is not Control.NONE and after.state in GUARDED:
+            yield f"home moves and {after.state.name} goes on"
+    climbs = before.state is State.TAKING_OFF and isinstance(edge.given, Tick)
+    if climbs and before.pos_ned is not None and not edge.stale:
+        above_m = before.top_down_m - before.pos_ned[2]
+        radius_m = edge.policy.arrival.radius_m
+        if after.state is State.HOVERING and abs(above_m) >= radius_m:
+            yield f"a climb is over {above_m:.1f} m above its top"
+        if after.state is State.TAKING_OFF and above_m > radius_m + OVERSHOOT_M:
+            yield f"a climb goes on {above_m:.1f} m above its top"
 
 
 def _permits(edge: Edge) -> Iterator[str]:
@@ -219,6 +260,8 @@ def _permits(edge: Edge) -> Iterator[str]:
         starts = not (done and not edge.commands)
         if starts and (edge.stale or edge.before.state is State.NO_VEHICLE):
             yield f"{edge.wish} is accepted on a position too old"
+        if starts and isinstance(edge.wish, TakeOff) and not edge.before.on_ground:
+            yield "a take-off is accepted though the vehicle is not known to stand"
         if starts and edge.severity >= Severity.HOLD and not isinstance(edge.wish, TakePhoto):
             yield f"{edge.wish} is accepted at severity {edge.severity.name}"
     for effect in edge.effects:
@@ -266,10 +309,23 @@ def _dangerous(edge: Edge) -> Iterator[str]:
         yield "arm or take-off goes on being tried though its request has ended"
 
 
+def _attended(edge: Edge) -> Iterator[str]:
+    """Once the operator is lost, nobody withdraws the hold that followed."""
+    if edge.before.deserted and not isinstance(edge.wish, Abort | Hold | Land | Disarm):
+        refusal = None if edge.verdict is None else edge.verdict.refusal
+        if edge.wish is not None and (refusal is None or refusal.code is not Code.OPERATOR_LOST):
+            yield f"{edge.wish} is heard though the operator is lost"
+
+
 def _never_refused(edge: Edge) -> Iterator[str]:
     """10: hold, landing in place and disarming on the ground are never refused."""
     if edge.before.state is State.NO_VEHICLE or edge.after.state is State.NO_VEHICLE:
         return
+    stops = {CommandKind.HOLD, CommandKind.LAND, CommandKind.RETURN} & set(edge.commands)
+    may_fly = edge.before.armed and not edge.stands
+    stop = isinstance(edge.wish, Hold | Land | ReturnHome) and edge.accepted
+    if stop and may_fly and not stops:
+        yield f"{edge.wish} in {edge.before.state.name} commands nothing to what may fly"
     verdict = edge.verdict
     refused = verdict is not None and verdict.outcome is Outcome.REFUSED
     if not refused or verdict is None or verdict.refusal is None:
@@ -278,6 +334,8 @@ def _never_refused(edge: Edge) -> Iterator[str]:
     ground = standing or edge.before.on_ground
     if isinstance(edge.wish, Hold | Land) or (isinstance(edge.wish, Disarm) and ground):
         yield f"{edge.wish} is refused in {edge.before.state.name}"
+    if edge.before.deserted:
+        return
     if isinstance(edge.wish, ReturnHome) and verdict.refusal.code is not Code.RTL_BLOCKED:
         yield f"a return is refused with {verdict.refusal.code} in {edge.before.state.name}"
 
@@ -285,12 +343,14 @@ def _never_refused(edge: Edge) -> Iterator[str]:
 CHECKS: Final[tuple[tuple[int, Callable[[Edge], Iterator[str]]], ...]] = (
     (0, _sound),
     (1, _streams),
+    (2, _verified),
     (3, _answers),
     (4, _gone),
     (5, _aborts),
     (6, _brakes),
     (7, _permits),
+    (7, _attended),
     (9, _dangerous),
     (10, _never_refused),
 )
-"""By the design's numbers.  2 is the verifier's own; 8 is for streams of others."""
+"""By the design's numbers.  8 is for streams of others."""

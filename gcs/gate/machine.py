@@ -27,6 +27,7 @@ from gcs.gate.types import (
     Effect,
     FlightMode,
     Input,
+    LandedState,
     Level,
     OperatorLost,
     Outcome,
@@ -173,6 +174,8 @@ class Gate:
     def _judge_ages(self) -> None:
         """What has become too old, before anything is decided on it."""
         core, memory, now_ns = self._core, self._core.memory, self._core.now_ns
+        if _due(_plus(memory.landed_ns, core.policy.heartbeat_age_s), now_ns):
+            memory.landed, memory.landed_ns = LandedState.UNDEFINED, None
         if memory.state is not State.NO_VEHICLE:
             if _due(_plus(memory.heard_ns, core.policy.heartbeat_age_s), now_ns):
                 self._fire(Event.LOST)

@@ -25,6 +25,9 @@ from gcs.gate.verifier import Verifier
 
 SECOND_NS = 1_000_000_000
 
+CLIMBED_M = 0.5
+"""Higher than this above where it stood, a vehicle is not on the ground, whatever it reports."""
+
 GATE = 0
 """The request id of what nobody asked for: the gate's own holds, landings and returns."""
 
@@ -66,6 +69,8 @@ class Memory:
     mode: FlightMode | None = None
     mode_name: str = ""
     landed: LandedState = LandedState.UNDEFINED
+    landed_ns: int | None = None
+    stood_down_m: float | None = None  # local down of where it stood last
     pos_ned: Vec3 | None = None
     v_ned: Vec3 | None = None
     pos_ns: int | None = None
@@ -78,6 +83,9 @@ class Memory:
     mission_items: int = 0
     mission_over: bool = False
     photo_ok: bool = False
+    photo_index: int | None = None  # of the last picture that was told
+    silence_told: CommandKind | None = None
+    deserted: bool = False  # the operator is lost, and does not come back
 
     # intended
     task: Task | None = None
@@ -115,9 +123,24 @@ class Memory:
         return self.landed in (LandedState.IN_AIR, LandedState.TAKEOFF, LandedState.LANDING)
 
     @property
+    def climbed(self) -> bool:
+        """Its position is above where it stood."""
+        if self.pos_ned is None or self.stood_down_m is None:
+            return False
+        return self.stood_down_m - self.pos_ned[2] > CLIMBED_M
+
+    @property
     def on_ground(self) -> bool:
-        """Reported so, or disarmed and not reported in the air; armed and not known is not."""
-        return self.landed is LandedState.ON_GROUND or not (self.armed or self.airborne)
+        """Reported so and seen no higher, or disarmed and not reported in the air; armed and not
+        known is not."""
+        if self.landed is LandedState.ON_GROUND and not self.climbed:
+            return True
+        return not (self.armed or self.airborne)
+
+    @property
+    def flies(self) -> State:
+        """The state, or the one that a position too old interrupted."""
+        return self.back_to or self.state
 
     def position_age_ns(self, now_ns: int) -> int | None:
         """None before the first position."""

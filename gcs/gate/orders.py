@@ -73,6 +73,7 @@ def take_off(core: Core) -> None:
     assert memory.pos_ned is not None
     memory.control = Control.OURS
     memory.lifted = False
+    memory.stood_down_m = memory.pos_ned[2]
     memory.top_down_m = memory.pos_ned[2] - task.request.wish.up_m
     core.due(core.policy.takeoff.timeout_s)
     if memory.personality == "ardupilot" and memory.mode is not FlightMode.GUIDED:

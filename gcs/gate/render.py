@@ -63,6 +63,7 @@ def describe(branch: Branch) -> str:
         parts.append(branch.answer.value)
     if branch.ends is not None:
         why = "" if branch.ends.code is None else f" {branch.ends.code}"
+        why = " as judged" if branch.ends.judged else why
         parts.append(f"request {branch.ends.ended}{why}")
     if branch.do:
         parts.append(f"do [{'; '.join(branch.do)}]")

@@ -37,6 +37,16 @@ deni_st: Final[Cell] = (
     Branch(when=(Guard.IN_GRACE,), ends=DENIED, do=(Do.LET_GO, Do.HOLD)),
     *deni,
 )
+# It may fly, or begin to, and would not be disarmed: hold it.
+dsno_gr: Final[Cell] = (
+    Branch(when=(Guard.STANDS,), ends=DENIED),
+    Branch(when=(Guard.ON_GROUND,), ends=DENIED, do=(Do.HOLD_BLIND,)),
+    hold_then(DENIED),
+)
+dsno_st: Final[Cell] = (
+    Branch(when=(Guard.STANDS,), ends=DENIED),
+    Branch(ends=DENIED, do=(Do.HOLD_BLIND,)),
+)
 sile_to: Final[Cell] = (grounded(SILENT), hold_then(SILENT))
 sile_ph: Final[Cell] = (Branch(ends=SILENT, to=State.HOVERING),)
 sile_fl: Final[Cell] = (hold_then(SILENT),)
@@ -51,8 +61,8 @@ shot: Final[Cell] = (
 )
 fini: Final[Cell] = (
     Branch(when=RETAKE, do=(Do.TAKE_CONTROL,), to=State.HOVERING),
-    Branch(when=(Guard.AIRBORNE,), ends=COMPLETE, do=(Do.HOLD,), to=State.HOLDING),
-    Branch(),
+    Branch(when=(Guard.ON_GROUND,)),
+    hold_then(COMPLETE),
 )
 
 # fmt: off
@@ -64,6 +74,7 @@ ANSWER_ROWS: Final[Mapping[Event, Row]] = {
     Event.COMMAND_DONE:      (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   stay),
     Event.COMMAND_REFUSED:   (stay,   deni_st, deni,   deni_to, deni_ho, imposs, stay,   stay,   deni_ph, deni_to, deni_fl, deni_fl, stay,   deni),
     Event.COMMAND_SILENT:    (stay,   sile_st, sile,   sile_to, sile_ho, imposs, stay,   stay,   sile_ph, sile_to, sile_fl, sile_fl, stay,   sile),
+    Event.DISARM_REFUSED:    (stay,   dsno_st, dsno_gr, stay,   stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   deni),
     Event.COMMAND_LATE:      (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   stay),
     Event.HOLD_REFUSED:      (noho,   noho,    noho,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    noho,   noho),
     Event.HOLD_SILENT:       (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   stay),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from gcs.gate.cells import (
+    GONE,
     STOPPED,
     done,
     imposs,
@@ -58,18 +59,19 @@ _abort_here: Final = Branch(
     when=(Guard.ON_GROUND,),
     answer=Answer.TASK,
     ends=STOPPED,
-    do=(Do.RELEASE, Do.DISARM),
+    do=(Do.RELEASE, Do.HOLD_BLIND, Do.DISARM),
     to=State.GROUNDED,
 )
 disa_g: Final[Cell] = (Branch(when=(Guard.SAFE,), answer=Answer.DONE), _disarm)
 disa_s: Final[Cell] = (
     Branch(when=(Guard.ON_GROUND, Guard.SAFE), answer=Answer.DONE),
-    Branch(when=(Guard.ON_GROUND,), answer=Answer.TASK, do=(Do.DISARM,)),
+    Branch(when=(Guard.ON_GROUND,), answer=Answer.TASK, do=(Do.FORGET_INTERRUPTED, Do.DISARM)),
     Branch(refuse=Code.IN_AIR),
 )
 disarm: Final[Cell] = (_disarm_here, Branch(refuse=Code.IN_AIR))
 force: Final[Cell] = (
     _disarm_here,
+    GONE,
     Branch(when=(Guard.FORCE_FORBIDDEN,), refuse=Code.POLICY),
     Branch(when=(Guard.FORCE_UNCONFIRMED,), refuse=Code.IN_AIR, do=(Do.NOTE_FORCE,)),
     Branch(answer=Answer.TASK, do=(Do.RELEASE, Do.FORCE_DISARM), to=State.EXTERNAL),
@@ -77,7 +79,7 @@ force: Final[Cell] = (
 takeof: Final[Cell] = (
     _task_busy,
     Branch(
-        needs=(Check.ARMED, Check.SEVERITY, Check.TAKE_OFF),
+        needs=(Check.ARMED, Check.ON_GROUND, Check.SEVERITY, Check.TAKE_OFF),
         answer=Answer.TASK,
         do=(Do.TAKE_OFF,),
         to=State.TAKING_OFF,
@@ -85,7 +87,7 @@ takeof: Final[Cell] = (
 )
 
 _land: Final = Branch(answer=Answer.TASK, do=(Do.LAND,), to=State.LANDING)
-_stands: Final = Branch(when=(Guard.ON_GROUND,), answer=Answer.DONE)
+_stands: Final = Branch(when=(Guard.STANDS,), answer=Answer.DONE)
 land: Final[Cell] = (_land,)
 land_s: Final[Cell] = (_stands, _land)
 
@@ -107,6 +109,7 @@ rtl: Final[Cell] = (
     ),
     Branch(refuse=Code.RTL_BLOCKED, ends=STOPPED, do=(Do.HOLD,), to=State.HOLDING),
 )
+rtl_g: Final[Cell] = (_stands, *rtl)
 rtl_l: Final[Cell] = (_return, _return_anyway, Branch(refuse=Code.RTL_BLOCKED))
 rtl_s: Final[Cell] = (
     _stands,
@@ -115,6 +118,11 @@ rtl_s: Final[Cell] = (
 
 _hold_now: Final = Branch(answer=Answer.TASK, ends=STOPPED, do=(Do.HOLD,), to=State.HOLDING)
 hold: Final[Cell] = (_hold_now,)
+hold_g: Final[Cell] = (
+    _stands,
+    Branch(when=(Guard.ON_GROUND,), answer=Answer.TASK, ends=STOPPED, do=(Do.HOLD_BLIND,)),
+    _hold_now,
+)
 hold_t: Final[Cell] = (_abort_here, _hold_now)
 hold_s: Final[Cell] = (
     _stands,
@@ -122,11 +130,19 @@ hold_s: Final[Cell] = (
 )
 abrt_g: Final[Cell] = (
     Branch(when=(Guard.SAFE,), answer=Answer.DONE),
-    Branch(answer=Answer.TASK, ends=STOPPED, do=(Do.DISARM,)),
+    Branch(when=(Guard.STANDS,), answer=Answer.TASK, ends=STOPPED, do=(Do.DISARM,)),
+    _abort_here,
+    _hold_now,
 )
 abrt_s: Final[Cell] = (
-    Branch(when=(Guard.ON_GROUND, Guard.SAFE), answer=Answer.DONE),
-    Branch(when=(Guard.ON_GROUND,), answer=Answer.TASK, ends=STOPPED, do=(Do.DISARM,)),
+    Branch(when=(Guard.STANDS, Guard.SAFE), answer=Answer.DONE),
+    Branch(when=(Guard.STANDS,), answer=Answer.TASK, ends=STOPPED, do=(Do.DISARM,)),
+    Branch(
+        when=(Guard.ON_GROUND,),
+        answer=Answer.TASK,
+        ends=STOPPED,
+        do=(Do.FORGET_INTERRUPTED, Do.HOLD_BLIND, Do.DISARM),
+    ),
     hold_s[1],
 )
 abrt_n: Final[Cell] = (
@@ -149,7 +165,7 @@ miss_h: Final[Cell] = (_taking, _goal_waits, _mission)
 miss_g: Final[Cell] = (
     _task_busy,
     Branch(
-        needs=(Check.ARMED, *_mission.needs),
+        needs=(Check.ARMED, Check.ON_GROUND, *_mission.needs),
         answer=Answer.TASK,
         do=_mission.do,
         to=State.FLYING_MISSION,
@@ -171,9 +187,9 @@ REQUEST_ROWS: Final[Mapping[Event, Row]] = {
     Event.DISARM:        (no_veh, disa_s, disa_g, disarm, disarm, imposs, disarm, disarm, disarm, disarm, disarm, disarm, disarm, disarm),
     Event.FORCE_DISARM:  (no_veh, force,  disa_g, force,  force,  imposs, force,  force,  force,  force,  force,  force,  force,  force),
     Event.TAKE_OFF:      (no_veh, stale,  takeof, flying, flying, imposs, flying, flying, flying, flying, flying, flying, flying, flying),
-    Event.LAND:          (no_veh, land_s, done,   land,   land,   imposs, land,   land,   land,   land,   land,   land,   land,   land),
-    Event.RETURN:        (no_veh, rtl_s,  done,   rtl,    rtl,    imposs, rtl,    rtl,    rtl,    rtl,    rtl,    rtl_l,  rtl,    rtl),
-    Event.HOLD:          (no_veh, hold_s, done,   hold_t, hold,   imposs, hold,   hold,   hold,   hold,   hold,   hold,   hold,   hold),
+    Event.LAND:          (no_veh, land_s, land_s, land,   land,   imposs, land,   land,   land,   land,   land,   land,   land,   land),
+    Event.RETURN:        (no_veh, rtl_s,  rtl_g,  rtl,    rtl,    imposs, rtl,    rtl,    rtl,    rtl,    rtl,    rtl_l,  rtl,    rtl),
+    Event.HOLD:          (no_veh, hold_s, hold_g, hold_t, hold,   imposs, hold,   hold,   hold,   hold,   hold,   hold,   hold,   hold),
     Event.ABORT:         (abrt_n, abrt_s, abrt_g, hold_t, hold,   imposs, hold,   hold,   hold,   hold,   hold,   hold,   hold,   hold),
     Event.PHOTO:         (no_veh, stale,  no_fly, busy,   photo,  imposs, busy,   busy,   busy,   busy,   busy,   busy,   is_hld, no_ctl),
     Event.MISSION:       (no_veh, stale,  miss_g, busy,   miss_h, imposs, busy,   busy,   busy,   busy,   busy,   busy,   is_hld, no_ctl),

@@ -7,14 +7,17 @@ from typing import Final
 
 from gcs.gate.cells import (
     COMPLETE,
+    DENIED,
     DESERTED,
     MISSED,
     RETAKE,
     SEVERE,
     SILENT,
+    give_up,
     grounded,
     hold_then,
     imposs,
+    let_go,
     sile,
     sile_ho,
     stay,
@@ -22,17 +25,6 @@ from gcs.gate.cells import (
 from gcs.gate.events import Event
 from gcs.gate.rules import Branch, Cell, Do, End, Guard, Row
 from gcs.gate.types import Code, Ended, State
-
-
-def _disarmed(end: End) -> Branch:
-    """As `grounded`, and the motors may be turning: disarm."""
-    return Branch(when=(Guard.ON_GROUND,), ends=end, do=(Do.RELEASE, Do.DISARM), to=State.GROUNDED)
-
-
-def _let_go(end: End, when: Guard) -> Cell:
-    """STALE: no verified point is left to stream to; hold, and come back to HOLDING."""
-    return (Branch(when=(when,), ends=end, do=(Do.LET_GO, Do.HOLD)), Branch())
-
 
 # ------------------------------------------------------------------------------------ time
 
@@ -53,10 +45,22 @@ tick_to: Final[Cell] = (
         do=(Do.HOLD,),
         to=State.HOLDING,
     ),
+    Branch(when=(Guard.CLIMB_SHORT,), ends=DENIED, do=(Do.HOLD,), to=State.HOLDING),
+    Branch(
+        when=(Guard.CLIMBS_ON,),
+        ends=End(Ended.ABORTED, Code.TOO_HIGH),
+        do=(Do.HOLD,),
+        to=State.HOLDING,
+    ),
     Branch(),
 )
 _came_down: Final = Branch(when=(Guard.TASK_HAS_LANDED,), ends=COMPLETE)
-late_gr: Final[Cell] = (_came_down, Branch(ends=SILENT))
+# The request is over, the hold is not: it is repeated until it is shown.
+sile_hd: Final[Cell] = (
+    Branch(when=(Guard.HOLD_AWAITED,), ends=SILENT, do=(Do.REPEAT_HOLD,)),
+    *sile,
+)
+late_gr: Final[Cell] = (_came_down, *sile_hd)
 late_to: Final[Cell] = (grounded(MISSED), hold_then(MISSED))
 late_mo: Final[Cell] = (hold_then(MISSED),)
 late_ph: Final[Cell] = (Branch(ends=MISSED, to=State.HOVERING),)
@@ -64,14 +68,8 @@ late_la: Final[Cell] = (
     Branch(when=(Guard.ON_GROUND,), ends=COMPLETE, do=(Do.RELEASE,), to=State.GROUNDED),
     Branch(ends=MISSED),
 )
-# The request is over, the hold is not: it is repeated until it is shown.
-sile_hd: Final[Cell] = (
-    Branch(when=(Guard.HOLD_AWAITED,), ends=SILENT, do=(Do.REPEAT_HOLD,)),
-    *sile,
-)
 late_st: Final[Cell] = (
     Branch(when=(Guard.IN_GRACE,), ends=MISSED, do=(Do.LET_GO, Do.HOLD)),
-    sile_hd[0],
     *late_gr,
 )
 asks: Final[Cell] = (Branch(do=(Do.ASK_GUIDED,)),)
@@ -81,8 +79,8 @@ again: Final[Cell] = (Branch(do=(Do.REPEAT_HOLD,)),)
 
 sev_gr: Final[Cell] = (Branch(when=(Guard.TASK_IS_ARM,), ends=SEVERE), Branch())
 sevh: Final[Cell] = (hold_then(SEVERE),)
-sevh_to: Final[Cell] = (_disarmed(SEVERE), *sevh)
-sevh_st: Final[Cell] = _let_go(SEVERE, Guard.IN_GRACE)
+sevh_to: Final[Cell] = (give_up(SEVERE), *sevh)
+sevh_st: Final[Cell] = let_go(SEVERE, Guard.IN_GRACE)
 sevr_hd: Final[Cell] = (
     Branch(when=(Guard.PATH_CLEARS,), ends=SEVERE, do=(Do.RETURN,), to=State.RETURNING),
     Branch(when=(Guard.RTL_FORWARD,), ends=SEVERE, do=(Do.RETURN,), to=State.RETURNING),
@@ -90,9 +88,9 @@ sevr_hd: Final[Cell] = (
     Branch(),
 )
 sevr: Final[Cell] = (*sevr_hd[:-1], *sevh)
-sevr_to: Final[Cell] = (_disarmed(SEVERE), *sevr)
+sevr_to: Final[Cell] = (give_up(SEVERE), *sevr)
 sevl: Final[Cell] = (Branch(ends=SEVERE, do=(Do.LAND,), to=State.LANDING),)
-sevl_to: Final[Cell] = (_disarmed(SEVERE), *sevl)
+sevl_to: Final[Cell] = (give_up(SEVERE), *sevl)
 sevl_re: Final[Cell] = (
     Branch(when=(Guard.OURS,), ends=SEVERE, do=(Do.LAND,), to=State.LANDING),
     Branch(),
@@ -104,15 +102,18 @@ sevl_st: Final[Cell] = (
 
 # ------------------------------------------------------------------------- a lost operator
 
-lost_gr: Final[Cell] = (Branch(ends=DESERTED),)
-lost_to: Final[Cell] = (_disarmed(DESERTED), hold_then(DESERTED))
+lost_gr: Final[Cell] = (
+    Branch(when=(Guard.ARMED, Guard.LATE_TAKE_OFF), ends=DESERTED, do=(Do.HOLD_BLIND,)),
+    Branch(ends=DESERTED),
+)
+lost_to: Final[Cell] = (give_up(DESERTED), hold_then(DESERTED))
 lost_fl: Final[Cell] = (hold_then(DESERTED),)
 lost_dn: Final[Cell] = (
     Branch(when=(Guard.SEVERITY_RETURNS,)),
     Branch(when=(Guard.OURS,), ends=DESERTED, do=(Do.HOLD,), to=State.HOLDING),
     Branch(),
 )
-lost_st: Final[Cell] = _let_go(DESERTED, Guard.RETURNS_TO_STATE)
+lost_st: Final[Cell] = let_go(DESERTED, Guard.RETURNS_TO_STATE)
 
 # fmt: off
 # ruff: noqa: E501 - a table is read along its rows

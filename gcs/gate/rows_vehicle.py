@@ -7,10 +7,14 @@ from typing import Final
 
 from gcs.gate.cells import (
     COMPLETE,
+    JUDGED,
+    MOVED,
     STOPPED,
     TAKEN,
+    give_up,
     hold_then,
     imposs,
+    let_go,
     release_then,
     stay,
 )
@@ -28,8 +32,8 @@ lost: Final[Cell] = (
 )
 posi_st: Final[Cell] = (
     Branch(when=(Guard.RETURNS_TO_STATE,), to=BACK),
-    Branch(when=(Guard.HOLD_AWAITED, Guard.AIRBORNE), do=(Do.HOLD,), to=State.HOLDING),
     Branch(when=(Guard.ON_GROUND,), to=State.GROUNDED),
+    Branch(when=(Guard.HOLD_AWAITED,), do=(Do.HOLD,), to=State.HOLDING),
     Branch(when=(Guard.DISARMED,), to=State.GROUNDED),
     Branch(when=(Guard.MODE_RETURN,), to=State.RETURNING),
     Branch(when=(Guard.MODE_LAND,), to=State.LANDING),
@@ -47,15 +51,21 @@ age_st: Final[Cell] = (
 )
 _JUMP: Final = End(Ended.ABORTED, Code.ESTIMATOR_RESET)
 jump: Final[Cell] = (hold_then(_JUMP),)
-jump_st: Final[Cell] = (
-    Branch(when=(Guard.IN_GRACE,), ends=_JUMP, do=(Do.LET_GO, Do.HOLD)),
-    Branch(),
-)
+jump_st: Final[Cell] = let_go(_JUMP, Guard.IN_GRACE)
 jump_re: Final[Cell] = (
     Branch(when=(Guard.OURS,), ends=_JUMP, do=(Do.HOLD,), to=State.HOLDING),
     Branch(),
 )
-jump_hd: Final[Cell] = (Branch(do=(Do.HOLD_ANEW,)),)
+anew: Final[Cell] = (Branch(do=(Do.HOLD_ANEW,)),)
+move: Final[Cell] = (hold_then(MOVED),)
+move_st: Final[Cell] = let_go(MOVED, Guard.IN_GRACE)
+move_re: Final[Cell] = (
+    Branch(when=(Guard.OURS,), ends=MOVED, do=(Do.HOLD,), to=State.HOLDING),
+    Branch(),
+)
+unve: Final[Cell] = (hold_then(JUDGED),)
+unve_st: Final[Cell] = let_go(JUDGED, Guard.IN_GRACE)
+unve_to: Final[Cell] = (give_up(JUDGED), *unve)
 brake: Final[Cell] = (
     Branch(
         ends=End(Ended.ABORTED, Code.FENCE_BREACH),
@@ -63,11 +73,20 @@ brake: Final[Cell] = (
         to=State.HOLDING,
     ),
 )
+# A sample that comes late is a sample: only what is held already is not braked.
+brak_st: Final[Cell] = (
+    Branch(when=(Guard.FLIES_ON,), ends=brake[0].ends, do=brake[0].do, to=State.HOLDING),
+    Branch(),
+)
 
 # ------------------------------------------------------------------------ armed and landed
 
 arms: Final[Cell] = (Branch(when=(Guard.TASK_IS_ARM,), ends=COMPLETE), Branch())
-dsrm_gr: Final[Cell] = (Branch(when=(Guard.TASK_ENDS_DISARMED,), ends=COMPLETE), Branch())
+dsrm_gr: Final[Cell] = (
+    Branch(when=(Guard.TASK_ENDS_DISARMED,), ends=COMPLETE),
+    Branch(when=(Guard.HOLD_AWAITED,), do=(Do.HOLD_SHOWN,)),
+    Branch(),
+)
 dsrm_st: Final[Cell] = (
     Branch(when=(Guard.TASK_ENDS_DISARMED,), ends=COMPLETE, do=(Do.FORGET_INTERRUPTED,)),
     Branch(
@@ -121,8 +140,10 @@ VEHICLE_ROWS: Final[Mapping[Event, Row]] = {
     Event.LOST:      (stay,  lost,    lost,    lost,    lost,   imposs, lost,   lost,   lost,   lost,    lost,    lost,   lost,    lost),
     Event.POSITION:  (stay,  posi_st, stay,    stay,    stay,   imposs, stay,   stay,   stay,   stay,    stay,    stay,   stay,    stay),
     Event.AGED:      (stay,  age_st,  age_id,  age,     age,    imposs, age,    age,    age,    age,     stay,    stay,   age,     age_id),
-    Event.JUMPED:    (stay,  jump_st, stay,    jump,    jump,   imposs, jump,   jump,   jump,   jump,    jump_re, stay,   jump_hd, stay),
-    Event.BREACH:    (stay,  stay,    stay,    brake,   brake,  imposs, brake,  brake,  brake,  brake,   brake,   stay,   stay,    stay),
+    Event.JUMPED:    (stay,  jump_st, stay,    jump,    jump,   imposs, jump,   jump,   jump,   jump,    jump_re, stay,   anew,    stay),
+    Event.HOME_MOVED:(stay,  move_st, stay,    move,    move,   imposs, move,   move,   move,   move,    move_re, stay,   anew,    stay),
+    Event.UNVERIFIED:(stay,  unve_st, stay,    unve_to, unve,   imposs, unve,   unve,   unve,   unve,    stay,    stay,   anew,    stay),
+    Event.BREACH:    (stay,  brak_st, stay,    brake,   brake,  imposs, brake,  brake,  brake,  brake,   brake,   stay,   stay,    stay),
     Event.ARMED:     (stay,  arms,    arms,    stay,    stay,   imposs, stay,   stay,   stay,   stay,    stay,    stay,   stay,    stay),
     Event.DISARMED:  (stay,  dsrm_st, dsrm_gr, dsrm,    dsrm,   imposs, dsrm,   dsrm,   dsrm,   dsrm,    dsrm,    dsrm,   dsrm,    dsrm),
     Event.AIRBORNE:  (stay,  stay,    air_gr,  lifts,   stay,   imposs, stay,   stay,   stay,   lifts,   stay,    stay,   stay,    stay),

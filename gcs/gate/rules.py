@@ -23,6 +23,7 @@ class Guard(StrEnum):
     ON_GROUND = "it stands on the ground"
     ARMED = "it is armed"
     DISARMED = "it is disarmed"
+    STANDS = "it stands, and no take-off can be under way"
     SAFE = "it is disarmed and nothing is under way"
     LIFTED = "it had lifted off"
     LATE_TAKE_OFF = "our own take-off comes late"
@@ -39,6 +40,10 @@ class Guard(StrEnum):
     ACTIVE_GOAL = "a goal is being flown"
     ARRIVED = "it arrived"
     AT_HEIGHT = "it reached the height"
+    CLIMB_SHORT = "the climb ended elsewhere"
+    CLIMBS_ON = "it climbs above the height"
+    FLIES_ON = "a position too old interrupted its flight"
+    OPERATOR_GONE = "the operator is lost"
     HERE_CLEARS = "the present position clears"
     PATH_CLEARS = "the return path clears"
     RTL_FORWARD = "policy forwards blocked returns"
@@ -69,6 +74,7 @@ class Check(StrEnum):
     SEVERITY = "severity permits motion"
     RECORDER = "the recorder runs where policy asks for it"
     ARMED = "it is armed"
+    ON_GROUND = "it stands on the ground"
     HERE = "the present position clears"
     TAKE_OFF = "the climb clears"
     MISSION = "a verified mission is on board"
@@ -148,10 +154,14 @@ Next: TypeAlias = State | Elsewhere
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """How the request under way ends; a goal still pending is refused with the same code."""
+    """How the request under way ends; a goal still pending is refused with the same code.
+
+    `judged`: the code is that of the refusal which led here.
+    """
 
     ended: Ended
     code: Code | None = None
+    judged: bool = False
 
 
 @dataclass(frozen=True, slots=True)

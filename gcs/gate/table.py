@@ -16,7 +16,8 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
-from gcs.gate.events import Event
+from gcs.gate.cells import GONE
+from gcs.gate.events import ATTENDED, Event
 from gcs.gate.rows_answers import ANSWER_ROWS
 from gcs.gate.rows_modes import MODE_ROWS
 from gcs.gate.rows_requests import REQUEST_ROWS
@@ -33,11 +34,12 @@ ROWS: Final[Mapping[Event, Row]] = MappingProxyType(
 
 TABLE: Final[Table] = MappingProxyType(
     {
-        (state, event): cell
+        (state, event): (GONE, *cell) if cell and event in ATTENDED else cell
         for event in Event
         for state, cell in zip(COLUMNS, ROWS[event], strict=True)
     }
 )
+"""The rows, and in front of every request that wants an operator the refusal once he is lost."""
 
 
 class Streams(StrEnum):

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from gcs.frames import Vec3, enu_from_ned
-from gcs.gate.types import Code
+from gcs.gate.types import Code, CommandKind
 
 REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
     {
@@ -20,6 +20,7 @@ REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
         Code.ALREADY_FLYING: "the vehicle flies already",
         Code.HOLDING: "the vehicle is held: resume first",
         Code.IN_AIR: "the vehicle is not known to stand on the ground",
+        Code.OPERATOR_LOST: "the operator is gone: only hold, land, abort and disarm are left",
         Code.POLICY: "the policy does not allow it",
         Code.RTL_BLOCKED: "the way home is not clear: land instead",
     }
@@ -40,12 +41,32 @@ ENDED: Final[Mapping[Code, str]] = MappingProxyType(
         Code.NOT_ARMED: "the vehicle disarmed",
         Code.NOT_FLYING: "the vehicle stands on the ground",
         Code.ESTIMATOR_RESET: "the vehicle's position jumped",
+        Code.HOME_MOVED: "home moved while the vehicle flew",
         Code.FENCE_BREACH: "the vehicle would have left the fence",
+        Code.TOO_HIGH: "the vehicle climbed above the height that was verified",
         Code.TOO_CLOSE: "no verified place to hover",
         Code.SEVERITY: "severity forbids motion",
     }
 )
 """Why a request ends otherwise than complete."""
+
+
+ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(
+    {
+        CommandKind.HOLD: "hold mode",
+        CommandKind.GUIDED: "guided mode",
+        CommandKind.ARM: "arming",
+        CommandKind.DISARM: "disarming",
+        CommandKind.FORCE_DISARM: "the forced disarm",
+        CommandKind.TAKE_OFF: "take-off",
+        CommandKind.LAND: "landing",
+        CommandKind.RETURN: "the return",
+        CommandKind.PHOTO: "the picture",
+        CommandKind.START_MISSION: "the mission",
+        CommandKind.SET_MODE: "the mode",
+    }
+)
+"""What a command asks for: the vehicle refused it, or did not answer the request for it."""
 
 
 def ended_because(code: Code) -> str:

@@ -30,6 +30,7 @@ east_m = 3.0
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping
 
 from gcs.gate.tomlfile import Path, PolicyError, Table, find_lines
@@ -57,6 +58,8 @@ _REACH_M = 1.0e5
 _HEIGHT_MAX_M = 1.0e4
 _SPEED_MIN_M_S = 0.1
 _SPEED_MAX_M_S = 100.0
+_ALIKE = 0.6
+"""By difflib's measure `up` is like `up_m` by 0.67, `east_m` like `north_m` by 0.46."""
 _NOTHING = Plain(0.0, 0.0, 0.0)
 
 
@@ -123,7 +126,8 @@ class _Flight:
         picture_s = top.number("picture_s", 2.0, least=0.0, most=600.0)
         waypoints = top.tables("waypoint")
         if not waypoints:
-            top.fail("waypoint", "there is none", "write at least one [[waypoint]]")
+            hint = _mistyped(top, "waypoint") or "write at least one [[waypoint]]"
+            top.fail("waypoint", "there is none", hint)
         here = _place(waypoints[0])
         up_m = top.number("takeoff_up_m", here.up_m, least=0.1, most=_HEIGHT_MAX_M)
         self._add(self._lines.of("takeoff_up_m"), Cmd.NAV_TAKEOFF, Local(0.0, 0.0, up_m))
@@ -171,8 +175,14 @@ class _Flight:
 
 def _required(table: Table, key: str, least: float, most: float) -> float:
     if not table.has(key):
-        table.fail(key, "is missing", f"{key} = a number")
+        table.fail(key, "is missing", _mistyped(table, key) or f"{key} = a number")
     return table.number(key, 0.0, least=least, most=most)
+
+
+def _mistyped(table: Table, key: str) -> str:
+    """A hint where a key that is there looks like the one that is missing."""
+    near = difflib.get_close_matches(key, table.keys(), n=1, cutoff=_ALIKE)
+    return f"`{near[0]}` is unknown here: did you mean {key}?" if near else ""
 
 
 def _place(waypoint: Table) -> Local:

@@ -7,6 +7,8 @@ from gcs.plan.model import Personality, Plan
 from gcs.plan.qgc_plan_writer import Written, write_plan
 from gcs.plan.wpl_writer import write_wpl
 
+SUFFIXES = (".plan", ".waypoints", ".txt")
+
 
 def write(path_text: str, plan: Plan, personality: Personality) -> Written:
     """`.plan` is QGroundControl's, `.waypoints` and `.txt` are QGC WPL 110.  Raises PlanError."""
@@ -18,4 +20,4 @@ def write(path_text: str, plan: Plan, personality: Personality) -> Written:
             return write_wpl(plan, personality)
         case _:
             what = "the suffix names no format that can be written"
-            raise PlanError(path_text, "", "file", what, ".plan, .waypoints or .txt")
+            raise PlanError(path_text, "", "file", what, " or ".join(SUFFIXES))

@@ -15,6 +15,9 @@ from gcs.record.reading import Condition, Message, Reading
 GAP_NS = 1_000_000_000
 """Silence on every topic for longer than this is reported."""
 
+RATE_SPAN_NS = 2_000_000_000
+"""A burst that is over sooner has no rate."""
+
 
 @dataclass(slots=True)
 class TopicInfo:
@@ -23,7 +26,7 @@ class TopicInfo:
     encoding: str
     messages: int = 0
     hz: float = 0.0
-    """Mean rate from its first message to its last; 0 for fewer than two."""
+    """Mean rate from its first message to its last; 0 where they are not `RATE_SPAN_NS` apart."""
 
 
 @dataclass(slots=True)
@@ -165,7 +168,7 @@ class _Survey:
         if info.start_ns is not None:
             info.seconds = (self._last_ns - info.start_ns) / 1e9
         for tally in self._tallies.values():
-            if tally.last_ns > tally.first_ns:
+            if tally.last_ns - tally.first_ns >= RATE_SPAN_NS:
                 tally.info.hz = (tally.info.messages - 1) * 1e9 / (tally.last_ns - tally.first_ns)
         info.topics = sorted((t.info for t in self._tallies.values()), key=lambda t: t.topic)
         info.messages = sum(topic.messages for topic in info.topics)

@@ -66,6 +66,7 @@ class Orders:
         self._photo_seq = 0
         self._patient: tuple[int, int, int] | None = None
         """When to ask again, which token's order, and what it was answered."""
+        self._seen: Telemetry | None = None
 
     @property
     def deadline_ns(self) -> int | None:
@@ -93,8 +94,9 @@ class Orders:
         token = self._next_token
         self._next_token += 1
         self._sent[token] = order, command
+        self._seen = seen
         out = self._lose_patience()
-        if order.kind is CommandKind.ARM and seen.prearm_ok is False:
+        if order.kind is CommandKind.ARM and not seen.prearm_ok:
             self._patient = now_ns + ASK_AGAIN_NS, token, Result.TEMPORARILY_REJECTED
             return [*out, "the vehicle's pre-arm checks are not through: asking a little later"]
         return out + self._submit(token, now_ns)
@@ -136,10 +138,21 @@ class Orders:
     def wake(self, now_ns: int) -> list[Out]:
         out = self._out(self._client.handle(Wake(), now_ns), now_ns)
         if self._patient is not None and now_ns >= self._patient[0]:
-            _, token, _ = self._patient
-            self._patient = None
-            out += self._submit(token, now_ns)
+            out += self._ask_again(now_ns)
         return out
+
+    def _ask_again(self, now_ns: int) -> list[Out]:
+        """Unless the vehicle itself still says that it would not arm, and there is time to wait."""
+        assert self._patient is not None
+        _, token, result = self._patient
+        order, _ = self._sent[token]
+        again_ns = now_ns + ASK_AGAIN_NS
+        unready = self._seen is not None and self._seen.prearm_ok is False
+        if order.kind is CommandKind.ARM and unready and again_ns < order.deadline_ns:
+            self._patient = again_ns, token, result
+            return []
+        self._patient = None
+        return self._submit(token, now_ns)
 
     def _out(self, effects: list[CommandEffect], now_ns: int) -> list[Out]:
         out: list[Out] = []

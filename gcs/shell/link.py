@@ -135,6 +135,8 @@ def _open_links(setup: LinkConfig, opened: ExitStack) -> list[sockets.Link]:
 
 
 def _open_recording(setup: LinkConfig, clock: Clock) -> Recording:
+    if not setup.record:
+        return Recording(None)
     try:
         recorder = Recorder.open(Path(setup.log_dir), setup.name, clock.stamp(), clock.now_ns())
     except RecorderError as error:

@@ -6,7 +6,7 @@ import asyncio
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol
 
 from rich.console import RenderableType
@@ -23,7 +23,7 @@ from gcs.cli import say
 from gcs.shell.client import Heard, LinkDown
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.keyboard import PendingGoal
-from gcs.tui.keys import KEYS
+from gcs.tui.keys import ABORT, ACTIONS, KEYS
 from gcs.tui.result import Result
 from gcs.tui.scene import Answer, Scene
 
@@ -76,16 +76,18 @@ class FlyApp(App[None]):
     TITLE = "mavgate"
     ENABLE_COMMAND_PALETTE = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(",".join(key.names), key.action, key.help, show=False, priority=True)
+        Binding(name, f"press({name!r})", key.help, show=False, priority=True)
         for key in KEYS
+        for name in key.names
     ]
 
-    def __init__(self, link: Link) -> None:
+    def __init__(self, link: Link, heard: Sequence[ipc.Event] = ()) -> None:
+        """`heard`: what the link has said already."""
         super().__init__()
         self._link = link
+        self._heard = heard
         self.scene = Scene()
         self._next_id = 1
-        self._fence_on = True
         self._leaving = False
         self._down: LinkDown | None = None
         self._trouble: ipc.Trouble | None = None
@@ -108,15 +110,19 @@ class FlyApp(App[None]):
                 yield Panel(lambda _c, _r: vehicle_panel.draw(scene), "vehicle", "vehicle")
         yield Panel(lambda _c, _r: vehicle_panel.goals(scene), "goals")
         yield Panel(lambda _c, _r: vehicle_panel.answer(scene), "answer")
-        log = RichLog(id="log", max_lines=LOG_LINES, wrap=True)
+        log = RichLog(id="log", max_lines=LOG_LINES, wrap=True, min_width=1)
         log.can_focus = False
         yield log
         yield Panel(lambda columns, _: frame_panels.footer(columns), "footer")
-        yield Panel(lambda _c, _r: frame_panels.help_table(), "help", "keys")
+        page = Panel(lambda _c, _r: frame_panels.help_table(), "help", "keys")
+        page.border_subtitle = "any key closes this, Space aborts as well"
+        yield page
         yield Panel(lambda _c, _r: frame_panels.farewell(scene), "farewell")
 
     def on_mount(self) -> None:
         loop = asyncio.get_running_loop()
+        for event in self._heard:
+            self._hear(event)
         self._link.listen(lambda heard: _tell_loop(loop, self._hear, heard))
         self.set_interval(REDRAW_S, self.redraw)
         if not self.is_headless and sys.platform != "win32":
@@ -145,8 +151,10 @@ class FlyApp(App[None]):
                 self._trouble = heard
                 for line in say.trouble_lines(heard):
                     self._log_line(line, look.BAD)
-            case ipc.EndingEvent(word="fence", ended="complete"):
-                self._fence_on = not self._fence_on
+            case ipc.Snapshot():
+                hover_enu = self.scene.take_hover_point()
+                if hover_enu is not None:
+                    self._set_pending(self.scene.pending.at(hover_enu))
             case _:
                 pass
 
@@ -163,7 +171,27 @@ class FlyApp(App[None]):
     def _log_line(self, text: str, style: str, time_ns: int | None = None) -> None:
         seconds = None if time_ns is None else time_ns / 1e9
         stamp = time.strftime("%H:%M:%S ", time.localtime(seconds))
-        self.query_one(RichLog).write(Text.assemble((stamp, look.DIM), (text, style)))
+        line = Text.assemble((stamp, look.DIM), (text, style))
+        self.query_one(RichLog).write(line, expand=True)
+
+    # ---------------------------------------------------------------- keys: the one door
+
+    async def action_press(self, name: str) -> None:
+        """Every key of ours comes through here.  Under an open help page nothing is sent unseen:
+        any key closes it, and of all keys only the abort acts as well."""
+        if not self._close_help() or name == ABORT:
+            await self.run_action(ACTIONS[name])
+
+    def on_key(self) -> None:
+        """A key that is not ours."""
+        self._close_help()
+
+    def _close_help(self) -> bool:
+        """Whether there was a page to close."""
+        page = self.query_one("#help")
+        shown = bool(page.display)
+        page.display = False
+        return shown
 
     # --------------------------------------------------------------- keys: pending goal
 
@@ -211,7 +239,7 @@ class FlyApp(App[None]):
         self._ask(ipc.Ask(self._next_id, "takeoff", up_m=self.scene.pending.take_off_up_m))
 
     def action_switch_fence(self) -> None:
-        self._ask(ipc.Ask(self._next_id, "fence", on=not self._fence_on))
+        self._ask(ipc.Ask(self._next_id, "fence", on=not self.scene.fence_on))
 
     # ------------------------------------------------------------------- keys: station
 
@@ -224,8 +252,7 @@ class FlyApp(App[None]):
         self.redraw()
 
     def action_help(self) -> None:
-        page = self.query_one("#help")
-        page.display = not page.display
+        self.query_one("#help").display = True
 
     def action_leave(self) -> None:
         self._leave("quit")

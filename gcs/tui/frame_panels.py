@@ -20,13 +20,24 @@ def header(scene: Scene, columns: int) -> Text:
         return left
     left.append(f" {seen.vehicle or 'no vehicle'}  ", look.PLAIN)
     left.append(f" {seen.state} ", f"reverse {look.SEVERITY.get(seen.severity, look.BAD)}")
+    if scene.lost:
+        left.append(f"  LINK LOST {_whole(seen.heartbeat_age_s)} s ", look.BAD)
+    if not scene.fence_on:
+        left.append("  FENCE OFF ", look.BAD)
     if seen.recording:
         name = seen.log_path.replace("\\", "/").rsplit("/", 1)[-1]
-        right.append("● ", look.BAD).append(f"{seen.recorded_mb:.1f} MB {name} ", look.DIM)
+        right.append("● ", look.BAD).append(f"{seen.recorded_mb:.1f} MB ", look.DIM)
+        # The log's name is the first to go where there is no room: it is told at the end.
+        if left.cell_len + right.cell_len + len(name) + 2 <= columns:
+            right.append(f"{name} ", look.DIM)
     else:
         right.append("NOT RECORDED ", look.BAD)
     gap = columns - left.cell_len - right.cell_len
     return Text.assemble(left, " " * max(1, gap), right, end="", no_wrap=True)
+
+
+def _whole(age_s: float | None) -> str:
+    return "?" if age_s is None else f"{age_s:.0f}"
 
 
 def footer(columns: int) -> Text:
@@ -46,7 +57,7 @@ def footer(columns: int) -> Text:
 
 
 def help_table() -> Table:
-    """Every key, in two columns of sections; the keys go on working while it is shown."""
+    """Every key, in two columns of sections."""
     page = Table.grid(padding=(0, 3))
     columns: list[Table] = []
     for title, keys in SECTIONS:

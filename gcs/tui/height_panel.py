@@ -18,7 +18,7 @@ def draw(scene: Scene, rows: int) -> Text:
     seen = scene.snapshot
     heights = [scene.pending.goal_enu[2]]
     if seen is not None:
-        heights += [p[2] for p in (seen.pos_enu, seen.active_goal_enu) if p is not None]
+        heights += [p[2] for p in (seen.pos_enu, scene.active_enu) if p is not None]
     top_m = next((top for top in TOPS_M if top >= max(heights) * 1.1), TOPS_M[-1])
 
     def row_of(up_m: float) -> int:
@@ -30,10 +30,11 @@ def draw(scene: Scene, rows: int) -> Text:
         if ceiling_m is not None and ceiling_m <= top_m:
             cells.setdefault(row_of(ceiling_m), []).append(("▔", look.FENCE))
     cells.setdefault(row_of(heights[0]), []).append((PENDING, look.PENDING))
-    if seen is not None and seen.active_goal_enu is not None:
-        cells.setdefault(row_of(seen.active_goal_enu[2]), []).append((ACTIVE, look.ACTIVE))
+    if scene.active_enu is not None:
+        cells.setdefault(row_of(scene.active_enu[2]), []).append((ACTIVE, look.ACTIVE))
     if seen is not None and seen.pos_enu is not None:
-        cells.setdefault(row_of(seen.pos_enu[2]), []).insert(0, ("◀", look.VEHICLE))
+        style = look.DIM if scene.lost else look.VEHICLE
+        cells.setdefault(row_of(seen.pos_enu[2]), []).insert(0, ("◀", style))
 
     ticks = {row_of(top_m * i / 3): f"{top_m * i / 3:g}" for i in range(4)}
     vehicle_row = row_of(seen.pos_enu[2]) if seen is not None and seen.pos_enu else rows - 1

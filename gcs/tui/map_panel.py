@@ -11,6 +11,10 @@ from gcs.tui.view import View, fit, nice_length, outline
 
 ARROWS = "↑↗→↘↓↙←↖"
 HOME, PENDING, ACTIVE = "⌂", "◇", "◉"
+OFF_EVERY = 5
+"""Of five dots one: a fence that is switched off."""
+SMALL_FENCE_M = 30.0
+"""A fence no wider than this is shown whole."""
 
 
 def draw(scene: Scene, columns: int, rows: int) -> Text:
@@ -22,7 +26,7 @@ def draw(scene: Scene, columns: int, rows: int) -> Text:
     _grid(canvas, view)
     for zone in scene.zones:
         style = look.FENCE if zone.inclusion else look.NO_FLY
-        every = 1 if zone.inclusion else 2
+        every = (1 if zone.inclusion else 2) if scene.fence_on else OFF_EVERY
         canvas.path([view.dots(e, n) for e, n in outline(zone)], style, every=every)
     canvas.path([view.dots(e, n) for e, n, _ in scene.trail], look.TRAIL)
     _markers(canvas, view, scene)
@@ -40,10 +44,22 @@ def _view(scene: Scene, canvas: Canvas) -> View:
     points = [scene.pending.goal_enu[:2]]
     centre = (0.0, 0.0)
     if seen is not None:
-        known = (seen.pos_enu, seen.active_goal_enu, seen.home_enu)
+        known = (seen.pos_enu, scene.active_enu, seen.home_enu)
         points += [point[:2] for point in known if point is not None]
         centre = seen.home_enu[:2] if seen.home_enu is not None else centre
+    points += _small_fence(scene)
     return fit(centre, points, canvas.width, canvas.height, scene.zoom)
+
+
+def _small_fence(scene: Scene) -> list[tuple[float, float]]:
+    """The corners to be seen of a fence that fits on the map without making all else tiny."""
+    edge = [point for zone in scene.zones if zone.inclusion for point in outline(zone)]
+    if not edge:
+        return []
+    easts, norths = zip(*edge, strict=True)
+    corners = [(min(easts), min(norths)), (max(easts), max(norths))]
+    widest_m = max(corners[1][0] - corners[0][0], corners[1][1] - corners[0][1])
+    return corners if widest_m <= SMALL_FENCE_M else []
 
 
 def _grid(canvas: Canvas, view: View) -> None:
@@ -62,22 +78,23 @@ def _markers(canvas: Canvas, view: View, scene: Scene) -> None:
     seen = scene.snapshot
     if seen is not None and seen.home_enu is not None:
         canvas.glyph(*view.dots(*seen.home_enu[:2]), HOME, look.HOME)
-    if seen is not None and seen.active_goal_enu is not None:
-        goal = view.dots(*seen.active_goal_enu[:2])
-        if seen.pos_enu is not None:
+    if scene.active_enu is not None:
+        goal = view.dots(*scene.active_enu[:2])
+        if seen is not None and seen.pos_enu is not None:
             canvas.line(view.dots(*seen.pos_enu[:2]), goal, look.ACTIVE, every=3)
         canvas.glyph(*goal, ACTIVE, look.ACTIVE)
     canvas.glyph(*view.dots(*scene.pending.goal_enu[:2]), PENDING, look.PENDING)
     if seen is not None and seen.pos_enu is not None:
         char = "●" if seen.yaw_deg is None else arrow(seen.yaw_deg)
-        canvas.glyph(*view.dots(*seen.pos_enu[:2]), char, look.VEHICLE)
+        style = look.DIM if scene.lost else look.VEHICLE
+        canvas.glyph(*view.dots(*seen.pos_enu[:2]), char, style)
 
 
 def _scale(canvas: Canvas, view: View) -> None:
     length_m = nice_length(view.half_width_m / 2)
     cells = max(2, round(length_m / view.m_per_dot / 2))
     bar = "├" + "─" * (cells - 2) + "┤"
-    canvas.text(1, canvas.rows - 1, f"{bar} {length_m:g} m", look.DIM)
+    canvas.text(1, canvas.rows - 1, f"{bar} {length_m:g} m ", look.DIM)
     canvas.text(canvas.columns // 2, 0, "N", look.DIM)
     canvas.text(canvas.columns - 1, canvas.rows // 2, "E", look.DIM)
 

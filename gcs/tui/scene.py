@@ -7,11 +7,13 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from gcs import ipc
-from gcs.cli import words
+from gcs.cli import say, words
+from gcs.gate.types import State
 from gcs.tui.keyboard import PendingGoal
 
 TRAIL_POINTS = 800
 TRAIL_STEP_M = 0.1
+COMPLETE = "complete"
 
 
 @dataclass(slots=True)
@@ -35,14 +37,45 @@ class Scene:
     answer: Answer = field(default_factory=Answer)
     progress: ipc.ProgressEvent | None = None
     zoom: int = 0
-    _labels: dict[int, str] = field(default_factory=dict)
+    fence_on: bool = True
+    _asks: dict[int, ipc.Ask] = field(default_factory=dict)
+    _before_take_off: PendingGoal | None = None
+    _up: bool = False
+
+    @property
+    def lost(self) -> bool:
+        """A vehicle was heard and is not heard any more: what is shown of it is old."""
+        seen = self.snapshot
+        return seen is not None and bool(seen.vehicle) and seen.state == State.NO_VEHICLE.name
+
+    @property
+    def active_enu(self) -> ipc.Vec3 | None:
+        """The goal that is flown, or hovered at; a vehicle that holds by itself has none."""
+        seen = self.snapshot
+        held = seen is None or seen.state in (State.HOLDING.name, State.NO_VEHICLE.name)
+        return None if seen is None or held else seen.active_goal_enu
 
     def asked(self, ask: ipc.Ask) -> None:
-        """Remember how a request reads, for its answers."""
-        self._labels[ask.id] = words.label(ask)
+        """Remember what was asked, for its answers."""
+        self._asks[ask.id] = ask
+        if ask.word == "takeoff":
+            self._before_take_off, self._up = self.pending, False
 
     def label(self, event: ipc.VerdictEvent | ipc.EndingEvent) -> str:
-        return self._labels.get(event.id, event.word.replace("_", " "))
+        ask = self._asks.get(event.id)
+        return event.word.replace("_", " ") if ask is None else words.label(ask)
+
+    def take_hover_point(self) -> ipc.Vec3 | None:
+        """Once after a take-off: where it hovers, if the pending goal is as it was before.
+
+        What was pending on the ground would be a descent now.
+        """
+        seen = self.snapshot
+        if not self._up or seen is None or seen.state != State.HOVERING.name:
+            return None
+        self._up = False
+        touched = self.pending.goal_enu != (self._before_take_off or self.pending).goal_enu
+        return None if touched else seen.active_goal_enu or seen.pos_enu
 
     def hear(self, event: ipc.Event) -> None:
         match event:
@@ -60,6 +93,7 @@ class Scene:
                 self._answered(self.label(event), event.outcome, event.code, event.sentence)
             case ipc.EndingEvent():
                 self.progress = None
+                self._ended(event)
                 self._answered(self.label(event), event.ended, event.code, event.sentence)
             case ipc.ProgressEvent():
                 self.progress = event
@@ -67,8 +101,16 @@ class Scene:
                 pass
 
     def _answered(self, label: str, kind: str, code: str, sentence: str) -> None:
-        told = f"{label}: {kind} {code}".rstrip()
-        self.answer = Answer(f"{told}: {sentence}" if sentence else told, kind)
+        self.answer = Answer(say.told(label, kind, code, sentence), kind)
+
+    def _ended(self, event: ipc.EndingEvent) -> None:
+        ask = self._asks.get(event.id)
+        if ask is None or event.ended != COMPLETE:
+            return
+        if ask.word == "fence":
+            self.fence_on = ask.on
+        elif ask.word == "takeoff":
+            self._up = True
 
     def _leave_trail(self, pos_enu: ipc.Vec3 | None) -> None:
         if pos_enu is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 from rich.text import Text
 
 from gcs import ipc
@@ -25,18 +26,25 @@ def draw(scene: Scene) -> Text:
         for endpoint in scene.hello.endpoints if scene.hello else ["starting the link …"]:
             panel.append(f"{endpoint}\n", look.DIM)
         return panel
-    for name, value, style in rows(seen):
+    for name, value, style in rows(seen, lost=scene.lost):
         panel.append(f"{name:<5}", look.DIM)
         panel.append(value, style)
         panel.append("\n")
     return panel
 
 
-def rows(seen: ipc.Snapshot) -> list[tuple[str, str, str]]:
-    """Name, value, style."""
+def rows(seen: ipc.Snapshot, *, lost: bool = False) -> list[tuple[str, str, str]]:
+    """Name, value, style.  Of a vehicle that is lost the ages are bright and all else is dim."""
+    shown = _rows(msgspec.structs.replace(seen, rx_hz=0.0) if lost else seen)
+    if not lost:
+        return shown
+    return [(name, value, style if style == look.BAD else look.DIM) for name, value, style in shown]
+
+
+def _rows(seen: ipc.Snapshot) -> list[tuple[str, str, str]]:
     armed = {None: "arm?", True: "ARMED", False: "disarmed"}[seen.armed]
     speed = "-" if seen.v_enu is None else f"{math.hypot(*seen.v_enu):.1f} m/s"
-    heading = "-" if seen.yaw_deg is None else f"{seen.yaw_deg % 360:03.0f}°"
+    heading = "-" if seen.yaw_deg is None else f"{say.heading(seen.yaw_deg):03d}°"
     position_age = _age(seen.position_age_s)
     return [
         ("mode", f"{seen.mode or '-'} {armed}", look.WARN if seen.armed else look.PLAIN),
@@ -61,7 +69,7 @@ def goals(scene: Scene) -> Text:
     line = Text(no_wrap=True, end="", overflow="ellipsis")
     line.append(f"◇ pending {say.enu(pending.goal_enu)}{yaw}", look.PENDING)
     line.append(f" ±{pending.step_m:g} m", look.DIM)
-    active = None if seen is None else seen.active_goal_enu
+    active = scene.active_enu
     line.append("  ◉ active ", look.ACTIVE)
     line.append(say.enu(active) if active else "none", look.ACTIVE if active else look.DIM)
     if seen is not None and seen.mission_total:

@@ -91,4 +91,4 @@ def test_an_end_of_input_in_mid_flight_leaves_in_good_order(tmp_path: Path) -> N
         until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
 
     assert_held(only_log(tmp_path))
-    assert any("the vehicle is in AUTO.LOITER" in line for line in program.err)
+    assert any("in AUTO.LOITER" in line for line in program.err)

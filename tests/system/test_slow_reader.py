@@ -40,7 +40,7 @@ def test_a_stopped_operators_program_leaves_the_setpoint_stream_alone(tmp_path: 
         os.kill(program.pid, signal.SIGCONT)
         program.type("goto 1 0 1.5", "state")
         program.until_out("goto 1 0 1.5: complete")
-        program.until_out("state: HOVERING OURS")
+        program.until_out("state: HOVERING, control OURS")
         program.type("quit")
         assert program.process.wait(10.0) == 0
 

@@ -30,11 +30,11 @@ radius_m = 50.0
 
 
 def refused(*words: str, stdin: str = "") -> tuple[int, str]:
-    """Exit code and standard error of a command that must fail as a user's error."""
+    """Exit code and output of a command that must fail as a user's error."""
     ended = gcs(*words, stdin=stdin)
     assert "Traceback" not in ended.stdout + ended.stderr
     assert "internal error" not in ended.stderr
-    return ended.returncode, ended.stderr
+    return ended.returncode, ended.stdout + ended.stderr
 
 
 def test_no_vehicle(tmp_path: Path) -> None:

@@ -24,7 +24,8 @@ PHOTO_S = 2.0
 FENCE_M = 150.0
 MISSION = ((2.0, 0.0, 2.0), (2.0, 2.0, 2.0), (0.0, 0.0, 2.0))
 FREE = ("HOVERING",)
-SCENARIOS = ("flight", "airborne", "silent", "port in use", "crash")
+LANDED_KNOWN_S = 1.0
+SCENARIOS = ("flight", "airborne", "silent", "late landed", "port in use", "crash")
 
 
 @dataclass
@@ -42,6 +43,7 @@ class FakeLink:
     current: ipc.Ask | None = None
     photo_until_s: float = 0.0
     done: bool = False
+    time_s: float = 0.0
 
     def hello(self) -> list[ipc.Event]:
         fence = ipc.FenceShape(
@@ -70,6 +72,7 @@ class FakeLink:
                 return self._asked(command, now_s)
 
     def tick(self, now_s: float) -> list[ipc.Event]:
+        self.time_s = now_s
         events: list[ipc.Event] = []
         if self.state == "TAKING_PICTURE" and now_s >= self.photo_until_s:
             events += [*self._to("HOVERING", "photo"), *self._end("complete")]
@@ -84,6 +87,8 @@ class FakeLink:
             events = self._end("aborted", "OPERATOR")
             self.target, self.left = None, []
             return [*events, *self._quick(ask, "HOLDING" if self.pos[2] > 0.1 else self.state)]
+        if self._landed() == "UNDEFINED":
+            return self._refuse(ask, "IN_AIR", "not known to stand on the ground")
         if ask.word in ("arm", "disarm"):
             self.armed = ask.word == "arm"
             return self._quick(ask, self.state)
@@ -100,17 +105,17 @@ class FakeLink:
     def _motion(self, ask: ipc.Ask, now_s: float) -> list[ipc.Event]:
         goal = ask.goal_enu
         if goal is not None and any(metres is None for metres in goal):
-            return [self._refuse(ask, "NON_FINITE", "the goal is not a number")]
+            return self._refuse(ask, "NON_FINITE", "the goal is not a number")
         if ask.word == "takeoff":
             if not self.armed:
-                return [self._refuse(ask, "NOT_ARMED", "the vehicle is not armed")]
+                return self._refuse(ask, "NOT_ARMED", "the vehicle is not armed")
             self.control = "OURS"
             return self._begin(ask, "TAKING_OFF", (*self.pos[:2], ask.up_m or 0.0))
         if ask.word in ("land", "rtl"):
             ended = self._end("superseded")
             return [*ended, *self._begin(ask, "LANDING", (*self.pos[:2], 0.0))]
         if self.state not in FREE:
-            return [self._refuse(ask, "BUSY", f"the vehicle is {self.state}")]
+            return self._refuse(ask, "BUSY", f"the vehicle is {self.state}")
         if ask.word == "photo":
             self.photo_until_s = now_s + PHOTO_S
             return self._begin(ask, "TAKING_PICTURE", None)
@@ -122,7 +127,7 @@ class FakeLink:
         if math.hypot(east, north) > FENCE_M:
             distance_m = math.hypot(east, north) - FENCE_M
             sentence = f"{distance_m:.0f} m outside the fence `circle`"
-            return [self._refuse(ask, "OUTSIDE_FENCE", sentence)]
+            return self._refuse(ask, "OUTSIDE_FENCE", sentence)
         return self._begin(ask, "MOVING", (east, north, up))
 
     def _begin(self, ask: ipc.Ask, state: str, target: ipc.Vec3 | None) -> list[ipc.Event]:
@@ -138,8 +143,12 @@ class FakeLink:
             ipc.EndingEvent(ask.id, ask.word, "complete"),
         ]
 
-    def _refuse(self, ask: ipc.Ask, code: str, sentence: str) -> ipc.Event:
-        return ipc.VerdictEvent(ask.id, ask.word, "refused", code, sentence, goal_enu=ask.goal_enu)
+    def _refuse(self, ask: ipc.Ask, code: str, sentence: str) -> list[ipc.Event]:
+        goal = ask.goal_enu
+        return [
+            ipc.VerdictEvent(ask.id, ask.word, "refused", code, sentence, goal_enu=goal),
+            self._log(f"Refused ({code}): {sentence}", 3),
+        ]
 
     def _end(self, how: str, code: str = "") -> list[ipc.Event]:
         if self.current is None:
@@ -174,8 +183,13 @@ class FakeLink:
         moved = [here + step * (there - here) for here, there in zip(self.pos, target, strict=True)]
         self.pos = (moved[0], moved[1], moved[2])
 
-    def _log(self, text: str) -> ipc.LogEvent:
-        return ipc.LogEvent(0, 2, "gate", text)
+    def _log(self, text: str, level: int = 2) -> ipc.LogEvent:
+        return ipc.LogEvent(0, level, "gate", text)
+
+    def _landed(self) -> str:
+        if self.scenario == "late landed" and self.time_s < LANDED_KNOWN_S:
+            return "UNDEFINED"
+        return "IN_AIR" if self.pos[2] > 0.1 else "ON_GROUND"
 
     def snapshot(self) -> ipc.Snapshot:
         heard = self.scenario != "silent"
@@ -188,7 +202,7 @@ class FakeLink:
             vehicle="1/1 px4 quadrotor" if heard else "",
             mode="OFFBOARD" if self.control == "OURS" else "AUTO.LOITER",
             armed=self.armed if heard else None,
-            landed="IN_AIR" if self.pos[2] > 0.1 else "ON_GROUND",
+            landed=self._landed(),
             pos_enu=self.pos if heard else None,
             v_enu=(0.0, 0.0, 0.0),
             yaw_deg=30.0,
@@ -215,6 +229,7 @@ class FakeClient:
     def __init__(self, link: FakeLink | None = None) -> None:
         self.link = link or FakeLink()
         self.sent: list[ipc.Command] = []
+        self.asked_at_s: list[float] = []
         self.time_s = 0.0
         self.closed = False
         self._heard: list[Heard] = list(self.link.hello())
@@ -225,6 +240,8 @@ class FakeClient:
     def send(self, command: ipc.Command) -> bool:
         wire = ipc.decode_command(ipc.encode(command))
         self.sent.append(wire)
+        if isinstance(wire, ipc.Ask):
+            self.asked_at_s.append(self.time_s)
         self._heard.extend(self.link.handle(wire, self.time_s))
         return not self.link.done
 

@@ -57,6 +57,8 @@ def test_ctrl_c_in_the_demo_leaves_through_the_link() -> None:
     interrupts = NoInterrupts()
     interrupts.name = "SIGINT"
     client = FakeClient()
-    console = Console(file=io.StringIO())
+    out = io.StringIO()
+    console = Console(file=out)
     assert demo.run_over(client, interrupts, console, "x", 10.0) == Exit.INTERRUPTED
+    assert out.getvalue().endswith("gcs: left\nlog: logs/x.mcap\n")
     assert client.sent == [ipc.Leave("interrupted")]

@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 from functools import partial
 
+import msgspec
 import pytest
 
 from gcs import ipc
-from gcs.cli import typed, words
+from gcs.cli import say, typed, words
 from gcs.cli.dialogue import Asked, Dialogue
 from gcs.cli.errand import ErrandConfig, asking, run_over
 from gcs.cli.exits import Exit, Fail
+from gcs.cli.hush import Hush
 from gcs.cli.progress import Ticker
 from gcs.cli.status import report, rows
-from tests.unit.cli.fake_link import FakeClient, FakeLink, NoInterrupts
+from tests.unit.cli.fake_link import LANDED_KNOWN_S, FakeClient, FakeLink, NoInterrupts
 
 
 def run(line: str, link: FakeLink | None = None, *, wait_s: float = 60.0) -> tuple[int, FakeClient]:
@@ -36,6 +38,12 @@ def test_a_goto_takes_control_of_a_vehicle_that_flies_without_us() -> None:
     assert asked(client) == ["control", "goto"]
     assert client.link.pos == (3.0, 0.0, 2.0)
     assert isinstance(client.sent[-1], ipc.Leave)
+
+
+def test_a_vehicle_is_judged_once_it_is_known_whether_it_flies() -> None:
+    code, client = run("arm", FakeLink("late landed"))
+    assert code == Exit.DONE
+    assert client.asked_at_s[0] > LANDED_KNOWN_S
 
 
 @pytest.mark.parametrize("line", ["land", "hold", "arm", "mode LOITER"])
@@ -88,11 +96,13 @@ def test_no_vehicle_is_three() -> None:
     assert "vehicle-sim" in failed.value.hint
 
 
-def test_ctrl_c_while_waiting_is_130() -> None:
+def test_ctrl_c_while_waiting_is_130_and_tells_where_the_vehicle_is(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     interrupts = NoInterrupts()
     client = FakeClient(FakeLink("airborne"))
 
-    def errand(dialogue: Dialogue) -> Exit:
+    def errand(dialogue: Dialogue, _ticker: Ticker) -> Exit:
         interrupts.name = "SIGINT"
         dialogue.settle(dialogue.ask(ipc.Ask(0, "land")))
         return Exit.DONE
@@ -100,6 +110,66 @@ def test_ctrl_c_while_waiting_is_130() -> None:
     how = ErrandConfig(10.0, 60.0, as_json=False, what="land")
     assert run_over(client, interrupts, how, errand) == Exit.INTERRUPTED
     assert isinstance(client.sent[-1], ipc.Leave)
+    assert capsys.readouterr().err == "gcs: left\nlog: logs/x.mcap\n"
+
+
+CAUTION = "CAUTION: vehicle_failsafe_weak: the vehicle's own failsafes: none"
+
+
+@pytest.mark.parametrize(("cautions", "told"), [(True, True), (False, False)])
+def test_a_standing_caution_is_told_where_it_is_asked_for(cautions: bool, told: bool) -> None:
+    hidden = Hush(cautions=cautions).hides(ipc.LogEvent(0, 3, "gate", CAUTION), None)
+    assert hidden is not told
+
+
+def test_only_the_copy_of_an_own_refusal_is_hidden() -> None:
+    hush = Hush(cautions=True)
+    copy = ipc.LogEvent(0, 3, "gate", "Refused (BUSY): the vehicle is MOVING")
+    assert not hush.hides(copy, None)
+    verdict = ipc.VerdictEvent(1, "goto", "refused", "BUSY", "the vehicle is MOVING")
+    hush.hides(verdict, Asked(ipc.Ask(1, "goto"), "goto"))
+    assert hush.hides(copy, None)
+    assert not hush.hides(ipc.LogEvent(0, 3, "gate", "Refused (STALE): too old"), None)
+    assert not hush.hides(ipc.LogEvent(0, 4, "gate", copy.text), None)
+    lost = ipc.EndingEvent(1, "goto", "aborted", "OPERATOR_LOST", "the operator is lost")
+    hush.hides(lost, Asked(ipc.Ask(1, "goto"), "goto"))
+    assert hush.hides(ipc.LogEvent(0, 3, "gate", "goto: aborted: the operator is lost"), None)
+
+
+@pytest.mark.parametrize(
+    ("ending", "line"),
+    [
+        (ipc.EndingEvent(1, "arm", "complete", "", "Complete"), "arm: complete"),
+        (
+            ipc.EndingEvent(1, "arm", "aborted", "OPERATOR_LOST", "the operator is lost"),
+            "arm: aborted OPERATOR_LOST: the operator left",
+        ),
+        (
+            ipc.EndingEvent(1, "arm", "aborted", "LINK_LOST", "not heard any more"),
+            "arm: aborted LINK_LOST: not heard any more",
+        ),
+    ],
+)
+def test_an_ending_says_why_where_there_is_a_why(ending: ipc.EndingEvent, line: str) -> None:
+    assert say.ending_line("arm", ending) == line
+
+
+def test_a_heading_goes_round_and_a_rate_not_measured_is_left_out() -> None:
+    seen = msgspec.structs.replace(FakeLink().snapshot(), yaw_deg=359.7, rx_hz=0.0)
+    shown = dict(rows(seen))
+    assert shown["heading"] == "0 deg"
+    assert shown["link"] == "0.0 % lost"
+
+
+def test_the_progress_line_makes_room_for_an_answer(capsys: pytest.CaptureFixture[str]) -> None:
+    with Ticker("goto", 0.0, shown=True) as ticker:
+        ticker.hear(FakeLink().snapshot(), 1.5)
+        ticker.clear()
+        drawn = capsys.readouterr().err
+        # It ends with the cursor at the start of an empty line.
+        assert drawn.endswith("\x1b[1A\x1b[2K")
+        ticker.hear(FakeLink().snapshot(), 2.5)
+    assert "2 s" in capsys.readouterr().err
 
 
 def test_status_is_a_table_or_json(capsys: pytest.CaptureFixture[str]) -> None:

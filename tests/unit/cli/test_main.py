@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
 import click
 import pytest
 
-from gcs.cli import main, oneshot
+from gcs.cli import errand, main, oneshot
 from gcs.cli.exits import Exit, Fail
+from gcs.config import LinkConfig
 
 HEAVY = ("rich", "numpy", "msgspec", "pymavlink", "textual", "asyncio", "subprocess", "gcs.cli.fly")
 
@@ -50,6 +52,29 @@ def test_every_command_has_help_with_an_example(
     assert "Example" in capsys.readouterr().out
 
 
+def test_a_command_without_arguments_shows_none(capsys: pytest.CaptureFixture[str]) -> None:
+    main.run(["land", "--help"])
+    main.run(["goto", "--help"])
+    land, goto = capsys.readouterr().out.split("Usage: ")[1:]
+    assert land.startswith("gcs land [OPTIONS]\n")
+    assert "EAST NORTH UP [YAW_DEG]" in goto
+
+
+def test_a_glance_at_the_vehicle_keeps_no_record(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: dict[str, LinkConfig] = {}
+
+    def run(config: LinkConfig, how: errand.ErrandConfig, _: errand.Errand) -> int:
+        started[how.what] = config
+        return Exit.DONE
+
+    monkeypatch.setattr(errand, "run", run)
+    main.run(["status"])
+    main.run(["land"])
+    assert {what: config.record for what, config in started.items()} == {
+        "status": False, "land": True,
+    }  # fmt: skip
+
+
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main.run(["--version"]) == Exit.DONE
     assert capsys.readouterr().out.startswith("gcs ")
@@ -60,7 +85,14 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (["got"], "no command 'got'; did you mean 'goto'?"),
         (["goto", "1", "2"], "goto: expected 3 numbers EAST NORTH UP [YAW_DEG], got 2"),
-        (["goto", "-1", "x", "2"], "goto: NORTH: expected a number, got 'x'"),
+        (["goto", "-1", "x", "2"], "goto: NORTH: expected a finite number, got 'x'"),
+        (["goto", "nan", "0", "2"], "goto: EAST: expected a finite number, got 'nan'"),
+        (["takeoff", "inf"], "takeoff: UP: expected a finite number, got 'inf'"),
+        (["goto", "1", "0", "2", "nan"], "goto: YAW_DEG: expected a finite number, got 'nan'"),
+        (["land", "--timeout", "nan"], "nan is not a finite number"),
+        (["land", "--wait", "inf"], "inf is not a finite number"),
+        (["fly", "--speedup", "nan"], "nan is not a finite number"),
+        (["land", "now"], "unexpected extra argument"),
         (["takeoff"], "takeoff: expected 1 number UP, got nothing"),
         (["fly", "--sim", "--link", "udpin://127.0.0.1:1"], "--sim starts a vehicle of its own"),
         (["fly", "--autopilot", "px5"], "px5"),
@@ -84,6 +116,35 @@ def test_a_keyboard_station_needs_a_terminal(capsys: pytest.CaptureFixture[str])
     )
     assert result.returncode == Exit.USAGE
     assert "use --plain on a pipe" in result.stderr
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
+def test_output_that_cannot_be_written_is_told_and_is_no_bug() -> None:
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        result = subprocess.run(
+            [sys.executable, "-c", "from gcs.cli.main import main; main()", "fsa"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert result.returncode == Exit.RECORDER
+    assert result.stderr == "gcs: cannot write the output: No space left on device\n"
+
+
+def test_a_reader_that_has_gone_ends_it_quietly() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as pipe:
+        result = subprocess.run(
+            [sys.executable, "-c", "from gcs.cli.main import main; main()", "fsa"],
+            stdout=pipe,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert result.returncode == Exit.INTERRUPTED
+    assert result.stderr == ""
 
 
 def _raising(error: BaseException) -> click.Command:

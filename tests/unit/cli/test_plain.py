@@ -116,7 +116,8 @@ def test_mission_fly_starts_only_what_was_uploaded() -> None:
 
 def test_state_is_one_line() -> None:
     assert Session("state\n").out == [
-        "state: GROUNDED NONE NOMINAL E +0.00 N +0.00 U +0.00 AUTO.LOITER disarmed battery 98 %"
+        "state: GROUNDED, control NONE, severity NOMINAL, at E +0.00 N +0.00 U +0.00 m, "
+        "mode AUTO.LOITER, disarmed, battery 98 %"
     ]
 
 
@@ -133,6 +134,22 @@ def test_json_prints_the_events_and_snapshots_only_when_asked() -> None:
 def test_log_lines_are_told_by_level(level: int, heard: bool) -> None:
     session = Session("arm\ntakeoff 2\n", PlainConfig(min_level=level))
     assert ("INFO  gate: Current State: HOVERING" in session.err) == heard
+
+
+def test_a_refusal_is_not_told_again_as_a_warning() -> None:
+    session = Session("arm\ntakeoff 2\ngoto 500 0 2\n")
+    assert any("refused OUTSIDE_FENCE" in line for line in session.out)
+    assert not any("Refused" in line for line in session.err)
+
+
+def test_nan_is_for_the_gate_to_refuse() -> None:
+    session = Session("arm\ntakeoff 2\ngoto nan 0 2\n")
+    assert session.out[-1] == "goto nan 0 2: refused NON_FINITE: the goal is not a number"
+
+
+def test_nothing_is_asked_before_it_is_known_whether_the_vehicle_stands_or_flies() -> None:
+    session = Session("takeoff 2\n", scenario="late landed")
+    assert session.out == ["takeoff 2: refused NOT_ARMED: the vehicle is not armed"]
 
 
 def test_without_a_vehicle_it_fails_and_asks_nothing() -> None:

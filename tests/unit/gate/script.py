@@ -76,6 +76,7 @@ class Script:
         self.flown = False
         self.telling = True
         self.beating = True
+        self.landed_told = True
         self._next_id = 0
         self._ticks = 0
 
@@ -118,7 +119,7 @@ class Script:
     def at(self, east: float, north: float, up: float, v_enu: Vec3 = (0.0, 0.0, 0.0)) -> None:
         """The vehicle reports itself there, having flown there at 20 m/s if it was elsewhere."""
         goal_ned = ned_from_enu((east, north, up))
-        while self.flown and (left_m := math.dist(self.pos_ned, goal_ned)) > 0.4:
+        while self.flown and (left_m := math.dist(self.pos_ned, goal_ned)) > 0.45:
             part = min(1.0, 1.0 / left_m) if left_m > 1.0 else 1.0 - 0.4 / left_m
             north_m, east_m, down_m = (
                 a + (b - a) * part for a, b in zip(self.pos_ned, goal_ned, strict=True)
@@ -144,6 +145,8 @@ class Script:
             self.now_ns += TICK
             if self.beating and self._ticks % 20 == 0:
                 self.heartbeat()
+                if self.landed_told:
+                    self.feed(LandedSeen(self.landed))
             if self.telling:
                 self.position()
             effects += self.feed(Tick(0))

@@ -9,7 +9,7 @@ import pytest
 from gcs.gate.alphabet import CONDITIONS, YARD
 from gcs.gate.events import Event
 from gcs.gate.explore import Explored, explore
-from gcs.gate.rules import Answer, Branch, Cell, Check, Do, End
+from gcs.gate.rules import Answer, Branch, Cell, Check, Do, End, Guard
 from gcs.gate.table import TABLE
 from gcs.gate.types import Code, Control, Ended, Severity, State
 
@@ -119,6 +119,57 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         Event.GOAL_REFUSED,
         (Branch(do=(Do.FLY_GOAL,), to=State.MOVING),),
         1,
+        "tick",
+    ),
+    (
+        "a breach predicted by a late sample is swallowed",
+        State.STALE,
+        Event.BREACH,
+        (Branch(),),
+        6,
+        "position dashing for the fence",
+    ),
+    (
+        "a goal is flown on in a fence that refuses it",
+        State.MOVING,
+        Event.UNVERIFIED,
+        (Branch(),),
+        2,
+        "fence moves, and back",
+    ),
+    (
+        "home moves and nobody holds",
+        State.HOVERING,
+        Event.HOME_MOVED,
+        (Branch(),),
+        2,
+        "home moves, and back",
+    ),
+    (
+        "a hold is over at once though the vehicle may fly",
+        State.GROUNDED,
+        Event.HOLD,
+        (Branch(answer=Answer.DONE),),
+        10,
+        "ask: hold",
+    ),
+    (
+        "a hold is withdrawn after the operator is lost",
+        State.HOLDING,
+        Event.RESUME,
+        TABLE[State.HOLDING, Event.RESUME][1:],
+        7,
+        "ask: resume",
+    ),
+    (
+        "a climb is over wherever the vehicle holds",
+        State.TAKING_OFF,
+        Event.TICK,
+        (
+            Branch(when=(Guard.LIFTED,), do=(Do.TAKE_CONTROL,), to=State.HOVERING),
+            Branch(),
+        ),
+        2,
         "tick",
     ),
     (

@@ -107,3 +107,20 @@ def test_a_mistyped_key_is_told_what_it_might_be() -> None:
 def test_a_mission_without_a_waypoint_is_none() -> None:
     with pytest.raises(PlanError, match="waypoint"):
         read_text('schema = 1\nframe = "home"\n', name="a.toml")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "meant"),
+    [
+        ("up_m = 1.5", "up = 1.5", "`up` is unknown here: did you mean up_m?"),
+        ("schema = 1", "shema = 1", "`shema` is unknown here: did you mean schema?"),
+        ("up_m = 1.5\n", "", "up_m = a number"),
+    ],
+)
+def test_a_key_that_is_missing_is_looked_for_under_another_name(
+    old: str, new: str, meant: str
+) -> None:
+    with pytest.raises(PlanError, match="missing") as caught:
+        read_text(LOCAL.replace(old, new, 1), name="a.toml")
+
+    assert caught.value.hint == meant

@@ -163,3 +163,30 @@ def test_a_real_mission_keeps_to_a_real_fence(capsys: pytest.CaptureFixture[str]
     assert run(["mission", "check", str(box_file)]) == Exit.DONE
     assert run(["mission", "check", str(avoid)]) == Exit.REFUSED_BY_GATE
     assert "outside inclusion circle 'home'" in capsys.readouterr().out
+
+
+def test_check_counts_the_zones_of_policy_and_file(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(["mission", "check", str(file)])
+    assert "fence: 1 zone from the policy, 0 from the file\n" in capsys.readouterr().out
+
+
+def test_show_breaks_no_word_on_a_narrow_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert run(["mission", "show", "survey"]) == Exit.DONE
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert any("DO_SET_CAM_TRIGG_DIST" in line for line in lines)
+    assert " id " not in lines[2]
+
+
+def test_a_mission_without_items_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    empty = tmp_path / "empty.waypoints"
+    empty.write_text("QGC WPL 110\n")
+    assert run(["mission", "show", str(empty)]) == Exit.DONE
+    assert "no items" in capsys.readouterr().out

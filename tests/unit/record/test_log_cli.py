@@ -89,6 +89,12 @@ def test_the_rate_of_a_topic_is_its_mean(tmp_path: Path) -> None:
     assert (topic["messages"], topic["hz"]) == (101, pytest.approx(50.0))
 
 
+def test_a_burst_has_no_rate(tmp_path: Path) -> None:
+    path = record(tmp_path, [a_flight()[5]] * 50, step_ns=1 * MS)
+    assert gcs_log("info", path, "--json").output.count('"hz":0.0') == 1
+    assert re.search(r"\n/\S+ +50 +-  ", gcs_log("info", path).output)
+
+
 @pytest.mark.parametrize("command", ["info", "layout"])
 @pytest.mark.parametrize("data", [b"", b"#!/bin/sh\n"])
 def test_a_file_that_is_no_record_is_a_clear_error(

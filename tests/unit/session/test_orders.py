@@ -13,9 +13,11 @@ from tests.unit.session.vehicles import SECOND_NS, vehicle
 DEADLINE_NS = 5 * SECOND_NS
 
 
-def arm(orders: Orders, now_ns: int = 0) -> list[Out]:
+def arm(orders: Orders, now_ns: int = 0, *, prearm_ok: bool | None = True) -> list[Out]:
     permit = issue(None, None, now_ns, "a test")
-    return orders.send(SendCommand(7, CommandKind.ARM, DEADLINE_NS, permit), vehicle(), now_ns)
+    seen = vehicle()
+    seen.prearm_ok = prearm_ok
+    return orders.send(SendCommand(7, CommandKind.ARM, DEADLINE_NS, permit), seen, now_ns)
 
 
 def answer(orders: Orders, result: Result, now_ns: int) -> list[Out]:
@@ -79,3 +81,21 @@ def test_silence_is_no_answer() -> None:
     (ended,) = out
     assert isinstance(ended, CommandEnded)
     assert ended.result is None
+
+
+def test_a_vehicle_that_says_it_would_not_arm_is_not_asked_until_the_time_is_nearly_over() -> None:
+    orders = Orders(255, 190)
+    assert commands(arm(orders, prearm_ok=False)) == 0
+    now_ns, sent = 0, 0
+    while not sent:
+        assert orders.deadline_ns is not None
+        now_ns = orders.deadline_ns
+        sent = commands(orders.wake(now_ns))
+    assert DEADLINE_NS - SECOND_NS < now_ns < DEADLINE_NS
+
+
+def test_a_vehicle_that_says_nothing_of_its_checks_is_asked_a_little_later() -> None:
+    orders = Orders(255, 190)
+    assert commands(arm(orders, prearm_ok=None)) == 0
+    assert orders.deadline_ns is not None
+    assert commands(orders.wake(orders.deadline_ns)) == 1

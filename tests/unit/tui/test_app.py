@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable
 
+import msgspec
 import pytest
 from textual.pilot import Pilot
 
@@ -12,7 +13,8 @@ from gcs import ipc
 from gcs.cli.exits import Exit, Fail
 from gcs.shell.client import LinkDown
 from gcs.tui.app import FlyApp
-from gcs.tui.result import tell
+from gcs.tui.result import tell, until_hello
+from tests.unit.cli.fake_link import FakeClient, FakeLink
 from tests.unit.tui.fake_station import StationLink
 
 Script = Callable[[FlyApp, StationLink, Pilot[None]], Awaitable[None]]
@@ -80,24 +82,129 @@ def test_every_command_key_asks_for_its_word() -> None:
 @pytest.mark.parametrize("key", ["space", "escape"])
 def test_abort_is_one_key_and_is_on_its_way_before_anything_is_drawn(key: str) -> None:
     async def script(_app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
-        await pilot.press("question_mark", key)
+        await pilot.press(key)
         assert link.asks() == ["abort"]
 
     flown(script)
+
+
+@pytest.mark.parametrize(
+    "key", ["escape", "question_mark", "enter", "m", "right", "q", "ctrl+c", "y", "tab"]
+)
+def test_under_the_help_page_any_key_closes_it_and_does_nothing_else(key: str) -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark")
+        assert app.query_one("#help").display
+        await pilot.press(key)
+        assert not app.query_one("#help").display
+        assert link.sent == []
+        await pilot.press("m")
+        assert link.asks() == ["arm"]
+
+    flown(script)
+
+
+def test_under_the_help_page_space_aborts_and_closes_it() -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark", "space")
+        assert link.asks() == ["abort"]
+        assert not app.query_one("#help").display
+
+    flown(script)
+
+
+def test_a_fence_that_is_off_is_on_the_screen_until_it_is_on_again() -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        await pilot.press("k")
+        await drawn(app, pilot)
+        assert "FENCE OFF" in screen_text(app)
+        await pilot.press("k")
+        await drawn(app, pilot)
+        assert "FENCE OFF" not in screen_text(app)
+        asks = [sent for sent in link.sent if isinstance(sent, ipc.Ask)]
+        assert [ask.on for ask in asks] == [False, True]
+
+    flown(script)
+
+
+def test_after_a_take_off_the_pending_goal_is_where_it_hovers() -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        link.link.pos = (0.04, -0.03, 0.0)
+        await pilot.press("m", "t")
+        link.fly(1.5)
+        await pilot.pause()
+        assert app.scene.pending.goal_enu == (0.0, 0.0, 1.5)
+        assert link.sent[-1] == ipc.Pending((0.0, 0.0, 1.5))
+        await pilot.press("right")
+        link.fly(1.0)
+        await pilot.pause()
+        assert app.scene.pending.goal_enu == (1.0, 0.0, 1.5)
+
+    flown(script)
+
+
+def test_a_goal_chosen_during_the_take_off_stays() -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        await pilot.press("m", "t", "right")
+        link.fly(2.0)
+        await pilot.pause()
+        assert app.scene.pending.goal_enu == (1.0, 0.0, 0.5)
+
+    flown(script)
+
+
+def test_a_vehicle_that_is_lost_is_seen_to_be_lost() -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        lost = msgspec.structs.replace(
+            link.link.snapshot(), state="NO_VEHICLE", heartbeat_age_s=12.3
+        )
+        link.say(lost)
+        await drawn(app, pilot)
+        shown = screen_text(app)
+        assert "LINK LOST 12 s" in shown
+        assert "link 0 Hz" in shown
+
+    flown(script)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)])
+def test_a_long_log_line_is_wrapped_with_its_last_word_in_sight(size: tuple[int, int]) -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        for number in range(20):
+            link.say(ipc.LogEvent(0, 2, "gate", f"{number} " + "abcdefghi " * 12 + "THE-END"))
+        await drawn(app, pilot)
+        log = screen_text(app).splitlines()[:-2]
+        assert "THE-END" in log[-1]
+        assert (log[-2] + log[-1]).count("abcdefghi") == 12
+        # The first row is as full as words of this length let it be.
+        assert len(log[-2].rstrip()) > size[0] - 14
+
+    flown(script, size)
+
+
+def test_a_sentence_too_long_for_the_line_ends_in_an_ellipsis() -> None:
+    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+        link.say(ipc.VerdictEvent(1, "goto", "refused", "OUTSIDE_FENCE", "far away " * 20))
+        await drawn(app, pilot)
+        (line,) = [row for row in screen_text(app).splitlines() if "OUTSIDE_FENCE" in row]
+        assert line.rstrip().endswith("…")
+
+    flown(script, (80, 24))
 
 
 def test_a_flight_is_seen_with_pending_and_active_goal_apart() -> None:
     async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
         await pilot.press("m", "t")
         link.fly(1.0)
+        await pilot.pause()
         await pilot.press("right", "right", "right", "enter", "up")
         link.fly(0.5)
         await drawn(app, pilot)
         shown = screen_text(app)
-        assert "pending E +3.00 N +1.00 U +0.50" in shown
-        assert "active E +3.00 N +0.00 U +0.50" in shown
+        assert "pending E +3.00 N +1.00 U +1.50" in shown
+        assert "active E +3.00 N +0.00 U +1.50" in shown
         assert "MOVING" in shown
-        assert "goto 3 0 0.5: accepted" in shown
+        assert "goto 3 0 1.5: accepted" in shown
 
     flown(script)
 
@@ -165,3 +272,24 @@ def test_a_link_that_dies_is_told_and_is_an_error() -> None:
     with pytest.raises(Fail, match="died") as failed:
         tell(app.result, lambda _: None)
     assert failed.value.exit_code == Exit.BUG
+
+
+def test_a_port_in_use_is_told_before_the_screen_is_taken() -> None:
+    client = FakeClient(FakeLink("port in use"))
+    with pytest.raises(Fail, match="address in use") as failed:
+        until_hello(client)
+    assert failed.value.exit_code == Exit.ADDRESS_IN_USE
+    assert client.closed
+
+
+def test_what_the_link_said_before_the_screen_is_on_it() -> None:
+    events = until_hello(FakeClient())
+    assert isinstance(events[0], ipc.Hello)
+
+    async def run() -> FlyApp:
+        app = FlyApp(StationLink(FakeLink("silent")), events)
+        async with app.run_test() as pilot:
+            await pilot.pause()
+        return app
+
+    assert asyncio.run(run()).scene.zones

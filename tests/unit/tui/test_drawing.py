@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs import ipc
 from gcs.gate.types import State
-from gcs.tui import fsa_panel, height_panel, map_panel, vehicle_panel
+from gcs.tui import fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.braille import Canvas, clip
-from gcs.tui.frame_panels import footer
+from gcs.tui.frame_panels import footer, header
 from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keys import KEYS
 from gcs.tui.scene import Scene
@@ -155,6 +156,65 @@ def test_every_state_has_its_place_in_the_chart_and_one_is_lit() -> None:
         chart.plain[span.start : span.end] for span in chart.spans if "reverse" in str(span.style)
     ]
     assert [text.strip() for text in lit] == ["GROUNDED"]
+
+
+def small_fence(across_m: float) -> Scene:
+    scene = scene_at((0.0, 0.0, 0.0))
+    half = across_m / 2
+    corners = [(-half, -half), (half, -half), (half, half), (-half, half)]
+    scene.hear(ipc.Fences([ipc.FenceShape("cage", True, corners_en=corners)]))
+    return scene
+
+
+def fence_dots(scene: Scene) -> int:
+    picture = map_panel.draw(scene, 70, 24)
+    spans = [span for span in picture.spans if span.style == look.FENCE]
+    chars = "".join(picture.plain[span.start : span.end] for span in spans)
+    return sum((ord(char) - 0x2800).bit_count() for char in chars if 0x2800 <= ord(char) < 0x2900)
+
+
+@pytest.mark.parametrize(("across_m", "seen"), [(10.0, True), (30.0, True), (31.0, False)])
+def test_a_small_fence_is_shown_whole(across_m: float, seen: bool) -> None:
+    assert (fence_dots(small_fence(across_m)) > 0) is seen
+
+
+def test_a_fence_that_is_off_is_dashed() -> None:
+    scene = small_fence(10.0)
+    whole = fence_dots(scene)
+    scene.fence_on = False
+    assert 0 < fence_dots(scene) < whole / 3
+
+
+def test_a_vehicle_that_holds_by_itself_has_no_active_goal() -> None:
+    scene = scene_at((1.0, 0.0, 2.0), goal_enu=(3.0, 0.0, 2.0))
+    assert scene.active_enu == (3.0, 0.0, 2.0)
+    assert scene.snapshot is not None
+    scene.hear(msgspec.structs.replace(scene.snapshot, state="HOLDING"))
+    assert "active none" in vehicle_panel.goals(scene).plain
+
+
+def test_of_a_lost_vehicle_only_the_ages_are_bright() -> None:
+    seen = msgspec.structs.replace(
+        FakeLink().snapshot(), state="NO_VEHICLE", heartbeat_age_s=9.0, position_age_s=9.0
+    )
+    bright = [value for _, value, style in vehicle_panel.rows(seen, lost=True) if style != look.DIM]
+    assert len(bright) == 2
+    assert all("9.0 s" in value for value in bright)
+
+
+@pytest.mark.parametrize(("columns", "named"), [(120, True), (64, False)])
+def test_the_log_name_gives_way_to_what_is_wrong(columns: int, named: bool) -> None:
+    scene = scene_at((0.0, 0.0, 0.0))
+    scene.fence_on = False
+    line = header(scene, columns).plain
+    assert "FENCE OFF" in line
+    assert ("x.mcap" in line) is named
+    assert len(line) <= columns
+
+
+def test_a_heading_never_reads_360() -> None:
+    seen = msgspec.structs.replace(FakeLink().snapshot(), yaw_deg=359.9)
+    assert any("000°" in value for _, value, _ in vehicle_panel.rows(seen))
 
 
 def test_unknown_values_are_dashes_not_zeros() -> None:

@@ -1,0 +1,29 @@
+"""A bug in the middle of a flight: the vehicle is told to hold before the link goes."""
+
+from __future__ import annotations
+
+import pytest
+
+from gcs.gate.types import State
+from gcs.session import ports
+from gcs.session.core import EXIT_BUG
+from tests.loopback.flight import PERSONALITIES, Flight, Personality
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_fault_on_the_clock_in_flight_holds_the_vehicle(personality: Personality) -> None:
+    flight = Flight(personality).hovering(2.0)
+    flight.goto(20.0, 0.0, 2.0)
+    flight.run(1.0)
+    assert flight.is_in(State.MOVING)
+    fault_ns = flight.now_ns
+    effects = flight.session.fault(ports.Wake(), "ZeroDivisionError: a bug", fault_ns)
+    sent = [effect.data for effect in effects if isinstance(effect, ports.Transmit)]
+    (finish,) = [effect for effect in effects if isinstance(effect, ports.Finish)]
+    assert finish.exit_code == EXIT_BUG
+    for data in sent:
+        flight.up.send(data, fault_ns)
+    flight.vehicle_silent = True  # the link is gone: nobody listens, nobody speaks
+    flight.finish = None
+    flight.run(0.2)
+    assert flight.vehicle.mode_name in ("AUTO.LOITER", "BRAKE")
