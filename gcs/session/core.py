@@ -262,7 +262,7 @@ class Session:
             return "no vehicle was heard"
         if not self._keeper.gate.settled:
             return f"the vehicle was not seen to hold within {LEAVING_NS / 1e9:.0f} s"
-        if seen.landed is gate.LandedState.ON_GROUND:
+        if self._keeper.gate.memory.on_ground:
             return "the vehicle is on the ground" + (", still ARMED" if seen.armed else "")
         height = "" if seen.pos_ned is None else f", {-seen.pos_ned[2]:.1f} m up"
         return f"the vehicle is STILL FLYING in {seen.mode_name}{height}"

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from gcs.config import LinkConfig
-from gcs.gate.types import LandedState
 from gcs.protocol.effects import (
     Address,
     Heard,
@@ -177,7 +176,8 @@ class Greeting:
         if first:
             yield _request(seen, MsgId.AUTOPILOT_VERSION)
         for msgid, rate_hz in WANTED_HZ:
-            unknown = seen.landed is LandedState.UNDEFINED and msgid is MsgId.EXTENDED_SYS_STATE
+            silent = now_ns - seen.landed_ns > ASK_AGAIN_NS
+            unknown = silent and msgid is MsgId.EXTENDED_SYS_STATE
             if first or seen.pos_ned is None or unknown:
                 yield _interval(seen, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
 

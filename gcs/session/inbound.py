@@ -46,6 +46,7 @@ def absorb(message: m.Message, seen: Telemetry, now_ns: int) -> Iterator[Heard]:
             text = f"the vehicle says {MavState(message.system_status).name}" if failing else ""
             yield gate.ConditionChanged(gate.Condition.VEHICLE_FAILSAFE_ACTIVE, failing, text)
         case m.ExtendedSysState():
+            seen.landed_ns = now_ns
             try:
                 seen.landed = gate.LandedState(message.landed_state)
             except ValueError:

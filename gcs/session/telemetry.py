@@ -31,6 +31,7 @@ class Telemetry:
     armed: bool | None = None
     mode_name: str = ""
     landed: LandedState = LandedState.UNDEFINED
+    landed_ns: int = 0
 
     pos_ned: Vec3 | None = None
     v_ned: Vec3 = (0.0, 0.0, 0.0)

@@ -25,7 +25,7 @@ def lab_flight(personality: Personality, seed: int) -> Flight:
     flight = Flight(personality, seed=seed, up=ROUGH, down=ROUGH)
     flight.run(2.0)
     flight.say("arm")
-    flight.run(1.5)
+    flight.run(3.0)
     flight.say("takeoff", up_m=2.0)
     flight.run(5.0)
     flight.goto(3.0, 1.0, 2.0)
