@@ -256,7 +256,7 @@ class Verifier:
         for step in range(_BRAKE_STEPS, -1, -1):
             t = step / _BRAKE_STEPS
             n, e, d = (a + t * (b - a) for a, b in zip(pos_ned, stop_ned, strict=True))
-            point_ned = (n, e, d)
+            point_ned = (n, e, self._above_ground(d, floor_applies=floor_applies))
             if (
                 self._limits("brake", point_ned, floor_applies=floor_applies) is None
                 and judge.point("brake", point_ned, floor_applies=floor_applies) is None
@@ -266,8 +266,16 @@ class Verifier:
                 is None
             ):
                 return point_ned
-        here = self.hold_point(pos_ned, STANDING, floor_applies=floor_applies)
-        return pos_ned if isinstance(here, Cleared) else None
+        n, e, d = pos_ned
+        here_ned = (n, e, self._above_ground(d, floor_applies=floor_applies))
+        here = self.hold_point(here_ned, STANDING, floor_applies=floor_applies)
+        return here_ned if isinstance(here, Cleared) else None
+
+    def _above_ground(self, down_m: float, *, floor_applies: bool) -> float:
+        """Where no floor is asked for, the ground is one all the same: no brake points below it."""
+        if floor_applies or self.home_ned is None:
+            return down_m
+        return min(down_m, self.home_ned[2])
 
     def _return_leg(self, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusal | None:
         return self._judge.leg(subject, a_ned, b_ned, NO_WIDTHS, floor_applies=False)
