@@ -31,8 +31,8 @@ types: $(TEST) ## mypy --strict
 contracts: $(TEST) ## import contracts
 	$(BIN)/lint-imports --no-cache
 
-soak: $(TEST) ## longer random flights and fuzzing than `test` has time for
-	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/loopback -n $(WORKERS)
+soak: $(TEST) ## the properties on new random examples, and more of them than `test` has time for
+	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback -n $(WORKERS)
 
 bench: $(TEST) ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench
