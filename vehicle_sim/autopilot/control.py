@@ -5,8 +5,6 @@ Gains are a factor of two to three apart from loop to loop, so that each sees th
 immediate: rate 22 /s, attitude 9 /s, velocity 2.5 /s, position 1 /s.
 """
 
-# ruff: noqa: FURB136 - comparisons cost a third of min() and max(), here 250 times a second.
-
 from __future__ import annotations
 
 from math import cos, sin, sqrt

@@ -6,13 +6,13 @@ Everything runs on simulated time, counted in steps; only what measures the othe
 
 from __future__ import annotations
 
-from vehicle_sim.autopilot.core import DT_NS, DT_S, Core
+from vehicle_sim.autopilot.core import DT_NS, DT_S
 from vehicle_sim.autopilot.demands import Situation, Task
-from vehicle_sim.autopilot.failsafe import OFFBOARD_LOSS, Action, Failsafe
 from vehicle_sim.autopilot.interface import HomeChanged, ImageCaptured
 from vehicle_sim.autopilot.modes import MODES, Behaviour
 from vehicle_sim.autopilot.parameters import Quantity
 from vehicle_sim.autopilot.tasks import Hold, TakeOff
+from vehicle_sim.autopilot.watch import Watch
 from vehicle_sim.model import sensors
 
 _OUTER_EVERY = 5  # 50 Hz
@@ -21,7 +21,7 @@ _SLOW_EVERY = 25  # 10 Hz
 _FIX_NS = 400_000_000
 
 
-class Life(Core):
+class Life(Watch):
     """Time passes."""
 
     @property
@@ -119,35 +119,6 @@ class Life(Core):
             self._home_ned = (0.0, 0.0, 0.0)
             self._say(6, "EKF3 IMU0 origin set" if self.personality == "ardupilot" else "GPS fix")
             self._events.append(HomeChanged())
-
-    def _guard(self, s: Situation) -> None:
-        battery = self._quad.battery
-        struck = self._failsafes.check(self.power, battery.remaining, s.wall_ns)
-        if struck is not None:
-            self._act(struck)
-
-    def _act(self, struck: Failsafe) -> None:
-        self._say(struck.severity, struck.text)
-        match struck.action:
-            case Action.WARN:
-                return
-            case Action.TERMINATE:
-                self._terminate()
-            case Action.DISARM:
-                self._disarm("Disarmed by failsafe")
-            case Action.RETURN | Action.LAND if not self._pilot.flying:
-                self._disarm("Disarmed by failsafe")
-            case _:
-                self._enter_kind(struck.action.value)
-        self._failsafe_active = self._armed
-
-    def _watch_offboard(self, s: Situation) -> None:
-        if self._mode.name != "OFFBOARD":
-            return
-        loss_ns = int(self.parameters.si(Quantity.SETPOINT_LOSS_S) * 1e9)
-        if self._stream.age_ns(s.wall_ns) >= loss_ns:
-            action = OFFBOARD_LOSS[int(self.parameters.get("COM_OBL_RC_ACT"))]
-            self._act(Failsafe(action, f"Offboard setpoints lost: {action.value}", 3))
 
     def _try_offboard(self) -> None:
         """OFFBOARD was asked for: enter once the stream has proven itself."""

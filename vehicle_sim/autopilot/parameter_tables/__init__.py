@@ -1,0 +1,24 @@
+"""Every parameter that does something here, in literal tables: a file a subject.
+
+Names, units and meanings are the autopilots' own.  Where the value shipped differs from the
+firmware's default it is the one that their own simulations set (RTL_RETURN_ALT 30, NAV_ACC_RAD
+2), or one that suits a small quadrotor (WPNAV_SPEED, PILOT_TKOFF_ALT).  A parameter that would
+do nothing is not there.
+"""
+
+from __future__ import annotations
+
+from vehicle_sim.autopilot.parameter_tables import failsafes, fence, flight, system
+from vehicle_sim.autopilot.parameter_tables.spec import Spec
+
+_SUBJECTS = (failsafes, fence, flight, system)
+
+
+def _by_name(specs: list[Spec]) -> tuple[Spec, ...]:
+    return tuple(sorted(specs, key=lambda spec: spec.name.replace("_", " ")))
+
+
+PX4 = _by_name([spec for subject in _SUBJECTS for spec in subject.PX4])
+ARDUPILOT = _by_name([spec for subject in _SUBJECTS for spec in subject.ARDUPILOT])
+
+__all__ = ["ARDUPILOT", "PX4", "Spec"]
