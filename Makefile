@@ -5,10 +5,15 @@ BIN    := $(VENV)/bin
 # The tools are there once `test` is installed; a plain flight needs `run` only.
 RUN    := $(VENV)/.run-installed
 TEST   := $(VENV)/.test-installed
+# Other people's ground stations, each in an environment of its own.
+CLIENTS := .clients
+TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
+SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
+OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
 WORKERS ?= 2
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check lint types contracts soak bench wheel clean
+.PHONY: help demo test check lint types contracts clients soak bench wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -16,8 +21,8 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-test: $(TEST) ## run every test (under 8 minutes on 2 cores)
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+test: $(TEST) $(TESTED) ## run every test (under 10 minutes on 2 cores)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(SLOWER:%=--ignore=%)
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests
 
@@ -31,6 +36,9 @@ types: $(TEST) ## mypy --strict
 contracts: $(TEST) ## import contracts
 	$(BIN)/lint-imports --no-cache
 
+clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVSDK 4 and 3, pymavlink, MAVProxy, DroneKit
+	$(BIN)/python -m pytest tests/clients -v
+
 soak: $(TEST) ## the properties on new random examples, and more of them than `test` has time for
 	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback -n $(WORKERS)
 
@@ -40,8 +48,12 @@ bench: $(TEST) ## paired speed ratios against peers, in one run
 wheel: $(TEST) ## build the wheel into dist/
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .
 
+$(CLIENTS)/%/.installed: .ci/make-clients $(TEST)
+	@sh .ci/make-clients $(BIN)/python $(CLIENTS) $*
+	@touch $@
+
 clean: ## remove the environment and what tools left behind
-	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(CLIENTS) dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 
 $(RUN): pyproject.toml
 	@sh .ci/make-venv $(VENV)

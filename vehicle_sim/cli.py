@@ -1,117 +1,73 @@
-"""`vehicle-sim`: a vehicle on the MAVLink.  Heavy imports wait until there is work for them."""
+"""`vehicle-sim`: vehicles on the MAVLink.  Heavy imports wait until there is work for them."""
 
 from __future__ import annotations
 
-import os
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import click
 
+from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
+
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from vehicle_sim.faults import Timed
+    from vehicle_sim.outlets import Launch, Outlet
+    from vehicle_sim.shell.runtime import Opened, Plan
 
-    from vehicle_sim.autopilot.interface import Geodetic
-    from vehicle_sim.shell.urls import Url
+EXIT_USAGE: Final = 2
+EXIT_FILE: Final = 4
+EXIT_ADDRESS: Final = 9
 
-EXIT_USAGE = 2
-EXIT_ADDRESS = 9
-EXIT_INTERRUPTED = 130
-EXIT_TERMINATED = 0
-
-HOMES = {
+HOMES: Final = {
     "px4": (47.397742, 8.545594, 488.0),
     "ardupilot": (-35.363262, 149.165237, 584.0),
 }
-SYSTEM_ID = {"px4": "MAV_SYS_ID", "ardupilot": "SYSID_THISMAV"}
-LEVELS = {"debug": 0, "info": 1, "warning": 2, "error": 3, "fatal": 4}
-SPEEDUP_MAX = 200
+APART_M: Final = 5.0
+"""Vehicles of a fleet stand in rows, so far from each other."""
+METRES_PER_DEGREE: Final = 111_319.49
+SYSTEMS_MAX: Final = 250
+"""Vehicles that can be told apart on one link; ids above are ground stations'."""
+STATION: Final = "udpout://127.0.0.1:14550"
+AIRFRAMES: Final = ("s500", "racer250")
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
     autopilot: Literal["px4", "ardupilot"]
+    count: int
+    airframe: str
     home: tuple[float, float, float]
     seed: int
     speedup: Fraction
     links: tuple[str, ...]
     params: tuple[tuple[str, float], ...]
-    lifeline: bool
+    wind: tuple[float, float, float]
+    fault: str | None
+    signing_key: str | None
+    files: str | None
     sysid: int
+    streams: Literal["full", "position"]
+    lifeline: bool
+    control: bool
+    plain: bool
     verbose: bool
 
 
-class HomeType(click.ParamType[tuple[float, float, float]]):
-    """LAT,LON,ALT: degrees, degrees, metres above mean sea level."""
-
-    name = "LAT,LON,ALT"
-
-    def convert(
-        self,
-        value: str | tuple[float, float, float],
-        param: click.Parameter | None,
-        ctx: click.Context | None,
-    ) -> tuple[float, float, float]:
-        if not isinstance(value, str):
-            return value
-        try:
-            lat_deg, lon_deg, alt_m = (float(part) for part in value.split(","))
-        except ValueError:
-            self.fail(f"{value!r} is not LAT,LON,ALT, as in 47.397742,8.545594,488", param, ctx)
-        if not (abs(lat_deg) < 90.0 and abs(lon_deg) <= 180.0 and -500.0 <= alt_m <= 9000.0):
-            self.fail(
-                f"{value!r} is not on Earth: latitude within 90, longitude within 180 degrees, "
-                "height from -500 to 9000 m",
-                param,
-                ctx,
-            )
-        return (lat_deg, lon_deg, alt_m)
+class _TooManyError(Exception):
+    """A shared link cannot tell so many vehicles apart."""
 
 
-class AssignmentType(click.ParamType[tuple[str, float]]):
-    """NAME=VALUE."""
-
-    name = "NAME=VALUE"
-
-    def convert(
-        self,
-        value: str | tuple[str, float],
-        param: click.Parameter | None,
-        ctx: click.Context | None,
-    ) -> tuple[str, float]:
-        if not isinstance(value, str):
-            return value
-        name, _, number = value.partition("=")
-        try:
-            return (name, float(number))
-        except ValueError:
-            self.fail(f"{value!r} is not NAME=VALUE, as in MIS_TAKEOFF_ALT=5", param, ctx)
-
-
-class SpeedType(click.ParamType[Fraction]):
-    """How many simulated seconds make a second."""
-
-    name = "FACTOR"
-
-    def convert(
-        self, value: str | Fraction, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Fraction:
-        if not isinstance(value, str):
-            return value
-        try:
-            factor = Fraction(value).limit_denominator(1000)
-        except (ValueError, ZeroDivisionError):
-            self.fail(f"{value!r} is no number", param, ctx)
-        if not 0 < factor <= SPEEDUP_MAX:
-            self.fail(f"{value} is not in 0.001 to {SPEEDUP_MAX}", param, ctx)
-        return factor
+class _BadFileError(Exception):
+    """A file that was named cannot be used; the message says why."""
 
 
 @click.command(
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Example: vehicle-sim --autopilot px4 --seed 7 --link udpout://127.0.0.1:14540",
+    epilog="Examples: vehicle-sim --autopilot ardupilot --wind 8,270,1.5  |  "
+    "vehicle-sim --count 20 --port 14550  |  vehicle-sim --speedup 10 --fault trouble.toml",
 )
 @click.option(
     "--autopilot",
@@ -120,38 +76,90 @@ class SpeedType(click.ParamType[Fraction]):
     show_default=True,
     help="Whose MAVLink it speaks, and how it flies.",
 )
+@click.option(
+    "--count",
+    type=click.IntRange(1, 10_000),
+    default=1,
+    show_default=True,
+    help="How many vehicles, with system ids that follow each other.  MAVLink has ids for 250 on "
+    "one link: a larger fleet has links of its own only, and its ids begin anew.",
+)
+@click.option(
+    "--airframe",
+    type=click.Choice(AIRFRAMES),
+    default="s500",
+    show_default=True,
+    help="What it is built of.",
+)
 @click.option("--home", type=HomeType(), help="Where it stands; the autopilot's usual place.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Of all noise.")
 @click.option(
     "--speedup", type=SpeedType(), default="1", show_default=True, help="Times real time."
 )
+@click.option("--wind", type=WindType(), default="0", help="In m/s and degrees, with gusts.")
+@click.option(
+    "--fault", type=click.Path(dir_okay=False), help="TOML file of what goes wrong, and when."
+)
 @click.option(
     "--port",
-    type=click.IntRange(1, 65535),
-    help="One UDP endpoint that waits here, in place of the usual ones.",
+    type=click.IntRange(0, 65535),
+    help="One UDP endpoint for all vehicles that waits here (0: any free one), in place of the "
+    "usual ones.",
 )
-@click.option("--link", "links", metavar="URL", multiple=True, help="Replaces the usual links.")
+@click.option(
+    "--link", "links", metavar="URL", multiple=True, help="Replaces the usual links, for all."
+)
 @click.option(
     "--param", "params", type=AssignmentType(), multiple=True, help="Sets a parameter at start."
 )
-@click.option("--lifeline", is_flag=True, help="Ends when standard input does; Ctrl-C is ignored.")
+@click.option(
+    "--streams",
+    type=click.Choice(["full", "position"]),
+    default="full",
+    show_default=True,
+    help="What is sent unasked: all that the autopilot sends, or the position at 10 Hz and a "
+    "heartbeat, which is what 1,000 vehicles have time for.",
+)
 @click.option("--sysid", type=click.IntRange(1, 250), default=1, show_default=True)
+@click.option(
+    "--files",
+    type=click.Path(exists=True, file_okay=False),
+    help="Directory for its files (MAVLink FTP, logs) instead of memory.",
+)
+@click.option(
+    "--signing-key",
+    type=click.Path(dir_okay=False),
+    help="File with the MAVLink 2 signing key: 32 bytes, 64 hex digits or a passphrase.",
+)
+@click.option("--lifeline", is_flag=True, help="Ends when standard input does; Ctrl-C is ignored.")
+@click.option("--control", is_flag=True, help="JSON lines on standard input and output, for tests.")
+@click.option("--plain", is_flag=True, help="Plain lines on a terminal too.")
 @click.option("-v", "--verbose", is_flag=True, help="Debug lines as well.")
 def main(
     autopilot: Literal["px4", "ardupilot"],
+    count: int,
+    airframe: str,
     home: tuple[float, float, float] | None,
     seed: int,
     speedup: Fraction,
+    wind: tuple[float, float, float],
+    fault: str | None,
     port: int | None,
     links: tuple[str, ...],
     params: tuple[tuple[str, float], ...],
-    lifeline: bool,
+    streams: Literal["full", "position"],
     sysid: int,
+    files: str | None,
+    signing_key: str | None,
+    lifeline: bool,
+    control: bool,
+    plain: bool,
     verbose: bool,
 ) -> None:
-    """A simulated quadrotor that speaks MAVLink like PX4 or ArduPilot.
+    """Simulated quadrotors that speak MAVLink like PX4 or ArduPilot.
 
-    It prints what to connect to, then a line for everything that happens.
+    On a terminal it shows a live line per vehicle; on a pipe it prints what to connect to, then a
+    line for everything that happens.
     """
     if port is not None:
         links = (*links, f"udpin://127.0.0.1:{port}")
@@ -159,139 +167,180 @@ def main(
         run(
             Options(
                 autopilot=autopilot,
+                count=count,
+                airframe=airframe,
                 home=home or HOMES[autopilot],
                 seed=seed,
                 speedup=speedup,
-                links=links or default_links(autopilot, 0),
+                links=links,
                 params=params,
-                lifeline=lifeline,
+                wind=wind,
+                fault=fault,
+                signing_key=signing_key,
+                files=files,
                 sysid=sysid,
+                streams=streams,
+                lifeline=lifeline or control,
+                control=control,
+                plain=plain,
                 verbose=verbose,
             )
         )
     )
 
 
-def default_links(autopilot: str, index: int) -> tuple[str, ...]:
-    """px4: API and ground station; ardupilot: its TCP port and the ground station."""
-    station = "udpout://127.0.0.1:14550"
+def own_link(autopilot: str, index: int) -> str:
+    """px4: its API port, leaving out the ground station's 14550; ardupilot: its TCP port."""
     if autopilot == "px4":
-        return (f"udpout://127.0.0.1:{14540 + index}", station)
-    return (f"tcpin://127.0.0.1:{5760 + 10 * index}", station)
+        return f"udpout://127.0.0.1:{14540 + index + (index >= 10)}"
+    return f"tcpin://127.0.0.1:{5760 + 10 * index}"
+
+
+def place(home: tuple[float, float, float], index: int, count: int) -> tuple[float, float, float]:
+    """In rows to the north and east of the first."""
+    lat_deg, lon_deg, alt_m = home
+    side = 1
+    while side * side < count:
+        side += 1
+    north_m, east_m = APART_M * (index // side), APART_M * (index % side)
+    from math import cos, radians
+
+    return (
+        lat_deg + north_m / METRES_PER_DEGREE,
+        lon_deg + east_m / (METRES_PER_DEGREE * cos(radians(lat_deg))),
+        alt_m,
+    )
+
+
+def plan_of(options: Options) -> Plan:
+    """Raises UrlError, FaultFileError, SigningKeyError, _BadFileError and _TooManyError."""
+    from pathlib import Path
+
+    from vehicle_sim.autopilot.interface import Geodetic
+    from vehicle_sim.faults import parse as parse_faults
+    from vehicle_sim.model.faults import WindChange
+    from vehicle_sim.shell.runtime import Berth, Plan
+    from vehicle_sim.shell.urls import parse
+    from vehicle_sim.wire.signing import parse_key
+
+    count = options.count
+    usual = not options.links
+    if count > SYSTEMS_MAX and not usual:
+        raise _TooManyError(
+            f"{count} vehicles cannot share a link: MAVLink has system ids for {SYSTEMS_MAX}.  "
+            "Without --port and --link each has a link of its own."
+        )
+    together = (STATION,) if count <= SYSTEMS_MAX else ()
+    berths = tuple(
+        Berth(
+            system=1 + (options.sysid - 1 + index) % SYSTEMS_MAX,
+            home=Geodetic(*place(options.home, index, count)),
+            urls=(parse(own_link(options.autopilot, index)),) if usual else (),
+        )
+        for index in range(count)
+    )
+    faults: tuple[Timed, ...] = ()
+    if options.fault is not None:
+        text = _read(options.fault).decode("utf-8", "replace")
+        faults = parse_faults(text, options.fault)
+    north, east, gust = options.wind
+    return Plan(
+        personality=options.autopilot,
+        airframe=options.airframe,
+        berths=berths,
+        shared=tuple(map(parse, together if usual else options.links)),
+        seed=options.seed,
+        speedup=options.speedup,
+        params=options.params,
+        wind=WindChange((north, east, 0.0), gust),
+        faults=faults,
+        signing=None if options.signing_key is None else parse_key(_read(options.signing_key)),
+        files=None if options.files is None else Path(options.files),
+        sparse=options.streams == "position",
+    )
+
+
+def _read(path: str) -> bytes:
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError as error:
+        raise _BadFileError(f"{path}: {error.strerror}") from error
 
 
 def run(options: Options) -> int:
     """The exit code."""
-    import signal
-    import time
+    from vehicle_sim.autopilot.parameters import ParameterError
+    from vehicle_sim.faults import FaultFileError
+    from vehicle_sim.shell.endpoints import EndpointError
+    from vehicle_sim.shell.runtime import launch
+    from vehicle_sim.shell.urls import UrlError
+    from vehicle_sim.wire.signing import SigningKeyError
 
-    from vehicle_sim.autopilot.autopilot import Autopilot
-    from vehicle_sim.autopilot.interface import Geodetic
-    from vehicle_sim.autopilot.parameters import ParameterError, Parameters
-    from vehicle_sim.services.profile import PROFILES
-    from vehicle_sim.services.server import VehicleServer
-    from vehicle_sim.shell.endpoints import EndpointError, Udp, open_endpoint
-    from vehicle_sim.shell.lifeline import standard_input
-    from vehicle_sim.shell.pacer import Pacer, Stop, monotonic_ns
-    from vehicle_sim.shell.urls import UrlError, parse
-    from vehicle_sim.world import LinkSpec, Log, World
-
-    parameters = Parameters(options.autopilot)
     try:
-        urls = [parse(link) for link in options.links]
-        parameters.set(SYSTEM_ID[options.autopilot], options.sysid)
-        for name, value in options.params:
-            parameters.set(name, value)
-    except (UrlError, ParameterError) as wrong:
+        opened = launch(plan := plan_of(options))
+    except (UrlError, ParameterError, _TooManyError) as wrong:
         return _fail(str(wrong), EXIT_USAGE)
-
-    endpoints = []
-    for number, url in enumerate(urls):
-        try:
-            endpoints.append(open_endpoint(number, url))
-        except EndpointError as wrong:
-            for endpoint in endpoints:
-                endpoint.close()
-            return _fail(f"{wrong}\n{_hint(wrong.cause)}", EXIT_ADDRESS)
-
-    home = Geodetic(*options.home)
-    vehicle = Autopilot(options.autopilot, home, options.seed, params=parameters)
-    server = VehicleServer(
-        vehicle,
-        PROFILES[options.autopilot],
-        parameters,
-        options.sysid,
-        options.speedup,
-        time.time_ns(),
-    )
-    start_ns = monotonic_ns()
-    world = World(
-        [server], [LinkSpec(endpoint.peers) for endpoint in endpoints], options.speedup, start_ns
-    )
-
-    stop = Stop()
-
-    def ask_to_stop(signum: int, frame: object) -> None:
-        stop.code = EXIT_INTERRUPTED if signum == signal.SIGINT else EXIT_TERMINATED
-
-    signal.set_wakeup_fd(stop.waker.fileno(), warn_on_full_buffer=False)
-    signal.signal(signal.SIGINT, signal.SIG_IGN if options.lifeline else ask_to_stop)
-    signal.signal(signal.SIGTERM, ask_to_stop)
-
-    threshold = LEVELS["debug" if options.verbose else "info"]
-
-    def write(line: Log) -> None:
-        if LEVELS[line.level] >= threshold:
-            _print(f"{line.level.upper()} {line.node}: {line.text}")
-
-    _announce(options, home, urls)
-    for endpoint in endpoints:
-        if isinstance(endpoint, Udp):
-            granted = f"receive buffer of {endpoint.granted_bytes} bytes granted"
-            write(Log("debug", f"link{endpoint.link}", granted))
+    except (FaultFileError, SigningKeyError, _BadFileError) as wrong:
+        return _fail(str(wrong), EXIT_FILE)
+    except EndpointError as wrong:
+        return _fail(f"{wrong}\n{_hint(wrong.cause)}", EXIT_ADDRESS)
+    outlet = _outlet(options)
     try:
-        return Pacer(
-            world,
-            endpoints,
-            start_ns,
-            write,
-            stop,
-            standard_input() if options.lifeline else None,
-        ).run()
+        return _fly(options, opened, _launched(options, plan, opened), outlet)
     finally:
-        signal.set_wakeup_fd(-1)
-        for endpoint in endpoints:
-            endpoint.close()
-        stop.close()
+        outlet.close()
 
 
-def _announce(options: Options, home: Geodetic, urls: Sequence[Url]) -> None:
-    place = f"{home.lat_deg:.6f}, {home.lon_deg:.6f}, {home.alt_amsl_m:g} m"
-    _print(
-        f"INFO vehicle{options.sysid}: {options.autopilot} quadrotor at {place}, "
-        f"seed {options.seed}, speed {float(options.speedup):g}"
+def _fly(options: Options, opened: Opened, launch: Launch, outlet: Outlet) -> int:
+    from vehicle_sim.control import Lines, answer
+    from vehicle_sim.face import Rhythm, statuses
+    from vehicle_sim.shell.pacer import Pace, Redraw
+    from vehicle_sim.shell.runtime import run as run_world
+
+    lines = Lines()
+
+    def hear(data: bytes) -> None:
+        for line in lines.feed(data):
+            outlet.answer(answer(line, opened.world))
+
+    def show(pace: Pace) -> None:
+        world = opened.world
+        rhythm = Rhythm(world.time_ns / 1e9, float(options.speedup), pace.reached)
+        outlet.show(statuses(world.servers, world.links), rhythm)
+
+    redraw = Redraw(outlet.redraw_ns, show) if outlet.redraw_ns else None
+    heard: Callable[[bytes], None] | None = hear if options.control else None
+    return run_world(
+        opened, lambda: outlet.ready(launch), outlet.log, options.lifeline, heard, redraw
     )
-    for url in urls:
-        _print(f"INFO vehicle{options.sysid}: {_CONNECT[url.kind.value].format(url=url)}")
 
 
-_CONNECT = {
-    "udpout": "sends to {url.host}:{url.port}; connect with udpin://{url.host}:{url.port}",
-    "udpin": "listens on UDP port {url.port}; connect with udpout://{url.host}:{url.port}",
-    "tcpin": "listens on TCP port {url.port}; connect with tcpout://{url.host}:{url.port}",
-    "tcpout": "connects to TCP port {url.port} of {url.host}; wait for it with "
-    "tcpin://{url.host}:{url.port}",
-}
+def _outlet(options: Options) -> Outlet:
+    from vehicle_sim.outlets import Json, Live, Plain
+
+    threshold = "debug" if options.verbose else "info"
+    if options.control:
+        return Json(threshold)
+    if sys.stdout.isatty() and not options.plain and not options.lifeline:
+        return Live(threshold)
+    return Plain(threshold)
 
 
-def _print(line: str) -> None:
-    """To whoever still reads."""
-    try:
-        click.echo(line)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # The reader is gone; the vehicle flies on, as its own failsafes have it.
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+def _launched(options: Options, plan: Plan, opened: Opened) -> Launch:
+    from vehicle_sim.outlets import Contact, Launch
+
+    lat_deg, lon_deg, alt_m = options.home
+    many = f"{options.count} " if options.count > 1 else ""
+    plural = "s" if options.count > 1 else ""
+    what = (
+        f"{many}{options.autopilot} quadrotor{plural} at {lat_deg:.6f}, {lon_deg:.6f}, "
+        f"{alt_m:g} m, seed {options.seed}, speed {float(options.speedup):g}"
+    )
+    contacts = [
+        Contact(berth.system, urls) for berth, urls in zip(plan.berths, opened.urls, strict=True)
+    ]
+    return Launch(what, tuple(contacts))
 
 
 def _hint(cause: OSError) -> str:
@@ -301,6 +350,11 @@ def _hint(cause: OSError) -> str:
         return "Hint: another program has this port; end it, or choose one with --port or --link."
     if cause.errno in (errno.EACCES, errno.EPERM):
         return "Hint: ports below 1024 are for the system; choose a higher one."
+    if cause.errno == errno.EMFILE:
+        return (
+            "Hint: too many open files; raise the hard limit (ulimit -Hn), or let up to "
+            f"{SYSTEMS_MAX} vehicles share one link with --port."
+        )
     return "Hint: is the address one of this machine's?"
 
 

@@ -7,92 +7,58 @@ inputs and their times alone, never on how many steps one call happened to cover
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Final, TypeAlias, assert_never
+from typing import Final, assert_never
 
-from vehicle_sim.services.effects import Client, Effect, Note, Send
-from vehicle_sim.services.server import COMPONENT, VehicleServer
-from vehicle_sim.wire.codec import encode
-from vehicle_sim.wire.split import Counters, split
+from vehicle_sim.autopilot.interface import Truth
+from vehicle_sim.channels import DATAGRAM_BYTES, Connection
+from vehicle_sim.faults import AnyFault, LinkFault, Schedule, Timed
+from vehicle_sim.impairment import NEVER_NS, Direction, Impairment
+from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.services.streams import NEVER
+from vehicle_sim.switchboard import Switchboard
+from vehicle_sim.traffic import (
+    Datagram,
+    Input,
+    Joined,
+    Left,
+    LinkSpec,
+    Log,
+    Output,
+    Peer,
+    Transmit,
+    Wake,
+)
+from vehicle_sim.wire.signing import SigningKey
+from vehicle_sim.wire.split import Counters
 
-Peer: TypeAlias = Hashable
-"""Who is at the other end of a link: an address, as the shell knows it."""
+__all__ = [
+    "DATAGRAM_BYTES",
+    "Connection",
+    "Datagram",
+    "Direction",
+    "Impairment",
+    "Input",
+    "Joined",
+    "Left",
+    "LinkSpec",
+    "Log",
+    "Output",
+    "Peer",
+    "SigningKey",
+    "Transmit",
+    "Wake",
+    "World",
+]
 
-DATAGRAM_BYTES: Final = 1200
+_DIRECTIONS: Final = {
+    "in": Direction.TO_VEHICLE,
+    "out": Direction.FROM_VEHICLE,
+    "both": None,
+}
 STEPS_AHEAD_NS: Final = 20_000_000
 """The longest sleep: what the vehicle says unasked is at most this late, in wall time."""
-PEER_SILENT_NS: Final = 60_000_000_000
-PEERS_MAX: Final = 32
-
-
-@dataclass(frozen=True, slots=True)
-class LinkSpec:
-    """One endpoint.  `peers` are there from the start (a client's server); others are learnt."""
-
-    peers: tuple[Peer, ...] = ()
-    vehicle: int | None = None  # index of the one vehicle on it, None = all
-
-
-@dataclass(frozen=True, slots=True)
-class Datagram:
-    link: int
-    peer: Peer
-    data: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class Joined:
-    """A connection was made; datagram links need no such thing."""
-
-    link: int
-    peer: Peer
-
-
-@dataclass(frozen=True, slots=True)
-class Left:
-    link: int
-    peer: Peer
-
-
-@dataclass(frozen=True, slots=True)
-class Wake:
-    """Nothing but that time has passed."""
-
-
-Input: TypeAlias = Datagram | Joined | Left | Wake
-
-
-@dataclass(frozen=True, slots=True)
-class Transmit:
-    link: int
-    peer: Peer
-    data: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class Log:
-    level: str  # debug, info, warning, error, fatal
-    node: str
-    text: str
-
-
-Output: TypeAlias = Transmit | Log
-
-
-@dataclass(slots=True)
-class _Channel:
-    """One peer on one link."""
-
-    number: int
-    link: int
-    peer: Peer
-    lasting: bool
-    heard_ns: int
-    counters: Counters = field(default_factory=Counters)
-    sequences: dict[int, int] = field(default_factory=dict)  # by system id
-    clients: set[tuple[int, int]] = field(default_factory=set)
 
 
 class World:
@@ -104,10 +70,18 @@ class World:
         links: Sequence[LinkSpec],
         speedup: Fraction = Fraction(1),
         start_ns: int = 0,
+        *,
+        signing: SigningKey | None = None,
+        unix_start_ns: int = 0,
+        seed: int = 0,
+        faults: tuple[Timed, ...] = (),
     ) -> None:
+        """All vehicles share one key.  `unix_start_ns` is what `start_ns` is since 1970, for
+        signatures; `seed` is that of the links' impairments; `faults` happen at their times."""
         if len({server.vehicle.dt_ns for server in vehicles}) != 1:
             raise ValueError("all vehicles of a world take steps of the same length")
         self._servers = tuple(vehicles)
+        self._numbers = {server: number for number, server in enumerate(self._servers)}
         self._links = tuple(links)
         # Fractions are exact and slow: the two integers are as exact.
         self._numerator, self._denominator = speedup.numerator, speedup.denominator
@@ -115,9 +89,12 @@ class World:
         self._dt_ns = self._servers[0].vehicle.dt_ns
         self._steps_ahead = max(1, int(STEPS_AHEAD_NS * speedup) // self._dt_ns)
         self._steps = 0
-        self._channels: dict[int, _Channel] = {}
-        self._by_peer: dict[tuple[int, Peer], _Channel] = {}
-        self._next_channel = 0
+        self._engines = tuple(dict.fromkeys(server.vehicle.engine for server in vehicles))
+        # Which servers have something to do after which step; one too many does no harm.
+        self._agenda: dict[int, set[int]] = {1: set(range(len(self._servers)))}
+        self._board = Switchboard(vehicles, links, signing, unix_start_ns - start_ns, seed)
+        self._schedule = Schedule(faults)
+        self._fault_ns = self._schedule.due_ns(NEVER_NS)
         self._greeted = False
 
     @property
@@ -127,18 +104,48 @@ class World:
 
     def counters(self, link: int, peer: Peer) -> Counters | None:
         """What was heard from a peer, good and bad."""
-        channel = self._by_peer.get((link, peer))
-        return channel.counters if channel is not None else None
+        return self._board.counters(link, peer)
+
+    @property
+    def links(self) -> tuple[Connection, ...]:
+        """Who is connected, in the order of their coming."""
+        return self._board.connections
+
+    def impair(self, link: int | None, direction: Direction | None, impairment: Impairment) -> None:
+        """From now on, on one link or all, in one direction or both; what is under way stays so."""
+        self._board.impair(link, direction, impairment)
+
+    def befall(self, fault: AnyFault, system: int | None) -> bool:
+        """Let it happen now, to one vehicle or (None) to all; False = no such vehicle or link."""
+        if isinstance(fault, LinkFault):
+            if fault.link is not None and fault.link >= len(self._links):
+                return False
+            self.impair(fault.link, _DIRECTIONS[fault.direction], _impairment(fault))
+            return True
+        struck = [server for server in self._servers if system in (None, server.system)]
+        for server in struck:
+            server.vehicle.inject(fault)
+        return bool(struck)
+
+    def truth(self, system: int) -> Truth | None:
+        """What really is; None = no such vehicle."""
+        for server in self._servers:
+            if server.system == system:
+                return server.vehicle.truth
+        return None
+
+    @property
+    def servers(self) -> tuple[VehicleServer, ...]:
+        return self._servers
 
     @property
     def deadline_ns(self) -> int:
-        """Wall time at which the next `Wake` is wanted at the latest: always that of a step."""
-        steps = min(
-            self._steps + self._steps_ahead,
-            *(-(-server.stream_due_ns // self._dt_ns) for server in self._servers),
-            *(self._steps_until(server.deadline_ns) for server in self._servers),
-        )
-        return self._wall_ns(max(steps, self._steps + 1))
+        """Wall time at which the next `Wake` is wanted at the latest.
+
+        That of a step, or of the arrival of a datagram that an impaired link delays.
+        """
+        steps = min(self._steps + self._steps_ahead, *self._agenda)
+        return min(self._wall_ns(steps), self._board.deadline_ns)
 
     def handle(self, given: Input, now_ns: int) -> list[Output]:
         """Live up to `now_ns`, then take the input."""
@@ -147,27 +154,66 @@ class World:
             self._greeted = True
             for number, link in enumerate(self._links):
                 for peer in link.peers:
-                    out += self._open(number, peer, now_ns, lasting=True)
-        steps = (now_ns - self._start_ns) * self._numerator // (self._denominator * self._dt_ns)
-        while self._steps < steps:
-            self._steps += 1
-            wall_ns = self._wall_ns(self._steps)
-            for server in self._servers:
-                self._emit(server, server.step(wall_ns), out)
+                    self._board.join(number, peer, now_ns, out)
+        while (due_ns := self._board.arrival_ns) <= now_ns:
+            self._live(due_ns, out)
+            self._board.arrive(due_ns, out)
+            self._note_roused()
+        self._live(now_ns, out)
         match given:
             case Datagram():
-                self._receive(given, now_ns, out)
+                self._board.receive(given, now_ns, out)
             case Joined():
-                out += self._open(given.link, given.peer, now_ns, lasting=True)
+                self._board.join(given.link, given.peer, now_ns, out)
             case Left():
-                channel = self._by_peer.get((given.link, given.peer))
-                if channel is not None:
-                    self._close(channel, out)
+                self._board.leave(given.link, given.peer, out)
             case Wake():
                 pass
             case _:
                 assert_never(given)
+        self._note_roused()
         return out
+
+    def _live(self, now_ns: int, out: list[Output]) -> None:
+        """All steps that are over by then, and what leaves a slow link meanwhile."""
+        steps = (now_ns - self._start_ns) * self._numerator // (self._denominator * self._dt_ns)
+        while self._steps < steps:
+            self._steps += 1
+            wall_ns = self._wall_ns(self._steps)
+            self._board.depart(wall_ns, out)
+            if self.time_ns >= self._fault_ns:
+                self._befall_due(out)
+            for engine in self._engines:
+                engine.step()
+            for number in sorted(self._agenda.pop(self._steps, ())):
+                server = self._servers[number]
+                self._board.emit(server, server.step(wall_ns), wall_ns, out)
+                self._plan(number)
+        self._board.depart(now_ns, out)
+
+    def _befall_due(self, out: list[Output]) -> None:
+        for timed in self._schedule.due(self.time_ns):
+            who = "" if timed.system is None else f"vehicle {timed.system}: "
+            done = self.befall(timed.fault, timed.system)
+            level, but = ("info", "") if done else ("warning", ", but there is no such thing")
+            out.append(Log(level, "faults", f"{who}{timed.fault}{but}"))
+        self._fault_ns = self._schedule.due_ns(NEVER_NS)
+
+    def _plan(self, number: int) -> None:
+        """Put the server's next doings on the agenda."""
+        server = self._servers[number]
+        step = min(server.vehicle.due_step, -(-server.stream_due_ns // self._dt_ns))
+        if server.deadline_ns < NEVER:
+            step = min(step, self._steps_until(server.deadline_ns))
+        if step <= self._steps or server.touched:
+            step = self._steps + 1
+        self._agenda.setdefault(step, set()).add(number)
+
+    def _note_roused(self) -> None:
+        """What came in is looked at after the next step."""
+        for server in self._board.roused():
+            if server.touched:
+                self._plan(self._numbers[server])
 
     def _wall_ns(self, steps: int) -> int:
         """When that step is over: the first nanosecond that reaches it."""
@@ -178,106 +224,14 @@ class World:
         steps_ns = (wall_ns - self._start_ns) * self._numerator
         return -(-steps_ns // (self._denominator * self._dt_ns))
 
-    def _servers_on(self, link: int) -> tuple[VehicleServer, ...]:
-        only = self._links[link].vehicle
-        return self._servers if only is None else (self._servers[only],)
 
-    # ------------------------------------------------------------------------------ peers
-
-    def _open(self, link: int, peer: Peer, now_ns: int, lasting: bool) -> list[Output]:
-        if (link, peer) in self._by_peer:
-            return []
-        channel = _Channel(self._next_channel, link, peer, lasting, now_ns)
-        self._next_channel += 1
-        self._channels[channel.number] = channel
-        self._by_peer[link, peer] = channel
-        out: list[Output] = []
-        for server in self._servers_on(link):
-            self._emit(server, server.open(channel.number), out)
-        return out
-
-    def _close(self, channel: _Channel, out: list[Output]) -> None:
-        del self._channels[channel.number]
-        del self._by_peer[channel.link, channel.peer]
-        for server in self._servers_on(channel.link):
-            server.close(channel.number)
-        out.extend(
-            Log("info", "link", f"client {system}/{component} gone")
-            for system, component in sorted(channel.clients)
-        )
-
-    def _make_room(self, now_ns: int, out: list[Output]) -> bool:
-        """Forget peers that have long been silent; False = too many are not."""
-        learnt = [channel for channel in self._channels.values() if not channel.lasting]
-        for channel in learnt:
-            if now_ns - channel.heard_ns > PEER_SILENT_NS:
-                self._close(channel, out)
-        return len(self._channels) < PEERS_MAX
-
-    # --------------------------------------------------------------------------- messages
-
-    def _receive(self, given: Datagram, now_ns: int, out: list[Output]) -> None:
-        counters = Counters()
-        frames = split(given.data, counters)
-        channel = self._by_peer.get((given.link, given.peer))
-        if channel is None:
-            # Noise makes no peer: only who speaks MAVLink is spoken to.
-            if not frames or not self._make_room(now_ns, out):
-                return
-            out += self._open(given.link, given.peer, now_ns, lasting=False)
-            channel = self._by_peer[given.link, given.peer]
-        channel.heard_ns = now_ns
-        channel.counters.add(counters)
-        for frame in frames:
-            client = Client(channel.number, frame.system, frame.component)
-            if (frame.system, frame.component) not in channel.clients:
-                channel.clients.add((frame.system, frame.component))
-                out.append(Log("info", "link", f"client {frame.system}/{frame.component} seen"))
-            message = frame.message()
-            if message is None:
-                continue
-            for server in self._servers_on(given.link):
-                effects = server.handle(client, frame.sequence, message, now_ns)
-                self._emit(server, effects, out)
-
-    def _emit(self, server: VehicleServer, effects: list[Effect], out: list[Output]) -> None:
-        """Messages of one vehicle and one moment share a datagram, channel by channel."""
-        if not effects:
-            return
-        packed: dict[int, list[bytes]] = {}
-        for effect in effects:
-            match effect:
-                case Note():
-                    out.append(Log(effect.level, f"vehicle{server.system}", effect.text))
-                case Send(channel=None):
-                    for number, channel in self._channels.items():
-                        if server in self._servers_on(channel.link):
-                            self._pack(packed, number, server, effect)
-                case Send(channel=number) if number in self._channels:
-                    self._pack(packed, number, server, effect)
-                case Send():
-                    # The channel closed between the request and its answer.
-                    continue
-        for number, frames in packed.items():
-            channel = self._channels[number]
-            out.extend(Transmit(channel.link, channel.peer, data) for data in _datagrams(frames))
-
-    def _pack(
-        self, packed: dict[int, list[bytes]], number: int, server: VehicleServer, effect: Send
-    ) -> None:
-        sequences = self._channels[number].sequences
-        sequence = sequences.get(server.system, 0)
-        sequences[server.system] = (sequence + 1) & 0xFF
-        frame = encode(effect.message, sequence, server.system, COMPONENT)
-        packed.setdefault(number, []).append(frame)
-
-
-def _datagrams(frames: list[bytes]) -> list[bytes]:
-    """Whole frames, joined up to `DATAGRAM_BYTES`."""
-    datagrams = [frames[0]]
-    for frame in frames[1:]:
-        if len(datagrams[-1]) + len(frame) <= DATAGRAM_BYTES:
-            datagrams[-1] += frame
-        else:
-            datagrams.append(frame)
-    return datagrams
+def _impairment(fault: LinkFault) -> Impairment:
+    """An outage without an end: the fault that ends it comes from the schedule."""
+    return Impairment(
+        loss=fault.loss,
+        duplicate=fault.duplicate,
+        reorder=fault.reorder,
+        delay_ns=round(fault.delay_s * 1e9),
+        jitter_ns=round(fault.jitter_s * 1e9),
+        outage_until_ns=NEVER_NS if fault.out else 0,
+    )

@@ -28,6 +28,8 @@ from gcs.gate.types import (
     SwitchFence,
 )
 
+TICK_S = 0.05
+"""The session ticks at 20 Hz."""
 DISARM_WAIT_S = 3.0
 """How long a landing that is on the ground waits to be reported disarmed."""
 
@@ -95,7 +97,8 @@ def _take_control(core: Core) -> None:
     core.cancel_commands()
     memory.hold, memory.goal = Goal(memory.pos_ned, None, core.evidence), None
     memory.control = Control.TAKING
-    stream_s = 0.0 if memory.personality == "ardupilot" else times.stream_s
+    # The stream begins with the next tick of its grid, not with the request.
+    stream_s = 0.0 if memory.personality == "ardupilot" else times.stream_s + TICK_S
     memory.ask_control_ns = core.after_ns(stream_s)
     core.due(stream_s + times.timeout_s)
 

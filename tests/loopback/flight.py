@@ -242,9 +242,12 @@ class Flight(Looks):
         self.feed(ports.Datagram(0, data))
 
     def push(self, v_enu: Vec3) -> None:
-        """A gust: the vehicle has this velocity from now on, until its control has braked."""
-        body = self.vehicle._quad.body
-        body.vel_e, body.vel_n, body.vel_d = v_enu[0], v_enu[1], -v_enu[2]
+        """A gust: the vehicle has this velocity from now on, until its control has braked.
+
+        The accelerometer feels such a blow, so the estimate has the velocity at once.
+        """
+        for block in (self.vehicle.blocks.body, self.vehicle.blocks.est):
+            block.vel_e, block.vel_n, block.vel_d = v_enu[0], v_enu[1], -v_enu[2]
 
     def truth_enu(self) -> Vec3:
         """Where the vehicle really is."""

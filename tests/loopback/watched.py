@@ -32,6 +32,8 @@ TAKE_OFF = 22
 FORCE = 21196.0
 ROUNDING_M = 1e-4
 NEAR_GROUND_M = 0.3
+LAB_REST_M = 0.5
+"""The lab's brake acts only beyond half a metre outside the cage."""
 HOME_MOVES_M = 0.5
 """The vehicle sets its home anew when it is armed; the gate knows the one before for a while."""
 
@@ -181,13 +183,16 @@ class WatchedFlight(Flight):
     def inside(self, pos_ned: Vec3, held: bool) -> bool:
         """Inside the fence as this file understands it: the lab's cage, or 150 m of home.
 
-        The floor does not apply to a hold at the beginning or the end of a flight.
+        The floor does not apply to a hold at the beginning or the end of a flight.  The lab has no
+        margin for goals and stops nobody who is less than half a metre outside, so there one may
+        come to rest; a goal may not be there.
         """
         north_m, east_m, up_m = pos_ned[0], pos_ned[1], -pos_ned[2]
         floor_m = -NEAR_GROUND_M if held else -ROUNDING_M
         if self.policy.name == "lab":
-            sides = max(abs(north_m), abs(east_m)) <= 5.0 + ROUNDING_M
-            return sides and floor_m <= up_m <= 2.0 + ROUNDING_M
+            over_m = LAB_REST_M if held else ROUNDING_M
+            sides = max(abs(north_m), abs(east_m)) <= 5.0 + over_m
+            return sides and floor_m <= up_m <= 2.0 + over_m
         home_ned = self.vehicle.home_pos_ned or (0.0, 0.0, 0.0)
         away_m = math.hypot(north_m - home_ned[0], east_m - home_ned[1])
         home_up_m = -home_ned[2]

@@ -9,6 +9,7 @@ from math import isfinite
 
 from vehicle_sim.autopilot import plan as plans
 from vehicle_sim.autopilot.guided import AnySetpoint, Guided, is_sound
+from vehicle_sim.autopilot.hands import Hands
 from vehicle_sim.autopilot.interface import (
     AttitudeSetpoint,
     Geodetic,
@@ -18,98 +19,31 @@ from vehicle_sim.autopilot.interface import (
     Vec3,
     Vehicle,
 )
-from vehicle_sim.autopilot.modes import KINDS, MODES, Behaviour, Flag, Mode, Personality, by_number
+from vehicle_sim.autopilot.modes import MODES, Behaviour, Personality
 from vehicle_sim.autopilot.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.simulated import Simulated
 from vehicle_sim.autopilot.tasks import Hold
-from vehicle_sim.autopilot.view import View
+from vehicle_sim.fleet import Seat, put_home, restart
+from vehicle_sim.model.faults import ClockJump, Fault, RcLost, Reboot, befall
 
 _LOWEST_GOAL_UP_M = 0.5
-_FASTEST_M_S = 20.0
 
 
-class Autopilot(View):
+class Autopilot(Hands):
     """`Autopilot(personality, home, seed, index, params)`; `home` is where it stands at boot.
 
-    Local NED has its origin there; `index` tells vehicles of one seed apart.
+    Local NED has its origin there; `index` tells vehicles of one seed apart; `seat` is its place
+    in a fleet's engine, if it has not one of its own.
     """
 
-    # ------------------------------------------------------------------ arming and modes
+    def _restart(self) -> None:
+        super()._restart()
+        self._simulated = Simulated(self.parameters, self._field.lat_deg)
 
-    @property
-    def _not_now(self) -> Result:
-        """How the personality answers what its own checks refuse."""
-        return Result.FAILED if self.personality == "ardupilot" else Result.TEMPORARILY_REJECTED
-
-    def arm(self, force: bool) -> Result:
-        if self._armed:
-            return Result.ACCEPTED
-        if self._terminated:
-            return Result.DENIED
-        reason = self._why_not_arm()
-        if reason is not None and not force:
-            self._say(2, reason)
-            return self._not_now
-        self._armed = True
-        self._auto_disarm.on_ground(False, self.time_ns)
-        if self._origin is not None:
-            self.move_home(None)
-        self._task.begin(self._look_around(), self._pilot.heading)
-        self._pilot.rest()
-        self._say(6, "Arming motors" if self.personality == "ardupilot" else "Armed by command")
-        return Result.ACCEPTED
-
-    def disarm(self, force: bool) -> Result:
-        if not self._armed:
-            return Result.ACCEPTED
-        if self._pilot.flying and not force:
-            self._say(4, "Disarming denied: not landed")
-            return Result.FAILED if self.personality == "ardupilot" else Result.DENIED
-        word = "Disarming motors" if self.personality == "ardupilot" else "Disarmed by command"
-        self._disarm(word)
-        return Result.ACCEPTED
-
-    def set_mode(self, base_mode: int, custom_mode: int) -> Result:
-        if not base_mode & Flag.CUSTOM_MODE_ENABLED:
-            return Result.UNSUPPORTED
-        mode = by_number(self.personality, custom_mode)
-        if mode is None:
-            self._say(4, f"No such mode: {custom_mode}")
-            return Result.DENIED if self.personality == "px4" else Result.FAILED
-        return self._change_mode(mode)
-
-    def set_mode_kind(self, kind: str) -> Result:
-        name = KINDS[self.personality].get(kind)
-        if name is None:
-            return Result.UNSUPPORTED
-        return self._change_mode(MODES[self.personality][name])
-
-    def _change_mode(self, mode: Mode) -> Result:
-        # Asked to hold while it holds it stops anew: it may be on its way to a reposition goal.
-        same = mode is self._mode and self._paused is None
-        if same and mode.behaviour is not Behaviour.HOLD:
-            return Result.ACCEPTED
-        if mode.needs_position and not self._position_ok:
-            self._say(4, f"{mode.name} refused: no position estimate")
-            return self._not_now
-        if mode.behaviour is Behaviour.MISSION and self._mission.empty:
-            self._say(4, f"{mode.name} refused: no mission")
-            return Result.DENIED if self.personality == "px4" else Result.FAILED
-        if mode.name == "OFFBOARD":
-            return self._ask_offboard(mode)
-        self._enter(mode)
-        return Result.ACCEPTED
-
-    def _ask_offboard(self, mode: Mode) -> Result:
-        """A stream of more than 2 Hz is a must; the mode follows when it has lasted a second."""
-        wall_ns = self._sense().wall_ns
-        if not self._stream.alive(wall_ns):
-            self._say(4, "Offboard refused: no setpoint stream")
-            return Result.TEMPORARILY_REJECTED
-        if self._stream.proven(wall_ns):
-            self._enter(mode)
-        else:
-            self._offboard_wanted = True
-        return Result.ACCEPTED
+    def _decide(self, regular: bool) -> None:
+        for fault in self._simulated.news():
+            self.inject(fault)
+        super()._decide(regular)
 
     # -------------------------------------------------------------------------- flights
 
@@ -131,6 +65,7 @@ class Autopilot(View):
             return Result.FAILED
         home_d = self._home_ned[2] if self._home_ned is not None else 0.0
         self._task.take_off(home_d - up_m, self._look_around(), self._pilot.heading)
+        self._poke()
         return Result.ACCEPTED
 
     def land(self) -> Result:
@@ -146,6 +81,8 @@ class Autopilot(View):
             return Result.DENIED
         if pos_ned is not None and not all(map(isfinite, pos_ned)):
             return Result.DENIED
+        if pos_ned is not None and self._fenced_off(pos_ned):
+            return Result.FAILED if self.personality == "ardupilot" else Result.DENIED
         if speed_m_s is not None and speed_m_s > 0.0:
             self.cruise_at(speed_m_s)
         goal = pos_ned if pos_ned is not None else self._look_around().stop_ned
@@ -153,8 +90,12 @@ class Autopilot(View):
             self._enter_kind("hold", Hold(goal, yaw_rad))
             return Result.ACCEPTED
         if not isinstance(self._task, Guided):
+            if self._held_by_fence(MODES["ardupilot"]["GUIDED"]):
+                return Result.FAILED
             self._enter_kind("guided")
-        self._stream.heard(Setpoint(pos_ned=goal, yaw_rad=yaw_rad), self._sense().wall_ns)
+        goal_setpoint = Setpoint(pos_ned=goal, yaw_rad=yaw_rad)
+        self._stream.heard(goal_setpoint, self._sense().wall_ns, self.time_ns)
+        self._poke()
         return Result.ACCEPTED
 
     def pause(self) -> Result:
@@ -193,7 +134,7 @@ class Autopilot(View):
             return Result.ACCEPTED
         if not isfinite(speed_m_s) or speed_m_s <= 0.0:
             return Result.DENIED
-        self.cruise_at(min(speed_m_s, _FASTEST_M_S))
+        self.cruise_at(speed_m_s)
         return Result.ACCEPTED
 
     def change_altitude(self, up_above_home_m: float) -> Result:
@@ -208,6 +149,7 @@ class Autopilot(View):
     ) -> Result:
         if not self._pilot.flying or not isfinite(yaw_rad):
             return Result.DENIED
+        self._roi_ned = None
         heading = self._pilot.heading
         if relative:
             yaw_rad = heading.yaw_rad + (-yaw_rad if direction < 0 else yaw_rad)
@@ -223,6 +165,11 @@ class Autopilot(View):
         return Result.ACCEPTED
 
     def set_setpoint(self, setpoint: Setpoint) -> None:
+        if setpoint.yaw_rad is not None or setpoint.yaw_rate_rad_s is not None:
+            self._roi_ned = None
+        goal = setpoint.pos_ned
+        if self.personality == "ardupilot" and goal is not None and self._fenced_off(goal):
+            return  # ArduCopter's GUIDED takes no goal outside its fence
         self._hear(setpoint)
 
     def set_attitude(self, setpoint: AttitudeSetpoint) -> None:
@@ -232,7 +179,8 @@ class Autopilot(View):
         """What is not sound is as good as not sent; a take-off in GUIDED is not disturbed."""
         taking_off = isinstance(self._task, Guided) and self._task.taking_off
         if is_sound(setpoint) and not taking_off:
-            self._stream.heard(setpoint, self._sense().wall_ns)
+            self._stream.heard(setpoint, self._sense().wall_ns, self.time_ns)
+            self._poke()
 
     # --------------------------------------------------------------------------- camera
 
@@ -255,6 +203,7 @@ class Autopilot(View):
 
     def load_plan(self, items: tuple[PlanItem, ...]) -> None:
         self._mission.load(items)
+        self._judge_mission()
         if self._task is self._mission:
             if not self._mission.empty:
                 self._mission.begin(self._look_around(), self._pilot.heading)
@@ -279,6 +228,7 @@ class Autopilot(View):
     def mission_set_current(self, seq: int) -> Result:
         if not self._mission.jump_to(seq):
             return Result.DENIED
+        self._poke()
         return Result.ACCEPTED
 
     # ------------------------------------------------------------------------ last things
@@ -288,11 +238,42 @@ class Autopilot(View):
         return Result.ACCEPTED
 
     def reboot(self) -> Result:
-        """Starts anew on the ground, disarmed; the clock goes on, so nobody's timers jump back."""
+        """Starts anew on the ground, disarmed; its clock does, too."""
         if self._armed:
             return Result.DENIED
-        self._restart()
+        self._power_up()
         return Result.ACCEPTED
+
+    def reset_parameters(self) -> None:
+        if self.personality == "px4":
+            self.parameters.reset()
+        else:
+            self.parameters.erase()
+            self._say(4, "All parameters reset, reboot board")
+
+    def _power_up(self) -> None:
+        self.parameters.power_up()
+        # Who stands is a simulator's vehicle again on its home ground; who flies falls.
+        if self._body.touching:
+            put_home(self._body)
+        restart(self.blocks, self.engine.frame)
+        self._clock_off_ns = 0
+        self._restart()
+
+    @property
+    def takes_failures(self) -> bool:
+        return self.personality != "px4" or self.parameters.get("SYS_FAILURE_EN") == 1
+
+    def inject(self, fault: Fault) -> None:
+        match fault:
+            case RcLost(lost):
+                self._radio.deaf = lost
+            case ClockJump(by_ns):
+                self._clock_off_ns += by_ns
+            case Reboot():
+                self._power_up()
+            case _:
+                befall(fault, self._body, self.blocks.sensed)
 
 
 def _on_earth(where: Geodetic) -> bool:
@@ -305,6 +286,7 @@ def create(
     seed: int,
     index: int = 0,
     params: Parameters | None = None,
+    seat: Seat | None = None,
 ) -> Vehicle:
     """A vehicle, for whoever needs no more than the contract."""
-    return Autopilot(personality, home, seed, index, params)
+    return Autopilot(personality, home, seed, index, params, seat)

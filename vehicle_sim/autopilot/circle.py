@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, pi, sin, sqrt
+from math import atan2, cos, hypot, pi, sin, sqrt
 
-from vehicle_sim.autopilot.demands import Demand, FlyTo, Situation, Turner
+from vehicle_sim.autopilot.demands import Demand, FlyCircle, FlyTo, Situation, Turner
 from vehicle_sim.autopilot.interface import Landed, Target, Vec3
-from vehicle_sim.autopilot.tasks import distance
+from vehicle_sim.autopilot.tasks import distance, face
 
 _ON_CIRCLE_M = 1.0
-_STEP_S = 0.02
 
 
 class Circle:
     """`turns` round `centre_ned`, clockwise seen from above where `clockwise`.
 
     The speed is that of the vehicle's own flights, or what half its acceleration can bend
-    into the circle.
+    into the circle, the nose to the centre.  What has been turned is measured, not counted on.
     """
 
     landed_word = Landed.IN_AIR
@@ -43,21 +42,27 @@ class Circle:
         return True
 
     def begin(self, s: Situation, turner: Turner) -> None:
-        centre = self._centre
-        self._angle = atan2(s.pos_ned[1] - centre[1], s.pos_ned[0] - centre[0])
+        self._angle = self._bearing(s)
 
     def update(self, s: Situation, turner: Turner) -> Demand:
         if not self._started:
             entry = self._point()
             self._started = distance(s.pos_ned, entry) < _ON_CIRCLE_M
-            return FlyTo(entry, s.limits)
+            if not self._started:
+                return FlyTo(entry, s.limits)
+        face(self._centre, s, turner)
+        angle = self._bearing(s)
+        turned = angle - self._angle
+        turned -= 2.0 * pi * round(turned / (2.0 * pi))
+        self._angle = angle
+        self._left_rad -= self._way * turned
         speed = min(s.limits.speed_m_s, sqrt(0.5 * s.limits.accel_m_s2 * self._radius))
-        turn = speed / self._radius * _STEP_S
-        self._angle += self._way * turn
-        self._left_rad -= turn
-        along = self._way * speed
-        v_ned = (-along * sin(self._angle), along * cos(self._angle), 0.0)
-        return FlyTo(self._point(), s.limits, v_ned, straight=False)
+        return FlyCircle(self._centre, self._radius, self._way * speed / self._radius, s.limits)
+
+    def _bearing(self, s: Situation) -> float:
+        """Of the vehicle from the centre; where it stands right there, as it was."""
+        north, east = s.pos_ned[0] - self._centre[0], s.pos_ned[1] - self._centre[1]
+        return atan2(east, north) if hypot(north, east) > 0.0 else self._angle
 
     def _point(self) -> Vec3:
         c = self._centre

@@ -7,35 +7,51 @@ four files for four reasons to change, one object.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import assert_never
 
+from vehicle_sim.autopilot.airflow import Airflow
 from vehicle_sim.autopilot.arming import AutoDisarm
 from vehicle_sim.autopilot.camera import Camera
 from vehicle_sim.autopilot.demands import Situation, Task
-from vehicle_sim.autopilot.failsafe import Failsafes
+from vehicle_sim.autopilot.estimator import Health, health, position_ok
+from vehicle_sim.autopilot.follow import Follow, Leader
+from vehicle_sim.autopilot.gains import write_gains
 from vehicle_sim.autopilot.geo import Projection, projection
+from vehicle_sim.autopilot.geofence import Geofence
+from vehicle_sim.autopilot.gestures import Gestures
 from vehicle_sim.autopilot.guided import Guided, Stream
 from vehicle_sim.autopilot.interface import (
     Geodetic,
     HomeChanged,
     Power,
+    Quat,
+    Result,
     StatusText,
     Vec3,
     VehicleEvent,
 )
 from vehicle_sim.autopilot.mission import Mission
 from vehicle_sim.autopilot.modes import BOOT_MODE, KINDS, MODES, Behaviour, Mode, Personality
+from vehicle_sim.autopilot.orbit import Orbit, ardupilot_circle, px4_default
 from vehicle_sim.autopilot.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.pilot import Pilot, heading_of
 from vehicle_sim.autopilot.plan import Datum
+from vehicle_sim.autopilot.rally import Point
+from vehicle_sim.autopilot.stick_tasks import StickFlight
+from vehicle_sim.autopilot.sticks import Radio
 from vehicle_sim.autopilot.tasks import Hold, Land, Level, Return, TakeOff
-from vehicle_sim.autopilot.trajectory import Limits
-from vehicle_sim.model import sensors
+from vehicle_sim.autopilot.trajectory import Limits, stopping_point
+from vehicle_sim.autopilot.troubles import Troubles
+from vehicle_sim.autopilot.troubles_copter import CopterTroubles
+from vehicle_sim.autopilot.troubles_px4 import Px4Troubles
+from vehicle_sim.autopilot.upset import Upsets
+from vehicle_sim.fleet import DT_NS, Blocks, Few, Seat, Spec
 from vehicle_sim.model.airframe import load
-from vehicle_sim.model.quad import Quad
+from vehicle_sim.model.battery import charge_by_voltage
 
-DT_NS = 4_000_000
-DT_S = DT_NS / 1e9
-_READY_NS = 1_000_000_000
+UNMEASURED = Power(0.0, -0.01, 0.0, -1)
+"""As MAVLink says it: current and remaining charge of -1."""
+_TROUBLES: dict[Personality, type[Troubles]] = {"px4": Px4Troubles, "ardupilot": CopterTroubles}
 
 
 class Core:
@@ -48,33 +64,49 @@ class Core:
         seed: int,
         index: int = 0,
         params: Parameters | None = None,
+        seat: Seat | None = None,
     ) -> None:
+        """Without a `seat` in a fleet's engine the vehicle has an engine of its own."""
         self.parameters = params if params is not None else Parameters(personality)
         self.personality = personality
-        self._quad = Quad(load(), DT_S)
-        self._sensors = sensors.Sensors(seed, index, DT_S)
-        self._pilot = Pilot(self._quad)
+        self._seat = seat or Seat(Few([Spec(seed, index, home.lat_deg)], load()), 0)
+        self.engine = self._seat.engine
+        self.blocks: Blocks = self.engine.blocks(self._seat.lane)
+        self._body, self._est = self.blocks.body, self.blocks.est
+        self._pilot = Pilot(self.blocks.flight, self.engine.frame.idle)
         self._events: list[VehicleEvent] = []
-        self._step = 0
+        self._index = index
+        self._poked = False
+        self._clock_off_ns = 0
         self._wall_ns: int | None = None
         self._field = home
         self._projection: Projection = projection(personality, home)
         self._cruise_m_s: float | None = None
         self._limits_version = -1
+        self._judged: tuple[int, Health] | None = None
         self._situation = Situation(self._limits())
         self._camera = Camera()
+        self._airflow = Airflow()
+        self._radio = Radio(self.parameters)
+        self._gestures = Gestures(self.parameters)
+        self._leader = Leader(self.parameters)
         self._auto_disarm = AutoDisarm()
         self._stream = Stream()
-        self._failsafes = Failsafes(self.parameters)
+        self._troubles: Troubles = _TROUBLES[personality](self.parameters)
+        self._upsets = Upsets(self.parameters)
+        self._geofence = Geofence(self.parameters)
+        self._rally: tuple[Point, ...] = ()
         self._mission = Mission(self.parameters, self)
         self._restart()
 
     def _restart(self) -> None:
         """As after power-up, but for the clock and the stored mission."""
         self._boot_ns = self.time_ns
+        self._judged = None
         self._origin: Geodetic | None = None
         self._home_ned: Vec3 | None = None
         self._armed = False
+        self._armed_ns = self.time_ns
         self._terminated = False
         self._failsafe_active = False
         self._offboard_wanted = False
@@ -82,8 +114,12 @@ class Core:
         self._paused: Task | None = None
         self._cruise_m_s = None
         self._mode: Mode = MODES[self.personality][BOOT_MODE[self.personality]]
-        self._task: Task = Hold() if self._mode.behaviour is Behaviour.HOLD else Level()
+        self._radio.forget()
+        self._gestures.forget()
+        self._roi_ned: Vec3 | None = None
+        self._task: Task = self._task_of(self._mode)
         self._pilot.stop()
+        self._airflow.forget()
         self._stream.forget()
         self._mission.rewind()
         self._limits_version = -1
@@ -92,15 +128,19 @@ class Core:
 
     @property
     def time_ns(self) -> int:
-        return self._step * DT_NS
+        return self.engine.k * DT_NS
+
+    @property
+    def clock_ns(self) -> int:
+        clock_ns = self.engine.k * DT_NS - self._boot_ns + self._clock_off_ns
+        return clock_ns if clock_ns > 0 else 0
+
+    def _poke(self) -> None:
+        """Something came that cannot wait for the next regular decision."""
+        self._poked = True
 
     def wall(self, wall_ns: int) -> None:
         self._wall_ns = wall_ns
-
-    def gcs_heard(self, wall_ns: int) -> None:
-        if self._failsafes.station_lost:
-            self._say(6, "Ground station is back")
-        self._failsafes.station_heard(wall_ns)
 
     def events(self) -> list[VehicleEvent]:
         drained = self._events
@@ -113,37 +153,43 @@ class Core:
     def _say(self, severity: int, text: str) -> None:
         self._events.append(StatusText(severity, text))
 
-    # ------------------------------------------------------------------ the 50 Hz part
+    # ------------------------------------------------------------------ what it sees
 
     def _sense(self) -> Situation:
         s = self._situation
-        body = self._quad.body
-        err = self._sensors
-        s.time_ns = self._step * DT_NS
+        est = self._est
+        s.time_ns = self.time_ns
         s.wall_ns = s.time_ns if self._wall_ns is None else self._wall_ns
-        s.pos_ned = (
-            body.pos_n + err.err_pos_n,
-            body.pos_e + err.err_pos_e,
-            body.pos_d + err.err_pos_d,
-        )
-        s.v_ned = (
-            body.vel_n + err.err_vel_n,
-            body.vel_e + err.err_vel_e,
-            body.vel_d + err.err_vel_d,
-        )
+        s.pos_ned = (est.pos_n, est.pos_e, est.pos_d)
+        s.v_ned = (est.vel_n, est.vel_e, est.vel_d)
         s.flying = self._pilot.flying
         if self.parameters.version != self._limits_version:
             s.limits = self._limits()
         return s
 
+    @property
+    def health(self) -> Health:
+        """The estimate judged: once a step, for all who ask."""
+        k = self.engine.k
+        if self._judged is None or self._judged[0] != k:
+            self._judged = (k, health(self._est, self.blocks.sensed))
+        return self._judged[1]
+
     def _look_around(self) -> Situation:
         """The situation with what only a change of task wants to know."""
         s = self._sense()
-        body = self._quad.body
-        s.heading_rad = heading_of((body.qw, body.qx, body.qy, body.qz))
-        s.stop_ned = self._pilot.reference.stopping_point(s.limits) if s.flying else s.pos_ned
+        s.heading_rad = heading_of(self._attitude)
+        f = self.blocks.flight
+        # Where the estimate has just jumped, the reference is still where it was before.
+        sure = s.flying and f.resets == self._est.resets
+        s.stop_ned = stopping_point(f, s.limits) if sure else s.pos_ned
         s.home_ned = self._home_ned or (0.0, 0.0, 0.0)
         return s
+
+    @property
+    def _attitude(self) -> Quat:
+        est = self._est
+        return (est.qw, est.qx, est.qy, est.qz)
 
     # ------------------------------------------------------------------ modes and tasks
 
@@ -153,14 +199,20 @@ class Core:
         self._failsafe_active = False
         self._offboard_wanted = False
         self._paused = None
-        self._task = task if task is not None else self._task_of(mode.behaviour)
+        if self.personality == "ardupilot":
+            self._roi_ned = None  # ArduCopter's every mode begins with its own way to point
+        self._task = task if task is not None else self._task_of(mode)
         self._task.begin(self._look_around(), self._pilot.heading)
+        self._poke()
 
     def _enter_kind(self, kind: str, task: Task | None = None) -> None:
         self._enter(MODES[self.personality][KINDS[self.personality][kind]], task)
 
-    def _task_of(self, behaviour: Behaviour) -> Task:
-        match behaviour:
+    def _task_of(self, mode: Mode) -> Task:
+        if mode.law is not None:
+            idle = Level if mode.behaviour is Behaviour.LEVEL else Hold
+            return StickFlight(mode.law, self.parameters, self._radio, idle)
+        match mode.behaviour:
             case Behaviour.LEVEL:
                 return Level()
             case Behaviour.HOLD:
@@ -177,6 +229,14 @@ class Core:
                 return Return(self.parameters)
             case Behaviour.LAND:
                 return Land(self.parameters)
+            case Behaviour.ORBIT:
+                return Orbit(px4_default, self.parameters, self._radio)
+            case Behaviour.CIRCLE:
+                return Orbit(ardupilot_circle(self.parameters), self.parameters)
+            case Behaviour.FOLLOW:
+                return Follow(self.parameters, self._leader)
+            case _:
+                assert_never(mode.behaviour)
 
     def _take_off_task(self, up_m: float) -> TakeOff:
         home_d = self._home_ned[2] if self._home_ned is not None else 0.0
@@ -192,15 +252,21 @@ class Core:
             si(Quantity.DESCEND_M_S),
             si(Quantity.ACCEL_M_S2),
             si(Quantity.ACCEL_VERTICAL_M_S2),
+            si(Quantity.ACCEL_UP_M_S2),
         )
+        write_gains(self.parameters, self.blocks.flight, self._est, self.engine.frame)
+        if self.personality == "ardupilot":
+            self._pilot.idle = self.parameters.get("MOT_SPIN_ARM")
         cruise = self._cruise_m_s
-        return limits if cruise is None else replace(limits, speed_m_s=cruise)
+        if cruise is None:
+            return limits
+        return replace(limits, speed_m_s=min(cruise, si(Quantity.FASTEST_M_S)))
 
     # ------------------------------------------------------------------------- arming
 
     @property
     def _position_ok(self) -> bool:
-        return self.time_ns - self._boot_ns >= _READY_NS
+        return position_ok(self._est)
 
     def _disarm(self, text: str) -> None:
         self._armed = False
@@ -226,13 +292,26 @@ class Core:
 
     @property
     def power(self) -> Power:
-        battery = self._quad.battery
+        body = self._body
+        if self.personality == "ardupilot" and self.parameters.get("BATT_MONITOR") == 0:
+            return UNMEASURED
         return Power(
-            battery.voltage_v,
-            battery.current_a,
-            battery.consumed_mah,
-            int(100.0 * battery.remaining + 0.5),
+            body.voltage_v,
+            body.current_a,
+            body.consumed_mah,
+            int(100.0 * self._charge_seen + 0.5),
         )
+
+    @property
+    def _charge_seen(self) -> float:
+        """0..1: PX4, unless it is told a capacity, goes by the voltage; ArduCopter counts."""
+        px4 = self.personality == "px4"
+        capacity_mah = self.parameters.get("BAT1_CAPACITY" if px4 else "BATT_CAPACITY")
+        if px4 and capacity_mah <= 0.0:
+            return charge_by_voltage(self._body, self.engine.frame)
+        if capacity_mah <= 0.0:
+            return 0.0
+        return max(0.0, 1.0 - self._body.consumed_mah / capacity_mah)
 
     # ----------------------------------------------------------- what a mission asks for
 
@@ -248,6 +327,7 @@ class Core:
     def cruise_at(self, speed_m_s: float | None) -> None:
         self._cruise_m_s = speed_m_s
         self._limits_version = -1
+        self._poke()
 
     def move_home(self, where_ned: Vec3 | None) -> None:
         self._home_ned = self._sense().pos_ned if where_ned is None else where_ned
@@ -255,6 +335,18 @@ class Core:
 
     def turn_nose(self, yaw_rad: float, rate_rad_s: float, direction: int) -> None:
         self._pilot.heading.turn(yaw_rad, rate_rad_s, direction)
+
+    def enable_fence(self, choice: int) -> Result:
+        """ArduCopter's DO_FENCE_ENABLE, command or mission item; PX4 does not know it."""
+        if self.personality == "px4":
+            return Result.UNSUPPORTED
+        if choice not in (0, 1, 2):
+            return Result.FAILED
+        self._geofence.bar_floor(choice == 2)
+        if choice != 2:
+            self.parameters.set("FENCE_ENABLE", choice)
+            self._say(5, "Fence enabled" if choice else "Fence disabled")
+        return Result.ACCEPTED
 
     def nose_turns(self) -> bool:
         return self._pilot.heading.turning

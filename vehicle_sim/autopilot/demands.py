@@ -13,17 +13,44 @@ STILL: Vec3 = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class FlyTo:
-    """To a goal [m, NED] that itself moves at `v_ned`; along a line where `straight`."""
+    """To a goal [m, NED] that itself moves at `v_ned`; along a line where `straight`.
+
+    `since_ns`: when the goal was at `pos_ned`, for one that moves.
+    """
 
     pos_ned: Vec3
     limits: Limits
     v_ned: Vec3 = STILL
     straight: bool = True
+    since_ns: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class FlyVelocity:
     v_ned: Vec3
+    limits: Limits
+
+
+@dataclass(frozen=True, slots=True)
+class FlyAtHeight:
+    """At a velocity over the ground [m/s], and to or at a height."""
+
+    v_n: float
+    v_e: float
+    down_m: float
+    limits: Limits
+
+
+@dataclass(frozen=True, slots=True)
+class FlyCircle:
+    """Round a centre at its height, from where the vehicle is; `turn_rad_s` > 0 = clockwise.
+
+    The same centre again, with another radius or speed, goes on from where it is.
+    """
+
+    centre_ned: Vec3
+    radius_m: float
+    turn_rad_s: float
     limits: Limits
 
 
@@ -41,6 +68,22 @@ class FlyLevel:
 
 
 @dataclass(frozen=True, slots=True)
+class FlyLean:
+    """Leaning by hand: accelerate horizontally [m/s^2] without feedback, the nose as it turns.
+
+    Vertically one of three: at the height `down_m`, at the velocity `v_d`, or with `thrust` as a
+    part of full throttle.
+    """
+
+    a_n: float
+    a_e: float
+    limits: Limits
+    down_m: float | None = None
+    v_d: float | None = None
+    thrust: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class FlyAttitude:
     """An attitude or body rates from outside.
 
@@ -53,11 +96,20 @@ class FlyAttitude:
     limits: Limits
 
 
-Demand: TypeAlias = FlyTo | FlyVelocity | FlyAcceleration | FlyLevel | FlyAttitude
+Demand: TypeAlias = (
+    FlyTo
+    | FlyVelocity
+    | FlyAtHeight
+    | FlyCircle
+    | FlyAcceleration
+    | FlyLevel
+    | FlyLean
+    | FlyAttitude
+)
 
 
 class Situation:
-    """The flight as the estimator and the pilot see it, rewritten at 50 Hz.
+    """The flight as the estimator and the pilot see it, rewritten for every decision.
 
     `stop_ned` is where the vehicle comes to rest if it brakes now.  `limits` are those of the
     vehicle's own flights.  `flying` = off the ground, by the land detector.
@@ -95,7 +147,10 @@ class Turner(Protocol):
 
 
 class Task(Protocol):
-    """What a mode flies.  `begin` when it is entered, then `update` at 50 Hz while armed."""
+    """What a mode flies.
+
+    `begin` when it is entered; while armed `update` at 10 Hz, and at once when something came.
+    """
 
     @property
     def landed_word(self) -> Landed:

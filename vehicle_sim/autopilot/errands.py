@@ -1,13 +1,26 @@
-"""What a mission does beside flying: speed, home, camera, region of interest."""
+"""What a mission does beside flying: speed, home, camera, region of interest, and when.
+
+The items between two flown ones are done while the second is flown to, one after another; a
+condition among them (CONDITION_DELAY, _DISTANCE, _YAW) holds up those that follow it, never the
+flight.  What is still held up when the next flown item begins is left out, as in ArduPilot.
+"""
 
 from __future__ import annotations
 
-from math import isfinite
+from collections import deque
+from math import hypot, isfinite, radians
 from typing import Protocol
 
 from vehicle_sim.autopilot.demands import Situation, Turner
-from vehicle_sim.autopilot.interface import PlanItem, Vec3, VehicleEvent
-from vehicle_sim.autopilot.plan import Cmd, Datum, place_of
+from vehicle_sim.autopilot.interface import (
+    MissionReached,
+    PlanItem,
+    Result,
+    StatusText,
+    Vec3,
+    VehicleEvent,
+)
+from vehicle_sim.autopilot.plan import KINDS, Cmd, Datum, Kind, has_place, place_of
 from vehicle_sim.autopilot.tasks import distance, face
 
 
@@ -22,26 +35,102 @@ class Crew(Protocol):
     def move_home(self, where_ned: Vec3 | None) -> None: ...
     def turn_nose(self, yaw_rad: float, rate_rad_s: float, direction: int) -> None: ...
     def nose_turns(self) -> bool: ...
+    def enable_fence(self, choice: int) -> Result: ...
     def leave_for_return(self) -> bool:
         """Change to the return mode; False where the personality returns within the mission."""
         ...
 
 
 class Errands:
-    """Carries out the items that happen at once, and keeps up those that last."""
+    """Carries out what is put on its list, and keeps up what lasts."""
 
-    __slots__ = ("_crew", "_last_shot_ned", "_roi_ned", "_trigger_m")
+    __slots__ = (
+        "_begun",
+        "_crew",
+        "_last_shot_ned",
+        "_list",
+        "_reports",
+        "_roi_ned",
+        "_trigger_m",
+        "_until_ns",
+    )
 
-    def __init__(self, crew: Crew) -> None:
+    def __init__(self, crew: Crew, reports: bool = False) -> None:
+        """`reports`: what is done counts as reached, as in PX4; MAVSDK tells the end by it."""
         self._crew = crew
+        self._reports = reports
         self.forget()
 
     def forget(self) -> None:
         self._roi_ned: Vec3 | None = None
         self._trigger_m = 0.0
         self._last_shot_ned: Vec3 | None = None
+        self._list: deque[PlanItem] = deque()
+        self.drop()
 
-    def do(self, item: PlanItem, s: Situation) -> None:
+    def put(self, item: PlanItem) -> None:
+        """The next on the list."""
+        self._list.append(item)
+
+    def drop(self) -> None:
+        """Leave out what has not been done yet."""
+        self._list.clear()
+        self._begun = False
+        self._until_ns = 0
+
+    @property
+    def idle(self) -> bool:
+        return not self._list
+
+    @property
+    def roi_ned(self) -> Vec3 | None:
+        """Where the nose is to point, whatever is flown."""
+        return self._roi_ned
+
+    def work(self, s: Situation, goal_ned: Vec3 | None) -> None:
+        """Down the list, as far as no condition holds it up; `goal_ned` is what is flown to."""
+        while self._list:
+            item = self._list[0]
+            match KINDS[item.command]:
+                case Kind.WAITED:
+                    if not self._begun:
+                        self._begun = True
+                        self._await(item, s)
+                    if not self._met(item, s, goal_ned):
+                        return
+                    self._begun = False
+                case Kind.DONE:
+                    self._do(item, s)
+                case _:
+                    text = f"Mission item {item.seq}: no such equipment, passed over"
+                    self._crew.emit(StatusText(6, text))
+            self._list.popleft()
+            if self._reports:
+                self._crew.emit(MissionReached(item.seq))
+
+    def _await(self, item: PlanItem, s: Situation) -> None:
+        if item.command == Cmd.CONDITION_DELAY:
+            self._until_ns = s.time_ns + int(item.p1 * 1e9)
+        elif item.command == Cmd.CONDITION_YAW:
+            yaw_rad = radians(item.p1)
+            if item.p4 == 1.0:
+                yaw_rad = s.heading_rad + (yaw_rad if item.p3 >= 0.0 else -yaw_rad)
+            rate_rad_s = radians(item.p2) if isfinite(item.p2) else 0.0
+            self._crew.turn_nose(yaw_rad, rate_rad_s, int(item.p3) if isfinite(item.p3) else 0)
+
+    def _met(self, item: PlanItem, s: Situation, goal_ned: Vec3 | None) -> bool:
+        match item.command:
+            case Cmd.CONDITION_DELAY:
+                return s.time_ns >= self._until_ns
+            case Cmd.CONDITION_DISTANCE:
+                if goal_ned is None:
+                    return True
+                north, east = goal_ned[0] - s.pos_ned[0], goal_ned[1] - s.pos_ned[1]
+                return hypot(north, east) <= item.p1
+            case _:
+                return not self._crew.nose_turns()
+
+    def _do(self, item: PlanItem, s: Situation) -> None:
         crew = self._crew
         match item.command:
             case Cmd.CHANGE_SPEED:
@@ -50,12 +139,15 @@ class Errands:
             case Cmd.SET_HOME:
                 here = item.p1 == 1.0
                 crew.move_home(None if here else place_of(item, crew.datum(), s.pos_ned))
-            case Cmd.ROI_LOCATION | Cmd.ROI:
-                self._roi_ned = place_of(item, crew.datum(), s.pos_ned)
+            case Cmd.FENCE_ENABLE:
+                crew.enable_fence(int(item.p1))
             case Cmd.ROI_NONE:
                 self._roi_ned = None
+            case Cmd.ROI_LOCATION | Cmd.ROI:
+                none = item.command == Cmd.ROI and not has_place(item)
+                self._roi_ned = None if none else place_of(item, crew.datum(), s.pos_ned)
             case Cmd.DIGICAM_CONTROL:
-                if item.x == 1:
+                if item.x != 0:
                     crew.take_pictures(0.0, 1)
             case Cmd.IMAGE_START:
                 count = int(item.p3) if isfinite(item.p3) else 1

@@ -37,4 +37,23 @@ class Estimated:
     gps_used: bool = False
     dead_s: float = 0.0
     accuracy_m: float = 0.0
+    no_aid_s: float = 5.0  # so long without a fix, and the position is no longer called good
     resets: int = 0
+    # The estimator's own.
+    age_s: float = 0.0  # since it began to align
+    placed: bool = False  # has had a position since then
+    acc_off_d: float = 0.0  # learnt error of the vertical acceleration, m/s^2
+    baro_shift_m: float = 0.0  # what GPS says the barometer is off by, down
+    baro_s: float = 0.0  # since the last sample that was believed
+    mag_s: float = 0.0
+    then_n: float = 0.0  # the estimate of when the fix that is on its way was taken
+    then_e: float = 0.0
+    then_d: float = 0.0
+    then_vel_n: float = 0.0
+    then_vel_e: float = 0.0
+    then_vel_d: float = 0.0
+    # Innovations over their gates: above 1 a measurement is refused.
+    pos_ratio: float = 0.0
+    vel_ratio: float = 0.0
+    height_ratio: float = 0.0
+    mag_ratio: float = 0.0

@@ -1,49 +1,114 @@
-"""The vehicle's own last resorts: what it does by itself about the battery and the silence.
+"""The vehicle's own last resorts, as tables: which parameter value means which action.
 
-Each parameter value maps to an action in a literal table; the autopilot carries it out.
+What strikes is found by `troubles.py` and `upset.py`; `watch.py` carries it out.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum, IntEnum
+from enum import Enum, IntEnum, auto
 
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.parameters import Parameters
 
 
 class Action(Enum):
-    """What to do.  POSITION, ALTITUDE, MANUAL, HOLD, RETURN and LAND are modes by meaning."""
+    """What to do, worse downwards: of two that strike the worse wins (PX4's own order).
+
+    The values from POSITION to LAND are modes by meaning.  DESCEND is a landing without a
+    position: level, wherever the wind takes it.
+    """
 
     WARN = "warn"
     POSITION = "position"
     ALTITUDE = "altitude"
     MANUAL = "manual"
     HOLD = "hold"
+    BRAKE = "brake"
     RETURN = "return"
     LAND = "land"
-    TERMINATE = "terminate"
+    DESCEND = "descend"
     DISARM = "disarm"
+    TERMINATE = "terminate"
 
 
-class Charge(IntEnum):
-    """How full the battery is, worse upwards."""
+RANK = {action: rank for rank, action in enumerate(Action)}
 
-    FINE = 0
-    LOW = 1
-    CRITICAL = 2
-    EMERGENCY = 3
+
+class Cause(Enum):
+    """Why; each strikes by itself, and is told and acted on once until it has gone."""
+
+    BATTERY = auto()
+    STATION = auto()
+    STICKS = auto()
+    FENCE = auto()
+    POSITION = auto()
+    SETPOINTS = auto()
+    ATTITUDE = auto()
+    MOTOR = auto()
 
 
 @dataclass(frozen=True, slots=True)
 class Failsafe:
-    """One that has just struck: what to do, the sentence for it, and its MAV_SEVERITY."""
+    """One that has just struck: what to do, the sentence for it, and its MAV_SEVERITY.
 
+    `delayed`: PX4 holds for COM_FAIL_ACT_T first, so that the operator can take over.
+    """
+
+    cause: Cause
     action: Action
     text: str
     severity: int
+    delayed: bool = False
 
+
+_PX4_ACTION_WORDS = {
+    Action.POSITION: "Position mode",
+    Action.ALTITUDE: "Altitude mode",
+    Action.MANUAL: "Stabilized mode",
+    Action.HOLD: "Hold",
+    Action.RETURN: "RTL",
+    Action.LAND: "Land",
+    Action.DESCEND: "Descend",
+    Action.DISARM: "Disarm",
+    Action.TERMINATE: "Terminate",
+}
+
+
+def activated(action: Action, cause: str = "") -> str:
+    """What PX4 says when a failsafe acts (events of commander's failsafe framework)."""
+    due = f" due to {cause}" if cause else ""
+    return f"Failsafe activated{due}, triggering {_PX4_ACTION_WORDS[action]}"
+
+
+# --------------------------------------------------------------------------- actions by parameter
+
+_PX4_LOSS = {
+    1: Action.HOLD,
+    2: Action.RETURN,
+    3: Action.LAND,
+    5: Action.TERMINATE,
+    6: Action.DISARM,
+}
+# Without a SmartRTL, and without a landing item in the mission, ArduCopter falls back so.
+_COPTER_LOSS = {
+    1: Action.RETURN,
+    3: Action.RETURN,
+    4: Action.LAND,
+    5: Action.LAND,
+    6: Action.RETURN,
+    7: Action.BRAKE,
+}
+_COPTER_BATTERY = {
+    1: Action.LAND,
+    2: Action.RETURN,
+    3: Action.RETURN,
+    4: Action.LAND,
+    5: Action.TERMINATE,
+    6: Action.RETURN,
+    7: Action.BRAKE,
+}
 
 OFFBOARD_LOSS: dict[int, Action] = {
     0: Action.POSITION,
@@ -57,36 +122,86 @@ OFFBOARD_LOSS: dict[int, Action] = {
 }
 """COM_OBL_RC_ACT."""
 
-_STATION_LOSS: dict[Personality, tuple[str, dict[int, Action]]] = {
-    "px4": (
-        "NAV_DLL_ACT",
-        {
-            1: Action.HOLD,
-            2: Action.RETURN,
-            3: Action.LAND,
-            5: Action.TERMINATE,
-            6: Action.DISARM,
-        },
-    ),
-    "ardupilot": ("FS_GCS_ENABLE", {1: Action.RETURN, 5: Action.LAND}),
+STATION_LOSS: dict[Personality, tuple[str, dict[int, Action]]] = {
+    "px4": ("NAV_DLL_ACT", _PX4_LOSS),
+    "ardupilot": ("FS_GCS_ENABLE", _COPTER_LOSS),
 }
 
-_BATTERY: dict[Personality, dict[Charge, tuple[str, dict[int, Action]]]] = {
+STICKS_LOSS: dict[Personality, tuple[str, dict[int, Action]]] = {
+    "px4": ("NAV_RCL_ACT", _PX4_LOSS),
+    "ardupilot": (
+        "FS_THR_ENABLE",
+        {
+            1: Action.RETURN,
+            2: Action.RETURN,
+            3: Action.LAND,
+            4: Action.RETURN,
+            5: Action.LAND,
+            6: Action.RETURN,
+            7: Action.BRAKE,
+        },
+    ),
+}
+
+BREACH: dict[Personality, tuple[str, dict[int, Action]]] = {
+    "px4": (
+        "GF_ACTION",
+        {
+            1: Action.WARN,
+            2: Action.HOLD,
+            3: Action.RETURN,
+            4: Action.TERMINATE,
+            5: Action.LAND,
+        },
+    ),
+    "ardupilot": (
+        "FENCE_ACTION",
+        {
+            0: Action.WARN,
+            1: Action.RETURN,
+            2: Action.LAND,
+            3: Action.RETURN,
+            4: Action.BRAKE,
+            5: Action.LAND,
+        },
+    ),
+}
+
+MOTOR_FAILURE: dict[int, Action] = {
+    0: Action.WARN,
+    1: Action.HOLD,
+    2: Action.LAND,
+    3: Action.RETURN,
+    4: Action.TERMINATE,
+}
+"""COM_ACT_FAIL_ACT."""
+
+
+class Charge(IntEnum):
+    """How full the battery is, worse upwards."""
+
+    FINE = 0
+    LOW = 1
+    CRITICAL = 2
+    EMERGENCY = 3
+
+
+BATTERY: dict[Personality, dict[Charge, tuple[str, dict[int, Action]]]] = {
     "px4": {
         Charge.LOW: ("COM_LOW_BAT_ACT", {}),
-        Charge.CRITICAL: ("COM_LOW_BAT_ACT", {2: Action.LAND, 3: Action.RETURN}),
-        Charge.EMERGENCY: ("COM_LOW_BAT_ACT", {2: Action.LAND, 3: Action.LAND}),
+        Charge.CRITICAL: (
+            "COM_LOW_BAT_ACT",
+            {1: Action.RETURN, 2: Action.LAND, 3: Action.RETURN},
+        ),
+        Charge.EMERGENCY: (
+            "COM_LOW_BAT_ACT",
+            {1: Action.RETURN, 2: Action.LAND, 3: Action.LAND},
+        ),
     },
     "ardupilot": {
-        Charge.LOW: (
-            "BATT_FS_LOW_ACT",
-            {1: Action.LAND, 2: Action.RETURN, 5: Action.TERMINATE},
-        ),
-        Charge.CRITICAL: (
-            "BATT_FS_CRT_ACT",
-            {1: Action.LAND, 2: Action.RETURN, 5: Action.TERMINATE},
-        ),
-        Charge.EMERGENCY: ("BATT_FS_CRT_ACT", {}),
+        Charge.LOW: ("BATT_FS_LOW_ACT", _COPTER_BATTERY),
+        Charge.CRITICAL: ("BATT_FS_CRT_ACT", _COPTER_BATTERY),
+        Charge.EMERGENCY: ("BATT_FS_CRT_ACT", _COPTER_BATTERY),
     },
 }
 
@@ -100,45 +215,27 @@ def charge_of(parameters: Parameters, power: Power, remaining: float) -> Charge:
         if remaining < get("BAT_CRIT_THR"):
             return Charge.CRITICAL
         return Charge.LOW if remaining < get("BAT_LOW_THR") else Charge.FINE
-    left_mah = get("BATT_CAPACITY") - power.consumed_mah
-    if power.voltage_v < get("BATT_CRT_VOLT") or left_mah < get("BATT_CRT_MAH"):
+    return max(by_voltage(parameters, power), by_capacity(parameters, power))
+
+
+def _measured(parameters: Parameters) -> bool:
+    return parameters.get("BATT_MONITOR") != 0
+
+
+def by_voltage(parameters: Parameters, power: Power) -> Charge:
+    """ArduPilot's thresholds of the voltage, 0 = off."""
+    if not _measured(parameters):
+        return Charge.FINE
+    if power.voltage_v < parameters.get("BATT_CRT_VOLT"):
         return Charge.CRITICAL
-    if power.voltage_v < get("BATT_LOW_VOLT") or left_mah < get("BATT_LOW_MAH"):
-        return Charge.LOW
-    return Charge.FINE
+    return Charge.LOW if power.voltage_v < parameters.get("BATT_LOW_VOLT") else Charge.FINE
 
 
-class Failsafes:
-    """Remembers what has struck, so that each is told and acted on once."""
-
-    __slots__ = ("_parameters", "_station_ns", "charge", "station_lost")
-
-    def __init__(self, parameters: Parameters) -> None:
-        self._parameters = parameters
-        self._station_ns: int | None = None
-        self.station_lost = False
-        self.charge = Charge.FINE
-
-    def station_heard(self, wall_ns: int) -> None:
-        self._station_ns = wall_ns
-        self.station_lost = False
-
-    def check(self, power: Power, remaining: float, wall_ns: int) -> Failsafe | None:
-        """What strikes now, the worse first; called while armed."""
-        parameters = self._parameters
-        charge = charge_of(parameters, power, remaining)
-        if charge > self.charge:
-            self.charge = charge
-            name, actions = _BATTERY[parameters.personality][charge]
-            action = actions.get(int(parameters.get(name)), Action.WARN)
-            return Failsafe(action, f"Battery {charge.name.lower()}: {action.value}", 4)
-        if self._station_ns is None or self.station_lost:
-            return None
-        name, actions = _STATION_LOSS[parameters.personality]
-        wanted = actions.get(int(parameters.get(name)))
-        if wanted is None:
-            return None
-        if wall_ns - self._station_ns < int(parameters.si(Quantity.STATION_LOSS_S) * 1e9):
-            return None
-        self.station_lost = True
-        return Failsafe(wanted, f"Ground station lost: {wanted.value}", 2)
+def by_capacity(parameters: Parameters, power: Power) -> Charge:
+    """ArduPilot's thresholds of the charge left, 0 = off."""
+    if not _measured(parameters):
+        return Charge.FINE
+    left_mah = parameters.get("BATT_CAPACITY") - power.consumed_mah
+    if left_mah < parameters.get("BATT_CRT_MAH"):
+        return Charge.CRITICAL
+    return Charge.LOW if left_mah < parameters.get("BATT_LOW_MAH") else Charge.FINE

@@ -8,9 +8,11 @@ run on wall time.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isfinite
 from typing import TypeAlias
 
+from vehicle_sim.autopilot.axes import every_axis_is_given, fly_by_axes, is_partial
 from vehicle_sim.autopilot.demands import (
     STILL,
     Demand,
@@ -25,6 +27,7 @@ from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Setpoint, 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks import TakeOff
+from vehicle_sim.autopilot.trajectory import Limits
 
 AnySetpoint: TypeAlias = Setpoint | AttitudeSetpoint
 
@@ -32,6 +35,7 @@ _ENTRY_GAP_NS = 500_000_000  # OFFBOARD wants more than 2 Hz
 _ENTRY_STREAM_NS = 1_000_000_000
 _LIFT_M = 0.15
 _LIFT_M_S = 0.1
+_THRUST_AS_THRUST = 8  # GUID_OPTIONS
 
 
 def is_sound(setpoint: AnySetpoint) -> bool:
@@ -40,6 +44,10 @@ def is_sound(setpoint: AnySetpoint) -> bool:
         case Setpoint(pos_ned, v_ned, a_ned, yaw_rad, yaw_rate_rad_s):
             vectors = (pos_ned, v_ned, a_ned)
             scalars = (yaw_rad, yaw_rate_rad_s)
+            if is_partial(setpoint):
+                if not every_axis_is_given(setpoint):
+                    return False
+                vectors = (None, None, None)
         case AttitudeSetpoint(q_ned_from_frd, rates_frd, thrust):
             if q_ned_from_frd is not None:
                 w, x, y, z = q_ned_from_frd
@@ -55,14 +63,16 @@ def is_sound(setpoint: AnySetpoint) -> bool:
 class Stream:
     """The last setpoint and how long it has been coming, on wall time."""
 
-    __slots__ = ("_last_ns", "_since_ns", "setpoint")
+    __slots__ = ("_last_ns", "_since_ns", "setpoint", "taken_ns")
 
     def __init__(self) -> None:
         self.setpoint: AnySetpoint | None = None
+        self.taken_ns = 0  # when the last one came, in simulated time
         self._last_ns = 0
         self._since_ns = 0
 
-    def heard(self, setpoint: AnySetpoint, wall_ns: int) -> None:
+    def heard(self, setpoint: AnySetpoint, wall_ns: int, time_ns: int) -> None:
+        self.taken_ns = time_ns
         if self.setpoint is None or wall_ns - self._last_ns >= _ENTRY_GAP_NS:
             self._since_ns = wall_ns
         self.setpoint = setpoint
@@ -107,7 +117,7 @@ class Guided:
         setpoint = self._stream.setpoint
         if self._takeoff is not None:
             return self._takeoff.target
-        if isinstance(setpoint, Setpoint) and not self._braking:
+        if isinstance(setpoint, Setpoint) and not self._braking and not is_partial(setpoint):
             return Target(setpoint.pos_ned, setpoint.v_ned, setpoint.yaw_rad)
         return Target(self._hold, None, None)
 
@@ -134,9 +144,9 @@ class Guided:
             return False
         setpoint = self._stream.setpoint
         match setpoint:
-            case Setpoint(pos_ned=pos_ned) if pos_ned is not None:
+            case Setpoint(pos_ned=pos_ned) if pos_ned is not None and isfinite(pos_ned[2]):
                 return pos_ned[2] < s.pos_ned[2] - _LIFT_M
-            case Setpoint(v_ned=v_ned) if v_ned is not None:
+            case Setpoint(v_ned=v_ned) if v_ned is not None and isfinite(v_ned[2]):
                 return v_ned[2] < -_LIFT_M_S
             case Setpoint(a_ned=a_ned) if a_ned is not None:
                 return a_ned[2] < -_LIFT_M_S
@@ -167,24 +177,47 @@ class Guided:
             return FlyTo(self._hold or s.stop_ned, s.limits)
         self._braking = False
         if isinstance(setpoint, AttitudeSetpoint):
-            return FlyAttitude(setpoint, self._personality == "ardupilot", s.limits)
+            return FlyAttitude(setpoint, self._thrust_is_climb, s.limits)
         if setpoint.yaw_rad is not None:
             turner.turn_to(setpoint.yaw_rad)
         else:
             turner.turn_by_rate(setpoint.yaw_rate_rad_s or 0.0)
+        if is_partial(setpoint):
+            return fly_by_axes(setpoint, s, s.limits)
         if setpoint.pos_ned is not None:
             self._hold = setpoint.pos_ned
-            return FlyTo(setpoint.pos_ned, s.limits, setpoint.v_ned or STILL)
+            v_ned = setpoint.v_ned or STILL
+            # A goal with a velocity moves on by itself until the next setpoint comes.
+            since_ns = self._stream.taken_ns if v_ned != STILL else 0
+            return FlyTo(setpoint.pos_ned, s.limits, v_ned, since_ns=since_ns)
         if setpoint.v_ned is not None:
-            return FlyVelocity(setpoint.v_ned, s.limits)
+            return FlyVelocity(setpoint.v_ned, self._limits_of_velocity(s))
         if setpoint.a_ned is not None:
             return FlyAcceleration(setpoint.a_ned)
         return FlyTo(self._hold or s.stop_ned, s.limits)
 
+    @property
+    def _thrust_is_climb(self) -> bool:
+        if self._personality == "px4":
+            return False
+        return not int(self._parameters.get("GUID_OPTIONS")) & _THRUST_AS_THRUST
+
+    def _limits_of_velocity(self, s: Situation) -> Limits:
+        """PX4 flies what it is told, as far as it ever flies; not at its cruise speed."""
+        if self._personality == "ardupilot":
+            return s.limits
+        return replace(
+            s.limits,
+            speed_m_s=self._parameters.get("MPC_XY_VEL_MAX"),
+            climb_m_s=self._parameters.get("MPC_Z_VEL_MAX_UP"),
+            descend_m_s=self._parameters.get("MPC_Z_VEL_MAX_DN"),
+        )
+
     def _timed_out(self, setpoint: AnySetpoint, wall_ns: int) -> bool:
         if self._personality == "px4":
             return False
-        if isinstance(setpoint, Setpoint) and setpoint.pos_ned is not None:
+        still = (None, STILL)
+        if isinstance(setpoint, Setpoint) and setpoint.pos_ned and setpoint.v_ned in still:
             return False
         loss_ns = int(self._parameters.si(Quantity.SETPOINT_LOSS_S) * 1e9)
         return self._stream.age_ns(wall_ns) >= loss_ns

@@ -8,8 +8,11 @@ EKF origin, body axes are forward-right-down, quaternions are w, x, y, z and rot
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import Protocol, TypeAlias
+
+from vehicle_sim.autopilot.estimator import Health
+from vehicle_sim.model.faults import Fault
 
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
@@ -59,6 +62,31 @@ class Estimate:
 
 
 @dataclass(frozen=True, slots=True)
+class GpsFix:
+    """What the receiver last said by itself: late, noisy, and not the estimate."""
+
+    fix_type: int  # GPS_FIX_TYPE
+    satellites: int
+    lat_deg: float
+    lon_deg: float
+    alt_amsl_m: float
+    v_ned: Vec3
+    eph_m: float  # standard deviations, infinite without a fix
+    epv_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """What the other sensors last said, biases and noise included."""
+
+    gyro_frd: Vec3  # rad/s
+    accel_frd: Vec3  # m/s^2, specific force
+    mag_frd: Vec3  # gauss
+    pressure_alt_amsl_m: float
+    gps: GpsFix
+
+
+@dataclass(frozen=True, slots=True)
 class Power:
     voltage_v: float
     current_a: float
@@ -84,7 +112,7 @@ class Geodetic:
 
 @dataclass(frozen=True, slots=True)
 class Setpoint:
-    """A client's setpoint in local NED; None = ignored by the type_mask.
+    """A client's setpoint in local NED; None = ignored by the type_mask, NaN = only this axis.
 
     Body and offset frames, GLOBAL_INT and masks are resolved by the service before this line.
     """
@@ -106,6 +134,34 @@ class AttitudeSetpoint:
 
 
 @dataclass(frozen=True, slots=True)
+class AttitudeGoal:
+    """What the attitude controller flies to now: attitude, body rates [rad/s], thrust 0..1."""
+
+    q_ned_from_frd: Quat
+    rates_frd: Vec3
+    thrust: float
+
+
+@dataclass(frozen=True, slots=True)
+class Orbiting:
+    """A circle that is flown; a positive radius [m] is clockwise seen from above."""
+
+    centre_ned: Vec3
+    radius_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class OrbitRequest:
+    """DO_ORBIT; None = as it is.  A positive radius [m] is clockwise, speed in m/s."""
+
+    radius_m: float | None
+    speed_m_s: float | None
+    nose: int | None  # ORBIT_YAW_BEHAVIOUR
+    centre_ne: tuple[float, float] | None
+    down_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class PlanItem:
     """A mission item as it came over the wire, before it is given a meaning."""
 
@@ -120,6 +176,37 @@ class PlanItem:
     y: int
     z: float
     autocontinue: int
+
+
+class Flaw(Enum):
+    """What is wrong with an item of a fence or of rally points; each has its MISSION_ACK."""
+
+    COMMAND = "command"
+    FRAME = "frame"
+    PARAM1 = "param1"
+    PLACE = "place"
+    WHOLE = "whole"  # sound by itself, but not together with the others
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """The item that a fence or rally points are refused for, and why."""
+
+    seq: int
+    flaw: Flaw
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class FenceState:
+    """For SYS_STATUS and FENCE_STATUS; `breach_type` is a FENCE_BREACH, the time simulated."""
+
+    present: bool
+    enabled: bool
+    breached: bool
+    count: int
+    breach_type: int
+    breach_ns: int
 
 
 # ------------------------------------------------------------- events, drained with `events()`
@@ -161,8 +248,34 @@ class CommandDone:
 VehicleEvent: TypeAlias = StatusText | ImageCaptured | MissionReached | HomeChanged | CommandDone
 
 
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """What really is, whatever is reported: NED from the vehicle's own start, rates in rad/s."""
+
+    time_s: float  # simulated
+    pos_ned: Vec3
+    v_ned: Vec3
+    q_ned_from_frd: Quat
+    rates_frd: Vec3
+    lat_deg: float
+    lon_deg: float
+    alt_amsl_m: float
+    armed: bool
+    mode: str
+    landed: bool
+    battery: float  # charge left, 0..1
+
+
+class Stepper(Protocol):
+    """Moves the bodies of one vehicle or of many."""
+
+    def step(self) -> None:
+        """All of them, by one `dt_ns`."""
+        ...
+
+
 class Vehicle(Protocol):
-    """One vehicle: body and brain.  Pure; time moves only by `step`."""
+    """One vehicle: body and brain.  Pure; time moves only by the steps of its engine."""
 
     @property
     def dt_ns(self) -> int: ...
@@ -171,8 +284,22 @@ class Vehicle(Protocol):
         """Simulated time since boot."""
         ...
 
+    @property
+    def engine(self) -> Stepper:
+        """Vehicles of a fleet share one; who steps it then calls `live` where it is due."""
+        ...
+
+    @property
+    def due_step(self) -> int:
+        """Number of the step, counted from 1, after which `live` has something to do next."""
+        ...
+
+    def live(self) -> None:
+        """After a step of the engine: decide, if a decision is due."""
+        ...
+
     def step(self) -> None:
-        """Advance everything by `dt_ns`."""
+        """For a vehicle that has its engine for itself: step it, then `live`."""
         ...
 
     def events(self) -> list[VehicleEvent]:
@@ -182,6 +309,13 @@ class Vehicle(Protocol):
     # state -----------------------------------------------------------------------------
     @property
     def estimate(self) -> Estimate: ...
+    @property
+    def health(self) -> Health:
+        """The estimate judged: what is good enough to fly by."""
+        ...
+
+    @property
+    def readings(self) -> Readings: ...
     @property
     def power(self) -> Power: ...
     @property
@@ -214,8 +348,23 @@ class Vehicle(Protocol):
     @property
     def armable(self) -> bool: ...
     @property
+    def mav_type(self) -> int:
+        """HEARTBEAT's MAV_TYPE."""
+        ...
+
+    @property
     def motor_outputs(self) -> tuple[float, float, float, float]:
         """0..1, for SERVO_OUTPUT_RAW."""
+        ...
+
+    @property
+    def wind_ned(self) -> Vec3 | None:
+        """Where the air goes [m/s], as far as it can be felt; None = not known yet."""
+        ...
+
+    @property
+    def vibration_m_s2(self) -> Vec3:
+        """Root mean square of what shakes the accelerometer, FRD."""
         ...
 
     @property
@@ -229,6 +378,23 @@ class Vehicle(Protocol):
     def capturing(self) -> bool: ...
     @property
     def images_captured(self) -> int: ...
+
+    @property
+    def attitude_goal(self) -> AttitudeGoal | None:
+        """None while nothing is controlled."""
+        ...
+
+    @property
+    def orbiting(self) -> Orbiting | None: ...
+    @property
+    def channels_us(self) -> tuple[int, ...]:
+        """The 18 radio channels [us], 0 = nothing comes on it."""
+        ...
+
+    @property
+    def sticks(self) -> tuple[float, float, float, float] | None:
+        """Roll, pitch forward and yaw -1..1, throttle 0..1, as they are flown; None = no sticks."""
+        ...
 
     # requests: each answers at once; effects are seen in the state above ---------------
     def arm(self, force: bool) -> Result: ...
@@ -254,6 +420,28 @@ class Vehicle(Protocol):
     def condition_yaw(
         self, yaw_rad: float, relative: bool, rate_rad_s: float, direction: int
     ) -> Result: ...
+    def orbit(self, asked: OrbitRequest) -> Result:
+        """PX4's Orbit mode; ArduCopter has none."""
+        ...
+
+    def look_at(self, where_ned: Vec3 | None) -> Result:
+        """A region of interest for the nose; None = no more."""
+        ...
+
+    def joystick(self, forward: int, right: int, up: int, clockwise: int, wall_ns: int) -> None:
+        """MANUAL_CONTROL's x, y, z and r."""
+        ...
+
+    def override_channels(self, channels_us: tuple[int, ...], wall_ns: int) -> None:
+        """RC_CHANNELS_OVERRIDE's 18 channels, as they came."""
+        ...
+
+    def hear_leader(
+        self, system: int, where: Geodetic, v_ned: Vec3, heading_rad: float | None, wall_ns: int
+    ) -> None:
+        """Where one to follow says that it is; `system` 0 = it did not say who."""
+        ...
+
     def set_home(self, where: Geodetic | None) -> Result:
         """None = the present position."""
         ...
@@ -274,12 +462,52 @@ class Vehicle(Protocol):
 
     @property
     def plan(self) -> tuple[PlanItem, ...]: ...
+    def check_fence(self, items: tuple[PlanItem, ...]) -> Refusal | None:
+        """The first item that would not be taken, None when all would."""
+        ...
+
+    def load_fence(self, items: tuple[PlanItem, ...]) -> None:
+        """Swap the fence; only after `check_fence` answered None."""
+        ...
+
+    def check_rally(self, items: tuple[PlanItem, ...]) -> Refusal | None: ...
+    def load_rally(self, items: tuple[PlanItem, ...]) -> None: ...
+    @property
+    def fence_state(self) -> FenceState: ...
+    def enable_fence(self, choice: int) -> Result:
+        """DO_FENCE_ENABLE's parameter 1: 0 off, 1 on, 2 the floor off."""
+        ...
+
+    def check_arming(self) -> Result:
+        """RUN_PREARM_CHECKS: says by STATUSTEXT all that is against arming."""
+        ...
+
     def terminate(self) -> Result: ...
     def reboot(self) -> Result: ...
+    def reset_parameters(self) -> None:
+        """All to their defaults: at once (px4), or with the next reboot (ardupilot)."""
+        ...
+
+    @property
+    def takes_failures(self) -> bool:
+        """Whether INJECT_FAILURE is allowed (px4: SYS_FAILURE_EN)."""
+        ...
+
+    def inject(self, fault: Fault) -> None:
+        """Something goes wrong, or is put right again."""
+        ...
+
+    @property
+    def truth(self) -> Truth: ...
+    @property
+    def clock_ns(self) -> int:
+        """What its messages tell as time since boot: starts anew with it, jumps by faults."""
+        ...
+
     def gcs_heard(self, wall_ns: int) -> None:
         """A ground station's heartbeat came; the other side's time-outs run on wall time."""
         ...
 
     def wall(self, wall_ns: int) -> None:
-        """The present wall time, for those time-outs; called before `step`."""
+        """The present wall time, for those time-outs; called before `live`."""
         ...

@@ -10,7 +10,7 @@ Personality: TypeAlias = Literal["px4", "ardupilot"]
 
 
 class Behaviour(Enum):
-    """What a mode makes the vehicle do."""
+    """What a mode makes the vehicle do while nobody has touched the sticks."""
 
     LEVEL = "level"  # a manual mode: without sticks level, height held, drifting with the air
     HOLD = "hold"
@@ -19,6 +19,19 @@ class Behaviour(Enum):
     MISSION = "mission"
     RETURN = "return"
     LAND = "land"
+    ORBIT = "orbit"  # round a centre that was asked for (PX4's DO_ORBIT)
+    CIRCLE = "circle"  # round a point ahead (ArduCopter's CIRCLE)
+    FOLLOW = "follow"
+
+
+class StickLaw(Enum):
+    """What the sticks mean in a mode that is flown by hand."""
+
+    RATES = "rates"  # body rates and thrust
+    ANGLE = "angle"  # lean angles and thrust
+    ALTITUDE = "altitude"  # lean angles and climb rate
+    POSITION = "position"  # velocity over ground and climb rate; centred = stay
+    LEAN_AND_STAY = "lean and stay"  # lean angles and climb rate; centred = stay
 
 
 class Flag(IntFlag):
@@ -32,6 +45,14 @@ class Flag(IntFlag):
     SAFETY_ARMED = 128
 
 
+class Property(IntFlag):
+    """MAV_MODE_PROPERTY."""
+
+    NONE = 0
+    ADVANCED = 1
+    NOT_USER_SELECTABLE = 2
+
+
 @dataclass(frozen=True, slots=True)
 class Mode:
     """`custom_mode` is HEARTBEAT's; `flags` is base_mode without the armed bit."""
@@ -42,6 +63,8 @@ class Mode:
     flags: int
     may_arm: bool
     needs_position: bool
+    law: StickLaw | None = None
+    properties: Property = Property.NONE
 
 
 def _px4(main: int, sub: int = 0) -> int:
@@ -50,38 +73,75 @@ def _px4(main: int, sub: int = 0) -> int:
 
 
 _C = Flag.CUSTOM_MODE_ENABLED
+_PX4_ACRO = int(_C | Flag.MANUAL_INPUT_ENABLED)
 _PX4_STICKS = int(_C | Flag.MANUAL_INPUT_ENABLED | Flag.STABILIZE_ENABLED)
 _PX4_POSCTL = int(_PX4_STICKS | Flag.GUIDED_ENABLED)
+_PX4_ORBIT = int(_C | Flag.STABILIZE_ENABLED | Flag.GUIDED_ENABLED)
 _PX4_AUTO = int(_C | Flag.AUTO_ENABLED | Flag.STABILIZE_ENABLED | Flag.GUIDED_ENABLED)
 _AP = int(_C | Flag.MANUAL_INPUT_ENABLED | Flag.STABILIZE_ENABLED)
 _AP_GUIDED = int(_AP | Flag.GUIDED_ENABLED)
 
 _B = Behaviour
+_S = StickLaw
+_ADV = Property.ADVANCED
+_HID = Property.NOT_USER_SELECTABLE
 # fmt: off
 PX4_MODES = (
-    #     name            custom_mode  behaviour    flags        may_arm  needs_position
-    Mode("MANUAL",        _px4(1),     _B.LEVEL,    _PX4_STICKS, True,    False),
-    Mode("ALTCTL",        _px4(2),     _B.LEVEL,    _PX4_STICKS, True,    False),
-    Mode("POSCTL",        _px4(3),     _B.HOLD,     _PX4_POSCTL, True,    True),
-    Mode("STABILIZED",    _px4(7),     _B.LEVEL,    _PX4_STICKS, True,    False),
-    Mode("OFFBOARD",      _px4(6),     _B.GUIDED,   _PX4_AUTO,   True,    True),
-    Mode("AUTO.TAKEOFF",  _px4(4, 2),  _B.TAKEOFF,  _PX4_AUTO,   True,    True),
-    Mode("AUTO.LOITER",   _px4(4, 3),  _B.HOLD,     _PX4_AUTO,   True,    True),
-    Mode("AUTO.MISSION",  _px4(4, 4),  _B.MISSION,  _PX4_AUTO,   True,    True),
-    Mode("AUTO.RTL",      _px4(4, 5),  _B.RETURN,   _PX4_AUTO,   False,   True),
-    Mode("AUTO.LAND",     _px4(4, 6),  _B.LAND,     _PX4_AUTO,   False,   False),
+    #     name                 custom_mode  behaviour    flags      may_arm needs_position
+    Mode("MANUAL",             _px4(1),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ANGLE, _ADV),
+    Mode("ALTCTL",             _px4(2),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ALTITUDE),
+    Mode("POSCTL",             _px4(3),    _B.HOLD,    _PX4_POSCTL, True,  True,  _S.POSITION),
+    Mode("POSCTL.ORBIT",       _px4(3, 1), _B.ORBIT,   _PX4_ORBIT,  False, True,  None, _HID),
+    Mode("ACRO",               _px4(5),    _B.LEVEL,   _PX4_ACRO,   True,  False, _S.RATES, _ADV),
+    Mode("STABILIZED",         _px4(7),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ANGLE, _ADV),
+    Mode("OFFBOARD",           _px4(6),    _B.GUIDED,  _PX4_AUTO,   True,  True,  None, _ADV),
+    Mode("AUTO.TAKEOFF",       _px4(4, 2), _B.TAKEOFF, _PX4_AUTO,   True,  True),
+    Mode("AUTO.LOITER",        _px4(4, 3), _B.HOLD,    _PX4_AUTO,   True,  True),
+    Mode("AUTO.MISSION",       _px4(4, 4), _B.MISSION, _PX4_AUTO,   True,  True),
+    Mode("AUTO.RTL",           _px4(4, 5), _B.RETURN,  _PX4_AUTO,   False, True),
+    Mode("AUTO.LAND",          _px4(4, 6), _B.LAND,    _PX4_AUTO,   False, False),
+    Mode("AUTO.FOLLOW_TARGET", _px4(4, 8), _B.FOLLOW,  _PX4_AUTO,   False, True),
 )
 ARDUPILOT_MODES = (
-    Mode("STABILIZE",     0,           _B.LEVEL,    _AP,         True,    False),
-    Mode("ALT_HOLD",      2,           _B.LEVEL,    _AP,         True,    False),
-    Mode("AUTO",          3,           _B.MISSION,  _AP_GUIDED,  True,    True),
-    Mode("GUIDED",        4,           _B.GUIDED,   _AP_GUIDED,  True,    True),
-    Mode("LOITER",        5,           _B.HOLD,     _AP_GUIDED,  True,    True),
-    Mode("RTL",           6,           _B.RETURN,   _AP_GUIDED,  False,   True),
-    Mode("LAND",          9,           _B.LAND,     _AP,         False,   False),
-    Mode("POSHOLD",       16,          _B.HOLD,     _AP_GUIDED,  True,    True),
-    Mode("BRAKE",         17,          _B.HOLD,     _AP_GUIDED,  False,   True),
+    Mode("STABILIZE", 0,  _B.LEVEL,   _AP,        True,  False, _S.ANGLE),
+    Mode("ACRO",      1,  _B.LEVEL,   _AP,        True,  False, _S.RATES, _ADV),
+    Mode("ALT_HOLD",  2,  _B.LEVEL,   _AP,        True,  False, _S.ALTITUDE),
+    Mode("AUTO",      3,  _B.MISSION, _AP_GUIDED, True,  True),
+    Mode("GUIDED",    4,  _B.GUIDED,  _AP_GUIDED, True,  True),
+    Mode("LOITER",    5,  _B.HOLD,    _AP_GUIDED, True,  True,  _S.POSITION),
+    Mode("RTL",       6,  _B.RETURN,  _AP_GUIDED, False, True),
+    Mode("CIRCLE",    7,  _B.CIRCLE,  _AP_GUIDED, False, True),
+    Mode("LAND",      9,  _B.LAND,    _AP,        False, False),
+    Mode("POSHOLD",   16, _B.HOLD,    _AP_GUIDED, True,  True,  _S.LEAN_AND_STAY),
+    Mode("BRAKE",     17, _B.HOLD,    _AP_GUIDED, False, True),
+    Mode("FOLLOW",    23, _B.FOLLOW,  _AP_GUIDED, False, True),
 )
+
+# Modes that clients know by number and that this vehicle does not fly.
+REFUSED: dict[Personality, dict[int, str]] = {
+    "px4": {
+        _px4(4, 1): "AUTO.READY",
+        _px4(4, 7): "AUTO.RTGS",
+        _px4(4, 9): "AUTO.PRECLAND",
+        _px4(4, 10): "AUTO.VTOL_TAKEOFF",
+        _px4(8): "RATTITUDE",
+    },
+    "ardupilot": {
+        11: "DRIFT",
+        13: "SPORT",
+        14: "FLIP",
+        15: "AUTOTUNE",
+        18: "THROW",
+        19: "AVOID_ADSB",
+        20: "GUIDED_NOGPS",
+        21: "SMARTRTL",
+        22: "FLOWHOLD",
+        24: "ZIGZAG",
+        25: "SYSTEMID",
+        27: "AUTO_RTL",
+        28: "TURTLE",
+    },
+}
 # fmt: on
 
 MODES: dict[Personality, dict[str, Mode]] = {
@@ -102,6 +162,8 @@ KINDS: dict[Personality, dict[str, str]] = {
         "mission": "AUTO.MISSION",
         "return": "AUTO.RTL",
         "land": "AUTO.LAND",
+        "orbit": "POSCTL.ORBIT",
+        "follow": "AUTO.FOLLOW_TARGET",
     },
     "ardupilot": {
         "hold": "LOITER",
@@ -113,9 +175,20 @@ KINDS: dict[Personality, dict[str, str]] = {
         "mission": "AUTO",
         "return": "RTL",
         "land": "LAND",
+        "orbit": "CIRCLE",
+        "follow": "FOLLOW",
     },
 }
 """What each personality calls a mode that is asked for by its meaning."""
+
+_NO_SUCH_MODE: dict[Personality, tuple[int, str]] = {
+    "px4": (2, "Unsupported auto mode"),
+    "ardupilot": (4, "No such mode {number}"),
+}
+_WILL_NOT: dict[Personality, tuple[int, str]] = {
+    "px4": (2, "Switching to {mode} is currently not available"),
+    "ardupilot": (4, "Mode change to {mode} failed: {why}"),
+}
 
 
 def by_number(personality: Personality, custom_mode: int) -> Mode | None:
@@ -124,3 +197,18 @@ def by_number(personality: Personality, custom_mode: int) -> Mode | None:
         if mode.custom_mode == custom_mode:
             return mode
     return None
+
+
+def unknown_mode_words(personality: Personality, custom_mode: int) -> tuple[int, str]:
+    """MAV_SEVERITY and STATUSTEXT for a number that is no mode, or one that is not flown here."""
+    name = REFUSED[personality].get(custom_mode)
+    if name is not None and personality == "ardupilot":
+        return refusal_words(personality, name, "init failed")
+    severity, text = _NO_SUCH_MODE[personality]
+    return severity, text.format(number=custom_mode)
+
+
+def refusal_words(personality: Personality, name: str, why: str) -> tuple[int, str]:
+    """MAV_SEVERITY and STATUSTEXT for a mode that cannot be entered now."""
+    severity, text = _WILL_NOT[personality]
+    return severity, text.format(mode=name.replace(".", "_"), why=why)

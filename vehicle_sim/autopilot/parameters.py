@@ -21,15 +21,18 @@ class Quantity(Enum):
 
     SYSTEM_ID = "system id"
     CRUISE_M_S = "cruise"
+    FASTEST_M_S = "fastest"
     CLIMB_M_S = "climb"
     DESCEND_M_S = "descend"
     TAKEOFF_CLIMB_M_S = "take-off climb"
     LAND_M_S = "land"
     LAND_SLOW_BELOW_M = "land slow below"
     ACCEL_M_S2 = "acceleration"
-    ACCEL_VERTICAL_M_S2 = "vertical acceleration"
+    ACCEL_VERTICAL_M_S2 = "downward acceleration"
+    ACCEL_UP_M_S2 = "upward acceleration"
     TURN_RAD_S = "turn"
     ACCEPT_M = "waypoint radius"
+    SPOOL_UP_S = "spool up"
     TAKEOFF_UP_M = "take-off height"
     RETURN_UP_M = "return height"
     RETURN_WAIT_UP_M = "return waiting height"
@@ -50,15 +53,18 @@ _SI: dict[Personality, dict[Quantity, tuple[str | None, float]]] = {
     "px4": {
         _Q.SYSTEM_ID: ("MAV_SYS_ID", 1.0),
         _Q.CRUISE_M_S: ("MPC_XY_CRUISE", 1.0),
-        _Q.CLIMB_M_S: ("MPC_Z_VEL_MAX_UP", 1.0),
-        _Q.DESCEND_M_S: ("MPC_Z_VEL_MAX_DN", 1.0),
+        _Q.FASTEST_M_S: ("MPC_XY_VEL_MAX", 1.0),
+        _Q.CLIMB_M_S: ("MPC_Z_V_AUTO_UP", 1.0),
+        _Q.DESCEND_M_S: ("MPC_Z_V_AUTO_DN", 1.0),
         _Q.TAKEOFF_CLIMB_M_S: ("MPC_TKO_SPEED", 1.0),
         _Q.LAND_M_S: ("MPC_LAND_SPEED", 1.0),
         _Q.LAND_SLOW_BELOW_M: ("MPC_LAND_ALT1", 1.0),
         _Q.ACCEL_M_S2: ("MPC_ACC_HOR", 1.0),
         _Q.ACCEL_VERTICAL_M_S2: ("MPC_ACC_DOWN_MAX", 1.0),
+        _Q.ACCEL_UP_M_S2: ("MPC_ACC_UP_MAX", 1.0),
         _Q.TURN_RAD_S: ("MPC_YAWRAUTO_MAX", _DEG),
         _Q.ACCEPT_M: ("NAV_ACC_RAD", 1.0),
+        _Q.SPOOL_UP_S: ("COM_SPOOLUP_TIME", 1.0),
         _Q.TAKEOFF_UP_M: ("MIS_TAKEOFF_ALT", 1.0),
         _Q.RETURN_UP_M: ("RTL_RETURN_ALT", 1.0),
         _Q.RETURN_WAIT_UP_M: ("RTL_DESCEND_ALT", 1.0),
@@ -72,6 +78,7 @@ _SI: dict[Personality, dict[Quantity, tuple[str | None, float]]] = {
     "ardupilot": {
         _Q.SYSTEM_ID: ("SYSID_THISMAV", 1.0),
         _Q.CRUISE_M_S: ("WPNAV_SPEED", 0.01),
+        _Q.FASTEST_M_S: (None, 20.0),
         _Q.CLIMB_M_S: ("WPNAV_SPEED_UP", 0.01),
         _Q.DESCEND_M_S: ("WPNAV_SPEED_DN", 0.01),
         _Q.TAKEOFF_CLIMB_M_S: ("WPNAV_SPEED_UP", 0.01),
@@ -79,8 +86,10 @@ _SI: dict[Personality, dict[Quantity, tuple[str | None, float]]] = {
         _Q.LAND_SLOW_BELOW_M: ("LAND_ALT_LOW", 0.01),
         _Q.ACCEL_M_S2: ("WPNAV_ACCEL", 0.01),
         _Q.ACCEL_VERTICAL_M_S2: ("WPNAV_ACCEL_Z", 0.01),
-        _Q.TURN_RAD_S: (None, 60.0 * _DEG),
+        _Q.ACCEL_UP_M_S2: ("WPNAV_ACCEL_Z", 0.01),
+        _Q.TURN_RAD_S: ("ATC_SLEW_YAW", 0.01 * _DEG),
         _Q.ACCEPT_M: ("WPNAV_RADIUS", 0.01),
+        _Q.SPOOL_UP_S: ("MOT_SPOOL_TIME", 1.0),
         _Q.TAKEOFF_UP_M: ("PILOT_TKOFF_ALT", 0.01),
         _Q.RETURN_UP_M: ("RTL_ALT", 0.01),
         # ArduCopter waits at the return height, then lands from there.
@@ -96,16 +105,29 @@ _SI: dict[Personality, dict[Quantity, tuple[str | None, float]]] = {
 }
 
 
+# What a quantity never exceeds, whatever is set for it.
+_CAPS: dict[Personality, dict[Quantity, str]] = {
+    "px4": {
+        _Q.CRUISE_M_S: "MPC_XY_VEL_MAX",
+        _Q.CLIMB_M_S: "MPC_Z_VEL_MAX_UP",
+        _Q.DESCEND_M_S: "MPC_Z_VEL_MAX_DN",
+    },
+    "ardupilot": {},
+}
+
+
 class Parameters:
     """The values of one vehicle.  `version` grows with every change."""
 
-    __slots__ = ("_si", "_specs", "_values", "personality", "version")
+    __slots__ = ("_caps", "_erased", "_si", "_specs", "_values", "personality", "version")
 
     def __init__(self, personality: Personality) -> None:
         self.personality = personality
         self._specs = {spec.name: spec for spec in TABLES[personality]}
         self._values = {spec.name: _stored(spec, spec.default) for spec in TABLES[personality]}
         self._si = _SI[personality]
+        self._caps = _CAPS[personality]
+        self._erased = False
         self.version = 0
 
     @property
@@ -128,8 +150,30 @@ class Parameters:
 
     def get(self, name: str) -> float:
         """The value in the parameter's own unit (integers are whole).  Raises ParameterError."""
-        self.spec(name)
-        return self._values[name]
+        try:
+            return self._values[name]
+        except KeyError:
+            raise ParameterError(f"{name}: no such parameter") from None
+
+    def default(self, name: str) -> float:
+        """As it is stored.  Raises ParameterError."""
+        spec = self.spec(name)
+        return _stored(spec, spec.default)
+
+    def reset(self) -> None:
+        """Every parameter back to its default."""
+        self._erased = False
+        for name in self._specs:
+            self.set(name, self.default(name))
+
+    def erase(self) -> None:
+        """The stored ones are gone; those in use go with the next power-up."""
+        self._erased = True
+
+    def power_up(self) -> None:
+        """What is stored is read."""
+        if self._erased:
+            self.reset()
 
     def set(self, name: str, value: float) -> float:
         """Take `value` and return what is stored now (float32, or whole).
@@ -153,7 +197,10 @@ class Parameters:
     def si(self, quantity: Quantity) -> float:
         """A quantity in SI units, from whatever parameter of the personality holds it."""
         name, factor = self._si[quantity]
-        return factor if name is None else self._values[name] * factor
+        if name is None:
+            return factor
+        value, cap = self._values[name] * factor, self._caps.get(quantity)
+        return value if cap is None else min(value, self._values[cap])
 
 
 def _stored(spec: Spec, value: float) -> float:

@@ -21,12 +21,16 @@ class Cmd:
     RETURN = 20
     LAND = 21
     TAKEOFF = 22
+    LOITER_TO_ALT = 31
+    SPLINE = 82
     DELAY = 93
     CONDITION_DELAY = 112
+    CONDITION_DISTANCE = 114
     CONDITION_YAW = 115
     JUMP = 177
     CHANGE_SPEED = 178
     SET_HOME = 179
+    LAND_START = 189
     ROI_LOCATION = 195
     ROI_NONE = 197
     ROI = 201
@@ -44,7 +48,8 @@ class Cmd:
 
 
 class Kind(Enum):
-    """FLOWN: takes the vehicle somewhere.  DONE: happens at once.  NOTHING: no such equipment."""
+    """FLOWN: takes the vehicle somewhere, or lets it wait there.  WAITED: a condition for what
+    follows it.  DONE: happens at once.  NOTHING: no such equipment."""
 
     FLOWN = auto()
     WAITED = auto()
@@ -60,12 +65,16 @@ KINDS: dict[int, Kind] = {
     Cmd.RETURN: Kind.FLOWN,
     Cmd.LAND: Kind.FLOWN,
     Cmd.TAKEOFF: Kind.FLOWN,
-    Cmd.DELAY: Kind.WAITED,
+    Cmd.LOITER_TO_ALT: Kind.FLOWN,
+    Cmd.SPLINE: Kind.FLOWN,
+    Cmd.DELAY: Kind.FLOWN,
     Cmd.CONDITION_DELAY: Kind.WAITED,
+    Cmd.CONDITION_DISTANCE: Kind.WAITED,
     Cmd.CONDITION_YAW: Kind.WAITED,
     Cmd.JUMP: Kind.DONE,
     Cmd.CHANGE_SPEED: Kind.DONE,
     Cmd.SET_HOME: Kind.DONE,
+    Cmd.LAND_START: Kind.DONE,
     Cmd.ROI_LOCATION: Kind.DONE,
     Cmd.ROI_NONE: Kind.DONE,
     Cmd.ROI: Kind.DONE,
@@ -83,15 +92,30 @@ KINDS: dict[int, Kind] = {
 }
 
 _PLACED = frozenset(
-    {Cmd.WAYPOINT, Cmd.LOITER_UNLIM, Cmd.LOITER_TURNS, Cmd.LOITER_TIME, Cmd.LAND, Cmd.TAKEOFF}
-) | {Cmd.ROI_LOCATION}
-_HERE_IF_ZERO = frozenset({Cmd.LAND, Cmd.TAKEOFF, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME})
+    {
+        Cmd.WAYPOINT,
+        Cmd.LOITER_UNLIM,
+        Cmd.LOITER_TURNS,
+        Cmd.LOITER_TIME,
+        Cmd.LOITER_TO_ALT,
+        Cmd.LAND,
+        Cmd.TAKEOFF,
+        Cmd.SPLINE,
+        Cmd.ROI_LOCATION,
+    }
+)
+_HERE_IF_ZERO = frozenset(
+    {Cmd.LAND, Cmd.TAKEOFF, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME, Cmd.LOITER_TO_ALT}
+)
+_GROUND_SPEED = frozenset({0.0, 1.0})  # SPEED_TYPE: a multicopter has no other horizontal one
 
 _GLOBAL = frozenset({0, 5})  # MAV_FRAME_GLOBAL, _INT: metres above mean sea level
 _RELATIVE = frozenset({3, 6})  # MAV_FRAME_GLOBAL_RELATIVE_ALT, _INT: metres above home
 _LOCAL_NED = 1
 _MISSION = 2  # without coordinates
 _NO_PLACE = 0x7FFFFFFF
+_LONGEST_S = 1e6
+_MOST_TURNS = 1e4
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,30 +137,31 @@ def check(items: tuple[PlanItem, ...], personality: Personality) -> tuple[int, s
     for index, item in enumerate(items):
         if index < first_of(personality):
             continue
-        why = _why_not(item, len(items), first_of(personality))
+        why = _why_not(item, len(items), personality)
         if why is not None:
             return (item.seq, why)
     return None
 
 
-def _why_not(item: PlanItem, count: int, first: int) -> str | None:
-    if item.command not in KINDS:
+def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None:
+    if item.command not in KINDS or (item.command == Cmd.SPLINE and personality == "px4"):
         return f"command {item.command} is not supported"
     if item.command in _PLACED:
         if item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED}:
             return f"frame {item.frame} is not supported"
         if not isfinite(item.z):
             return "the altitude is not a number"
-        if item.frame != _LOCAL_NED and not _placeless(item) and not _on_earth(item):
+        if item.frame != _LOCAL_NED and has_place(item) and not _on_earth(item):
             return "the position is not on Earth"
-        if _placeless(item) and item.command not in _HERE_IF_ZERO:
+        if not has_place(item) and item.command not in _HERE_IF_ZERO:
             return "the position is missing"
     elif item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED, _MISSION}:
         return f"frame {item.frame} is not supported"
-    return _why_not_values(item, count, first)
+    return _why_not_values(item, count, personality)
 
 
-def _why_not_values(item: PlanItem, count: int, first: int) -> str | None:
+def _why_not_values(item: PlanItem, count: int, personality: Personality) -> str | None:
+    first = first_of(personality)
     match item.command:
         case Cmd.JUMP:
             if not isfinite(item.p1) or not first <= item.p1 < count:
@@ -144,20 +169,37 @@ def _why_not_values(item: PlanItem, count: int, first: int) -> str | None:
             if not isfinite(item.p2) or item.p2 < -1:
                 return f"{item.p2:g} repetitions"
         case Cmd.CHANGE_SPEED:
+            if item.p1 not in _GROUND_SPEED:
+                return f"speed of type {item.p1:g}"
             if not isfinite(item.p2) or (item.p2 <= 0.0 and item.p2 not in (-1.0, -2.0)):
                 return f"speed {item.p2:g} m/s"
-        case Cmd.WAYPOINT | Cmd.LOITER_TIME | Cmd.DELAY | Cmd.CONDITION_DELAY:
-            if isfinite(item.p1) and item.p1 < 0.0:
+        case Cmd.WAYPOINT | Cmd.LOITER_TIME | Cmd.SPLINE:
+            if isfinite(item.p1) and not 0.0 <= item.p1 <= _LONGEST_S:
                 return f"time {item.p1:g} s"
+        case Cmd.DELAY:
+            if item.p1 == -1.0:
+                return "a delay until a time of day"
+            if not 0.0 <= item.p1 <= _LONGEST_S:
+                return f"time {item.p1:g} s"
+        case Cmd.CONDITION_DELAY:
+            if not 0.0 <= item.p1 <= _LONGEST_S:
+                return f"time {item.p1:g} s"
+        case Cmd.CONDITION_DISTANCE:
+            if not isfinite(item.p1) or item.p1 < 0.0:
+                return f"distance {item.p1:g} m"
+        case Cmd.SET_HOME:
+            return _why_not_home(item)
         case Cmd.LOITER_TURNS:
-            if not isfinite(item.p1) or item.p1 <= 0.0:
+            if not 0.0 < item.p1 <= _MOST_TURNS:
                 return f"{item.p1:g} turns"
         case Cmd.CONDITION_YAW:
             if not isfinite(item.p1):
                 return "the heading is not a number"
         case Cmd.FENCE_ENABLE:
-            if item.p1 != 0.0:
-                return "this vehicle has no geofence"
+            if first == 0 and item.p1 != 0.0:
+                return "this vehicle's geofence is always on"
+            if item.p1 not in (0.0, 1.0, 2.0):
+                return f"fence enable {item.p1:g}"
         case Cmd.ROI:
             if item.p1 not in (0.0, 3.0):
                 return f"region of interest of mode {item.p1:g}"
@@ -169,10 +211,22 @@ def _why_not_values(item: PlanItem, count: int, first: int) -> str | None:
     return None
 
 
-def _placeless(item: PlanItem) -> bool:
+def _why_not_home(item: PlanItem) -> str | None:
+    """DO_SET_HOME: 1 = here, 0 = at the item's place."""
+    if item.p1 == 1.0:
+        return None
+    if item.p1 != 0.0:
+        return f"home of kind {item.p1:g}"
+    if item.frame == _MISSION or not has_place(item):
+        return "the position is missing"
+    return None if item.frame == _LOCAL_NED or _on_earth(item) else "the position is not on Earth"
+
+
+def has_place(item: PlanItem) -> bool:
+    """Whether the item says where, horizontally."""
     if item.frame == _LOCAL_NED:
-        return False
-    return (item.x == 0 and item.y == 0) or item.x == _NO_PLACE or item.y == _NO_PLACE
+        return True
+    return (item.x != 0 or item.y != 0) and item.x != _NO_PLACE and item.y != _NO_PLACE
 
 
 def _on_earth(item: PlanItem) -> bool:
@@ -189,7 +243,7 @@ def place_of(item: PlanItem, datum: Datum, here_ned: Vec3) -> Vec3:
     else:
         down = datum.home_ned[2] - item.z
         alt_amsl_m = datum.origin.alt_amsl_m - down
-    if _placeless(item):
+    if not has_place(item):
         return (here_ned[0], here_ned[1], down)
     north, east, _ = datum.projection.to_local(Geodetic(item.x * 1e-7, item.y * 1e-7, alt_amsl_m))
     return (north, east, down)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum, auto
 from math import atan2, sqrt
 
 from vehicle_sim.autopilot.demands import Demand, FlyLevel, FlyTo, Situation, Turner
 from vehicle_sim.autopilot.interface import Landed, Target, Vec3
+from vehicle_sim.autopilot.landing import descent_m_s
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.rally import Haven
+from vehicle_sim.autopilot.return_height import return_up_m
 
 _BELOW_GROUND_M = 1000.0
 _REACHED_M = 0.3
@@ -156,9 +160,8 @@ class Land:
     def update(self, s: Situation, turner: Turner) -> Demand:
         where = self._where_ned or s.stop_ned
         up_m = s.home_ned[2] - s.pos_ned[2]
-        limits = s.limits
-        if up_m < self._parameters.si(Quantity.LAND_SLOW_BELOW_M):
-            limits = replace(limits, descend_m_s=self._parameters.si(Quantity.LAND_M_S))
+        descend_m_s = descent_m_s(self._parameters, up_m, s.limits.descend_m_s)
+        limits = replace(s.limits, descend_m_s=descend_m_s)
         below = (where[0], where[1], s.pos_ned[2] + _BELOW_GROUND_M)
         return FlyTo(below, limits, straight=False)
 
@@ -173,14 +176,21 @@ class _Leg(Enum):
 
 
 class Return:
-    """Climb to the return height, home in a straight line, down, wait, land."""
+    """Climb to the return height, home in a straight line, down, wait, land.
+
+    `haven` finds another place than home, from where the return begins.
+    """
 
     done = False
 
-    __slots__ = ("_goal", "_land", "_leg", "_parameters", "_until_ns")
+    __slots__ = ("_find_haven", "_goal", "_haven", "_land", "_leg", "_parameters", "_until_ns")
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(
+        self, parameters: Parameters, haven: Callable[[Vec3], Haven] | None = None
+    ) -> None:
         self._parameters = parameters
+        self._find_haven = haven
+        self._haven: Haven | None = None
         self._leg = _Leg.CLIMB
         self._goal: Vec3 | None = None
         self._land: Land | None = None
@@ -198,14 +208,16 @@ class Return:
         return False
 
     def begin(self, s: Situation, turner: Turner) -> None:
-        down = s.home_ned[2] - self._parameters.si(Quantity.RETURN_UP_M)
-        top = min(s.stop_ned[2], down)
+        haven = Haven(s.home_ned) if self._find_haven is None else self._find_haven(s.pos_ned)
+        down = haven.ground_ned[2] - return_up_m(self._parameters, haven.ground_ned, s.stop_ned)
+        top = min(s.stop_ned[2], down, down if haven.over_d is None else haven.over_d)
+        self._haven = haven
         self._leg = _Leg.CLIMB
         self._goal = (s.stop_ned[0], s.stop_ned[1], top)
 
     def update(self, s: Situation, turner: Turner) -> Demand:
         goal = self._goal or s.stop_ned
-        home = s.home_ned
+        home = s.home_ned if self._haven is None else self._haven.ground_ned
         arrived = distance(s.pos_ned, goal) < _REACHED_M
         match self._leg:
             case _Leg.CLIMB:
@@ -232,7 +244,11 @@ class Return:
         self._goal = goal
         if self._land is not None:
             return self._land.update(s, turner)
-        return FlyTo(goal, s.limits)
+        limits = s.limits
+        if self._leg is _Leg.HOME and "RTL_SPEED" in self._parameters:
+            speed_m_s = 0.01 * self._parameters.get("RTL_SPEED")
+            limits = replace(limits, speed_m_s=speed_m_s or limits.speed_m_s)
+        return FlyTo(goal, limits)
 
     def _finish(self, goal: Vec3, home: Vec3) -> Vec3:
         final_up_m = 0.0

@@ -2,75 +2,125 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 
-from vehicle_sim.autopilot.arming import why_not
+from vehicle_sim.autopilot.estimator import booted
 from vehicle_sim.autopilot.interface import (
     Estimate,
     Geodetic,
+    GpsFix,
     Landed,
     PlanItem,
-    Quat,
+    Readings,
     Target,
+    Truth,
     Vec3,
 )
 from vehicle_sim.autopilot.life import Life
 from vehicle_sim.autopilot.modes import Flag
 from vehicle_sim.autopilot.pilot import heading_of
+from vehicle_sim.fleet import state_bytes
 
 _FALLING_M_S = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class Truth:
-    """What really is, for tests: NED metres and m/s, body to NED, rad/s."""
-
-    pos_ned: Vec3
-    v_ned: Vec3
-    q_ned_from_frd: Quat
-    rates_frd: Vec3
+_QUADROTOR = 2  # MAV_TYPE
 
 
 class View(Life):
     """The read-only half of `Vehicle`."""
 
+    _shown: Estimate | None = None
+    _shown_home: Vec3 | None = None
+
+    def _restart(self) -> None:
+        super()._restart()
+        self._shown = None
+
     @property
     def truth(self) -> Truth:
-        b = self._quad.body
+        b = self._body
+        pos_ned = (b.pos_n, b.pos_e, b.pos_d)
+        where = self._projection.to_geodetic(pos_ned)
         return Truth(
-            (b.pos_n, b.pos_e, b.pos_d),
-            (b.vel_n, b.vel_e, b.vel_d),
-            (b.qw, b.qx, b.qy, b.qz),
-            (b.rate_x, b.rate_y, b.rate_z),
-        )
-
-    def state_bytes(self) -> bytes:
-        """The body's whole state; equal bytes are an equal flight."""
-        return self._quad.state_bytes()
-
-    @property
-    def estimate(self) -> Estimate:
-        s = self._sense()
-        body = self._quad.body
-        q = self._sensors.attitude(body)
-        where = self._projection.to_geodetic(s.pos_ned)
-        home_d = self._home_ned[2] if self._home_ned is not None else 0.0
-        heading = heading_of(q)
-        return Estimate(
-            time_ns=self.time_ns,
-            pos_ned=s.pos_ned,
-            v_ned=s.v_ned,
-            q_ned_from_frd=q,
-            rates_frd=self._sensors.gyro(body, self._step),
-            accel_frd=self._sensors.accel(body, self._step),
+            time_s=self.time_ns / 1e9,
+            pos_ned=pos_ned,
+            v_ned=(b.vel_n, b.vel_e, b.vel_d),
+            q_ned_from_frd=(b.qw, b.qx, b.qy, b.qz),
+            rates_frd=(b.rate_x, b.rate_y, b.rate_z),
             lat_deg=where.lat_deg,
             lon_deg=where.lon_deg,
             alt_amsl_m=where.alt_amsl_m,
-            alt_rel_m=home_d - s.pos_ned[2],
-            heading_rad=heading if heading >= 0.0 else heading + 2.0 * pi,
-            gps_ok=self._origin is not None,
+            armed=self._armed,
+            mode=self._mode.name,
+            landed=not self._pilot.flying and b.touching,
+            battery=b.remaining,
         )
+
+    def state_bytes(self) -> bytes:
+        """The whole numeric state; equal bytes are an equal flight."""
+        return state_bytes(self.blocks)
+
+    @property
+    def estimate(self) -> Estimate:
+        """Made once a step, for all who ask: nothing of it changes in between but home."""
+        time_ns, home_ned = self.time_ns, self._home_ned
+        located = self._origin is not None
+        shown = self._shown
+        if (
+            shown is not None
+            and shown.time_ns == time_ns
+            and shown.gps_ok is located
+            and self._shown_home is home_ned
+        ):
+            return shown
+        est, sensed = self._est, self.blocks.sensed
+        pos_ned = (est.pos_n, est.pos_e, est.pos_d)
+        q = self._attitude
+        where = self._projection.to_geodetic(pos_ned)
+        home_d = home_ned[2] if home_ned is not None else 0.0
+        heading = heading_of(q)
+        self._shown_home = home_ned
+        self._shown = shown = Estimate(
+            time_ns=time_ns,
+            pos_ned=pos_ned,
+            v_ned=(est.vel_n, est.vel_e, est.vel_d),
+            q_ned_from_frd=q,
+            rates_frd=(est.rate_x, est.rate_y, est.rate_z),
+            accel_frd=(sensed.accel_x, sensed.accel_y, sensed.accel_z),
+            lat_deg=where.lat_deg,
+            lon_deg=where.lon_deg,
+            alt_amsl_m=where.alt_amsl_m,
+            alt_rel_m=home_d - pos_ned[2],
+            heading_rad=heading if heading >= 0.0 else heading + 2.0 * pi,
+            gps_ok=located,
+        )
+        return shown
+
+    @property
+    def readings(self) -> Readings:
+        s = self.blocks.sensed
+        judged = self.health
+        where = self._projection.to_geodetic((s.gps_n, s.gps_e, s.gps_d))
+        return Readings(
+            gyro_frd=(s.gyro_x, s.gyro_y, s.gyro_z),
+            accel_frd=(s.accel_x, s.accel_y, s.accel_z),
+            mag_frd=(s.mag_x, s.mag_y, s.mag_z),
+            pressure_alt_amsl_m=self._field.alt_amsl_m + s.baro_up_m,
+            gps=GpsFix(
+                judged.gps_fix,
+                self._satellites(judged.satellites),
+                where.lat_deg,
+                where.lon_deg,
+                where.alt_amsl_m,
+                (s.gps_vel_n, s.gps_vel_e, s.gps_vel_d),
+                judged.eph_m,
+                judged.epv_m,
+            ),
+        )
+
+    def _satellites(self, heard: int) -> int:
+        """PX4's simulated receiver says as many as its parameter."""
+        by_parameter = self.personality == "px4" and heard > 0
+        return int(self.parameters.get("SIM_GPS_USED")) if by_parameter else heard
 
     @property
     def target(self) -> Target:
@@ -84,7 +134,7 @@ class View(Life):
     def landed(self) -> Landed:
         if self._pilot.flying:
             return self._task.landed_word
-        falling = abs(self._quad.body.vel_d) > _FALLING_M_S
+        falling = abs(self._est.vel_d) > _FALLING_M_S
         return Landed.IN_AIR if falling else Landed.ON_GROUND
 
     @property
@@ -104,8 +154,8 @@ class View(Life):
         if self._terminated:
             return 8  # MAV_STATE_FLIGHT_TERMINATION
         if self._failsafe_active:
-            return 5  # CRITICAL
-        if not self._position_ok:
+            return 6 if self.emergency else 5  # EMERGENCY, CRITICAL
+        if not booted(self._est):
             return 1  # BOOT
         flying = self._armed if self.personality == "px4" else self._pilot.flying
         return 4 if flying else 3  # ACTIVE, STANDBY
@@ -126,12 +176,25 @@ class View(Life):
 
     @property
     def armable(self) -> bool:
-        return not self._terminated and self._why_not_arm() is None
+        return not self._terminated and not self._against_arming()
+
+    @property
+    def mav_type(self) -> int:
+        """That of a quadrotor, unless PX4's parameter says another."""
+        return int(self.parameters.get("MAV_TYPE")) if self.personality == "px4" else _QUADROTOR
 
     @property
     def motor_outputs(self) -> tuple[float, float, float, float]:
-        c = self._pilot.control
-        return (c.u1, c.u2, c.u3, c.u4)
+        f = self.blocks.flight
+        return (f.u1, f.u2, f.u3, f.u4)
+
+    @property
+    def wind_ned(self) -> Vec3 | None:
+        return self._airflow.wind_ned
+
+    @property
+    def vibration_m_s2(self) -> Vec3:
+        return self._airflow.vibration_m_s2
 
     @property
     def capturing(self) -> bool:
@@ -140,12 +203,6 @@ class View(Life):
     @property
     def images_captured(self) -> int:
         return self._camera.images
-
-    def _why_not_arm(self) -> str | None:
-        if self._mode.name == "OFFBOARD" and not self._stream.alive(self._sense().wall_ns):
-            return "Arming denied: no offboard setpoints"
-        battery = self._quad.battery.remaining
-        return why_not(self.parameters, self._mode, self._position_ok, battery)
 
     @property
     def plan(self) -> tuple[PlanItem, ...]:

@@ -2,50 +2,93 @@
 
 from __future__ import annotations
 
-from vehicle_sim.model.airframe import BatteryPack
+from itertools import pairwise
+from typing import Final
 
-# Open-circuit voltage of one cell over its remaining charge, straight between the points: the
-# usual shape of a LiPo discharge curve.
-_CHARGE = (0.0, 0.05, 0.10, 0.20, 0.40, 0.60, 0.80, 1.0)
-_VOLTS = (3.00, 3.45, 3.60, 3.70, 3.78, 3.88, 4.02, 4.20)
-_FULL_CELL_V = _VOLTS[-1]
+from vehicle_sim.model.body import Body
+from vehicle_sim.model.frame import Frame
+from vehicle_sim.model.kernel import kernel
+
+BATTERY_EVERY: Final = 25
+"""Steps between two updates of the battery, whose voltage moves slowly."""
+
+FULL_CELL_V: Final = 4.20
+
+_WEAKEST: Final = 0.25
+"""Below this part of the full voltage the motors draw no more for it."""
 
 
-class Battery:
-    """State: `consumed_mah`, and the `voltage_v` and `current_a` of the last update."""
+@kernel
+def cell_v(remaining: float) -> float:
+    """Open-circuit voltage of one cell over its charge: the usual shape of a LiPo's curve,
+    straight between the points (0, 3.00), (0.05, 3.45), (0.10, 3.60), (0.20, 3.70), (0.40, 3.78),
+    (0.60, 3.88), (0.80, 4.02), (1, 4.20)."""
+    return (
+        4.02 + (remaining - 0.80) * 0.90
+        if remaining > 0.80
+        else 3.88 + (remaining - 0.60) * 0.70
+        if remaining > 0.60
+        else 3.78 + (remaining - 0.40) * 0.50
+        if remaining > 0.40
+        else 3.70 + (remaining - 0.20) * 0.40
+        if remaining > 0.20
+        else 3.60 + (remaining - 0.10) * 1.00
+        if remaining > 0.10
+        else 3.45 + (remaining - 0.05) * 3.00
+        if remaining > 0.05
+        else 3.00 + remaining * 9.00
+    )
 
-    __slots__ = ("_pack", "consumed_mah", "current_a", "voltage_v")
 
-    def __init__(self, pack: BatteryPack) -> None:
-        self._pack = pack
-        self.consumed_mah = 0.0
-        self.current_a = pack.idle_current_a
-        self.voltage_v = self._open_circuit_v() - self.current_a * pack.resistance_ohm
+_POINTS: Final = (
+    (3.00, 0.0), (3.45, 0.05), (3.60, 0.10), (3.70, 0.20), (3.78, 0.40), (3.88, 0.60),
+    (4.02, 0.80), (4.20, 1.0),
+)  # fmt: skip
+"""`cell_v` the other way round."""
 
-    @property
-    def remaining(self) -> float:
-        """Charge left, 0..1."""
-        left = 1.0 - self.consumed_mah / self._pack.capacity_mah
-        return max(0.0, left)
 
-    @property
-    def strength(self) -> float:
-        """Voltage over the full battery's: what full throttle reaches of the full speed."""
-        return self.voltage_v / (self._pack.cells * _FULL_CELL_V)
+def charge_by_voltage(body: Body, frame: Frame) -> float:
+    """The charge (0..1) that the voltage speaks of, freed from the sag under load.
 
-    def draw(self, s1: float, s2: float, s3: float, s4: float, dt_s: float) -> None:
-        """Motors at speed fractions `s` for `dt_s`; a propeller's power goes with the cube."""
-        pack = self._pack
-        cubes = s1 * s1 * s1 + s2 * s2 * s2 + s3 * s3 * s3 + s4 * s4 * s4
-        self.current_a = pack.idle_current_a + pack.motor_current_max_a * cubes
-        self.consumed_mah += self.current_a * dt_s / 3.6
-        voltage = self._open_circuit_v() - self.current_a * pack.resistance_ohm
-        self.voltage_v = max(0.0, voltage)
+    That of a sound battery; one that has lost cells looks emptier than it is.
+    """
+    volts = (body.voltage_v + body.current_a * frame.resistance_ohm) / frame.cells
+    for (low_v, low), (high_v, high) in pairwise(_POINTS):
+        if volts < high_v:
+            part = (volts - low_v) / (high_v - low_v)
+            return low + part * (high - low) if part > 0.0 else low
+    return 1.0
 
-    def _open_circuit_v(self) -> float:
-        charge = self.remaining
-        i = 1
-        while charge > _CHARGE[i]:
-            i += 1
-        part = (charge - _CHARGE[i - 1]) / (_CHARGE[i] - _CHARGE[i - 1])
-        return self._pack.cells * (_VOLTS[i - 1] + part * (_VOLTS[i] - _VOLTS[i - 1]))
+
+@kernel
+def drain(body: Body, frame: Frame) -> None:
+    """`BATTERY_EVERY` steps of the battery under the motors' load.
+
+    A propeller's power goes with the cube of its speed, and current is power over voltage: a
+    sagging battery is drained faster.  A lost cell takes its voltage with it, not the charge.
+    """
+    s1 = body.s1
+    s2 = body.s2
+    s3 = body.s3
+    s4 = body.s4
+    cubes = s1 * s1 * s1 + s2 * s2 * s2 + (s3 * s3 * s3 + s4 * s4 * s4)
+    strength = body.strength
+    current_a = frame.idle_current_a + frame.motor_current_max_a * cubes / (
+        strength if strength > _WEAKEST else _WEAKEST
+    )
+    consumed_mah = body.consumed_mah + current_a * (frame.dt_s * BATTERY_EVERY / 3.6)
+    left = 1.0 - consumed_mah / frame.capacity_mah
+    body.current_a = current_a
+    body.consumed_mah = consumed_mah
+    body.remaining = left if left > 0.0 else 0.0
+    settle(body, frame)
+
+
+@kernel
+def settle(body: Body, frame: Frame) -> None:
+    """Voltage and strength for the charge that is left and the current that flows."""
+    cells = frame.cells - body.cells_lost
+    voltage_v = cells * cell_v(body.remaining) - body.current_a * frame.resistance_ohm
+    voltage_v = voltage_v if voltage_v > 0.0 else 0.0
+    body.voltage_v = voltage_v
+    body.strength = voltage_v / (frame.cells * FULL_CELL_V)

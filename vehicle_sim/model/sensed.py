@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_sim.model.rigid_body import GRAVITY_M_S2
+from vehicle_sim.model.body import GRAVITY_M_S2
 
 
 @dataclass(slots=True)
 class Sensed:
-    """A block (see `kernel.py`); only the sensors write it.
+    """A block (see `kernel.py`); only the sensors write it, and faults its last part.
 
     `gyro` [rad/s] and `accel` [m/s^2, specific force] in FRD, new with every step.  `mag` is the
-    magnetic field in FRD, in gauss; `baro_up_m` the height over the start by air pressure.  `gps_*`
-    is the last fix that has come out of the receiver, late by its latency; `gps_fix` is 0 or 3.  `*_fresh` are true in the one step in which a sample comes.
-
-    Biases and faults are fields too: what is wrong with a sensor is a part of its state.
+    magnetic field in FRD, in gauss; `baro_up_m` the height over the start by air pressure.
+    `gps_*` is the last fix that has come out of the receiver, in local NED, late by its latency;
+    `gps_fix` is 0 or 3.  `*_fresh` are true in the one step in which a sample comes.
     """
 
     gyro_x: float = 0.0
@@ -38,7 +37,39 @@ class Sensed:
     gps_vel_d: float = 0.0
     gps_fix: float = 0.0
     gps_fresh: bool = False
-    # What is wrong with them: constant errors in the units of the sensor, and silence.
+    # The sensors' own state: biases of this power-up, slow errors, the fix on its way.
+    gyro_bias_x: float = 0.0
+    gyro_bias_y: float = 0.0
+    gyro_bias_z: float = 0.0
+    accel_bias_x: float = 0.0
+    accel_bias_y: float = 0.0
+    accel_bias_z: float = 0.0
+    mag_iron_x: float = 0.0
+    mag_iron_y: float = 0.0
+    mag_iron_z: float = 0.0
+    field_n: float = 0.21  # the Earth's field at the start, gauss, NED
+    field_d: float = 0.43
+    baro_lag_m: float = 0.0
+    baro_drift_m: float = 0.0
+    gps_wander_n: float = 0.0
+    gps_wander_e: float = 0.0
+    gps_wander_d: float = 0.0
+    taken_n: float = 0.0
+    taken_e: float = 0.0
+    taken_d: float = 0.0
+    taken_vel_n: float = 0.0
+    taken_vel_e: float = 0.0
+    taken_vel_d: float = 0.0
+    gyro_key: int = 0
+    accel_key: int = 0
+    gyro_walk_key: int = 0
+    accel_walk_key: int = 0
+    mag_key: int = 0
+    baro_key: int = 0
+    gps_pos_key: int = 0
+    gps_vel_key: int = 0
+    gps_wander_key: int = 0
+    # What faults do to them: constant errors in the units of the sensor, and silence.
     gyro_off_x: float = 0.0
     gyro_off_y: float = 0.0
     gyro_off_z: float = 0.0

@@ -3,7 +3,8 @@
 A frame is a *retry* if it repeats the last one of the same sender and command: the same frame
 again (a duplicate on the way: equal sequence number), or the same parameters with a
 `confirmation` above 0 within `RETRY_NS`.  A retry has no second effect: while the command is in
-progress it is answered IN_PROGRESS, afterwards with the result that the first one had.
+progress it is answered IN_PROGRESS, afterwards with the result that the first one had.  When a
+command ends, each frame that was answered IN_PROGRESS gets its final ack.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
 from .effects import Client, Effect, Note, Send
+from .failures import FAILURE
 from .flight_commands import FLIGHT
 from .info_commands import INFO
 from .orders import Answer, Order, from_int, from_long
@@ -27,7 +29,7 @@ RETRY_NS: Final = 3_500_000_000
 REMEMBERED_MAX: Final = 256
 """Senders and commands, the oldest forgotten first."""
 
-TABLE: Final[dict[Cmd, Entry]] = {**FLIGHT, **INFO}
+TABLE: Final[dict[Cmd, Entry]] = {**FLIGHT, **INFO, **FAILURE}
 """Every command that this vehicle understands; all others are UNSUPPORTED."""
 
 
@@ -39,6 +41,7 @@ class _Memory:
     sequence: int
     heard_ns: int
     result: Result
+    owed: int = 0  # frames answered IN_PROGRESS that wait for their final ack
 
 
 class Commands:
@@ -59,16 +62,21 @@ class Commands:
         known = self._memory.get(key)
         if known is not None and _is_retry(known, asked, sequence, confirmation, now_ns):
             known.sequence, known.heard_ns = sequence, now_ns
+            known.owed += known.result is Result.IN_PROGRESS
             return [self._ack(client, asked.command, known.result)]
         order = (
             from_long(client, asked)
             if isinstance(asked, m.CommandLong)
             else from_int(client, asked)
         )
-        answer = self._answer(order)
+        told = known is not None and known.result is Result.UNSUPPORTED
+        answer = self._answer(order, told)
         while len(self._memory) >= REMEMBERED_MAX:
             del self._memory[next(iter(self._memory))]
-        self._memory[key] = _Memory(asked, sequence, now_ns, answer.result)
+        owed = int(answer.result is Result.IN_PROGRESS)
+        if owed and known is not None:
+            owed += known.owed
+        self._memory[key] = _Memory(asked, sequence, now_ns, answer.result, owed)
         return [self._ack(client, asked.command, answer.result), *answer.after]
 
     def done(self, event: CommandDone) -> list[Effect]:
@@ -76,8 +84,9 @@ class Commands:
         effects: list[Effect] = []
         for (client, command), known in self._memory.items():
             if command == event.command and known.result is Result.IN_PROGRESS:
-                known.result = event.result
-                effects.append(self._ack(client, command, event.result))
+                final = self._ack(client, command, event.result)
+                effects += [final] * known.owed
+                known.result, known.owed = event.result, 0
         return effects
 
     def forget(self, channel: int) -> None:
@@ -86,11 +95,12 @@ class Commands:
             key: known for key, known in self._memory.items() if key[0].channel != channel
         }
 
-    def _answer(self, order: Order) -> Answer:
+    def _answer(self, order: Order, told: bool) -> Answer:
+        """`told`: it was said before that the command is not supported; MAVSDK asks for ever."""
         known = order.command in Cmd.__members__.values()
         entry = TABLE.get(Cmd(order.command)) if known else None
-        if entry is None:
-            note = Note("warning", f"command {order.command} is not supported")
+        if entry is None or entry.only not in (None, self._desk.profile.name):
+            note = Note("debug" if told else "warning", f"command {order.command} is not supported")
             return Answer(Result.UNSUPPORTED, (note,))
         if entry.place and not order.global_frame:
             return Answer(Result.UNSUPPORTED_MAV_FRAME)

@@ -24,6 +24,13 @@ class Send(NamedTuple):
     message: Message
 
 
+class Report(NamedTuple):
+    """What is streamed on one channel after one step.  Channels with equal rates share the list."""
+
+    channel: int
+    messages: list[Message]
+
+
 class Note(NamedTuple):
     """A line for the log; `level` is one of debug, info, warning, error, fatal."""
 
@@ -31,4 +38,4 @@ class Note(NamedTuple):
     text: str
 
 
-Effect: TypeAlias = Send | Note
+Effect: TypeAlias = Send | Report | Note

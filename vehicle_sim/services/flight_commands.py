@@ -6,7 +6,7 @@ import math
 from typing import Final
 
 from vehicle_sim.autopilot.geo import projection
-from vehicle_sim.autopilot.interface import Geodetic, Result, Vec3
+from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result, Vec3
 from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, Cmd
 
 from .orders import Answer, Order
@@ -14,6 +14,8 @@ from .ports import Desk, Entry, RefusedError
 from .setpoints import FARTHEST
 
 FORCE: Final = 21196.0
+ROI_NONE: Final = 0.0  # MAV_ROI
+ROI_LOCATION: Final = 3.0
 
 
 def _finite(value: float, what: str) -> float:
@@ -180,7 +182,14 @@ def _camera_mode(desk: Desk, order: Order) -> Answer:
 
 
 def _prearm_checks(desk: Desk, order: Order) -> Answer:
-    return Answer(Result.TEMPORARILY_REJECTED if desk.vehicle.armed else Result.ACCEPTED)
+    return Answer(desk.vehicle.check_arming())
+
+
+def _fence_enable(desk: Desk, order: Order) -> Answer:
+    choice = order.whole(order.p1)
+    if choice is None:
+        raise RefusedError(Result.DENIED, f"{order.p1} is neither off, on nor floor off")
+    return Answer(desk.vehicle.enable_fence(choice))
 
 
 def _terminate(desk: Desk, order: Order) -> Answer:
@@ -195,8 +204,77 @@ def _reboot(desk: Desk, order: Order) -> Answer:
     return Answer(desk.vehicle.reboot())
 
 
+def _orbit(desk: Desk, order: Order) -> Answer:
+    """The height is AMSL whatever the frame says, as PX4 takes it; NaN = as it is."""
+    origin = desk.vehicle.origin
+    if origin is None:
+        raise RefusedError(Result.TEMPORARILY_REJECTED, "there is no origin yet")
+    centre_ne = None
+    if not (math.isnan(order.p5) or math.isnan(order.p6)):
+        there = Geodetic(latitude(order.p5), longitude(order.p6), 0.0)
+        north, east, _ = projection(desk.profile.name, origin).to_local(there)
+        centre_ne = (north, east)
+    height_m = _given(order.p7, "the height")
+    return Answer(
+        desk.vehicle.orbit(
+            OrbitRequest(
+                radius_m=_given(order.p1, "the radius"),
+                speed_m_s=_given(order.p2, "the speed"),
+                nose=order.whole(order.p3),
+                centre_ne=centre_ne,
+                down_m=None if height_m is None else origin.alt_amsl_m - height_m,
+            )
+        )
+    )
+
+
+def _given(value: float, what: str) -> float | None:
+    """None for NaN, which stands for "as it is"."""
+    return None if math.isnan(value) else _finite(value, what)
+
+
+def _look_at(desk: Desk, order: Order) -> Answer:
+    return Answer(desk.vehicle.look_at(_place(desk, order)))
+
+
+def _look_away(desk: Desk, order: Order) -> Answer:
+    return Answer(desk.vehicle.look_at(None))
+
+
+def _old_roi(desk: Desk, order: Order) -> Answer:
+    """DO_SET_ROI: MAV_ROI 0 none, 3 a location; ArduCopter always takes it for a location."""
+    if order.p1 == ROI_LOCATION or desk.profile.name == "ardupilot":
+        if order.p5 == order.p6 == order.p7 == 0.0:
+            return _look_away(desk, order)
+        return _look_at(desk, order)
+    if order.p1 == ROI_NONE:
+        return _look_away(desk, order)
+    raise RefusedError(Result.UNSUPPORTED, f"a region of interest of kind {order.p1}")
+
+
+def _loiter(desk: Desk, order: Order) -> Answer:
+    return Answer(desk.vehicle.set_mode_kind("hold"))
+
+
+def _storage(desk: Desk, order: Order) -> Answer:
+    """What is set is kept, so that there is nothing to load or to save; 2 resets it all."""
+    if desk.vehicle.armed:
+        raise RefusedError(Result.TEMPORARILY_REJECTED, "not while armed")
+    if order.p1 not in (0.0, 1.0, 2.0):
+        raise RefusedError(Result.DENIED, "parameters can be read (0), written (1) or reset (2)")
+    if order.p1 == 2.0:
+        desk.vehicle.reset_parameters()
+    return Answer(Result.ACCEPTED)
+
+
 FLIGHT: Final[dict[Cmd, Entry]] = {
     Cmd.COMPONENT_ARM_DISARM: Entry(_arm_disarm),
+    Cmd.NAV_LOITER_UNLIM: Entry(_loiter, place=True, only="ardupilot"),
+    Cmd.DO_ORBIT: Entry(_orbit, place=True, only="px4"),
+    Cmd.DO_SET_ROI_LOCATION: Entry(_look_at, place=True),
+    Cmd.DO_SET_ROI_NONE: Entry(_look_away),
+    Cmd.DO_SET_ROI: Entry(_old_roi, place=True),
+    Cmd.PREFLIGHT_STORAGE: Entry(_storage),
     Cmd.NAV_TAKEOFF: Entry(_take_off, place=True),
     Cmd.NAV_LAND: Entry(_land, place=True),
     Cmd.NAV_RETURN_TO_LAUNCH: Entry(_return),
@@ -213,6 +291,7 @@ FLIGHT: Final[dict[Cmd, Entry]] = {
     Cmd.IMAGE_STOP_CAPTURE: Entry(_image_stop),
     Cmd.SET_CAMERA_MODE: Entry(_camera_mode),
     Cmd.RUN_PREARM_CHECKS: Entry(_prearm_checks),
+    Cmd.DO_FENCE_ENABLE: Entry(_fence_enable),
     Cmd.DO_FLIGHTTERMINATION: Entry(_terminate),
     Cmd.PREFLIGHT_REBOOT_SHUTDOWN: Entry(_reboot),
 }

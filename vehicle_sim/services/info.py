@@ -9,10 +9,16 @@ from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
 from vehicle_sim.autopilot.modes import MODES, by_number
 from vehicle_sim.wire import messages as m
 
+from .metadata import Metadata
 from .profile import STANDARD_MODES, Profile
+from .status_telemetry import STATUS
 from .telemetry import STATE
 from .units import boot_ms, degrees_e7, millimetres, usec
 
+BUILDERS: Final = {**STATE, **STATUS}
+MISSION_ACTIVE: Final = 1  # MISSION_MODE
+MISSION_SUSPENDED: Final = 2
+MISSION_MODES: Final = frozenset({"AUTO.MISSION", "AUTO"})
 IMAGES_KEPT: Final = 200
 HAS_IMAGE_MODE: Final = 0x2 | 0x8  # CAMERA_CAP_FLAGS: captures images, in a mode for it
 STORAGE_READY: Final = 2
@@ -29,19 +35,22 @@ class Info:
         system: int,
         unix_start_ns: int,
         plan_ids: Callable[[], tuple[int, int, int, int]],
+        metadata: Metadata | None = None,
     ) -> None:
         """`plan_ids`: number of mission items, then the ids of mission, fence and rally points."""
         self._vehicle = vehicle
         self._profile = profile
         self._modes = tuple(MODES[profile.name].values())
-        self._system = system
+        self.system = system
         self._unix_start_ns = unix_start_ns
         self._plan_ids = plan_ids
+        self._metadata = metadata
         self._images: list[m.CameraImageCaptured] = []
         self._own: Final[dict[int, Callable[[], m.Message]]] = {
             m.IDS[m.SystemTime]: self._system_time,
             m.IDS[m.MissionCurrent]: self.mission_current,
             m.IDS[m.CurrentMode]: self._current_mode,
+            m.IDS[m.AvailableModesMonitor]: self._available_modes_monitor,
             m.IDS[m.AutopilotVersion]: self._autopilot_version,
             m.IDS[m.ProtocolVersion]: self._protocol_version,
             m.IDS[m.CameraInformation]: self._camera_information,
@@ -49,11 +58,11 @@ class Info:
             m.IDS[m.CameraCaptureStatus]: self._camera_capture_status,
             m.IDS[m.StorageInformation]: self._storage_information,
         }
-        self.streamable: Final = frozenset(STATE) | frozenset(self._own)
+        self.streamable: Final = frozenset(BUILDERS) | frozenset(self._own)
 
     def build(self, number: int) -> m.Message | None:
         """None: there is no such message, or nothing true to say yet."""
-        builder = STATE.get(number)
+        builder = BUILDERS.get(number)
         if builder is not None:
             return builder(self._vehicle, self._profile)
         own = self._own.get(number)
@@ -61,6 +70,8 @@ class Info:
 
     def answers(self, number: int) -> bool:
         """REQUEST_MESSAGE for it is understood."""
+        if number == m.IDS[m.ComponentMetadata]:
+            return self._metadata is not None
         return number in self.streamable or number in (
             m.IDS[m.AvailableModes],
             m.IDS[m.CameraImageCaptured],
@@ -72,6 +83,8 @@ class Info:
             return self._available_modes(index)
         if number == m.IDS[m.CameraImageCaptured]:
             return [image for image in self._images if image.image_index == index]
+        if number == m.IDS[m.ComponentMetadata] and self._metadata is not None:
+            return [self._component_metadata(self._metadata)]
         built = self.build(number)
         return [built] if built is not None else []
 
@@ -107,7 +120,7 @@ class Info:
             yaw=0.0,
             foc_len=0.0,
             img_idx=event.index & 0xFFFF,
-            target_system=self._system,
+            target_system=self.system,
             cam_idx=0,
             flags=0,
         )
@@ -125,7 +138,7 @@ class Info:
             seq=self._vehicle.mission_current,
             total=total,
             mission_state=self._vehicle.mission_state,
-            mission_mode=0,
+            mission_mode=(MISSION_ACTIVE if self.mode_name in MISSION_MODES else MISSION_SUSPENDED),
             mission_id=mission_id,
             fence_id=fence_id,
             rally_points_id=rally_id,
@@ -145,12 +158,16 @@ class Info:
             standard_mode=STANDARD_MODES.get(self.mode_name, 0),
         )
 
+    def _available_modes_monitor(self) -> m.Message:
+        """The modes never change."""
+        return m.AvailableModesMonitor(seq=0)
+
     def _available_modes(self, index: float) -> list[m.Message]:
         """Index 0 = all of them; they count from 1."""
         return [
             m.AvailableModes(
                 custom_mode=mode.custom_mode,
-                properties=0,
+                properties=mode.properties,
                 number_modes=len(self._modes),
                 mode_index=number,
                 standard_mode=STANDARD_MODES.get(mode.name, 0),
@@ -163,7 +180,7 @@ class Info:
     def _autopilot_version(self) -> m.Message:
         return m.AutopilotVersion(
             capabilities=self._profile.capabilities,
-            uid=0x6D61_7667_0000_0000 + self._system,
+            uid=0x6D61_7667_0000_0000 + self.system,
             flight_sw_version=self._profile.flight_sw_version,
             middleware_sw_version=0,
             os_sw_version=0,
@@ -173,6 +190,12 @@ class Info:
             flight_custom_version=b"",
             middleware_custom_version=b"",
             os_custom_version=b"",
+        )
+
+    def _component_metadata(self, metadata: Metadata) -> m.Message:
+        """Only on request, as PX4 does."""
+        return m.ComponentMetadata(
+            boot_ms(self._vehicle), metadata.crc, metadata.uri.encode("ascii")
         )
 
     def _protocol_version(self) -> m.Message:

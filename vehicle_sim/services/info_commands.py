@@ -13,6 +13,8 @@ from .effects import Send
 from .orders import Answer, Order
 from .ports import Desk, Entry, Handler, RefusedError
 
+CURRENT_MODE_US: Final = 2_000_000
+
 
 def _send(desk: Desk, order: Order, number: int, index: float = 0) -> Answer:
     if not desk.info.answers(number):
@@ -35,6 +37,10 @@ def _request_message(desk: Desk, order: Order) -> Answer:
     if number == m.IDS[m.MessageInterval]:
         wanted = order.whole(order.p2)
         return _interval(desk, order, wanted if wanted is not None else -1)
+    if number == m.IDS[m.AvailableModes]:
+        # Who asks for the modes wants to be told which one it is, from then on.
+        streams = desk.streams[order.client.channel]
+        streams.begin(m.IDS[m.CurrentMode], CURRENT_MODE_US, desk.vehicle.time_ns)
     return _send(desk, order, number, order.p2)
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import struct
-import zlib
 from dataclasses import dataclass
 from typing import Final
 
@@ -18,6 +17,7 @@ from vehicle_sim.wire.ids import ParamType
 
 from .effects import Client, Effect, Note, Send
 from .profile import Profile
+from .store import crc32_of
 from .streams import NEVER
 
 NO_INDEX: Final = 0xFFFF
@@ -69,8 +69,11 @@ class ParameterServer:
         return min((listing.due_ns for listing in self._listings.values()), default=NEVER)
 
     def request_list(self, client: Client, now_ns: int) -> list[Effect]:
+        """PX4 leaves the hash out if it is asked again while a list is on its way."""
+        again = client.channel in self._listings
         self._listings[client.channel] = _Listing(client, 0, now_ns)
-        return [Send(client.channel, self._hash_value())] if self._profile.hash_check else []
+        hashed = self._hashes and not again
+        return [Send(client.channel, self._hash_value())] if hashed else []
 
     def tick(self, now_ns: int) -> list[Effect]:
         effects: list[Effect] = []
@@ -93,7 +96,7 @@ class ParameterServer:
             name = self._names[asked.param_index]
         elif asked.param_index >= 0:
             return self._unknown(client, asked.param_id, asked.param_index)
-        elif name == HASH_CHECK and self._profile.hash_check:
+        elif name == HASH_CHECK and self._hashes:
             return [Send(client.channel, self._hash_value())]
         if name not in self._parameters:
             return self._unknown(client, asked.param_id, asked.param_index)
@@ -101,7 +104,7 @@ class ParameterServer:
 
     def set(self, client: Client, asked: m.ParamSet) -> list[Effect]:
         name = _name(asked.param_id)
-        if name == HASH_CHECK and self._profile.hash_check:
+        if name == HASH_CHECK and self._hashes:
             # QGroundControl knows these values already and needs no list.
             self._listings.pop(client.channel, None)
             return []
@@ -117,6 +120,10 @@ class ParameterServer:
             except ParameterError as refusal:
                 note = Note("warning", f"parameter {refusal}")
         return [Send(None, self._value(name, echo=True)), note]
+
+    @property
+    def _hashes(self) -> bool:
+        return self._profile.hash_check and self._parameters.get("MAV_HASH_CHK_EN") != 0
 
     def _kind(self, name: str) -> ParamType:
         return ParamType.INT32 if self._parameters.spec(name).integer else ParamType.REAL32
@@ -135,9 +142,18 @@ class ParameterServer:
         )
 
     def _hash_value(self) -> m.ParamValue:
-        """Two bits are cleared, so that no platform takes the float for a signalling NaN."""
-        text = repr([(name, self._parameters.get(name)) for name in self._names])
-        crc = zlib.crc32(text.encode()) & 0x3FFFFFFF
+        """PX4's hash, which QGroundControl reckons from its cache: CRC-32 over names and values.
+
+        In the order of the names' characters, as both sort them.  A hash that is a signalling
+        NaN, one in 512, is quieted on its way through a float: then the list is loaded anew.
+        """
+        crc = 0
+        for name in sorted(self._names):
+            stored = _FORMATS[self._kind(name)]
+            value = self._parameters.get(name)
+            whole = self._parameters.spec(name).integer
+            crc = crc32_of(name.encode("ascii"), crc)
+            crc = crc32_of(struct.pack(stored, int(value) if whole else value), crc)
         return m.ParamValue(
             encode(crc, ParamType.UINT32, bytewise=True),
             len(self._names),

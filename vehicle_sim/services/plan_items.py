@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import replace
+from math import isfinite
 from typing import Final
 
 from vehicle_sim.autopilot.interface import Geodetic, PlanItem
@@ -16,8 +17,28 @@ from .units import degrees_e7
 _GLOBAL: Final = ABSOLUTE | RELATIVE
 _LOCAL_SCALE: Final = 1e4
 _GLOBAL_SCALE: Final = 1e7
-_FIRST_DO: Final = 176  # MAV_CMD_DO_SET_MODE: DO commands have no place of their own
+_LAST_NAV: Final = 95  # MAV_CMD_NAV_LAST
 INT32_MAX: Final = 0x7FFFFFFF
+
+_DIGICAM: Final = frozenset({202, 203})  # DO_DIGICAM_CONFIGURE, _CONTROL: x and y are numbers
+_PLACELESS_NAVS: Final = frozenset({20, 93})  # NAV_RETURN_TO_LAUNCH, NAV_DELAY
+_PLACED_DOS: Final = frozenset({179, 189, 195, 201})
+"""DO_SET_HOME, DO_LAND_START, DO_SET_ROI_LOCATION, DO_SET_ROI: all others have no place."""
+
+_KEPT: Final[dict[int, tuple[bool, bool, bool, bool]]] = {
+    16: (True, False, False, False),
+    17: (False, False, True, False),
+    18: (True, False, True, True),
+    19: (True, False, True, True),
+    20: (False, False, False, False),
+    21: (True, False, False, False),
+    22: (True, False, False, False),
+    31: (False, True, False, True),
+    82: (True, False, False, False),
+    177: (True, True, False, False),
+    206: (True, False, True, False),
+}
+"""The parameters that ArduCopter stores, where it does not store all four."""
 
 _PLAIN: Final = {
     Frame.GLOBAL_INT: Frame.GLOBAL,
@@ -26,7 +47,10 @@ _PLAIN: Final = {
 _INT: Final = {plain: whole for whole, plain in _PLAIN.items()}
 
 
-def _scale(frame: int) -> float:
+def _scale(command: int, frame: int) -> float:
+    """How x and y of MISSION_ITEM become those of MISSION_ITEM_INT; not everything is a place."""
+    if frame == Frame.MISSION or command in _DIGICAM:
+        return 1.0
     return _LOCAL_SCALE if frame == Frame.LOCAL_NED else _GLOBAL_SCALE
 
 
@@ -38,7 +62,7 @@ def from_int(item: m.MissionItemInt) -> PlanItem:
 
 def from_float(item: m.MissionItem) -> PlanItem | None:
     """None if a coordinate is no number, or beyond what an item can hold."""
-    scale = _scale(item.frame)
+    scale = _scale(item.command, item.frame)
     if not (abs(item.x) * scale <= INT32_MAX and abs(item.y) * scale <= INT32_MAX):
         return None
     x, y = round(item.x * scale), round(item.y * scale)
@@ -66,7 +90,7 @@ def to_int(item: PlanItem, client: Client, kind: int) -> m.MissionItemInt:
 
 
 def to_float(item: PlanItem, client: Client, kind: int) -> m.MissionItem:
-    scale = _scale(item.frame)
+    scale = _scale(item.command, item.frame)
     whole = to_int(item, client, kind)
     x, y = item.x / scale, item.y / scale
     return m.MissionItem._make((*whole[:4], x, y, *whole[6:]))
@@ -78,7 +102,7 @@ def as_px4_gives_back(item: PlanItem) -> PlanItem:
 
 
 def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
-    """Item 0 is home; frames in their plain form; DO and RTL items have frame 0."""
+    """Item 0 is home; frames in their plain form, 0 for what has no place; only what was kept."""
     if item.seq == 0 and home is not None:
         return PlanItem(
             seq=0,
@@ -93,9 +117,23 @@ def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
             z=home.alt_amsl_m,
             autocontinue=1,
         )
-    if item.command == Cmd.NAV_RETURN_TO_LAUNCH or item.command >= _FIRST_DO:
+    k1, k2, k3, k4 = _KEPT.get(item.command, (True, True, True, True))
+    item = replace(
+        item,
+        p1=_kept(item.p1, k1),
+        p2=_kept(item.p2, k2),
+        p3=_kept(item.p3, k3),
+        p4=_kept(item.p4, k4),
+    )
+    goes_somewhere = item.command <= _LAST_NAV and item.command not in _PLACELESS_NAVS
+    if not (goes_somewhere or item.command in _PLACED_DOS):
         return replace(item, frame=Frame.GLOBAL)
     return replace(item, frame=_PLAIN.get(Frame(item.frame), item.frame)) if _known(item) else item
+
+
+def _kept(value: float, kept: bool) -> float:
+    """ArduPilot stores no NaN."""
+    return value if kept and isfinite(value) else 0.0
 
 
 def _known(item: PlanItem) -> bool:

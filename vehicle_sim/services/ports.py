@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from vehicle_sim.autopilot.interface import Result, Vehicle
+from vehicle_sim.autopilot.modes import Personality
 
 from .info import Info
 from .orders import Answer, Order
@@ -39,3 +40,4 @@ Handler: TypeAlias = Callable[[Desk, Order], Answer]
 class Entry:
     handler: Handler
     place: bool = False  # p5..p7 are a place: COMMAND_INT's frame must be a global one
+    only: Personality | None = None  # the other one does not know the command

@@ -24,6 +24,7 @@ class Profile:
     flight_sw_version: int
     capabilities: Capability
     intervals_ns: dict[int, int]  # message number -> what is sent unasked
+    rate_parameters: dict[str, Stream]  # which parameters say what more is sent unasked
     fixed: frozenset[int]  # streams whose interval cannot be set
     bytewise_parameters: bool
     hash_check: bool  # a parameter list begins with _HASH_CHECK
@@ -34,6 +35,8 @@ class Profile:
     home_is_item_0: bool
     mission_retry_ns: int
     mission_retries: int
+    plan_max: dict[MissionType, int]  # items that there is room for
+    partial_lists: bool  # MISSION_WRITE_PARTIAL_LIST
     takeoff_amsl: bool  # NAV_TAKEOFF's height is AMSL, else above home
     acks_set_mode: bool
     reached_repeats: int  # MISSION_ITEM_REACHED, how often each
@@ -41,12 +44,16 @@ class Profile:
     guided_items: bool  # MISSION_ITEM with current = 2 or 3
     offset_frames: bool  # LOCAL_OFFSET_NED, BODY_OFFSET_NED, position in BODY_NED
     whole_masks: bool  # any ignore bit of a vector ignores all three axes
+    first_log: int  # number of the oldest log in a LOG_ENTRY
+    logs_while_armed: bool  # logs are listed and sent in flight too
+    component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
 
 
 _COMMON: Final = (
     Capability.MISSION_FLOAT
     | Capability.MISSION_INT
     | Capability.COMMAND_INT
+    | Capability.FTP
     | Capability.SET_ATTITUDE_TARGET
     | Capability.SET_POSITION_TARGET_LOCAL_NED
     | Capability.SET_POSITION_TARGET_GLOBAL_INT
@@ -72,8 +79,16 @@ PX4: Final = Profile(
             m.AttitudeQuaternion: 20,
             m.GlobalPositionInt: 20,
             m.PositionTargetLocalNed: 10,
+            m.PositionTargetGlobalInt: 10,
+            m.AttitudeTarget: 50,
+            m.OrbitExecutionStatus: 5,
+            m.RcChannels: 5,
+            m.ManualControl: 5,
             m.HighresImu: 10,
-            m.ServoOutputRaw: 10,
+            m.ServoOutputRaw: 50,
+            m.Altitude: 10,
+            m.WindCov: 0.5,
+            m.Vibration: 0.5,
             m.VfrHud: 5,
             m.GpsRawInt: 5,
             m.BatteryStatus: 1,
@@ -85,6 +100,7 @@ PX4: Final = Profile(
             m.CurrentMode: 0.5,
         }
     ),
+    rate_parameters={},
     fixed=frozenset({m.IDS[m.MissionCurrent]}),
     bytewise_parameters=True,
     hash_check=True,
@@ -95,6 +111,8 @@ PX4: Final = Profile(
     home_is_item_0=False,
     mission_retry_ns=250_000_000,
     mission_retries=20,
+    plan_max={MissionType.MISSION: 2000, MissionType.FENCE: 64, MissionType.RALLY: 32},
+    partial_lists=False,
     takeoff_amsl=True,
     acks_set_mode=False,
     reached_repeats=11,
@@ -102,15 +120,27 @@ PX4: Final = Profile(
     guided_items=False,
     offset_frames=False,
     whole_masks=False,
+    first_log=0,
+    logs_while_armed=True,
+    component_metadata=True,
 )
 
 ARDUPILOT: Final = Profile(
     name="ardupilot",
     autopilot=3,
     vendor="ArduPilot",
-    flight_sw_version=0x040700FF,  # 4.7.0, a release
+    flight_sw_version=0x040600FF,  # 4.6.0, a release: 4.7 renames many parameters
     capabilities=_COMMON | Capability.PARAM_ENCODE_C_CAST,
     intervals_ns=_hz({m.Heartbeat: 1, m.HomePosition: 0.5}),
+    rate_parameters={
+        "SR0_RAW_SENS": Stream.RAW_SENSORS,
+        "SR0_EXT_STAT": Stream.EXTENDED_STATUS,
+        "SR0_RC_CHAN": Stream.RC_CHANNELS,
+        "SR0_POSITION": Stream.POSITION,
+        "SR0_EXTRA1": Stream.EXTRA1,
+        "SR0_EXTRA2": Stream.EXTRA2,
+        "SR0_EXTRA3": Stream.EXTRA3,
+    },
     fixed=frozenset(),
     bytewise_parameters=False,
     hash_check=False,
@@ -120,7 +150,9 @@ ARDUPILOT: Final = Profile(
     float_items=True,
     home_is_item_0=True,
     mission_retry_ns=1_000_000_000,
-    mission_retries=8,
+    mission_retries=20,
+    plan_max={MissionType.MISSION: 724, MissionType.FENCE: 100, MissionType.RALLY: 100},
+    partial_lists=True,
     takeoff_amsl=False,
     acks_set_mode=True,
     reached_repeats=1,
@@ -128,6 +160,9 @@ ARDUPILOT: Final = Profile(
     guided_items=True,
     offset_frames=True,
     whole_masks=True,
+    first_log=1,
+    logs_while_armed=False,
+    component_metadata=False,
 )
 
 PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILOT}
@@ -135,6 +170,7 @@ PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILO
 STANDARD_MODES: Final[dict[str, int]] = {
     "POSCTL": 1,
     "LOITER": 1,
+    "POSCTL.ORBIT": 2,
     "ALTCTL": 4,
     "ALT_HOLD": 4,
     "AUTO.RTL": 5,
@@ -148,15 +184,36 @@ STANDARD_MODES: Final[dict[str, int]] = {
 """MAV_STANDARD_MODE of the modes that have one."""
 
 DATA_STREAMS: Final[dict[Stream, tuple[type[m.Message], ...]]] = {
-    Stream.RAW_SENSORS: (m.HighresImu, m.ScaledPressure),
-    Stream.EXTENDED_STATUS: (m.SysStatus, m.GpsRawInt, m.MissionCurrent, m.ExtendedSysState),
-    Stream.RC_CHANNELS: (m.ServoOutputRaw,),
+    Stream.RAW_SENSORS: (m.RawImu, m.ScaledPressure),
+    Stream.EXTENDED_STATUS: (
+        m.SysStatus,
+        m.PowerStatus,
+        m.Meminfo,
+        m.NavControllerOutput,
+        m.MissionCurrent,
+        m.GpsRawInt,
+        m.FenceStatus,
+        m.PositionTargetGlobalInt,
+        m.ExtendedSysState,
+    ),
+    Stream.RC_CHANNELS: (m.ServoOutputRaw, m.RcChannels, m.RcChannelsRaw),
     Stream.RAW_CONTROLLER: (),
     Stream.POSITION: (m.GlobalPositionInt, m.LocalPositionNed, m.PositionTargetLocalNed),
     Stream.EXTRA1: (m.Attitude, m.AttitudeQuaternion),
     Stream.EXTRA2: (m.VfrHud,),
-    Stream.EXTRA3: (m.SystemTime, m.BatteryStatus, m.EkfStatusReport),
+    Stream.EXTRA3: (
+        m.SystemTime,
+        m.Hwstatus,
+        m.Wind,
+        m.BatteryStatus,
+        m.EkfStatusReport,
+        m.Vibration,
+    ),
 }
-"""What REQUEST_DATA_STREAM asks for; ALL is all of them."""
+"""What REQUEST_DATA_STREAM asks for; ALL is all of them.
+
+ArduCopter's own groups, without what the vehicle has no sensor for, and with what else MAVSDK's
+health and this project's ground station look at.
+"""
 
 PLAN_TYPES: Final = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from vehicle_sim.autopilot.interface import Vehicle
+from vehicle_sim.autopilot.interface import Readings, Vehicle
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import EstimatorFlag, Sensor
+from vehicle_sim.wire.ids import EkfFlag, EstimatorFlag, Sensor
 
 from .profile import Profile
 from .units import (
@@ -21,12 +21,14 @@ from .units import (
     usec,
 )
 
-BOOT: Final = 1  # MAV_STATE
-FIX_NONE: Final = 1
 FIX_3D: Final = 3
-SATELLITES: Final = 12
-GPS_EPH_M: Final = 0.9
+GPS_HDOP: Final = 0.8
+GPS_VDOP: Final = 1.1
+GPS_VEL_ACC_MM_S: Final = 100
+HEIGHT_ACCURACY_M: Final = 0.3
 SEA_LEVEL_HPA: Final = 1013.25
+GRAVITY_M_S2: Final = 9.80665
+BOARD_DEG_C: Final = 25.0  # of everything that has a temperature
 
 
 def _pressure_hpa(alt_amsl_m: float) -> float:
@@ -53,18 +55,31 @@ _PRESENT: Final = (
 
 
 def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
-    power = vehicle.power
-    healthy = _PRESENT
-    if vehicle.system_status <= BOOT:
-        # The estimator has not settled: clients take these bits for "position is good".
-        healthy &= ~(Sensor.GPS | Sensor.AHRS | Sensor.XY_POSITION_CONTROL)
-    if not vehicle.estimate.gps_ok:
-        healthy &= ~(Sensor.GPS | Sensor.XY_POSITION_CONTROL)
+    power, health = vehicle.power, vehicle.health
+    fence = vehicle.fence_state
+    present = _PRESENT | Sensor.GEOFENCE if fence.present else _PRESENT
+    enabled = _PRESENT | Sensor.GEOFENCE if fence.enabled else _PRESENT
+    # As ArduPilot has it, a fence is healthy where there is none: MAVProxy, which does not look
+    # whether it is present, would say "fence breach".
+    healthy = present & ~Sensor.GEOFENCE if fence.breached else present | Sensor.GEOFENCE
+    # Clients take the bit of the GPS for "the global position is good".
+    if not (health.gps_ok and health.position_ok):
+        healthy &= ~Sensor.GPS
+    if not health.position_ok:
+        healthy &= ~Sensor.XY_POSITION_CONTROL
+    if not health.height_ok:
+        healthy &= ~Sensor.Z_ALTITUDE_CONTROL
+    if not health.attitude_ok:
+        healthy &= ~(Sensor.AHRS | Sensor.ATTITUDE_STABILIZATION | Sensor.YAW_POSITION)
+    if not health.mag_ok:
+        healthy &= ~Sensor.MAG_3D
+    if not health.baro_ok:
+        healthy &= ~Sensor.ABSOLUTE_PRESSURE
     if not (vehicle.armable or vehicle.armed):
         healthy &= ~Sensor.PREARM_CHECK
     return m.SysStatus(
-        onboard_control_sensors_present=_PRESENT,
-        onboard_control_sensors_enabled=_PRESENT,
+        onboard_control_sensors_present=present,
+        onboard_control_sensors_enabled=enabled,
         onboard_control_sensors_health=healthy,
         load=200,
         voltage_battery=clip_uint16(power.voltage_v * 1000.0),
@@ -80,28 +95,34 @@ def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
 
 
 def gps_raw_int(vehicle: Vehicle, profile: Profile) -> m.GpsRawInt:
-    estimate = vehicle.estimate
-    north, east, _ = estimate.v_ned
+    """What the receiver says, not the estimate; without a fix the last position stays."""
+    gps = vehicle.readings.gps
+    north, east, _ = gps.v_ned
+    fixed = gps.fix_type >= FIX_3D
+    speed = math.sqrt(north * north + east * east)
     return m.GpsRawInt(
         time_usec=usec(vehicle),
-        lat=degrees_e7(estimate.lat_deg),
-        lon=degrees_e7(estimate.lon_deg),
-        alt=millimetres(estimate.alt_amsl_m),
-        eph=round(GPS_EPH_M * 100.0),
-        epv=round(GPS_EPH_M * 150.0),
-        vel=clip_uint16(math.sqrt(north * north + east * east) * 100.0),
-        cog=round(math.degrees(math.atan2(east, north)) * 100.0) % 36000,
-        fix_type=FIX_3D if estimate.gps_ok else FIX_NONE,
-        satellites_visible=SATELLITES if estimate.gps_ok else 0,
-        alt_ellipsoid=millimetres(estimate.alt_amsl_m),
-        h_acc=millimetres(GPS_EPH_M),
-        v_acc=millimetres(GPS_EPH_M * 1.5),
-        vel_acc=100,
+        lat=degrees_e7(gps.lat_deg),
+        lon=degrees_e7(gps.lon_deg),
+        alt=millimetres(gps.alt_amsl_m),
+        eph=round(GPS_HDOP * 100.0) if fixed else UINT16_MAX,
+        epv=round(GPS_VDOP * 100.0) if fixed else UINT16_MAX,
+        vel=clip_uint16(speed * 100.0) if fixed else UINT16_MAX,
+        cog=round(math.degrees(math.atan2(east, north)) * 100.0) % 36000 if fixed else UINT16_MAX,
+        fix_type=gps.fix_type,
+        satellites_visible=gps.satellites,
+        alt_ellipsoid=millimetres(gps.alt_amsl_m),
+        h_acc=millimetres(gps.eph_m) if fixed else 0,
+        v_acc=millimetres(gps.epv_m) if fixed else 0,
+        vel_acc=GPS_VEL_ACC_MM_S if fixed else 0,
     )
 
 
-def battery_status(vehicle: Vehicle, profile: Profile) -> m.BatteryStatus:
+def battery_status(vehicle: Vehicle, profile: Profile) -> m.BatteryStatus | None:
+    """ArduPilot sends none without a battery monitor."""
     power = vehicle.power
+    if power.remaining_pct < 0:
+        return None
     return m.BatteryStatus(
         current_consumed=round(power.consumed_mah),
         energy_consumed=-1,
@@ -116,44 +137,64 @@ def battery_status(vehicle: Vehicle, profile: Profile) -> m.BatteryStatus:
     )
 
 
+_HORIZONTAL: Final = (
+    EstimatorFlag.POS_HORIZ_REL
+    | EstimatorFlag.POS_HORIZ_ABS
+    | EstimatorFlag.PRED_POS_HORIZ_REL
+    | EstimatorFlag.PRED_POS_HORIZ_ABS
+)
+
+
 def estimator_flags(vehicle: Vehicle) -> EstimatorFlag:
-    flags = EstimatorFlag.ATTITUDE | EstimatorFlag.VELOCITY_VERT | EstimatorFlag.POS_VERT_ABS
-    if vehicle.origin is None or not vehicle.estimate.gps_ok:
-        return flags | EstimatorFlag.CONST_POS_MODE
-    return (
-        flags
-        | EstimatorFlag.VELOCITY_HORIZ
-        | EstimatorFlag.POS_HORIZ_REL
-        | EstimatorFlag.POS_HORIZ_ABS
-        | EstimatorFlag.POS_VERT_AGL
-        | EstimatorFlag.PRED_POS_HORIZ_REL
-        | EstimatorFlag.PRED_POS_HORIZ_ABS
-    )
+    """The bits that both autopilots have; without a range finder none is above ground."""
+    health = vehicle.health
+    flags = EstimatorFlag(0)
+    if health.attitude_ok:
+        flags |= EstimatorFlag.ATTITUDE
+    if health.height_ok:
+        flags |= EstimatorFlag.VELOCITY_VERT | EstimatorFlag.POS_VERT_ABS
+    if health.velocity_ok:
+        flags |= EstimatorFlag.VELOCITY_HORIZ
+    return flags | (_HORIZONTAL if health.position_ok else EstimatorFlag.CONST_POS_MODE)
+
+
+def _glitching(vehicle: Vehicle) -> bool:
+    """There are fixes, and they are not believed."""
+    health = vehicle.health
+    return health.attitude_ok and health.gps_fix >= FIX_3D and not health.gps_ok
 
 
 def estimator_status(vehicle: Vehicle, profile: Profile) -> m.EstimatorStatus:
+    health = vehicle.health
+    glitch = EstimatorFlag.GPS_GLITCH if _glitching(vehicle) else EstimatorFlag(0)
     return m.EstimatorStatus(
         time_usec=usec(vehicle),
-        vel_ratio=0.1,
-        pos_horiz_ratio=0.1,
-        pos_vert_ratio=0.1,
-        mag_ratio=0.1,
-        hagl_ratio=0.1,
+        vel_ratio=health.vel_ratio,
+        pos_horiz_ratio=health.pos_ratio,
+        pos_vert_ratio=health.height_ratio,
+        mag_ratio=health.mag_ratio,
+        hagl_ratio=0.0,
         tas_ratio=0.0,
-        pos_horiz_accuracy=GPS_EPH_M,
-        pos_vert_accuracy=GPS_EPH_M * 1.5,
-        flags=estimator_flags(vehicle),
+        pos_horiz_accuracy=health.accuracy_m,
+        pos_vert_accuracy=HEIGHT_ACCURACY_M,
+        flags=estimator_flags(vehicle) | glitch,
     )
 
 
 def ekf_status_report(vehicle: Vehicle, profile: Profile) -> m.EkfStatusReport:
+    health = vehicle.health
+    flags = int(estimator_flags(vehicle))
+    if not health.attitude_ok:
+        flags |= EkfFlag.UNINITIALIZED
+    if _glitching(vehicle):
+        flags |= EkfFlag.GPS_GLITCHING
     return m.EkfStatusReport(
-        velocity_variance=0.1,
-        pos_horiz_variance=0.1,
-        pos_vert_variance=0.1,
-        compass_variance=0.1,
+        velocity_variance=health.vel_ratio,
+        pos_horiz_variance=health.pos_ratio,
+        pos_vert_variance=health.height_ratio,
+        compass_variance=health.mag_ratio,
         terrain_alt_variance=0.0,
-        flags=estimator_flags(vehicle),
+        flags=flags,
     )
 
 
@@ -167,23 +208,52 @@ def servo_output_raw(vehicle: Vehicle, profile: Profile) -> m.ServoOutputRaw:
 
 
 def highres_imu(vehicle: Vehicle, profile: Profile) -> m.HighresImu:
-    estimate = vehicle.estimate
+    """SI units and gauss."""
+    readings = vehicle.readings
     return m.HighresImu(
         usec(vehicle),
-        *estimate.accel_frd,
-        *estimate.rates_frd,
-        xmag=0.21,
-        ymag=0.0,
-        zmag=0.42,
-        abs_pressure=_pressure_hpa(estimate.alt_amsl_m),
+        *readings.accel_frd,
+        *readings.gyro_frd,
+        *readings.mag_frd,
+        abs_pressure=_pressure_hpa(readings.pressure_alt_amsl_m),
         diff_pressure=0.0,
-        pressure_alt=estimate.alt_amsl_m,
-        temperature=25.0,
-        fields_updated=0x3F | 0x200 | 0x800,  # acceleration, rates, pressure and its height
+        pressure_alt=readings.pressure_alt_amsl_m,
+        temperature=BOARD_DEG_C,
+        fields_updated=0xBFF,  # all but the differential pressure and the temperature
+    )
+
+
+_Nine = tuple[int, int, int, int, int, int, int, int, int]
+
+
+def _milli(readings: Readings) -> _Nine:
+    """Specific force in 1/1000 of gravity, rates in mrad/s, field in milligauss."""
+    ax, ay, az = readings.accel_frd
+    gx, gy, gz = readings.gyro_frd
+    mx, my, mz = readings.mag_frd
+    milli_g = 1000.0 / GRAVITY_M_S2
+    return (
+        *(clip_int16(ax * milli_g), clip_int16(ay * milli_g), clip_int16(az * milli_g)),
+        *(clip_int16(gx * 1000.0), clip_int16(gy * 1000.0), clip_int16(gz * 1000.0)),
+        *(clip_int16(mx * 1000.0), clip_int16(my * 1000.0), clip_int16(mz * 1000.0)),
+    )
+
+
+def scaled_imu(vehicle: Vehicle, profile: Profile) -> m.ScaledImu:
+    return m.ScaledImu(
+        boot_ms(vehicle), *_milli(vehicle.readings), temperature=round(BOARD_DEG_C * 100.0)
+    )
+
+
+def raw_imu(vehicle: Vehicle, profile: Profile) -> m.RawImu:
+    """As ArduPilot fills it, which scales it like SCALED_IMU."""
+    return m.RawImu(
+        usec(vehicle), *_milli(vehicle.readings), temperature=round(BOARD_DEG_C * 100.0)
     )
 
 
 def scaled_pressure(vehicle: Vehicle, profile: Profile) -> m.ScaledPressure:
+    pressure_hpa = _pressure_hpa(vehicle.readings.pressure_alt_amsl_m)
     return m.ScaledPressure(
-        boot_ms(vehicle), _pressure_hpa(vehicle.estimate.alt_amsl_m), 0.0, temperature=2500
+        boot_ms(vehicle), pressure_hpa, 0.0, temperature=round(BOARD_DEG_C * 100.0)
     )

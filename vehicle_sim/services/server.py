@@ -18,18 +18,26 @@ from vehicle_sim.autopilot.interface import (
     Vehicle,
     VehicleEvent,
 )
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters import Parameters, Quantity
+from vehicle_sim.logbook.recorder import Recorder
+from vehicle_sim.logbook.shelf import Shelf
 from vehicle_sim.wire import messages as m
 
+from . import param_pack
 from .clocks import ping, timesync
 from .commands import Commands
-from .effects import Client, Effect, Note, Send
+from .effects import Client, Effect, Note, Report, Send
+from .ftp import FtpServer
 from .info import Info
+from .logs import LogServer
+from .manual import hands
+from .metadata import metadata_of
 from .mission import MissionServer
 from .parameters import ParameterServer
 from .ports import Desk
 from .profile import Profile
 from .setpoints import BadSetpointError, attitude_setpoint, global_setpoint, local_setpoint
+from .store import MemoryStore, Store
 from .streams import NEVER, Streams
 
 COMPONENT: Final = 1
@@ -54,28 +62,69 @@ class VehicleServer:
         system: int,
         speedup: Fraction = Fraction(1),
         unix_start_ns: int = 0,
+        store: Store | None = None,
+        logging: bool = True,
+        phase_ns: int = 0,
     ) -> None:
+        """`store` holds the vehicle's files; `logging`: flights are logged in it; `phase_ns`
+        shifts the times of its streams."""
         self.vehicle: Final = vehicle
-        self.system: Final = system
+        self.store: Final = store if store is not None else MemoryStore()
+        self.system = system
         self._profile = profile
         self._speedup = speedup
+        self._phase_ns = phase_ns
         self._missions = MissionServer(vehicle, profile)
+        self._given = parameters
         self._parameters = ParameterServer(parameters, profile)
-        self._info = Info(vehicle, profile, system, unix_start_ns, self._missions.plan_ids)
+        metadata = metadata_of(profile.name) if profile.component_metadata else None
+        self._info = Info(
+            vehicle, profile, system, unix_start_ns, self._missions.plan_ids, metadata
+        )
+        packed = {param_pack.PATH: param_pack.param_pack(parameters)}
+        self._ftp = FtpServer(self.store, metadata.files if metadata is not None else packed)
+        self._recorder = Recorder(
+            vehicle,
+            parameters,
+            Shelf(self.store, profile.name),
+            (system, profile.flight_sw_version),
+            unix_start_ns,
+            logging,
+        )
+        self._logs = LogServer(vehicle, profile, self._recorder)
         self._streams: dict[int, Streams] = {}
         self._commands = Commands(Desk(vehicle, profile, self._info, self._streams))
+        self._clock_ns = vehicle.clock_ns
         self._due_ns = NEVER
+        self.deadline_ns = NEVER
+        """In wall time: what the other side's silence brings."""
+        self.touched = True  # since the last step: something may have changed
         self._seen = self._look()
         self._reached: list[tuple[int, int]] = []  # (due in vehicle's time, seq)
         self._noted_ns = -REFUSAL_NOTED_EVERY_NS
+        self._clock_ns = 0  # it goes back with a reboot
+
+    @property
+    def mode_name(self) -> str:
+        return self._info.mode_name
 
     # ---------------------------------------------------------------------------- channels
 
     def open(self, channel: int) -> list[Effect]:
         """A peer that was not there before: it is told at once who and where we are."""
         self._streams[channel] = Streams(
-            self._profile, self._info.streamable, self._speedup, self.vehicle.time_ns
+            self._profile,
+            self._info.streamable,
+            self._speedup,
+            self.vehicle.time_ns,
+            self._phase_ns,
         )
+        for name, stream in self._profile.rate_parameters.items():
+            rate_hz = int(self._given.get(name))
+            if rate_hz:
+                asked = m.RequestDataStream(rate_hz, 0, 0, stream, 1)
+                self._streams[channel].request(asked, self.vehicle.time_ns)
+        self.touched = True
         self._schedule()
         greeting = (m.Heartbeat, m.GpsGlobalOrigin, m.HomePosition)
         built = (self._info.build(m.IDS[kind]) for kind in greeting)
@@ -83,10 +132,13 @@ class VehicleServer:
 
     def close(self, channel: int) -> None:
         self._streams.pop(channel, None)
-        self._schedule()
+        self.touched = True
         self._commands.forget(channel)
         self._missions.forget(channel)
         self._parameters.forget(channel)
+        self._logs.forget(channel)
+        self._ftp.forget(channel)
+        self._schedule()
 
     # --------------------------------------------------------------------------- messages
 
@@ -94,11 +146,19 @@ class VehicleServer:
         self, client: Client, sequence: int, message: m.Message, wall_ns: int
     ) -> list[Effect]:
         """One message from a client."""
-        if not self._is_for_us(message):
+        if not self._is_for_us(message) or not self._obeys(client):
             return []
+        self.touched = True
+        self.vehicle.wall(wall_ns)
         effects = self._dispatch(client, sequence, message, wall_ns)
         self._schedule()
         return effects
+
+    def _obeys(self, client: Client) -> bool:
+        """ArduPilot's SYSID_ENFORCE: nobody but its own ground station is heard."""
+        if self._profile.name == "px4" or self._given.get("SYSID_ENFORCE") == 0:
+            return True
+        return client.system in (self.system, int(self._given.get("SYSID_MYGCS")))
 
     def _is_for_us(self, message: m.Message) -> bool:
         system = getattr(message, "target_system", 0)
@@ -123,12 +183,22 @@ class VehicleServer:
                 | m.SetAttitudeTarget()
             ):
                 return self._setpoint(client, message, wall_ns)
+            case (
+                m.ManualControl()
+                | m.RcChannelsOverride()
+                | m.FollowTarget()
+                | m.GlobalPositionInt()
+            ):
+                hands(self.vehicle, self._given, self.system, client, message, wall_ns)
+                return []
             case m.SetMode():
                 return self._set_mode(client, message)
-            case m.MissionCount():
-                return self._missions.count(client, message, wall_ns)
+            case m.MissionCount() | m.MissionWritePartialList():
+                return self._missions.count(client, message, wall_ns, sequence)
             case m.MissionItemInt() | m.MissionItem():
                 return self._missions.item(client, message, wall_ns)
+            case m.MissionAck():
+                return self._missions.answered(client, message, wall_ns)
             case m.MissionRequestList():
                 return self._missions.request_list(client, message)
             case m.MissionRequest() | m.MissionRequestInt():
@@ -144,11 +214,15 @@ class VehicleServer:
                 return self._parameters.read(client, message)
             case m.ParamSet():
                 return self._parameters.set(client, message)
+            case m.FileTransferProtocol():
+                return self._ftp.handle(client, message, wall_ns)
+            case m.LogRequestList() | m.LogRequestData() | m.LogErase() | m.LogRequestEnd():
+                return self._logs.handle(client, message, wall_ns)
             case m.RequestDataStream():
                 self._streams[client.channel].request(message, self.vehicle.time_ns)
                 return []
             case m.Timesync():
-                return [*timesync(client, message, self.vehicle.time_ns)]
+                return [*timesync(client, message, self.vehicle.clock_ns)]
             case m.Ping():
                 return [*ping(client, message)]
             case _:
@@ -192,29 +266,36 @@ class VehicleServer:
 
     @property
     def stream_due_ns(self) -> int:
-        """In the vehicle's own time."""
-        return self._due_ns
-
-    @property
-    def deadline_ns(self) -> int:
-        """In wall time: what the other side's silence brings."""
-        return min(self._missions.deadline_ns, self._parameters.deadline_ns)
+        """In the vehicle's own time: when something is to be said, or to be recorded, unasked."""
+        reached_ns = self._reached[0][0] if self._reached else NEVER
+        return min(self._due_ns, self._recorder.due_ns, reached_ns)
 
     def step(self, wall_ns: int) -> list[Effect]:
-        """The vehicle moves on by one `dt_ns`, and says what there is to say."""
+        """After a step of the engine: the vehicle decides, and says what there is to say.
+
+        Wanted after the vehicle's `due_step`, at `stream_due_ns` and `deadline_ns`, and where the
+        server was `touched`; at any other step it does nothing.
+        """
+        self.touched = False
         vehicle = self.vehicle
         vehicle.wall(wall_ns)
-        vehicle.step()
-        effects: list[Effect] = []
-        for event in vehicle.events():
+        vehicle.live()
+        events = vehicle.events()
+        effects = self._recorder.step(events)
+        for event in events:
             effects += self._event(event)
-        # The last item is reached before the mode that follows a mission is shown.
         if self._reached and vehicle.time_ns >= self._reached[0][0]:
             effects.append(Send(None, m.MissionItemReached(self._reached.pop(0)[1])))
         effects += self._changes()
+        if vehicle.clock_ns < self._clock_ns:
+            self.system = self._info.system = int(self._given.si(Quantity.SYSTEM_ID))
+        self._clock_ns = vehicle.clock_ns
         if wall_ns >= self.deadline_ns:
             effects += self._missions.tick(wall_ns)
             effects += self._parameters.tick(wall_ns)
+            effects += self._logs.tick(wall_ns)
+            effects += self._ftp.tick(wall_ns)
+            self._schedule()
         if vehicle.time_ns >= self._due_ns:
             effects += self._stream()
         return effects
@@ -222,19 +303,36 @@ class VehicleServer:
     def _stream(self) -> list[Effect]:
         effects: list[Effect] = []
         now_ns = self.vehicle.time_ns
+        next_ns = NEVER
         built: dict[int, m.Message | None] = {}
+        rows: dict[tuple[int, ...], list[m.Message]] = {}
         for channel, streams in self._streams.items():
-            for number in streams.due(now_ns):
-                if number not in built:
-                    built[number] = self._info.build(number)
-                message = built[number]
-                if message is not None:
-                    effects.append(Send(channel, message))
-        self._schedule()
+            numbers = streams.due(now_ns)
+            if numbers:
+                row = rows.get(numbers)
+                if row is None:
+                    row = rows[numbers] = self._row(numbers, built)
+                effects.append(Report(channel, row))
+            next_ns = min(next_ns, streams.next_ns)
+        self._due_ns = next_ns
         return effects
 
+    def _row(self, numbers: tuple[int, ...], built: dict[int, m.Message | None]) -> list[m.Message]:
+        """Each message is built once, for all channels."""
+        for number in numbers:
+            if number not in built:
+                built[number] = self._info.build(number)
+        return [message for number in numbers if (message := built[number]) is not None]
+
     def _schedule(self) -> None:
+        """When time is to bring something next."""
         self._due_ns = min((streams.next_ns for streams in self._streams.values()), default=NEVER)
+        self.deadline_ns = min(
+            self._missions.deadline_ns,
+            self._parameters.deadline_ns,
+            self._logs.deadline_ns,
+            self._ftp.deadline_ns,
+        )
 
     def _event(self, event: VehicleEvent) -> list[Effect]:
         match event:
@@ -245,11 +343,13 @@ class VehicleServer:
                 return [*(Send(None, image) for image in self._info.captured(event)), note]
             case MissionReached():
                 now_ns = self.vehicle.time_ns
+                # Every item is told at least once; only of the last one the repeats go on.
                 self._reached = [
                     (now_ns + turn * REACHED_EVERY_NS, event.seq)
-                    for turn in range(self._profile.reached_repeats)
+                    for turn in range(1, self._profile.reached_repeats)
                 ]
-                return [Note("info", f"mission item {event.seq} reached")]
+                told = Send(None, m.MissionItemReached(event.seq))
+                return [told, Note("info", f"mission item {event.seq} reached")]
             case HomeChanged():
                 home = self._info.build(m.IDS[m.HomePosition])
                 return [Send(None, home)] if home is not None else []

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from vehicle_sim.autopilot.axes import every_axis_is_given, is_partial
 from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import AttitudeSetpoint, Geodetic, Setpoint, Vec3, Vehicle
 from vehicle_sim.wire import messages as m
@@ -61,8 +62,24 @@ def global_setpoint(
     given = _vector(asked.type_mask, PositionIgnore.POSITION, raw, profile)
     place = None
     if given is not None:
-        place = place_ned(vehicle, profile, *given, asked.coordinate_frame in RELATIVE)
+        place = _global_place(vehicle, profile, given, asked.coordinate_frame in RELATIVE)
     return _setpoint(asked, place, 0.0, profile)
+
+
+def _global_place(vehicle: Vehicle, profile: Profile, given: Vec3, relative: bool) -> Vec3:
+    """With NaN where the mask leaves an axis out; latitude and longitude go together."""
+    lat_deg, lon_deg, height_m = given
+    flat, high = math.isfinite(lat_deg) and math.isfinite(lon_deg), math.isfinite(height_m)
+    here = vehicle.estimate
+    north, east, down = place_ned(
+        vehicle,
+        profile,
+        lat_deg if flat else here.lat_deg,
+        lon_deg if flat else here.lon_deg,
+        height_m if high else 0.0,
+        relative,
+    )
+    return (north if flat else math.nan, east if flat else math.nan, down if high else math.nan)
 
 
 def place_ned(
@@ -105,6 +122,8 @@ def _setpoint(
     )
     if setpoint.pos_ned is None and setpoint.v_ned is None and setpoint.a_ned is None:
         raise BadSetpointError(f"type_mask {mask} leaves nothing to fly to")
+    if is_partial(setpoint) and not every_axis_is_given(setpoint):
+        raise BadSetpointError(f"type_mask {mask} leaves an axis without position and velocity")
     return setpoint
 
 
@@ -138,11 +157,12 @@ def _vector(mask: int, ignore: PositionIgnore, value: Vec3, profile: Profile) ->
     ignored = mask & ignore
     if ignored == ignore or (ignored and profile.whole_masks):
         return None
-    if ignored:
-        raise BadSetpointError(f"type_mask {mask} uses a part of a vector")
-    if not all(abs(part) <= FARTHEST for part in value):
+    lowest = ignore & -ignore
+    used = [not ignored & lowest << axis for axis in range(3)]
+    if not all(abs(part) <= FARTHEST for part, use in zip(value, used, strict=True) if use):
         raise BadSetpointError(f"{value} is not finite, or beyond all measure")
-    return value
+    x, y, z = (part if use else math.nan for part, use in zip(value, used, strict=True))
+    return (x, y, z)
 
 
 def _scalar(mask: int, ignore: PositionIgnore, value: float) -> float | None:

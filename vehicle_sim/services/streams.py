@@ -1,6 +1,7 @@
 """When each message is due on one channel.
 
-Every stream lies on an absolute grid of its own: it is due at the multiples of its interval.
+Every stream lies on an absolute grid of its own: it is due at the multiples of its interval,
+behind the vehicle's turn in a fleet.
 Rates hold per second of wall time: a vehicle that lives `speedup` times faster spaces its
 messages as much wider in its own time, so that a client is not flooded.
 """
@@ -16,43 +17,89 @@ from vehicle_sim.wire.ids import Stream
 from .profile import DATA_STREAMS, MESSAGE_INTERVAL_MIN_NS, Profile
 
 NEVER: Final = 1 << 62
+S_NS: Final = 1_000_000_000
+INTERVAL_MAX_NS: Final = ((1 << 31) - 1) * 1000
+"""The longest that MESSAGE_INTERVAL can tell: 36 minutes."""
+
+
+POSITION_ONLY: Final = {
+    m.IDS[m.Heartbeat]: S_NS,
+    m.IDS[m.SysStatus]: S_NS,
+    m.IDS[m.LocalPositionNed]: S_NS // 10,
+}
+"""What a vehicle of a large fleet sends unasked, in place of all that its autopilot does."""
 
 
 class Streams:
-    """Rates table of one channel.  Times are the vehicle's own, in nanoseconds."""
+    """Rates table of one channel.  Times are the vehicle's own, in nanoseconds.
+
+    Messages of one interval are due together, whenever they were asked for: so what is looked
+    after is intervals, of which there are few.
+    """
 
     def __init__(
-        self, profile: Profile, streamable: frozenset[int], speedup: Fraction, now_ns: int
+        self,
+        profile: Profile,
+        streamable: frozenset[int],
+        speedup: Fraction,
+        now_ns: int,
+        phase_ns: int = 0,
     ) -> None:
+        """`phase_ns` shifts the whole grid: vehicles of a fleet take turns."""
         self._profile = profile
         self._streamable = streamable
         self._stretch = max(Fraction(1), speedup)
+        self._phase_ns = phase_ns
         self._interval_ns: dict[int, int] = {}
-        self._due_ns: dict[int, int] = {}
+        self._spaced_ns: dict[int, int] = {}  # in the vehicle's own time
+        self._due_ns: dict[int, int] = {}  # by the spaced interval
+        self._rows: dict[tuple[int, ...], tuple[int, ...]] = {}  # intervals due -> messages
         self.next_ns = NEVER
         for number, interval_ns in profile.intervals_ns.items():
-            self._set(number, interval_ns, now_ns)
+            self._note(number, interval_ns)
+        self._reckon(now_ns)
 
     def _set(self, number: int, interval_ns: int, now_ns: int) -> None:
         """0 stops the stream."""
+        self._note(number, interval_ns)
+        self._reckon(now_ns)
+
+    def _note(self, number: int, interval_ns: int) -> None:
         if interval_ns == 0:
             self._interval_ns.pop(number, None)
-            self._due_ns.pop(number, None)
+            self._spaced_ns.pop(number, None)
         else:
             clipped_ns = max(interval_ns, MESSAGE_INTERVAL_MIN_NS)
             self._interval_ns[number] = clipped_ns
-            self._due_ns[number] = _after(now_ns, int(clipped_ns * self._stretch))
+            self._spaced_ns[number] = int(clipped_ns * self._stretch)
+
+    def _reckon(self, now_ns: int) -> None:
+        known = self._due_ns
+        self._due_ns = {
+            spaced_ns: known.get(spaced_ns) or self._after(now_ns, spaced_ns)
+            for spaced_ns in self._spaced_ns.values()
+        }
+        self._rows.clear()
         self.next_ns = min(self._due_ns.values(), default=NEVER)
 
-    def due(self, now_ns: int) -> list[int]:
+    def _after(self, now_ns: int, interval_ns: int) -> int:
+        """The first point of the interval's grid later than now."""
+        return now_ns - (now_ns - self._phase_ns) % interval_ns + interval_ns
+
+    def due(self, now_ns: int) -> tuple[int, ...]:
         """Numbers of the messages to send now, in the order of the rates table."""
         if now_ns < self.next_ns:
-            return []
-        due = [number for number, at_ns in self._due_ns.items() if at_ns <= now_ns]
-        for number in due:
-            self._due_ns[number] = _after(now_ns, int(self._interval_ns[number] * self._stretch))
-        self.next_ns = min(self._due_ns.values())
-        return due
+            return ()
+        due_ns = self._due_ns
+        over = tuple([spaced_ns for spaced_ns, at_ns in due_ns.items() if at_ns <= now_ns])
+        for spaced_ns in over:
+            due_ns[spaced_ns] = self._after(now_ns, spaced_ns)
+        self.next_ns = min(due_ns.values())
+        row = self._rows.get(over)
+        if row is None:
+            spaced = self._spaced_ns
+            row = self._rows[over] = tuple(each for each in spaced if spaced[each] in over)
+        return row
 
     def interval_us(self, number: int) -> int | None:
         """MESSAGE_INTERVAL's value: -1 = off, None = this vehicle has no such stream."""
@@ -70,8 +117,13 @@ class Streams:
         elif interval_us == 0:
             self._set(number, self._profile.intervals_ns.get(number, 0), now_ns)
         else:
-            self._set(number, min(round(interval_us * 1000), NEVER >> 8), now_ns)
+            self._set(number, min(round(interval_us * 1000), INTERVAL_MAX_NS), now_ns)
         return True
+
+    def begin(self, number: int, interval_us: int, now_ns: int) -> None:
+        """A stream that runs already keeps its rate."""
+        if number not in self._interval_ns:
+            self._set(number, interval_us * 1000, now_ns)
 
     def request(self, asked: m.RequestDataStream, now_ns: int) -> None:
         """The old REQUEST_DATA_STREAM, still what MAVProxy and DroneKit use."""
@@ -88,8 +140,3 @@ class Streams:
         for kind in kinds:
             if m.IDS[kind] not in self._profile.fixed:
                 self._set(m.IDS[kind], 1_000_000_000 // rate_hz if rate_hz else 0, now_ns)
-
-
-def _after(now_ns: int, interval_ns: int) -> int:
-    """The first multiple of the interval later than now."""
-    return (now_ns // interval_ns + 1) * interval_ns

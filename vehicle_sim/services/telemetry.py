@@ -9,9 +9,10 @@ import math
 from collections.abc import Callable
 from typing import Final, TypeAlias
 
+from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Geodetic, Vehicle
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import PositionIgnore
+from vehicle_sim.wire.ids import Frame, PositionIgnore
 
 from . import sensor_telemetry as sensors
 from .profile import Profile
@@ -19,13 +20,15 @@ from .units import boot_ms, clip_int16, degrees_e7, euler_rad, millimetres, usec
 
 Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
 
-QUADROTOR: Final = 2
+MITIGATE_NONE: Final = 1  # FENCE_MITIGATE
+UNUSED_CHANNEL: Final = 65535
+RSSI_UNKNOWN: Final = 255
 
 
 def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
     return m.Heartbeat(
         custom_mode=vehicle.custom_mode,
-        type=QUADROTOR,
+        type=vehicle.mav_type,
         autopilot=profile.autopilot,
         base_mode=vehicle.base_mode,
         system_status=vehicle.system_status,
@@ -143,6 +146,94 @@ def position_target_local_ned(
     )
 
 
+def position_target_global_int(
+    vehicle: Vehicle, profile: Profile
+) -> m.PositionTargetGlobalInt | None:
+    """The same target as a place on earth, heights AMSL."""
+    origin = vehicle.origin
+    local = position_target_local_ned(vehicle, profile)
+    if origin is None or local is None:
+        return None
+    where = projection(profile.name, origin).to_geodetic((local.x, local.y, local.z))
+    known = not local.type_mask & PositionIgnore.POSITION
+    return m.PositionTargetGlobalInt(
+        local.time_boot_ms,
+        degrees_e7(where.lat_deg) if known else 0,
+        degrees_e7(where.lon_deg) if known else 0,
+        where.alt_amsl_m if known else 0.0,
+        *local[4:10],
+        yaw=local.yaw,
+        yaw_rate=local.yaw_rate,
+        type_mask=local.type_mask,
+        coordinate_frame=Frame.GLOBAL_INT,
+    )
+
+
+def attitude_target(vehicle: Vehicle, profile: Profile) -> m.AttitudeTarget | None:
+    goal = vehicle.attitude_goal
+    if goal is None:
+        return None
+    return m.AttitudeTarget(
+        boot_ms(vehicle), goal.q_ned_from_frd, *goal.rates_frd, thrust=goal.thrust, type_mask=0
+    )
+
+
+def orbit_execution_status(vehicle: Vehicle, profile: Profile) -> m.OrbitExecutionStatus | None:
+    orbiting, origin = vehicle.orbiting, vehicle.origin
+    if orbiting is None or origin is None:
+        return None
+    where = projection(profile.name, origin).to_geodetic(orbiting.centre_ned)
+    return m.OrbitExecutionStatus(
+        time_usec=usec(vehicle),
+        radius=orbiting.radius_m,
+        x=degrees_e7(where.lat_deg),
+        y=degrees_e7(where.lon_deg),
+        z=where.alt_amsl_m,
+        frame=Frame.GLOBAL,
+    )
+
+
+def rc_channels(vehicle: Vehicle, profile: Profile) -> m.RcChannels | None:
+    """PX4 sends it only while a radio is heard; ArduPilot always.  The signal is unknown: 255."""
+    channels = vehicle.channels_us
+    count = max((number for number, us in enumerate(channels, start=1) if us), default=0)
+    if count == 0 and profile.name == "px4":
+        return None
+    empty = UNUSED_CHANNEL if profile.name == "px4" else 0
+    filled = (us or empty for us in channels)
+    return m.RcChannels._make((boot_ms(vehicle), *filled, count, RSSI_UNKNOWN))
+
+
+def rc_channels_raw(vehicle: Vehicle, profile: Profile) -> m.RcChannelsRaw | None:
+    """The first eight, from ArduPilot: only peers of MAVLink 1 are sent it (`channels.py`)."""
+    if profile.name != "ardupilot":
+        return None
+    return m.RcChannelsRaw._make((boot_ms(vehicle), *vehicle.channels_us[:8], 0, RSSI_UNKNOWN))
+
+
+def manual_control(vehicle: Vehicle, profile: Profile) -> m.ManualControl | None:
+    """PX4 tells the sticks that it flies by."""
+    sticks = vehicle.sticks
+    if sticks is None or profile.name != "px4":
+        return None
+    roll, pitch, yaw, throttle = (round(1000.0 * part) for part in sticks)
+    return m.ManualControl(x=pitch, y=roll, z=throttle, r=yaw, buttons=0, target=0)
+
+
+def fence_status(vehicle: Vehicle, profile: Profile) -> m.FenceStatus | None:
+    """ArduPilot's alone, and only while its fence is on."""
+    fence = vehicle.fence_state
+    if profile.name != "ardupilot" or not fence.present:
+        return None
+    return m.FenceStatus(
+        breach_time=fence.breach_ns // 1_000_000 & 0xFFFFFFFF,
+        breach_count=fence.count,
+        breach_status=int(fence.breached),
+        breach_type=fence.breach_type,
+        breach_mitigation=MITIGATE_NONE,
+    )
+
+
 STATE: Final[dict[int, Builder]] = {
     m.IDS[kind]: builder
     for kind, builder in (
@@ -156,13 +247,22 @@ STATE: Final[dict[int, Builder]] = {
         (m.GpsGlobalOrigin, gps_global_origin),
         (m.HomePosition, home_position),
         (m.GpsRawInt, sensors.gps_raw_int),
+        (m.FenceStatus, fence_status),
         (m.BatteryStatus, sensors.battery_status),
         (m.VfrHud, vfr_hud),
         (m.EstimatorStatus, sensors.estimator_status),
         (m.EkfStatusReport, sensors.ekf_status_report),
         (m.ServoOutputRaw, sensors.servo_output_raw),
         (m.HighresImu, sensors.highres_imu),
+        (m.ScaledImu, sensors.scaled_imu),
+        (m.RawImu, sensors.raw_imu),
         (m.ScaledPressure, sensors.scaled_pressure),
         (m.PositionTargetLocalNed, position_target_local_ned),
+        (m.PositionTargetGlobalInt, position_target_global_int),
+        (m.AttitudeTarget, attitude_target),
+        (m.OrbitExecutionStatus, orbit_execution_status),
+        (m.RcChannels, rc_channels),
+        (m.RcChannelsRaw, rc_channels_raw),
+        (m.ManualControl, manual_control),
     )
 }

@@ -12,12 +12,12 @@ INT16_MAX: Final = 0x7FFF
 
 
 def boot_ms(vehicle: Vehicle) -> int:
-    return vehicle.time_ns // 1_000_000 & 0xFFFFFFFF
+    return vehicle.clock_ns // 1_000_000 & 0xFFFFFFFF
 
 
 def usec(vehicle: Vehicle) -> int:
     """Since boot; MAVLink lets a receiver tell it from a Unix time by its size."""
-    return vehicle.time_ns // 1000
+    return vehicle.clock_ns // 1000
 
 
 def degrees_e7(degrees: float) -> int:

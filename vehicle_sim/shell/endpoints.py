@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import socket
 from typing import Final, Protocol, TypeAlias
 
@@ -10,6 +11,7 @@ from vehicle_sim.wire.split import Reassembler
 from vehicle_sim.world import Datagram, Input, Joined, Left, Peer
 
 from .urls import Kind, Url
+from .watch import Readable, Watch
 
 Address: TypeAlias = tuple[str, int]
 
@@ -19,6 +21,10 @@ DRAIN_MAX: Final = 1000
 UNSENT_MAX_BYTES: Final = 1024 * 1024
 """What a TCP client may leave unread before it is dropped."""
 CONNECT_AGAIN_NS: Final = 1_000_000_000
+ACCEPT_MAX: Final = 100
+"""Connections let in at one turn of the loop."""
+ACCEPT_AGAIN_NS: Final = 1_000_000_000
+NO_DESCRIPTORS: Final = frozenset({errno.EMFILE, errno.ENFILE})
 
 
 class EndpointError(Exception):
@@ -40,11 +46,21 @@ class Endpoint(Protocol):
         """Who is spoken to without having been heard."""
         ...
 
-    def sockets(self) -> list[socket.socket]:
-        """To be watched for reading."""
+    @property
+    def url(self) -> Url:
+        """As it was opened: port 0 has become the port that the system chose."""
         ...
 
-    def read(self, ready: socket.socket) -> list[Input]:
+    @property
+    def restless(self) -> bool:
+        """Whether it wants `idle`."""
+        ...
+
+    def attach(self, watch: Watch) -> None:
+        """Have its sockets watched, now and later, under the number of the link."""
+        ...
+
+    def read(self, ready: Readable) -> list[Input]:
         """Everything that one of those sockets has to give."""
         ...
 
@@ -79,16 +95,19 @@ class Udp:
             self._socket.close()
             raise EndpointError(url, cause) from cause
         self._socket.setblocking(False)
+        self.url: Final = url if self._connected else url.at(self._socket.getsockname()[1])
+
+    restless = False
 
     @property
     def granted_bytes(self) -> int:
         """The receive buffer that the kernel gave."""
         return self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
 
-    def sockets(self) -> list[socket.socket]:
-        return [self._socket]
+    def attach(self, watch: Watch) -> None:
+        watch.add(self._socket, self.link)
 
-    def read(self, ready: socket.socket) -> list[Input]:
+    def read(self, ready: Readable) -> list[Input]:
         heard: list[Input] = []
         for _ in range(DRAIN_MAX):
             try:
@@ -152,21 +171,32 @@ class _Connection:
 class _Streams:
     """The connections of one TCP link."""
 
+    restless = True
+
     def __init__(self, link: int) -> None:
         self.link: Final = link
         self.peers: Final[tuple[Peer, ...]] = ()
         self._connections: dict[Peer, _Connection] = {}
         self._lost: list[Peer] = []
+        self._watch: Watch | None = None
+
+    def attach(self, watch: Watch) -> None:
+        self._watch = watch
 
     def _join(self, stream: socket.socket, peer: Address) -> Joined:
         self._connections[peer] = _Connection(stream, peer)
+        if self._watch is not None:
+            self._watch.add(stream, self.link)
         return Joined(self.link, peer)
 
     def _drop(self, peer: Peer) -> Left:
-        self._connections.pop(peer).stream.close()
+        stream = self._connections.pop(peer).stream
+        if self._watch is not None:
+            self._watch.drop(stream)
+        stream.close()
         return Left(self.link, peer)
 
-    def _read(self, ready: socket.socket) -> list[Input]:
+    def _read(self, ready: Readable) -> list[Input]:
         for peer, connection in list(self._connections.items()):
             if connection.stream is ready:
                 data = connection.read()
@@ -203,19 +233,44 @@ class TcpServer(_Streams):
             self._listener.close()
             raise EndpointError(url, cause) from cause
         self._listener.setblocking(False)
+        self._full = False
+        self._again_ns: int | None = None
+        self.url: Final = url.at(self._listener.getsockname()[1])
 
-    def sockets(self) -> list[socket.socket]:
-        return [self._listener, *(each.stream for each in self._connections.values())]
+    def attach(self, watch: Watch) -> None:
+        super().attach(watch)
+        watch.add(self._listener, self.link)
 
-    def read(self, ready: socket.socket) -> list[Input]:
+    def read(self, ready: Readable) -> list[Input]:
         if ready is not self._listener:
             return self._read(ready)
-        try:
-            stream, peer = self._listener.accept()
-        except OSError:
-            # It went away again before it was let in.
-            return []
-        return [self._join(stream, (peer[0], peer[1]))]
+        joined: list[Input] = []
+        while len(joined) < ACCEPT_MAX:
+            try:
+                stream, peer = self._listener.accept()
+            except OSError as cause:
+                # Nobody more waits, or who did went away again; or there is no room for them.
+                if cause.errno in NO_DESCRIPTORS:
+                    self._rest()
+                break
+            joined.append(self._join(stream, (peer[0], peer[1])))
+        return joined
+
+    def _rest(self) -> None:
+        """Who waits is let in later: a listener that cannot accept would wake us all the time."""
+        if self._watch is not None and not self._full:
+            self._watch.drop(self._listener)
+            self._full = True
+
+    def idle(self, now_ns: int) -> list[Input]:
+        gone = super().idle(now_ns)
+        if self._full:
+            if self._again_ns is None:
+                self._again_ns = now_ns + ACCEPT_AGAIN_NS
+            elif now_ns >= self._again_ns and self._watch is not None:
+                self._full, self._again_ns = False, None
+                self._watch.add(self._listener, self.link)
+        return gone
 
     def close(self) -> None:
         super().close()
@@ -227,13 +282,10 @@ class TcpClient(_Streams):
 
     def __init__(self, link: int, url: Url) -> None:
         super().__init__(link)
-        self._url = url
+        self.url: Final = url
         self._again_ns = 0
 
-    def sockets(self) -> list[socket.socket]:
-        return [each.stream for each in self._connections.values()]
-
-    def read(self, ready: socket.socket) -> list[Input]:
+    def read(self, ready: Readable) -> list[Input]:
         return self._read(ready)
 
     def idle(self, now_ns: int) -> list[Input]:
@@ -241,7 +293,7 @@ class TcpClient(_Streams):
         if self._connections or now_ns < self._again_ns:
             return gone
         self._again_ns = now_ns + CONNECT_AGAIN_NS
-        remote = (self._url.host, self._url.port)
+        remote = (self.url.host, self.url.port)
         try:
             stream = socket.create_connection(remote, timeout=0.2)
         except OSError:

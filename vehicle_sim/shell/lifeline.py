@@ -13,8 +13,8 @@ class Lifeline(Protocol):
     """Something to watch for reading."""
 
     def fileno(self) -> int: ...
-    def ended(self) -> bool:
-        """Take what is there to read; True at its end."""
+    def read(self) -> bytes:
+        """What is there to read; nothing at its end."""
         ...
 
 
@@ -24,12 +24,12 @@ class Pipe:
     def fileno(self) -> int:
         return sys.stdin.fileno()
 
-    def ended(self) -> bool:
-        return not os.read(self.fileno(), 4096)
+    def read(self) -> bytes:
+        return os.read(self.fileno(), 4096)
 
 
 class Forwarded:
-    """Where `select` takes sockets only (Windows): a thread reads and tells a socket."""
+    """Where `select` takes sockets only (Windows): a thread reads and passes it on."""
 
     def __init__(self) -> None:
         self._ear, mouth = socket.socketpair()
@@ -38,13 +38,13 @@ class Forwarded:
     def fileno(self) -> int:
         return self._ear.fileno()
 
-    def ended(self) -> bool:
-        return not self._ear.recv(4096)
+    def read(self) -> bytes:
+        return self._ear.recv(4096)
 
 
 def _forward(mouth: socket.socket) -> None:
-    while os.read(sys.stdin.fileno(), 4096):
-        mouth.send(b".")
+    while data := os.read(sys.stdin.fileno(), 4096):
+        mouth.sendall(data)
     mouth.close()
 
 

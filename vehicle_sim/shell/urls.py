@@ -33,6 +33,14 @@ KINDS: Final[dict[str, Kind]] = {
 FORMS: Final = "udpin://HOST:PORT, udpout://HOST:PORT, tcpin://HOST:PORT or tcpout://HOST:PORT"
 
 
+_OTHER_END: Final = {
+    Kind.UDP_IN: Kind.UDP_OUT,
+    Kind.UDP_OUT: Kind.UDP_IN,
+    Kind.TCP_IN: Kind.TCP_OUT,
+    Kind.TCP_OUT: Kind.TCP_IN,
+}
+
+
 class UrlError(ValueError):
     """A URL that names no endpoint; the message says what is wrong with it."""
 
@@ -42,6 +50,20 @@ class Url:
     kind: Kind
     host: str
     port: int
+
+    @property
+    def waits(self) -> bool:
+        """It is bound here; port 0 lets the system choose."""
+        return self.kind in (Kind.UDP_IN, Kind.TCP_IN)
+
+    def at(self, port: int) -> Url:
+        return Url(self.kind, self.host, port)
+
+    @property
+    def other_end(self) -> Url:
+        """What a client is told, to be at the other end."""
+        host = "127.0.0.1" if self.host == "0.0.0.0" else self.host
+        return Url(_OTHER_END[self.kind], host, self.port)
 
     def __str__(self) -> str:
         host = f"[{self.host}]" if ":" in self.host else self.host
@@ -55,7 +77,8 @@ def parse(text: str) -> Url:
             host, colon, port = text.removeprefix(prefix).rpartition(":")
             if not colon or not port.isascii() or not port.isdigit():
                 raise UrlError(f"{text}: a port is missing; use {FORMS}")
-            if not 0 < int(port) < 65536:
+            least = 0 if kind in (Kind.UDP_IN, Kind.TCP_IN) else 1
+            if not least <= int(port) < 65536:
                 raise UrlError(f"{text}: {port} is no port (1 to 65535)")
             return Url(kind, host.strip("[]") or "127.0.0.1", int(port))
     raise UrlError(f"{text}: no such kind of link; use {FORMS}")

@@ -1,13 +1,13 @@
-"""Messages <-> payloads and whole MAVLink 2 frames.
+"""Messages <-> payloads and whole frames.
 
 A payload is packed by one `struct` derived from the dialect; extensions are always packed and
-trailing zeros cut, as MAVLink 2 asks ("Empty-Byte Payload Truncation").
+trailing zeros cut, as MAVLink 2 asks ("Empty-Byte Payload Truncation").  A message that goes to
+several channels is packed once and framed for each: what differs is its header.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
 from typing import Final, NamedTuple, cast
 
 from fastcrc.crc16 import mcrf4xx
@@ -19,6 +19,8 @@ from .supplement import Field
 STX1: Final = 0xFE
 STX2: Final = 0xFD
 SIGNED: Final = 0x01  # incompat_flags
+NUMBER1_MAX: Final = 0xFF
+"""MAVLink 1 has one byte for the message's number."""
 
 _LETTERS: Final = {
     "char": "c",
@@ -34,6 +36,9 @@ _LETTERS: Final = {
     "double": "d",
 }
 _BYTES: Final = {"char", "uint8_t"}
+_HEADER1: Final = struct.Struct("<BBBBB")
+_HEADER2: Final = struct.Struct("<BBBBBB3s")
+_CHECKSUM: Final = struct.Struct("<H")
 
 
 def _format(field: Field) -> str:
@@ -50,18 +55,31 @@ Value = float | bytes | tuple[float, ...]
 class Codec:
     """One message's way to its payload and back."""
 
-    __slots__ = ("_arrays", "_pack", "_struct", "crc_extra", "id_bytes", "kind", "size")
+    __slots__ = (
+        "_arrays",
+        "_id_bytes",
+        "_pack",
+        "_struct",
+        "base_size",
+        "crc_extra",
+        "kind",
+        "number",
+        "size",
+    )
 
     def __init__(self, number: int) -> None:
         layout = LAYOUTS[number]
+        self.number: Final = number
         self.kind = TYPES[number]
         if [_plain(field.name) for field in layout.fields] != [*map(_plain, self.kind._fields)]:
             raise AssertionError(f"{layout.name}: the message's fields are not the dialect's")
         self._struct: Final = struct.Struct("<" + "".join(map(_format, layout.fields)))
         self._pack: Final = self._struct.pack
         self.size: Final = self._struct.size
+        base = "".join(_format(field) for field in layout.fields if not field.extension)
+        self.base_size: Final = struct.calcsize("<" + base)
         self.crc_extra: Final = bytes((CRC_EXTRAS[number],))
-        self.id_bytes: Final = number.to_bytes(3, "little")
+        self._id_bytes: Final = number.to_bytes(3, "little")
         # Positions of the arrays that `struct` spreads over several values.
         self._arrays: Final = tuple(
             (index, field.length)
@@ -74,8 +92,26 @@ class Codec:
 
         Raises `struct.error` or OverflowError for a value that its field cannot hold.
         """
-        packed = self._pack(*(_spread(message) if self._arrays else message))
+        packed = self._pack(*(_spread(message, self._arrays) if self._arrays else message))
         return packed.rstrip(b"\0") or b"\0"
+
+    def frame(
+        self, payload: bytes, sequence: int, system: int, component: int, flags: int = 0
+    ) -> bytes:
+        """MAVLink 2, around a payload of `payload()`; `flags` are its incompat_flags."""
+        body = (
+            _HEADER2.pack(len(payload), flags, 0, sequence, system, component, self._id_bytes)
+            + payload
+        )
+        return b"\xfd" + body + _CHECKSUM.pack(mcrf4xx(body + self.crc_extra))
+
+    def frame1(self, payload: bytes, sequence: int, system: int, component: int) -> bytes:
+        """MAVLink 1: the base fields at full length; for numbers up to `NUMBER1_MAX`."""
+        size = self.base_size
+        body = _HEADER1.pack(size, sequence, system, component, self.number) + payload[:size].ljust(
+            size, b"\0"
+        )
+        return b"\xfe" + body + _CHECKSUM.pack(mcrf4xx(body + self.crc_extra))
 
     def message(self, payload: bytes) -> Message:
         """Of a payload that may be cut or longer than this dialect knows."""
@@ -88,12 +124,12 @@ def _plain(name: str) -> str:
     return name.replace("_", "").lower()
 
 
-def _spread(message: Message) -> Iterator[float | bytes]:
-    for value in cast(tuple[Value, ...], message):
-        if isinstance(value, tuple):
-            yield from value
-        else:
-            yield value
+def _spread(message: Message, arrays: tuple[tuple[int, int], ...]) -> list[Value]:
+    spread: list[Value] = [*cast(tuple[Value, ...], message)]
+    # From the end, so that the positions of those before stay right.
+    for index, _ in reversed(arrays):
+        spread[index : index + 1] = cast(tuple[float, ...], spread[index])
+    return spread
 
 
 def _gather(values: tuple[float | bytes, ...], arrays: tuple[tuple[int, int], ...]) -> list[Value]:
@@ -106,15 +142,13 @@ def _gather(values: tuple[float | bytes, ...], arrays: tuple[tuple[int, int], ..
 
 
 CODECS: Final = {number: Codec(number) for number in TYPES}
-_BY_TYPE: Final = {kind: CODECS[number] for kind, number in IDS.items()}
+BY_TYPE: Final = {kind: CODECS[number] for kind, number in IDS.items()}
 
 
 def encode(message: Message, sequence: int, system: int, component: int) -> bytes:
     """One unsigned MAVLink 2 frame."""
-    codec = _BY_TYPE[type(message)]
-    payload = codec.payload(message)
-    body = bytes((len(payload), 0, 0, sequence, system, component)) + codec.id_bytes + payload
-    return b"\xfd" + body + mcrf4xx(body + codec.crc_extra).to_bytes(2, "little")
+    codec = BY_TYPE[type(message)]
+    return codec.frame(codec.payload(message), sequence, system, component)
 
 
 class Frame(NamedTuple):
@@ -127,6 +161,7 @@ class Frame(NamedTuple):
     number: int
     payload: bytes
     signed: bool
+    raw: bytes  # as it came, from the start byte to the end of a signature
 
     def message(self) -> Message | None:
         """None for a message that this vehicle has no use for."""

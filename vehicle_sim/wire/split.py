@@ -17,7 +17,10 @@ SIGNATURE_BYTES: Final = 13
 
 @dataclass(slots=True)
 class Counters:
-    """What came in on one channel, and what was wrong with it."""
+    """What came in on one channel, and what was wrong with it.
+
+    `frames` had a right checksum; under a key the last three are frames that were refused after it.
+    """
 
     frames: int = 0
     garbage_bytes: int = 0
@@ -25,15 +28,21 @@ class Counters:
     truncated: int = 0
     unknown: int = 0
     incompatible: int = 0
+    unsigned: int = 0
+    bad_signature: int = 0
+    replayed: int = 0
 
-    def add(self, other: Counters) -> None:
-        """Take another count into this one."""
-        self.frames += other.frames
-        self.garbage_bytes += other.garbage_bytes
-        self.bad_crc += other.bad_crc
-        self.truncated += other.truncated
-        self.unknown += other.unknown
-        self.incompatible += other.incompatible
+    @property
+    def bad(self) -> int:
+        """Frames that were refused; a message that is merely not known is none of them."""
+        return (
+            self.bad_crc
+            + self.truncated
+            + self.incompatible
+            + self.unsigned
+            + self.bad_signature
+            + self.replayed
+        )
 
 
 _EXTRA: Final = {number: bytes((extra,)) for number, extra in CRC_EXTRAS.items()}
@@ -76,7 +85,8 @@ def split(data: bytes, counters: Counters) -> list[Frame]:
             counters.truncated += 1
             at += 1
             continue
-        frame = _frame2(data, at, counters) if mark == STX2 else _frame1(data, at, counters)
+        read = _frame2 if mark == STX2 else _frame1
+        frame = read(data, at, size, counters)
         if frame is None:
             at += 1
             continue
@@ -86,7 +96,7 @@ def split(data: bytes, counters: Counters) -> list[Frame]:
     return frames
 
 
-def _frame2(data: bytes, at: int, counters: Counters) -> Frame | None:
+def _frame2(data: bytes, at: int, size: int, counters: Counters) -> Frame | None:
     length, flags, _, sequence, system, component = data[at + 1 : at + 7]
     if flags & ~_KNOWN_FLAGS:
         counters.incompatible += 1
@@ -100,10 +110,11 @@ def _frame2(data: bytes, at: int, counters: Counters) -> Frame | None:
     if mcrf4xx(data[at + 1 : tail] + extra) != data[tail] | data[tail + 1] << 8:
         counters.bad_crc += 1
         return None
-    return Frame(2, sequence, system, component, number, data[at + 10 : tail], bool(flags & SIGNED))
+    payload, raw = data[at + 10 : tail], data[at : at + size]
+    return Frame(2, sequence, system, component, number, payload, bool(flags & SIGNED), raw)
 
 
-def _frame1(data: bytes, at: int, counters: Counters) -> Frame | None:
+def _frame1(data: bytes, at: int, size: int, counters: Counters) -> Frame | None:
     length, sequence, system, component, number = data[at + 1 : at + 6]
     extra = _EXTRA.get(number)
     if extra is None:
@@ -113,7 +124,8 @@ def _frame1(data: bytes, at: int, counters: Counters) -> Frame | None:
     if mcrf4xx(data[at + 1 : tail] + extra) != data[tail] | data[tail + 1] << 8:
         counters.bad_crc += 1
         return None
-    return Frame(1, sequence, system, component, number, data[at + 6 : tail], False)
+    payload, raw = data[at + 6 : tail], data[at : at + size]
+    return Frame(1, sequence, system, component, number, payload, False, raw)
 
 
 class Reassembler:

@@ -38,6 +38,16 @@ NEW: Final = (
             Field("library_version_hash", "uint8_t", 8),
         ),
     ),
+    Layout(
+        397,
+        "COMPONENT_METADATA",
+        182,
+        (
+            Field("time_boot_ms", "uint32_t", 0),
+            Field("file_crc", "uint32_t", 0),
+            Field("uri", "char", 100),
+        ),
+    ),
 )
 
 GROWN: Final[dict[str, tuple[Field, ...]]] = {

@@ -81,10 +81,17 @@ class Flight:
 
     @property
     def pos(self) -> Vec3:
-        return self.vehicle.truth.pos_ned
+        """Where it believes to be: what a flight can be judged by.  See `astray_m`."""
+        return self.vehicle.estimate.pos_ned
+
+    @property
+    def astray_m(self) -> float:
+        """How far the truth is from there."""
+        return self.off(self.vehicle.truth.pos_ned)
 
     @property
     def up_m(self) -> float:
+        """In truth."""
         return -self.vehicle.truth.pos_ned[2]
 
     @property

@@ -95,6 +95,7 @@ def test_a_long_leg_is_straight_and_keeps_the_speed_limit(personality: Personali
         fastest = max(fastest, (v[0] ** 2 + v[1] ** 2) ** 0.5)
     assert 4.0 < fastest < 5.6
     assert flight.off(goal) < 0.5
+    assert flight.astray_m < 1.0
 
 
 @either
@@ -109,7 +110,8 @@ def test_a_velocity_setpoint_is_flown(personality: Personality) -> None:
 def test_an_acceleration_setpoint_is_flown(personality: Personality) -> None:
     flight = guided(personality)
     flight.stream(Setpoint(a_ned=(1.0, 0.0, 0.0)), 2.0)
-    assert flight.vehicle.truth.v_ned[0] == pytest.approx(2.0, abs=0.4)
+    # 2 m/s, less what the drag of rotors and body takes of it on the way.
+    assert flight.vehicle.truth.v_ned[0] == pytest.approx(1.75, abs=0.4)
 
 
 @either

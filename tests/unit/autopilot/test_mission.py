@@ -55,8 +55,7 @@ def test_a_square_is_flown_and_landed(personality: Personality) -> None:
     )
     assert flight.vehicle.armed
     assert flight.vehicle.mission_state == 3
-    flight.fly(1.0)
-    assert flight.landed() is Landed.TAKEOFF
+    flight.fly(3.0, lambda: flight.landed() is Landed.TAKEOFF)
     flight.fly(60.0, lambda: not flight.vehicle.armed)
     assert reached(flight) == [0, 1, 2, 3, 4]
     assert flight.vehicle.mission_state == 5

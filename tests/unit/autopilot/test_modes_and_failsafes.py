@@ -45,7 +45,11 @@ def test_the_mode_tables_are_total(personality: Personality) -> None:
     modes = MODES[personality]
     assert len({mode.custom_mode for mode in modes.values()}) == len(modes)
     assert set(KINDS[personality].values()) <= set(modes)
-    wanted = set(Behaviour) - ({Behaviour.TAKEOFF} if personality == "ardupilot" else set())
+    other = {
+        "px4": {Behaviour.CIRCLE},
+        "ardupilot": {Behaviour.TAKEOFF, Behaviour.ORBIT},
+    }
+    wanted = set(Behaviour) - other[personality]
     assert {mode.behaviour for mode in modes.values()} == wanted
     assert all(mode.flags & Flag.CUSTOM_MODE_ENABLED for mode in modes.values())
 
@@ -53,7 +57,8 @@ def test_the_mode_tables_are_total(personality: Personality) -> None:
 @either
 def test_a_mode_that_does_not_exist_is_refused(personality: Personality) -> None:
     flight = Flight(personality).boot()
-    assert flight.vehicle.set_mode(1, 12345) in (Result.DENIED, Result.FAILED)
+    refused = {"px4": Result.TEMPORARILY_REJECTED, "ardupilot": Result.FAILED}
+    assert flight.vehicle.set_mode(1, 12345) is refused[personality]
     assert flight.vehicle.set_mode(0, 0) is Result.UNSUPPORTED
     assert flight.vehicle.set_mode_kind("sideways") is Result.UNSUPPORTED
 
@@ -61,7 +66,8 @@ def test_a_mode_that_does_not_exist_is_refused(personality: Personality) -> None
 @either
 def test_a_mission_mode_without_a_mission_is_refused(personality: Personality) -> None:
     flight = Flight(personality).airborne(3.0)
-    assert flight.vehicle.set_mode_kind("mission") in (Result.DENIED, Result.FAILED)
+    refused = {"px4": Result.TEMPORARILY_REJECTED, "ardupilot": Result.FAILED}
+    assert flight.vehicle.set_mode_kind("mission") is refused[personality]
     assert flight.vehicle.mission_start(0, 0) is Result.DENIED
 
 
@@ -104,6 +110,8 @@ def test_the_last_metres_of_a_return_are_a_landing(personality: Personality) -> 
     flight = Flight(personality).airborne(5.0)
     name = "RTL_RETURN_ALT" if personality == "px4" else "RTL_ALT"
     flight.vehicle.parameters.set(name, 6.0 if personality == "px4" else 600.0)
+    if personality == "px4":
+        flight.vehicle.parameters.set("RTL_CONE_ANG", 0)  # else it does not climb over home
     flight.vehicle.return_home()
     flight.fly(2.0)
     assert flight.landed() is Landed.IN_AIR
@@ -227,6 +235,8 @@ def test_a_silent_station_does_what_the_parameter_says_on_wall_time(
 ) -> None:
     flight = Flight(personality).airborne(5.0)
     flight.vehicle.parameters.set(name, value)
+    if personality == "px4":
+        flight.vehicle.parameters.set("COM_FAIL_ACT_T", 0.0)
     flight.vehicle.wall(100 * S)
     flight.vehicle.gcs_heard(100 * S)
     flight.fly(20.0)
@@ -235,7 +245,8 @@ def test_a_silent_station_does_what_the_parameter_says_on_wall_time(
     flight.fly(0.2)
     assert flight.vehicle.mode_name == mode
     assert flight.vehicle.system_status == 5
-    assert any("Ground station lost" in text for text in flight.texts())
+    words = "GCS connection loss" if personality == "px4" else "GCS Failsafe"
+    assert any(words in text for text in flight.texts())
 
 
 @pytest.mark.parametrize(
@@ -251,11 +262,12 @@ def test_an_empty_battery_does_what_the_parameter_says(
     personality: Personality, name: str, value: int, left: float, mode: str
 ) -> None:
     flight = Flight(personality).airborne(5.0)
+    flight.vehicle.parameters.set("COM_FAIL_ACT_T", 0.0)
     flight.vehicle.parameters.set(name, value)
-    flight.vehicle._quad.battery.consumed_mah = 5000.0 * (1.0 - left)
+    flight.vehicle.blocks.body.consumed_mah = 5000.0 * (1.0 - left)
     flight.fly(0.3)
     assert flight.vehicle.mode_name == mode
-    assert any(text.startswith("Battery") for text in flight.texts())
+    assert any("battery level" in text for text in flight.texts())
 
 
 def test_flying_empties_the_battery_at_a_believable_rate() -> None:

@@ -73,6 +73,8 @@ def test_px4_takes_off_in_a_mode_of_its_own_then_loiters() -> None:
     assert flight.vehicle.take_off(None) is Result.ACCEPTED
     assert flight.vehicle.mode_name == "AUTO.TAKEOFF"
     flight.fly(0.5)
+    assert flight.landed() is Landed.ON_GROUND  # the motors spool up: COM_SPOOLUP_TIME
+    flight.fly(1.0)
     assert flight.landed() is Landed.TAKEOFF
     flight.fly(5.0, lambda: flight.vehicle.mode_name == "AUTO.LOITER")
     assert flight.landed() is Landed.IN_AIR
@@ -136,8 +138,9 @@ def test_landing_touches_down_softly_and_disarms(personality: Personality) -> No
     assert flight.vehicle.armed
     flight.fly(3.0, lambda: not flight.vehicle.armed)
     assert abs(flight.up_m) < 0.02
+    rest_ned = flight.vehicle.truth.pos_ned
     flight.fly(5.0)
-    assert flight.off((*flight.pos[:2], 0.0)) < 0.02
+    assert flight.vehicle.truth.pos_ned == pytest.approx((*rest_ned[:2], 0.0), abs=0.02)
 
 
 @either
@@ -180,3 +183,32 @@ def test_it_does_not_reboot_while_armed() -> None:
     flight = Flight("px4").boot()
     flight.vehicle.arm(False)
     assert flight.vehicle.reboot() is Result.DENIED
+
+
+def test_a_reboot_on_the_ground_starts_anew_at_home() -> None:
+    flight = Flight("px4").airborne(3.0)
+    flight.vehicle.reposition((6.0, 0.0, -3.0), None, None)
+    flight.fly(8.0)
+    flight.vehicle.land()
+    flight.fly(30.0, lambda: not flight.vehicle.armed)
+    assert flight.vehicle.truth.pos_ned[0] > 5.0
+    used_mah = flight.vehicle.power.consumed_mah
+    assert flight.vehicle.reboot() is Result.ACCEPTED
+    assert flight.vehicle.truth.pos_ned == (0.0, 0.0, 0.0)
+    assert not flight.armable()
+    assert flight.vehicle.origin is None
+    flight.fly(1.5)
+    assert flight.armable()
+    assert flight.astray_m < 1.0
+    assert flight.vehicle.power.consumed_mah >= used_mah
+
+
+def test_a_reboot_in_the_air_ends_in_a_fall() -> None:
+    flight = Flight("px4").airborne(8.0)
+    flight.vehicle.terminate()
+    assert flight.vehicle.reboot() is Result.ACCEPTED
+    flight.fly(0.5)
+    assert flight.vehicle.motor_outputs == (0.0, 0.0, 0.0, 0.0)
+    assert flight.vehicle.truth.v_ned[2] > 4.0
+    flight.fly(3.0)
+    assert flight.vehicle.blocks.body.touching

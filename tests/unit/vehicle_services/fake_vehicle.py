@@ -4,21 +4,32 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from vehicle_sim.autopilot import fence, rally
+from vehicle_sim.autopilot.estimator import Health
 from vehicle_sim.autopilot.interface import (
+    AttitudeGoal,
     AttitudeSetpoint,
     Estimate,
+    FenceState,
     Geodetic,
+    GpsFix,
     Landed,
+    Orbiting,
+    OrbitRequest,
     PlanItem,
     Power,
+    Readings,
+    Refusal,
     Result,
     Setpoint,
     Target,
+    Truth,
     Vec3,
     VehicleEvent,
 )
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.model.faults import Fault
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.wire import messages as m
@@ -27,12 +38,35 @@ from vehicle_sim.wire.split import Counters, split
 from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 
 HOME = Geodetic(47.397742, 8.545594, 488.0)
+HEALTHY = Health(
+    attitude_ok=True,
+    velocity_ok=True,
+    position_ok=True,
+    height_ok=True,
+    gps_ok=True,
+    mag_ok=True,
+    baro_ok=True,
+    gps_fix=3,
+    satellites=12,
+    eph_m=0.6,
+    epv_m=0.9,
+    accuracy_m=0.4,
+    dead_s=0.0,
+    resets=0,
+    vel_ratio=0.05,
+    pos_ratio=0.1,
+    height_ratio=0.03,
+    mag_ratio=0.02,
+)
 MS = 1_000_000
 S = 1000 * MS
 
 
 class FakeVehicle:
-    """Every request is noted in `calls` and answered with `answers.get(name, ACCEPTED)`."""
+    """Every request is noted in `calls` and answered with `answers.get(name, ACCEPTED)`.
+
+    It is its own engine, and always has something to do.
+    """
 
     dt_ns = 4 * MS
 
@@ -50,6 +84,7 @@ class FakeVehicle:
         self.home: Geodetic | None = HOME
         self.home_pos_ned: Vec3 | None = (0.0, 0.0, 0.0)
         self.armable = True
+        self.fence_state = FenceState(False, False, False, 0, 0, 0)
         self.motor_outputs = (0.0, 0.0, 0.0, 0.0)
         self.mission_current = 0
         self.mission_state = 1
@@ -57,12 +92,58 @@ class FakeVehicle:
         self.images_captured = 0
         self.plan: tuple[PlanItem, ...] = ()
         self.power = Power(15.2, 4.0, 120.0, 96)
+        self.mav_type = 2
         self.target = Target((0.0, 0.0, -2.0), None, 0.0)
+        self.attitude_goal: AttitudeGoal | None = None
+        self.orbiting: Orbiting | None = None
+        self.channels_us: tuple[int, ...] = (0,) * 18
+        self.sticks: tuple[float, float, float, float] | None = None
+        self.wind_ned: Vec3 | None = (3.0, -4.0, 0.0)
+        self.vibration_m_s2: Vec3 = (0.1, 0.2, 0.3)
         self.pos_ned: Vec3 = (10.0, 20.0, -5.0)
         self.q_ned_from_frd = (1.0, 0.0, 0.0, 0.0)
+        self.health = HEALTHY
+        self.gps = GpsFix(3, 12, 47.39785, 8.54595, 492.0, (3.0, 4.0, 0.0), 0.6, 0.9)
+
+    @property
+    def engine(self) -> FakeVehicle:
+        return self
+
+    @property
+    def due_step(self) -> int:
+        return self.time_ns // self.dt_ns + 1
 
     def step(self) -> None:
         self.time_ns += self.dt_ns
+
+    def live(self) -> None:
+        pass
+
+    takes_failures = True
+
+    @property
+    def clock_ns(self) -> int:
+        return self.time_ns
+
+    def inject(self, fault: Fault) -> None:
+        self._note("inject", fault)
+
+    @property
+    def truth(self) -> Truth:
+        return Truth(
+            time_s=self.time_ns / 1e9,
+            pos_ned=self.pos_ned,
+            v_ned=(1.0, 0.0, 0.0),
+            q_ned_from_frd=self.q_ned_from_frd,
+            rates_frd=(0.0, 0.0, 0.0),
+            lat_deg=47.3978,
+            lon_deg=8.5459,
+            alt_amsl_m=493.0,
+            armed=self.armed,
+            mode="AUTO.LOITER",
+            landed=True,
+            battery=0.96,
+        )
 
     def events(self) -> list[VehicleEvent]:
         pending, self.pending = self.pending, []
@@ -83,6 +164,16 @@ class FakeVehicle:
             alt_rel_m=5.0,
             heading_rad=0.0,
             gps_ok=True,
+        )
+
+    @property
+    def readings(self) -> Readings:
+        return Readings(
+            gyro_frd=(0.01, -0.02, 0.03),
+            accel_frd=(0.1, 0.2, -9.8),
+            mag_frd=(0.21, 0.01, 0.43),
+            pressure_alt_amsl_m=493.5,
+            gps=self.gps,
         )
 
     def _note(self, name: str, *given: object) -> Result:
@@ -136,6 +227,23 @@ class FakeVehicle:
     ) -> Result:
         return self._note("condition_yaw", yaw_rad, relative, rate_rad_s, direction)
 
+    def orbit(self, asked: OrbitRequest) -> Result:
+        return self._note("orbit", asked)
+
+    def look_at(self, where_ned: Vec3 | None) -> Result:
+        return self._note("look_at", where_ned)
+
+    def joystick(self, forward: int, right: int, up: int, clockwise: int, wall_ns: int) -> None:
+        self._note("joystick", forward, right, up, clockwise, wall_ns)
+
+    def override_channels(self, channels_us: tuple[int, ...], wall_ns: int) -> None:
+        self._note("override_channels", channels_us, wall_ns)
+
+    def hear_leader(
+        self, system: int, where: Geodetic, v_ned: Vec3, heading_rad: float | None, wall_ns: int
+    ) -> None:
+        self._note("hear_leader", system, where, v_ned, heading_rad, wall_ns)
+
     def set_home(self, where: Geodetic | None) -> Result:
         return self._note("set_home", where)
 
@@ -167,8 +275,29 @@ class FakeVehicle:
     def load_plan(self, items: tuple[PlanItem, ...]) -> None:
         self.plan = items
 
+    def check_fence(self, items: tuple[PlanItem, ...]) -> Refusal | None:
+        return fence.check(items, "px4")
+
+    def load_fence(self, items: tuple[PlanItem, ...]) -> None:
+        self._note("load_fence", items)
+
+    def check_rally(self, items: tuple[PlanItem, ...]) -> Refusal | None:
+        return rally.check(items)
+
+    def load_rally(self, items: tuple[PlanItem, ...]) -> None:
+        self._note("load_rally", items)
+
+    def enable_fence(self, choice: int) -> Result:
+        return self._note("enable_fence", choice)
+
+    def check_arming(self) -> Result:
+        return self._note("check_arming")
+
     def terminate(self) -> Result:
         return self._note("terminate")
+
+    def reset_parameters(self) -> None:
+        self._note("reset_parameters")
 
     def reboot(self) -> Result:
         return self._note("reboot")

@@ -20,10 +20,10 @@ def count(number: int, kind: int = MissionType.MISSION) -> m.MissionCount:
 
 
 def item(
-    seq: int, command: int = WAYPOINT, kind: int = 0, frame: int = 6, z: float = 5.0
+    seq: int, command: int = WAYPOINT, kind: int = 0, frame: int = 6, z: float = 5.0, p1: float = 0
 ) -> m.MissionItemInt:
     return m.MissionItemInt(
-        0, 0, 0, math.nan, 473977420 + seq, 85455940, z, seq, command, 1, 1, frame, 0, 1, kind
+        p1, 0, 0, math.nan, 473977420 + seq, 85455940, z, seq, command, 1, 1, frame, 0, 1, kind
     )
 
 
@@ -106,7 +106,7 @@ def test_the_final_ack_is_lost_and_the_last_item_brings_it_again() -> None:
     bench = Bench("px4")
     upload(bench, [item(0), item(1)])
     assert results(bench.send(item(1))) == [MissionResult.ACCEPTED]
-    bench.advance(6 * S)
+    bench.advance(16 * S)
     assert results(bench.send(item(1))) == [MissionResult.ERROR], "by now it is a stray"
 
 
@@ -150,16 +150,45 @@ def test_an_empty_upload_clears() -> None:
 def test_fence_and_rally_points_are_kept_apart_from_the_mission(kind: int, command: int) -> None:
     bench = Bench("px4")
     upload(bench, [item(0)])
-    heard = upload(bench, [item(0, command, kind), item(1, command, kind)], kind)
+    heard = upload(bench, [item(seq, command, kind, p1=3) for seq in range(3)], kind)
     assert results(heard) == [MissionResult.ACCEPTED]
     told = bench.send(m.MissionRequestList(1, 1, kind))
-    assert [each.count_ for each in told if isinstance(each, m.MissionCount)] == [2]
+    assert [each.count_ for each in told if isinstance(each, m.MissionCount)] == [3]
     assert len(bench.vehicle.plan) == 1
     assert results(upload(bench, [item(0, WAYPOINT, kind)], kind)) == [MissionResult.UNSUPPORTED]
     bench.send(m.MissionClearAll(1, 1, MissionType.ALL))
     told = bench.send(m.MissionRequestList(1, 1, kind))
     assert [each.count_ for each in told if isinstance(each, m.MissionCount)] == [0]
     assert not bench.vehicle.plan
+
+
+@pytest.mark.parametrize(
+    ("bad", "result", "why"),
+    [
+        (item(0, 5003, MissionType.FENCE, p1=0.0), MissionResult.INVALID_PARAM1, b"item 0: radius"),
+        (
+            item(0, 5001, MissionType.FENCE, p1=2.0),
+            MissionResult.INVALID_PARAM1,
+            b"item 0: polygon",
+        ),
+        (item(0, 5004, MissionType.FENCE, frame=1, p1=9.0), MissionResult.UNSUPPORTED_FRAME, b""),
+        (item(0, 5001, MissionType.FENCE, p1=3.0), MissionResult.ERROR, b"item 0: the polygon"),
+        (item(0, 5100, MissionType.RALLY, frame=2), MissionResult.UNSUPPORTED_FRAME, b"item 0"),
+    ],
+)
+def test_a_fence_that_makes_no_sense_is_refused_whole_and_the_old_one_stays(
+    bad: m.MissionItemInt, result: int, why: bytes
+) -> None:
+    bench = Bench("px4")
+    good = [item(0, 5003, MissionType.FENCE, p1=50.0)]
+    upload(bench, good, MissionType.FENCE)
+    heard = upload(bench, [bad], bad.mission_type)
+    assert results(heard) == [result]
+    (text,) = [each.text for each in heard if isinstance(each, m.Statustext)]
+    assert text.startswith(why)
+    told = bench.send(m.MissionRequestList(1, 1, MissionType.FENCE))
+    assert [each.count_ for each in told if isinstance(each, m.MissionCount)] == [1]
+    assert len(bench.vehicle.named("load_fence")) == 1
 
 
 def test_types_and_numbers_beyond_all_measure_are_refused() -> None:
@@ -201,6 +230,22 @@ def test_ardupilot_puts_home_at_item_0_and_answers_the_old_request_in_floats() -
     (back,) = bench.send(m.MissionRequestInt(2, 1, 1))
     assert isinstance(back, m.MissionItemInt)
     assert back.frame == 0
+
+
+def test_ardupilot_gives_home_even_where_there_is_no_mission() -> None:
+    """`MissionItemProtocol_Waypoints::get_item`; DroneKit asks for it after a count of 0."""
+    bench = Bench("ardupilot")
+    bench.send(m.Heartbeat(0, 6, 8, 0, 4, 3))
+    (told,) = bench.send(m.MissionRequestList(1, 1))
+    assert isinstance(told, m.MissionCount)
+    assert told.count_ == 0
+    (home,) = bench.send(m.MissionRequest(0, 1, 1))
+    assert isinstance(home, m.MissionItem)
+    assert (home.seq, home.command, home.z) == (0, WAYPOINT, 488.0)
+    assert results(bench.send(m.MissionRequest(1, 1, 1))) == [MissionResult.INVALID_SEQUENCE]
+    fence = m.MissionRequest(0, 1, 1, MissionType.FENCE)
+    assert results(bench.send(fence)) == [MissionResult.INVALID_SEQUENCE]
+    assert results(Bench("px4").send(m.MissionRequest(0, 1, 1))) == [13]
 
 
 def test_float_items_are_stored_to_a_ten_millionth_of_a_degree() -> None:

@@ -58,6 +58,40 @@ def test_the_hash_changes_with_a_value() -> None:
     assert before.param_value != after.param_value
 
 
+def crc32(data: bytes, crc: int) -> int:
+    """Bit by bit: the reflected polynomial, from 0, not inverted."""
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0xEDB88320 if crc & 1 else 0)
+    return crc
+
+
+def test_the_hash_is_what_qgroundcontrol_reckons_from_what_it_was_sent() -> None:
+    """CRC-32 over names and four bytes of value, sorted by name: ParamHashCheckStateMachine."""
+    bench = Bench("px4")
+    for altitude in (2.5, 3.0, 7.25):
+        bench.parameters.set("MIS_TAKEOFF_ALT", altitude)
+        (told,) = values(bench.send(m.ParamRequestList(1, 1)))
+        cache = {
+            name(each): struct.pack("<f", each.param_value) for each in values(bench.advance(S))
+        }
+        assert len(cache) == len(bench.parameters)
+        expected = 0
+        for each in sorted(cache):
+            expected = crc32(cache[each], crc32(each.encode(), expected))
+        assert struct.pack("<f", told.param_value) == expected.to_bytes(4, "little")
+        assert (told.param_type, told.param_index) == (ParamType.UINT32, 65535)
+
+
+def test_px4_leaves_the_hash_out_of_a_list_that_is_asked_for_again() -> None:
+    bench = Bench("px4")
+    assert name(values(bench.send(m.ParamRequestList(1, 1)))[0]) == "_HASH_CHECK"
+    assert values(bench.send(m.ParamRequestList(1, 1))) == []
+    again = values(bench.advance(1 * S))
+    assert [each.param_index for each in again] == [*range(len(bench.parameters))]
+
+
 def test_a_parameter_is_read_by_name_and_by_index() -> None:
     bench = Bench("px4")
     (by_name,) = values(bench.send(read("MIS_TAKEOFF_ALT")))

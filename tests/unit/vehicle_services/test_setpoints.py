@@ -105,13 +105,25 @@ def test_a_mask_that_leaves_nothing_is_refused() -> None:
     assert flown(bench) == []
 
 
-def test_a_part_of_a_vector_is_refused_on_px4_and_ignored_whole_on_ardupilot() -> None:
-    asked = local(VELOCITY & ~0x4, 1.0, 2.0, -3.0, 1.0, 0.0, 0.0)
+def test_a_part_of_a_vector_is_taken_on_px4_and_ignored_whole_on_ardupilot() -> None:
+    """Velocity over the ground, and a height."""
+    asked = local(VELOCITY & ~0x4 | 0x20, 1.0, 2.0, -3.0, 1.0, 0.5, 0.0)
     px4, ardupilot = Bench("px4"), Bench("ardupilot")
     px4.send(asked)
     ardupilot.send(asked)
-    assert flown(px4) == []
-    assert flown(ardupilot) == [Setpoint(v_ned=(1.0, 0.0, 0.0))]
+    (setpoint,) = flown(px4)
+    assert isinstance(setpoint, Setpoint)
+    assert setpoint.pos_ned is not None
+    assert setpoint.v_ned is not None
+    assert (setpoint.pos_ned[2], setpoint.v_ned[:2]) == (-3.0, (1.0, 0.5))
+    assert all(map(math.isnan, (*setpoint.pos_ned[:2], setpoint.v_ned[2])))
+    assert flown(ardupilot) == []
+
+
+def test_an_axis_without_position_and_velocity_is_refused_on_px4() -> None:
+    bench = Bench("px4")
+    bench.send(local(VELOCITY | 0x20, 0.0, 0.0, 0.0, 1.0, 0.5, 0.0))
+    assert flown(bench) == []
 
 
 def global_int(frame: int, lat: int, lon: int, alt: float) -> m.SetPositionTargetGlobalInt:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import HEALTHY, MS, Bench, S, acks, long
 from vehicle_sim.autopilot.interface import Geodetic, ImageCaptured, StatusText
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd, Sensor
@@ -69,6 +70,17 @@ def test_an_interval_of_0_is_the_default_again() -> None:
     assert rates(bench)["LocalPositionNed"] == 0
     bench.send(long(Cmd.SET_MESSAGE_INTERVAL, 32, 0))
     assert rates(bench)["LocalPositionNed"] == 50
+
+
+def test_the_longest_interval_is_what_its_message_can_tell() -> None:
+    bench = Bench("px4")
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, 30, 1e10))
+    told = [
+        each
+        for each in bench.send(long(Cmd.GET_MESSAGE_INTERVAL, 30))
+        if isinstance(each, m.MessageInterval)
+    ]
+    assert told == [m.MessageInterval(2**31 - 1, 30)]
 
 
 def test_what_cannot_be_had_at_a_rate_fails() -> None:
@@ -140,7 +152,8 @@ def test_position_sensors_are_not_healthy_before_the_estimator_is() -> None:
     bench.send(GROUND)
     position = Sensor.GPS | Sensor.AHRS
     health = []
-    for bench.vehicle.system_status in (1, 3):
+    starting = replace(HEALTHY, attitude_ok=False, position_ok=False, gps_ok=False)
+    for bench.vehicle.health in (starting, HEALTHY):
         (status,) = [each for each in bench.advance(500 * MS) if isinstance(each, m.SysStatus)]
         health.append(status.onboard_control_sensors_health & position)
     assert health == [0, position]

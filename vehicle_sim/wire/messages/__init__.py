@@ -15,27 +15,56 @@ from .camera import (
     CameraSettings,
     StorageInformation,
 )
+from .fence import FenceStatus
+from .files import ComponentMetadata, FileTransferProtocol
+from .logs import (
+    LogData,
+    LogEntry,
+    LogErase,
+    LogRequestData,
+    LogRequestEnd,
+    LogRequestList,
+)
+from .manual import ManualControl, RcChannels, RcChannelsOverride, RcChannelsRaw
 from .motion import (
     Attitude,
     AttitudeQuaternion,
+    AttitudeTarget,
+    FollowTarget,
     GlobalPositionInt,
     GpsGlobalOrigin,
     HomePosition,
     LocalPositionNed,
+    OrbitExecutionStatus,
+    PositionTargetGlobalInt,
     PositionTargetLocalNed,
     SetAttitudeTarget,
     SetPositionTargetGlobalInt,
     SetPositionTargetLocalNed,
     VfrHud,
 )
+from .security import SetupSigning
 from .sensors import (
     BatteryStatus,
     EkfStatusReport,
     EstimatorStatus,
     GpsRawInt,
     HighresImu,
+    RawImu,
+    ScaledImu,
     ScaledPressure,
     ServoOutputRaw,
+)
+from .status import (
+    Altitude,
+    AvailableModesMonitor,
+    Hwstatus,
+    Meminfo,
+    NavControllerOutput,
+    PowerStatus,
+    Vibration,
+    Wind,
+    WindCov,
 )
 from .system import (
     AutopilotVersion,
@@ -68,6 +97,7 @@ from .tasks import (
     MissionRequestInt,
     MissionRequestList,
     MissionSetCurrent,
+    MissionWritePartialList,
     ParamError,
     ParamRequestList,
     ParamRequestRead,
@@ -86,12 +116,15 @@ Message: TypeAlias = (
     | ParamValue
     | ParamSet
     | GpsRawInt
+    | ScaledImu
+    | RawImu
     | ScaledPressure
     | Attitude
     | AttitudeQuaternion
     | LocalPositionNed
     | GlobalPositionInt
     | ServoOutputRaw
+    | MissionWritePartialList
     | MissionItem
     | MissionRequest
     | MissionSetCurrent
@@ -103,20 +136,35 @@ Message: TypeAlias = (
     | MissionAck
     | GpsGlobalOrigin
     | MissionRequestInt
+    | RcChannels
     | RequestDataStream
+    | ManualControl
+    | RcChannelsOverride
+    | RcChannelsRaw
     | MissionItemInt
     | VfrHud
     | CommandInt
     | CommandLong
     | CommandAck
     | SetAttitudeTarget
+    | AttitudeTarget
     | SetPositionTargetLocalNed
     | PositionTargetLocalNed
     | SetPositionTargetGlobalInt
+    | PositionTargetGlobalInt
     | HighresImu
+    | FileTransferProtocol
     | Timesync
+    | LogRequestList
+    | LogEntry
+    | LogRequestData
+    | LogData
+    | LogErase
+    | LogRequestEnd
+    | FollowTarget
     | BatteryStatus
     | AutopilotVersion
+    | FenceStatus
     | CameraFeedback
     | EkfStatusReport
     | EstimatorStatus
@@ -124,6 +172,7 @@ Message: TypeAlias = (
     | MessageInterval
     | ExtendedSysState
     | Statustext
+    | SetupSigning
     | CameraInformation
     | CameraSettings
     | StorageInformation
@@ -131,8 +180,19 @@ Message: TypeAlias = (
     | CameraImageCaptured
     | ProtocolVersion
     | ParamError
+    | OrbitExecutionStatus
+    | ComponentMetadata
     | AvailableModes
     | CurrentMode
+    | NavControllerOutput
+    | PowerStatus
+    | Altitude
+    | Meminfo
+    | Hwstatus
+    | Wind
+    | WindCov
+    | Vibration
+    | AvailableModesMonitor
 )
 
 TYPES: Final[dict[int, type[Message]]] = {
@@ -146,12 +206,16 @@ TYPES: Final[dict[int, type[Message]]] = {
     22: ParamValue,
     23: ParamSet,
     24: GpsRawInt,
+    26: ScaledImu,
+    27: RawImu,
     29: ScaledPressure,
     30: Attitude,
     31: AttitudeQuaternion,
     32: LocalPositionNed,
     33: GlobalPositionInt,
+    35: RcChannelsRaw,
     36: ServoOutputRaw,
+    38: MissionWritePartialList,
     39: MissionItem,
     40: MissionRequest,
     41: MissionSetCurrent,
@@ -163,27 +227,50 @@ TYPES: Final[dict[int, type[Message]]] = {
     47: MissionAck,
     49: GpsGlobalOrigin,
     51: MissionRequestInt,
+    62: NavControllerOutput,
+    65: RcChannels,
     66: RequestDataStream,
+    69: ManualControl,
+    70: RcChannelsOverride,
     73: MissionItemInt,
     74: VfrHud,
     75: CommandInt,
     76: CommandLong,
     77: CommandAck,
     82: SetAttitudeTarget,
+    83: AttitudeTarget,
     84: SetPositionTargetLocalNed,
     85: PositionTargetLocalNed,
     86: SetPositionTargetGlobalInt,
+    87: PositionTargetGlobalInt,
     105: HighresImu,
+    110: FileTransferProtocol,
     111: Timesync,
+    117: LogRequestList,
+    118: LogEntry,
+    119: LogRequestData,
+    120: LogData,
+    121: LogErase,
+    122: LogRequestEnd,
+    125: PowerStatus,
+    141: Altitude,
+    144: FollowTarget,
     147: BatteryStatus,
     148: AutopilotVersion,
+    152: Meminfo,
+    162: FenceStatus,
+    165: Hwstatus,
+    168: Wind,
     180: CameraFeedback,
     193: EkfStatusReport,
     230: EstimatorStatus,
+    231: WindCov,
+    241: Vibration,
     242: HomePosition,
     244: MessageInterval,
     245: ExtendedSysState,
     253: Statustext,
+    256: SetupSigning,
     259: CameraInformation,
     260: CameraSettings,
     261: StorageInformation,
@@ -191,8 +278,11 @@ TYPES: Final[dict[int, type[Message]]] = {
     263: CameraImageCaptured,
     300: ProtocolVersion,
     345: ParamError,
+    360: OrbitExecutionStatus,
+    397: ComponentMetadata,
     435: AvailableModes,
     436: CurrentMode,
+    437: AvailableModesMonitor,
 }
 
 IDS: Final[dict[type[Message], int]] = {kind: number for number, kind in TYPES.items()}
@@ -200,10 +290,13 @@ IDS: Final[dict[type[Message], int]] = {kind: number for number, kind in TYPES.i
 __all__ = [
     "IDS",
     "TYPES",
+    "Altitude",
     "Attitude",
     "AttitudeQuaternion",
+    "AttitudeTarget",
     "AutopilotVersion",
     "AvailableModes",
+    "AvailableModesMonitor",
     "BatteryStatus",
     "CameraCaptureStatus",
     "CameraFeedback",
@@ -213,17 +306,30 @@ __all__ = [
     "CommandAck",
     "CommandInt",
     "CommandLong",
+    "ComponentMetadata",
     "CurrentMode",
     "EkfStatusReport",
     "EstimatorStatus",
     "ExtendedSysState",
+    "FenceStatus",
+    "FileTransferProtocol",
+    "FollowTarget",
     "GlobalPositionInt",
     "GpsGlobalOrigin",
     "GpsRawInt",
     "Heartbeat",
     "HighresImu",
     "HomePosition",
+    "Hwstatus",
     "LocalPositionNed",
+    "LogData",
+    "LogEntry",
+    "LogErase",
+    "LogRequestData",
+    "LogRequestEnd",
+    "LogRequestList",
+    "ManualControl",
+    "Meminfo",
     "Message",
     "MessageInterval",
     "MissionAck",
@@ -237,25 +343,39 @@ __all__ = [
     "MissionRequestInt",
     "MissionRequestList",
     "MissionSetCurrent",
+    "MissionWritePartialList",
+    "NavControllerOutput",
+    "OrbitExecutionStatus",
     "ParamError",
     "ParamRequestList",
     "ParamRequestRead",
     "ParamSet",
     "ParamValue",
     "Ping",
+    "PositionTargetGlobalInt",
     "PositionTargetLocalNed",
+    "PowerStatus",
     "ProtocolVersion",
+    "RawImu",
+    "RcChannels",
+    "RcChannelsOverride",
+    "RcChannelsRaw",
     "RequestDataStream",
+    "ScaledImu",
     "ScaledPressure",
     "ServoOutputRaw",
     "SetAttitudeTarget",
     "SetMode",
     "SetPositionTargetGlobalInt",
     "SetPositionTargetLocalNed",
+    "SetupSigning",
     "Statustext",
     "StorageInformation",
     "SysStatus",
     "SystemTime",
     "Timesync",
     "VfrHud",
+    "Vibration",
+    "Wind",
+    "WindCov",
 ]

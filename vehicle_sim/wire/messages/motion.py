@@ -149,3 +149,53 @@ class SetPositionTargetGlobalInt(NamedTuple):
     target_system: int
     target_component: int
     coordinate_frame: int
+
+
+class PositionTargetGlobalInt(NamedTuple):
+    time_boot_ms: int
+    lat_int: int
+    lon_int: int
+    alt: float
+    vx: float
+    vy: float
+    vz: float
+    afx: float
+    afy: float
+    afz: float
+    yaw: float
+    yaw_rate: float
+    type_mask: int
+    coordinate_frame: int
+
+
+class AttitudeTarget(NamedTuple):
+    time_boot_ms: int
+    q: tuple[float, ...]
+    body_roll_rate: float
+    body_pitch_rate: float
+    body_yaw_rate: float
+    thrust: float
+    type_mask: int
+
+
+class FollowTarget(NamedTuple):
+    timestamp: int
+    custom_state: int
+    lat: int
+    lon: int
+    alt: float
+    vel: tuple[float, ...]
+    acc: tuple[float, ...]
+    attitude_q: tuple[float, ...]
+    rates: tuple[float, ...]
+    position_cov: tuple[float, ...]
+    est_capabilities: int
+
+
+class OrbitExecutionStatus(NamedTuple):
+    time_usec: int
+    radius: float
+    x: int
+    y: int
+    z: float
+    frame: int

@@ -36,6 +36,35 @@ class ScaledPressure(NamedTuple):
     temperature_press_diff: int = 0
 
 
+class ScaledImu(NamedTuple):
+    time_boot_ms: int
+    xacc: int
+    yacc: int
+    zacc: int
+    xgyro: int
+    ygyro: int
+    zgyro: int
+    xmag: int
+    ymag: int
+    zmag: int
+    temperature: int = 0
+
+
+class RawImu(NamedTuple):
+    time_usec: int
+    xacc: int
+    yacc: int
+    zacc: int
+    xgyro: int
+    ygyro: int
+    zgyro: int
+    xmag: int
+    ymag: int
+    zmag: int
+    id: int = 0
+    temperature: int = 0
+
+
 class ServoOutputRaw(NamedTuple):
     time_usec: int
     servo1_raw: int

@@ -84,6 +84,14 @@ class CommandAck(NamedTuple):
     target_component: int = 0
 
 
+class MissionWritePartialList(NamedTuple):
+    start_index: int
+    end_index: int
+    target_system: int
+    target_component: int
+    mission_type: int = 0
+
+
 class MissionItem(NamedTuple):
     param1: float
     param2: float

@@ -1,0 +1,153 @@
+"""Cells collapse and the wind rises: thrust is made up for, the place held, the charge told."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.unit.faults.stage import HOVERS, Stage, far
+from vehicle_sim.autopilot.interface import Truth
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.wire import messages as m
+
+BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
+either = pytest.mark.parametrize("personality", BOTH)
+airframes = pytest.mark.parametrize("airframe", ["s500", "racer250"])
+
+
+def cells(lost: float, for_s: float | None = None) -> str:
+    lasts = "" if for_s is None else f"for_s = {for_s}\n"
+    return f"[[fault]]\nat_s = 20\n{lasts}kind = 'battery'\ncells = {lost}\n"
+
+
+def wind(north_m_s: float, east_m_s: float, gust_m_s: float = 0.0) -> str:
+    return (
+        f"[[fault]]\nat_s = 20\nkind = 'wind'\nwind_ned_m_s = [{north_m_s}, {east_m_s}, 0]\n"
+        f"gust_m_s = {gust_m_s}\n"
+    )
+
+
+class Drift:
+    """The farthest from where it hovered, horizontally and in height."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.at = stage.truth.pos_ned
+        self.flat_m = self.height_m = 0.0
+
+    def __call__(self, truth: Truth) -> None:
+        self.flat_m = max(self.flat_m, far(truth, self.at))
+        self.height_m = max(self.height_m, abs(truth.pos_ned[2] - self.at[2]))
+
+
+@either
+@airframes
+def test_a_lost_cell_is_seen_in_the_voltage_and_made_up_for(
+    personality: Personality, airframe: str
+) -> None:
+    stage = Stage(personality, cells(1.0), airframe=airframe).aloft(10.0)
+    drift, before = Drift(stage), stage.last(m.SysStatus)
+    stage.run(10.0, drift)
+    after = stage.last(m.SysStatus)
+    assert before.voltage_battery - after.voltage_battery == pytest.approx(4150, abs=200)
+    assert drift.height_m < 0.4
+    assert drift.flat_m < 0.5
+    assert stage.mode == HOVERS[personality]
+    assert stage.truth.battery > 0.93, "the charge of the other cells is all there"
+
+
+@pytest.mark.parametrize(
+    ("lost", "told"),
+    [
+        (0.25, None),
+        (0.6, "Low battery level, return advised"),
+        (1.0, "Emergency battery level, land immediately"),
+    ],
+)
+def test_px4_takes_the_lost_voltage_for_lost_charge(lost: float, told: str | None) -> None:
+    stage = Stage("px4", cells(lost)).aloft(10.0)
+    assert stage.last(m.SysStatus).battery_remaining > 95
+    said_before = stage.texts
+    stage.run(2.0)
+    assert stage.texts[len(said_before) :] == ([] if told is None else [told])
+    assert stage.last(m.SysStatus).battery_remaining < {0.25: 75, 0.6: 15, 1.0: 5}[lost]
+    assert stage.mode == "AUTO.LOITER", "COM_LOW_BAT_ACT is 0: told only"
+
+
+def test_px4_lands_at_once_for_a_lost_cell_where_com_low_bat_act_says_so() -> None:
+    stage = Stage("px4", cells(1.0), COM_LOW_BAT_ACT=3, COM_FAIL_ACT_T=0).aloft(10.0)
+    stage.run(0.5)
+    assert stage.mode == "AUTO.LAND"
+    stage.until(lambda: not stage.armed, 40.0)
+    assert stage.up_m < 0.1
+
+
+def test_px4_whose_cell_recovers_says_no_more_and_tells_the_charge_again() -> None:
+    stage = Stage("px4", cells(0.5, for_s=3.0)).aloft(10.0)
+    stage.run(6.0)
+    assert stage.last(m.SysStatus).battery_remaining > 90
+
+
+def test_ardupilots_voltage_failsafe_waits_its_ten_seconds() -> None:
+    stage = Stage(
+        "ardupilot", cells(1.0), BATT_LOW_VOLT=12.6, BATT_FS_LOW_ACT=2, RTL_ALT=1000
+    ).aloft(10.0)
+    stage.run(9.5)
+    assert stage.mode == "GUIDED"
+    stage.run(1.5)
+    assert stage.said("Battery 1 is low 12.")
+    assert stage.mode == "RTL"
+    stage.until(lambda: not stage.armed, 60.0)
+    assert stage.up_m < 0.1
+    assert stage.last(m.SysStatus).battery_remaining > 90, "it counts the charge"
+
+
+@either
+def test_a_voltage_that_is_too_low_to_hover_on_brings_it_down_on_its_feet(
+    personality: Personality,
+) -> None:
+    stage = Stage(personality, cells(1.5)).aloft(10.0)
+    took_s = stage.until(lambda: stage.up_m < 0.1, 30.0)
+    assert took_s > 2.5
+    stage.run(1.0)
+    _, x, y, _ = stage.truth.q_ned_from_frd
+    assert 1.0 - 2.0 * (x * x + y * y) > 0.9
+
+
+@either
+@airframes
+def test_a_step_of_wind_is_held_within_a_metre_and_a_half(
+    personality: Personality, airframe: str
+) -> None:
+    stage = Stage(personality, wind(0.0, 10.0), airframe=airframe, seed=2).aloft(10.0)
+    drift, told_before = Drift(stage), stage.texts
+    stage.run(10.0, drift)
+    assert 0.3 < drift.flat_m < 1.5, "the blow is felt, and held"
+    assert drift.height_m < 1.0
+    settled = Drift(stage)
+    stage.run(5.0, settled)
+    assert settled.flat_m < 0.5
+    assert stage.texts == told_before
+    w, x, y, z = stage.truth.q_ned_from_frd
+    assert 2.0 * (w * x - y * z) < -0.05, "its thrust leans against the wind, to the west"
+    assert stage.mode == HOVERS[personality]
+
+
+@either
+@airframes
+def test_gusts_are_held(personality: Personality, airframe: str) -> None:
+    stage = Stage(personality, wind(4.0, 4.0, 2.0), airframe=airframe).aloft(10.0)
+    drift = Drift(stage)
+    stage.run(30.0, drift)
+    assert 0.2 < drift.flat_m < 2.0
+    assert drift.height_m < 1.5
+    assert stage.mode == HOVERS[personality]
+
+
+def test_wind_that_it_cannot_hold_carries_it_away_and_the_telemetry_says_so() -> None:
+    """30 m/s is more than a lean of 35 degrees can stand against."""
+    stage = Stage("px4", wind(0.0, 30.0)).aloft(10.0)
+    at = stage.truth.pos_ned
+    stage.run(20.0)
+    assert stage.truth.pos_ned[1] - at[1] > 20.0, "downwind"
+    assert stage.astray_m < 4.0
+    told = stage.last(m.LocalPositionNed)
+    assert told.y > 18.0

@@ -1,0 +1,70 @@
+"""An airframe file that cannot be used says which key, what is wrong and what would be right."""
+
+from __future__ import annotations
+
+from importlib import resources
+
+import pytest
+
+from vehicle_sim.model.airframe import AirframeError, load, parse, shipped
+from vehicle_sim.model.body import GRAVITY_M_S2
+
+GOOD = (
+    resources.files("vehicle_sim.model")
+    .joinpath("airframes", "s500.toml")
+    .read_text(encoding="utf-8")
+)
+
+
+def changed(old: str, new: str) -> str:
+    assert old in GOOD
+    return GOOD.replace(old, new)
+
+
+def test_two_classes_are_shipped_and_each_is_what_its_class_is() -> None:
+    assert shipped() == ("racer250", "s500")
+    racer, s500 = load("racer250"), load("s500")
+    for airframe, light, heavy, low, high in ((racer, 0.55, 0.75, 5, 8), (s500, 1.2, 1.8, 2, 3)):
+        weight_n = airframe.body.mass_kg * GRAVITY_M_S2
+        assert light <= airframe.body.mass_kg <= heavy
+        assert low <= 4.0 * airframe.motors.thrust_max_n / weight_n <= high
+    assert load() == s500
+    assert racer.name == "racer250"
+
+
+def test_a_file_of_ones_own_is_parsed_from_its_text() -> None:
+    mine = parse(changed("mass_kg = 1.5", "mass_kg = 1.9"), "mine.toml")
+    assert mine.body.mass_kg == 1.9
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('colour = "red"', r"x\.toml: unknown key 'colour'$"),
+        ("[motor]", r"x\.toml: unknown key 'motor'; did you mean 'motors'\?"),
+        ('name = "x"', r"x\.toml: section \[body\] is missing"),
+        ("\nmass = =", r"x\.toml: .*line 2"),
+        (
+            changed("mass_kg = 1.5", "mass = 1.5"),
+            r"\[body\] unknown key 'mass'; did you mean 'mass_kg'\?",
+        ),
+        (changed("friction = 0.7", ""), r"\[gear\] friction is missing"),
+        (changed("= 0.055", "= 0.070"), r"\[body\] inertia: .* 0\.07, .* 0\.058; no body"),
+        (changed("= 8.5", "= 3.0"), r"\[motors\] thrust_max_n: four times 3 N cannot .* 4\.41 N"),
+        (changed("idle = 0.08", "idle = 8"), r"\[motors\] idle is a part of full speed, not 8"),
+    ],
+)
+def test_what_is_wrong_is_named(text: str, says: str) -> None:
+    with pytest.raises(AirframeError, match=says):
+        parse(text, "x.toml")
+
+
+@pytest.mark.parametrize("value", ["0", "-1.0", '"much"', "true", "nan", "inf"])
+def test_a_mass_must_be_a_positive_number(value: str) -> None:
+    with pytest.raises(AirframeError, match=r"\[body\] mass_kg must be a positive number, is"):
+        parse(changed("mass_kg = 1.5", f"mass_kg = {value}"), "x.toml")
+
+
+def test_an_airframe_that_is_not_shipped_is_named_beside_those_that_are() -> None:
+    with pytest.raises(AirframeError, match="'x9000' is shipped; there are racer250, s500"):
+        load("x9000")

@@ -1,0 +1,570 @@
+"""What every parameter of the ardupilot personality changes."""
+
+from __future__ import annotations
+
+from math import inf, radians
+
+import pytest
+
+from tests.unit.parameters import ardupilot_scripts as own
+from tests.unit.parameters import scripts as fly
+from tests.unit.parameters.probing import (
+    UP_M,
+    Case,
+    climb_m_s,
+    flat_m_s,
+    hand,
+)
+from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.model.faults import AccelBias
+from vehicle_sim.wire import messages as m
+
+S = 1_000_000_000
+HOME = (0.0, 0.0, 0.0)
+
+_FENCED = {"FENCE_ENABLE": 1.0}
+_FOLLOW = {"FOLL_OFS_X": -10.0}
+CASES: tuple[Case, ...] = (
+    # Battery.
+    Case(
+        "BATT_ARM_MAH",
+        {0: False, 4900: True},
+        fly.against_arming("minimum arming capacity", own.drained(200.0)),
+    ),
+    Case("BATT_ARM_VOLT", {0: False, 20.0: True}, fly.against_arming("minimum arming voltage")),
+    Case("BATT_CAPACITY", {2000: 50, 4000: 75}, own.percent_left),
+    Case("BATT_CRT_MAH", {0.0: "FINE", 2000.0: "CRITICAL"}, own.charge(15.0, 4000.0)),
+    Case("BATT_CRT_VOLT", {0.0: "FINE", 14.0: "CRITICAL"}, own.charge(13.0, 0.0)),
+    Case("BATT_LOW_MAH", {0.0: "FINE", 2000.0: "LOW"}, own.charge(15.0, 4000.0)),
+    Case("BATT_LOW_VOLT", {10.5: "FINE", 14.0: "LOW"}, own.charge(13.0, 0.0)),
+    Case(
+        "BATT_FS_CRT_ACT",
+        {0: "GUIDED", 1: "LAND", 2: "RTL", 7: "BRAKE"},
+        fly.mode_after(0.5, own.drained(4000.0)),
+        {"BATT_CRT_MAH": 2000.0},
+    ),
+    Case(
+        "BATT_FS_LOW_ACT",
+        {0: "GUIDED", 1: "LAND", 2: "RTL", 7: "BRAKE"},
+        fly.mode_after(0.5, own.drained(4000.0)),
+        {"BATT_LOW_MAH": 2000.0},
+    ),
+    Case(
+        "BATT_LOW_TIMER",
+        {2: pytest.approx(2.0, abs=0.25), 6: pytest.approx(6.0, abs=0.25)},
+        fly.seconds_until(own.low_voltage, fly.leaves_mode("GUIDED")),
+        {"BATT_FS_LOW_ACT": 1.0},
+    ),
+    Case("BATT_MONITOR", {0: False, 4: True}, own.volts_told),
+    # Silence.
+    Case(
+        "FS_GCS_ENABLE",
+        {0: "GUIDED", 1: "RTL", 5: "LAND", 7: "BRAKE"},
+        fly.mode_after(6.0, fly.station_silent),
+    ),
+    Case(
+        "FS_GCS_TIMEOUT",
+        {3.0: pytest.approx(3.0, abs=0.2), 8.0: pytest.approx(8.0, abs=0.2)},
+        fly.seconds_until(fly.station_silent, fly.leaves_mode("GUIDED")),
+        {"FS_GCS_ENABLE": 1.0},
+    ),
+    Case(
+        "FS_OPTIONS",
+        {0: "RTL", 16: "LOITER"},
+        fly.mode_after(6.0, own.station_silent_in("LOITER")),
+        {"FS_GCS_ENABLE": 1.0},
+    ),
+    Case(
+        "FS_THR_ENABLE",
+        {0: "LOITER", 1: "RTL", 3: "LAND"},
+        fly.mode_after(6.0, own.sticks_then_silent("LOITER")),
+    ),
+    Case(
+        "RC_OVERRIDE_TIME",
+        {1.0: pytest.approx(1.0, abs=0.15), 3.0: pytest.approx(3.0, abs=0.15)},
+        own.override_gone_s,
+    ),
+    Case(
+        "RC_FS_TIMEOUT",
+        {1.0: pytest.approx(4.0, abs=0.25), 3.0: pytest.approx(6.0, abs=0.25)},
+        fly.seconds_until(own.sticks_then_silent("LOITER"), fly.leaves_mode("LOITER")),
+    ),
+    Case(
+        "GUID_TIMEOUT",
+        {1.0: pytest.approx(1.6, abs=0.4), 4.0: pytest.approx(4.6, abs=0.4)},
+        fly.seconds_until(own.velocity_then_silent, own.brakes),
+    ),
+    Case(
+        "GUID_OPTIONS",
+        {0: pytest.approx(1.2, abs=0.4), 8: pytest.approx(4.4, abs=0.8)},
+        fly.attitude_climb,
+    ),
+    # Position and crashes.
+    Case(
+        "FS_EKF_ACTION",
+        {0: "GUIDED", 1: "LAND", 2: "ALT_HOLD"},
+        fly.mode_after(8.0, own.position_lost),
+    ),
+    Case("FS_EKF_THRESH", {0.0: "GUIDED", 0.8: "LAND"}, fly.mode_after(8.0, own.position_lost)),
+    Case("FS_CRASH_CHECK", {0: True, 1: False}, own.crashed),
+    # Arming.
+    Case(
+        "ARMING_ACCTHRESH",
+        {0.3: True, 2.0: False},
+        fly.against_arming(
+            "Accels inconsistent", lambda f: f.vehicle.inject(AccelBias((0.0, 0.0, 1.0)))
+        ),
+    ),
+    Case("ARMING_CHECK", {1: True, 4: False}, fly.against_arming("Baro", own.no_baro)),
+    Case("ARMING_RUDDER", {0: False, 2: True}, own.armed_by_gesture),
+    Case("AUTO_OPTIONS", {1: False, 3: True}, own.takes_off_by_itself),
+    Case("FRAME_CLASS", {1: False, 2: True}, fly.against_arming("Check frame class")),
+    Case("FRAME_TYPE", {1: False, 0: True}, fly.against_arming("Check frame class")),
+    Case(
+        "DISARM_DELAY",
+        {3: pytest.approx(3.0, abs=0.15), 10: pytest.approx(10.0, abs=0.15), 0: inf},
+        fly.disarms_idle_s,
+    ),
+    Case(
+        "MOT_SPIN_ARM",
+        {0.08: pytest.approx(0.08, abs=0.01), 0.15: pytest.approx(0.15, abs=0.01)},
+        own.idle_speed,
+    ),
+    Case(
+        "MOT_SPOOL_TIME",
+        {0.05: pytest.approx(0.06, abs=0.12), 2.0: pytest.approx(2.0, abs=0.12)},
+        fly.lifts_off_after_s,
+    ),
+    # Fence and rally points.
+    Case(
+        "FENCE_ACTION",
+        {0: "ALT_HOLD", 1: "RTL", 2: "LAND", 4: "BRAKE"},
+        fly.mode_after(0.0, own.climbs_out),
+        {"FENCE_ALT_MAX": 15.0},
+    ),
+    Case("FENCE_ALT_MAX", {50.0: 1, 100.0: 0}, own.fence_kinds(60.0, 0.0), _FENCED),
+    Case(
+        "FENCE_ALT_MIN",
+        {-10.0: 0, 10.0: 8},
+        own.fence_kinds(5.0, 0.0),
+        {**_FENCED, "FENCE_TYPE": 15.0},
+    ),
+    Case("FENCE_ENABLE", {0: 0, 1: 2}, own.fence_kinds(60.0, 400.0)),
+    Case(
+        "FENCE_MARGIN",
+        {2.0: 8, 10.0: 0},
+        own.fence_kinds(5.0, 0.0),
+        {**_FENCED, "FENCE_TYPE": 15.0, "FENCE_ALT_MIN": 40.0},
+    ),
+    Case(
+        "FENCE_OPTIONS",
+        {1: Result.FAILED, 0: Result.ACCEPTED},
+        own.leaves_recovery,
+        {"FENCE_ALT_MAX": 15.0},
+    ),
+    Case("FENCE_RADIUS", {100.0: 2, 300.0: 0}, own.fence_kinds(60.0, 200.0), _FENCED),
+    Case("FENCE_TYPE", {2: 2, 1: 1, 3: 3}, own.fence_kinds(150.0, 400.0), _FENCED),
+    Case("RALLY_INCL_HOME", {0: 60.0, 1: 0.0}, own.returns_to(10.0, 60.0)),
+    Case(
+        "RALLY_LIMIT_KM",
+        {0.3: 0.0, 1.0: 600.0},
+        own.returns_to(200.0, 600.0),
+        {"RALLY_INCL_HOME": 0.0},
+    ),
+    # Flights.
+    Case(
+        "CAM_EXPOSURE_S",
+        {0.5: pytest.approx(0.5, abs=0.1), 3.0: pytest.approx(3.0, abs=0.1)},
+        fly.exposure_s,
+    ),
+    Case(
+        "LAND_ALT_LOW",
+        {500: pytest.approx(1.5, abs=0.15), 1000: pytest.approx(0.5, abs=0.15)},
+        fly.sink_at(7.0),
+    ),
+    Case(
+        "LAND_SPEED",
+        {50: pytest.approx(0.5, abs=0.1), 120: pytest.approx(1.2, abs=0.1)},
+        fly.sink_at(3.0),
+    ),
+    Case(
+        "LAND_SPEED_HIGH",
+        {0: pytest.approx(1.5, abs=0.15), 80: pytest.approx(0.8, abs=0.15)},
+        fly.sink_at(7.0),
+        {"LAND_ALT_LOW": 500.0},
+    ),
+    Case("MIS_RESTART", {0: 2, 1: 1}, own.mission_goes_on_at),
+    Case(
+        "PILOT_TKOFF_ALT",
+        {250: pytest.approx(2.5, abs=0.3), 600: pytest.approx(6.0, abs=0.3)},
+        fly.take_off_height_m,
+    ),
+    Case(
+        "RTL_ALT",
+        {1500: pytest.approx(15.0, abs=0.6), 2000: pytest.approx(20.0, abs=0.6)},
+        fly.return_top_m(25.0),
+    ),
+    Case(
+        "RTL_ALT_FINAL",
+        {0: pytest.approx(0.0, abs=0.3), 500: pytest.approx(5.0, abs=0.5)},
+        own.ends_return_m,
+        {"RTL_ALT": 1200.0, "WPNAV_SPEED_DN": 300.0, "LAND_SPEED": 200.0},
+    ),
+    Case("RTL_CLIMB_MIN", {0: 15.0, 1000: pytest.approx(24.0)}, own.return_from(50.0, 14.0)),
+    Case("RTL_CONE_SLOPE", {0.0: 15.0, 1.0: pytest.approx(6.0)}, own.return_from(6.0, 2.0)),
+    Case(
+        "RTL_LOIT_TIME",
+        {1000: pytest.approx(1.0, abs=2.0), 6000: pytest.approx(6.0, abs=2.0)},
+        fly.return_waits_s,
+        {"RTL_ALT": 1000.0},
+    ),
+    Case(
+        "RTL_SPEED",
+        {0: pytest.approx(5.0, abs=0.5), 200: pytest.approx(2.0, abs=0.3)},
+        fly.return_m_s,
+    ),
+    Case("WP_YAW_BEHAVIOR", {0: False, 2: True}, own.nose_on_leg),
+    Case(
+        "WPNAV_ACCEL",
+        {100: pytest.approx(1.0, abs=0.1), 400: pytest.approx(4.0, abs=0.1)},
+        fly.acceleration_m_s2(60.0, UP_M),
+    ),
+    Case(
+        "WPNAV_ACCEL_Z",
+        {100: pytest.approx(1.0, abs=0.1), 400: pytest.approx(4.0, abs=0.1)},
+        fly.acceleration_m_s2(0.0, 60.0),
+    ),
+    Case(
+        "WPNAV_RADIUS",
+        {200: pytest.approx(1.7, abs=0.5), 600: pytest.approx(5.7, abs=0.5)},
+        fly.reached_at_m,
+    ),
+    Case(
+        "WPNAV_SPEED",
+        {300: pytest.approx(3.0, abs=0.4), 800: pytest.approx(8.0, abs=0.4)},
+        fly.cruise_m_s,
+    ),
+    Case(
+        "WPNAV_SPEED_DN",
+        {80: pytest.approx(0.8, abs=0.2), 150: pytest.approx(1.5, abs=0.2)},
+        fly.descent_m_s_to(2.0),
+    ),
+    Case(
+        "WPNAV_SPEED_UP",
+        {100: pytest.approx(1.0, abs=0.2), 250: pytest.approx(2.5, abs=0.3)},
+        fly.climb_m_s_to(30.0),
+    ),
+    # Sticks.
+    Case(
+        "ACRO_RP_RATE",
+        {90: pytest.approx(radians(90.0)), 360: pytest.approx(radians(360.0))},
+        fly.feels(lambda f: f.rates(hand(roll=1.0))[0]),
+    ),
+    Case(
+        "ACRO_Y_RATE",
+        {90: pytest.approx(radians(90.0)), 202.5: pytest.approx(radians(202.5))},
+        fly.feels(lambda f: f.rates(hand(yaw=1.0))[2]),
+    ),
+    Case(
+        "ANGLE_MAX",
+        {2000: pytest.approx(20.0, abs=1.0), 4500: pytest.approx(45.0, abs=1.0)},
+        fly.lean_deg,
+    ),
+    Case(
+        "LOIT_ACC_MAX",
+        {200: pytest.approx(2.0), 500: pytest.approx(5.0)},
+        fly.feels(lambda f: f.accel_m_s2),
+    ),
+    Case(
+        "LOIT_SPEED",
+        {300: pytest.approx(3.0, abs=0.5), 600: pytest.approx(6.0, abs=0.5)},
+        fly.by_hand("LOITER", 5.0, flat_m_s, forward=1000),
+    ),
+    Case(
+        "MOT_THST_HOVER",
+        {0.3: pytest.approx(0.3, abs=0.02), 0.5: pytest.approx(0.5, abs=0.02)},
+        fly.thrust(hand()),
+    ),
+    Case(
+        "PILOT_ACCEL_Z",
+        {100: pytest.approx(1.0, abs=0.1), 400: pytest.approx(4.0, abs=0.1)},
+        own.hand_accel_m_s2,
+        {"PILOT_SPEED_UP": 500.0},
+    ),
+    Case(
+        "PILOT_SPEED_DN",
+        {0: pytest.approx(-2.5), 100: pytest.approx(-1.0)},
+        fly.feels(lambda f: f.climb(hand(throttle=0.0))),
+    ),
+    Case(
+        "PILOT_SPEED_UP",
+        {100: pytest.approx(1.0, abs=0.2), 250: pytest.approx(2.5, abs=0.3)},
+        fly.by_hand("ALT_HOLD", 3.0, climb_m_s, up=1000),
+    ),
+    Case(
+        "PILOT_Y_RATE",
+        {45: pytest.approx(radians(45.0)), 90: pytest.approx(radians(90.0))},
+        fly.feels(lambda f: f.turn(hand(yaw=1.0))),
+    ),
+    Case(
+        "THR_DZ",
+        {100: 0.0, 0: pytest.approx(0.5, abs=0.1)},
+        fly.feels(lambda f: f.climb(hand(throttle=0.6))),
+    ),
+    Case("RCMAP_PITCH", {1: -79, 2: 79}, own.radio("pitch")),
+    Case("RCMAP_ROLL", {1: 79, 2: -79}, own.radio("roll")),
+    Case("RCMAP_THROTTLE", {1: 90, 3: 29}, own.radio("throttle")),
+    Case("RCMAP_YAW", {1: 79, 4: 38}, own.radio("yaw")),
+    Case("FLTMODE1", {5: "LOITER", 9: "LAND"}, own.switched(1100)),
+    Case("FLTMODE2", {5: "LOITER", 9: "LAND"}, own.switched(1300)),
+    Case("FLTMODE3", {5: "LOITER", 9: "LAND"}, own.switched(1400)),
+    Case("FLTMODE4", {5: "LOITER", 9: "LAND"}, own.switched(1550)),
+    Case("FLTMODE5", {5: "LOITER", 9: "LAND"}, own.switched(1700)),
+    Case("FLTMODE6", {5: "LOITER", 9: "LAND"}, own.switched(1900)),
+    Case(
+        "FLTMODE_CH",
+        {0: "GUIDED", 5: "LOITER", 6: "LAND"},
+        own.switched(1100),
+        {"FLTMODE1": 5.0, "FLTMODE4": 9.0, "FLTMODE3": 9.0},
+    ),
+    Case("SYSID_MYGCS", {255: False, 250: True}, own.obeys, {"SYSID_ENFORCE": 1.0}),
+    Case("SYSID_ENFORCE", {0: True, 1: False}, own.obeys),
+    # Circles and leaders.
+    Case(
+        "CIRCLE_RADIUS",
+        {1000: pytest.approx(10.0, abs=1.0), 2000: pytest.approx(20.0, abs=1.5)},
+        own.circle_m,
+    ),
+    Case(
+        "CIRCLE_RATE",
+        {10: pytest.approx(10.0, abs=1.5), 20: pytest.approx(20.0, abs=2.0)},
+        own.circle_deg_s,
+    ),
+    Case(
+        "CIRCLE_OPTIONS", {1: (False, False), 2: (True, False), 4: (False, True)}, own.circle_nose
+    ),
+    Case(
+        "FOLL_ALT_TYPE",
+        {0: pytest.approx(16.0, abs=0.5), 1: pytest.approx(30.0, abs=0.5)},
+        own.leader_height_m,
+    ),
+    Case(
+        "FOLL_DIST_MAX",
+        {10.0: pytest.approx(-80.0, abs=9.0), 100.0: pytest.approx(-10.0, abs=1.5)},
+        own.beside_leader(0),
+        _FOLLOW,
+    ),
+    Case("FOLL_ENABLE", {0: Result.FAILED, 1: Result.ACCEPTED}, own.follows_at_all),
+    Case(
+        "FOLL_OFS_TYPE",
+        {0: pytest.approx(-10.0, abs=1.5), 1: pytest.approx(0.0, abs=1.5)},
+        own.beside_leader(0),
+        _FOLLOW,
+    ),
+    Case(
+        "FOLL_OFS_X",
+        {-10.0: pytest.approx(-10.0, abs=1.5), -20.0: pytest.approx(-20.0, abs=1.5)},
+        own.beside_leader(0),
+        {"FOLL_OFS_TYPE": 0.0},
+    ),
+    Case(
+        "FOLL_OFS_Y",
+        {-10.0: pytest.approx(-10.0, abs=1.5), -20.0: pytest.approx(-20.0, abs=1.5)},
+        own.beside_leader(1),
+        {"FOLL_OFS_TYPE": 0.0},
+    ),
+    Case(
+        "FOLL_OFS_Z",
+        {-5.0: pytest.approx(-5.0, abs=0.7), -10.0: pytest.approx(-10.0, abs=0.7)},
+        own.beside_leader(2),
+    ),
+    Case(
+        "FOLL_SYSID",
+        {0: pytest.approx(-10.0, abs=1.5), 9: pytest.approx(-80.0, abs=9.0)},
+        own.beside_leader(0),
+        {**_FOLLOW, "FOLL_OFS_TYPE": 0.0},
+    ),
+    Case(
+        "FOLL_YAW_BEHAVE",
+        {1: "south", 2: "east", 3: "north"},
+        own.follow_heading,
+        {"FOLL_OFS_X": 15.0, "FOLL_OFS_TYPE": 0.0},
+    ),
+    # Control loops.
+    Case(
+        "ATC_RATE_R_MAX",
+        {0: pytest.approx(4.0, abs=0.6), 100: pytest.approx(1.9, abs=0.6)},
+        fly.fastest("rate_x", fly.tips(fly.turned(roll=90.0)), 0.4),
+    ),
+    Case(
+        "ATC_RATE_P_MAX",
+        {0: pytest.approx(4.0, abs=0.6), 100: pytest.approx(1.9, abs=0.6)},
+        fly.fastest("rate_y", fly.tips(fly.turned(pitch=90.0)), 0.4),
+    ),
+    Case(
+        "ATC_RATE_Y_MAX",
+        {0: pytest.approx(1.6, abs=0.3), 40: pytest.approx(0.7, abs=0.2)},
+        fly.fastest("rate_z", fly.tips(fly.turned(yaw=90.0)), 0.8),
+    ),
+    Case(
+        "ATC_RAT_RLL_P",
+        {0.07: pytest.approx(0.226, rel=0.12), 0.135: pytest.approx(0.424, rel=0.12)},
+        fly.answer("rate_x", fly.spins((1.0, 0.0, 0.0)), 0.04),
+    ),
+    Case(
+        "ATC_RAT_PIT_P",
+        {0.07: pytest.approx(0.229, rel=0.12), 0.135: pytest.approx(0.423, rel=0.12)},
+        fly.answer("rate_y", fly.spins((0.0, 1.0, 0.0)), 0.04),
+    ),
+    Case(
+        "ATC_RAT_YAW_P",
+        {0.1: pytest.approx(0.024, rel=0.12), 0.2: pytest.approx(0.043, rel=0.12)},
+        fly.answer("rate_z", fly.spins((0.0, 0.0, 0.1)), 0.1),
+    ),
+    Case(
+        "ATC_ANG_RLL_P",
+        {3.0: pytest.approx(0.07, rel=0.12), 6.0: pytest.approx(0.129, rel=0.12)},
+        fly.answer("qx", fly.tips(fly.turned(roll=20.0)), 0.12),
+    ),
+    Case(
+        "ATC_ANG_PIT_P",
+        {3.0: pytest.approx(0.07, rel=0.12), 6.0: pytest.approx(0.129, rel=0.12)},
+        fly.answer("qy", fly.tips(fly.turned(pitch=20.0)), 0.12),
+    ),
+    Case(
+        "ATC_ANG_YAW_P",
+        {3.0: pytest.approx(0.035, rel=0.12), 9.0: pytest.approx(0.049, rel=0.12)},
+        fly.answer("qz", fly.tips(fly.turned(yaw=20.0)), 0.3),
+    ),
+    Case(
+        "ATC_SLEW_YAW",
+        {3000: pytest.approx(30.0, abs=4.0), 6000: pytest.approx(60.0, abs=6.0)},
+        fly.turn_deg_s,
+    ),
+    Case(
+        "PSC_POSXY_P",
+        {0.5: pytest.approx(0.314, rel=0.12), 1.0: pytest.approx(0.595, rel=0.12)},
+        fly.answer("pos_n", fly.reference(ref_n=1.0, goal_n=1.0), 1.0),
+    ),
+    Case(
+        "PSC_VELXY_P",
+        {1.2: pytest.approx(0.509, rel=0.12), 3.0: pytest.approx(0.931, rel=0.12)},
+        fly.answer("vel_n", fly.reference(ref_n=1.0, goal_n=1.0), 0.5),
+    ),
+    Case(
+        "PSC_POSZ_P",
+        {0.5: pytest.approx(0.224, rel=0.12), 1.0: pytest.approx(0.53, rel=0.12)},
+        fly.answer("pos_d", fly.reference(ref_d=1.0, goal_d=1.0), 1.0),
+    ),
+    Case(
+        "PSC_VELZ_P",
+        {2.0: pytest.approx(0.274, rel=0.12), 6.0: pytest.approx(0.705, rel=0.12)},
+        fly.answer("vel_d", fly.reference(ref_d=1.0, goal_d=1.0), 0.5),
+    ),
+    Case(
+        "PSC_VELXY_I",
+        {0.1: pytest.approx(-0.091, rel=0.12), 1.0: pytest.approx(-0.778, rel=0.12)},
+        fly.learns("int_n", 3.0, wind_n=8.0),
+    ),
+    Case(
+        "PSC_ACCZ_I",
+        {0.2: pytest.approx(-0.116, rel=0.12), 2.0: pytest.approx(-0.964, rel=0.12)},
+        fly.learns("int_d", 3.0, health_1=0.8, health_2=0.8, health_3=0.8, health_4=0.8),
+    ),
+    # Messages and logs.
+    Case("LOG_BACKEND_TYPE", {0: (False, False, False), 1: (False, True, False)}, fly.logs_written),
+    Case("LOG_DISARMED", {0: (False, True, False), 1: (True, True, True)}, fly.logs_written),
+    Case("SR0_EXTRA1", {0: 0.0, 4: 4.0}, fly.rate_hz(m.Attitude)),
+    Case("SR0_EXTRA2", {0: 0.0, 4: 4.0}, fly.rate_hz(m.VfrHud)),
+    Case("SR0_EXTRA3", {0: 0.0, 4: 4.0}, fly.rate_hz(m.BatteryStatus)),
+    Case("SR0_EXT_STAT", {0: 0.0, 4: 4.0}, fly.rate_hz(m.SysStatus)),
+    Case("SR0_POSITION", {0: 0.0, 4: 4.0}, fly.rate_hz(m.GlobalPositionInt)),
+    Case("SR0_RAW_SENS", {0: 0.0, 4: 4.0}, fly.rate_hz(m.RawImu)),
+    Case("SR0_RC_CHAN", {0: 0.0, 4: 4.0}, fly.rate_hz(m.ServoOutputRaw)),
+    Case("SYSID_THISMAV", {1: 1, 7: 7}, fly.system_id),
+    # Simulated troubles.
+    Case(
+        "SIM_ACC1_BIAS_X",
+        {0.0: pytest.approx(0.0, abs=0.2), 2.0: pytest.approx(2.0, abs=0.2)},
+        own.sensed("accel_x"),
+    ),
+    Case(
+        "SIM_ACC1_BIAS_Y",
+        {0.0: pytest.approx(0.0, abs=0.2), 2.0: pytest.approx(2.0, abs=0.2)},
+        own.sensed("accel_y"),
+    ),
+    Case(
+        "SIM_ACC1_BIAS_Z",
+        {0.0: pytest.approx(-9.8, abs=0.2), 2.0: pytest.approx(-7.8, abs=0.2)},
+        own.sensed("accel_z"),
+    ),
+    Case(
+        "SIM_GYR1_BIAS_X",
+        {0.0: pytest.approx(0.0, abs=0.05), 0.3: pytest.approx(0.3, abs=0.05)},
+        own.sensed("gyro_x"),
+    ),
+    Case(
+        "SIM_GYR1_BIAS_Y",
+        {0.0: pytest.approx(0.0, abs=0.05), 0.3: pytest.approx(0.3, abs=0.05)},
+        own.sensed("gyro_y"),
+    ),
+    Case(
+        "SIM_GYR1_BIAS_Z",
+        {0.0: pytest.approx(0.0, abs=0.05), 0.3: pytest.approx(0.3, abs=0.05)},
+        own.sensed("gyro_z"),
+    ),
+    Case("SIM_BARO_DISABLE", {0: True, 1: False}, own.baro_heard),
+    Case(
+        "SIM_BARO_GLITCH",
+        {0.0: pytest.approx(0.0, abs=1.0), 20.0: pytest.approx(20.0, abs=1.0)},
+        own.sensed("baro_up_m"),
+    ),
+    Case(
+        "SIM_BATT_VOLTAGE",
+        {16.8: pytest.approx(16.8, abs=0.1), 12.6: pytest.approx(12.6, abs=0.1)},
+        own.volts,
+    ),
+    Case(
+        "SIM_ENGINE_FAIL",
+        {0: (1.0, 1.0, 1.0, 1.0), 5: (0.0, 1.0, 0.0, 1.0)},
+        own.healths,
+        {"SIM_ENGINE_MUL": 0.0},
+    ),
+    Case(
+        "SIM_ENGINE_MUL",
+        {1.0: (1.0, 1.0, 1.0, 1.0), 0.5: (1.0, 0.5, 1.0, 1.0)},
+        own.healths,
+        {"SIM_ENGINE_FAIL": 2.0},
+    ),
+    Case("SIM_GPS_DISABLE", {0: 3, 1: 1}, own.fix),
+    Case(
+        "SIM_GPS_GLITCH_X",
+        {0.0: pytest.approx(0.0, abs=2.0), 0.001: pytest.approx(111.3, abs=2.0)},
+        own.sensed("gps_n"),
+    ),
+    Case(
+        "SIM_GPS_GLITCH_Y",
+        {0.0: pytest.approx(0.0, abs=2.0), 0.001: pytest.approx(90.8, abs=2.0)},
+        own.sensed("gps_e"),
+    ),
+    Case(
+        "SIM_GPS_GLITCH_Z",
+        {0.0: pytest.approx(0.0, abs=2.0), 30.0: pytest.approx(-30.0, abs=2.0)},
+        own.sensed("gps_d"),
+    ),
+    Case("SIM_MAG1_FAIL", {0: True, 1: False}, own.compass_heard),
+    Case("SIM_RC_FAIL", {0: True, 1: False}, own.sticks_heard),
+    Case(
+        "SIM_WIND_DIR",
+        {180.0: pytest.approx(8.0, abs=0.3), 0.0: pytest.approx(-8.0, abs=0.3)},
+        own.air_m_s(0),
+        {"SIM_WIND_SPD": 8.0},
+    ),
+    Case(
+        "SIM_WIND_SPD",
+        {0.0: pytest.approx(0.0, abs=0.1), 8.0: pytest.approx(8.0, abs=0.3)},
+        own.air_m_s(1),
+        {"SIM_WIND_DIR": 270.0},
+    ),
+    Case("SIM_WIND_TURB", {0.0: 0.0, 3.0: pytest.approx(5.0, abs=3.0)}, own.gusts),
+)

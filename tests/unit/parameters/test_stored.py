@@ -1,0 +1,101 @@
+"""What parameters outlive, how they are reset, and when those of the simulation act."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.unit.autopilot.flight import HOMES, Flight
+from tests.unit.parameters.probing import Setting
+from tests.unit.parameters.scripts import Served
+from tests.unit.vehicle_services.fake_vehicle import S, acks, long
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.fleet import Few, Seat, Spec
+from vehicle_sim.fleet_many import Many
+from vehicle_sim.model.airframe import load
+from vehicle_sim.model.faults import WindChange
+from vehicle_sim.wire.ids import Cmd
+
+BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
+either = pytest.mark.parametrize("personality", BOTH)
+HEIGHT: dict[Personality, str] = {"px4": "MIS_TAKEOFF_ALT", "ardupilot": "PILOT_TKOFF_ALT"}
+CHANGED, DEFAULT = {"px4": 7.0, "ardupilot": 700.0}, {"px4": 2.5, "ardupilot": 250.0}
+
+
+@either
+def test_a_reboot_keeps_what_was_set(personality: Personality) -> None:
+    served = Served(Setting(personality, {HEIGHT[personality]: CHANGED[personality]}).fresh())
+    served.advance(S)
+    assert acks(served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1))) == [(246, Result.ACCEPTED)]
+    served.advance(S)
+    assert served.stored(HEIGHT[personality]) == CHANGED[personality]
+
+
+def test_px4_resets_its_parameters_at_once() -> None:
+    served = Served(Setting("px4", {HEIGHT["px4"]: 7.0}).fresh())
+    served.advance(S)
+    assert acks(served.send(long(Cmd.PREFLIGHT_STORAGE, 2))) == [(245, Result.ACCEPTED)]
+    assert served.stored(HEIGHT["px4"]) == DEFAULT["px4"]
+
+
+def test_ardupilot_resets_its_parameters_with_the_next_reboot() -> None:
+    served = Served(Setting("ardupilot", {HEIGHT["ardupilot"]: 700.0}).fresh())
+    served.advance(S)
+    assert acks(served.send(long(Cmd.PREFLIGHT_STORAGE, 2))) == [(245, Result.ACCEPTED)]
+    assert served.stored(HEIGHT["ardupilot"]) == CHANGED["ardupilot"]
+    served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1))
+    assert served.stored(HEIGHT["ardupilot"]) == DEFAULT["ardupilot"]
+
+
+def test_simulated_wind_that_is_set_before_the_start_blows_from_the_start() -> None:
+    flight = Flight("ardupilot")
+    flight.vehicle.parameters.set("SIM_WIND_SPD", 6.0)
+    flight.fly(5.0)
+    assert flight.vehicle.blocks.body.wind_n == pytest.approx(6.0)
+
+
+def test_other_parameters_leave_a_fault_alone_that_came_from_elsewhere() -> None:
+    flight = Flight("ardupilot").boot()
+    flight.vehicle.inject(WindChange((3.0, 0.0, 0.0)))
+    flight.vehicle.parameters.set("SIM_BARO_GLITCH", 1.0)
+    flight.vehicle.parameters.set("WPNAV_SPEED", 300.0)
+    flight.fly(1.0)
+    assert flight.vehicle.blocks.body.wind_n == 3.0
+
+
+def test_a_reboot_does_not_end_what_the_simulation_was_told() -> None:
+    flight = Flight("ardupilot").boot()
+    flight.vehicle.parameters.set("SIM_WIND_SPD", 6.0)
+    flight.fly(0.5)
+    assert flight.vehicle.reboot() is Result.ACCEPTED
+    flight.fly(0.5)
+    assert flight.vehicle.blocks.body.wind_n == pytest.approx(6.0)
+
+
+def test_gains_reach_a_vehicle_in_a_fleet_as_they_reach_one_alone() -> None:
+    def flown(kind: type[Few] | type[Many]) -> bytes:
+        home = HOMES["px4"]
+        specs = [Spec(1, index, home.lat_deg) for index in range(2)]
+        engine = kind(specs, load())
+        vehicles = []
+        for lane, roll_p in enumerate((6.5, 4.0)):
+            parameters = Parameters("px4")
+            parameters.set("MC_ROLL_P", roll_p)
+            vehicles.append(Autopilot("px4", home, 1, lane, parameters, Seat(engine, lane)))
+        for step in range(2500):
+            engine.step()
+            for vehicle in vehicles:
+                vehicle.live()
+                if step == 400:
+                    vehicle.arm(False)
+                    vehicle.take_off(4.0)
+                if step == 1800:
+                    vehicle.parameters.set("MPC_XY_CRUISE", 8.0)
+                    vehicle.reposition((10.0, 10.0, -4.0), None, None)
+        states = [vehicle.state_bytes() for vehicle in vehicles]
+        assert states[0] != states[1]
+        return b"".join(states)
+
+    assert flown(Few) == flown(Many)

@@ -1,0 +1,96 @@
+"""Navigation, heights, air and board: the numbers in their messages."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from tests.unit.vehicle_services.fake_vehicle import Bench, long
+from vehicle_sim.autopilot.interface import AttitudeGoal, Target
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.wire import messages as m
+
+
+def asked(bench: Bench, kind: type[m.Message]) -> m.Message | None:
+    heard = bench.send(long(512, m.IDS[kind]))
+    return next((each for each in heard if isinstance(each, kind)), None)
+
+
+def test_navigation_is_told_in_degrees_and_metres_from_here() -> None:
+    bench = Bench("ardupilot")
+    half = math.radians(10.0) / 2.0
+    roll = (math.cos(half), math.sin(half), 0.0, 0.0)
+    bench.vehicle.attitude_goal = AttitudeGoal(roll, (0.0, 0.0, 0.0), 0.5)
+    bench.vehicle.target = Target((10.0, 50.0, -12.0), None, None)
+    told = asked(bench, m.NavControllerOutput)
+    assert isinstance(told, m.NavControllerOutput)
+    assert told.nav_roll == pytest.approx(10.0)
+    assert (told.target_bearing, told.wp_dist) == (90, 30)
+    assert told.alt_error == pytest.approx(7.0), "it is to climb"
+
+
+def test_navigation_without_a_goal_is_all_zero() -> None:
+    bench = Bench("ardupilot")
+    bench.vehicle.target = Target(None, None, None)
+    told = asked(bench, m.NavControllerOutput)
+    assert told == m.NavControllerOutput(0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
+
+
+def test_wind_comes_from_where_it_does_not_go() -> None:
+    bench = Bench("ardupilot")
+    told = asked(bench, m.Wind)
+    assert isinstance(told, m.Wind)
+    assert told.speed == pytest.approx(5.0)
+    assert told.direction == pytest.approx(126.87, abs=0.01), "it blows to the north-west"
+    cov = asked(bench, m.WindCov)
+    assert isinstance(cov, m.WindCov)
+    assert (cov.wind_x, cov.wind_y, math.isnan(cov.wind_z)) == (3.0, -4.0, True)
+    bench.vehicle.wind_ned = None
+    assert asked(bench, m.Wind) is None
+    assert asked(bench, m.WindCov) is None
+
+
+def test_heights_each_have_their_own_zero() -> None:
+    told = asked(Bench("px4"), m.Altitude)
+    assert isinstance(told, m.Altitude)
+    heights = (told.altitude_monotonic, told.altitude_amsl, told.altitude_local)
+    assert heights == (493.5, 493.0, 5.0)
+    assert told.altitude_relative == 5.0
+    assert math.isnan(told.altitude_terrain)
+    assert math.isnan(told.bottom_clearance)
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+def test_board_and_vibration(personality: Personality) -> None:
+    bench = Bench(personality)
+    shaking = asked(bench, m.Vibration)
+    assert isinstance(shaking, m.Vibration)
+    assert shaking[1:4] == pytest.approx((0.1, 0.2, 0.3))
+    power = asked(bench, m.PowerStatus)
+    assert isinstance(power, m.PowerStatus)
+    assert power.Vcc == 5000
+    assert isinstance(asked(bench, m.Hwstatus), m.Hwstatus)
+    memory = asked(bench, m.Meminfo)
+    assert isinstance(memory, m.Meminfo)
+    assert memory.freemem32 > 0
+
+
+def test_the_mission_mode_is_told_beside_the_item() -> None:
+    for personality, mission, other in (("px4", 4 << 16 | 4 << 24, 4 << 16), ("ardupilot", 3, 4)):
+        bench = Bench("px4" if personality == "px4" else "ardupilot")
+        for number, expected in ((mission, 1), (other, 2)):
+            bench.vehicle.custom_mode = number
+            told = asked(bench, m.MissionCurrent)
+            assert isinstance(told, m.MissionCurrent)
+            assert told.mission_mode == expected
+
+
+def test_who_asks_for_the_modes_hears_the_present_one_from_then_on() -> None:
+    bench = Bench("ardupilot")
+    bench.send(m.Heartbeat(0, 6, 8, 0, 4, 3))
+    before = bench.advance(6_000_000_000)
+    assert not [each for each in before if isinstance(each, m.CurrentMode)]
+    bench.send(long(512, m.IDS[m.AvailableModes]))
+    after = bench.advance(6_000_000_000)
+    assert len([each for each in after if isinstance(each, m.CurrentMode)]) == 3

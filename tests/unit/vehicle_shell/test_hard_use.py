@@ -1,0 +1,56 @@
+"""What clients and controllers do to the program that no specification has."""
+
+from __future__ import annotations
+
+import errno
+import json
+import socket
+
+import pytest
+
+from vehicle_sim.autopilot.interface import Truth
+from vehicle_sim.control import LINE_MAX, answer
+from vehicle_sim.faults import AnyFault
+from vehicle_sim.shell.endpoints import ACCEPT_AGAIN_NS, TcpServer
+from vehicle_sim.shell.urls import Kind, Url
+from vehicle_sim.shell.watch import Watch
+from vehicle_sim.world import Joined
+
+
+class EmptyStage:
+    def truth(self, system: int) -> Truth | None:
+        return None
+
+    def befall(self, fault: AnyFault, system: int | None) -> bool:
+        return False
+
+
+@pytest.mark.parametrize("line", [b"[" * (LINE_MAX - 1), b'{"id":' + b"[" * 60_000, b"\xff", b"1"])
+def test_the_control_line_answers_whatever_is_written(line: bytes) -> None:
+    assert "error" in json.loads(answer(line, EmptyStage()))
+
+
+def test_without_a_descriptor_to_spare_the_listener_rests_and_comes_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    server = TcpServer(0, Url(Kind.TCP_IN, "127.0.0.1", 0))
+    watch = Watch()
+    server.attach(watch)
+    client = socket.create_connection(("127.0.0.1", server.url.port))
+    ((listener, _),) = watch.ready(1.0)
+    with monkeypatch.context() as patch:
+
+        def no_room(self: socket.socket) -> None:
+            raise OSError(errno.EMFILE, "Too many open files")
+
+        patch.setattr(socket.socket, "accept", no_room)
+        assert server.read(listener) == []
+        assert watch.ready(0.0) == [], "it would wake the loop all the time"
+    assert server.idle(0) == []
+    assert watch.ready(0.0) == []
+    server.idle(ACCEPT_AGAIN_NS)
+    ((listener, _),) = watch.ready(1.0)
+    assert [type(given) for given in server.read(listener)] == [Joined]
+    client.close()
+    server.close()
+    watch.close()

@@ -1,0 +1,108 @@
+"""What the words on the command line mean: types for click, and the plan that they make."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import cos, radians, sin
+from typing import Final
+
+import click
+
+SPEEDUP_MAX: Final = 200
+GUST_MAX_M_S: Final = 20.0
+
+
+class HomeType(click.ParamType[tuple[float, float, float]]):
+    """LAT,LON,ALT: degrees, degrees, metres above mean sea level."""
+
+    name = "LAT,LON,ALT"
+
+    def convert(
+        self,
+        value: str | tuple[float, float, float],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> tuple[float, float, float]:
+        if not isinstance(value, str):
+            return value
+        try:
+            lat_deg, lon_deg, alt_m = (float(part) for part in value.split(","))
+        except ValueError:
+            self.fail(f"{value!r} is not LAT,LON,ALT, as in 47.397742,8.545594,488", param, ctx)
+        if not (abs(lat_deg) < 90.0 and abs(lon_deg) <= 180.0 and -500.0 <= alt_m <= 9000.0):
+            self.fail(
+                f"{value!r} is not on Earth: latitude within 90, longitude within 180 degrees, "
+                "height from -500 to 9000 m",
+                param,
+                ctx,
+            )
+        return (lat_deg, lon_deg, alt_m)
+
+
+class AssignmentType(click.ParamType[tuple[str, float]]):
+    """NAME=VALUE."""
+
+    name = "NAME=VALUE"
+
+    def convert(
+        self,
+        value: str | tuple[str, float],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> tuple[str, float]:
+        if not isinstance(value, str):
+            return value
+        name, _, number = value.partition("=")
+        try:
+            return (name, float(number))
+        except ValueError:
+            self.fail(f"{value!r} is not NAME=VALUE, as in MIS_TAKEOFF_ALT=5", param, ctx)
+
+
+class SpeedType(click.ParamType[Fraction]):
+    """How many simulated seconds make a second."""
+
+    name = "FACTOR"
+
+    def convert(
+        self, value: str | Fraction, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Fraction:
+        if not isinstance(value, str):
+            return value
+        try:
+            factor = Fraction(value).limit_denominator(1000)
+        except (ValueError, ZeroDivisionError):
+            self.fail(f"{value!r} is no number", param, ctx)
+        if not 0 < factor <= SPEEDUP_MAX:
+            self.fail(f"{value} is not in 0.001 to {SPEEDUP_MAX}", param, ctx)
+        return factor
+
+
+class WindType(click.ParamType[tuple[float, float, float]]):
+    """SPEED[,FROM[,GUSTS]]: m/s, degrees that it comes from, standard deviation in m/s."""
+
+    name = "SPEED[,FROM[,GUSTS]]"
+
+    def convert(
+        self,
+        value: str | tuple[float, float, float],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> tuple[float, float, float]:
+        """North and east parts of the air's velocity, and the gusts [m/s]."""
+        if not isinstance(value, str):
+            return value
+        try:
+            speed, from_deg, gust = (*(float(part) for part in value.split(",")), 0.0, 0.0)[:3]
+        except ValueError:
+            self.fail(f"{value!r} is not {self.name}, as in 8,270,1.5", param, ctx)
+        good = 0.0 <= speed <= 60.0 and abs(from_deg) <= 360.0 and 0.0 <= gust <= GUST_MAX_M_S
+        if not good or value.count(",") > 2:
+            self.fail(
+                f"{value!r}: up to 60 m/s, from a direction within 360 degrees, "
+                f"gusts up to {GUST_MAX_M_S:g} m/s",
+                param,
+                ctx,
+            )
+        from_rad = radians(from_deg)
+        return (-speed * cos(from_rad), -speed * sin(from_rad), gust)

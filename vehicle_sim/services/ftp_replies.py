@@ -1,0 +1,79 @@
+"""What MAVLink FTP's clients were told last: a request that comes again changes nothing twice."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+from .effects import Client
+from .ftp_wire import Opcode, Reply, Request
+
+RETRY_NS: Final = 1_500_000_000
+"""Clients repeat within 1 s (QGroundControl; MAVSDK and mavftp 0.5 s).  Not much longer: MAVSDK
+begins every operation with sequence 0, so that an equal request soon is one of its own."""
+REPLIES_KEPT: Final = 8
+CLIENTS_KEPT: Final = 32
+
+REMEMBERED: Final = frozenset(
+    {
+        Opcode.TERMINATE_SESSION,
+        Opcode.RESET_SESSIONS,
+        Opcode.OPEN_FILE_RO,
+        Opcode.CREATE_FILE,
+        Opcode.OPEN_FILE_WO,
+        Opcode.REMOVE_FILE,
+        Opcode.CREATE_DIRECTORY,
+        Opcode.REMOVE_DIRECTORY,
+        Opcode.TRUNCATE_FILE,
+        Opcode.RENAME,
+    }
+)
+"""To read or write at an offset again does no harm."""
+
+
+class _Told(NamedTuple):
+    request: Request
+    reply: Reply
+    heard_ns: int
+
+
+class Replies:
+    """The last few of each of the last clients."""
+
+    def __init__(self) -> None:
+        self._told: dict[Client, dict[int, _Told]] = {}  # by the request's sequence
+
+    def recall(self, client: Client, request: Request, now_ns: int) -> Reply | None:
+        """What the same request was answered with a moment ago."""
+        told = self._told.get(client, {})
+        known = told.get(request.sequence)
+        if known is None or known.request != request or now_ns - known.heard_ns > RETRY_NS:
+            return None
+        told[request.sequence] = known._replace(heard_ns=now_ns)
+        return known.reply
+
+    def remember(self, client: Client, request: Request, reply: Reply, now_ns: int) -> None:
+        if request.opcode not in REMEMBERED:
+            return
+        told = self._told.pop(client, {})
+        told.pop(request.sequence, None)
+        told[request.sequence] = _Told(request, reply, now_ns)
+        self._told[client] = told
+        if len(told) > REPLIES_KEPT:
+            del told[next(iter(told))]
+        if len(self._told) > CLIENTS_KEPT:
+            del self._told[next(iter(self._told))]
+
+    def closed(self, client: Client, session: int | None) -> None:
+        """A session is over, or all of them (None): its opening is not to be confirmed again."""
+        told = self._told.get(client, {})
+        for sequence, known in list(told.items()):
+            if known.request.opcode in OPENING and session in (None, known.reply.session):
+                del told[sequence]
+
+    def forget(self, channel: int) -> None:
+        self._told = {
+            client: told for client, told in self._told.items() if client.channel != channel
+        }
+
+
+OPENING: Final = frozenset({Opcode.OPEN_FILE_RO, Opcode.CREATE_FILE, Opcode.OPEN_FILE_WO})

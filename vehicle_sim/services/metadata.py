@@ -1,0 +1,110 @@
+"""What a ground station reads about a px4 vehicle's parameters (MAVLink Component Metadata).
+
+Two JSON files by the schemas of the protocol: the general one says where the others are, the
+other one describes the parameters.  Their texts come from the parameter tables, which write a
+unit as `[m/s]`, choices as `0 warn 2 land when critical`, and bits as `bit 0 this, bit 1 that` or
+as `1 this 2 that; added up`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Final, TypeAlias
+
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.parameter_tables import Spec
+from vehicle_sim.autopilot.parameters import TABLES
+
+from .store import crc32_of
+from .virtual import Virtual, VirtualFiles
+
+GENERAL_PATH: Final = "etc/extras/component_general.json"
+PARAMETERS_PATH: Final = "etc/extras/parameters.json"
+"""PX4's own places, without its compression."""
+
+PARAMETER_METADATA: Final = 1  # COMP_METADATA_TYPE_PARAMETER
+_UNIT: Final = re.compile(r" ?\[([^]]+)\]")
+_BIT: Final = re.compile(r"bit (\d+) ([^,]+)")
+_CHOICE: Final = re.compile(r"(?:^|(?<=[ :]))(\d+) ([A-Za-z][A-Za-z, -]*?)(?=,? \d+ |$)")
+
+Json: TypeAlias = "dict[str, str | float | bool | list[Json]]"
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata:
+    """The files, and what COMPONENT_METADATA says about the general one."""
+
+    files: VirtualFiles
+    uri: str
+    crc: int
+
+
+@cache
+def metadata_of(personality: Personality) -> Metadata:
+    """The same for all vehicles of a personality: values do not enter."""
+    specs = TABLES[personality]
+    described = _json({"version": 1, "parameters": [_described(spec) for spec in specs]})
+    general = _json(
+        {
+            "version": 1,
+            "metadataTypes": [
+                {
+                    "type": PARAMETER_METADATA,
+                    "uri": _uri(PARAMETERS_PATH),
+                    "fileCrc": crc32_of(described),
+                }
+            ],
+        }
+    )
+    files = {GENERAL_PATH: _fixed(general), PARAMETERS_PATH: _fixed(described)}
+    return Metadata(files, _uri(GENERAL_PATH), crc32_of(general))
+
+
+def _fixed(data: bytes) -> Virtual:
+    return Virtual(lambda query: data)
+
+
+def _uri(path: str) -> str:
+    return f"mftp://{path}"
+
+
+def _json(value: Json) -> bytes:
+    return json.dumps(value, separators=(",", ":")).encode("ascii")
+
+
+def _described(spec: Spec) -> Json:
+    """One parameter by parameter.schema.json."""
+    unit = _UNIT.search(spec.what)
+    text = _UNIT.sub("", spec.what)
+    described: Json = {
+        "name": spec.name,
+        "type": "Int32" if spec.integer else "Float",
+        "shortDesc": text[:1].upper() + text[1:],
+        "units": unit[1] if unit else "",
+        "default": spec.default,
+        "min": spec.low,
+        "max": spec.high,
+        "group": spec.name.partition("_")[0],
+        "rebootRequired": spec.reboot,
+    }
+    if not spec.integer:
+        described["decimalPlaces"] = 2
+        return described
+    return described | _choices(spec.what)
+
+
+def _choices(what: str) -> Json:
+    """What the numbers mean, or the bits of one number; none if the text names fewer than two."""
+    text, _, rest = what.partition(";")
+    bits = [(int(bit), meaning) for bit, meaning in _BIT.findall(text)]
+    found = [(int(value), meaning.strip(" ,")) for value, meaning in _CHOICE.findall(text)]
+    if "added up" in rest:
+        bits = [(value.bit_length() - 1, meaning) for value, meaning in found]
+    if len(bits) > 1:
+        return {"bitmask": [{"index": bit, "description": meaning} for bit, meaning in bits]}
+    if len(found) > 1:
+        return {"values": [{"value": value, "description": text} for value, text in found]}
+    return {}
