@@ -17,14 +17,15 @@ import time
 
 from vehicle_sim.options import SPEEDUP_MAX
 
+NOBODY = "udpin://127.0.0.1:0"
 LIVED = re.compile(r"([\d.]+) simulated seconds, ([\d.]+) times real time")
 
 
 def measure(personality: str, seconds: float) -> str:
     before = os.times()
+    asked = ["--autopilot", personality, "--speedup", str(SPEEDUP_MAX)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "vehicle_sim", "--lifeline", "--autopilot", personality]
-        + ["--speedup", str(SPEEDUP_MAX), "--link", "udpin://127.0.0.1:0"],
+        [sys.executable, "-m", "vehicle_sim", "--lifeline", *asked, "--link", NOBODY],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,

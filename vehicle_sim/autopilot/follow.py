@@ -12,8 +12,9 @@ from math import atan2, cos, exp, hypot, pi, radians, remainder, sin
 
 from vehicle_sim.autopilot.demands import Demand, FlyTo, Situation, Turner
 from vehicle_sim.autopilot.interface import Landed, Target, Vec3
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks import distance, face
+from vehicle_sim.autopilot.trajectory import slowed
 
 _SILENT_NS = {"px4": 1_500_000_000, "ardupilot": 3_000_000_000}
 _COURSE_M_S = 1.0  # slower than this a leader has no course
@@ -111,7 +112,8 @@ class Follow:
         goal = self._beside(lead, s) if ardupilot else self._behind(lead, s, dt_s)
         self._goal = goal
         self._point(lead, s, turner)
-        v_ned = lead.v_ned if ardupilot else self._v_ned
+        fastest_m_s = self._parameters.si(Quantity.FASTEST_M_S)
+        v_ned = slowed(lead.v_ned if ardupilot else self._v_ned, s.limits, fastest_m_s)
         return FlyTo(goal, s.limits, v_ned, straight=False, since_ns=s.time_ns)
 
     # ------------------------------------------------------------------------------- px4

@@ -27,7 +27,7 @@ from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Setpoint, 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks import TakeOff
-from vehicle_sim.autopilot.trajectory import Limits
+from vehicle_sim.autopilot.trajectory import Limits, slowed
 
 AnySetpoint: TypeAlias = Setpoint | AttitudeSetpoint
 
@@ -186,7 +186,9 @@ class Guided:
             return fly_by_axes(setpoint, s, s.limits)
         if setpoint.pos_ned is not None:
             self._hold = setpoint.pos_ned
-            v_ned = setpoint.v_ned or STILL
+            top = self._limits_of_velocity(s)
+            fastest_m_s = self._parameters.si(Quantity.FASTEST_M_S)
+            v_ned = slowed(setpoint.v_ned or STILL, top, fastest_m_s)
             # A goal with a velocity moves on by itself until the next setpoint comes.
             since_ns = self._stream.taken_ns if v_ned != STILL else 0
             return FlyTo(setpoint.pos_ned, s.limits, v_ned, since_ns=since_ns)

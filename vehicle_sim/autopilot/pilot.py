@@ -6,7 +6,7 @@ the flight; the land detector ends it.
 
 from __future__ import annotations
 
-from math import atan2, pi, sqrt
+from math import atan2, pi, remainder, sqrt
 from typing import assert_never
 
 from vehicle_sim.autopilot.demands import (
@@ -46,11 +46,7 @@ def heading_of(q_ned_from_frd: Quat) -> float:
 
 def wrap_pi(angle_rad: float) -> float:
     """The same direction within -pi .. pi."""
-    while angle_rad > pi:
-        angle_rad -= 2.0 * pi
-    while angle_rad < -pi:
-        angle_rad += 2.0 * pi
-    return angle_rad
+    return remainder(angle_rad, 2.0 * pi)
 
 
 class Heading:

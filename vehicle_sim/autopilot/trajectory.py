@@ -38,6 +38,14 @@ class Limits:
         return self.accel_vertical_m_s2 if up_m_s2 is None else up_m_s2
 
 
+def slowed(v_ned: Vec3, limits: Limits, top_m_s: float) -> Vec3:
+    """The velocity of a moving goal, as fast as the vehicle can ever go after it."""
+    n, e, d = v_ned
+    flat = sqrt(n * n + e * e)
+    scale = top_m_s / flat if flat > top_m_s else 1.0
+    return (n * scale, e * scale, min(limits.descend_m_s, max(-limits.climb_m_s, d)))
+
+
 @kernel
 def approach_speed(distance_m: float, accel_m_s2: float) -> float:
     """The speed at `distance_m` from a goal from which one can still stop there.
@@ -161,13 +169,15 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     ae = 0.0 if free_flat else f.ref_acc_e + je * scale
     ad = 0.0 if free_down else f.ref_acc_d + jd * scale
 
-    # Time waits for a vehicle that is left behind: 1 when it follows, towards 0 when not.
+    # Time waits for a vehicle that is left behind: 1 when it follows, towards 0 when not.  For one
+    # that is ahead it must go on: the vehicle would come to rest there, and wait for the reference.
     ln = ref_n - est.pos_n
     le = ref_e - est.pos_e
     ld = ref_d - est.pos_d
     lead = sqrt((0.0 if free_flat else ln * ln + le * le) + (0.0 if free_down else ld * ld))
+    behind = (0.0 if free_flat else ln * vn + le * ve) + (0.0 if free_down else ld * vd)
     rest = (f.lead_max_m - lead) / (f.lead_max_m * (1.0 - _LEAD_FREE))
-    rest = 1.0 if rest > 1.0 else 0.0 if rest < 0.0 else rest
+    rest = 1.0 if rest > 1.0 or behind < 0.0 else 0.0 if rest < 0.0 else rest
     half = 0.5 * rest * dt_s
     new_n = vn + an * dt_s
     new_e = ve + ae * dt_s

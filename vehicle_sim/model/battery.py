@@ -14,6 +14,9 @@ BATTERY_EVERY: Final = 25
 
 FULL_CELL_V: Final = 4.20
 
+_COLLAPSE_V: Final = 60.0
+"""What a cell loses for each part of its capacity that is drawn beyond all of it: 3 V in 5 %."""
+
 _WEAKEST: Final = 0.25
 """Below this part of the full voltage the motors draw no more for it."""
 
@@ -86,9 +89,14 @@ def drain(body: Body, frame: Frame) -> None:
 
 @kernel
 def settle(body: Body, frame: Frame) -> None:
-    """Voltage and strength for the charge that is left and the current that flows."""
+    """Voltage and strength for the charge that is left and the current that flows.
+
+    An empty battery does not hold its last voltage: drawn on, its cells collapse.
+    """
     cells = frame.cells - body.cells_lost
-    voltage_v = cells * cell_v(body.remaining) - body.current_a * frame.resistance_ohm
+    over = body.consumed_mah / frame.capacity_mah - 1.0
+    open_v = cell_v(body.remaining) - (_COLLAPSE_V * over if over > 0.0 else 0.0)
+    voltage_v = cells * open_v - body.current_a * frame.resistance_ohm
     voltage_v = voltage_v if voltage_v > 0.0 else 0.0
     body.voltage_v = voltage_v
     body.strength = voltage_v / (frame.cells * FULL_CELL_V)

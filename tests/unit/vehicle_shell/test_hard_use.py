@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
+import io
 import json
+import os
 import socket
+import sys
 
 import pytest
 
 from vehicle_sim.autopilot.interface import Truth
 from vehicle_sim.control import LINE_MAX, answer
 from vehicle_sim.faults import AnyFault
+from vehicle_sim.outlets import Plain
 from vehicle_sim.shell.endpoints import ACCEPT_AGAIN_NS, TcpServer
 from vehicle_sim.shell.urls import Kind, Url
 from vehicle_sim.shell.watch import Watch
-from vehicle_sim.world import Joined
+from vehicle_sim.world import Joined, Log
 
 
 class EmptyStage:
@@ -54,3 +59,34 @@ def test_without_a_descriptor_to_spare_the_listener_rests_and_comes_back(
     client.close()
     server.close()
     watch.close()
+
+
+def test_who_does_not_read_the_log_does_not_stop_the_vehicle(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(writer, bytes(4096))
+    os.set_blocking(reader, False)
+    with os.fdopen(writer, "w", encoding="utf-8") as full, os.fdopen(reader, "rb") as unread:
+        monkeypatch.setattr(sys, "stdout", full)
+        # Were it written, the full pipe would raise: it does not block in this test.
+        Plain("info").log(Log("info", "vehicle1", "nobody reads this"))
+        assert sys.stdout is full
+        unread.read()
+        Plain("info").log(Log("info", "vehicle1", "read again"))
+        assert unread.read() == b"INFO vehicle1: read again\n"
+
+
+def test_a_full_disk_under_the_log_does_not_stop_the_vehicle(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class FullDisk(io.StringIO):
+        def write(self, text: str) -> int:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(sys, "stdout", FullDisk())
+    Plain("info").log(Log("info", "vehicle1", "first"))
+    Plain("info").log(Log("info", "vehicle1", "second"))
