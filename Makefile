@@ -22,7 +22,7 @@ demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated v
 	@$(BIN)/gcs demo
 
 test: $(TEST) $(TESTED) ## run every test (under 10 minutes on 2 cores)
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(SLOWER:%=--ignore=%)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal $(SLOWER:%=--ignore=%)
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests
 
