@@ -21,8 +21,8 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-test: $(TEST) $(TESTED) ## run every test (under 10 minutes on 2 cores)
-	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal $(SLOWER:%=--ignore=%)
+test: $(TEST) $(TESTED) ## run every test (about 10 minutes on 2 cores)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(SLOWER:%=--ignore=%)
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests
 
