@@ -97,7 +97,7 @@ def cells(status: Status) -> tuple[str, ...]:
     )
 
 
-def table(statuses: Sequence[Status], rhythm: Rhythm, room: int) -> list[tuple[str, ...]]:
+def table(statuses: Sequence[Status], room: int) -> list[tuple[str, ...]]:
     """Rows of words, the head first; beyond `room` vehicles the rest is summed up."""
     shown = statuses if len(statuses) <= room else statuses[: max(1, room - 1)]
     rows = [_HEAD, *(cells(status) for status in shown)]
@@ -132,7 +132,7 @@ class Face:
         from rich.text import Text
 
         room = max(_LEAST_ROOM, self._console.height - _ROOM_LEFT)
-        head, *rows = table(statuses, rhythm, room)
+        head, *rows = table(statuses, room)
         drawn = Table.grid(padding=(0, 2))
         for name in head:
             drawn.add_column(justify="right" if name in ("height", "speed", "battery") else "left")

@@ -82,11 +82,6 @@ class Errands:
     def idle(self) -> bool:
         return not self._list
 
-    @property
-    def roi_ned(self) -> Vec3 | None:
-        """Where the nose is to point, whatever is flown."""
-        return self._roi_ned
-
     def work(self, s: Situation, goal_ned: Vec3 | None) -> None:
         """Down the list, as far as no condition holds it up; `goal_ned` is what is flown to."""
         while self._list:

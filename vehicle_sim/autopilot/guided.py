@@ -131,12 +131,6 @@ class Guided:
         self._takeoff.begin(s, turner)
         self._stream.forget()
 
-    def stay(self, s: Situation) -> None:
-        """Brake and forget the present goal."""
-        self._stream.forget()
-        self._takeoff = None
-        self._hold = s.stop_ned
-
     def lifts_off(self, s: Situation) -> bool:
         if self._takeoff is not None:
             return True

@@ -33,6 +33,7 @@ KINDS: Final[dict[str, Kind]] = {
 FORMS: Final = "udpin://HOST:PORT, udpout://HOST:PORT, tcpin://HOST:PORT or tcpout://HOST:PORT"
 
 
+_WAITING: Final = frozenset({Kind.UDP_IN, Kind.TCP_IN})
 _OTHER_END: Final = {
     Kind.UDP_IN: Kind.UDP_OUT,
     Kind.UDP_OUT: Kind.UDP_IN,
@@ -54,7 +55,7 @@ class Url:
     @property
     def waits(self) -> bool:
         """It is bound here; port 0 lets the system choose."""
-        return self.kind in (Kind.UDP_IN, Kind.TCP_IN)
+        return self.kind in _WAITING
 
     def at(self, port: int) -> Url:
         return Url(self.kind, self.host, port)
@@ -77,7 +78,7 @@ def parse(text: str) -> Url:
             host, colon, port = text.removeprefix(prefix).rpartition(":")
             if not colon or not port.isascii() or not port.isdigit():
                 raise UrlError(f"{text}: a port is missing; use {FORMS}")
-            least = 0 if kind in (Kind.UDP_IN, Kind.TCP_IN) else 1
+            least = 0 if kind in _WAITING else 1
             if not least <= int(port) < 65536:
                 raise UrlError(f"{text}: {port} is no port (1 to 65535)")
             return Url(kind, host.strip("[]") or "127.0.0.1", int(port))

@@ -78,10 +78,10 @@ def test_a_line_has_all_that_one_wants_to_know() -> None:
 
 
 def test_what_has_no_room_is_summed_up() -> None:
-    rows = table([status(n, flying=n > 2) for n in range(1, 11)], RHYTHM, room=4)
+    rows = table([status(n, flying=n > 2) for n in range(1, 11)], room=4)
     assert [row[0] for row in rows] == ["vehicle", "1", "2", "3", "+7"]
     assert rows[-1][2] == "7 flying"
-    assert len(table([status(n) for n in range(4)], RHYTHM, room=4)) == 5
+    assert len(table([status(n) for n in range(4)], room=4)) == 5
 
 
 def test_the_footer_tells_the_factor_reached_beside_the_one_wanted() -> None:
