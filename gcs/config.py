@@ -9,7 +9,7 @@ class SimConfig(msgspec.Struct, frozen=True):
     """A vehicle of the link's own (`--sim`): started with it, stopped once it holds or landed."""
 
     autopilot: str = "px4"
-    home: str = ""  # LAT,LON,ALT; empty = the personality's own
+    home: str = ""  # LAT,LON,ALT; empty = the autopilot's own
     seed: int = 1
     speedup: float = 1.0
 

@@ -55,5 +55,5 @@ def find(name_or_path: str) -> Path:
 def policy_path(name: str) -> Path:
     """The file of a shipped policy (`default`, `lab`), or the path as typed, there or not."""
     if name in POLICIES:
-        return Path(__file__).resolve().parent / "gate" / "policies" / f"{name}.toml"
+        return Path(__file__).resolve().parent / "gate" / "policy" / f"{name}.toml"
     return Path(name)

@@ -15,7 +15,8 @@ import msgspec
 from gcs import ipc
 from gcs.cli import words
 from gcs.cli.exits import Exit, Fail
-from gcs.gate.types import Code, LandedState, State
+from gcs.gate.refusal import Code
+from gcs.gate.states import LandedState, State
 from gcs.shell.client import LinkDown, Polled, Readable
 
 LEAVE_WAIT_S = 20.0

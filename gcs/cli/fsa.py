@@ -22,6 +22,6 @@ def fsa(form: str) -> None:
 
     It is the very table that the gate runs from.
     """
-    from gcs.gate import render
+    from gcs.gate.machine import render
 
     click.echo(render.dot() if form == "dot" else render.text(), nl=False)

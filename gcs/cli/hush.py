@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.cli.dialogue import Asked
-from gcs.gate.types import Condition
+from gcs.gate.condition import Condition
 
 WARNING = 3
 STANDING_CAUTION = Condition.VEHICLE_FAILSAFE_WEAK.value

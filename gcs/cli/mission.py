@@ -10,7 +10,7 @@ from gcs.cli.exits import Exit, Fail
 from gcs.cli.options import AS_JSON, POLICY, with_options
 
 if TYPE_CHECKING:
-    from gcs.plan.model import Geodetic, Personality, Plan
+    from gcs.plan.model import AutopilotName, Geodetic, Plan
 
 AUTOPILOT = click.Option(
     ["--autopilot"],
@@ -59,7 +59,7 @@ def mission() -> None:
 @with_options(AUTOPILOT, POLICY, HOME, AS_JSON)
 def check(
     file: str,
-    autopilot: Personality | None,
+    autopilot: AutopilotName | None,
     policy: str,
     home: Geodetic | None,
     as_json: bool,
@@ -76,7 +76,7 @@ def check(
 @mission.command(epilog="Example: gcs mission show demo")
 @click.argument("file")
 @with_options(AUTOPILOT, AS_JSON)
-def show(file: str, autopilot: Personality | None, as_json: bool) -> int:
+def show(file: str, autopilot: AutopilotName | None, as_json: bool) -> int:
     """Print what a mission file holds, item by item."""
     from gcs.cli.mission_report import plan_json, print_plan
 
@@ -88,7 +88,7 @@ def show(file: str, autopilot: Personality | None, as_json: bool) -> int:
     return Exit.DONE
 
 
-def read_plan(file: str, autopilot: Personality | None) -> Plan:
+def read_plan(file: str, autopilot: AutopilotName | None) -> Plan:
     """The plan behind a path or the name of a shipped mission.  Fails with BAD_FILE."""
     from gcs import resources
     from gcs.plan.errors import PlanError

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs.cli.exits import Exit, Fail
-from gcs.gate.policy import Policy, parse_policy
-from gcs.gate.projection import Origin, Projection
-from gcs.gate.tomlfile import PolicyError
-from gcs.gate.types import Refusal
-from gcs.gate.verifier import check_start, verifier_for
-from gcs.gate.zonespec import FileSpec, ZoneSpec
+from gcs.gate.airspace.projection import Origin, Projection
+from gcs.gate.airspace.verifier import check_start, verifier_for
+from gcs.gate.policy.policy import Policy, parse_policy
+from gcs.gate.policy.tomlfile import PolicyError
+from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
+from gcs.gate.refusal import Refusal
 from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.lint import lint, worst
-from gcs.plan.model import Geodetic, Personality, Plan
+from gcs.plan.model import AutopilotName, Geodetic, Plan
 from gcs.plan.path import Ground
 from gcs.plan.place import georeference
 from gcs.plan.reader import read
@@ -21,13 +21,13 @@ from gcs.plan.verify import Verification, verify
 from gcs.plan.zones import zone_specs
 from gcs.resources import policy_path
 
-HOMES: dict[Personality, Geodetic] = {
+HOMES: dict[AutopilotName, Geodetic] = {
     "px4": Geodetic(47.397742, 8.545594, 488.0),
     "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
 }
 """Where the simulated vehicles stand."""
 
-RETURN_UP_M: dict[Personality, float] = {"px4": 30.0, "ardupilot": 15.0}
+RETURN_UP_M: dict[AutopilotName, float] = {"px4": 30.0, "ardupilot": 15.0}
 """The autopilots' own return heights, above home, while no vehicle has told another."""
 
 
@@ -39,7 +39,7 @@ class Checked:
     """
 
     plan: Plan
-    personality: Personality
+    autopilot: AutopilotName
     policy: Policy
     policy_zones: int
     home: Geodetic | None
@@ -58,44 +58,44 @@ class Checked:
 
 
 def check_plan(
-    plan: Plan, autopilot: Personality | None, policy_name: str, home: Geodetic | None
+    plan: Plan, autopilot: AutopilotName | None, policy_name: str, home: Geodetic | None
 ) -> Checked:
     """Fails with BAD_FILE where the policy is wrong."""
-    personality = autopilot or plan.firmware or "px4"
+    autopilot = autopilot or plan.firmware or "px4"
     policy, policy_zones = load_policy(policy_name)
     own = sum(not isinstance(spec.shape, FileSpec) for spec in policy.fence) + len(policy_zones)
-    at_home, notes = _choose_home(plan, personality, home)
-    findings = (*notes, *lint(plan, personality, at_home))
+    at_home, notes = _choose_home(plan, autopilot, home)
+    findings = (*notes, *lint(plan, autopilot, at_home))
     if at_home is None or not plan.items or worst(list(findings)) is Level.ERROR:
-        return Checked(plan, personality, policy, own, at_home, findings, None, None)
+        return Checked(plan, autopilot, policy, own, at_home, findings, None, None)
     origin = Origin(at_home.lat_deg, at_home.lon_deg, at_home.alt_amsl_m or 0.0)
-    projection = Projection(origin, personality)
+    projection = Projection(origin, autopilot)
     placed = georeference(plan, projection.lat_lon, home=at_home)
     zones = (*policy_zones, *zone_specs(placed.fence))
     home_ned = (0.0, 0.0, 0.0)
-    verifier = verifier_for(policy, personality, home_ned, origin, zones)
+    verifier = verifier_for(policy, autopilot, home_ned, origin, zones)
     ground = Ground(
-        personality,
+        autopilot,
         home_ned=home_ned,
         start_ned=home_ned,
         north_east_of=projection.north_east,
         origin_alt_amsl_m=origin.alt_amsl_m,
-        return_up_m=RETURN_UP_M[personality],
+        return_up_m=RETURN_UP_M[autopilot],
     )
     verification = verify(placed, ground, verifier)
     start = check_start(verifier, home_ned)
-    return Checked(plan, personality, policy, own, at_home, findings, verification, start)
+    return Checked(plan, autopilot, policy, own, at_home, findings, verification, start)
 
 
 def _choose_home(
-    plan: Plan, personality: Personality, given: Geodetic | None
+    plan: Plan, autopilot: AutopilotName, given: Geodetic | None
 ) -> tuple[Geodetic | None, tuple[Finding, ...]]:
     """As typed, else the file's, else for a mission the simulated vehicle's, which is told."""
     if given is not None:
         return given, ()
     if not plan.items:
         return plan.home, ()
-    usual = HOMES[personality]
+    usual = HOMES[autopilot]
     if plan.home is None:
         what = f"the file has none; taken is {usual.lat_deg}, {usual.lon_deg}, {usual.alt_amsl_m} m"
         hint = "give --home LAT,LON,ALT"

@@ -38,7 +38,7 @@ def check_lines(checked: Checked) -> Iterator[str]:
     plan = checked.plan
     yield (
         f"{plan.source}: {plan.name}: {len(plan.items)} items, "
-        f"for {checked.personality}, under policy {checked.policy.name}"
+        f"for {checked.autopilot}, under policy {checked.policy.name}"
     )
     from_policy = _zones(checked.policy_zones)
     yield f"fence: {from_policy} from the policy, {len(plan.fence.zones)} from the file"
@@ -109,7 +109,7 @@ def check_json(checked: Checked) -> str:
     document = {
         "file": checked.plan.source,
         "name": checked.plan.name,
-        "autopilot": checked.personality,
+        "autopilot": checked.autopilot,
         "policy": checked.policy.name,
         "home": _home_json(checked.home),
         "items": len(checked.plan.items),

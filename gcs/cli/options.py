@@ -84,7 +84,7 @@ def policy_path(name: str) -> str:
     if name == "lab":
         from importlib.resources import files
 
-        return str(files("gcs.gate") / "policies" / "lab.toml")
+        return str(files("gcs.gate.policy") / "lab.toml")
     from pathlib import Path
 
     if not Path(name).is_file():

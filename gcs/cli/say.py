@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.gate.types import Code
+from gcs.gate.refusal import Code
 
 LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 

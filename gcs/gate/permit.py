@@ -2,7 +2,7 @@
 
 The session encodes a motion frame from a `Permit` and from nothing else, so a goal that was
 never verified has no way onto the wire (invariant 1).  The seal makes an accidental permit
-impossible and a deliberate one visible in review: `issue` is called in `gcs/gate/machine.py`
+impossible and a deliberate one visible in review: `issue` is called in `gcs/gate/machine/gate.py`
 only, which a test holds.
 """
 
@@ -41,5 +41,5 @@ class Permit:
 
 
 def issue(pos_ned: Vec3 | None, yaw_rad: float | None, now_ns: int, reason: str) -> Permit:
-    """For `gcs.gate.machine` alone: leave to transmit this, now, because of `reason`."""
+    """For `gcs.gate.machine.gate` alone: leave to transmit this, now, because of `reason`."""
     return Permit(_SEAL, pos_ned, yaw_rad, now_ns, reason)

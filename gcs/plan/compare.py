@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gcs.plan import commands
-from gcs.plan.model import Personality
+from gcs.plan.model import AutopilotName
 from gcs.plan.wire import WireItem
 from gcs.wire.ids import Cmd, MavFrame
 
@@ -62,7 +62,7 @@ class Difference:
 
 
 def same_meaning(
-    sent: Sequence[WireItem], received: Sequence[WireItem], personality: Personality
+    sent: Sequence[WireItem], received: Sequence[WireItem], autopilot: AutopilotName
 ) -> list[Difference]:
     """Every difference that the vehicle would fly otherwise for; none means the same mission."""
     differences: list[Difference] = []
@@ -70,13 +70,13 @@ def same_meaning(
         differences.append(
             Difference(min(len(sent), len(received)), "items", str(len(sent)), str(len(received)))
         )
-    home_items = 1 if personality == "ardupilot" else 0
+    home_items = 1 if autopilot == "ardupilot" else 0
     for ours, theirs in list(zip(sent, received, strict=False))[home_items:]:
-        differences.extend(_differences(ours, theirs, personality))
+        differences.extend(_differences(ours, theirs, autopilot))
     return differences
 
 
-def _differences(ours: WireItem, theirs: WireItem, personality: Personality) -> list[Difference]:
+def _differences(ours: WireItem, theirs: WireItem, autopilot: AutopilotName) -> list[Difference]:
     if ours.command != theirs.command:
         named = commands.name(ours.command), commands.name(theirs.command)
         return [Difference(ours.seq, "command", *named)]
@@ -86,18 +86,18 @@ def _differences(ours: WireItem, theirs: WireItem, personality: Personality) -> 
         found.append(Difference(ours.seq, field, str(sent), str(received)))
 
     uses: tuple[int, ...] = (1, 2, 3, 4)
-    if personality == "ardupilot":
+    if autopilot == "ardupilot":
         uses = _ARDUPILOT_USES.get(ours.command, uses)
     params = zip(_params(ours), _params(theirs), strict=True)
     for number, (sent, back) in enumerate(params, start=1):
         if number in uses and not _same_float(sent, back):
             differ(f"param{number}", f"{sent:g}", f"{back:g}")
-    if personality == "px4" and ours.autocontinue != theirs.autocontinue:
+    if autopilot == "px4" and ours.autocontinue != theirs.autocontinue:
         differ("autocontinue", ours.autocontinue, theirs.autocontinue)
 
     has_place = commands.has_place(ours.command, ours.frame) and ours.frame != MavFrame.MISSION
     if not has_place:
-        if personality == "px4" and (ours.x, ours.y) != (theirs.x, theirs.y):
+        if autopilot == "px4" and (ours.x, ours.y) != (theirs.x, theirs.y):
             differ("param5, param6", (ours.x, ours.y), (theirs.x, theirs.y))
         return found
     datums = [_DATUM.get(frame, f"frame {frame}") for frame in (ours.frame, theirs.frame)]

@@ -15,7 +15,7 @@ from gcs.plan.commands import KINDS, Kind
 from gcs.plan.errors import Finding, Level
 from gcs.plan.lint_fence import lint_fence
 from gcs.plan.lint_jumps import lint_jumps
-from gcs.plan.model import Frame, Geodetic, Geographic, Item, Local, Personality, Plan
+from gcs.plan.model import AutopilotName, Frame, Geodetic, Geographic, Item, Local, Plan
 from gcs.plan.sphere import distance_m
 from gcs.wire.ids import Cmd
 
@@ -37,17 +37,17 @@ class _Finder(Protocol):
 
 
 def lint(
-    plan: Plan, personality: Personality | None = None, home: Geodetic | None = None
+    plan: Plan, autopilot: AutopilotName | None = None, home: Geodetic | None = None
 ) -> list[Finding]:
     """The reader's notes and everything found here, in the order of the file's sections.
 
     `home` is where the vehicle will take off, if that is known; else the planned home counts.
     """
-    who = personality or plan.firmware
+    who = autopilot or plan.firmware
     at_home = home or plan.home
     findings = [*plan.notes]
-    if personality and plan.firmware and personality != plan.firmware:
-        what = f"was written for {plan.firmware} and is checked for {personality}"
+    if autopilot and plan.firmware and autopilot != plan.firmware:
+        what = f"was written for {plan.firmware} and is checked for {autopilot}"
         findings.append(Finding(Level.WARNING, "", "plan", what))
     findings += _whole_mission(plan)
     for index, item in enumerate(plan.items):
@@ -97,7 +97,7 @@ def _whole_mission(plan: Plan) -> Iterator[Finding]:
 
 
 def _one_item(
-    index: int, item: Item, personality: Personality | None, home: Geodetic | None
+    index: int, item: Item, autopilot: AutopilotName | None, home: Geodetic | None
 ) -> Iterator[Finding]:
     label = told(index, item)
 
@@ -117,7 +117,7 @@ def _one_item(
     if kind is not Kind.MOVE:
         return
     if isinstance(item.place, Geographic):
-        yield from _geographic(item, item.place, personality, home, finding)
+        yield from _geographic(item, item.place, autopilot, home, finding)
     elif isinstance(item.place, Local) and item.command != Cmd.NAV_LAND:
         yield from _height_above_home(item.place.up_m, finding)
 
@@ -125,19 +125,19 @@ def _one_item(
 def _geographic(
     item: Item,
     place: Geographic,
-    personality: Personality | None,
+    autopilot: AutopilotName | None,
     home: Geodetic | None,
     finding: _Finder,
 ) -> Iterator[Finding]:
     if place.here and item.command not in _HERE_ALLOWED:
-        if personality == "ardupilot":
+        if autopilot == "ardupilot":
             yield finding(Level.WARNING, "has no position (0, 0): flown as: stay where you are")
         else:
             what = "has no position (0, 0), which is in the Gulf of Guinea"
             yield finding(Level.ERROR, what, "give a latitude and a longitude")
     if math.isnan(place.alt_m):
         what = "has no altitude"
-        if personality == "px4" and item.command == Cmd.NAV_TAKEOFF:
+        if autopilot == "px4" and item.command == Cmd.NAV_TAKEOFF:
             yield finding(Level.WARNING, f"{what}: the vehicle takes its own (MIS_TAKEOFF_ALT)")
         else:
             yield finding(Level.ERROR, what, "give it in metres")

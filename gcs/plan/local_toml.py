@@ -33,8 +33,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 
-from gcs.gate.tomlfile import Path, PolicyError, Table, find_lines
-from gcs.gate.tomlfile import read as read_table
+from gcs.gate.policy.tomlfile import Path, PolicyError, Table, find_lines
+from gcs.gate.policy.tomlfile import read as read_table
 from gcs.plan.errors import PlanError
 from gcs.plan.model import (
     UNSET,

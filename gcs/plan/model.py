@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple, TypeAlias
 
 from gcs.plan.errors import Finding
 
-Personality: TypeAlias = Literal["px4", "ardupilot"]
+AutopilotName: TypeAlias = Literal["px4", "ardupilot"]
 
 UNSET = math.nan
 """MAVLink's "not given": null in a .plan, NaN on the wire."""
@@ -161,7 +161,7 @@ class Plan:
     """
 
     name: str
-    firmware: Personality | None
+    firmware: AutopilotName | None
     home: Geodetic | None
     items: tuple[Item, ...] = ()
     fence: Fence = Fence()

@@ -2,7 +2,7 @@
 
 Geometry only: what may be flown is the gate's to say.  Every way through the DO_JUMPs is
 walked, so the legs are those of the whole mission, each once.  Where a quadrotor's behaviour
-depends on the personality, it follows PX4's navigator and ArduCopter's AUTO mode:
+depends on the autopilot, it follows PX4's navigator and ArduCopter's AUTO mode:
 
 - a take-off climbs straight up; px4 then flies level to the item's position, ardupilot ignores it;
 - a landing first flies level to its position, then descends to the height of home;
@@ -22,7 +22,7 @@ from typing import TypeAlias
 from gcs.frames import Vec3
 from gcs.plan import commands
 from gcs.plan.commands import KINDS, Kind
-from gcs.plan.model import Frame, Geographic, Item, Local, Personality, Plan
+from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
 from gcs.wire.ids import Cmd
 
 NorthEastOf: TypeAlias = Callable[[float, float], tuple[float, float]]
@@ -93,7 +93,7 @@ class Ground:
     `return_up_m` is its return height above home.
     """
 
-    personality: Personality
+    autopilot: AutopilotName
     home_ned: Vec3
     start_ned: Vec3
     north_east_of: NorthEastOf | None = None
@@ -225,7 +225,7 @@ class _Walk:
     def _take_off(self, index: int, item: Item, pos_ned: Vec3) -> Vec3:
         down_m = min(self._down(index, item, pos_ned), pos_ned[2])
         top_ned = self._leg(index, LegKind.CLIMB, pos_ned, (*pos_ned[:2], down_m))
-        if self._ground.personality == "ardupilot":
+        if self._ground.autopilot == "ardupilot":
             return top_ned
         over_ned = (*self._horizontal(index, item, top_ned), down_m)
         return self._leg(index, LegKind.STRAIGHT, top_ned, over_ned)
@@ -278,7 +278,7 @@ class _Walk:
         if not isinstance(place, Geographic):
             raise self._problem(index, ProblemKind.NO_POSITION)
         if place.here:
-            if item.command == Cmd.NAV_WAYPOINT and self._ground.personality == "px4":
+            if item.command == Cmd.NAV_WAYPOINT and self._ground.autopilot == "px4":
                 raise self._problem(index, ProblemKind.NO_POSITION)
             return pos_ned[:2]
         if self._ground.north_east_of is None:
@@ -293,7 +293,7 @@ class _Walk:
             raise self._problem(index, ProblemKind.NO_HEIGHT)
         if item.frame is Frame.TERRAIN:
             raise self._problem(index, ProblemKind.TERRAIN)
-        keeps_height = self._ground.personality == "ardupilot" and place.alt_m == 0.0
+        keeps_height = self._ground.autopilot == "ardupilot" and place.alt_m == 0.0
         if keeps_height and item.command != Cmd.NAV_TAKEOFF:
             return pos_ned[2]
         if item.frame is Frame.HOME:

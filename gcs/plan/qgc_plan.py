@@ -9,11 +9,11 @@ from __future__ import annotations
 from gcs.plan.build import item_from_numbers
 from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.json_cursor import Node, parse
-from gcs.plan.model import Fence, Geodetic, Item, Personality, Plan, RallyPoint
+from gcs.plan.model import AutopilotName, Fence, Geodetic, Item, Plan, RallyPoint
 from gcs.plan.qgc_geofence import read_fence, read_lat_lon
 from gcs.wire.ids import MavType
 
-FIRMWARES: dict[int, Personality] = {12: "px4", 3: "ardupilot"}
+FIRMWARES: dict[int, AutopilotName] = {12: "px4", 3: "ardupilot"}
 _MULTIROTORS = frozenset(
     {
         MavType.GENERIC,
@@ -64,7 +64,7 @@ def read_plan(file: str, data: bytes, name: str) -> Plan:
     )
 
 
-def _read_firmware(mission: Node, notes: list[Finding]) -> Personality | None:
+def _read_firmware(mission: Node, notes: list[Finding]) -> AutopilotName | None:
     vehicle = mission.find("vehicleType")
     if vehicle is not None and vehicle.integer() not in _MULTIROTORS:
         number = vehicle.integer()

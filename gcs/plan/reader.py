@@ -6,7 +6,7 @@ import re
 
 from gcs.plan.errors import PlanError
 from gcs.plan.local_toml import read_local
-from gcs.plan.model import Personality, Plan
+from gcs.plan.model import AutopilotName, Plan
 from gcs.plan.qgc_plan import read_plan
 from gcs.plan.wpl import read_wpl
 
@@ -15,10 +15,10 @@ _TOML_START = re.compile(rb"\s*(?:#[^\n]*\n\s*)*\[{0,2}[A-Za-z_]+[\]\s]*(?:=|\n|
 SIZE_MAX = 16 * 1024 * 1024
 
 
-def read(path_text: str, data: bytes, personality: Personality | None = None) -> Plan:
+def read(path_text: str, data: bytes, autopilot: AutopilotName | None = None) -> Plan:
     """The plan in `data`, the bytes of the file that users know as `path_text`.
 
-    `personality` is the vehicle's, where it is known: whether a waypoint table begins with home
+    `autopilot` is the vehicle's, where it is known: whether a waypoint table begins with home
     depends on it.  Raises PlanError, and nothing else, whatever the bytes are.
     """
     name = re.split(r"[/\\]", path_text)[-1].rpartition(".")[0] or path_text
@@ -31,11 +31,11 @@ def read(path_text: str, data: bytes, personality: Personality | None = None) ->
     if path_text.lower().endswith(".toml"):
         return read_local(path_text, data, name)
     if re.match(rb"(?:#[^\n]*\n\s*)*QGC\s", start):
-        return read_wpl(path_text, data, name, personality)
+        return read_wpl(path_text, data, name, autopilot)
     if path_text.lower().endswith(".plan"):
         return read_plan(path_text, data, name)
     if path_text.lower().endswith((".waypoints", ".wpl")):
-        return read_wpl(path_text, data, name, personality)
+        return read_wpl(path_text, data, name, autopilot)
     if _TOML_START.match(start):
         return read_local(path_text, data, name)
     what = "is empty" if not start else "is none of the mission files that can be read"

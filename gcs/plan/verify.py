@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
-from gcs.gate.types import Code, Refusal
-from gcs.gate.verifier import Verifier
+from gcs.gate.airspace.verifier import Verifier
+from gcs.gate.refusal import Code, Refusal
 from gcs.plan.model import Plan
 from gcs.plan.path import FlightPath, Ground, LegKind, Problem, ProblemKind, flight_path
 
@@ -55,7 +55,7 @@ class Verification:
 
 
 def verify(plan: Plan, ground: Ground, verifier: Verifier) -> Verification:
-    """`ground` and `verifier` must agree about home, origin and personality."""
+    """`ground` and `verifier` must agree about home, origin and autopilot."""
     path = flight_path(plan, ground)
     legs = [
         LegVerdict(

@@ -15,6 +15,7 @@ from gcs.plan.build import item_from_numbers
 from gcs.plan.errors import PlanError
 from gcs.plan.fence_items import fence_rows, split_fence
 from gcs.plan.model import (
+    AutopilotName,
     Fence,
     Frame,
     Geodetic,
@@ -22,7 +23,6 @@ from gcs.plan.model import (
     Item,
     Local,
     Params,
-    Personality,
     Plan,
     RallyPoint,
 )
@@ -59,20 +59,20 @@ class WireItem(NamedTuple):
 
 
 def to_wire(
-    plan: Plan, personality: Personality, home: Geodetic | None = None
+    plan: Plan, autopilot: AutopilotName, home: Geodetic | None = None
 ) -> tuple[WireItem, ...]:
     """`home` (or the plan's own) is what ardupilot is sent as item 0; it puts its own there.
 
     ardupilot refuses NaN, so what is not set is sent as 0; px4 takes NaN.  Raises PlanError for
-    a plan that is not on Earth yet (`georeference`) and for what a personality cannot be told.
+    a plan that is not on Earth yet (`georeference`) and for what an autopilot cannot be told.
     """
     if not plan.items:
         return ()
     first: tuple[WireItem, ...] = ()
-    if personality == "ardupilot":
+    if autopilot == "ardupilot":
         first = (_home_item(home or plan.home or Geodetic(0.0, 0.0, 0.0)),)
     return first + tuple(
-        _to_wire(plan, index, item, personality, index + len(first))
+        _to_wire(plan, index, item, autopilot, index + len(first))
         for index, item in enumerate(plan.items)
     )
 
@@ -94,7 +94,7 @@ def _home_item(home: Geodetic) -> WireItem:
     )
 
 
-def _to_wire(plan: Plan, index: int, item: Item, personality: Personality, seq: int) -> WireItem:
+def _to_wire(plan: Plan, index: int, item: Item, autopilot: AutopilotName, seq: int) -> WireItem:
     def refused(what: str, hint: str = "") -> PlanError:
         label = f"item {index + 1} ({commands.name(item.command)})"
         return PlanError(plan.source or plan.name, item.where, label, what, hint=hint)
@@ -108,7 +108,7 @@ def _to_wire(plan: Plan, index: int, item: Item, personality: Personality, seq: 
             raise refused(f"jumps to {params[0]:g}, which is no item")
         params = (float(target + seq - index), *params[1:])
     x, y, z = item.place
-    if personality == "ardupilot":
+    if autopilot == "ardupilot":
         if isinstance(item.place, Geographic) and math.isnan(z):
             raise refused("has no altitude, which ardupilot needs")
         params = _without_nan(params)
@@ -140,7 +140,7 @@ def _without_nan(params: Params) -> Params:
     return (p1, p2, p3, p4)
 
 
-def from_wire(items: Sequence[WireItem], personality: Personality, name: str = "on board") -> Plan:
+def from_wire(items: Sequence[WireItem], autopilot: AutopilotName, name: str = "on board") -> Plan:
     """What was downloaded, as a plan; `name` stands for the file in errors.
 
     Raises PlanError for items out of order or without meaning.
@@ -150,7 +150,7 @@ def from_wire(items: Sequence[WireItem], personality: Personality, name: str = "
             raise PlanError(name, f"seq {item.seq}", "seq", f"{item.seq}", str(position))
     home: Geodetic | None = None
     shift = 0
-    if personality == "ardupilot" and items:
+    if autopilot == "ardupilot" and items:
         shift = 1
         at = items[0]
         home = Geodetic(at.x / _SCALE, at.y / _SCALE, at.z)
@@ -159,7 +159,7 @@ def from_wire(items: Sequence[WireItem], personality: Personality, name: str = "
         if read.command == Cmd.DO_JUMP and not 1 <= read.params[0] <= len(plan_items):
             what = f"jumps to seq {read.params[0] + shift - 1:g}, which is no item that is flown"
             raise PlanError(name, read.where, "DO_JUMP", what)
-    return Plan(name, personality, home, plan_items, source=name)
+    return Plan(name, autopilot, home, plan_items, source=name)
 
 
 def _from_wire(name: str, item: WireItem, do_jump_id: int) -> Item:

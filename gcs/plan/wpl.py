@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from gcs.plan.build import item_from_numbers
 from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.fence_items import split_fence
-from gcs.plan.model import Frame, Geodetic, Geographic, Item, Personality, Plan
+from gcs.plan.model import AutopilotName, Frame, Geodetic, Geographic, Item, Plan
 from gcs.wire.ids import Cmd
 
 HEADER = "QGC WPL 110"
@@ -32,7 +32,7 @@ class _Row:
     item: Item
 
 
-def read_wpl(file: str, data: bytes, name: str, personality: Personality | None) -> Plan:
+def read_wpl(file: str, data: bytes, name: str, autopilot: AutopilotName | None) -> Plan:
     """Raises PlanError with the line.  `notes` says what was decided about home."""
     notes: list[Finding] = []
     rows = _read_rows(file, data, notes)
@@ -40,11 +40,11 @@ def read_wpl(file: str, data: bytes, name: str, personality: Personality | None)
     items, fence, rally = split_fence(file, [row.item for row in rows])
     kept = {item.do_jump_id for item in items}
     rows = [row for row in rows if row.item.do_jump_id in kept]
-    home = _decide_home(rows, personality, notes) if rows else None
+    home = _decide_home(rows, autopilot, notes) if rows else None
     flown = rows[1:] if home is not None else rows
     return Plan(
         name,
-        personality if personality is not None else ("ardupilot" if home else None),
+        autopilot if autopilot is not None else ("ardupilot" if home else None),
         home,
         _named(file, flown),
         fence,
@@ -132,18 +132,18 @@ def _check_sequence(file: str, rows: list[_Row], notes: list[Finding]) -> None:
 
 
 def _decide_home(
-    rows: list[_Row], personality: Personality | None, notes: list[Finding]
+    rows: list[_Row], autopilot: AutopilotName | None, notes: list[Finding]
 ) -> Geodetic | None:
     first = rows[0]
     place = first.item.place
     told = f"item {first.seq}"
     if not (isinstance(place, Geographic) and _looks_like_home(first)):
-        if personality == "ardupilot":
+        if autopilot == "ardupilot":
             what = "is not home, so it is flown; home goes before it at upload"
             hint = "ArduPilot's own files carry home as item 0"
             notes.append(Finding(Level.WARNING, first.line, told, what, hint))
         return None
-    if personality == "px4" and not _home_by_company(rows):
+    if autopilot == "px4" and not _home_by_company(rows):
         what = "could be home, but PX4 files carry none: it is flown as the first waypoint"
         hint = "read it with --autopilot ardupilot if it is home"
         notes.append(Finding(Level.WARNING, first.line, told, what, hint))

@@ -7,13 +7,13 @@ import math
 from gcs.plan import commands
 from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.fence_items import fence_rows
-from gcs.plan.model import Item, Local, Personality, Plan
+from gcs.plan.model import AutopilotName, Item, Local, Plan
 from gcs.plan.qgc_plan_writer import Written, local_refused
 from gcs.plan.wpl import HEADER
 from gcs.wire.ids import Cmd
 
 
-def write_wpl(plan: Plan, personality: Personality) -> Written:
+def write_wpl(plan: Plan, autopilot: AutopilotName) -> Written:
     """`lost` names what a table of waypoints cannot keep; ArduPilot's has no NaN either.
 
     A mission, then its fence, then its rally points.  Raises PlanError for a plan in a local
@@ -28,14 +28,14 @@ def write_wpl(plan: Plan, personality: Personality) -> Written:
         lines.append("\t".join(str(field) for field in fields))
 
     shift = 0
-    if personality == "ardupilot" and plan.items:
+    if autopilot == "ardupilot" and plan.items:
         shift = 1
         add(0, Cmd.NAV_WAYPOINT, _home_numbers(plan), True)
     for index, item in enumerate(plan.items):
         add(
             int(item.frame),
             item.command,
-            _numbers(plan, index, item, personality, shift, lost),
+            _numbers(plan, index, item, autopilot, shift, lost),
             item.autocontinue,
         )
     for row in fence_rows(plan.source, plan.fence):
@@ -43,7 +43,7 @@ def write_wpl(plan: Plan, personality: Personality) -> Written:
     for point in plan.rally:
         place = (point.lat_deg, point.lon_deg, point.alt_above_home_m)
         add(3, Cmd.NAV_RALLY_POINT, (0.0, 0.0, 0.0, 0.0, *place), True)
-    _name_losses(plan, personality, lost)
+    _name_losses(plan, autopilot, lost)
     return Written(("\n".join(lines) + "\n").encode(), tuple(lost))
 
 
@@ -64,7 +64,7 @@ def _numbers(
     plan: Plan,
     index: int,
     item: Item,
-    personality: Personality,
+    autopilot: AutopilotName,
     shift: int,
     lost: list[Finding],
 ) -> tuple[float, ...]:
@@ -78,7 +78,7 @@ def _numbers(
             what = f"jumps to {item.params[0]:g}, which is no item"
             raise PlanError(plan.source or plan.name, item.where, label, what)
         numbers = (float(target + shift), *numbers[1:])
-    if personality == "ardupilot" and any(math.isnan(n) for n in numbers):
+    if autopilot == "ardupilot" and any(math.isnan(n) for n in numbers):
         what = "a value that is not set is written as 0"
         lost.append(Finding(Level.NOTE, item.where, label, what, index=index))
         numbers = tuple(0.0 if math.isnan(n) else n for n in numbers)
@@ -90,10 +90,10 @@ def _shown(value: float) -> str:
     return "nan" if math.isnan(value) else repr(float(value))
 
 
-def _name_losses(plan: Plan, personality: Personality, lost: list[Finding]) -> None:
+def _name_losses(plan: Plan, autopilot: AutopilotName, lost: list[Finding]) -> None:
     if plan.cruise_speed_m_s is not None or plan.hover_speed_m_s is not None:
         lost.append(Finding(Level.NOTE, "", "speeds", "are not kept by this format"))
-    if personality == "px4" and plan.home is not None:
+    if autopilot == "px4" and plan.home is not None:
         lost.append(Finding(Level.NOTE, "", "home", "is not kept by a PX4 waypoint file"))
     if any(item.do_jump_id != i for i, item in enumerate(plan.items, start=1)):
         lost.append(Finding(Level.NOTE, "", "doJumpId", "items are numbered in their order"))

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from gcs.plan.errors import PlanError
-from gcs.plan.model import Personality, Plan
+from gcs.plan.model import AutopilotName, Plan
 from gcs.plan.qgc_plan_writer import Written, write_plan
 from gcs.plan.wpl_writer import write_wpl
 
 SUFFIXES = (".plan", ".waypoints", ".txt")
 
 
-def write(path_text: str, plan: Plan, personality: Personality) -> Written:
+def write(path_text: str, plan: Plan, autopilot: AutopilotName) -> Written:
     """`.plan` is QGroundControl's, `.waypoints` and `.txt` are QGC WPL 110.  Raises PlanError."""
     suffix = path_text.lower().rpartition(".")[2]
     match suffix:
         case "plan":
             return write_plan(plan)
         case "waypoints" | "txt":
-            return write_wpl(plan, personality)
+            return write_wpl(plan, autopilot)
         case _:
             what = "the suffix names no format that can be written"
             raise PlanError(path_text, "", "file", what, " or ".join(SUFFIXES))

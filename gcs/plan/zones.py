@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gcs.gate.zonespec import CircleSpec, Frame, PolygonSpec, ZoneSpec
+from gcs.gate.policy.zonespec import CircleSpec, Frame, PolygonSpec, ZoneSpec
 from gcs.plan.model import Circle, EastNorth, Fence, LatLon, Zone
 
 

@@ -1,4 +1,4 @@
-"""What the autopilots call their modes, and how each wants to be asked: one row a personality.
+"""What the autopilots call their modes, and how each wants to be asked: one row an autopilot.
 
 Sources: PX4 `px4_custom_mode.h` and `Commander.cpp`, ArduCopter `mode.h` and `GCS_Mavlink.cpp`,
 MAVLink common for the commands.
@@ -13,9 +13,10 @@ from enum import Enum
 from types import MappingProxyType
 from typing import assert_never
 
-from gcs.gate.types import CommandKind, FlightMode
+from gcs.gate.effects import CommandKind
+from gcs.gate.states import FlightMode
 from gcs.protocol.effects import Address
-from gcs.wire.ids import Autopilot, Cmd, ModeFlag
+from gcs.wire.ids import Cmd, MavAutopilot, ModeFlag
 from gcs.wire.messages import CommandLong
 
 FORCE_DISARM = 21196.0
@@ -117,11 +118,11 @@ _ARDUCOPTER_MODES = (
 
 
 @dataclass(frozen=True, slots=True)
-class Personality:
+class Autopilot:
     """How one autopilot names its modes and wants to be asked."""
 
     name: str
-    autopilot: int
+    mav_autopilot: int
     """MAV_AUTOPILOT, HEARTBEAT.autopilot."""
     modes: tuple[Mode, ...]
     mode_of_kind: Mapping[CommandKind, str]
@@ -135,9 +136,9 @@ class Personality:
     """What an unused position parameter is to be filled with."""
 
 
-PX4 = Personality(
+PX4 = Autopilot(
     name="px4",
-    autopilot=Autopilot.PX4,
+    mav_autopilot=MavAutopilot.PX4,
     modes=_PX4_MODES,
     mode_of_kind=MappingProxyType(
         {CommandKind.HOLD: "AUTO.LOITER", CommandKind.GUIDED: "OFFBOARD"}
@@ -148,9 +149,9 @@ PX4 = Personality(
     blank=IGNORED,
 )
 
-ARDUPILOT = Personality(
+ARDUPILOT = Autopilot(
     name="ardupilot",
-    autopilot=Autopilot.ARDUPILOTMEGA,
+    mav_autopilot=MavAutopilot.ARDUPILOTMEGA,
     modes=_ARDUCOPTER_MODES,
     # BRAKE, as LOITER obeys the sticks.
     mode_of_kind=MappingProxyType({CommandKind.HOLD: "BRAKE", CommandKind.GUIDED: "GUIDED"}),
@@ -160,9 +161,9 @@ ARDUPILOT = Personality(
     blank=0.0,
 )
 
-GENERIC = Personality(
+GENERIC = Autopilot(
     name="of an unknown kind",
-    autopilot=Autopilot.GENERIC,
+    mav_autopilot=MavAutopilot.GENERIC,
     modes=(),
     mode_of_kind=MappingProxyType({}),
     param_encoding=ParamEncoding.CAST,
@@ -172,43 +173,43 @@ GENERIC = Personality(
 )
 """It can be watched, not asked: every mode is somebody else's, every order is refused."""
 
-_BY_AUTOPILOT = {row.autopilot: row for row in (PX4, ARDUPILOT, GENERIC)}
+_BY_MAV_AUTOPILOT = {row.mav_autopilot: row for row in (PX4, ARDUPILOT, GENERIC)}
 
 
-def personality_of(autopilot: int) -> Personality:
+def autopilot_of(mav_autopilot: int) -> Autopilot:
     """The row for HEARTBEAT.autopilot, GENERIC if there is none."""
-    return _BY_AUTOPILOT.get(autopilot, GENERIC)
+    return _BY_MAV_AUTOPILOT.get(mav_autopilot, GENERIC)
 
 
-def mode_of(personality: Personality, base_mode: int, custom_mode: int) -> Mode:
+def mode_of(autopilot: Autopilot, base_mode: int, custom_mode: int) -> Mode:
     """The mode of a heartbeat; one that is not in the table is flown by somebody else."""
     if not base_mode & ModeFlag.CUSTOM_MODE_ENABLED:
         return Mode(f"BASE_{base_mode}", custom_mode, _M.OTHER)
-    for mode in personality.modes:
+    for mode in autopilot.modes:
         if mode.custom_mode == custom_mode:
             return mode
     return Mode(f"MODE_{custom_mode}", custom_mode, _M.OTHER)
 
 
-def mode_named(personality: Personality, name: str) -> Mode | None:
+def mode_named(autopilot: Autopilot, name: str) -> Mode | None:
     """By the autopilot's own name, in any case; "loiter" finds AUTO.LOITER as well."""
     wanted = name.upper()
-    for mode in personality.modes:
+    for mode in autopilot.modes:
         if wanted in (mode.name, mode.name.rpartition(".")[2]):
             return mode
     return None
 
 
-def ask(personality: Personality, order: Order, target: Address) -> CommandLong:
+def ask(autopilot: Autopilot, order: Order, target: Address) -> CommandLong:
     """The command that this autopilot understands as `order`.  Raises CannotAskError."""
-    if not personality.modes:
-        raise CannotAskError(f"the autopilot is {personality.name}: how to ask it is not known")
-    blank = personality.blank
+    if not autopilot.modes:
+        raise CannotAskError(f"the autopilot is {autopilot.name}: how to ask it is not known")
+    blank = autopilot.blank
     match order.kind:
         case CommandKind.HOLD | CommandKind.GUIDED:
-            return _set_mode(personality, personality.mode_of_kind[order.kind], target)
+            return _set_mode(autopilot, autopilot.mode_of_kind[order.kind], target)
         case CommandKind.SET_MODE:
-            return _set_mode(personality, order.mode_name, target)
+            return _set_mode(autopilot, order.mode_name, target)
         case CommandKind.ARM:
             return _command(target, Cmd.COMPONENT_ARM_DISARM, 1.0)
         case CommandKind.DISARM:
@@ -216,7 +217,7 @@ def ask(personality: Personality, order: Order, target: Address) -> CommandLong:
         case CommandKind.FORCE_DISARM:
             return _command(target, Cmd.COMPONENT_ARM_DISARM, 0.0, FORCE_DISARM)
         case CommandKind.TAKE_OFF:
-            height_m = _takeoff_height_m(personality, order)
+            height_m = _takeoff_height_m(autopilot, order)
             place = (0.0, 0.0, 0.0, blank, blank, blank, height_m)
             return _command(target, Cmd.NAV_TAKEOFF, *place)
         case CommandKind.LAND:
@@ -233,24 +234,24 @@ def ask(personality: Personality, order: Order, target: Address) -> CommandLong:
             assert_never(order.kind)
 
 
-def _set_mode(personality: Personality, name: str, target: Address) -> CommandLong:
-    mode = mode_named(personality, name)
+def _set_mode(autopilot: Autopilot, name: str, target: Address) -> CommandLong:
+    mode = mode_named(autopilot, name)
     if mode is None:
-        names = ", ".join(mode.name for mode in personality.modes)
-        raise CannotAskError(f"{personality.name} has no mode {name!r}; it has: {names}")
+        names = ", ".join(mode.name for mode in autopilot.modes)
+        raise CannotAskError(f"{autopilot.name} has no mode {name!r}; it has: {names}")
     flags = float(ModeFlag.CUSTOM_MODE_ENABLED)
-    if personality.mode_in_two_parts:
+    if autopilot.mode_in_two_parts:
         main, sub = mode.custom_mode >> 16 & 0xFF, mode.custom_mode >> 24
         return _command(target, Cmd.DO_SET_MODE, flags, float(main), float(sub))
     return _command(target, Cmd.DO_SET_MODE, flags, float(mode.custom_mode))
 
 
-def _takeoff_height_m(personality: Personality, order: Order) -> float:
-    if not personality.takeoff_above_sea:
+def _takeoff_height_m(autopilot: Autopilot, order: Order) -> float:
+    if not autopilot.takeoff_above_sea:
         return order.up_m
     if order.ground_amsl_m is None:
         raise CannotAskError(
-            f"{personality.name} takes off to a height above mean sea level, and that of the "
+            f"{autopilot.name} takes off to a height above mean sea level, and that of the "
             "ground is not known yet"
         )
     return order.ground_amsl_m + order.up_m

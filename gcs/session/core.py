@@ -9,9 +9,11 @@ from __future__ import annotations
 import msgspec
 
 from gcs import ipc
-from gcs.gate import types as gate
-from gcs.gate.machine import Gate
-from gcs.gate.types import Level
+from gcs.gate import inputs, requests
+from gcs.gate.condition import Condition
+from gcs.gate.effects import Level
+from gcs.gate.machine.gate import Gate
+from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC
 from gcs.record.items import AttachmentItem, InputItem, LogItem, MetadataItem
 from gcs.session import teller
@@ -157,7 +159,7 @@ class Session:
             self._tick(lateness_ns, now_ns)
 
     def _tick(self, lateness_ns: int, now_ns: int) -> None:
-        self._keeper.give(gate.Tick(lateness_ns), now_ns)
+        self._keeper.give(inputs.Tick(lateness_ns), now_ns)
         self._judge_lateness(lateness_ns, now_ns)
         if self._tick_no % TICKS_A_SECOND == 0:
             self._second(now_ns)
@@ -174,7 +176,7 @@ class Session:
         if lateness_ns > VERY_LATE_NS * speedup:
             self._late_until_ns = now_ns + LATE_SHOWN_NS
         late = now_ns < self._late_until_ns
-        self._keeper.condition(gate.Condition.TICK_LATE, late, text, now_ns)
+        self._keeper.condition(Condition.TICK_LATE, late, text, now_ns)
 
     def _second(self, now_ns: int) -> None:
         """Once a second: heartbeat, what is missing, and the slow half of the record."""
@@ -213,12 +215,12 @@ class Session:
             self._missions.ask(ask, now_ns)
             return
         try:
-            wish = wish_of(ask, self._keeper.seen.personality if self._keeper.seen else GENERIC)
+            wish = wish_of(ask, self._keeper.seen.autopilot if self._keeper.seen else GENERIC)
         except BadAskError as error:
             refused = ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
             self._out.emit(refused)
             return
-        if isinstance(wish, gate.SetMode) and wish.meaning is gate.FlightMode.MISSION:
+        if isinstance(wish, requests.SetMode) and wish.meaning is FlightMode.MISSION:
             # The mission mode by its name is a mission start, and is verified like one.
             self._missions.ask(ask, now_ns)
             return
@@ -232,7 +234,7 @@ class Session:
         if self._leaving_since_ns is None:
             self._leaving_since_ns = now_ns
             self._out.say(Level.INFO, NODE, f"leaving: {reason}", now_ns)
-            self._keeper.give(gate.OperatorLost(reason), now_ns)
+            self._keeper.give(inputs.OperatorLost(reason), now_ns)
 
     def _settle(self, now_ns: int) -> None:
         if self._finished:
@@ -305,7 +307,7 @@ class Session:
         self._recording, self._log_path = news.recording, news.path
         level = Level.INFO if news.recording else Level.ERROR
         self._out.say(level, "recorder", news.text, now_ns)
-        failed = gate.Condition.RECORDER_FAILED
+        failed = Condition.RECORDER_FAILED
         self._keeper.condition(failed, not news.recording, news.text, now_ns)
 
     def _sim_line(self, text: str, now_ns: int) -> None:

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 from gcs import ipc
 from gcs.frames import Vec3, ned_from_enu
-from gcs.gate import types as gate
-from gcs.protocol import autopilot
-from gcs.protocol.autopilot import Personality
+from gcs.gate import requests
+from gcs.protocol.autopilot import Autopilot, mode_named
 
 OPERATOR = "operator"
 
@@ -28,44 +27,46 @@ class BadAskError(ValueError):
     """The line is no request at all (a word or an argument is missing or unknown)."""
 
 
-def wish_of(ask: ipc.Ask, personality: Personality | None) -> gate.Wish:
+def wish_of(ask: ipc.Ask, autopilot: Autopilot | None) -> requests.Request:
     """What the gate is asked for.  Raises BadAskError; mission transfers are not for the gate."""
     match ask.word:
         case "control":
-            return gate.TakeControl()
+            return requests.TakeControl()
         case "arm":
-            return gate.Arm()
+            return requests.Arm()
         case "disarm":
-            return gate.Disarm(ask.force)
+            return requests.Disarm(ask.force)
         case "takeoff":
-            return gate.TakeOff(math.nan if ask.up_m is None else ask.up_m)
+            return requests.TakeOff(math.nan if ask.up_m is None else ask.up_m)
         case "goto":
             if ask.goal_enu is None:
                 raise BadAskError("goto needs a goal: east, north, up")
             goal_ned = ned_from_enu(finite_or_nan(ask.goal_enu))
-            return gate.GoTo(goal_ned, None if ask.yaw_deg is None else heading_rad(ask.yaw_deg))
+            return requests.GoTo(
+                goal_ned, None if ask.yaw_deg is None else heading_rad(ask.yaw_deg)
+            )
         case "land":
-            return gate.Land()
+            return requests.Land()
         case "rtl":
-            return gate.ReturnHome()
+            return requests.ReturnHome()
         case "hold":
-            return gate.Hold()
+            return requests.Hold()
         case "abort":
-            return gate.Abort()
+            return requests.Abort()
         case "resume":
-            return gate.Resume()
+            return requests.Resume()
         case "photo":
-            return gate.TakePhoto()
+            return requests.TakePhoto()
         case "fence":
-            return gate.SwitchFence(ask.on)
+            return requests.SwitchFence(ask.on)
         case "mission_start":
-            return gate.StartMission()
+            return requests.StartMission()
         case "mode":
-            mode = autopilot.mode_named(personality, ask.mode) if personality else None
+            mode = mode_named(autopilot, ask.mode) if autopilot else None
             if mode is None:
-                names = ", ".join(known.name for known in personality.modes) if personality else ""
+                names = ", ".join(known.name for known in autopilot.modes) if autopilot else ""
                 raise BadAskError(f"no mode {ask.mode!r} here; there are: {names or 'none'}")
-            return gate.SetMode(mode.name, mode.meaning)
+            return requests.SetMode(mode.name, mode.meaning)
         case _:
             raise BadAskError(f"no such request: {ask.word!r}")
 

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable
 
 from gcs import ipc
-from gcs.gate.fence import Zone
+from gcs.gate.airspace.projection import Origin
+from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle
-from gcs.gate.projection import Origin
 from gcs.record.items import FenceItem, ZoneItem
 
 NO_BOUND_M = 1e4

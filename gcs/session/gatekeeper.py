@@ -11,11 +11,14 @@ from collections.abc import Iterable
 
 from gcs.config import LinkConfig
 from gcs.frames import Vec3
-from gcs.gate import types as gate
-from gcs.gate.machine import Gate
-from gcs.gate.policy import ControlTimes, Policy
-from gcs.gate.types import Level
-from gcs.gate.verifier import Verifier, check_start, verifier_for
+from gcs.gate import effects, inputs, requests
+from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
+from gcs.gate.condition import Condition
+from gcs.gate.effects import Level
+from gcs.gate.machine.gate import Gate
+from gcs.gate.policy.policy import ControlTimes, Policy
+from gcs.gate.refusal import Refusal
+from gcs.gate.states import Control, State
 from gcs.protocol.effects import Heard
 from gcs.record.items import FsaItem
 from gcs.session import orders, teller
@@ -38,7 +41,7 @@ class Gatekeeper:
         self.requests = Requests()
         self.gate = Gate(self.policy, "", now_ns)
         self.verifier: Verifier | None = None
-        self.bad_start: gate.Refusal | None = None
+        self.bad_start: Refusal | None = None
         self._start_checked = False
         self._fence_on = True
 
@@ -51,37 +54,37 @@ class Gatekeeper:
         """A vehicle was heard: from here on the gate knows whose rules apply."""
         self.seen = seen
         before = self.gate
-        self.gate = Gate(self.policy, seen.personality.name, now_ns)
+        self.gate = Gate(self.policy, seen.autopilot.name, now_ns)
         for condition, text in before.memory.conditions:
             self.condition(condition, True, text, now_ns)
 
     # --------------------------------------------------------------------------- towards it
 
-    def request(self, request_id: int, wish: gate.Wish, now_ns: int) -> None:
+    def request(self, request_id: int, wish: requests.Request, now_ns: int) -> None:
         """Ask for something, in the name of whoever opened `request_id`."""
         asked = self.requests.get(request_id)
         teller.requested(self._out, asked, wish, now_ns)
-        self.give(gate.Request(request_id, asked.source, wish), now_ns)
+        self.give(inputs.Requested(request_id, asked.source, wish), now_ns)
 
-    def give(self, given: gate.Input, now_ns: int) -> None:
+    def give(self, given: inputs.Input, now_ns: int) -> None:
         """Hand an input to the gate and do what follows."""
-        if isinstance(given, gate.ConditionChanged) and not self._news(given):
+        if isinstance(given, inputs.ConditionChanged) and not self._news(given):
             return
         for effect in self.gate.handle(given, now_ns):
             self.carry_out(effect, now_ns)
-        if isinstance(given, gate.HomeSeen | gate.GeodeticSeen):
+        if isinstance(given, inputs.HomeSeen | inputs.GeodeticSeen):
             self.place_fence(now_ns)
-        elif isinstance(given, gate.PositionSeen):
+        elif isinstance(given, inputs.PositionSeen):
             if given.reset:
                 self.place_fence(now_ns)
             self._check_start(given)
 
-    def _news(self, given: gate.ConditionChanged) -> bool:
+    def _news(self, given: inputs.ConditionChanged) -> bool:
         """Whether the condition changed; it is looked at far more often than it does."""
         return given.active != (given.condition in self.gate.conditions)
 
-    def condition(self, condition: gate.Condition, active: bool, text: str, now_ns: int) -> None:
-        self.give(gate.ConditionChanged(condition, active, text), now_ns)
+    def condition(self, condition: Condition, active: bool, text: str, now_ns: int) -> None:
+        self.give(inputs.ConditionChanged(condition, active, text), now_ns)
 
     def ask(self, command: CommandLong, now_ns: int) -> None:
         """A harmless command of the station's own (streams, origin); nobody waits for it."""
@@ -95,48 +98,48 @@ class Gatekeeper:
 
     def hold_blind(self, now_ns: int) -> None:
         """The last resort: HOLD, past a gate that may be broken, where control was ours."""
-        if self.seen is not None and self.gate.control is not gate.Control.NONE:
-            hold = gate.SendCommand(0, gate.CommandKind.HOLD, now_ns)
+        if self.seen is not None and self.gate.control is not Control.NONE:
+            hold = effects.SendCommand(0, effects.CommandKind.HOLD, now_ns)
             for item in self._orders.send(hold, self.seen, now_ns):
                 if isinstance(item, Message):
                     self.send(item)
 
     # ---------------------------------------------------------------------------- from it
 
-    def carry_out(self, effect: gate.Effect, now_ns: int) -> None:
+    def carry_out(self, effect: effects.Effect, now_ns: int) -> None:
         """Do, tell and record what was decided."""
         match effect:
-            case gate.SendSetpoint(permit):
+            case effects.SendSetpoint(permit):
                 assert self.seen is not None
                 self._out.setpoint(self.seen, permit, now_ns)
-            case gate.SendCommand():
+            case effects.SendCommand():
                 assert self.seen is not None
                 self._from_orders(self._orders.send(effect, self.seen, now_ns), now_ns)
-            case gate.CancelCommand(request_id, kind):
+            case effects.CancelCommand(request_id, kind):
                 self._from_orders(self._orders.cancel(request_id, kind, now_ns), now_ns)
-            case gate.SwitchedFence(on):
+            case effects.SwitchedFence(on):
                 self._fence_on = on
                 self.place_fence(now_ns)
-            case gate.Verdict(request_id, _, wish, outcome, refusal, _, evidence):
-                goal_ned = wish.goal_ned if isinstance(wish, gate.GoTo) else None
+            case effects.Verdict(request_id, _, wish, outcome, refusal, _, evidence):
+                goal_ned = wish.goal_ned if isinstance(wish, requests.GoTo) else None
                 self.verdict(request_id, outcome, refusal, evidence, goal_ned)
-            case gate.Ending():
+            case effects.Outcome():
                 self.ending(effect)
-            case gate.Transition():
+            case effects.Transition():
                 teller.transition(self._out, effect, self.gate.active_goal_ned, self._sysid)
-            case gate.Say(level, text):
+            case effects.Say(level, text):
                 self._out.say(level, teller.NODE, text, now_ns)
 
     def verdict(
         self,
         request_id: int,
-        outcome: gate.Outcome,
-        refusal: gate.Refusal | None,
+        outcome: effects.Ruling,
+        refusal: Refusal | None,
         evidence: tuple[tuple[str, float], ...] = (),
         goal_ned: Vec3 | None = None,
     ) -> None:
         """Tell the one verdict of a request; a refused or superseded one is over with it."""
-        over = outcome is not gate.Outcome.ACCEPTED
+        over = outcome is not effects.Ruling.ACCEPTED
         asked = self.requests.close(request_id) if over else self.requests.get(request_id)
         teller.verdict(
             self._out,
@@ -149,7 +152,7 @@ class Gatekeeper:
             goal_ned=goal_ned,
         )
 
-    def ending(self, told: gate.Ending) -> None:
+    def ending(self, told: effects.Outcome) -> None:
         """Tell the one ending of an accepted request."""
         asked = self.requests.close(told.request_id)
         teller.ending(self._out, told, asked, self._sysid)
@@ -185,7 +188,7 @@ class Gatekeeper:
     def _from_orders(self, news: Iterable[orders.Out], now_ns: int) -> None:
         for item in news:
             match item:
-                case gate.CommandEnded():
+                case inputs.CommandEnded():
                     self.give(item, now_ns)
                 case str():
                     self._out.say(Level.DEBUG, "link", item, now_ns)
@@ -201,21 +204,21 @@ class Gatekeeper:
             return
         self.verifier = verifier_for(
             self.policy,
-            seen.personality.name,
+            seen.autopilot.name,
             seen.home_ned,
             seen.origin,
             fence_on=self._fence_on,
         )
-        self.give(gate.VerifierChanged(self.verifier), now_ns)
+        self.give(inputs.VerifierChanged(self.verifier), now_ns)
         self._out.record(fence_item(self.verifier.zones, seen.origin))
         self._out.emit(fences_event(self.verifier.zones))
 
-    def _check_start(self, position: gate.PositionSeen) -> None:
+    def _check_start(self, position: inputs.PositionSeen) -> None:
         """Once, on the ground: is the vehicle inside?  If not, the policy is for elsewhere.
 
         A vehicle that is met in the air is judged request by request: it must not be left alone.
         """
-        grounded = self.gate.state is gate.State.GROUNDED
+        grounded = self.gate.state is State.GROUNDED
         if self._start_checked or not grounded or not (self.verifier and self.verifier.zones):
             return
         self._start_checked = True

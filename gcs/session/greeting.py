@@ -122,9 +122,9 @@ class Greeting:
         """Begin to read the failsafes; `missing` tells which commands to send."""
         self._asked_ns = 0
         self._values, self._told = {}, None
-        names = [failsafe.name for failsafe in FAILSAFES.get(seen.personality.name, ())]
-        if seen.personality.name in RETURN_HEIGHT:
-            names.append(RETURN_HEIGHT[seen.personality.name][0])
+        names = [failsafe.name for failsafe in FAILSAFES.get(seen.autopilot.name, ())]
+        if seen.autopilot.name in RETURN_HEIGHT:
+            names.append(RETURN_HEIGHT[seen.autopilot.name][0])
         return self._read(names, seen, now_ns)
 
     def heard(self, heard: Heard, seen: Telemetry, now_ns: int) -> list[Out]:
@@ -139,7 +139,7 @@ class Greeting:
         if news.param_id not in self._values or news.param_type not in PARAM_TYPES:
             return []
         kind = ParamType(news.param_type)
-        value = float(decode_value(news.param_value, kind, seen.personality.param_encoding))
+        value = float(decode_value(news.param_value, kind, seen.autopilot.param_encoding))
         if value == self._values[news.param_id]:
             return []
         effects: list[ParamEffect] = [ParamRead(news.param_id, value, kind), ParamsDone()]
@@ -158,7 +158,7 @@ class Greeting:
         self._reader = ParamReader(
             self._own,
             Address(seen.sysid, seen.compid),
-            seen.personality.param_encoding,
+            seen.autopilot.param_encoding,
             tuple(names),
         )
         return self._out(self._reader.start(now_ns), seen, now_ns)
@@ -198,20 +198,20 @@ class Greeting:
                     self._reader = None
                     if self._unanswered:
                         self._read_again_ns = now_ns + READ_AGAIN_NS
-                    told, self._told = self._told, self._summary(seen.personality.name)
+                    told, self._told = self._told, self._summary(seen.autopilot.name)
                     if self._told != told:
                         out.append(self._told)
         return out
 
-    def _summary(self, personality: str) -> Read:
+    def _summary(self, autopilot: str) -> Read:
         weak = []
-        for failsafe in FAILSAFES.get(personality, ()):
+        for failsafe in FAILSAFES.get(autopilot, ()):
             value = self._values.get(failsafe.name)
             if value is None:
                 weak.append(f"{failsafe.about}: {failsafe.name} could not be read")
             elif value < failsafe.weak_below:
                 weak.append(f"{failsafe.about}: off ({failsafe.name} = {value:g})")
-        name, scale = RETURN_HEIGHT.get(personality, ("", 1.0))
+        name, scale = RETURN_HEIGHT.get(autopilot, ("", 1.0))
         height = self._values.get(name)
         return Read(tuple(weak), None if height is None else height * scale)
 

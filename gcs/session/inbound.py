@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from gcs.gate import types as gate
-from gcs.gate.projection import Origin, Projection
-from gcs.protocol import autopilot
+from gcs.gate import inputs
+from gcs.gate.airspace.projection import Origin, Projection
+from gcs.gate.condition import Condition
+from gcs.gate.states import LandedState
+from gcs.protocol.autopilot import mode_of
 from gcs.record.items import GeodeticItem, PoseItem, RecordItem
 from gcs.session.telemetry import Telemetry, quat_from_euler
 from gcs.wire import messages as m
@@ -25,33 +27,33 @@ PREARM_CHECK = 0x1000_0000
 """MAV_SYS_STATUS_PREARM_CHECK."""
 
 BATTERY_PCT = (
-    (gate.Condition.BATTERY_LOW, 15.0),
-    (gate.Condition.BATTERY_CRITICAL, 7.0),
+    (Condition.BATTERY_LOW, 15.0),
+    (Condition.BATTERY_CRITICAL, 7.0),
 )
 """PX4's BAT_LOW_THR and BAT_CRIT_THR, for a vehicle that tells only a percentage."""
 
-Heard = gate.Input | RecordItem
+Heard = inputs.Input | RecordItem
 
 
 def absorb(message: m.Message, seen: Telemetry, now_ns: int) -> Iterator[Heard]:
     """Update `seen`; yield what the gate must hear and what the derived record wants."""
     match message:
-        case m.Heartbeat() if message.autopilot == seen.personality.autopilot:
+        case m.Heartbeat() if message.autopilot == seen.autopilot.mav_autopilot:
             seen.heartbeat_ns = now_ns
             seen.armed = bool(message.base_mode & ModeFlag.SAFETY_ARMED)
-            mode = autopilot.mode_of(seen.personality, message.base_mode, message.custom_mode)
+            mode = mode_of(seen.autopilot, message.base_mode, message.custom_mode)
             seen.mode_name = mode.name
-            yield gate.HeartbeatSeen(seen.armed, mode.meaning, mode.name)
+            yield inputs.HeartbeatSeen(seen.armed, mode.meaning, mode.name)
             failing = message.system_status in (MavState.CRITICAL, MavState.EMERGENCY)
             text = f"the vehicle says {MavState(message.system_status).name}" if failing else ""
-            yield gate.ConditionChanged(gate.Condition.VEHICLE_FAILSAFE_ACTIVE, failing, text)
+            yield inputs.ConditionChanged(Condition.VEHICLE_FAILSAFE_ACTIVE, failing, text)
         case m.ExtendedSysState():
             seen.landed_ns = now_ns
             try:
-                seen.landed = gate.LandedState(message.landed_state)
+                seen.landed = LandedState(message.landed_state)
             except ValueError:
-                seen.landed = gate.LandedState.UNDEFINED
-            yield gate.LandedSeen(seen.landed)
+                seen.landed = LandedState.UNDEFINED
+            yield inputs.LandedSeen(seen.landed)
         case m.LocalPositionNed():
             yield from _local_position(message, seen, now_ns)
         case m.Attitude() if _finite(message.roll, message.pitch, message.yaw):
@@ -63,7 +65,7 @@ def absorb(message: m.Message, seen: Telemetry, now_ns: int) -> Iterator[Heard]:
             origin = Origin(message.latitude / 1e7, message.longitude / 1e7, message.altitude / 1e3)
             if origin != seen.origin:
                 seen.origin = origin
-                yield gate.GeodeticSeen(origin.lat_deg, origin.lon_deg, origin.alt_amsl_m)
+                yield inputs.GeodeticSeen(origin.lat_deg, origin.lon_deg, origin.alt_amsl_m)
                 yield from _home_in_local_frame(seen)
         case m.HomePosition():
             home = (message.latitude / 1e7, message.longitude / 1e7, message.altitude / 1e3)
@@ -73,9 +75,9 @@ def absorb(message: m.Message, seen: Telemetry, now_ns: int) -> Iterator[Heard]:
         case m.SysStatus():
             yield from _system_status(message, seen)
         case m.CameraImageCaptured():
-            yield gate.PhotoSeen(message.image_index, message.capture_result == 1)
+            yield inputs.PhotoSeen(message.image_index, message.capture_result == 1)
         case m.CameraFeedback():
-            yield gate.PhotoSeen(message.img_idx, True)
+            yield inputs.PhotoSeen(message.img_idx, True)
         case m.MissionCurrent():
             seen.mission_seq = message.seq
         case m.MissionItemReached():
@@ -103,7 +105,7 @@ def _local_position(message: m.LocalPositionNed, seen: Telemetry, now_ns: int) -
     seen.restart_ms = None
     seen.time_boot_ms = message.time_boot_ms
     seen.pos_ned, seen.v_ned, seen.position_ns = pos_ned, v_ned, now_ns
-    yield gate.PositionSeen(pos_ned, v_ned, message.time_boot_ms, reset=restarted)
+    yield inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, reset=restarted)
     yield PoseItem(seen.sysid, pos_ned, v_ned, seen.q_ned_from_frd)
 
 
@@ -141,7 +143,7 @@ def _system_status(message: m.SysStatus, seen: Telemetry) -> Iterator[Heard]:
     left_pct = seen.battery_pct = float(message.battery_remaining)
     text = f"{left_pct:.0f} % are left"
     for condition, limit_pct in BATTERY_PCT:
-        yield gate.ConditionChanged(condition, left_pct <= limit_pct, text)
+        yield inputs.ConditionChanged(condition, left_pct <= limit_pct, text)
 
 
 def _finite(*values: float) -> bool:
@@ -158,8 +160,8 @@ def _global_position(message: m.GlobalPositionInt, seen: Telemetry, now_ns: int)
     if now_ns - seen.position_ns > MAX_PAIR_AGE_NS:
         return
     away_m = _pair_disagreement_m(seen, seen.origin, seen.lat_deg, seen.lon_deg)
-    yield gate.ConditionChanged(
-        gate.Condition.ORIGIN_MISMATCH,
+    yield inputs.ConditionChanged(
+        Condition.ORIGIN_MISMATCH,
         away_m > ORIGIN_DISAGREEMENT_M,
         f"local and global position disagree by {away_m:.1f} m",
     )
@@ -168,7 +170,7 @@ def _global_position(message: m.GlobalPositionInt, seen: Telemetry, now_ns: int)
 def _pair_disagreement_m(seen: Telemetry, origin: Origin, lat_deg: float, lon_deg: float) -> float:
     """Horizontal distance between LOCAL_POSITION_NED and GLOBAL_POSITION_INT by the origin."""
     assert seen.pos_ned is not None
-    north_m, east_m = Projection(origin, seen.personality.name).north_east(lat_deg, lon_deg)
+    north_m, east_m = Projection(origin, seen.autopilot.name).north_east(lat_deg, lon_deg)
     return math.hypot(north_m - seen.pos_ned[0], east_m - seen.pos_ned[1])
 
 
@@ -176,5 +178,5 @@ def _home_in_local_frame(seen: Telemetry) -> Iterator[Heard]:
     """Local and global meet at the origin; HOME_POSITION's own x, y, z are not to be trusted."""
     if seen.origin is None or seen.home is None:
         return
-    seen.home_ned = Projection(seen.origin, seen.personality.name).ned_from_geodetic(*seen.home)
-    yield gate.HomeSeen(seen.home_ned)
+    seen.home_ned = Projection(seen.origin, seen.autopilot.name).ned_from_geodetic(*seen.home)
+    yield inputs.HomeSeen(seen.home_ned)

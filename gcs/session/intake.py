@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from gcs.gate import types as gate
-from gcs.gate.types import Level
-from gcs.protocol.autopilot import personality_of
+from gcs.gate import inputs
+from gcs.gate.condition import Condition
+from gcs.gate.effects import Level
+from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Heard
 from gcs.protocol.sequence import SequenceTracker
 from gcs.record.items import Direction, FrameItem, GarbageItem, ParamItem, StatusItem
@@ -26,7 +27,7 @@ from gcs.session.telemetry import Telemetry
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame, Garbage, Item, StreamSplitter, split
-from gcs.wire.ids import Autopilot, Component, MavType, Severity
+from gcs.wire.ids import Component, MavAutopilot, MavType, Severity
 
 VEHICLE_GONE_NS = 3_500_000_000
 LINK_SILENT_NS = 2_000_000_000
@@ -95,7 +96,7 @@ class Intake:
         if (frame.sysid, frame.compid) == own:
             self._other_station_ns = now_ns
             text = f"another station on link {link} calls itself {frame.sysid}/{frame.compid}"
-            self._keeper.condition(gate.Condition.OTHER_STATION, True, text, now_ns)
+            self._keeper.condition(Condition.OTHER_STATION, True, text, now_ns)
             return
         message = decode(frame)
         if isinstance(message, m.Heartbeat):
@@ -133,9 +134,9 @@ class Intake:
         elif not isinstance(message, m.CameraImageCaptured | m.CameraFeedback):
             return
         for news in absorb(message, seen, now_ns):
-            if isinstance(news, gate.PositionSeen) and news.reset:
+            if isinstance(news, inputs.PositionSeen) and news.reset:
                 self._missions.forget(now_ns)
-            if isinstance(news, gate.Input):
+            if isinstance(news, inputs.Input):
                 self._keeper.give(news, now_ns)
             else:
                 self._out.record(news)
@@ -148,14 +149,14 @@ class Intake:
 
     def _heartbeat(self, link: int, frame: Frame, beat: m.Heartbeat, now_ns: int) -> None:
         """Choose our vehicle: the first autopilot that is heard, or the one that was named."""
-        if beat.type == MavType.GCS or beat.autopilot == Autopilot.INVALID:
+        if beat.type == MavType.GCS or beat.autopilot == MavAutopilot.INVALID:
             return
         wanted = self._config.target_sysid
         if wanted not in (0, frame.sysid) or frame.compid != Component.AUTOPILOT1:
             return
         seen = self._keeper.seen
         if seen is None:
-            seen = Telemetry(frame.sysid, frame.compid, personality_of(beat.autopilot), link)
+            seen = Telemetry(frame.sysid, frame.compid, autopilot_of(beat.autopilot), link)
             seen.rx_window_start_ns = seen.link_ns = now_ns
             seen.position_age_ns = round(self._keeper.policy.position_age_s * 1e9)
             self._met_ns = now_ns
@@ -181,13 +182,13 @@ class Intake:
                     self._out.record(ParamItem(self._keeper.seen.sysid, name, value))
                 case greeting.Read(weak, return_up_m):
                     text = "the vehicle's own failsafes: " + ("; ".join(weak) or "all on")
-                    condition = gate.Condition.VEHICLE_FAILSAFE_WEAK
+                    condition = Condition.VEHICLE_FAILSAFE_WEAK
                     self._keeper.condition(condition, bool(weak), text, now_ns)
                     if not weak:
                         self._out.say(Level.INFO, NODE, text, now_ns)
                     if return_up_m is not None and self._keeper.seen is not None:
                         self._keeper.seen.return_up_m = return_up_m
-                        self._keeper.give(gate.ReturnHeightSeen(return_up_m), now_ns)
+                        self._keeper.give(inputs.ReturnHeightSeen(return_up_m), now_ns)
                 case _:
                     assert self._keeper.seen is not None
                     self._out.send(self._keeper.seen.link, item)
@@ -205,10 +206,10 @@ class Intake:
         if now_ns - seen.heartbeat_ns <= self._gone_ns:
             self._ask_for_missing(seen, now_ns)
         if now_ns - self._other_station_ns > OTHER_STATION_NS:
-            self._keeper.condition(gate.Condition.OTHER_STATION, False, "it is gone", now_ns)
+            self._keeper.condition(Condition.OTHER_STATION, False, "it is gone", now_ns)
         missing = seen.origin is None and now_ns - self._met_ns > ORIGIN_PATIENCE_NS
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
-        self._keeper.condition(gate.Condition.ORIGIN_MISSING, missing, text, now_ns)
+        self._keeper.condition(Condition.ORIGIN_MISSING, missing, text, now_ns)
         self._out.record(
             StatusItem(
                 seen.sysid,

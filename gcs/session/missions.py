@@ -17,9 +17,11 @@ from typing import TypeAlias
 
 from gcs import ipc
 from gcs.config import LinkConfig
-from gcs.gate import types as gate
-from gcs.gate.types import Code, Ended, Level, Outcome, Refusal, State
-from gcs.gate.verifier import Cleared
+from gcs.gate import effects, inputs, requests
+from gcs.gate.airspace.verifier import Cleared
+from gcs.gate.effects import Level, OutcomeKind, Ruling
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import State
 from gcs.plan import compare
 from gcs.plan.errors import PlanError
 from gcs.plan.model import Plan
@@ -41,7 +43,7 @@ from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.record.items import AttachmentItem, MissionItem
 from gcs.session.gatekeeper import Gatekeeper
 from gcs.session.outbox import Outbox
-from gcs.session.paths import path_of, personality_of, verify
+from gcs.session.paths import autopilot_name, path_of, verify
 from gcs.session.plans import OnBoard, item_of, message_of, on_board, prepare
 from gcs.session.ports import FileRead, FileWritten, ReadFile, WriteFile
 from gcs.wire.ids import MissionState, MissionType
@@ -99,7 +101,7 @@ class MissionDesk:
         """The vehicle restarted or was away: nothing is known of what it has on board."""
         if self._on_board is not None:
             self._on_board = None
-            self._keeper.give(gate.MissionLoaded("", 0), now_ns)
+            self._keeper.give(inputs.MissionLoaded("", 0), now_ns)
 
     # ------------------------------------------------------------------------------ input
 
@@ -128,7 +130,7 @@ class MissionDesk:
         """What cannot be flown at all the gate refuses at once; else look at what is on board."""
         on_board, now = self._on_board, self._keeper.gate
         if on_board is None or now.state not in (State.HOVERING, State.GROUNDED):
-            self._keeper.request(job.request_id, gate.StartMission(), now_ns)
+            self._keeper.request(job.request_id, requests.StartMission(), now_ns)
             return
         job.plan, job.sent = on_board.plan, on_board.sent
         self._begin(job, MissionDownload(*self._parties(), self._timing), now_ns)
@@ -144,11 +146,11 @@ class MissionDesk:
             case FileRead(_, path, bytes() as data, _):
                 self._read(job, path, data, now_ns)
             case FileWritten(_, path, ""):
-                self._end(job, Ended.COMPLETE, None, f"written to {path}", now_ns)
+                self._end(job, OutcomeKind.COMPLETE, None, f"written to {path}", now_ns)
             case FileWritten(_, path, error):
                 text = f"{path}: {error}"
                 self._out.emit(ipc.Trouble(text, "", EXIT_BAD_FILE))
-                self._end(job, Ended.ABORTED, Code.BAD_MISSION, text, now_ns)
+                self._end(job, OutcomeKind.ABORTED, Code.BAD_MISSION, text, now_ns)
 
     def heard(self, heard: Heard, now_ns: int) -> None:
         """A message of the vehicle: for the transfer under way, or about progress in flight."""
@@ -180,7 +182,7 @@ class MissionDesk:
         if job.word == "mission_start" or (job.word == "mission_upload" and job.plan is None):
             self._refuse(job, Refusal(Code.OPERATOR_LOST, sentence), now_ns)
         else:
-            self._end(job, Ended.ABORTED, Code.OPERATOR_LOST, sentence, now_ns)
+            self._end(job, OutcomeKind.ABORTED, Code.OPERATOR_LOST, sentence, now_ns)
 
     # ------------------------------------------------------------------------- judgements
 
@@ -230,7 +232,7 @@ class MissionDesk:
         job.plan, job.sent = prepared.plan, prepared.sent
         self._out.record(AttachmentItem(path, "application/octet-stream", data))
         self._accept(job, answer.evidence)
-        self._keeper.give(gate.MissionLoaded("", 0), now_ns)
+        self._keeper.give(inputs.MissionLoaded("", 0), now_ns)
         self._on_board = None
         items = tuple(message_of(item) for item in job.sent)
         self._begin(job, MissionUpload(*self._parties(), items, self._timing), now_ns)
@@ -277,8 +279,8 @@ class MissionDesk:
                 self._downloaded(job, tuple(item_of(message) for message in items), now_ns)
             case _:
                 self._on_board = None
-                self._keeper.give(gate.MissionLoaded("", 0), now_ns)
-                self._end(job, Ended.COMPLETE, None, "no mission is on board", now_ns)
+                self._keeper.give(inputs.MissionLoaded("", 0), now_ns)
+                self._end(job, OutcomeKind.COMPLETE, None, "no mission is on board", now_ns)
 
     def _failed(self, job: _Job, result: int | None, text: str, now_ns: int) -> None:
         """Where only the last ack went missing, what is on board settles it."""
@@ -290,14 +292,14 @@ class MissionDesk:
         if job.word == "mission_start":
             self._refuse(job, Refusal(code, f"what is on board could not be read: {text}"), now_ns)
             return
-        self._end(job, Ended.ABORTED, code, text, now_ns)
+        self._end(job, OutcomeKind.ABORTED, code, text, now_ns)
 
     def _fly(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
         """It is still the mission that was verified, and its path still clears: the gate's turn."""
         seen, plan = self._keeper.seen, job.plan
         assert seen is not None
         assert plan is not None
-        differences = compare.same_meaning(job.sent, received, personality_of(seen))
+        differences = compare.same_meaning(job.sent, received, autopilot_name(seen))
         if differences:
             self.forget(now_ns)
             text = f"another mission is on board than was verified: {differences[0]}"
@@ -309,17 +311,17 @@ class MissionDesk:
             return
         self._job = None
         self._was_active = False
-        self._keeper.request(job.request_id, gate.StartMission(), now_ns)
+        self._keeper.request(job.request_id, requests.StartMission(), now_ns)
 
     def _compare(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
         """Believe what the vehicle holds, not what was sent."""
         seen, plan = self._keeper.seen, job.plan
         assert seen is not None
         assert plan is not None
-        differences = compare.same_meaning(job.sent, received, personality_of(seen))
+        differences = compare.same_meaning(job.sent, received, autopilot_name(seen))
         if differences:
             text = f"read back, it is another mission: {differences[0]}"
-            self._end(job, Ended.ABORTED, Code.VEHICLE_REFUSED, text, now_ns)
+            self._end(job, OutcomeKind.ABORTED, Code.VEHICLE_REFUSED, text, now_ns)
             return
         self._on_board = on_board(plan, job.sent)
         seen.mission_total = len(job.sent)
@@ -327,24 +329,26 @@ class MissionDesk:
         if not isinstance(path, Refusal):
             points = tuple(dict.fromkeys(end for leg in path.segments for end in leg))
             self._out.record(MissionItem(plan.name, points))
-        self._keeper.give(gate.MissionLoaded(plan.name, len(plan.items)), now_ns)
+        self._keeper.give(inputs.MissionLoaded(plan.name, len(plan.items)), now_ns)
         text = f"{len(plan.items)} items are on board, read back equal"
-        self._end(job, Ended.COMPLETE, None, text, now_ns)
+        self._end(job, OutcomeKind.COMPLETE, None, text, now_ns)
 
     def _downloaded(self, job: _Job, received: tuple[WireItem, ...], now_ns: int) -> None:
         seen = self._keeper.seen
         assert seen is not None
         try:
-            plan = from_wire(received, personality_of(seen))
-            data = write(job.path, plan, personality_of(seen)).data if job.path else b""
+            plan = from_wire(received, autopilot_name(seen))
+            data = write(job.path, plan, autopilot_name(seen)).data if job.path else b""
         except PlanError as error:
-            self._end(job, Ended.ABORTED, Code.BAD_MISSION, str(error), now_ns)
+            self._end(job, OutcomeKind.ABORTED, Code.BAD_MISSION, str(error), now_ns)
             return
         if job.path:
             job.transfer = None
             self._out.put(WriteFile(job.request_id, job.path, data))
         else:
-            self._end(job, Ended.COMPLETE, None, f"{len(plan.items)} items are on board", now_ns)
+            self._end(
+                job, OutcomeKind.COMPLETE, None, f"{len(plan.items)} items are on board", now_ns
+            )
 
     def _reached(self, seq: int, now_ns: int) -> None:
         seen, on_board = self._keeper.seen, self._on_board
@@ -360,19 +364,19 @@ class MissionDesk:
         seen, on_board = self._keeper.seen, self._on_board
         if seen is not None and on_board is not None:
             over = finished and on_board.last_seq is not None
-            self._keeper.give(gate.MissionSeen(seq, seen.mission_total or 0, over), now_ns)
+            self._keeper.give(inputs.MissionSeen(seq, seen.mission_total or 0, over), now_ns)
 
     # ------------------------------------------------------------------- verdict, ending
 
     def _accept(self, job: _Job, evidence: tuple[tuple[str, float], ...] = ()) -> None:
-        self._keeper.verdict(job.request_id, Outcome.ACCEPTED, None, evidence)
+        self._keeper.verdict(job.request_id, Ruling.ACCEPTED, None, evidence)
 
     def _refuse(self, job: _Job, refusal: Refusal, now_ns: int) -> None:
         self._job = None
         self._told_refused(job.request_id, job.word, refusal, now_ns)
 
     def _told_refused(self, request_id: int, word: str, refusal: Refusal, now_ns: int) -> None:
-        self._keeper.verdict(request_id, Outcome.REFUSED, refusal)
+        self._keeper.verdict(request_id, Ruling.REFUSED, refusal)
         text = f"{word}: refused {refusal.code.value}: {refusal.sentence}"
         self._out.say(Level.WARNING, NODE, text, now_ns)
 
@@ -380,8 +384,10 @@ class MissionDesk:
         self._out.emit(ipc.Trouble(text, hint, EXIT_BAD_FILE))
         self._refuse(job, Refusal(Code.BAD_MISSION, text), now_ns)
 
-    def _end(self, job: _Job, ended: Ended, code: Code | None, sentence: str, now_ns: int) -> None:
+    def _end(
+        self, job: _Job, ended: OutcomeKind, code: Code | None, sentence: str, now_ns: int
+    ) -> None:
         self._job = None
-        self._keeper.ending(gate.Ending(job.request_id, ended, code, sentence))
-        level = Level.INFO if ended is Ended.COMPLETE else Level.WARNING
+        self._keeper.ending(effects.Outcome(job.request_id, ended, code, sentence))
+        level = Level.INFO if ended is OutcomeKind.COMPLETE else Level.WARNING
         self._out.say(level, NODE, f"{job.word}: {ended.value}: {sentence}", now_ns)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from gcs.gate.types import CommandEnded, CommandKind, SendCommand
+from gcs.gate.effects import CommandKind, SendCommand
+from gcs.gate.inputs import CommandEnded
 from gcs.protocol.autopilot import CannotAskError, Order, ask
 from gcs.protocol.command import ACK_WAIT_NS, CommandClient
 from gcs.protocol.effects import (
@@ -88,7 +89,7 @@ class Orders:
             photo_seq=self._photo_seq,
         )
         try:
-            command = ask(seen.personality, wanted, Address(seen.sysid, seen.compid))
+            command = ask(seen.autopilot, wanted, Address(seen.sysid, seen.compid))
         except CannotAskError as error:
             return [CommandEnded(order.request_id, order.kind, Result.UNSUPPORTED, str(error))]
         token = self._next_token
@@ -205,6 +206,6 @@ def _ground_amsl_m(seen: Telemetry) -> float | None:
 
 def _above_home_m(seen: Telemetry) -> float:
     """How much higher than home it stands, for an autopilot that counts a climb from home."""
-    if seen.personality.takeoff_above_sea or seen.home_ned is None or seen.pos_ned is None:
+    if seen.autopilot.takeoff_above_sea or seen.home_ned is None or seen.pos_ned is None:
         return 0.0
     return seen.home_ned[2] - seen.pos_ned[2]

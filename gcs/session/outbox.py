@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 
 from gcs import ipc
+from gcs.gate.effects import Level
 from gcs.gate.permit import Permit
-from gcs.gate.types import Level
 from gcs.record.items import Direction, FrameItem, LogItem, RecordItem, SetpointItem
 from gcs.session.ports import Effect, Emit, Record, Transmit
 from gcs.session.telemetry import Telemetry
 from gcs.wire.codec import FrameWriter
-from gcs.wire.ids import Autopilot, MavFrame, MavState, MavType, TypeMask
+from gcs.wire.ids import MavAutopilot, MavFrame, MavState, MavType, TypeMask
 from gcs.wire.messages import Heartbeat, Message, SetPositionTargetLocalNed
 
 POSITION_ONLY = (
@@ -91,7 +91,7 @@ class Outbox:
         beat = Heartbeat(
             custom_mode=0,
             type=MavType.GCS,
-            autopilot=Autopilot.INVALID,
+            autopilot=MavAutopilot.INVALID,
             base_mode=0,
             system_status=MavState.ACTIVE,
             mavlink_version=MAVLINK_VERSION,

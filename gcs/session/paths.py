@@ -5,11 +5,11 @@ from __future__ import annotations
 import dataclasses
 from typing import Literal
 
-from gcs.gate.policy import Policy
-from gcs.gate.projection import Projection
-from gcs.gate.types import Code, Refusal
-from gcs.gate.verifier import Cleared, verifier_for
-from gcs.plan.model import Geodetic, Personality, Plan
+from gcs.gate.airspace.projection import Projection
+from gcs.gate.airspace.verifier import Cleared, verifier_for
+from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Code, Refusal
+from gcs.plan.model import AutopilotName, Geodetic, Plan
 from gcs.plan.path import FlightPath, Ground, ProblemKind, flight_path
 from gcs.plan.place import georeference
 from gcs.plan.zones import zone_specs
@@ -21,10 +21,10 @@ PROBLEM_CODES = {
 }
 
 
-def personality_of(seen: Telemetry) -> Personality:
+def autopilot_name(seen: Telemetry) -> AutopilotName:
     """Whose mission protocol it is; a stranger is spoken to as a px4."""
     name: Literal["px4", "ardupilot"] = "px4"
-    if seen.personality.name == "ardupilot":
+    if seen.autopilot.name == "ardupilot":
         name = "ardupilot"
     return name
 
@@ -33,7 +33,7 @@ def on_earth(plan: Plan, seen: Telemetry) -> Plan | Refusal:
     """Items in metres from the take-off point become items above home, by its own projection."""
     if seen.origin is None or seen.home is None or seen.home_ned is None:
         return Refusal(Code.NO_ORIGIN, "the vehicle's origin and home are not known yet")
-    projection = Projection(seen.origin, seen.personality.name)
+    projection = Projection(seen.origin, seen.autopilot.name)
     return georeference(
         plan, projection.lat_lon, (seen.home_ned[0], seen.home_ned[1]), Geodetic(*seen.home)
     )
@@ -53,10 +53,10 @@ def path_of(
     path = flight_path(
         plan,
         Ground(
-            personality_of(seen),
+            autopilot_name(seen),
             seen.home_ned,
             seen.pos_ned,
-            Projection(seen.origin, seen.personality.name).north_east,
+            Projection(seen.origin, seen.autopilot.name).north_east,
             seen.origin.alt_amsl_m,
             seen.return_up_m,
         ),
@@ -70,7 +70,7 @@ def path_of(
 def verify(plan: Plan, path: FlightPath, policy: Policy, seen: Telemetry) -> Cleared | Refusal:
     """Every leg and circle against the policy's fence and the plan's own; says which item."""
     both = dataclasses.replace(policy, fence=(*policy.fence, *zone_specs(plan.fence)))
-    verifier = verifier_for(both, seen.personality.name, seen.home_ned, seen.origin)
+    verifier = verifier_for(both, seen.autopilot.name, seen.home_ned, seen.origin)
     answer = verifier.path(path.segments, path.discs, path.floor_free)
     if isinstance(answer, Cleared):
         return answer

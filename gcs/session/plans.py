@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gcs.gate.types import Level, Refusal
+from gcs.gate.effects import Level
+from gcs.gate.refusal import Refusal
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.errors import Level as PlanLevel
 from gcs.plan.errors import PlanError
@@ -15,7 +16,7 @@ from gcs.plan.lint import lint
 from gcs.plan.model import Geodetic, Plan
 from gcs.plan.reader import read
 from gcs.plan.wire import WireItem, to_wire
-from gcs.session.paths import on_earth, personality_of
+from gcs.session.paths import autopilot_name, on_earth
 from gcs.session.telemetry import Telemetry
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import MissionItemInt
@@ -54,7 +55,7 @@ def prepare(path: str, data: bytes, seen: Telemetry) -> Prepared | Refusal:
     Raises PlanError for a file that is none, or none that can be flown; refuses where the
     vehicle's origin or home is not known.
     """
-    who = personality_of(seen)
+    who = autopilot_name(seen)
     home = Geodetic(*seen.home) if seen.home else None
     written = read(path, data, who)
     if not written.items:

@@ -8,7 +8,7 @@ import msgspec
 
 from gcs import ipc
 from gcs.frames import enu_from_ned
-from gcs.gate.machine import Gate
+from gcs.gate.machine.gate import Gate
 from gcs.protocol.sequence import SequenceTracker
 from gcs.session.telemetry import Telemetry
 

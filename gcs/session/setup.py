@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs.config import LinkConfig
-from gcs.gate.policy import Policy
+from gcs.gate.policy.policy import Policy
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ import math
 from dataclasses import dataclass, field
 
 from gcs.frames import Vec3
-from gcs.gate.projection import Origin
-from gcs.gate.types import LandedState
-from gcs.protocol.autopilot import Personality
+from gcs.gate.airspace.projection import Origin
+from gcs.gate.states import LandedState
+from gcs.protocol.autopilot import Autopilot
 from gcs.record.items import Quat
 
 POSITION_RATE_WINDOW_NS = 2_000_000_000
@@ -23,7 +23,7 @@ class Telemetry:
 
     sysid: int
     compid: int
-    personality: Personality
+    autopilot: Autopilot
     link: int
     link_ns: int = 0
 
@@ -71,8 +71,8 @@ class Telemetry:
 
     @property
     def label(self) -> str:
-        """Short name for a screen: ids and personality."""
-        return f"{self.sysid}/{self.compid} {self.personality.name} quadrotor"
+        """Short name for a screen: ids and autopilot."""
+        return f"{self.sysid}/{self.compid} {self.autopilot.name} quadrotor"
 
     def forget_place(self) -> None:
         """The vehicle restarted or was away: where its local frame lies is not known any more."""

@@ -6,8 +6,9 @@ import math
 
 from gcs import ipc
 from gcs.frames import Vec3, enu_from_ned
-from gcs.gate import types as gate
-from gcs.gate.types import Level
+from gcs.gate import effects, requests
+from gcs.gate.effects import Level
+from gcs.gate.refusal import Refusal
 from gcs.record.items import DecisionItem, FsaItem
 from gcs.session.desk import Asked
 from gcs.session.outbox import Outbox
@@ -15,9 +16,9 @@ from gcs.session.outbox import Outbox
 NODE = "state_and_safety"
 
 
-def requested(out: Outbox, asked: Asked, wish: gate.Wish, now_ns: int) -> None:
+def requested(out: Outbox, asked: Asked, wish: requests.Request, now_ns: int) -> None:
     """A request arrived; for a goal the gate adds the lab's `Requested Position`."""
-    if isinstance(wish, gate.GoTo):
+    if isinstance(wish, requests.GoTo):
         out.say(Level.INFO, "keyboard_manager", "Sending Position", now_ns)
     else:
         out.say(Level.INFO, NODE, f"Requested: {asked.word}", now_ns)
@@ -28,8 +29,8 @@ def verdict(
     request_id: int,
     asked: Asked,
     sysid: int,
-    outcome: gate.Outcome,
-    refusal: gate.Refusal | None,
+    outcome: effects.Ruling,
+    refusal: Refusal | None,
     *,
     evidence: tuple[tuple[str, float], ...] = (),
     goal_ned: Vec3 | None = None,
@@ -69,10 +70,10 @@ def verdict(
     )
 
 
-def ending(out: Outbox, told: gate.Ending, asked: Asked, sysid: int) -> None:
+def ending(out: Outbox, told: effects.Outcome, asked: Asked, sysid: int) -> None:
     """How an accepted request ended."""
     code = told.code.value if told.code else ""
-    ended = told.ended.value
+    ended = told.kind.value
     out.emit(ipc.EndingEvent(asked.client_id, asked.word, ended, code, told.sentence))
     out.record(
         DecisionItem(
@@ -91,7 +92,7 @@ def ending(out: Outbox, told: gate.Ending, asked: Asked, sysid: int) -> None:
     )
 
 
-def transition(out: Outbox, told: gate.Transition, goal_ned: Vec3 | None, sysid: int) -> None:
+def transition(out: Outbox, told: effects.Transition, goal_ned: Vec3 | None, sysid: int) -> None:
     """The machine moved."""
     before, after = told.before.name, told.after.name
     control, severity = told.control.name, told.severity.name

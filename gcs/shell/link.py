@@ -15,8 +15,8 @@ from pathlib import Path
 
 from gcs import __version__, config, ipc
 from gcs.config import LinkConfig
-from gcs.gate.policy import Policy, PolicyError, parse_policy
-from gcs.gate.zonespec import FileSpec, ZoneSpec
+from gcs.gate.policy.policy import Policy, PolicyError, parse_policy
+from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
 from gcs.plan.errors import PlanError
 from gcs.plan.reader import read
 from gcs.plan.zones import zone_specs

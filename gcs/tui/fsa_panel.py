@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.text import Text
 
-from gcs.gate.types import State
+from gcs.gate.states import State
 from gcs.tui import look
 from gcs.tui.scene import Scene
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from gcs import ipc
 from gcs.cli import say, words
-from gcs.gate.types import State
+from gcs.gate.states import State
 from gcs.tui.keyboard import PendingGoal
 
 TRAIL_POINTS = 800

@@ -262,7 +262,7 @@ class MavState(IntEnum):
     FLIGHT_TERMINATION = 8
 
 
-class Autopilot(IntEnum):
+class MavAutopilot(IntEnum):
     """MAV_AUTOPILOT: HEARTBEAT.autopilot."""
 
     GENERIC = 0

@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable
 
 from gcs import ipc
-from gcs.gate.types import State
+from gcs.gate.states import State
 from gcs.session import ports
 from tests.loopback.air import Weather
 from tests.loopback.flight import MISSIONS, PERSONALITIES, POLICIES

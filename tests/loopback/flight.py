@@ -15,8 +15,8 @@ from typing import Literal
 from gcs import ipc
 from gcs.config import LinkConfig
 from gcs.frames import Vec3
-from gcs.gate.policy import DEFAULT, Policy, parse_policy
-from gcs.gate.types import State
+from gcs.gate.policy.policy import DEFAULT, Policy, parse_policy
+from gcs.gate.states import State
 from gcs.resources import policy_path
 from gcs.session import ports
 from gcs.session.core import Session

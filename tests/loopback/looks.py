@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from gcs import ipc
-from gcs.gate.types import Condition, State
+from gcs.gate.condition import Condition
+from gcs.gate.states import State
 from gcs.record.items import GarbageItem, RecordItem
 from gcs.session.core import Session
 from tests.loopback import eyes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.gate.types import State
+from gcs.gate.states import State
 from gcs.session import ports
 from gcs.session.core import EXIT_BUG
 from tests.loopback.flight import PERSONALITIES, Flight, Personality

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from gcs.gate.types import Code, State
+from gcs.gate.refusal import Code
+from gcs.gate.states import State
 from gcs.session import ports
 from tests.loopback.air import Weather
 from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from gcs.gate.types import State
+from gcs.gate.states import State
 from tests.loopback.flight import MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
 
 GOAL_ENU = (4.0, 1.0, 1.5)

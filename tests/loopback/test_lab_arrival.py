@@ -7,7 +7,7 @@ import math
 import pytest
 
 from gcs.frames import enu_from_ned
-from gcs.gate.types import State
+from gcs.gate.states import State
 from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality, lab_policy
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)

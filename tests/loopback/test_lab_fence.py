@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs.frames import enu_from_ned, ned_from_enu
-from gcs.gate.types import State
+from gcs.gate.states import State
 from tests.loopback.flight import PERSONALITIES, Flight, Personality, lab_policy
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)

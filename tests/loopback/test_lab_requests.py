@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from gcs import ipc
-from gcs.gate.types import State
+from gcs.gate.states import State
 from gcs.record.items import DecisionItem, FsaItem
 from gcs.session import ports
 from tests.loopback import eyes

@@ -12,7 +12,7 @@ from typing import Any
 import pymap3d
 import pytest
 
-from gcs.gate.types import State
+from gcs.gate.states import State
 from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
 

@@ -7,7 +7,8 @@ import random
 
 import pytest
 
-from gcs.gate.types import Condition, Control, State
+from gcs.gate.condition import Condition
+from gcs.gate.states import Control, State
 from gcs.session import ports
 from tests.loopback import eyes
 from tests.loopback.air import Weather

@@ -12,7 +12,8 @@ from contextlib import contextmanager
 import pytest
 
 from gcs import ipc
-from gcs.gate.types import Condition, Control, Severity, State
+from gcs.gate.condition import Condition, Severity
+from gcs.gate.states import Control, State
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.watched import WatchedFlight
 from vehicle_sim.faults import AnyFault, ended, fault_of

@@ -14,12 +14,14 @@ from typing import Any
 from unittest import mock
 
 from gcs import ipc
-from gcs.gate.edge import Edge
-from gcs.gate.invariants import objections
-from gcs.gate.machine import Gate
-from gcs.gate.policy import Policy
-from gcs.gate.types import Effect, Input, LandedState
-from gcs.gate.verifier import Breach, Cleared, Verifier
+from gcs.gate.airspace.verifier import Breach, Cleared, Verifier
+from gcs.gate.effects import Effect
+from gcs.gate.inputs import Input
+from gcs.gate.machine.gate import Gate
+from gcs.gate.policy.policy import Policy
+from gcs.gate.proof.edge import Edge
+from gcs.gate.proof.invariants import objections
+from gcs.gate.states import LandedState
 from gcs.session import ports
 from tests.loopback import eyes
 from tests.loopback.flight import Flight

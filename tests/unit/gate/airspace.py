@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import gcs.gate.policy
+import gcs.gate.policy.policy
 from gcs.frames import Vec3, ned_from_enu
-from gcs.gate.fence import Zone
+from gcs.gate.airspace.verifier import Verifier, verifier_for
+from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon
-from gcs.gate.policy import DEFAULT, Policy, parse_policy
-from gcs.gate.types import Code, Refusal
-from gcs.gate.verifier import Verifier, verifier_for
+from gcs.gate.policy.policy import DEFAULT, Policy, parse_policy
+from gcs.gate.refusal import Code, Refusal
 
 HOME: Vec3 = (0.0, 0.0, 0.0)
 STILL: Vec3 = (0.0, 0.0, 0.0)
-LAB_TOML = Path(gcs.gate.policy.__file__).parent / "policies" / "lab.toml"
+LAB_TOML = Path(gcs.gate.policy.__file__).parent / "lab.toml"
 LAB = parse_policy(LAB_TOML.read_text(encoding="utf-8"), "lab.toml")
 
 OUTER = Zone("home", True, Circle((0.0, 0.0), 150.0), 0.0, 50.0)

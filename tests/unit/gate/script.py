@@ -12,37 +12,35 @@ from typing import TypeVar
 
 import gcs.gate
 from gcs.frames import Vec3, enu_from_ned, ned_from_enu
-from gcs.gate.machine import Gate
-from gcs.gate.policy import Policy, parse_policy
-from gcs.gate.table import TABLE, Table
-from gcs.gate.types import (
-    Code,
-    CommandEnded,
+from gcs.gate.airspace.verifier import verifier_for
+from gcs.gate.effects import (
     CommandKind,
     Effect,
-    Ending,
-    FlightMode,
-    GoTo,
+    Outcome,
+    SendCommand,
+    SendSetpoint,
+    SwitchedFence,
+    Transition,
+    Verdict,
+)
+from gcs.gate.inputs import (
+    CommandEnded,
     HeartbeatSeen,
     HomeSeen,
     Input,
     LandedSeen,
-    LandedState,
     PositionSeen,
-    Request,
+    Requested,
     ReturnHeightSeen,
-    SendCommand,
-    SendSetpoint,
-    State,
-    SwitchedFence,
-    TakeControl,
     Tick,
-    Transition,
-    Verdict,
     VerifierChanged,
-    Wish,
 )
-from gcs.gate.verifier import verifier_for
+from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.table import TABLE, Table
+from gcs.gate.policy.policy import Policy, parse_policy
+from gcs.gate.refusal import Code
+from gcs.gate.requests import GoTo, Request, TakeControl
+from gcs.gate.states import FlightMode, LandedState, State
 
 MS = 1_000_000
 SECOND = 1_000 * MS
@@ -53,7 +51,7 @@ E = TypeVar("E")
 
 def policy(name: str) -> Policy:
     """One of the shipped policies."""
-    path = Path(gcs.gate.__file__).parent / "policies" / f"{name}.toml"
+    path = Path(gcs.gate.__file__).parent / "policy" / f"{name}.toml"
     return parse_policy(path.read_text(encoding="utf-8"), str(path))
 
 
@@ -61,12 +59,12 @@ class Script:
     """Every input goes through `feed`; every effect stays in `said` with the time it came."""
 
     def __init__(
-        self, rules: Policy, personality: str = "px4", start_ns: int = SECOND, table: Table = TABLE
+        self, rules: Policy, autopilot: str = "px4", start_ns: int = SECOND, table: Table = TABLE
     ) -> None:
         self.policy = rules
         self.now_ns = start_ns
-        self.gate = Gate(rules, personality, start_ns, table)
-        self.personality = personality
+        self.gate = Gate(rules, autopilot, start_ns, table)
+        self.autopilot = autopilot
         self.said: list[tuple[int, Effect]] = []
         self.armed = False
         self.mode = FlightMode.HOLD
@@ -93,15 +91,15 @@ class Script:
     def place(self, *, fence_on: bool = True) -> None:
         """Home, and with it the fence, become known."""
         verifier = verifier_for(
-            self.policy, self.personality, (0.0, 0.0, 0.0), None, fence_on=fence_on
+            self.policy, self.autopilot, (0.0, 0.0, 0.0), None, fence_on=fence_on
         )
         self.feed(HomeSeen((0.0, 0.0, 0.0)))
         self.feed(ReturnHeightSeen(1.5))
         self.feed(VerifierChanged(verifier))
 
-    def ask(self, wish: Wish, source: str = "keyboard") -> int:
+    def ask(self, request: Request, source: str = "keyboard") -> int:
         self._next_id += 1
-        self.feed(Request(self._next_id, source, wish))
+        self.feed(Requested(self._next_id, source, request))
         return self._next_id
 
     def goto(self, east: float, north: float, up: float) -> int:
@@ -198,12 +196,12 @@ class Script:
         assert refusal is not None
         return refusal.code
 
-    def ending(self, request_id: int) -> Ending:
-        (ending,) = [e for e in self.all(Ending) if e.request_id == request_id]
+    def ending(self, request_id: int) -> Outcome:
+        (ending,) = [e for e in self.all(Outcome) if e.request_id == request_id]
         return ending
 
     def ended(self, request_id: int) -> bool:
-        return any(e.request_id == request_id for e in self.all(Ending))
+        return any(e.request_id == request_id for e in self.all(Outcome))
 
     def commands(self) -> list[CommandKind]:
         return [sent.kind for sent in self.all(SendCommand)]

@@ -4,18 +4,9 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from gcs.gate.types import (
-    Abort,
-    Arm,
-    FlightMode,
-    Land,
-    MissionLoaded,
-    ReturnHome,
-    StartMission,
-    State,
-    TakeOff,
-    TakePhoto,
-)
+from gcs.gate.inputs import MissionLoaded
+from gcs.gate.requests import Abort, Arm, Land, ReturnHome, StartMission, TakeOff, TakePhoto
+from gcs.gate.states import FlightMode, State
 from tests.unit.gate.script import Script
 
 UP = 1.5

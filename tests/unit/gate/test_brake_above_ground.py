@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from gcs.gate.policy import DEFAULT
-from gcs.gate.projection import Origin
-from gcs.gate.verifier import verifier_for
+from gcs.gate.airspace.projection import Origin
+from gcs.gate.airspace.verifier import verifier_for
+from gcs.gate.policy.policy import DEFAULT
 
 
 def test_no_brake_points_below_the_ground() -> None:

@@ -6,12 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from gcs.gate.alphabet import CONDITIONS, YARD
-from gcs.gate.events import Event
-from gcs.gate.explore import Explored, explore
-from gcs.gate.rules import Answer, Branch, Cell, Check, Do, End, Guard
-from gcs.gate.table import TABLE
-from gcs.gate.types import Code, Control, Ended, Severity, State
+from gcs.gate.condition import Severity
+from gcs.gate.effects import OutcomeKind
+from gcs.gate.machine.events import Event
+from gcs.gate.machine.rules import Answer, Branch, Cell, Check, Do, End, Guard
+from gcs.gate.machine.table import TABLE
+from gcs.gate.proof.alphabet import CONDITIONS, YARD
+from gcs.gate.proof.explorer import Explored, explore
+from gcs.gate.refusal import Code
+from gcs.gate.states import Control, State
 
 GUARDED = replace(
     YARD, retarget="replace", rtl_blocked="land", fence_switchable=False, allow_force_disarm=False
@@ -34,7 +37,7 @@ def test_every_reachable_combination_keeps_every_invariant() -> None:
 
 
 def test_so_it_does_for_the_other_autopilot_under_the_other_choices_of_the_policy() -> None:
-    clean(explore(policy=GUARDED, personality="ardupilot", return_up_m=90.0))
+    clean(explore(policy=GUARDED, autopilot="ardupilot", return_up_m=90.0))
 
 
 TAKEN = Branch(answer=Answer.PENDING)
@@ -101,7 +104,7 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         "holding is left without resume",
         State.HOLDING,
         Event.MODE_CONFIRMED,
-        (Branch(ends=End(Ended.COMPLETE), do=(Do.HOLD_SHOWN,), to=State.HOVERING),),
+        (Branch(ends=End(OutcomeKind.COMPLETE), do=(Do.HOLD_SHOWN,), to=State.HOVERING),),
         5,
         "hold mode",
     ),

@@ -6,12 +6,12 @@ import math
 
 import pytest
 
-from gcs.gate.fence import Zone, build_zones
+from gcs.gate.airspace.projection import Origin, Projection
+from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import Circle, Polygon
-from gcs.gate.policy import DEFAULT
-from gcs.gate.projection import Origin, Projection
-from gcs.gate.types import Code, Refusal
-from gcs.gate.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.refusal import Code, Refusal
 
 HOME_NED = (10.0, 20.0, -3.0)
 PX4 = Projection(Origin(47.397742, 8.545594, 488.0), "px4")

@@ -11,38 +11,31 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from gcs.frames import Vec3
-from gcs.gate.alphabet import ALPHABET, TICK_NS, YARD
-from gcs.gate.edge import Edge
-from gcs.gate.events import Event
-from gcs.gate.invariants import objections
-from gcs.gate.machine import Gate
-from gcs.gate.memory import SECOND_NS
-from gcs.gate.policy import Policy
-from gcs.gate.rules import Answer, Branch
-from gcs.gate.table import TABLE, Table
-from gcs.gate.types import (
-    Ending,
-    FlightMode,
-    GoTo,
+from gcs.gate.airspace.verifier import verifier_for
+from gcs.gate.effects import Outcome, Ruling, SendSetpoint, SwitchedFence, Verdict
+from gcs.gate.inputs import (
     HeartbeatSeen,
     HomeSeen,
     Input,
     LandedSeen,
-    LandedState,
     MissionLoaded,
-    Outcome,
     PositionSeen,
-    Request,
+    Requested,
     ReturnHeightSeen,
-    SendSetpoint,
-    State,
-    SwitchedFence,
-    TakeControl,
     Tick,
-    Verdict,
     VerifierChanged,
 )
-from gcs.gate.verifier import verifier_for
+from gcs.gate.machine.events import Event
+from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.memory import SECOND_NS
+from gcs.gate.machine.rules import Answer, Branch
+from gcs.gate.machine.table import TABLE, Table
+from gcs.gate.policy.policy import Policy
+from gcs.gate.proof.alphabet import ALPHABET, TICK_NS, YARD
+from gcs.gate.proof.edge import Edge
+from gcs.gate.proof.invariants import objections
+from gcs.gate.requests import GoTo, TakeControl
+from gcs.gate.states import FlightMode, LandedState, State
 
 HOME = (0.0, 0.0, 0.0)
 RADIUS_M, CEILING_M = 20.0, 30.0
@@ -53,7 +46,7 @@ class Run:
     """Feeds a gate, checks every step, and keeps the books over the whole run."""
 
     policy: Policy = YARD
-    personality: str = "px4"
+    autopilot: str = "px4"
     table: Table = field(default_factory=lambda: TABLE)
     now_ns: int = SECOND_NS
     verdicts: Counter[int] = field(default_factory=Counter)
@@ -65,8 +58,8 @@ class Run:
     last_id: int = 0
 
     def __post_init__(self) -> None:
-        self.gate = Gate(self.policy, self.personality, self.now_ns, self.table)
-        self.verifier = verifier_for(self.policy, self.personality, HOME, None)
+        self.gate = Gate(self.policy, self.autopilot, self.now_ns, self.table)
+        self.verifier = verifier_for(self.policy, self.autopilot, HOME, None)
         for told in (
             HomeSeen(HOME),
             ReturnHeightSeen(10.0),
@@ -88,13 +81,13 @@ class Run:
         assert self.gate.state is State.HOVERING
         return self
 
-    def ask(self, wish: GoTo | TakeControl) -> None:
+    def ask(self, request: GoTo | TakeControl) -> None:
         self.last_id += 1
-        self.feed(Request(self.last_id, "test", wish))
+        self.feed(Requested(self.last_id, "test", request))
 
     def letter(self, name: str) -> None:
         for passes_ns, told in ALPHABET[name](self.policy, self.gate.memory, self.now_ns):
-            if isinstance(told, Request):
+            if isinstance(told, Requested):
                 self.last_id += 1
                 told = replace(told, request_id=self.last_id)
             self.feed(told, passes_ns)
@@ -105,19 +98,19 @@ class Run:
         effects = self.gate.handle(told, self.now_ns)
         edge = Edge(self.policy, before, told, self.now_ns, effects, self.gate.memory)
         assert not list(objections(edge))
-        if isinstance(told, Request):
+        if isinstance(told, Requested):
             self.asked.add(told.request_id)
         if isinstance(told, PositionSeen):
             self.places.add(told.pos_ned)
         for effect in effects:
             match effect:
-                case Verdict(request_id, _, wish, outcome):
+                case Verdict(request_id, _, request, ruling):
                     self.verdicts[request_id] += 1
-                    if outcome is Outcome.ACCEPTED:
+                    if ruling is Ruling.ACCEPTED:
                         self.accepted.add(request_id)
-                        if isinstance(wish, GoTo):
-                            self.goals[request_id] = wish.goal_ned
-                case Ending(request_id):
+                        if isinstance(request, GoTo):
+                            self.goals[request_id] = request.goal_ned
+                case Outcome(request_id):
                     self.endings[request_id] += 1
                 case SendSetpoint(permit):
                     self.on_the_wire(permit.pos_ned, permit.reason)
@@ -160,11 +153,11 @@ steps = st.lists(
 )
 
 
-@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(word=words)
-def test_L17_any_interleaving_from_nothing(personality: str, word: list[str]) -> None:
-    run = Run(personality=personality)
+def test_L17_any_interleaving_from_nothing(autopilot: str, word: list[str]) -> None:
+    run = Run(autopilot=autopilot)
     for name in word:
         run.letter(name)
     run.closed()

@@ -8,26 +8,11 @@ from itertools import pairwise
 import pytest
 
 from gcs.frames import ned_from_enu
-from gcs.gate.types import (
-    Abort,
-    Code,
-    CommandKind,
-    Ended,
-    FlightMode,
-    GoTo,
-    LandedState,
-    Outcome,
-    PhotoSeen,
-    PositionSeen,
-    SendSetpoint,
-    State,
-    SwitchFence,
-    TakeControl,
-    TakeOff,
-    TakePhoto,
-    Transition,
-    Verdict,
-)
+from gcs.gate.effects import CommandKind, OutcomeKind, Ruling, SendSetpoint, Transition, Verdict
+from gcs.gate.inputs import PhotoSeen, PositionSeen
+from gcs.gate.refusal import Code
+from gcs.gate.requests import Abort, GoTo, SwitchFence, TakeControl, TakeOff, TakePhoto
+from gcs.gate.states import FlightMode, LandedState, State
 from tests.unit.gate.script import MS, SECOND, TICK, Script, policy
 from tests.unit.gate.situations import lead_to
 
@@ -56,7 +41,7 @@ def test_L01_hovering_streams_at_20_hz_and_up_is_minus_down() -> None:
 
 def test_L03_enter_gives_requested_verified_moving_in_that_order() -> None:
     script = hovering()
-    request = script.goto(1.0, 0.0, 0.5)
+    requested = script.goto(1.0, 0.0, 0.5)
     assert script.gate.state is State.HOVERING
     assert not script.all(Verdict)
     script.tick()
@@ -66,7 +51,7 @@ def test_L03_enter_gives_requested_verified_moving_in_that_order() -> None:
     assert isinstance(second, Transition)
     assert (first.before, first.after) == (State.HOVERING, State.VERIFYING)
     assert isinstance(verdict, Verdict)
-    assert (verdict.request_id, verdict.outcome) == (request, Outcome.ACCEPTED)
+    assert (verdict.request_id, verdict.ruling) == (requested, Ruling.ACCEPTED)
     assert verdict.evidence
     assert (second.before, second.after) == (State.VERIFYING, State.MOVING)
 
@@ -74,13 +59,13 @@ def test_L03_enter_gives_requested_verified_moving_in_that_order() -> None:
 @BOTH
 def test_L04_moving_without_positions_never_completes(name: str) -> None:
     script = hovering(name)
-    request = script.goto(*near(name))
+    requested = script.goto(*near(name))
     script.tick()
     script.telling = False
     script.wait(script.policy.position_age_s + 0.1)
     assert script.gate.state is State.STALE
     script.wait(20.0)
-    assert script.ending(request).code is Code.STALE
+    assert script.ending(requested).code is Code.STALE
 
 
 @BOTH
@@ -96,17 +81,17 @@ def test_L05_second_request_is_refused_busy(name: str) -> None:
     script.wait(0.5)
     script.at(*goal)
     script.wait(5.0)
-    assert script.ending(first).ended is Ended.COMPLETE
+    assert script.ending(first).kind is OutcomeKind.COMPLETE
     assert (goal[0], 2.0, goal[2]) not in {place for _, place in script.setpoints()}
 
 
 def test_L06_in_range_is_complete_and_the_stream_goes_on_at_the_goal() -> None:
     script = hovering()
-    request = script.goto(1.0, 0.0, 0.5)
+    requested = script.goto(1.0, 0.0, 0.5)
     script.wait(0.5)
     script.at(0.9, 0.0, 0.5)
     script.tick()
-    assert script.ending(request).ended is Ended.COMPLETE
+    assert script.ending(requested).kind is OutcomeKind.COMPLETE
     assert script.gate.state is State.HOVERING
     script.forget()
     script.wait(1.0)
@@ -119,34 +104,34 @@ def test_L07_then_a_second_goal_is_accepted_and_flown() -> None:
     script.tick()
     script.at(1.0, 0.0, 0.5)
     script.tick()
-    request = script.goto(1.0, 1.0, 0.5)
+    requested = script.goto(1.0, 1.0, 0.5)
     script.tick()
-    assert script.verdict(request).outcome is Outcome.ACCEPTED
+    assert script.verdict(requested).ruling is Ruling.ACCEPTED
     assert script.gate.state is State.MOVING
     assert list(script.setpoints())[-1][1] == (1.0, 1.0, 0.5)
 
 
 def test_L08_exactly_at_the_radius_is_not_complete_and_just_below_is() -> None:
     script = hovering()
-    request = script.goto(1.0, 0.0, 0.5)
+    requested = script.goto(1.0, 0.0, 0.5)
     script.tick()
     script.at(0.5, 0.0, 0.5)
     script.wait(1.0)
-    assert not script.ended(request)
+    assert not script.ended(requested)
     script.at(math.nextafter(0.5, 1.0), 0.0, 0.5)
     script.tick()
-    assert script.ending(request).ended is Ended.COMPLETE
+    assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
 
 def test_L09_the_present_position_as_goal_is_one_tick_of_moving_then_complete() -> None:
     script = hovering()
-    request = script.goto(0.0, 0.0, 0.5)
+    requested = script.goto(0.0, 0.0, 0.5)
     script.tick()
     assert script.states() == [State.VERIFYING, State.MOVING]
-    assert not script.ended(request)
+    assert not script.ended(requested)
     script.tick()
     assert script.states()[2:] == [State.HOVERING]
-    assert script.ending(request).ended is Ended.COMPLETE
+    assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
 
 def test_L10_of_two_requests_in_one_tick_the_second_wins() -> None:
@@ -154,8 +139,8 @@ def test_L10_of_two_requests_in_one_tick_the_second_wins() -> None:
     first = script.goto(1.0, 0.0, 0.5)
     second = script.goto(0.0, 1.0, 0.5)
     script.tick()
-    assert script.verdict(first).outcome is Outcome.SUPERSEDED
-    assert script.verdict(second).outcome is Outcome.ACCEPTED
+    assert script.verdict(first).ruling is Ruling.SUPERSEDED
+    assert script.verdict(second).ruling is Ruling.ACCEPTED
     assert (1.0, 0.0, 0.5) not in {place for _, place in script.setpoints()}
     assert not script.ended(first)
 
@@ -171,9 +156,9 @@ def test_L11_a_goal_that_is_no_number_is_refused(
     script.place(fence_on=fence_on)
     goal = list(near(name))
     goal[axis] = bad
-    request = script.goto(*goal)
+    requested = script.goto(*goal)
     script.wait(0.5)
-    assert script.refusal(request) is Code.NON_FINITE
+    assert script.refusal(requested) is Code.NON_FINITE
     assert script.gate.state is State.HOVERING
     assert all(math.isfinite(x) for _, place in script.setpoints() for x in place)
 
@@ -186,10 +171,10 @@ def test_L12_the_bounds_of_the_cage_are_inclusive(
     goal: tuple[float, float, float], accepted: bool
 ) -> None:
     script = hovering()
-    request = script.goto(*goal)
+    requested = script.goto(*goal)
     script.wait(0.2)
-    verdict = script.verdict(request)
-    assert (verdict.outcome is Outcome.ACCEPTED) is accepted
+    verdict = script.verdict(requested)
+    assert (verdict.ruling is Ruling.ACCEPTED) is accepted
     assert (goal in {place for _, place in script.setpoints()}) is accepted
     if not accepted:
         assert verdict.refusal is not None
@@ -199,17 +184,17 @@ def test_L12_the_bounds_of_the_cage_are_inclusive(
 
 def test_L13_a_refused_goal_is_gone_and_flies_only_when_sent_again() -> None:
     script = hovering()
-    request = script.goto(8.0, 0.0, 1.0)
+    requested = script.goto(8.0, 0.0, 1.0)
     script.tick()
-    assert script.verdict(request).outcome is Outcome.REFUSED
+    assert script.verdict(requested).ruling is Ruling.REFUSED
     switch = script.ask(SwitchFence(on=False))
-    assert script.ending(switch).ended is Ended.COMPLETE
+    assert script.ending(switch).kind is OutcomeKind.COMPLETE
     script.wait(3.0)
     assert script.gate.state is State.HOVERING
     assert (8.0, 0.0, 1.0) not in {place for _, place in script.setpoints()}
     again = script.goto(8.0, 0.0, 1.0)
     script.tick()
-    assert script.verdict(again).outcome is Outcome.ACCEPTED
+    assert script.verdict(again).ruling is Ruling.ACCEPTED
     assert list(script.setpoints())[-1][1] == (8.0, 0.0, 1.0)
 
 
@@ -221,7 +206,7 @@ def test_L13_any_other_policy_refuses_to_switch_the_fence() -> None:
 @BOTH
 def test_L14_a_position_that_stops_arriving_degrades_within_the_limit(name: str) -> None:
     script = hovering(name)
-    request = script.goto(*near(name))
+    requested = script.goto(*near(name))
     script.wait(0.5)
     script.telling = False
     stopped_ns = script.now_ns
@@ -230,7 +215,7 @@ def test_L14_a_position_that_stops_arriving_degrades_within_the_limit(name: str)
     limit_ns = round(script.policy.position_age_s * SECOND) + TICK
     assert script.now_ns - stopped_ns <= limit_ns
     script.wait(script.policy.stale_grace_s + 0.05)
-    assert script.ending(request).ended is Ended.ABORTED
+    assert script.ending(requested).kind is OutcomeKind.ABORTED
     assert script.commands()[-1] is CommandKind.HOLD
     script.forget()
     script.wait(5.0)
@@ -258,7 +243,7 @@ def test_L15_abort_in_each_state_holds_and_no_arrival_revives_the_goal(
     assert script.gate.state is state
     script.forget()
     abort = script.ask(Abort())
-    assert script.verdict(abort).outcome is Outcome.ACCEPTED
+    assert script.verdict(abort).ruling is Ruling.ACCEPTED
     if state in (State.GROUNDED, State.TAKING_OFF):
         held = [CommandKind.HOLD] if state is State.TAKING_OFF else []
         assert script.commands() == [*held, CommandKind.DISARM]
@@ -286,10 +271,10 @@ def test_L16_a_move_while_a_picture_is_taken_is_refused_busy(name: str) -> None:
     script.wait(1.0)
     assert script.refusal(move) is Code.BUSY
     script.feed(PhotoSeen(0, ok=True))
-    assert script.ending(photo).ended is Ended.COMPLETE
+    assert script.ending(photo).kind is OutcomeKind.COMPLETE
     again = script.goto(*near(name))
     script.tick()
-    assert script.verdict(again).outcome is Outcome.ACCEPTED
+    assert script.verdict(again).ruling is Ruling.ACCEPTED
 
 
 def test_nothing_is_streamed_before_the_operator_takes_control() -> None:
@@ -305,23 +290,23 @@ def test_no_acceptance_without_a_position() -> None:
     script.heartbeat()
     script.land_state(LandedState.IN_AIR)
     script.place()
-    for wish in (GoTo((0.0, 0.0, -1.0)), TakeControl(), TakeOff(1.0)):
-        assert script.refusal(script.ask(wish)) is Code.STALE
+    for request in (GoTo((0.0, 0.0, -1.0)), TakeControl(), TakeOff(1.0)):
+        assert script.refusal(script.ask(request)) is Code.STALE
 
 
 def test_arrival_by_the_expert_rules_waits_for_speed_and_dwell() -> None:
     script = hovering("default")
-    request = script.goto(3.0, 0.0, 5.0)
+    requested = script.goto(3.0, 0.0, 5.0)
     script.tick()
     script.v_ned = (0.0, 1.0, 0.0)
     script.at(2.8, 0.0, 5.0, v_enu=(1.0, 0.0, 0.0))
     script.wait(1.0)
-    assert not script.ended(request)
+    assert not script.ended(requested)
     script.at(3.0, 0.0, 5.0)
     script.wait(0.45)
-    assert not script.ended(request)
+    assert not script.ended(requested)
     script.wait(0.1)
-    assert script.ending(request).ended is Ended.COMPLETE
+    assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
 
 def test_the_heartbeat_confirms_control_and_a_goal_before_that_is_refused() -> None:
@@ -337,4 +322,4 @@ def test_the_heartbeat_confirms_control_and_a_goal_before_that_is_refused() -> N
     script.answer(CommandKind.GUIDED, 0)
     assert not script.ended(control)
     script.heartbeat(FlightMode.GUIDED)
-    assert script.ending(control).ended is Ended.COMPLETE
+    assert script.ending(control).kind is OutcomeKind.COMPLETE

@@ -7,55 +7,51 @@ from dataclasses import replace
 import pytest
 
 from gcs.frames import ned_from_enu
-from gcs.gate.fence import Zone
+from gcs.gate.airspace.verifier import Verifier, verifier_for
+from gcs.gate.airspace.zones import Zone
+from gcs.gate.effects import CommandKind, OutcomeKind, Ruling, Say
 from gcs.gate.geometry import Circle
-from gcs.gate.types import (
-    Abort,
-    Arm,
-    Code,
+from gcs.gate.inputs import (
     CommandEnded,
-    CommandKind,
-    Control,
-    Disarm,
-    Ended,
-    FlightMode,
-    Hold,
     HomeSeen,
-    Land,
-    LandedState,
     MissionLoaded,
     OperatorLost,
-    Outcome,
     PhotoSeen,
     PositionSeen,
+    VerifierChanged,
+)
+from gcs.gate.refusal import Code
+from gcs.gate.requests import (
+    Abort,
+    Arm,
+    Disarm,
+    Hold,
+    Land,
+    Request,
     Resume,
     ReturnHome,
-    Say,
     StartMission,
-    State,
     SwitchFence,
     TakeControl,
     TakeOff,
     TakePhoto,
-    VerifierChanged,
-    Wish,
 )
-from gcs.gate.verifier import Verifier, verifier_for
+from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP, lead_to
 
 
-def in_state(state: State, personality: str = "px4") -> Script:
-    script = Script(policy("default"), personality)
+def in_state(state: State, autopilot: str = "px4") -> Script:
+    script = Script(policy("default"), autopilot)
     lead_to(state, script)
     assert script.gate.state is state
     script.forget()
     return script
 
 
-def armed(personality: str = "px4") -> Script:
+def armed(autopilot: str = "px4") -> Script:
     """On the ground, armed."""
-    script = Script(policy("default"), personality).connect()
+    script = Script(policy("default"), autopilot).connect()
     script.ask(Arm())
     script.heartbeat(armed=True)
     script.wait(1.0)
@@ -113,7 +109,7 @@ class TestLandedState:
         assert script.gate.state is State.GROUNDED
 
     @pytest.mark.parametrize(
-        ("wish", "command", "state"),
+        ("wanted", "command", "state"),
         [
             (Hold(), CommandKind.HOLD, State.HOLDING),
             (Abort(), CommandKind.HOLD, State.HOLDING),
@@ -123,30 +119,30 @@ class TestLandedState:
         ids=["hold", "abort", "land", "return"],
     )
     def test_armed_and_not_known_to_stand_is_commanded_and_not_complete_at_once(
-        self, wish: Wish, command: CommandKind, state: State
+        self, wanted: Request, command: CommandKind, state: State
     ) -> None:
         script = armed()
         script.landed_told = False
         script.wait(4.0)
         script.forget()
-        request = script.ask(wish)
+        requested = script.ask(wanted)
         assert script.commands() == [command]
         assert script.gate.state is state
-        assert not script.ended(request)
+        assert not script.ended(requested)
 
     def test_what_climbed_does_not_stand_whatever_was_reported_last(self) -> None:
         script = armed()
         script.landed_told = False
         script.at(0.0, 0.0, 0.8)
         script.forget()
-        request = script.ask(Hold())
+        requested = script.ask(Hold())
         assert script.commands() == [CommandKind.HOLD]
-        assert not script.ended(request)
+        assert not script.ended(requested)
 
-    @pytest.mark.parametrize("wish", [Hold(), Land(), ReturnHome()], ids=["hold", "land", "rtl"])
-    def test_what_is_reported_to_stand_has_nothing_left_to_do(self, wish: Wish) -> None:
+    @pytest.mark.parametrize("wanted", [Hold(), Land(), ReturnHome()], ids=["hold", "land", "rtl"])
+    def test_what_is_reported_to_stand_has_nothing_left_to_do(self, wanted: Request) -> None:
         script = armed()
-        assert script.ending(script.ask(wish)).ended is Ended.COMPLETE
+        assert script.ending(script.ask(wanted)).kind is OutcomeKind.COMPLETE
 
     def test_abort_in_a_climb_whose_landed_state_is_lost_holds(self) -> None:
         script = climbing()
@@ -165,7 +161,7 @@ class TestLandedState:
         script.heartbeat(FlightMode.HOLD)
         assert not script.ended(abort)
         script.heartbeat(armed=False)
-        assert script.ending(abort).ended is Ended.COMPLETE
+        assert script.ending(abort).kind is OutcomeKind.COMPLETE
 
     def test_a_disarm_refused_in_the_air_is_a_hold(self) -> None:
         script = armed()
@@ -197,7 +193,7 @@ class TestLandedState:
 def elsewhere(script: Script, east: float = 500.0) -> Verifier:
     """The same fence about another home."""
     home_ned = ned_from_enu((east, 0.0, 0.0))
-    return verifier_for(script.policy, script.personality, home_ned, None)
+    return verifier_for(script.policy, script.autopilot, home_ned, None)
 
 
 class TestMovedFence:
@@ -207,7 +203,7 @@ class TestMovedFence:
         script.wait(0.5)
         script.feed(VerifierChanged(elsewhere(script, -100.0)))
         ending = script.ending(goto)
-        assert (ending.ended, ending.code) == (Ended.ABORTED, Code.OUTSIDE_FENCE)
+        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.OUTSIDE_FENCE)
         assert script.gate.state is State.HOLDING
         assert script.commands() == [CommandKind.HOLD]
 
@@ -218,7 +214,7 @@ class TestMovedFence:
         script.tick()
         assert script.states()[-1] is State.MOVING
         script.ask(SwitchFence(on=True))
-        assert script.ending(goto).ended is Ended.ABORTED
+        assert script.ending(goto).kind is OutcomeKind.ABORTED
         assert script.gate.state is State.HOLDING
 
     def test_a_hover_outside_the_new_fence_streams_nothing_more(self) -> None:
@@ -257,27 +253,27 @@ class TestMovedFence:
 
 class TestOperatorGone:
     @pytest.mark.parametrize(
-        "wish", [Resume(), TakeControl(), ReturnHome(), Arm(), TakeOff(2.0), TakePhoto()]
+        "wanted", [Resume(), TakeControl(), ReturnHome(), Arm(), TakeOff(2.0), TakePhoto()]
     )
     @pytest.mark.parametrize("state", [State.HOVERING, State.GROUNDED, State.EXTERNAL])
-    def test_nothing_withdraws_the_hold(self, state: State, wish: Wish) -> None:
+    def test_nothing_withdraws_the_hold(self, state: State, wanted: Request) -> None:
         script = in_state(state)
         script.feed(OperatorLost("quit"))
         script.heartbeat(FlightMode.HOLD)
         after = script.gate.state
-        assert script.refusal(script.ask(wish)) is Code.OPERATOR_LOST
+        assert script.refusal(script.ask(wanted)) is Code.OPERATOR_LOST
         assert script.gate.state is after
 
-    @pytest.mark.parametrize("wish", [Abort(), Hold(), Land()], ids=["abort", "hold", "land"])
-    def test_what_makes_it_safer_is_heard(self, wish: Wish) -> None:
+    @pytest.mark.parametrize("wanted", [Abort(), Hold(), Land()], ids=["abort", "hold", "land"])
+    def test_what_makes_it_safer_is_heard(self, wanted: Request) -> None:
         script = in_state(State.HOVERING)
         script.feed(OperatorLost("quit"))
-        assert script.verdict(script.ask(wish)).outcome is Outcome.ACCEPTED
+        assert script.verdict(script.ask(wanted)).ruling is Ruling.ACCEPTED
 
     def test_so_is_a_disarm_on_the_ground(self) -> None:
         script = in_state(State.GROUNDED)
         script.feed(OperatorLost("quit"))
-        assert script.verdict(script.ask(Disarm())).outcome is Outcome.ACCEPTED
+        assert script.verdict(script.ask(Disarm())).ruling is Ruling.ACCEPTED
 
 
 class TestClimb:
@@ -289,7 +285,7 @@ class TestClimb:
         script.heartbeat(FlightMode.HOLD)
         script.tick()
         ending = script.ending(take_off)
-        assert (ending.ended, ending.code) == (Ended.ABORTED, Code.VEHICLE_REFUSED)
+        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
         assert "6.0 m below the height" in ending.sentence
         assert script.gate.state is State.HOLDING
         assert script.gate.hold_goal_ned == (0.0, 0.0, -4.0)
@@ -342,16 +338,16 @@ class TestPictures:
         script.feed(PhotoSeen(7, ok=True))
         assert not script.ended(photo)
         script.feed(PhotoSeen(8, ok=True))
-        assert script.ending(photo).ended is Ended.COMPLETE
+        assert script.ending(photo).kind is OutcomeKind.COMPLETE
 
 
 class TestWords:
     def test_a_refused_mode_is_called_by_its_name(self) -> None:
         script = in_state(State.EXTERNAL)
-        request = script.ask(TakeControl())
+        requested = script.ask(TakeControl())
         script.wait(1.1)
         script.answer(CommandKind.GUIDED, 4)
-        assert script.ending(request).sentence == "the vehicle refused guided mode (result 4)"
+        assert script.ending(requested).sentence == "the vehicle refused guided mode (result 4)"
 
     def test_a_hold_that_nobody_answers_is_told_once(self) -> None:
         script = in_state(State.MOVING)

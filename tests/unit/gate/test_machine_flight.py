@@ -4,43 +4,31 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.gate.types import (
+from gcs.gate.effects import CancelCommand, CommandKind, OutcomeKind, Ruling, Say, SendCommand
+from gcs.gate.inputs import CommandEnded, MissionLoaded, MissionSeen, PhotoSeen, ReturnHeightSeen
+from gcs.gate.refusal import Code
+from gcs.gate.requests import (
     Abort,
     Arm,
-    CancelCommand,
-    Code,
-    CommandEnded,
-    CommandKind,
-    Control,
     Disarm,
-    Ended,
-    FlightMode,
     GoTo,
     Hold,
     Land,
-    LandedState,
-    MissionLoaded,
-    MissionSeen,
-    Outcome,
-    PhotoSeen,
     Resume,
-    ReturnHeightSeen,
     ReturnHome,
-    Say,
-    SendCommand,
     SetMode,
     StartMission,
-    State,
     TakeControl,
     TakeOff,
     TakePhoto,
 )
+from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.script import MS, Script, policy
 from tests.unit.gate.situations import UP, lead_to
 
 
-def in_state(state: State, personality: str = "px4") -> Script:
-    script = Script(policy("default"), personality)
+def in_state(state: State, autopilot: str = "px4") -> Script:
+    script = Script(policy("default"), autopilot)
     lead_to(state, script)
     assert script.gate.state is state
     script.forget()
@@ -69,9 +57,9 @@ class TestControl:
 
     def test_control_that_is_not_confirmed_ends_in_hold_and_external(self) -> None:
         script = Script(policy("default")).fly(UP)
-        request = script.ask(TakeControl())
+        requested = script.ask(TakeControl())
         script.wait(6.1)
-        assert script.ending(request).ended is Ended.TIMED_OUT
+        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
         assert script.gate.state is State.EXTERNAL
         assert script.commands() == [CommandKind.GUIDED, CommandKind.HOLD]
 
@@ -85,18 +73,18 @@ class TestControl:
 
     def test_a_vehicle_that_refuses_guided_ends_the_request(self) -> None:
         script = Script(policy("default")).fly(UP)
-        request = script.ask(TakeControl())
+        requested = script.ask(TakeControl())
         script.wait(1.1)
         script.answer(CommandKind.GUIDED, 1, "no position")
-        ending = script.ending(request)
-        assert (ending.ended, ending.code) == (Ended.ABORTED, Code.VEHICLE_REFUSED)
+        ending = script.ending(requested)
+        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
         assert "no position" in ending.sentence
         assert "result 1" in ending.sentence
 
     def test_on_the_ground_control_is_complete_at_once(self) -> None:
         script = Script(policy("default")).connect()
-        request = script.ask(TakeControl())
-        assert script.ending(request).ended is Ended.COMPLETE
+        requested = script.ask(TakeControl())
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
         assert script.gate.control is Control.NONE
 
     def test_a_mode_that_we_did_not_command_takes_the_vehicle_over(self) -> None:
@@ -122,34 +110,34 @@ class TestControl:
 
     def test_the_goal_that_flies_is_taken_over_by_a_mode_change(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.goto(3.0, 0.0, UP)
+        requested = script.goto(3.0, 0.0, UP)
         script.tick()
         script.heartbeat(FlightMode.HOLD)
-        assert script.ending(request).ended is Ended.TAKEN_OVER
+        assert script.ending(requested).kind is OutcomeKind.TAKEN_OVER
 
     def test_the_old_mode_is_tolerated_while_our_command_is_under_way(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.ask(Land())
+        requested = script.ask(Land())
         script.heartbeat(FlightMode.GUIDED)
         script.heartbeat(FlightMode.HOLD)
         assert script.gate.state is State.LANDING
-        assert not script.ended(request)
+        assert not script.ended(requested)
 
 
 class TestTakeOff:
-    def script(self, personality: str = "px4") -> Script:
-        script = Script(policy("default"), personality).connect()
+    def script(self, autopilot: str = "px4") -> Script:
+        script = Script(policy("default"), autopilot).connect()
         script.ask(Arm())
         script.heartbeat(armed=True)
         return script
 
     def test_arm_is_complete_when_the_heartbeat_shows_it(self) -> None:
         script = Script(policy("default")).connect()
-        request = script.ask(Arm())
+        requested = script.ask(Arm())
         script.answer(CommandKind.ARM, 0)
-        assert not script.ended(request)
+        assert not script.ended(requested)
         script.heartbeat(armed=True)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
     def test_not_armed_no_take_off(self) -> None:
         script = Script(policy("default")).connect()
@@ -157,13 +145,13 @@ class TestTakeOff:
 
     def test_a_climb_that_leaves_the_limits_is_refused(self) -> None:
         script = self.script()
-        request = script.ask(TakeOff(500.0))
-        assert script.refusal(request) is Code.TOO_HIGH
+        requested = script.ask(TakeOff(500.0))
+        assert script.refusal(requested) is Code.TOO_HIGH
         assert script.gate.state is State.GROUNDED
 
     def test_it_ends_hovering_under_confirmed_control(self) -> None:
         script = self.script()
-        request = script.ask(TakeOff(2.0))
+        requested = script.ask(TakeOff(2.0))
         assert script.commands()[-1] is CommandKind.TAKE_OFF
         script.heartbeat(FlightMode.TAKEOFF)
         script.land_state(LandedState.TAKEOFF)
@@ -176,10 +164,10 @@ class TestTakeOff:
         script.heartbeat(FlightMode.HOLD)
         script.tick()
         assert (script.gate.state, script.gate.control) == (State.HOVERING, Control.TAKING)
-        assert not script.ended(request)
+        assert not script.ended(requested)
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
         assert script.gate.control is Control.OURS
 
     def test_the_hold_mode_of_an_old_heartbeat_is_not_the_end_of_the_climb(self) -> None:
@@ -198,7 +186,7 @@ class TestTakeOff:
         script.heartbeat(FlightMode.GUIDED)
         assert script.commands() == [CommandKind.GUIDED, CommandKind.ARM]
         script.heartbeat(armed=True)
-        assert script.ending(arm).ended is Ended.COMPLETE
+        assert script.ending(arm).kind is OutcomeKind.COMPLETE
         script.ask(TakeOff(2.0))
         assert script.commands()[-1] is CommandKind.TAKE_OFF
 
@@ -213,10 +201,10 @@ class TestTakeOff:
 
     def test_a_take_off_that_nobody_answers_and_comes_late_is_held(self) -> None:
         script = self.script()
-        request = script.ask(TakeOff(2.0))
+        requested = script.ask(TakeOff(2.0))
         script.wait(5.0)
         script.answer(CommandKind.TAKE_OFF, None)
-        assert script.ending(request).code is Code.NO_ANSWER
+        assert script.ending(requested).code is Code.NO_ANSWER
         assert script.states()[-1] is State.GROUNDED
         script.land_state(LandedState.IN_AIR)
         assert script.gate.state is State.HOLDING
@@ -224,12 +212,12 @@ class TestTakeOff:
 
     def test_a_late_answer_to_arm_is_reported_and_not_acted_on(self) -> None:
         script = Script(policy("default")).connect()
-        request = script.ask(Arm())
+        requested = script.ask(Arm())
         script.wait(5.1)
-        assert script.ending(request).ended is Ended.TIMED_OUT
-        assert CancelCommand(request, CommandKind.ARM) in script.all(CancelCommand)
+        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
+        assert CancelCommand(requested, CommandKind.ARM) in script.all(CancelCommand)
         before = script.gate.memory
-        effects = script.feed(CommandEnded(request, CommandKind.ARM, 0))
+        effects = script.feed(CommandEnded(requested, CommandKind.ARM, 0))
         assert script.gate.memory == before
         assert all(isinstance(effect, Say) for effect in effects)
 
@@ -240,46 +228,46 @@ class TestTakeOff:
         assert script.ending(take_off).code is Code.OPERATOR
         assert script.commands()[-1] is CommandKind.DISARM
         script.heartbeat(armed=False)
-        assert script.ending(abort).ended is Ended.COMPLETE
+        assert script.ending(abort).kind is OutcomeKind.COMPLETE
 
 
 class TestComingDown:
     def test_a_landing_is_complete_on_the_ground_and_disarmed(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.ask(Land())
+        requested = script.ask(Land())
         script.heartbeat(FlightMode.LAND)
         script.land_state(LandedState.ON_GROUND)
         assert script.gate.state is State.GROUNDED
-        assert not script.ended(request)
+        assert not script.ended(requested)
         script.heartbeat(armed=False)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_vehicle_that_stays_armed_is_waited_for_shortly(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.ask(Land())
+        requested = script.ask(Land())
         script.heartbeat(FlightMode.LAND)
         script.land_state(LandedState.ON_GROUND)
         script.wait(3.1)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_bounce_goes_on_landing(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.ask(Land())
+        requested = script.ask(Land())
         script.heartbeat(FlightMode.LAND)
         script.land_state(LandedState.ON_GROUND)
         script.land_state(LandedState.IN_AIR)
         assert script.gate.state is State.LANDING
-        assert not script.ended(request)
+        assert not script.ended(requested)
 
-    @pytest.mark.parametrize("wish", [Hold(), Land(), Abort()], ids=["hold", "land", "abort"])
+    @pytest.mark.parametrize("wanted", [Hold(), Land(), Abort()], ids=["hold", "land", "abort"])
     @pytest.mark.parametrize(
         "state",
         sorted(set(State) - {State.NO_VEHICLE, State.VERIFYING, State.STREAMING}),
         ids=lambda s: s.name,
     )
-    def test_never_refused(self, state: State, wish: Hold | Land | Abort) -> None:
+    def test_never_refused(self, state: State, wanted: Hold | Land | Abort) -> None:
         script = in_state(state)
-        assert script.verdict(script.ask(wish)).outcome is Outcome.ACCEPTED
+        assert script.verdict(script.ask(wanted)).ruling is Ruling.ACCEPTED
 
     def test_in_the_air_nobody_disarms(self) -> None:
         script = in_state(State.EXTERNAL)
@@ -288,19 +276,19 @@ class TestComingDown:
 
     def test_a_clear_return_is_flown(self) -> None:
         script = in_state(State.MOVING)
-        request = script.ask(ReturnHome())
-        assert script.verdict(request).outcome is Outcome.ACCEPTED
+        requested = script.ask(ReturnHome())
+        assert script.verdict(requested).ruling is Ruling.ACCEPTED
         assert script.commands() == [CommandKind.RETURN]
         script.heartbeat(FlightMode.RETURN)
         script.land_state(LandedState.ON_GROUND)
         script.heartbeat(armed=False)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_blocked_return_holds_at_once_and_offers_to_land(self) -> None:
         script = in_state(State.HOVERING)
         script.feed(ReturnHeightSeen(80.0))
-        request = script.ask(ReturnHome())
-        refusal = script.verdict(request).refusal
+        requested = script.ask(ReturnHome())
+        refusal = script.verdict(requested).refusal
         assert refusal is not None
         assert refusal.code is Code.RTL_BLOCKED
         assert refusal.zone == "home"
@@ -316,11 +304,11 @@ class TestComingDown:
 class TestHolding:
     def test_hold_is_repeated_at_1_hz_until_the_heartbeat_shows_it(self) -> None:
         script = in_state(State.MOVING)
-        request = script.ask(Hold())
+        requested = script.ask(Hold())
         script.wait(2.5)
         assert script.commands() == [CommandKind.HOLD] * 3
         script.heartbeat(FlightMode.HOLD)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
         script.forget()
         script.wait(3.0)
         assert not script.commands()
@@ -347,7 +335,7 @@ class TestHolding:
         resume = script.ask(Resume())
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
-        assert script.ending(resume).ended is Ended.COMPLETE
+        assert script.ending(resume).kind is OutcomeKind.COMPLETE
         assert script.gate.state is State.HOVERING
         assert script.gate.hold_goal_ned == (0.0, 0.0, -UP)
 
@@ -366,9 +354,9 @@ class TestHolding:
 class TestPictureAndMission:
     def test_a_picture_that_never_comes_is_timed_out_and_hovering_goes_on(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.ask(TakePhoto())
+        requested = script.ask(TakePhoto())
         script.wait(10.1)
-        assert script.ending(request).ended is Ended.TIMED_OUT
+        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
         assert script.gate.state is State.HOVERING
 
     def test_a_camera_that_fails_ends_the_request(self) -> None:
@@ -383,7 +371,7 @@ class TestPictureAndMission:
     def test_control_is_retaken_after_the_last_item(self) -> None:
         script = in_state(State.HOVERING)
         script.feed(MissionLoaded("square", 4))
-        request = script.ask(StartMission())
+        requested = script.ask(StartMission())
         script.heartbeat(FlightMode.MISSION)
         script.forget()
         script.wait(1.0)
@@ -392,19 +380,19 @@ class TestPictureAndMission:
         assert script.gate.state is State.HOVERING
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_mission_that_ends_in_a_landing_is_complete_on_the_ground(self) -> None:
         script = in_state(State.HOVERING)
         script.feed(MissionLoaded("there and down", 4))
-        request = script.ask(StartMission())
+        requested = script.ask(StartMission())
         script.heartbeat(FlightMode.MISSION)
         script.heartbeat(FlightMode.LAND)
         assert script.gate.state is State.LANDING
-        assert not script.ended(request)
+        assert not script.ended(requested)
         script.land_state(LandedState.ON_GROUND)
         script.heartbeat(armed=False)
-        assert script.ending(request).ended is Ended.COMPLETE
+        assert script.ending(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_mission_that_somebody_pauses_is_taken_over(self) -> None:
         script = in_state(State.FLYING_MISSION)
@@ -413,15 +401,15 @@ class TestPictureAndMission:
 
     def test_a_mode_by_its_name_is_the_request_it_means(self) -> None:
         script = in_state(State.MOVING)
-        request = script.ask(SetMode("AUTO.LAND", FlightMode.LAND))
-        assert script.verdict(request).outcome is Outcome.ACCEPTED
+        requested = script.ask(SetMode("AUTO.LAND", FlightMode.LAND))
+        assert script.verdict(requested).ruling is Ruling.ACCEPTED
         assert script.commands() == [CommandKind.LAND]
         assert script.refusal(script.ask(SetMode("ACRO", FlightMode.OTHER))) is Code.POLICY
 
     def test_a_goal_that_takes_too_long_is_held_and_timed_out(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.ask(GoTo((0.0, 3.0, -UP)))
+        requested = script.ask(GoTo((0.0, 3.0, -UP)))
         script.wait(10.2)
-        assert script.ending(request).ended is Ended.TIMED_OUT
+        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
         assert script.gate.state is State.HOLDING
         assert CommandKind.HOLD in script.commands()

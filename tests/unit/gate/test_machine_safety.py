@@ -7,32 +7,21 @@ from dataclasses import replace
 import pytest
 
 from gcs.frames import enu_from_ned
-from gcs.gate.machine import Gate
-from gcs.gate.types import (
-    Abort,
-    Arm,
-    CancelCommand,
-    Code,
-    CommandKind,
-    Condition,
+from gcs.gate.condition import Condition, Severity
+from gcs.gate.effects import CancelCommand, CommandKind, OutcomeKind, Ruling, Say, SendSetpoint
+from gcs.gate.inputs import (
     ConditionChanged,
-    Control,
-    Ended,
-    FlightMode,
     HeartbeatSeen,
     Input,
-    LandedState,
     OperatorLost,
-    Outcome,
     PositionSeen,
     ReturnHeightSeen,
-    Say,
-    SendSetpoint,
-    Severity,
-    State,
-    TakeOff,
     Tick,
 )
+from gcs.gate.machine.gate import Gate
+from gcs.gate.refusal import Code
+from gcs.gate.requests import Abort, Arm, TakeOff
+from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP, lead_to
 
@@ -100,9 +89,9 @@ class TestStale:
         script = in_state(State.HOVERING)
         script.telling = False
         script.wait(1.0)
-        request = script.goto(3.0, 0.0, UP)
+        requested = script.goto(3.0, 0.0, UP)
         script.tick()
-        assert script.refusal(request) is Code.STALE
+        assert script.refusal(requested) is Code.STALE
 
     def test_a_sample_that_is_no_number_or_older_than_the_last_does_not_count(self) -> None:
         script = in_state(State.HOVERING)
@@ -130,7 +119,7 @@ class TestStale:
         abort = script.ask(Abort())
         assert script.commands() == [CommandKind.HOLD]
         script.wait(6.0)
-        assert script.ending(abort).ended is Ended.TIMED_OUT
+        assert script.ending(abort).kind is OutcomeKind.TIMED_OUT
 
 
 class TestBreach:
@@ -161,11 +150,11 @@ class TestBreach:
 
     def test_the_goal_ends_with_the_breach_named(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.goto(3.0, 0.0, UP)
+        requested = script.goto(3.0, 0.0, UP)
         script.tick()
         script.feed(self.dash(script))
-        ending = script.ending(request)
-        assert (ending.ended, ending.code) == (Ended.ABORTED, Code.FENCE_BREACH)
+        ending = script.ending(requested)
+        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.FENCE_BREACH)
         assert "home" in ending.sentence
 
     def test_what_somebody_else_flies_is_not_braked(self) -> None:
@@ -178,10 +167,10 @@ class TestBreach:
 class TestJump:
     def test_a_jump_holds_and_is_verified_anew(self) -> None:
         script = in_state(State.HOVERING)
-        request = script.goto(3.0, 0.0, UP)
+        requested = script.goto(3.0, 0.0, UP)
         script.tick()
         script.feed(PositionSeen((20.0, 0.0, -UP), (0.0, 0.0, 0.0), script.now_ns // MS))
-        assert script.ending(request).code is Code.ESTIMATOR_RESET
+        assert script.ending(requested).code is Code.ESTIMATOR_RESET
         assert script.gate.state is State.HOLDING
         assert script.gate.hold_goal_ned == (20.0, 0.0, -UP)
 
@@ -236,7 +225,7 @@ class TestSeverity:
         script.feed(ConditionChanged(Condition.BATTERY_LOW, True))
         assert script.refusal(script.ask(TakeOff(2.0))) is Code.SEVERITY
         script.feed(ConditionChanged(Condition.BATTERY_LOW, False))
-        assert script.verdict(script.ask(TakeOff(2.0))).outcome is Outcome.ACCEPTED
+        assert script.verdict(script.ask(TakeOff(2.0))).ruling is Ruling.ACCEPTED
 
     def test_of_two_conditions_the_worst_wins(self) -> None:
         script = in_state(State.HOVERING, battery_low=Severity.CAUTION, other_station=Severity.HOLD)
@@ -277,10 +266,10 @@ class TestOperatorLost:
 
     def test_arming_is_not_tried_on_without_an_operator(self) -> None:
         script = Script(policy("default")).connect()
-        request = script.ask(Arm())
+        requested = script.ask(Arm())
         script.feed(OperatorLost("quit"))
-        assert script.ending(request).code is Code.OPERATOR_LOST
-        assert CancelCommand(request, CommandKind.ARM) in script.all(CancelCommand)
+        assert script.ending(requested).code is Code.OPERATOR_LOST
+        assert CancelCommand(requested, CommandKind.ARM) in script.all(CancelCommand)
 
 
 def test_without_a_verifier_nothing_that_moves_is_accepted() -> None:

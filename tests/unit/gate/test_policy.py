@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-import gcs.gate.policy
-from gcs.gate.policy import DEFAULT, Policy, PolicyError, parse_policy
-from gcs.gate.tomlfile import find_lines
-from gcs.gate.types import Condition, Severity
-from gcs.gate.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec
+import gcs.gate.policy.policy
+from gcs.gate.condition import Condition, Severity
+from gcs.gate.policy.policy import DEFAULT, Policy, PolicyError, parse_policy
+from gcs.gate.policy.tomlfile import find_lines
+from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec
 
-SHIPPED = Path(gcs.gate.policy.__file__).parent / "policies"
+SHIPPED = Path(gcs.gate.policy.__file__).parent
 
 
 def shipped(name: str) -> str:
@@ -44,9 +44,9 @@ def test_the_shipped_default_names_every_key_there_is() -> None:
         name = next(f.name for f in dataclasses.fields(Policy) if getattr(DEFAULT, f.name) is part)
         for key in dataclasses.fields(part):
             assert (name, key.name) in lines, (name, key.name)
-    for personality, braking in DEFAULT.braking.items():
+    for autopilot, braking in DEFAULT.braking.items():
         for key in dataclasses.fields(braking):
-            assert ("braking", personality, key.name) in lines
+            assert ("braking", autopilot, key.name) in lines
 
 
 def test_the_labs_policy_is_the_labs() -> None:

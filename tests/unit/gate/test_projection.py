@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs.gate.projection import METRES_PER_DEGREE, SPHERE_RADIUS_M, Origin, Projection
+from gcs.gate.airspace.projection import METRES_PER_DEGREE, SPHERE_RADIUS_M, Origin, Projection
 
 ZURICH = Origin(47.397742, 8.545594, 488.0)
 CANBERRA = Origin(-35.363262, 149.165237, 584.0)
@@ -23,9 +23,9 @@ reach = st.floats(-5000.0, 5000.0)
 
 @given(personalities, origins, reach, reach, st.floats(-500.0, 500.0))
 def test_there_and_back_is_the_same_place(
-    personality: str, origin: Origin, north_m: float, east_m: float, down_m: float
+    autopilot: str, origin: Origin, north_m: float, east_m: float, down_m: float
 ) -> None:
-    projection = Projection(origin, personality)
+    projection = Projection(origin, autopilot)
     back = projection.ned_from_geodetic(*projection.geodetic_from_ned((north_m, east_m, down_m)))
     # A longitude of 180 degrees has an ulp of 2.8e-14 degrees, 3e-9 m at the equator.
     assert back == pytest.approx((north_m, east_m, down_m), abs=1e-7)
@@ -46,13 +46,13 @@ def test_px4_is_the_tangent_plane_of_the_sphere_but_for_its_curvature(
 
 
 @pytest.mark.parametrize("origin", [ZURICH, CANBERRA])
-@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 def test_both_agree_with_the_ellipsoid_to_a_few_metres_a_kilometre_and_no_better(
-    origin: Origin, personality: str
+    origin: Origin, autopilot: str
 ) -> None:
     off_m = []
     for north_m, east_m in ((1000.0, 0.0), (0.0, 1000.0)):
-        lat, lon = Projection(origin, personality).lat_lon(north_m, east_m)
+        lat, lon = Projection(origin, autopilot).lat_lon(north_m, east_m)
         true_m, _ = pymap3d.vincenty.vdist(origin.lat_deg, origin.lon_deg, lat, lon)
         off_m.append(abs(float(true_m) - 1000.0))
     assert 1.0 < max(off_m) < 5.0
@@ -76,9 +76,9 @@ def test_ardupilot_scales_longitude_at_the_mean_latitude() -> None:
     assert east_m == pytest.approx(0.1 * METRES_PER_DEGREE * scale, rel=1e-9)
 
 
-@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
-def test_the_date_line_is_no_edge(personality: str) -> None:
-    projection = Projection(Origin(0.0, 179.9999, 0.0), personality)
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_the_date_line_is_no_edge(autopilot: str) -> None:
+    projection = Projection(Origin(0.0, 179.9999, 0.0), autopilot)
     north_m, east_m = projection.north_east(0.0, -179.9999)
     assert north_m == pytest.approx(0.0, abs=1e-9)
     assert east_m == pytest.approx(22.25, abs=0.05)
@@ -86,7 +86,7 @@ def test_the_date_line_is_no_edge(personality: str) -> None:
 
 
 def test_the_origin_is_nothing_away_from_itself() -> None:
-    for personality in ("px4", "ardupilot"):
-        projection = Projection(ZURICH, personality)
+    for autopilot in ("px4", "ardupilot"):
+        projection = Projection(ZURICH, autopilot)
         assert projection.ned_from_geodetic(47.397742, 8.545594, 490.0) == (0.0, 0.0, -2.0)
         assert projection.geodetic_from_ned((0.0, 0.0, 0.0)) == (47.397742, 8.545594, 488.0)

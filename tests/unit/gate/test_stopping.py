@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs.gate.policy import Braking
-from gcs.gate.stopping import distance_h_m, distance_v_m, stop_point, travel_m
+from gcs.gate.airspace.stopping import distance_h_m, distance_v_m, stop_point, travel_m
+from gcs.gate.policy.policy import Braking
 
 BRAKING = Braking(0.5, 4.0, 2.0, position_error_h_m=0.3, position_error_v_m=0.2)
 

@@ -8,10 +8,10 @@ import math
 import pytest
 
 from gcs.frames import Vec3
-from gcs.gate.fence import Zone
+from gcs.gate.airspace.verifier import Cleared
+from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon
-from gcs.gate.types import Code, Refusal
-from gcs.gate.verifier import Cleared
+from gcs.gate.refusal import Code, Refusal
 from tests.unit.gate.airspace import HOME, LAB, OUTER, STILL, TOWER, around, at, flying, go
 
 NAN, INF = math.nan, math.inf

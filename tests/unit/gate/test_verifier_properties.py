@@ -11,11 +11,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from gcs.frames import Vec3
-from gcs.gate.fence import Zone
+from gcs.gate.airspace.verifier import Cleared, Verifier
+from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon, polygon_fault
-from gcs.gate.policy import DEFAULT, Policy
-from gcs.gate.types import Code, Refusal
-from gcs.gate.verifier import Cleared, Verifier
+from gcs.gate.policy.policy import DEFAULT, Policy
+from gcs.gate.refusal import Code, Refusal
 
 STILL: Vec3 = (0.0, 0.0, 0.0)
 
@@ -127,7 +127,7 @@ def test_faster_never_permits_more(
 def test_weaker_brakes_and_a_stranger_never_permit_more(
     verifier: Verifier, goal: Vec3, start: Vec3, v: Vec3
 ) -> None:
-    stranger = dataclasses.replace(verifier, personality="betaflight")
+    stranger = dataclasses.replace(verifier, autopilot="betaflight")
     weak = dataclasses.replace(
         verifier.policy.braking["px4"], react_s=1.0, a_brake_h_m_s2=1.0, a_brake_v_m_s2=1.0
     )

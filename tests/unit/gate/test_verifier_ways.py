@@ -6,13 +6,13 @@ import dataclasses
 import math
 
 from gcs.frames import Vec3
-from gcs.gate.fence import Zone
+from gcs.gate.airspace.projection import Origin
+from gcs.gate.airspace.verifier import Cleared, Verifier, check_start, verifier_for
+from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle
-from gcs.gate.policy import DEFAULT
-from gcs.gate.projection import Origin
-from gcs.gate.types import Code, Refusal
-from gcs.gate.verifier import Cleared, Verifier, check_start, verifier_for
-from gcs.gate.zonespec import CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.policy.zonespec import CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.refusal import Code, Refusal
 from tests.unit.gate.airspace import HOME, OUTER, STILL, TOWER, around, at, flying, go
 
 NAN = math.nan

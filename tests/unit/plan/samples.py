@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from gcs.plan.errors import PlanError
-from gcs.plan.model import Personality, Plan
+from gcs.plan.model import AutopilotName, Plan
 from gcs.plan.reader import read
 
 ROOT = Path(__file__).resolve().parents[3]
 SHARED = ROOT.parent / "shared" / "data"
-WHO: tuple[Personality, ...] = ("px4", "ardupilot")
+WHO: tuple[AutopilotName, ...] = ("px4", "ardupilot")
 HOME = (47.397742, 8.545594, 488.0)
 
 
@@ -88,12 +88,12 @@ def survey() -> dict[str, Any]:
     )
 
 
-def read_json(document: object, personality: Personality | None = None) -> Plan:
-    return read("a.plan", json.dumps(document).encode(), personality)
+def read_json(document: object, autopilot: AutopilotName | None = None) -> Plan:
+    return read("a.plan", json.dumps(document).encode(), autopilot)
 
 
-def read_text(text: str, personality: Personality | None = None, name: str = "a.txt") -> Plan:
-    return read(name, text.encode(), personality)
+def read_text(text: str, autopilot: AutopilotName | None = None, name: str = "a.txt") -> Plan:
+    return read(name, text.encode(), autopilot)
 
 
 def refused(document: object) -> PlanError:

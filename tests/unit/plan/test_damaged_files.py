@@ -8,11 +8,11 @@ from contextlib import suppress
 
 import pytest
 
-from gcs.gate.projection import Origin, Projection
+from gcs.gate.airspace.projection import Origin, Projection
 from gcs.plan.compare import same_meaning
 from gcs.plan.errors import PlanError
 from gcs.plan.lint import lint
-from gcs.plan.model import Personality, Plan
+from gcs.plan.model import AutopilotName, Plan
 from gcs.plan.path import Ground, flight_path
 from gcs.plan.place import georeference
 from gcs.plan.reader import SIZE_MAX, read
@@ -77,7 +77,7 @@ def use(plan: Plan) -> None:
             assert same_meaning(sent, sent, who) == []
 
 
-def attempt(name: str, data: bytes, who: Personality | None = None) -> Plan | str:
+def attempt(name: str, data: bytes, who: AutopilotName | None = None) -> Plan | str:
     """The plan, or the error as it is told."""
     try:
         return read(name, data, who)

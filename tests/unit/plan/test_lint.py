@@ -8,7 +8,7 @@ import pytest
 
 from gcs.plan.errors import Finding, Level
 from gcs.plan.lint import lint
-from gcs.plan.model import Geodetic, Personality
+from gcs.plan.model import AutopilotName, Geodetic
 from gcs.plan.reader import read
 from tests.unit.plan.samples import (
     LOCAL,
@@ -26,7 +26,7 @@ TAKEOFF = waypoint(1, 47.39775, 8.5456, 10, command=22)
 AWAY = waypoint(2, 47.39785, 8.5456, 10)
 
 
-def findings(*items: dict[str, Any], who: Personality = "px4") -> list[Finding]:
+def findings(*items: dict[str, Any], who: AutopilotName = "px4") -> list[Finding]:
     return lint(read_json(plan_document(*items)), who)
 
 
@@ -77,7 +77,7 @@ def test_a_jump_for_ever_hides_what_follows() -> None:
 
 
 @pytest.mark.parametrize(("who", "level"), [("px4", Level.ERROR), ("ardupilot", Level.WARNING)])
-def test_a_waypoint_at_0_0(who: Personality, level: Level) -> None:
+def test_a_waypoint_at_0_0(who: AutopilotName, level: Level) -> None:
     document = plan_document(TAKEOFF, waypoint(2, 0, 0, 10))
     document["mission"]["firmwareType"] = {"px4": 12, "ardupilot": 3}[who]
 

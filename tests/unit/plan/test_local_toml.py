@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from gcs.gate.projection import Origin, Projection
+from gcs.gate.airspace.projection import Origin, Projection
 from gcs.plan.errors import PlanError
 from gcs.plan.model import Circle, EastNorth, Frame, Geodetic, Geographic, LatLon, Local, Polygon
 from gcs.plan.place import georeference, is_local

@@ -11,7 +11,7 @@ from gcs.cli.exits import Exit
 from gcs.cli.mission import read_plan
 from gcs.cli.mission_check import check_plan
 from gcs.plan.errors import Level
-from gcs.plan.model import Personality
+from gcs.plan.model import AutopilotName
 
 EVERY = resources.shipped()
 
@@ -54,7 +54,7 @@ def test_each_is_clean_and_cleared_by_the_fence(name: str, policy: str) -> None:
 
 @pytest.mark.parametrize("who", ["px4", "ardupilot"])
 @pytest.mark.parametrize("name", [name for name in EVERY if name.endswith(".toml")])
-def test_missions_in_metres_are_for_either_autopilot(name: str, who: Personality) -> None:
+def test_missions_in_metres_are_for_either_autopilot(name: str, who: AutopilotName) -> None:
     assert check_plan(read_plan(name, None), who, "default", None).exit_code is Exit.DONE
 
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from gcs.frames import Vec3
-from gcs.gate.projection import Origin, Projection
-from gcs.plan.model import Frame, Geographic, Item, Local, Personality, Plan
+from gcs.gate.airspace.projection import Origin, Projection
+from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
 from gcs.plan.path import FlightPath, Ground, LegKind, ProblemKind, flight_path
 
 ORIGIN = Origin(47.397742, 8.545594, 488.0)
@@ -63,7 +63,7 @@ def test_take_off_waypoints_and_landing() -> None:
 def test_px4_flies_from_its_climb_to_the_take_off_position_and_ardupilot_does_not() -> None:
     items = (at(4, 0, 5, 22), at(10, 0, 5))
 
-    px4, ardupilot = path(*items), path(*items, ground=replace(GROUND, personality="ardupilot"))
+    px4, ardupilot = path(*items), path(*items, ground=replace(GROUND, autopilot="ardupilot"))
 
     assert [leg.to_ned for leg in px4.legs] == [(0, 0, -5), (4, 0, -5), (10, 0, -5)]
     assert [leg.to_ned for leg in ardupilot.legs] == [(0, 0, -5), (10, 0, -5)]
@@ -193,13 +193,13 @@ def test_without_an_origin_a_plan_in_metres_still_has_a_path() -> None:
     assert path(at(0, 0, 5, 22), at(3, 0, 5), ground=ground).problems == ()
 
 
-@pytest.mark.parametrize(("personality", "down"), [("px4", 0.0), ("ardupilot", -5.0)])
+@pytest.mark.parametrize(("autopilot", "down"), [("px4", 0.0), ("ardupilot", -5.0)])
 def test_a_height_of_0_is_the_present_one_for_ardupilot(
-    personality: Personality, down: float
+    autopilot: AutopilotName, down: float
 ) -> None:
     lat, lon = PROJECTION.lat_lon(10.0, 0.0)
     level = geographic(Frame.HOME, Geographic(lat, lon, 0.0))
 
-    flown = path(at(0, 0, 5, 22), level, ground=replace(GROUND, personality=personality))
+    flown = path(at(0, 0, 5, 22), level, ground=replace(GROUND, autopilot=autopilot))
 
     assert flown.legs[-1].to_ned[2] == down

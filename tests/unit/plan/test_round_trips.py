@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from gcs.plan.compare import same_meaning
 from gcs.plan.errors import PlanError
-from gcs.plan.model import Circle, Fence, Geodetic, Item, LatLon, Personality, Plan, Zone
+from gcs.plan.model import AutopilotName, Circle, Fence, Geodetic, Item, LatLon, Plan, Zone
 from gcs.plan.reader import read
 from gcs.plan.wire import fence_from_wire, fence_to_wire, from_wire, to_wire
 from gcs.plan.wpl_writer import write_wpl
@@ -53,7 +53,7 @@ def test_a_plan_survives_an_ardupilot_waypoint_table(plan: Plan) -> None:
 
 
 @given(plans("px4"), st.sampled_from(WHO))
-def test_a_plan_survives_the_wire(plan: Plan, who: Personality) -> None:
+def test_a_plan_survives_the_wire(plan: Plan, who: AutopilotName) -> None:
     sent = to_wire(plan, who)
 
     again = from_wire(sent, who)

@@ -1,4 +1,4 @@
-"""Mission items on the wire, for either personality, and what a vehicle gives back of them."""
+"""Mission items on the wire, for either autopilot, and what a vehicle gives back of them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 from gcs.plan.compare import same_meaning
 from gcs.plan.errors import PlanError
-from gcs.plan.model import Geodetic, Personality, Plan
+from gcs.plan.model import AutopilotName, Geodetic, Plan
 from gcs.plan.reader import read
 from gcs.plan.wire import WireItem, from_wire, to_wire
 from tests.unit.plan.samples import box, plan_document, read_json, simple, survey, waypoint
@@ -45,12 +45,12 @@ def test_ardupilot_has_home_at_index_0_and_gets_no_nan() -> None:
     assert not any(math.isnan(item.param4) for item in items)
 
 
-@pytest.mark.parametrize(("personality", "seq"), [("px4", 1.0), ("ardupilot", 2.0)])
-def test_a_jump_names_the_seq_of_its_target(personality: Personality, seq: float) -> None:
-    items = to_wire(jumping(), personality)
+@pytest.mark.parametrize(("autopilot", "seq"), [("px4", 1.0), ("ardupilot", 2.0)])
+def test_a_jump_names_the_seq_of_its_target(autopilot: AutopilotName, seq: float) -> None:
+    items = to_wire(jumping(), autopilot)
 
     assert items[-1].param1 == seq
-    assert from_wire(items, personality).items[-1].params[0] == 2.0
+    assert from_wire(items, autopilot).items[-1].params[0] == 2.0
 
 
 def test_a_jump_to_nowhere_does_not_leave() -> None:

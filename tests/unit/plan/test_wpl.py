@@ -7,7 +7,7 @@ import math
 import pytest
 
 from gcs.plan.errors import Level, PlanError
-from gcs.plan.model import Circle, Frame, Geodetic, Geographic, LatLon, Personality, Polygon
+from gcs.plan.model import AutopilotName, Circle, Frame, Geodetic, Geographic, LatLon, Polygon
 from gcs.plan.reader import read
 from gcs.plan.wpl_writer import write_wpl
 from tests.unit.plan.samples import read_text, shared, wpl
@@ -25,15 +25,15 @@ WITHOUT_HOME = wpl(
 )
 
 
-def refused(text: str, personality: Personality | None = None) -> PlanError:
+def refused(text: str, autopilot: AutopilotName | None = None) -> PlanError:
     with pytest.raises(PlanError) as caught:
-        read_text(text, personality)
+        read_text(text, autopilot)
     return caught.value
 
 
-@pytest.mark.parametrize("personality", ["ardupilot", "px4", None])
-def test_home_before_a_take_off_is_home_for_everyone(personality: Personality | None) -> None:
-    plan = read_text(WITH_HOME, personality)
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4", None])
+def test_home_before_a_take_off_is_home_for_everyone(autopilot: AutopilotName | None) -> None:
+    plan = read_text(WITH_HOME, autopilot)
 
     assert plan.home == Geodetic(-35.363262, 149.165237, 584.0)
     assert [item.command for item in plan.items] == [22, 16, 177, 21]

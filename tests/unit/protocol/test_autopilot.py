@@ -6,22 +6,23 @@ import math
 
 import pytest
 
-from gcs.gate.types import CommandKind, FlightMode
+from gcs.gate.effects import CommandKind
+from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import (
     ARDUPILOT,
     GENERIC,
     PX4,
+    Autopilot,
     CannotAskError,
     Order,
-    Personality,
     ask,
+    autopilot_of,
     mode_named,
     mode_of,
-    personality_of,
 )
 from gcs.protocol.effects import Address
 from gcs.wire.codec import encode
-from gcs.wire.ids import Autopilot, Cmd
+from gcs.wire.ids import Cmd, MavAutopilot
 from gcs.wire.messages import CommandLong
 
 TARGET = Address(3, 1)
@@ -66,7 +67,7 @@ def equal(left: list[float], right: list[float]) -> bool:
     ],
 )
 def test_an_order_becomes_this_command(
-    who: Personality, order: Order, command: Cmd, expected: list[float]
+    who: Autopilot, order: Order, command: Cmd, expected: list[float]
 ) -> None:
     asked = ask(who, order, TARGET)
     assert (asked.target_system, asked.target_component) == (3, 1)
@@ -77,7 +78,7 @@ def test_an_order_becomes_this_command(
 
 @pytest.mark.parametrize("who", [PX4, ARDUPILOT])
 @pytest.mark.parametrize("kind", CommandKind)
-def test_there_is_a_command_for_every_kind(who: Personality, kind: CommandKind) -> None:
+def test_there_is_a_command_for_every_kind(who: Autopilot, kind: CommandKind) -> None:
     order = Order(kind, up_m=1.0, ground_amsl_m=0.0, mode_name="land")
     assert encode(ask(who, order, TARGET))
 
@@ -99,7 +100,7 @@ def test_a_mode_that_does_not_exist_is_refused_with_those_that_do() -> None:
 
 
 @pytest.mark.parametrize("who", [PX4, ARDUPILOT])
-def test_names_and_numbers_of_modes_lead_to_each_other(who: Personality) -> None:
+def test_names_and_numbers_of_modes_lead_to_each_other(who: Autopilot) -> None:
     for mode in who.modes:
         assert mode_of(who, CUSTOM, mode.custom_mode) == mode
         assert mode_named(who, mode.name.lower()) == mode
@@ -120,7 +121,7 @@ def test_names_and_numbers_of_modes_lead_to_each_other(who: Personality) -> None
     ],
 )
 def test_a_heartbeat_says_this_mode(
-    who: Personality, name: str, number: int, meaning: FlightMode
+    who: Autopilot, name: str, number: int, meaning: FlightMode
 ) -> None:
     mode = mode_of(who, CUSTOM, number)
     assert (mode.name, mode.meaning) == (name, meaning)
@@ -138,6 +139,6 @@ def test_the_last_part_of_a_name_is_enough() -> None:
 
 
 def test_personalities_are_told_by_the_heartbeat() -> None:
-    assert personality_of(Autopilot.PX4) is PX4
-    assert personality_of(Autopilot.ARDUPILOTMEGA) is ARDUPILOT
-    assert personality_of(77) is GENERIC
+    assert autopilot_of(MavAutopilot.PX4) is PX4
+    assert autopilot_of(MavAutopilot.ARDUPILOTMEGA) is ARDUPILOT
+    assert autopilot_of(77) is GENERIC

@@ -7,7 +7,8 @@ import math
 import pytest
 
 from gcs import ipc
-from gcs.gate.types import Abort, FlightMode, GoTo, SetMode, TakeOff
+from gcs.gate.requests import Abort, GoTo, SetMode, TakeOff
+from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4
 from gcs.session.desk import BadAskError, Requests, as_on_the_wire, heading_rad, wish_of
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs.config import LinkConfig
-from gcs.gate.policy import DEFAULT
+from gcs.gate.policy.policy import DEFAULT
 from gcs.record.items import InputItem
 from gcs.session import ports
 from gcs.session.core import EXIT_BUG, MAX_FAULTS, Session

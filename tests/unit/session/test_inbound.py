@@ -6,8 +6,10 @@ import math
 
 import pytest
 
-from gcs.gate import types as gate
-from gcs.protocol.autopilot import ARDUPILOT, PX4, Personality
+from gcs.gate import inputs
+from gcs.gate.condition import Condition
+from gcs.gate.states import FlightMode
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.inbound import absorb
 from gcs.wire.messages import GpsGlobalOrigin, Heartbeat, HomePosition
 from tests.unit.session.vehicles import (
@@ -28,7 +30,7 @@ def origin() -> GpsGlobalOrigin:
 def test_a_position_is_heard_with_its_own_stamp_and_kept_with_its_arrival() -> None:
     seen = vehicle()
     heard = list(absorb(position(1000, 1.0, 2.0, -3.0), seen, 5 * SECOND_NS))
-    assert gate.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1000) in heard
+    assert inputs.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1000) in heard
     assert seen.position_ns == 5 * SECOND_NS
 
 
@@ -54,7 +56,7 @@ def test_a_clock_that_went_back_is_a_restart_and_the_origin_is_asked_for_again()
     list(absorb(position(60_000), seen, SECOND_NS))
     assert list(absorb(position(200), seen, 2 * SECOND_NS)) == []
     heard = list(absorb(position(230), seen, 2 * SECOND_NS + 30_000_000))
-    assert gate.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 230, reset=True) in heard
+    assert inputs.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 230, reset=True) in heard
     assert seen.origin is None
     assert seen.home_ned is None
 
@@ -85,9 +87,9 @@ def test_an_attitude_that_is_no_number_is_none() -> None:
 @pytest.mark.parametrize(("left_pct", "low", "critical"), [(80, 0, 0), (15, 1, 0), (5, 1, 1)])
 def test_a_low_battery_is_a_condition(left_pct: int, low: int, critical: int) -> None:
     heard = list(absorb(system_status(left_pct), vehicle(), SECOND_NS))
-    told = {x.condition: x.active for x in heard if isinstance(x, gate.ConditionChanged)}
-    assert told[gate.Condition.BATTERY_LOW] is bool(low)
-    assert told[gate.Condition.BATTERY_CRITICAL] is bool(critical)
+    told = {x.condition: x.active for x in heard if isinstance(x, inputs.ConditionChanged)}
+    assert told[Condition.BATTERY_LOW] is bool(low)
+    assert told[Condition.BATTERY_CRITICAL] is bool(critical)
 
 
 def test_a_heartbeat_of_another_kind_from_the_same_ids_is_not_the_vehicle_s() -> None:
@@ -113,7 +115,7 @@ def test_home_is_placed_by_the_origin_and_never_by_its_own_local_fields() -> Non
     )
     assert list(absorb(home, seen, SECOND_NS)) == []
     heard = list(absorb(origin(), seen, SECOND_NS))
-    (where,) = [told.pos_ned for told in heard if isinstance(told, gate.HomeSeen)]
+    (where,) = [told.pos_ned for told in heard if isinstance(told, inputs.HomeSeen)]
     assert where == pytest.approx((0.0, 0.0, -2.0), abs=1e-6)
 
 
@@ -126,8 +128,8 @@ def test_local_and_global_positions_that_disagree_are_a_condition(
     list(absorb(position(1000), seen, SECOND_NS))
     message = global_position(HOME.lat_deg, HOME.lon_deg + east_off_deg)
     heard = list(absorb(message, seen, SECOND_NS + 1))
-    (told,) = [told for told in heard if isinstance(told, gate.ConditionChanged)]
-    assert told.condition is gate.Condition.ORIGIN_MISMATCH
+    (told,) = [told for told in heard if isinstance(told, inputs.ConditionChanged)]
+    assert told.condition is Condition.ORIGIN_MISMATCH
     assert told.active is disagree
 
 
@@ -136,31 +138,31 @@ def test_an_old_pair_of_positions_is_not_compared() -> None:
     list(absorb(origin(), seen, SECOND_NS))
     list(absorb(position(1000), seen, SECOND_NS))
     heard = list(absorb(global_position(0.0, 0.0), seen, 2 * SECOND_NS))
-    assert not [told for told in heard if isinstance(told, gate.ConditionChanged)]
+    assert not [told for told in heard if isinstance(told, inputs.ConditionChanged)]
 
 
 @pytest.mark.parametrize(
-    ("personality", "custom_mode", "meaning"),
+    ("autopilot", "custom_mode", "meaning"),
     [
-        (PX4, 6 << 16, gate.FlightMode.GUIDED),
-        (PX4, 4 << 16 | 3 << 24, gate.FlightMode.HOLD),
-        (ARDUPILOT, 4, gate.FlightMode.GUIDED),
-        (ARDUPILOT, 17, gate.FlightMode.HOLD),
-        (ARDUPILOT, 99, gate.FlightMode.OTHER),
+        (PX4, 6 << 16, FlightMode.GUIDED),
+        (PX4, 4 << 16 | 3 << 24, FlightMode.HOLD),
+        (ARDUPILOT, 4, FlightMode.GUIDED),
+        (ARDUPILOT, 17, FlightMode.HOLD),
+        (ARDUPILOT, 99, FlightMode.OTHER),
     ],
 )
 def test_a_heartbeat_tells_what_its_mode_means(
-    personality: Personality, custom_mode: int, meaning: gate.FlightMode
+    autopilot: Autopilot, custom_mode: int, meaning: FlightMode
 ) -> None:
     beat = Heartbeat(
         custom_mode=custom_mode,
         type=2,
-        autopilot=personality.autopilot,
+        autopilot=autopilot.mav_autopilot,
         base_mode=1 | 128,
         system_status=4,
         mavlink_version=3,
     )
-    told, failsafe = absorb(beat, vehicle(personality), SECOND_NS)
-    assert isinstance(told, gate.HeartbeatSeen)
+    told, failsafe = absorb(beat, vehicle(autopilot), SECOND_NS)
+    assert isinstance(told, inputs.HeartbeatSeen)
     assert (told.armed, told.mode) == (True, meaning)
-    assert failsafe == gate.ConditionChanged(gate.Condition.VEHICLE_FAILSAFE_ACTIVE, False)
+    assert failsafe == inputs.ConditionChanged(Condition.VEHICLE_FAILSAFE_ACTIVE, False)

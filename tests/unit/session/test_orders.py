@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from gcs.gate.effects import CommandKind, SendCommand
+from gcs.gate.inputs import CommandEnded
 from gcs.gate.permit import issue
-from gcs.gate.types import CommandEnded, CommandKind, SendCommand
 from gcs.protocol.effects import Heard
 from gcs.session.orders import Orders, Out
 from gcs.wire.ids import Cmd, Result

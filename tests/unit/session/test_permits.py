@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import gcs
+from gcs.gate.effects import CommandKind, SendCommand
 from gcs.gate.permit import Permit, issue
-from gcs.gate.types import CommandKind, SendCommand
 from gcs.session.orders import NEEDS_PERMIT, Orders
 from gcs.session.outbox import Outbox
 from gcs.session.ports import Transmit
@@ -37,7 +37,7 @@ def test_setpoints_are_made_in_one_file() -> None:
 
 
 def test_permits_are_issued_in_one_file() -> None:
-    assert calls_of("issue") == {"gate/machine.py"}
+    assert calls_of("issue") == {"gate/machine/gate.py"}
 
 
 def test_nobody_makes_a_permit_without_the_seal() -> None:

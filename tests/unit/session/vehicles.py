@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from gcs.gate.projection import Origin
-from gcs.protocol.autopilot import PX4, Personality
+from gcs.gate.airspace.projection import Origin
+from gcs.protocol.autopilot import PX4, Autopilot
 from gcs.session.telemetry import Telemetry
 from gcs.wire.messages import Attitude, GlobalPositionInt, LocalPositionNed, SysStatus
 
@@ -11,9 +11,9 @@ SECOND_NS = 1_000_000_000
 HOME = Origin(47.397742, 8.545594, 488.0)
 
 
-def vehicle(personality: Personality = PX4) -> Telemetry:
+def vehicle(autopilot: Autopilot = PX4) -> Telemetry:
     """A vehicle that has only just been heard."""
-    return Telemetry(1, 1, personality, link=0)
+    return Telemetry(1, 1, autopilot, link=0)
 
 
 def position(time_boot_ms: int, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> LocalPositionNed:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs import ipc
-from gcs.gate.types import State
+from gcs.gate.states import State
 from gcs.tui import fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.braille import Canvas, clip
 from gcs.tui.frame_panels import footer, header

@@ -20,7 +20,7 @@ ENUM_OF: dict[type[IntEnum], tuple[str, str]] = {
     ids.MissionState: ("MISSION_STATE", "MISSION_STATE_"),
     ids.ModeFlag: ("MAV_MODE_FLAG", "MAV_MODE_FLAG_"),
     ids.MavState: ("MAV_STATE", "MAV_STATE_"),
-    ids.Autopilot: ("MAV_AUTOPILOT", "MAV_AUTOPILOT_"),
+    ids.MavAutopilot: ("MAV_AUTOPILOT", "MAV_AUTOPILOT_"),
     ids.MavType: ("MAV_TYPE", "MAV_TYPE_"),
     ids.Severity: ("MAV_SEVERITY", "MAV_SEVERITY_"),
     ids.Landed: ("MAV_LANDED_STATE", "MAV_LANDED_STATE_"),

@@ -1,0 +1,57 @@
+"""The verifier's sentences: operator's frame, metres, and never -0.0."""
+
+from __future__ import annotations
+
+from gcs.frames import Vec3, enu_from_ned
+from gcs.gate.airspace.clearance import Face, Measure
+from gcs.gate.geometry import Side, side
+from gcs.gate.refusal import Code, Refusal
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Rounded first, so that a small negative number is not written -0.0."""
+    return f"{round(value, decimals) + 0.0:.{decimals}f}"
+
+
+def metres(value: float) -> str:
+    """Two decimals below a metre, one above: 0.01, 350.0."""
+    return fixed(value, 2 if abs(value) < 1.0 else 1)
+
+
+def place(pos_ned: Vec3) -> str:
+    east, north, up = enu_from_ned(pos_ned)
+    return f"({fixed(east, 2)} E, {fixed(north, 2)} N, {fixed(up, 2)} U)"
+
+
+def zone_refusal(subject: str, measure: Measure, margin_m: float, *, leg: bool) -> Refusal:
+    """Why `subject` is not clear of the measured face.
+
+    Outside for certain or too close to say; the numbers carry how far outside (`outside_m`) or
+    how much of the margin is there (`clear_m`), and the margin.
+    """
+    zone, clear_m = measure.zone, measure.least_m
+    if side(clear_m) is Side.OUTSIDE or (leg and clear_m <= 0.0):
+        code = Code.OUTSIDE_FENCE if zone.inclusion else Code.INSIDE_EXCLUSION
+        if leg:
+            code = Code.LEG_LEAVES_FENCE
+        return Refusal(
+            code,
+            f"{subject} {'goes' if leg else 'is'} {_how_far(measure)}",
+            (("outside_m", max(0.0, -clear_m)), ("margin_m", margin_m)),
+            zone.name,
+        )
+    edge = {Face.CEILING: "the ceiling of ", Face.FLOOR: "the floor of "}.get(measure.face, "")
+    return Refusal(
+        Code.TOO_CLOSE,
+        f"{subject} is only {metres(clear_m)} m from {edge}{zone.title}, "
+        f"margin {metres(margin_m)} m",
+        (("clear_m", clear_m), ("margin_m", margin_m)),
+        zone.name,
+    )
+
+
+def _how_far(measure: Measure) -> str:
+    title, depth_m = measure.zone.title, max(0.0, -measure.least_m)
+    if measure.face is Face.BODY:
+        return f"inside {title}" if depth_m > 0.0 else f"through {title}"
+    return f"{metres(depth_m)} m {measure.face.value} {title}"

@@ -1,0 +1,55 @@
+"""Where the vehicle would come to rest, judged and told."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gcs.frames import Vec3
+from gcs.gate.airspace import stopping
+from gcs.gate.airspace.clearance import Measure
+from gcs.gate.airspace.explain import fixed, metres
+from gcs.gate.airspace.judge import Judge
+
+
+@dataclass(frozen=True, slots=True)
+class BadStop:
+    """A stop that does not keep clear: where, of what, and by how much."""
+
+    stop_ned: Vec3
+    measure: Measure
+    sentence: str
+    numbers: tuple[tuple[str, float], ...]
+
+
+def bad_stop(
+    judge: Judge, home_ned: Vec3 | None, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool
+) -> BadStop | None:
+    """None if the vehicle, told to stop now, keeps clear of every boundary.
+
+    Where the floor does not apply the stop is clipped to the ground, at home's height.
+    """
+    north_m, east_m, down_m = stopping.stop_point(pos_ned, v_ned, judge.braking)
+    if not floor_applies and home_ned is not None:
+        down_m = min(down_m, max(pos_ned[2], home_ned[2]))
+    stop_ned = (north_m, east_m, down_m)
+    measure = judge.broken_stop(pos_ned, stop_ned, floor_applies=floor_applies)
+    if measure is None:
+        return None
+    limit_m, rest_m = judge.keep(measure.face).limit_m, measure.least_m
+    sentence = (
+        f"at {fixed(math.hypot(*v_ned), 1)} m/s it would come to rest {metres(abs(rest_m))} m "
+        f"{'past' if rest_m < 0.0 else 'from'} the edge of {measure.zone.title}, "
+        f"{metres(abs(limit_m))} m {'asked' if limit_m >= 0.0 else 'past it allowed'}"
+    )
+    numbers = (("clear_m", measure.start_m), ("stop_clear_m", rest_m), ("limit_m", limit_m))
+    return BadStop(stop_ned, measure, sentence, (*numbers, *stopping_numbers(judge, v_ned)))
+
+
+def stopping_numbers(judge: Judge, v_ned: Vec3) -> tuple[tuple[str, float], ...]:
+    """The whole stopping distances, horizontal and vertical."""
+    margins = judge.margins
+    return (
+        ("stopping_h_m", stopping.distance_h_m(v_ned, judge.braking, margins.h_m)),
+        ("stopping_v_m", stopping.distance_v_m(v_ned, judge.braking, margins.v_m)),
+    )

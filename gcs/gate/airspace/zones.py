@@ -1,0 +1,111 @@
+"""The fence: zones as prisms in the local frame, and how they are placed there.
+
+A vehicle must be inside every inclusion zone and outside every exclusion zone, as in the
+autopilots' own fences.  A zone as written (`ZoneSpec`) counts from home, from the local origin
+or from the equator; placed (`Zone`) it stands in local east and north, and its floor and
+ceiling are metres up of the local origin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from gcs.frames import Vec3, enu_from_ned
+from gcs.gate.airspace.projection import Projection
+from gcs.gate.geometry import Circle, Point, Polygon, Shape, polygon_fault
+from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.refusal import Code, Refusal
+
+
+@dataclass(frozen=True, slots=True)
+class Zone:
+    """A prism.  An infinite floor or ceiling is none."""
+
+    name: str
+    inclusion: bool
+    shape: Shape
+    floor_up_m: float = -math.inf
+    ceiling_up_m: float = math.inf
+
+    @property
+    def title(self) -> str:
+        """How sentences call it: inclusion circle 'home'."""
+        kind = "circle" if isinstance(self.shape, Circle) else "polygon"
+        return f"{'inclusion' if self.inclusion else 'exclusion'} {kind} '{self.name}'"
+
+
+def build_zones(
+    specs: Sequence[ZoneSpec], home_ned: Vec3 | None, projection: Projection | None
+) -> tuple[Zone, ...] | Refusal:
+    """Place every zone, or none: NO_ORIGIN where home or the origin is wanted and not known,
+    POLICY where a geographic polygon is none.
+
+    A `FileSpec` yields nothing here: whoever read the file appends its zones to `specs`.
+    """
+    zones = []
+    for spec in specs:
+        if isinstance(spec.shape, FileSpec):
+            continue
+        placed = _place(spec, spec.shape, home_ned, projection)
+        if isinstance(placed, Refusal):
+            return placed
+        zones.append(placed)
+    return tuple(zones)
+
+
+def _place(
+    spec: ZoneSpec,
+    shape: CircleSpec | BoxSpec | PolygonSpec,
+    home_ned: Vec3 | None,
+    projection: Projection | None,
+) -> Zone | Refusal:
+    bounded = spec.floor_up_m is not None or spec.ceiling_up_m is not None
+    if home_ned is None and (spec.frame == "home" or (spec.frame == "geographic" and bounded)):
+        return _unplaced(spec, "home is not known yet")
+    if projection is None and spec.frame == "geographic":
+        return _unplaced(spec, "the vehicle's origin (GPS_GLOBAL_ORIGIN) is not known yet")
+
+    home_en, home_up_m = _east_north_up(home_ned or (0.0, 0.0, 0.0))
+
+    def local(p: Point) -> Point:
+        if spec.frame == "geographic" and projection is not None:
+            north_m, east_m = projection.north_east(*p)
+            return (east_m, north_m)
+        if spec.frame == "home":
+            return (home_en[0] + p[0], home_en[1] + p[1])
+        return p
+
+    placed: Shape
+    match shape:
+        case CircleSpec(radius_m, centre):
+            placed = Circle(local(centre), radius_m)
+        case BoxSpec((west, east), (south, north)):
+            corners = ((west, south), (east, south), (east, north), (west, north))
+            placed = Polygon(tuple(local(c) for c in corners))
+        case PolygonSpec(corners):
+            here = tuple(local(c) for c in corners)
+            fault = polygon_fault(here)
+            if fault is not None:
+                return Refusal(Code.POLICY, f"fence zone '{spec.name}': {fault}", zone=spec.name)
+            placed = Polygon(here)
+    datum_up_m = 0.0 if spec.frame == "local" else home_up_m
+    return Zone(
+        spec.name,
+        spec.inclusion,
+        placed,
+        -math.inf if spec.floor_up_m is None else datum_up_m + spec.floor_up_m,
+        math.inf if spec.ceiling_up_m is None else datum_up_m + spec.ceiling_up_m,
+    )
+
+
+def _unplaced(spec: ZoneSpec, why: str) -> Refusal:
+    return Refusal(
+        Code.NO_ORIGIN, f"fence zone '{spec.name}' cannot be placed: {why}", zone=spec.name
+    )
+
+
+def _east_north_up(pos_ned: Vec3) -> tuple[Point, float]:
+    east, north, up = enu_from_ned(pos_ned)
+    return (east, north), up

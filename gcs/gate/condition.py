@@ -1,0 +1,30 @@
+"""What can be wrong, and how severe it is."""
+
+from __future__ import annotations
+
+from enum import IntEnum, StrEnum
+
+
+class Severity(IntEnum):
+    """How bad it is.  Ordered: of all active conditions the worst wins."""
+
+    NOMINAL = 0
+    CAUTION = 1
+    HOLD = 2
+    RETURN = 3
+    LAND = 4
+    TERMINATE = 5
+
+
+class Condition(StrEnum):
+    """What can be wrong, each mapped to a severity by the policy."""
+
+    RECORDER_FAILED = "recorder_failed"
+    BATTERY_LOW = "battery_low"
+    BATTERY_CRITICAL = "battery_critical"
+    ORIGIN_MISMATCH = "origin_mismatch"
+    ORIGIN_MISSING = "origin_missing"
+    OTHER_STATION = "other_station"
+    VEHICLE_FAILSAFE_WEAK = "vehicle_failsafe_weak"
+    VEHICLE_FAILSAFE_ACTIVE = "vehicle_failsafe_active"
+    TICK_LATE = "tick_late"

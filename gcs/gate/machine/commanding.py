@@ -1,0 +1,123 @@
+"""The actions that ask the vehicle for something, but for the hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Final
+
+from gcs.gate.effects import CommandKind, Level
+from gcs.gate.machine.turn import Turn
+from gcs.gate.requests import TakeOff
+from gcs.gate.states import Control, FlightMode
+
+ARM_FROM: Final[Mapping[str, tuple[frozenset[FlightMode], CommandKind]]] = MappingProxyType(
+    {
+        "px4": (
+            frozenset(FlightMode) - {FlightMode.LAND, FlightMode.RETURN, FlightMode.MISSION},
+            CommandKind.HOLD,
+        ),
+        "ardupilot": (frozenset({FlightMode.GUIDED}), CommandKind.GUIDED),
+    }
+)
+"""The modes an autopilot arms in, and what to ask for in any other."""
+
+
+def arm(turn: Turn) -> None:
+    memory = turn.memory
+    turn.due(turn.policy.control.timeout_s)
+    modes, first = ARM_FROM.get(memory.autopilot, (frozenset(FlightMode), CommandKind.HOLD))
+    if memory.mode in modes:
+        turn.command(CommandKind.ARM, "asked for on the ground")
+    else:
+        _ask_first(turn, first, CommandKind.ARM)
+
+
+def _ask_first(turn: Turn, first: CommandKind, then: CommandKind) -> None:
+    task = turn.memory.task
+    assert task is not None
+    turn.memory.task = replace(task, waiting=then)
+    turn.command(first, f"the vehicle does not {then.value.replace('_', ' ')} in its mode")
+
+
+def send_waiting(turn: Turn) -> None:
+    task = turn.memory.task
+    assert task is not None
+    assert task.waiting is not None
+    turn.memory.task = replace(task, waiting=None)
+    if task.waiting is CommandKind.TAKE_OFF:
+        _climb(turn)
+    else:
+        turn.command(task.waiting, "the vehicle shows the mode for it")
+
+
+def disarm(turn: Turn) -> None:
+    turn.due(turn.policy.control.timeout_s)
+    turn.command(CommandKind.DISARM, "on the ground")
+
+
+def force_disarm(turn: Turn) -> None:
+    turn.due(turn.policy.control.timeout_s)
+    turn.command(CommandKind.FORCE_DISARM, "allowed by the policy and asked for twice")
+
+
+def take_off(turn: Turn) -> None:
+    memory, task = turn.memory, turn.memory.task
+    assert task is not None
+    assert isinstance(task.requested.request, TakeOff)
+    assert memory.pos_ned is not None
+    memory.control = Control.OURS
+    memory.lifted = False
+    memory.stood_down_m = memory.pos_ned[2]
+    memory.top_down_m = memory.pos_ned[2] - task.requested.request.up_m
+    turn.due(turn.policy.takeoff.timeout_s)
+    if memory.autopilot == "ardupilot" and memory.mode is not FlightMode.GUIDED:
+        _ask_first(turn, CommandKind.GUIDED, CommandKind.TAKE_OFF)
+    else:
+        _climb(turn)
+
+
+def _climb(turn: Turn) -> None:
+    memory, task = turn.memory, turn.memory.task
+    assert task is not None
+    assert isinstance(task.requested.request, TakeOff)
+    turn.command(CommandKind.TAKE_OFF, "the climb is verified", up_m=task.requested.request.up_m)
+    memory.takeoff_until_ns = turn.after_ns(2 * turn.policy.control.timeout_s)
+    if memory.autopilot != "ardupilot":
+        turn.await_mode(FlightMode.TAKEOFF)
+
+
+def _fly_by_itself(turn: Turn, kind: CommandKind, reason: str, seconds: float | None) -> None:
+    """A mode in which the vehicle flies by itself, at our command: nothing is streamed."""
+    memory = turn.memory
+    turn.cancel_commands()
+    memory.control = Control.OURS
+    memory.hold = memory.goal = None
+    memory.ask_control_ns = None
+    turn.due(seconds)
+    turn.command(kind, reason)
+
+
+def land(turn: Turn) -> None:
+    _fly_by_itself(
+        turn, CommandKind.LAND, "landing in place is never refused", turn.policy.land_timeout_s
+    )
+
+
+def return_home(turn: Turn) -> None:
+    if turn.why is not None:
+        turn.say(Level.WARNING, f"{turn.why.sentence}; the policy forwards it")
+    _fly_by_itself(turn, CommandKind.RETURN, "the return path is judged", None)
+
+
+def start_mission(turn: Turn) -> None:
+    memory = turn.memory
+    memory.lifted = memory.airborne
+    memory.mission_over = False
+    _fly_by_itself(turn, CommandKind.START_MISSION, "the mission on board is verified", None)
+
+
+def photo(turn: Turn) -> None:
+    turn.due(turn.policy.photo_timeout_s)
+    turn.command(CommandKind.PHOTO, "asked for while hovering")

@@ -1,0 +1,80 @@
+"""The sentences of the gate's own refusals and outcomes; the verifier brings its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+from gcs.frames import Vec3, enu_from_ned
+from gcs.gate.effects import CommandKind
+from gcs.gate.refusal import Code
+
+REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
+    {
+        Code.BUSY: "another request is under way",
+        Code.NO_VEHICLE: "no vehicle is heard",
+        Code.STALE: "the vehicle's position is too old",
+        Code.NOT_IN_CONTROL: "somebody else flies the vehicle: take control first",
+        Code.CONTROL_PENDING: "control is being taken, the heartbeat has not confirmed it yet",
+        Code.NOT_FLYING: "the vehicle is not flying: arm and take off first",
+        Code.ALREADY_FLYING: "the vehicle flies already",
+        Code.HOLDING: "the vehicle is held: resume first",
+        Code.IN_AIR: "the vehicle is not known to stand on the ground",
+        Code.OPERATOR_LOST: "the operator is gone: only hold, land, abort and disarm are left",
+        Code.POLICY: "the policy does not allow it",
+        Code.RTL_BLOCKED: "the way home is not clear: land instead",
+    }
+)
+"""Why a request is refused in this state."""
+
+ENDED: Final[Mapping[Code, str]] = MappingProxyType(
+    {
+        Code.OPERATOR: "stopped by the operator",
+        Code.OPERATOR_LOST: "the operator is lost",
+        Code.SUPERSEDED: "a later request took its place",
+        Code.DEADLINE: "it took longer than its deadline",
+        Code.NO_ANSWER: "the vehicle did not do it in time",
+        Code.VEHICLE_REFUSED: "the vehicle refused",
+        Code.STALE: "the vehicle's position is too old",
+        Code.LINK_LOST: "the vehicle is not heard any more",
+        Code.MODE_CHANGED: "the vehicle's mode was changed by somebody else",
+        Code.NOT_ARMED: "the vehicle disarmed",
+        Code.NOT_FLYING: "the vehicle stands on the ground",
+        Code.ESTIMATOR_RESET: "the vehicle's position jumped",
+        Code.HOME_MOVED: "home moved while the vehicle flew",
+        Code.FENCE_BREACH: "the vehicle would have left the fence",
+        Code.TOO_HIGH: "the vehicle climbed above the height that was verified",
+        Code.TOO_CLOSE: "no verified place to hover",
+        Code.SEVERITY: "severity forbids motion",
+    }
+)
+"""Why a request ends otherwise than complete."""
+
+
+ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(
+    {
+        CommandKind.HOLD: "hold mode",
+        CommandKind.GUIDED: "guided mode",
+        CommandKind.ARM: "arming",
+        CommandKind.DISARM: "disarming",
+        CommandKind.FORCE_DISARM: "the forced disarm",
+        CommandKind.TAKE_OFF: "take-off",
+        CommandKind.LAND: "landing",
+        CommandKind.RETURN: "the return",
+        CommandKind.PHOTO: "the picture",
+        CommandKind.START_MISSION: "the mission",
+        CommandKind.SET_MODE: "the mode",
+    }
+)
+"""What a command asks for: the vehicle refused it, or did not answer the request for it."""
+
+
+def ended_because(code: Code) -> str:
+    return ENDED[code]
+
+
+def where(pos_ned: Vec3) -> str:
+    """In the operator's frame."""
+    east, north, up = enu_from_ned(pos_ned)
+    return f"({east:.2f} E, {north:.2f} N, {up:.2f} U)"

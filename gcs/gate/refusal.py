@@ -1,0 +1,58 @@
+"""Why something is refused: a code, a sentence, the numbers and the zone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Code(StrEnum):
+    """Why a request was refused or ended otherwise than complete."""
+
+    BUSY = "BUSY"
+    NO_VEHICLE = "NO_VEHICLE"
+    STALE = "STALE"
+    NOT_IN_CONTROL = "NOT_IN_CONTROL"
+    CONTROL_PENDING = "CONTROL_PENDING"
+    NOT_ARMED = "NOT_ARMED"
+    NOT_FLYING = "NOT_FLYING"
+    ALREADY_FLYING = "ALREADY_FLYING"
+    HOLDING = "HOLDING"
+    NON_FINITE = "NON_FINITE"
+    OUTSIDE_FENCE = "OUTSIDE_FENCE"
+    INSIDE_EXCLUSION = "INSIDE_EXCLUSION"
+    TOO_CLOSE = "TOO_CLOSE"
+    TOO_HIGH = "TOO_HIGH"
+    TOO_LOW = "TOO_LOW"
+    TOO_FAR = "TOO_FAR"
+    LEG_LEAVES_FENCE = "LEG_LEAVES_FENCE"
+    CANNOT_STOP = "CANNOT_STOP"
+    NO_ORIGIN = "NO_ORIGIN"
+    RTL_BLOCKED = "RTL_BLOCKED"
+    NO_MISSION = "NO_MISSION"
+    BAD_MISSION = "BAD_MISSION"
+    SEVERITY = "SEVERITY"
+    RECORDER_DOWN = "RECORDER_DOWN"
+    POLICY = "POLICY"
+    IN_AIR = "IN_AIR"
+    VEHICLE_REFUSED = "VEHICLE_REFUSED"
+    NO_ANSWER = "NO_ANSWER"
+    DEADLINE = "DEADLINE"
+    OPERATOR = "OPERATOR"
+    OPERATOR_LOST = "OPERATOR_LOST"
+    FENCE_BREACH = "FENCE_BREACH"
+    ESTIMATOR_RESET = "ESTIMATOR_RESET"
+    HOME_MOVED = "HOME_MOVED"
+    MODE_CHANGED = "MODE_CHANGED"
+    SUPERSEDED = "SUPERSEDED"
+    LINK_LOST = "LINK_LOST"
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why not: a code for programs, a sentence for people, the numbers it was decided on."""
+
+    code: Code
+    sentence: str
+    numbers: tuple[tuple[str, float], ...] = ()
+    zone: str = ""
