@@ -57,15 +57,6 @@ class PositionSeen:
 
 
 @dataclass(frozen=True, slots=True)
-class GeodeticSeen:
-    """GPS_GLOBAL_ORIGIN, once known: lets geographic fences and goals be judged."""
-
-    lat_deg: float
-    lon_deg: float
-    alt_amsl_m: float
-
-
-@dataclass(frozen=True, slots=True)
 class HomeSeen:
     """HOME_POSITION in the local frame: where returns end and where the default fence stands."""
 
@@ -150,7 +141,6 @@ Input: TypeAlias = (
     | HeartbeatSeen
     | LandedSeen
     | PositionSeen
-    | GeodeticSeen
     | HomeSeen
     | ReturnHeightSeen
     | VerifierChanged

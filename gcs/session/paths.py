@@ -21,44 +21,47 @@ PROBLEM_CODES = {
 }
 
 
-def autopilot_name(seen: Telemetry) -> AutopilotName:
+def autopilot_name(telemetry: Telemetry) -> AutopilotName:
     """Whose mission protocol it is; a stranger is spoken to as a px4."""
     name: Literal["px4", "ardupilot"] = "px4"
-    if seen.autopilot.name == "ardupilot":
+    if telemetry.autopilot.name == "ardupilot":
         name = "ardupilot"
     return name
 
 
-def on_earth(plan: Plan, seen: Telemetry) -> Plan | Refusal:
+def on_earth(plan: Plan, telemetry: Telemetry) -> Plan | Refusal:
     """Items in metres from the take-off point become items above home, by its own projection."""
-    if seen.origin is None or seen.home is None or seen.home_ned is None:
+    if telemetry.origin is None or telemetry.home is None or telemetry.home_ned is None:
         return Refusal(Code.NO_ORIGIN, "the vehicle's origin and home are not known yet")
-    projection = Projection(seen.origin, seen.autopilot.name)
+    projection = Projection(telemetry.origin, telemetry.autopilot.name)
     return georeference(
-        plan, projection.lat_lon, (seen.home_ned[0], seen.home_ned[1]), Geodetic(*seen.home)
+        plan,
+        projection.lat_lon,
+        (telemetry.home_ned[0], telemetry.home_ned[1]),
+        Geodetic(*telemetry.home),
     )
 
 
 def path_of(
-    plan: Plan, seen: Telemetry, now_ns: int = 0, age_ns: int | None = None
+    plan: Plan, telemetry: Telemetry, now_ns: int = 0, age_ns: int | None = None
 ) -> FlightPath | Refusal:
     """The whole path from where the vehicle is now, local NED; refused where it is not known.
 
     With `age_ns`, also where its position is older than that at `now_ns`.
     """
-    if age_ns is not None and now_ns - seen.position_ns > age_ns:
+    if age_ns is not None and now_ns - telemetry.position_ns > age_ns:
         return Refusal(Code.STALE, "the vehicle's position is too old")
-    if seen.origin is None or seen.home_ned is None or seen.pos_ned is None:
+    if telemetry.origin is None or telemetry.home_ned is None or telemetry.pos_ned is None:
         return Refusal(Code.NO_ORIGIN, "the vehicle's origin, home or position is not known yet")
     path = flight_path(
         plan,
         Ground(
-            autopilot_name(seen),
-            seen.home_ned,
-            seen.pos_ned,
-            Projection(seen.origin, seen.autopilot.name).north_east,
-            seen.origin.alt_amsl_m,
-            seen.return_up_m,
+            autopilot_name(telemetry),
+            telemetry.home_ned,
+            telemetry.pos_ned,
+            Projection(telemetry.origin, telemetry.autopilot.name).north_east,
+            telemetry.origin.alt_amsl_m,
+            telemetry.return_up_m,
         ),
     )
     if path.problems:
@@ -67,10 +70,10 @@ def path_of(
     return path
 
 
-def verify(plan: Plan, path: FlightPath, policy: Policy, seen: Telemetry) -> Cleared | Refusal:
+def verify(plan: Plan, path: FlightPath, policy: Policy, telemetry: Telemetry) -> Cleared | Refusal:
     """Every leg and circle against the policy's fence and the plan's own; says which item."""
     both = dataclasses.replace(policy, fence=(*policy.fence, *zone_specs(plan.fence)))
-    verifier = verifier_for(both, seen.autopilot.name, seen.home_ned, seen.origin)
+    verifier = verifier_for(both, telemetry.autopilot.name, telemetry.home_ned, telemetry.origin)
     answer = verifier.path(path.segments, path.discs, path.floor_free)
     if isinstance(answer, Cleared):
         return answer

@@ -44,19 +44,19 @@ class OnBoard:
     plan: Plan
     sent: tuple[WireItem, ...]
     last_seq: int | None
-    """The last stop; None where the mission ends on the ground, which is seen by landing."""
+    """The last stop; None where the mission ends on the ground, which is telemetry by landing."""
     loops: bool
     """It jumps back: its last stop may be reached many times."""
 
 
-def prepare(path: str, data: bytes, seen: Telemetry) -> Prepared | Refusal:
+def prepare(path: str, data: bytes, telemetry: Telemetry) -> Prepared | Refusal:
     """Read, lint and place the plan in `data`.
 
     Raises PlanError for a file that is none, or none that can be flown; refuses where the
     vehicle's origin or home is not known.
     """
-    who = autopilot_name(seen)
-    home = Geodetic(*seen.home) if seen.home else None
+    who = autopilot_name(telemetry)
+    home = Geodetic(*telemetry.home) if telemetry.home else None
     written = read(path, data, who)
     if not written.items:
         hint = "`gcs mission clear` takes a mission off; fences are checked, not uploaded"
@@ -70,7 +70,7 @@ def prepare(path: str, data: bytes, seen: Telemetry) -> Prepared | Refusal:
             raise PlanError(path, finding.where, finding.item, finding.what, hint=finding.hint)
         level = Level.WARNING if finding.level is PlanLevel.WARNING else Level.INFO
         remarks.append((level, f"{finding.item}: {finding.what}"))
-    plan = on_earth(written, seen)
+    plan = on_earth(written, telemetry)
     if isinstance(plan, Refusal):
         return plan
     return Prepared(plan, to_wire(plan, who, home), tuple(remarks))
@@ -95,7 +95,7 @@ def _loops(plan: Plan) -> bool:
 
 
 def _lands(plan: Plan) -> bool:
-    """Whether it ends on the ground: that is seen by the landing, and by nothing before it."""
+    """Whether it ends on the ground: that is telemetry by the landing, and by nothing before it."""
     stops = [item for item in plan.items if KINDS.get(item.command) in STOPS]
     if not stops:
         return False

@@ -15,9 +15,10 @@ from gcs.session.telemetry import Telemetry
 
 def snapshot(
     gate: Gate,
-    seen: Telemetry | None,
+    telemetry: Telemetry | None,
     now_ns: int,
     *,
+    mission_total: int | None,
     losses: SequenceTracker,
     log_path: str,
     recording: bool,
@@ -37,27 +38,27 @@ def snapshot(
         recording=recording,
         recorded_mb=recorded_bytes / 1e6,
     )
-    if seen is None:
+    if telemetry is None:
         return nobody
-    placed = seen.pos_ned is not None
+    placed = telemetry.pos_ned is not None
     return msgspec.structs.replace(
         nobody,
-        vehicle=seen.label,
-        mode=seen.mode_name,
-        armed=seen.armed,
-        landed=seen.landed.name,
-        pos_enu=enu_from_ned(seen.pos_ned) if seen.pos_ned else None,
-        v_enu=enu_from_ned(seen.v_ned) if placed else None,
-        yaw_deg=None if seen.yaw_rad is None else math.degrees(seen.yaw_rad) % 360.0,
-        position_age_s=(now_ns - seen.position_ns) / 1e9 if placed else None,
-        home_enu=enu_from_ned(seen.home_ned) if seen.home_ned else None,
-        battery_pct=seen.battery_pct,
-        battery_v=seen.battery_v,
-        heartbeat_age_s=(now_ns - seen.heartbeat_ns) / 1e9,
-        rx_hz=seen.rx_hz,
-        setpoint_hz=seen.setpoint_hz(now_ns),
-        mission_seq=seen.mission_seq,
-        mission_total=seen.mission_total,
+        vehicle=telemetry.label,
+        mode=telemetry.mode_name,
+        armed=telemetry.armed,
+        landed=telemetry.landed.name,
+        pos_enu=enu_from_ned(telemetry.pos_ned) if telemetry.pos_ned else None,
+        v_enu=enu_from_ned(telemetry.v_ned) if placed else None,
+        yaw_deg=None if telemetry.yaw_rad is None else math.degrees(telemetry.yaw_rad) % 360.0,
+        position_age_s=(now_ns - telemetry.position_ns) / 1e9 if placed else None,
+        home_enu=enu_from_ned(telemetry.home_ned) if telemetry.home_ned else None,
+        battery_pct=telemetry.battery_pct,
+        battery_v=telemetry.battery_v,
+        heartbeat_age_s=(now_ns - telemetry.heartbeat_ns) / 1e9,
+        rx_hz=telemetry.rx_hz,
+        setpoint_hz=telemetry.setpoint_hz(now_ns),
+        mission_seq=telemetry.mission_seq,
+        mission_total=mission_total,
     )
 
 

@@ -61,7 +61,6 @@ class Telemetry:
     battery_v: float | None = None
 
     mission_seq: int | None = None
-    mission_total: int | None = None
     mission_reached: int = -1
 
     rx_count: int = 0

@@ -22,7 +22,7 @@ from gcs.plan.reader import read
 from gcs.plan.zones import zone_specs
 from gcs.record.writer import Recorder, RecorderError
 from gcs.resources import policy_path
-from gcs.session.core import Session
+from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.shell import sockets
 from gcs.shell.clock import Clock

@@ -14,25 +14,19 @@ from typing import Protocol
 
 from gcs import ipc
 from gcs.resources import MissionNotFoundError, find
-from gcs.session.ports import (
+from gcs.session.effects import Effect, Emit, Finish, ReadFile, Record, Transmit, WriteFile
+from gcs.session.inputs import (
     Datagram,
-    Effect,
-    Emit,
     FileRead,
     FileWritten,
-    Finish,
     Input,
     LinkEvent,
     OperatorGone,
     OperatorLine,
     OperatorNoise,
-    ReadFile,
-    Record,
     SimGone,
     SimLine,
-    Transmit,
     Wake,
-    WriteFile,
 )
 from gcs.shell.clock import Clock
 from gcs.shell.pipes import LineSink, LineSource

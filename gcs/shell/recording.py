@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from gcs.record.items import RecordItem
 from gcs.record.writer import Recorder, RecordLost, RecordResumed
-from gcs.session.ports import RecorderChanged, RecorderGrew
+from gcs.session.inputs import RecorderChanged, RecorderGrew
 
 GREW_STEP_BYTES = 50_000
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from gcs import ipc
 from gcs.gate.states import State
-from gcs.session import ports
+from gcs.session import inputs
 from tests.loopback.air import Weather
 from tests.loopback.flight import MISSIONS, PERSONALITIES, POLICIES
 from tests.loopback.watched import WatchedFlight
@@ -105,8 +105,8 @@ def _unknown(flight: WatchedFlight, dice: random.Random) -> None:
 
 
 def _pending(flight: WatchedFlight, dice: random.Random) -> None:
-    flight.feed(ports.OperatorLine(ipc.Pending((dice.uniform(-9.0, 9.0), 0.0, 0.5))))
-    flight.feed(ports.OperatorNoise("{"))
+    flight.feed(inputs.OperatorLine(ipc.Pending((dice.uniform(-9.0, 9.0), 0.0, 0.5))))
+    flight.feed(inputs.OperatorNoise("{"))
 
 
 def _dropout(flight: WatchedFlight, dice: random.Random) -> None:
@@ -131,12 +131,12 @@ def _gust(flight: WatchedFlight, dice: random.Random) -> None:
 
 def _garbage(flight: WatchedFlight, dice: random.Random) -> None:
     noise = dice.randbytes(dice.choice((1, 40, 300, 70_000)))
-    flight.feed(ports.Datagram(0, noise))
+    flight.feed(inputs.Datagram(0, noise))
     flight.world.handle(Datagram(0, "somebody", noise), flight.now_ns)
 
 
 def _recorder(flight: WatchedFlight, dice: random.Random) -> None:
-    flight.feed(ports.RecorderChanged(dice.random() < 0.5, "flight.mcap", "the disk"))
+    flight.feed(inputs.RecorderChanged(dice.random() < 0.5, "flight.mcap", "the disk"))
 
 
 ACTS: tuple[tuple[int, Act], ...] = (
@@ -204,7 +204,7 @@ def flown(index: int, seconds: float = 20.0) -> WatchedFlight:
             if dice.random() < 0.005:
                 break
             flight.run(dice.choice((0.0, 0.02, 0.2, 0.7, 1.5, 3.0)))
-        flight.feed(ports.OperatorGone("the flight is over"))
+        flight.feed(inputs.OperatorGone("the flight is over"))
         flight.run(4.0)
     return flight
 

@@ -18,8 +18,8 @@ from gcs.frames import Vec3
 from gcs.gate.policy.policy import DEFAULT, Policy, parse_policy
 from gcs.gate.states import State
 from gcs.resources import policy_path
-from gcs.session import ports
-from gcs.session.core import Session
+from gcs.session import effects, inputs
+from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.wire.frame import Frame, split
 from tests.loopback import eyes
@@ -80,7 +80,7 @@ class Flight(Looks):
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
         self.session = Session(setup, START_NS)
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
-        self.finish: ports.Finish | None = None
+        self.finish: effects.Finish | None = None
         self.files: dict[str, bytes] = {}
         self.vehicle_silent = False
         self.positions_lost = False
@@ -116,11 +116,11 @@ class Flight(Looks):
         for data in self.up.arrived(next_ns):
             self._vehicle(Inbound(0, PEER, data))
         for data in self.down.arrived(next_ns):
-            self.feed(ports.Datagram(0, data))
+            self.feed(inputs.Datagram(0, data))
         if world_ns <= next_ns:
             self._vehicle(WorldWake())
         if session_ns <= next_ns:
-            self.feed(ports.Wake())
+            self.feed(inputs.Wake())
         return True
 
     def _vehicle(self, given: Inbound | WorldWake) -> None:
@@ -137,30 +137,30 @@ class Flight(Looks):
         frames = (item for item in split(data) if isinstance(item, Frame))
         return b"".join(frame.raw for frame in frames if frame.name != "LOCAL_POSITION_NED")
 
-    def feed(self, given: ports.Input) -> None:
+    def feed(self, given: inputs.Input) -> None:
         """Hand the session an input, now."""
         for effect in self.session.handle(given, self.now_ns):
             self._carry_out(effect)
 
-    def _carry_out(self, effect: ports.Effect) -> None:
+    def _carry_out(self, effect: effects.Effect) -> None:
         match effect:
-            case ports.Transmit(_, data):
+            case effects.Transmit(_, data):
                 self.sent.append(Sent(self.now_ns, data))
                 self.up.send(data, self.now_ns)
-            case ports.Record(item):
+            case effects.Record(item):
                 self.records.append((self.now_ns, item))
-            case ports.Emit(ipc.Snapshot()):
+            case effects.Emit(ipc.Snapshot()):
                 pass
-            case ports.Emit(event):
+            case effects.Emit(event):
                 self.events.append(event)
                 self.event_times_ns.append(self.now_ns)
-            case ports.ReadFile(token, path):
+            case effects.ReadFile(token, path):
                 text = Path(path).read_bytes() if Path(path).is_file() else None
-                self.feed(ports.FileRead(token, path, text, "" if text else "no such file"))
-            case ports.WriteFile(token, path, data):
+                self.feed(inputs.FileRead(token, path, text, "" if text else "no such file"))
+            case effects.WriteFile(token, path, data):
                 self.files[path] = data
-                self.feed(ports.FileWritten(token, path))
-            case ports.Finish():
+                self.feed(inputs.FileWritten(token, path))
+            case effects.Finish():
                 self.finish = effect
 
     # --------------------------------------------------------------------------- operator
@@ -193,7 +193,7 @@ class Flight(Looks):
             mode=mode,
             path=path,
         )
-        self.feed(ports.OperatorLine(ask))
+        self.feed(inputs.OperatorLine(ask))
         return ask_id
 
     def goto(self, east_m: float, north_m: float, up_m: float) -> int:
@@ -239,7 +239,7 @@ class Flight(Looks):
         data = eyes.local_position(
             boot_ms, (north, east, -up), (v_north, v_east, -v_up), self._forged
         )
-        self.feed(ports.Datagram(0, data))
+        self.feed(inputs.Datagram(0, data))
 
     def push(self, v_enu: Vec3) -> None:
         """A gust: the vehicle has this velocity from now on, until its control has braked.

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.states import State
-from gcs.session import ports
-from gcs.session.core import EXIT_BUG
+from gcs.session import inputs
+from gcs.session.effects import Finish, Transmit
+from gcs.session.session import EXIT_BUG
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
 
 
@@ -17,9 +18,9 @@ def test_a_fault_on_the_clock_in_flight_holds_the_vehicle(personality: Personali
     flight.run(1.0)
     assert flight.is_in(State.MOVING)
     fault_ns = flight.now_ns
-    effects = flight.session.fault(ports.Wake(), "ZeroDivisionError: a bug", fault_ns)
-    sent = [effect.data for effect in effects if isinstance(effect, ports.Transmit)]
-    (finish,) = [effect for effect in effects if isinstance(effect, ports.Finish)]
+    effects = flight.session.fault(inputs.Wake(), "ZeroDivisionError: a bug", fault_ns)
+    sent = [effect.data for effect in effects if isinstance(effect, Transmit)]
+    (finish,) = [effect for effect in effects if isinstance(effect, Finish)]
     assert finish.exit_code == EXIT_BUG
     for data in sent:
         flight.up.send(data, fault_ns)

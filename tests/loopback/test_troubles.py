@@ -9,7 +9,7 @@ import pytest
 
 from gcs.gate.condition import Condition
 from gcs.gate.states import Control, State
-from gcs.session import ports
+from gcs.session import inputs
 from tests.loopback import eyes
 from tests.loopback.air import Weather
 from tests.loopback.flight import PEER, PERSONALITIES, POLICIES, Flight, Personality
@@ -81,7 +81,7 @@ def test_garbage_and_oversize_datagrams_change_nothing_at_either_end(
     for size in (0, 1, 8, 17, 280, 1500, 65_507, 70_000):
         for lead in (b"", b"\xfd", b"\xfe", b"Init ArduCopter\n"):
             noise = lead + dice.randbytes(size)
-            flight.feed(ports.Datagram(0, noise))
+            flight.feed(inputs.Datagram(0, noise))
             flight.world.handle(Datagram(0, PEER, noise), flight.now_ns)
             flight.world.handle(Datagram(0, "a stranger", noise), flight.now_ns)
             flight.run(0.01)
@@ -153,17 +153,17 @@ def test_a_position_that_jumps_is_held_and_verified_anew(personality: Personalit
 def test_a_second_station_with_our_id_is_told() -> None:
     flight = Flight().hovering(2.0)
     ours = next(sent.data for sent in flight.sent)
-    flight.feed(ports.Datagram(0, ours))
+    flight.feed(inputs.Datagram(0, ours))
     assert Condition.OTHER_STATION in flight.conditions
     assert flight.is_in(State.HOVERING)
 
 
 def test_a_recorder_that_fails_is_a_condition_and_no_more() -> None:
     flight = Flight().hovering(2.0)
-    flight.feed(ports.RecorderChanged(False, "", "no space left on device"))
+    flight.feed(inputs.RecorderChanged(False, "", "no space left on device"))
     assert Condition.RECORDER_FAILED in flight.conditions
     assert flight.done(flight.goto(3.0, 0.0, 2.0)) == "complete"
-    flight.feed(ports.RecorderChanged(True, "part2.mcap", "recording again"))
+    flight.feed(inputs.RecorderChanged(True, "part2.mcap", "recording again"))
     assert Condition.RECORDER_FAILED not in flight.conditions
 
 

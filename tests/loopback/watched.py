@@ -22,7 +22,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge
 from gcs.gate.proof.invariants import objections
 from gcs.gate.states import LandedState
-from gcs.session import ports
+from gcs.session import effects
 from tests.loopback import eyes
 from tests.loopback.flight import Flight
 
@@ -130,13 +130,13 @@ class WatchedFlight(Flight):
         self.requests[self.last_id + 1] = (word, float32(goal_ned) if usable else None)
         return super().say(word, **named)
 
-    def _carry_out(self, effect: ports.Effect) -> None:
+    def _carry_out(self, effect: effects.Effect) -> None:
         match effect:
-            case ports.Transmit(_, data):
+            case effects.Transmit(_, data):
                 self._sends(eyes.read(data))
-            case ports.Emit(ipc.VerdictEvent() as verdict):
+            case effects.Emit(ipc.VerdictEvent() as verdict):
                 self._judges(verdict)
-            case ports.Emit(ipc.EndingEvent() as ending):
+            case effects.Emit(ipc.EndingEvent() as ending):
                 self._ends(ending)
         super()._carry_out(effect)
 

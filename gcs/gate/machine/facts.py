@@ -12,7 +12,6 @@ from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import (
     CommandEnded,
     ConditionChanged,
-    GeodeticSeen,
     HeartbeatSeen,
     HomeSeen,
     Input,
@@ -102,7 +101,7 @@ def events_from(turn: Turn, given: Input) -> Iterator[Told]:
             turn.say(Level.INFO, f"The operator leaves: {reason}")
             memory.deserted = True
             yield from _plain(Event.OPERATOR_LOST)
-        case GeodeticSeen() | Tick():
+        case Tick():
             return
         case _:
             assert_never(given)

@@ -7,8 +7,9 @@ import pytest
 from gcs.config import LinkConfig
 from gcs.gate.policy.policy import DEFAULT
 from gcs.record.items import InputItem
-from gcs.session import ports
-from gcs.session.core import EXIT_BUG, MAX_FAULTS, Session
+from gcs.session import inputs
+from gcs.session.effects import Effect, Emit, Finish, Record
+from gcs.session.session import EXIT_BUG, MAX_FAULTS, Session
 from gcs.session.setup import Setup
 
 
@@ -17,26 +18,26 @@ def session() -> Session:
     return Session(Setup(LinkConfig(), "test", DEFAULT, "", ("a link",), ""), now_ns=0)
 
 
-def finished(effects: list[ports.Effect]) -> list[ports.Finish]:
-    return [effect for effect in effects if isinstance(effect, ports.Finish)]
+def finished(effects: list[Effect]) -> list[Finish]:
+    return [effect for effect in effects if isinstance(effect, Finish)]
 
 
 def test_bytes_that_we_cannot_take_are_dropped_said_and_recorded(session: Session) -> None:
-    effects = session.fault(ports.Datagram(0, b"?"), "Traceback\nValueError: bad", 1)
+    effects = session.fault(inputs.Datagram(0, b"?"), "Traceback\nValueError: bad", 1)
     assert not finished(effects)
-    items = [effect.item for effect in effects if isinstance(effect, ports.Record)]
+    items = [effect.item for effect in effects if isinstance(effect, Record)]
     assert [item.kind for item in items if isinstance(item, InputItem)] == ["Fault"]
-    said = [effect.event for effect in effects if isinstance(effect, ports.Emit)]
+    said = [effect.event for effect in effects if isinstance(effect, Emit)]
     assert "ValueError: bad" in repr(said)
-    assert session.handle(ports.Wake(), 2)
+    assert session.handle(inputs.Wake(), 2)
 
 
 def test_a_fault_on_the_clock_ends_the_session(session: Session) -> None:
-    (finish,) = finished(session.fault(ports.Wake(), "ValueError: bad", 1))
+    (finish,) = finished(session.fault(inputs.Wake(), "ValueError: bad", 1))
     assert finish.exit_code == EXIT_BUG
 
 
 def test_fault_upon_fault_ends_the_session(session: Session) -> None:
     for _ in range(MAX_FAULTS):
-        assert not finished(session.fault(ports.Datagram(0, b"?"), "ValueError: bad", 1))
-    assert finished(session.fault(ports.Datagram(0, b"?"), "ValueError: bad", 1))
+        assert not finished(session.fault(inputs.Datagram(0, b"?"), "ValueError: bad", 1))
+    assert finished(session.fault(inputs.Datagram(0, b"?"), "ValueError: bad", 1))

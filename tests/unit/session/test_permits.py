@@ -10,9 +10,8 @@ import pytest
 import gcs
 from gcs.gate.effects import CommandKind, SendCommand
 from gcs.gate.permit import Permit, issue
-from gcs.session.orders import NEEDS_PERMIT, Orders
-from gcs.session.outbox import Outbox
-from gcs.session.ports import Transmit
+from gcs.session.commands import NEEDS_PERMIT, Commands
+from gcs.session.setpoints import setpoint
 from tests.unit.session.vehicles import SECOND_NS, vehicle
 
 PACKAGE = Path(gcs.__file__).parent
@@ -32,7 +31,7 @@ def calls_of(name: str) -> set[str]:
 
 
 def test_setpoints_are_made_in_one_file() -> None:
-    assert calls_of("SetPositionTargetLocalNed") == {"session/outbox.py"}
+    assert calls_of("SetPositionTargetLocalNed") == {"session/setpoints.py"}
     assert calls_of("SetPositionTargetGlobalInt") == set()
 
 
@@ -46,19 +45,17 @@ def test_nobody_makes_a_permit_without_the_seal() -> None:
 
 
 def test_a_setpoint_leaves_with_a_permit_of_now_and_not_with_an_old_one() -> None:
-    out = Outbox(255, 190, links=1, start_ns=0)
     permit = issue((1.0, 2.0, -3.0), None, SECOND_NS, "a test")
-    out.setpoint(vehicle(), permit, SECOND_NS)
-    assert isinstance(out.take()[0], Transmit)
+    message = setpoint(vehicle(), permit, 0, SECOND_NS)
+    assert (message.x, message.y, message.z) == (1.0, 2.0, -3.0)
     with pytest.raises(PermissionError):
-        out.setpoint(vehicle(), permit, SECOND_NS + 1)
-    assert out.take() == []
+        setpoint(vehicle(), permit, 0, SECOND_NS + 1)
 
 
 @pytest.mark.parametrize("kind", [kind for kind in CommandKind if kind in NEEDS_PERMIT])
 def test_a_command_that_moves_needs_a_permit(kind: CommandKind) -> None:
     with pytest.raises(PermissionError):
-        Orders(255, 190).send(SendCommand(1, kind, SECOND_NS), vehicle(), 0)
+        Commands(255, 190).send(SendCommand(1, kind, SECOND_NS), vehicle(), 0)
 
 
 def test_what_needs_no_permit_moves_nothing() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import pytest
 
@@ -10,7 +11,9 @@ from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
-from gcs.session.inbound import absorb
+from gcs.session.gate_port import condition
+from gcs.session.updates import updates
+from gcs.session.work import ToGate, Work
 from gcs.wire.messages import GpsGlobalOrigin, Heartbeat, HomePosition
 from tests.unit.session.vehicles import (
     HOME,
@@ -23,22 +26,27 @@ from tests.unit.session.vehicles import (
 )
 
 
+def given(found: Iterable[Work]) -> list[inputs.Input]:
+    """What the gate is told."""
+    return [item.given for item in found if isinstance(item, ToGate)]
+
+
 def origin() -> GpsGlobalOrigin:
     return GpsGlobalOrigin(latitude=473977420, longitude=85455940, altitude=488_000)
 
 
 def test_a_position_is_heard_with_its_own_stamp_and_kept_with_its_arrival() -> None:
     seen = vehicle()
-    heard = list(absorb(position(1000, 1.0, 2.0, -3.0), seen, 5 * SECOND_NS))
-    assert inputs.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1000) in heard
+    heard = list(updates(position(1000, 1.0, 2.0, -3.0), seen, 5 * SECOND_NS))
+    assert ToGate(inputs.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1000)) in heard
     assert seen.position_ns == 5 * SECOND_NS
 
 
 @pytest.mark.parametrize("overtaken_ms", [1000, 970])
 def test_a_duplicate_or_overtaken_position_is_not_fresh(overtaken_ms: int) -> None:
     seen = vehicle()
-    list(absorb(position(1000), seen, SECOND_NS))
-    assert list(absorb(position(overtaken_ms, 9.0), seen, 2 * SECOND_NS)) == []
+    list(updates(position(1000), seen, SECOND_NS))
+    assert list(updates(position(overtaken_ms, 9.0), seen, 2 * SECOND_NS)) == []
     assert seen.position_ns == SECOND_NS
     assert seen.pos_ned == (0.0, 0.0, 0.0)
 
@@ -46,48 +54,48 @@ def test_a_duplicate_or_overtaken_position_is_not_fresh(overtaken_ms: int) -> No
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 def test_a_position_that_is_no_number_is_no_position(bad: float) -> None:
     seen = vehicle()
-    assert list(absorb(position(1000, bad), seen, SECOND_NS)) == []
+    assert list(updates(position(1000, bad), seen, SECOND_NS)) == []
     assert seen.pos_ned is None
 
 
 def test_a_clock_that_went_back_is_a_restart_and_the_origin_is_asked_for_again() -> None:
     seen = vehicle()
-    list(absorb(origin(), seen, SECOND_NS))
-    list(absorb(position(60_000), seen, SECOND_NS))
-    assert list(absorb(position(200), seen, 2 * SECOND_NS)) == []
-    heard = list(absorb(position(230), seen, 2 * SECOND_NS + 30_000_000))
-    assert inputs.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 230, reset=True) in heard
+    list(updates(origin(), seen, SECOND_NS))
+    list(updates(position(60_000), seen, SECOND_NS))
+    assert list(updates(position(200), seen, 2 * SECOND_NS)) == []
+    heard = list(updates(position(230), seen, 2 * SECOND_NS + 30_000_000))
+    assert ToGate(inputs.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 230, reset=True)) in heard
     assert seen.origin is None
     assert seen.home_ned is None
 
 
 def test_one_position_that_lost_its_way_for_long_is_no_restart() -> None:
     seen = vehicle()
-    list(absorb(position(60_000), seen, SECOND_NS))
-    assert list(absorb(position(200), seen, SECOND_NS + 1)) == []
-    assert len(list(absorb(position(60_030), seen, SECOND_NS + 30_000_000))) == 2
-    assert list(absorb(position(231), seen, SECOND_NS + 40_000_000)) == []
+    list(updates(position(60_000), seen, SECOND_NS))
+    assert list(updates(position(200), seen, SECOND_NS + 1)) == []
+    assert len(list(updates(position(60_030), seen, SECOND_NS + 30_000_000))) == 2
+    assert list(updates(position(231), seen, SECOND_NS + 40_000_000)) == []
 
 
 def test_a_position_that_waited_on_the_way_is_old_when_it_comes() -> None:
     seen = vehicle()
-    list(absorb(position(1_000), seen, 10 * SECOND_NS))
-    assert list(absorb(position(1_100), seen, 13 * SECOND_NS)) == []
-    assert len(list(absorb(position(4_000), seen, 13 * SECOND_NS + 1))) == 2
+    list(updates(position(1_000), seen, 10 * SECOND_NS))
+    assert list(updates(position(1_100), seen, 13 * SECOND_NS)) == []
+    assert len(list(updates(position(4_000), seen, 13 * SECOND_NS + 1))) == 2
 
 
 def test_an_attitude_that_is_no_number_is_none() -> None:
     seen = vehicle()
-    list(absorb(attitude(math.inf), seen, SECOND_NS))
+    list(updates(attitude(math.inf), seen, SECOND_NS))
     assert seen.yaw_rad is None
-    list(absorb(attitude(0.5), seen, SECOND_NS))
+    list(updates(attitude(0.5), seen, SECOND_NS))
     assert seen.yaw_rad == 0.5
 
 
 @pytest.mark.parametrize(("left_pct", "low", "critical"), [(80, 0, 0), (15, 1, 0), (5, 1, 1)])
 def test_a_low_battery_is_a_condition(left_pct: int, low: int, critical: int) -> None:
-    heard = list(absorb(system_status(left_pct), vehicle(), SECOND_NS))
-    told = {x.condition: x.active for x in heard if isinstance(x, inputs.ConditionChanged)}
+    heard = list(updates(system_status(left_pct), vehicle(), SECOND_NS))
+    told = {x.condition: x.active for x in given(heard) if isinstance(x, inputs.ConditionChanged)}
     assert told[Condition.BATTERY_LOW] is bool(low)
     assert told[Condition.BATTERY_CRITICAL] is bool(critical)
 
@@ -96,7 +104,7 @@ def test_a_heartbeat_of_another_kind_from_the_same_ids_is_not_the_vehicle_s() ->
     station = Heartbeat(
         custom_mode=0, type=6, autopilot=8, base_mode=0, system_status=4, mavlink_version=3
     )
-    assert list(absorb(station, vehicle(), SECOND_NS)) == []
+    assert list(updates(station, vehicle(), SECOND_NS)) == []
 
 
 def test_home_is_placed_by_the_origin_and_never_by_its_own_local_fields() -> None:
@@ -113,9 +121,9 @@ def test_home_is_placed_by_the_origin_and_never_by_its_own_local_fields() -> Non
         approach_y=0.0,
         approach_z=0.0,
     )
-    assert list(absorb(home, seen, SECOND_NS)) == []
-    heard = list(absorb(origin(), seen, SECOND_NS))
-    (where,) = [told.pos_ned for told in heard if isinstance(told, inputs.HomeSeen)]
+    assert list(updates(home, seen, SECOND_NS)) == []
+    heard = list(updates(origin(), seen, SECOND_NS))
+    (where,) = [told.pos_ned for told in given(heard) if isinstance(told, inputs.HomeSeen)]
     assert where == pytest.approx((0.0, 0.0, -2.0), abs=1e-6)
 
 
@@ -124,21 +132,21 @@ def test_local_and_global_positions_that_disagree_are_a_condition(
     east_off_deg: float, disagree: bool
 ) -> None:
     seen = vehicle()
-    list(absorb(origin(), seen, SECOND_NS))
-    list(absorb(position(1000), seen, SECOND_NS))
+    list(updates(origin(), seen, SECOND_NS))
+    list(updates(position(1000), seen, SECOND_NS))
     message = global_position(HOME.lat_deg, HOME.lon_deg + east_off_deg)
-    heard = list(absorb(message, seen, SECOND_NS + 1))
-    (told,) = [told for told in heard if isinstance(told, inputs.ConditionChanged)]
+    heard = list(updates(message, seen, SECOND_NS + 1))
+    (told,) = [told for told in given(heard) if isinstance(told, inputs.ConditionChanged)]
     assert told.condition is Condition.ORIGIN_MISMATCH
     assert told.active is disagree
 
 
 def test_an_old_pair_of_positions_is_not_compared() -> None:
     seen = vehicle()
-    list(absorb(origin(), seen, SECOND_NS))
-    list(absorb(position(1000), seen, SECOND_NS))
-    heard = list(absorb(global_position(0.0, 0.0), seen, 2 * SECOND_NS))
-    assert not [told for told in heard if isinstance(told, inputs.ConditionChanged)]
+    list(updates(origin(), seen, SECOND_NS))
+    list(updates(position(1000), seen, SECOND_NS))
+    heard = list(updates(global_position(0.0, 0.0), seen, 2 * SECOND_NS))
+    assert not [told for told in given(heard) if isinstance(told, inputs.ConditionChanged)]
 
 
 @pytest.mark.parametrize(
@@ -162,7 +170,9 @@ def test_a_heartbeat_tells_what_its_mode_means(
         system_status=4,
         mavlink_version=3,
     )
-    told, failsafe = absorb(beat, vehicle(autopilot), SECOND_NS)
+    first, failsafe = updates(beat, vehicle(autopilot), SECOND_NS)
+    assert isinstance(first, ToGate)
+    told = first.given
     assert isinstance(told, inputs.HeartbeatSeen)
     assert (told.armed, told.mode) == (True, meaning)
-    assert failsafe == inputs.ConditionChanged(Condition.VEHICLE_FAILSAFE_ACTIVE, False)
+    assert failsafe == condition(Condition.VEHICLE_FAILSAFE_ACTIVE, False, "")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from gcs.config import LinkConfig
 from gcs.protocol.effects import (
@@ -24,7 +25,7 @@ from gcs.protocol.effects import (
 from gcs.protocol.parameters import ParamReader, decode_value
 from gcs.session.telemetry import Telemetry
 from gcs.wire.ids import Cmd, MsgId, ParamType
-from gcs.wire.messages import CommandLong, Message, ParamValue
+from gcs.wire.messages import CommandLong, ParamValue
 
 WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
     (MsgId.EXTENDED_SYS_STATE, 5.0),
@@ -83,7 +84,7 @@ RETURN_HEIGHT: dict[str, tuple[str, float]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class ParameterKnown:
     """A parameter was read."""
 
     name: str
@@ -91,17 +92,17 @@ class Known:
 
 
 @dataclass(frozen=True, slots=True)
-class Read:
+class SettingsKnown:
     """All of them were: what is weak, in words; the return height above home, if it is known."""
 
     weak: tuple[str, ...]
     return_up_m: float | None
 
 
-Out = Message | Known | Read
+Found: TypeAlias = Send | ParameterKnown | SettingsKnown
 
 
-class Greeting:
+class Discovery:
     """Once for each time that a vehicle appears; then only what is missing is asked for again."""
 
     def __init__(self, config: LinkConfig) -> None:
@@ -110,7 +111,7 @@ class Greeting:
         self._reader: ParamReader | None = None
         self._values: dict[str, float] = {}
         self._unanswered: list[str] = []
-        self._told: Read | None = None
+        self._told: SettingsKnown | None = None
         self._asked_ns = 0
         self._read_again_ns: int | None = None
 
@@ -118,78 +119,78 @@ class Greeting:
     def deadline_ns(self) -> int | None:
         return self._reader.deadline_ns if self._reader else self._read_again_ns
 
-    def start(self, seen: Telemetry, now_ns: int) -> list[Out]:
+    def start(self, telemetry: Telemetry, now_ns: int) -> list[Found]:
         """Begin to read the failsafes; `missing` tells which commands to send."""
         self._asked_ns = 0
         self._values, self._told = {}, None
-        names = [failsafe.name for failsafe in FAILSAFES.get(seen.autopilot.name, ())]
-        if seen.autopilot.name in RETURN_HEIGHT:
-            names.append(RETURN_HEIGHT[seen.autopilot.name][0])
-        return self._read(names, seen, now_ns)
+        names = [failsafe.name for failsafe in FAILSAFES.get(telemetry.autopilot.name, ())]
+        if telemetry.autopilot.name in RETURN_HEIGHT:
+            names.append(RETURN_HEIGHT[telemetry.autopilot.name][0])
+        return self._read(names, telemetry, now_ns)
 
-    def heard(self, heard: Heard, seen: Telemetry, now_ns: int) -> list[Out]:
+    def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Found]:
         if self._reader is not None:
-            return self._out(self._reader.handle(heard, now_ns), seen, now_ns)
+            return self._found(self._reader.handle(heard, now_ns), telemetry, now_ns)
         if isinstance(heard.message, ParamValue):
-            return self._changed(heard.message, seen, now_ns)
+            return self._changed(heard.message, telemetry, now_ns)
         return []
 
-    def _changed(self, news: ParamValue, seen: Telemetry, now_ns: int) -> list[Out]:
+    def _changed(self, news: ParamValue, telemetry: Telemetry, now_ns: int) -> list[Found]:
         """Somebody asked for, or set, a parameter: what we have read of it must stay true."""
         if news.param_id not in self._values or news.param_type not in PARAM_TYPES:
             return []
         kind = ParamType(news.param_type)
-        value = float(decode_value(news.param_value, kind, seen.autopilot.param_encoding))
+        value = float(decode_value(news.param_value, kind, telemetry.autopilot.param_encoding))
         if value == self._values[news.param_id]:
             return []
         effects: list[ParamEffect] = [ParamRead(news.param_id, value, kind), ParamsDone()]
-        return self._out(effects, seen, now_ns)
+        return self._found(effects, telemetry, now_ns)
 
-    def wake(self, seen: Telemetry, now_ns: int) -> list[Out]:
+    def wake(self, telemetry: Telemetry, now_ns: int) -> list[Found]:
         if self._reader is not None:
-            return self._out(self._reader.handle(Wake(), now_ns), seen, now_ns)
+            return self._found(self._reader.handle(Wake(), now_ns), telemetry, now_ns)
         if self._read_again_ns is not None and now_ns >= self._read_again_ns:
-            return self._read(self._unanswered, seen, now_ns)
+            return self._read(self._unanswered, telemetry, now_ns)
         return []
 
-    def _read(self, names: list[str], seen: Telemetry, now_ns: int) -> list[Out]:
+    def _read(self, names: list[str], telemetry: Telemetry, now_ns: int) -> list[Found]:
         self._unanswered = []
         self._read_again_ns = None
         self._reader = ParamReader(
             self._own,
-            Address(seen.sysid, seen.compid),
-            seen.autopilot.param_encoding,
+            Address(telemetry.sysid, telemetry.compid),
+            telemetry.autopilot.param_encoding,
             tuple(names),
         )
-        return self._out(self._reader.start(now_ns), seen, now_ns)
+        return self._found(self._reader.start(now_ns), telemetry, now_ns)
 
-    def missing(self, seen: Telemetry, now_ns: int) -> Iterator[CommandLong]:
+    def missing(self, telemetry: Telemetry, now_ns: int) -> Iterator[CommandLong]:
         """Commands that ask for what is not there: all at first, then what did not come."""
         first = self._asked_ns == 0
         if not first and now_ns - self._asked_ns < ASK_AGAIN_NS:
             return
         self._asked_ns = now_ns
-        if seen.origin is None:
-            yield _request(seen, MsgId.GPS_GLOBAL_ORIGIN)
-        if seen.home is None:
-            yield _request(seen, MsgId.HOME_POSITION)
+        if telemetry.origin is None:
+            yield _request(telemetry, MsgId.GPS_GLOBAL_ORIGIN)
+        if telemetry.home is None:
+            yield _request(telemetry, MsgId.HOME_POSITION)
         if first:
-            yield _request(seen, MsgId.AUTOPILOT_VERSION)
+            yield _request(telemetry, MsgId.AUTOPILOT_VERSION)
         for msgid, rate_hz in WANTED_HZ:
-            silent = now_ns - seen.landed_ns > ASK_AGAIN_NS
+            silent = now_ns - telemetry.landed_ns > ASK_AGAIN_NS
             unknown = silent and msgid is MsgId.EXTENDED_SYS_STATE
-            if first or seen.pos_ned is None or unknown:
-                yield _interval(seen, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
+            if first or telemetry.pos_ned is None or unknown:
+                yield _interval(telemetry, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
 
-    def _out(self, effects: list[ParamEffect], seen: Telemetry, now_ns: int) -> list[Out]:
-        out: list[Out] = []
+    def _found(self, effects: list[ParamEffect], telemetry: Telemetry, now_ns: int) -> list[Found]:
+        out: list[Found] = []
         for effect in effects:
             match effect:
-                case Send(message):
-                    out.append(message)
+                case Send():
+                    out.append(effect)
                 case ParamRead(name, value, _):
                     self._values[name] = float(value)
-                    out.append(Known(name, float(value)))
+                    out.append(ParameterKnown(name, float(value)))
                 case ParamAbsent(name, None):
                     self._unanswered.append(name)
                 case ParamAbsent():
@@ -198,12 +199,12 @@ class Greeting:
                     self._reader = None
                     if self._unanswered:
                         self._read_again_ns = now_ns + READ_AGAIN_NS
-                    told, self._told = self._told, self._summary(seen.autopilot.name)
+                    told, self._told = self._told, self._summary(telemetry.autopilot.name)
                     if self._told != told:
                         out.append(self._told)
         return out
 
-    def _summary(self, autopilot: str) -> Read:
+    def _summary(self, autopilot: str) -> SettingsKnown:
         weak = []
         for failsafe in FAILSAFES.get(autopilot, ()):
             value = self._values.get(failsafe.name)
@@ -213,18 +214,18 @@ class Greeting:
                 weak.append(f"{failsafe.about}: off ({failsafe.name} = {value:g})")
         name, scale = RETURN_HEIGHT.get(autopilot, ("", 1.0))
         height = self._values.get(name)
-        return Read(tuple(weak), None if height is None else height * scale)
+        return SettingsKnown(tuple(weak), None if height is None else height * scale)
 
 
-def _request(seen: Telemetry, msgid: MsgId) -> CommandLong:
-    return _command(seen, Cmd.REQUEST_MESSAGE, float(msgid), 0.0)
+def _request(telemetry: Telemetry, msgid: MsgId) -> CommandLong:
+    return _command(telemetry, Cmd.REQUEST_MESSAGE, float(msgid), 0.0)
 
 
-def _interval(seen: Telemetry, msgid: MsgId, rate_hz: float) -> CommandLong:
-    return _command(seen, Cmd.SET_MESSAGE_INTERVAL, float(msgid), round(1e6 / rate_hz))
+def _interval(telemetry: Telemetry, msgid: MsgId, rate_hz: float) -> CommandLong:
+    return _command(telemetry, Cmd.SET_MESSAGE_INTERVAL, float(msgid), round(1e6 / rate_hz))
 
 
-def _command(seen: Telemetry, command: Cmd, param1: float, param2: float) -> CommandLong:
+def _command(telemetry: Telemetry, command: Cmd, param1: float, param2: float) -> CommandLong:
     return CommandLong(
         param1=param1,
         param2=param2,
@@ -234,7 +235,7 @@ def _command(seen: Telemetry, command: Cmd, param1: float, param2: float) -> Com
         param6=0.0,
         param7=0.0,
         command=command,
-        target_system=seen.sysid,
-        target_component=seen.compid,
+        target_system=telemetry.sysid,
+        target_component=telemetry.compid,
         confirmation=0,
     )

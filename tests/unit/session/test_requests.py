@@ -10,12 +10,12 @@ from gcs import ipc
 from gcs.gate.requests import Abort, GoTo, SetMode, TakeOff
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4
-from gcs.session.desk import BadAskError, Requests, as_on_the_wire, heading_rad, wish_of
+from gcs.session.requests import BadAskError, Requests, as_on_the_wire, heading_rad, request_of
 
 
 def test_a_goal_is_turned_into_ned_once() -> None:
-    wish = wish_of(ipc.Ask(1, "goto", goal_enu=(1.0, 2.0, 3.0), yaw_deg=90.0), PX4)
-    assert wish == GoTo((2.0, 1.0, -3.0), as_on_the_wire(math.pi / 2))
+    request = request_of(ipc.Ask(1, "goto", goal_enu=(1.0, 2.0, 3.0), yaw_deg=90.0), PX4)
+    assert request == GoTo((2.0, 1.0, -3.0), as_on_the_wire(math.pi / 2))
 
 
 @pytest.mark.parametrize(("turned_deg", "same_deg"), [(450.0, 90.0), (-90.0, 270.0), (1e300, None)])
@@ -26,15 +26,15 @@ def test_a_heading_of_many_turns_is_a_heading(turned_deg: float, same_deg: float
 
 
 def test_null_is_no_number_and_is_for_the_gate_to_refuse() -> None:
-    wish = wish_of(ipc.Ask(1, "goto", goal_enu=(None, 0.0, 1.0)), PX4)
-    assert isinstance(wish, GoTo)
-    assert math.isnan(wish.goal_ned[1])
+    request = request_of(ipc.Ask(1, "goto", goal_enu=(None, 0.0, 1.0)), PX4)
+    assert isinstance(request, GoTo)
+    assert math.isnan(request.goal_ned[1])
 
 
 def test_a_take_off_without_a_height_is_no_number_either() -> None:
-    wish = wish_of(ipc.Ask(1, "takeoff"), PX4)
-    assert isinstance(wish, TakeOff)
-    assert math.isnan(wish.up_m)
+    request = request_of(ipc.Ask(1, "takeoff"), PX4)
+    assert isinstance(request, TakeOff)
+    assert math.isnan(request.up_m)
 
 
 @pytest.mark.parametrize("value", [5.01, 0.1, -3.3333])
@@ -50,13 +50,15 @@ def test_what_the_wire_cannot_carry_is_infinite() -> None:
 @pytest.mark.parametrize("word", ["fly", "", "mission_upload"])
 def test_an_unknown_word_is_no_request(word: str) -> None:
     with pytest.raises(BadAskError):
-        wish_of(ipc.Ask(1, word), PX4)
+        request_of(ipc.Ask(1, word), PX4)
 
 
 def test_a_mode_is_named_as_its_autopilot_names_it() -> None:
-    assert wish_of(ipc.Ask(1, "mode", mode="brake"), ARDUPILOT) == SetMode("BRAKE", FlightMode.HOLD)
+    assert request_of(ipc.Ask(1, "mode", mode="brake"), ARDUPILOT) == SetMode(
+        "BRAKE", FlightMode.HOLD
+    )
     with pytest.raises(BadAskError):
-        wish_of(ipc.Ask(1, "mode", mode="brake"), PX4)
+        request_of(ipc.Ask(1, "mode", mode="brake"), PX4)
 
 
 def test_a_request_is_known_until_it_is_over() -> None:
@@ -65,4 +67,4 @@ def test_a_request_is_known_until_it_is_over() -> None:
     assert first != second
     assert requests.close(first).client_id == 10
     assert requests.open_count == 1
-    assert wish_of(ipc.Ask(1, "abort"), PX4) == Abort()
+    assert request_of(ipc.Ask(1, "abort"), PX4) == Abort()

@@ -1,4 +1,4 @@
-"""What reaches a session and what comes out of it: two closed unions of frozen dataclasses."""
+"""Everything that reaches the session, as a closed union of frozen dataclasses."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs import ipc
-from gcs.record.items import RecordItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,47 +114,3 @@ Input: TypeAlias = (
     | SimGone
     | Wake
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Transmit:
-    """Put these bytes on link number `link`."""
-
-    link: int
-    data: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class Record:
-    item: RecordItem
-
-
-@dataclass(frozen=True, slots=True)
-class Emit:
-    """Tell the operator."""
-
-    event: ipc.Event
-
-
-@dataclass(frozen=True, slots=True)
-class ReadFile:
-    token: int
-    path: str
-
-
-@dataclass(frozen=True, slots=True)
-class WriteFile:
-    token: int
-    path: str
-    data: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class Finish:
-    """Nothing is left to do: close the log, stop our own vehicle, go."""
-
-    exit_code: int
-    sentence: str
-
-
-Effect: TypeAlias = Transmit | Record | Emit | ReadFile | WriteFile | Finish

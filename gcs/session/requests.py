@@ -1,4 +1,4 @@
-"""Who asked for what: operator's numbers on one side, the gate's request ids on the other."""
+"""What operators ask: their words become requests of the gate, their numbers request ids."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class BadAskError(ValueError):
     """The line is no request at all (a word or an argument is missing or unknown)."""
 
 
-def wish_of(ask: ipc.Ask, autopilot: Autopilot | None) -> requests.Request:
+def request_of(ask: ipc.Ask, autopilot: Autopilot | None) -> requests.Request:
     """What the gate is asked for.  Raises BadAskError; mission transfers are not for the gate."""
     match ask.word:
         case "control":

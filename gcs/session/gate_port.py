@@ -1,0 +1,131 @@
+"""The gate of one vehicle, its fence, and what becomes of the gate's effects.
+
+The gate decides; what it decides is turned into work for the rest of the session here.  Nothing
+reaches the vehicle's motion on any other path.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+from gcs.gate import effects, inputs
+from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
+from gcs.gate.condition import Condition
+from gcs.gate.machine.gate import Gate
+from gcs.gate.policy.policy import ControlTimes, Policy
+from gcs.gate.refusal import Refusal
+from gcs.gate.requests import GoTo
+from gcs.gate.states import State
+from gcs.session import teller
+from gcs.session.effects import Emit, Record
+from gcs.session.fences import fence_item, fences_event
+from gcs.session.telemetry import Telemetry
+from gcs.session.work import CheckStart, Decide, GateAnswered, Log, PlaceFence, ToGate, Work
+
+
+class GatePort:
+    """Before a vehicle is heard the gate is one that refuses everything: NO_VEHICLE."""
+
+    def __init__(self, policy: Policy, speedup: float, now_ns: int) -> None:
+        self.policy = on_wall_time(policy, speedup)
+        self.gate = Gate(self.policy, "", now_ns)
+        self.bad_start: Refusal | None = None
+        """Why the vehicle's place at the start is outside the fence, once that is known."""
+        self._verifier: Verifier | None = None
+        self._start_checked = False
+        self._fence_on = True
+
+    def meet(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """A vehicle was heard: a new gate, for its autopilot; what was wrong before still is."""
+        before = self.gate
+        self.gate = Gate(self.policy, telemetry.autopilot.name, now_ns)
+        conditions = before.memory.conditions
+        return [ToGate(inputs.ConditionChanged(name, True, text)) for name, text in conditions]
+
+    def handle(self, given: inputs.Input, now_ns: int) -> list[Work]:
+        """The gate's effects, then what the session owes itself after such an input."""
+        work: list[Work] = []
+        if not isinstance(given, inputs.ConditionChanged) or self._is_news(given):
+            work += self.gate.handle(given, now_ns)
+        work.append(GateAnswered())
+        if isinstance(given, inputs.HomeSeen):
+            work.append(PlaceFence())
+        elif isinstance(given, inputs.PositionSeen):
+            if given.reset:
+                work.append(PlaceFence())
+            if not self._start_checked:
+                work.append(CheckStart(given.pos_ned))
+        return work
+
+    def _is_news(self, given: inputs.ConditionChanged) -> bool:
+        """Whether the condition changed; it is looked at far more often than it does."""
+        return given.active != (given.condition in self.gate.conditions)
+
+    def tell(
+        self,
+        effect: effects.Verdict | effects.Transition | effects.Say | effects.SwitchedFence,
+        sysid: int,
+    ) -> list[Work]:
+        """What the gate decided, for operator and record; and the fence's switch."""
+        match effect:
+            case effects.Verdict(request_id, _, request, ruling, refusal, _, evidence):
+                goal_ned = request.goal_ned if isinstance(request, GoTo) else None
+                return [Decide(request_id, ruling, refusal, evidence, goal_ned)]
+            case effects.Transition():
+                return [*teller.transition(effect, self.gate.active_goal_ned, sysid)]
+            case effects.Say(level, text):
+                return [Log(level, teller.NODE, text)]
+            case effects.SwitchedFence(on):
+                self._fence_on = on
+                return [PlaceFence()]
+
+    # -------------------------------------------------------------------------- the fence
+
+    def place_fence(self, telemetry: Telemetry | None) -> list[Work]:
+        """Home or origin became known, or moved: the fence stands anew, is shown and recorded."""
+        if telemetry is None:
+            return []
+        verifier = self._verifier = verifier_for(
+            self.policy,
+            telemetry.autopilot.name,
+            telemetry.home_ned,
+            telemetry.origin,
+            fence_on=self._fence_on,
+        )
+        return [
+            ToGate(inputs.VerifierChanged(verifier)),
+            Record(fence_item(verifier.zones, telemetry.origin)),
+            Emit(fences_event(verifier.zones)),
+        ]
+
+    def check_start(self, at: CheckStart) -> None:
+        """Once, on the ground: is the vehicle inside?  If not, the policy is for elsewhere.
+
+        A vehicle that is met in the air is judged request by request: it must not be left alone.
+        """
+        grounded = self.gate.state is State.GROUNDED
+        if self._start_checked or not grounded:
+            return
+        if self._verifier is None or not self._verifier.zones:
+            return
+        self._start_checked = True
+        self.bad_start = check_start(self._verifier, at.pos_ned)
+
+
+def condition(name: Condition, active: bool, text: str) -> ToGate:
+    """Something is wrong, or no longer."""
+    return ToGate(inputs.ConditionChanged(name, active, text))
+
+
+def on_wall_time(policy: Policy, speedup: float) -> Policy:
+    """Times that wait for the other side's heartbeat and answers do not shrink with a speed-up.
+
+    A sped-up vehicle still beats once in a real second and proves a stream in real time, so that
+    ordinary clients stay connected; on the session's clock that takes `speedup` times as long.
+    """
+    times = policy.control
+    return dataclasses.replace(
+        policy,
+        heartbeat_age_s=policy.heartbeat_age_s * speedup,
+        control=ControlTimes(times.stream_s * speedup, times.timeout_s * speedup),
+    )

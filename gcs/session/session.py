@@ -1,0 +1,453 @@
+"""The composition: everything that reaches the station, and everything that leaves it.
+
+`handle(input, now_ns) -> effects`; no socket, no clock, no file.  Bytes become frames (`links.py`),
+frames what the vehicle reports (`vehicle.py`), that becomes inputs of its gate (`gate_port.py`),
+what the gate decides becomes commands and setpoints; and all of it becomes the record.
+"""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+import msgspec
+
+from gcs import ipc
+from gcs.gate import effects as gate_effects
+from gcs.gate import inputs as gate_inputs
+from gcs.gate.condition import Condition
+from gcs.gate.effects import Level, Ruling
+from gcs.gate.machine.gate import Gate
+from gcs.gate.requests import SetMode
+from gcs.gate.states import FlightMode
+from gcs.protocol.autopilot import GENERIC
+from gcs.protocol.effects import Send
+from gcs.record.items import (
+    AttachmentItem,
+    Direction,
+    FrameItem,
+    GarbageItem,
+    InputItem,
+    LogItem,
+    MetadataItem,
+)
+from gcs.session import teller
+from gcs.session.effects import Effect, Emit, Finish, Record
+from gcs.session.gate_port import condition
+from gcs.session.inputs import (
+    Datagram,
+    FileRead,
+    FileWritten,
+    Input,
+    LinkEvent,
+    OperatorGone,
+    OperatorLine,
+    OperatorNoise,
+    RecorderChanged,
+    RecorderGrew,
+    SimGone,
+    SimLine,
+    Wake,
+)
+from gcs.session.links import Links
+from gcs.session.missions import MISSION_WORDS
+from gcs.session.queue import WorkQueue
+from gcs.session.requests import BadAskError, Requests, request_of
+from gcs.session.screen import snapshot
+from gcs.session.setup import Setup
+from gcs.session.telemetry import Telemetry
+from gcs.session.vehicle import Vehicle
+from gcs.session.work import (
+    AskGate,
+    CheckStart,
+    Decide,
+    FrameReceived,
+    Log,
+    PlaceFence,
+    TickDone,
+    ToGate,
+    Work,
+)
+from gcs.wire.frame import Frame, Garbage
+
+TICK_NS = 50_000_000
+"""20 Hz, on a grid that is fixed at start; a missed tick is reported and never made up for."""
+TICKS_A_SECOND = 20
+LATE_NS = 20_000_000
+"""Of real time; a tick that comes later than this is logged."""
+VERY_LATE_NS = 250_000_000
+LATE_SHOWN_NS = 10_000_000_000
+LEAVING_NS = 3_000_000_000
+OTHER_STATION_NS = 5_000_000_000
+"""How long after its last frame a station with our id still counts as there."""
+
+NODE = "link"
+EXIT_NO_LINK = 3
+EXIT_REFUSED_BY_GATE = 6
+EXIT_BUG = 70
+MAX_FAULTS = 10
+
+
+class Session:
+    """One operator, one vehicle, any number of links; from the first byte to `Finish`."""
+
+    def __init__(self, setup: Setup, now_ns: int) -> None:
+        config = setup.config
+        self._setup = setup
+        self._start_ns = now_ns
+        self._next_tick_ns = now_ns + TICK_NS
+        self._tick = 0
+        count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
+        self._links = Links(config.sysid, config.compid, count, streams, waiting)
+        self._vehicle = Vehicle(config, setup.policy, now_ns)
+        self._requests = Requests()
+        self._queue = WorkQueue(self._step)
+        self._log_path = setup.log_path
+        self._recording = bool(setup.log_path)
+        self._recorded_bytes = 0
+        self._leaving_since_ns: int | None = None
+        self._told_no_vehicle = False
+        self._late_until_ns = 0
+        self._other_station_ns = 0
+        self._faults = 0
+        self._introduced = False
+        self._finished = False
+
+    @property
+    def deadline_ns(self) -> int:
+        """When `Wake` is due; no side effects."""
+        vehicle_ns = self._vehicle.deadline_ns
+        return self._next_tick_ns if vehicle_ns is None else min(self._next_tick_ns, vehicle_ns)
+
+    @property
+    def gate(self) -> Gate:
+        """To look at, not to handle."""
+        return self._vehicle.gate
+
+    @property
+    def telemetry(self) -> Telemetry | None:
+        """The vehicle as it reports itself, None before one is heard."""
+        return self._vehicle.telemetry
+
+    def handle(self, given: Input, now_ns: int) -> list[Effect]:
+        """Everything that follows from `given` at `now_ns`, in order."""
+        if not self._introduced:
+            self._introduced = True
+            self._queue.add(self._introduce())
+        self._queue.add(_recorded(given))
+        self._queue.add(self._begin(given, now_ns))
+        effects = self._queue.run(now_ns)
+        end = self._end_if_due(now_ns)
+        if end:
+            self._queue.add(end)
+            effects += self._queue.run(now_ns)
+        return effects
+
+    def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
+        """A bug of ours, met while `given` was handled: the vehicle must not pay for it.
+
+        Bytes or words that we cannot take are dropped, said and recorded.  Where it happens on
+        the clock, or again and again, the vehicle is told to hold and the station ends.
+        """
+        self._queue.clear()
+        self._faults += 1
+        text = f"internal error: {report.splitlines()[-1]}"
+        self._queue.add([Record(InputItem("Fault", msgspec.json.encode(report)))])
+        self._queue.add([Log(Level.FATAL, NODE, text)])
+        if isinstance(given, Wake) or self._faults > MAX_FAULTS:
+            self._finished = True
+            hold = self._vehicle.hold_without_gate(now_ns)
+            self._queue.add(item for item in hold if isinstance(item, Send))
+            sentence = "an internal error: the vehicle was told to hold"
+            self._queue.add([Finish(EXIT_BUG, sentence)])
+        return self._queue.run(now_ns)
+
+    # ----------------------------------------------------------------------------- the work
+
+    def _begin(self, given: Input, now_ns: int) -> list[Work]:
+        """What an input means first; `_step` does the rest."""
+        match given:
+            case Datagram(link, data):
+                return self._datagram(link, data)
+            case Wake():
+                return self._wake(now_ns)
+            case OperatorLine(command):
+                return self._operator(command, now_ns)
+            case OperatorNoise(text):
+                return [Emit(ipc.Trouble(f"not a command: {text}"))]
+            case OperatorGone(reason):
+                return self._leave(reason, now_ns)
+            case LinkEvent(_, text, trouble):
+                return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
+            case FileRead() | FileWritten():
+                return self._vehicle.file(given, now_ns)
+            case RecorderChanged():
+                return self._recorder(given)
+            case RecorderGrew(size_bytes):
+                self._recorded_bytes = size_bytes
+                return []
+            case SimLine(text):
+                return [_sim_line(text)]
+            case SimGone(exit_code):
+                return self._sim_gone(exit_code)
+        assert_never(given)
+
+    def _step(self, item: Work, now_ns: int) -> list[Work]:
+        """Hand one item of work to the part that it is for."""
+        match item:
+            case FrameReceived(link, frame):
+                return self._frame(link, frame, now_ns)
+            case ToGate(given):
+                return self._vehicle.ask_gate(given, now_ns)
+            case Log():
+                return [*teller.log(item, now_ns)]
+            case Send(message):
+                telemetry = self._vehicle.telemetry
+                return [] if telemetry is None else [*self._links.send(telemetry.link, message)]
+            case AskGate(request_id, request):
+                asked = self._requests.get(request_id)
+                given = gate_inputs.Requested(request_id, asked.source, request)
+                return [teller.requested(asked, request), ToGate(given)]
+            case Decide(request_id, ruling):
+                over = ruling is not Ruling.ACCEPTED
+                requests = self._requests
+                asked = requests.close(request_id) if over else requests.get(request_id)
+                return [*teller.verdict(item, asked, self._vehicle.sysid)]
+            case gate_effects.Outcome(request_id):
+                asked = self._requests.close(request_id)
+                return [*teller.outcome(item, asked, self._vehicle.sysid)]
+            case TickDone(tick):
+                return self._every_tick(tick, now_ns)
+            case (
+                PlaceFence()
+                | CheckStart()
+                | gate_effects.SendSetpoint()
+                | gate_effects.SendCommand()
+                | gate_effects.CancelCommand()
+                | gate_effects.SwitchedFence()
+                | gate_effects.Verdict()
+                | gate_effects.Transition()
+                | gate_effects.Say()
+            ):
+                return self._vehicle.carry_out(item, now_ns)
+            case _:
+                raise AssertionError(f"the queue keeps {item} for itself")
+
+    # ------------------------------------------------------------------------------- frames
+
+    def _datagram(self, link: int, data: bytes) -> list[Work]:
+        work: list[Work] = []
+        for item in self._links.split(link, data):
+            if isinstance(item, Garbage):
+                work.append(Record(GarbageItem(link, item.raw, item.reason.value)))
+            else:
+                work.append(Record(FrameItem(link, Direction.RECEIVED, item.raw)))
+                work.append(FrameReceived(link, item))
+        return work
+
+    def _frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        self._links.peer_known(link)
+        own = (self._setup.config.sysid, self._setup.config.compid)
+        if (frame.sysid, frame.compid) == own:
+            self._other_station_ns = now_ns
+            text = f"another station on link {link} calls itself {frame.sysid}/{frame.compid}"
+            return [condition(Condition.OTHER_STATION, True, text)]
+        return self._vehicle.frame(link, frame, now_ns)
+
+    # ------------------------------------------------------------------------------ time
+
+    def _wake(self, now_ns: int) -> list[Work]:
+        work = self._vehicle.wake(now_ns)
+        if now_ns >= self._next_tick_ns:
+            lateness_ns = now_ns - self._next_tick_ns
+            self._next_tick_ns += TICK_NS * (lateness_ns // TICK_NS + 1)
+            work.append(ToGate(gate_inputs.Tick(lateness_ns)))
+            work += self._judge_lateness(lateness_ns, now_ns)
+            work.append(TickDone(self._tick))
+            self._tick += 1
+        return work
+
+    def _judge_lateness(self, lateness_ns: int, now_ns: int) -> list[Work]:
+        """A late tick is logged; one so late that the stream had a gap is a condition for 10 s."""
+        speedup = self._setup.config.speedup
+        text = f"a tick came {lateness_ns / 1e6 / speedup:.0f} ms late"
+        work: list[Work] = []
+        if lateness_ns > LATE_NS * speedup:
+            work.append(Log(Level.DEBUG, NODE, text))
+        if lateness_ns > VERY_LATE_NS * speedup:
+            self._late_until_ns = now_ns + LATE_SHOWN_NS
+        late = now_ns < self._late_until_ns
+        return [*work, condition(Condition.TICK_LATE, late, text)]
+
+    def _every_tick(self, tick: int, now_ns: int) -> list[Work]:
+        work = self._every_second(now_ns) if tick % TICKS_A_SECOND == 0 else []
+        if tick % 2 == 0:
+            work.append(Emit(self._snapshot(now_ns)))
+        return work
+
+    def _every_second(self, now_ns: int) -> list[Work]:
+        """Heartbeat, what is missing, and the slow half of the record."""
+        work: list[Work] = [*self._links.heartbeat(), *self._vehicle.remind()]
+        if self._vehicle.telemetry is None:
+            return work + self._no_vehicle_yet(now_ns)
+        if now_ns - self._other_station_ns > OTHER_STATION_NS:
+            work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
+        return work + self._vehicle.second(now_ns)
+
+    def _no_vehicle_yet(self, now_ns: int) -> list[Work]:
+        waited_s = (now_ns - self._start_ns) / 1e9
+        if self._told_no_vehicle or waited_s < self._setup.config.connect_timeout_s:
+            return []
+        self._told_no_vehicle = True
+        where = ", ".join(self._setup.endpoints)
+        hint = "is the vehicle running, and does it send to this address? (try: gcs fly --sim)"
+        text = f"no vehicle heard for {waited_s:.0f} s ({where})"
+        return [Emit(ipc.Trouble(text, hint, EXIT_NO_LINK)), Log(Level.WARNING, NODE, text)]
+
+    # -------------------------------------------------------------------------- operator
+
+    def _operator(self, command: ipc.Command, now_ns: int) -> list[Work]:
+        match command:
+            case ipc.Ask():
+                return self._ask(command, now_ns)
+            case ipc.Pending(goal_enu, _):
+                text = f"Keyboard: {teller.triple(goal_enu)}"
+                return [Log(Level.INFO, "keyboard_manager", text)]
+            case ipc.Leave(reason):
+                return self._leave(reason, now_ns)
+
+    def _ask(self, ask: ipc.Ask, now_ns: int) -> list[Work]:
+        if ask.word in MISSION_WORDS:
+            return self._ask_mission(ask, now_ns)
+        telemetry = self._vehicle.telemetry
+        try:
+            request = request_of(ask, telemetry.autopilot if telemetry else GENERIC)
+        except BadAskError as error:
+            return [Emit(ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error)))]
+        if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
+            # The mission mode by its name is a mission start, and is verified like one.
+            return self._ask_mission(ask, now_ns)
+        return [AskGate(self._requests.open(ask.id, ask.word), request)]
+
+    def _ask_mission(self, ask: ipc.Ask, now_ns: int) -> list[Work]:
+        return self._vehicle.ask_mission(self._requests.open(ask.id, ask.word), ask, now_ns)
+
+    # --------------------------------------------------------------------------- leaving
+
+    def _leave(self, reason: str, now_ns: int) -> list[Work]:
+        """Hold where we fly, wait until that is seen (at most 3 s), then finish."""
+        if self._leaving_since_ns is not None:
+            return []
+        self._leaving_since_ns = now_ns
+        lost = gate_inputs.OperatorLost(reason)
+        return [Log(Level.INFO, NODE, f"leaving: {reason}"), ToGate(lost)]
+
+    def _end_if_due(self, now_ns: int) -> list[Work]:
+        """The end of the session, where the start is refused or the vehicle may be left."""
+        if self._finished:
+            return []
+        refusal = self._vehicle.bad_start
+        if refusal is not None:
+            policy = self._setup.config.policy_path or self._setup.policy.name
+            text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
+            hint = "fly from inside the fence, or give a policy for this place with --policy"
+            trouble = Emit(ipc.Trouble(text, hint, EXIT_REFUSED_BY_GATE))
+            return [trouble, *self._finish(EXIT_REFUSED_BY_GATE, text)]
+        if self._leaving_since_ns is None:
+            return []
+        overdue = now_ns - self._leaving_since_ns >= LEAVING_NS
+        return self._finish(0, self._last_words()) if self.gate.settled or overdue else []
+
+    def _finish(self, exit_code: int, sentence: str) -> list[Work]:
+        self._finished = True
+        return [
+            *self._vehicle.leave(),
+            Log(Level.INFO, NODE, sentence),
+            *self._vehicle.remind(),
+            Finish(exit_code, sentence),
+        ]
+
+    def _last_words(self) -> str:
+        telemetry = self._vehicle.telemetry
+        if telemetry is None:
+            return "no vehicle was heard"
+        if not self.gate.settled:
+            return f"the vehicle was not seen to hold within {LEAVING_NS / 1e9:.0f} s"
+        if self.gate.memory.on_ground:
+            return "the vehicle is on the ground" + (", still ARMED" if telemetry.armed else "")
+        height = "" if telemetry.pos_ned is None else f", {-telemetry.pos_ned[2]:.1f} m up"
+        return f"the vehicle is STILL FLYING in {telemetry.mode_name}{height}"
+
+    # ---------------------------------------------------------------------------- record
+
+    def _introduce(self) -> list[Work]:
+        """First of all: what this session is, in the record and on the screen."""
+        setup = self._setup
+        config = setup.config
+        values = (
+            ("version", setup.version),
+            ("endpoints", " ".join(setup.endpoints)),
+            ("policy", setup.policy.name),
+            ("station", f"{config.sysid}/{config.compid}"),
+            ("speedup", f"{config.speedup:g}"),
+            ("seed", str(config.sim.seed) if config.sim else ""),
+        )
+        policy = setup.policy_text.encode()
+        hello = ipc.Hello(setup.version, setup.log_path, list(setup.endpoints), setup.policy.name)
+        return [
+            Record(MetadataItem("mavgate", values)),
+            Record(AttachmentItem("policy.toml", "application/toml", policy)),
+            Record(InputItem("Setup", msgspec.json.encode(config))),
+            Emit(hello),
+        ]
+
+    def _recorder(self, news: RecorderChanged) -> list[Work]:
+        self._recording, self._log_path = news.recording, news.path
+        level = Level.INFO if news.recording else Level.ERROR
+        failed = condition(Condition.RECORDER_FAILED, not news.recording, news.text)
+        return [Log(level, "recorder", news.text), failed]
+
+    def _sim_gone(self, exit_code: int) -> list[Work]:
+        """Before it was heard, there is nothing to wait for; later, its silence tells."""
+        text = f"the vehicle's process ended by itself with exit code {exit_code}"
+        log = Log(Level.ERROR, NODE, text)
+        if self._vehicle.telemetry is not None:
+            return [log]
+        hint = "the lines from `sim` in the log tell why"
+        return [log, Emit(ipc.Trouble(text, hint, EXIT_NO_LINK)), *self._finish(EXIT_NO_LINK, text)]
+
+    def _snapshot(self, now_ns: int) -> ipc.Snapshot:
+        return snapshot(
+            self.gate,
+            self._vehicle.telemetry,
+            now_ns,
+            mission_total=self._vehicle.mission_total,
+            losses=self._vehicle.losses,
+            log_path=self._log_path,
+            recording=self._recording,
+            recorded_bytes=self._recorded_bytes,
+        )
+
+
+def _recorded(given: Input) -> list[Work]:
+    """All but the frames, which are recorded as such; with them it is the audit's input."""
+    match given:
+        case Datagram() | RecorderGrew():
+            return []
+        case FileRead(token, path, data, error):
+            size = -1 if data is None else len(data)
+            told = {"token": token, "path": path, "size": size, "error": error}
+            return [Record(InputItem("FileRead", msgspec.json.encode(told)))]
+        case _:
+            return [Record(InputItem(type(given).__name__, msgspec.json.encode(given)))]
+
+
+def _sim_line(text: str) -> Work:
+    """`LEVEL node: text`, as vehicle-sim prints it; anything else is an INFO line."""
+    word, _, rest = text.partition(" ")
+    node, colon, line = rest.partition(": ")
+    if word in Level.__members__ and colon and node.startswith("vehicle"):
+        # The operator has it from the vehicle itself; the record keeps both.
+        return Record(LogItem(Level[word], f"sim.{node}", line))
+    if word in Level.__members__ and colon:
+        return Log(Level[word], f"sim.{node}", line)
+    return Log(Level.INFO, "sim", text)

@@ -1,0 +1,115 @@
+"""Commands on their way to an autopilot that is not ready yet, or says nothing."""
+
+from __future__ import annotations
+
+from gcs.gate.effects import CommandKind, SendCommand
+from gcs.gate.inputs import CommandEnded
+from gcs.gate.permit import issue
+from gcs.protocol.effects import Heard, Send
+from gcs.session.commands import Commands
+from gcs.session.telemetry import Telemetry
+from gcs.session.work import Log, ToGate, Work
+from gcs.wire.ids import Cmd, Result
+from gcs.wire.messages import CommandAck
+from tests.unit.session.vehicles import SECOND_NS, vehicle
+
+DEADLINE_NS = 5 * SECOND_NS
+
+
+def told(*, prearm_ok: bool | None = True) -> Telemetry:
+    """A vehicle that says this of its pre-arm checks."""
+    telemetry = vehicle()
+    telemetry.prearm_ok = prearm_ok
+    return telemetry
+
+
+def arm(commands: Commands, telemetry: Telemetry, now_ns: int = 0) -> list[Work]:
+    permit = issue(None, None, now_ns, "a test")
+    return commands.send(SendCommand(7, CommandKind.ARM, DEADLINE_NS, permit), telemetry, now_ns)
+
+
+def answer(commands: Commands, result: Result, now_ns: int) -> list[Work]:
+    ack = CommandAck(command=Cmd.COMPONENT_ARM_DISARM, result=result)
+    return commands.heard(Heard(1, 1, ack), now_ns)
+
+
+def sent(work: list[Work]) -> int:
+    return sum(isinstance(item, Send) for item in work)
+
+
+def answers(work: list[Work]) -> list[CommandEnded]:
+    """What the gate is told."""
+    given = [item.given for item in work if isinstance(item, ToGate)]
+    return [answer for answer in given if isinstance(answer, CommandEnded)]
+
+
+def test_not_yet_is_asked_again_until_it_is_yes() -> None:
+    commands = Commands(255, 190)
+    assert sent(arm(commands, told())) == 1
+    (line,) = answer(commands, Result.TEMPORARILY_REJECTED, 1)
+    assert isinstance(line, Log)
+    assert commands.deadline_ns is not None
+    assert sent(commands.wake(told(), commands.deadline_ns)) == 1
+    ended = answer(commands, Result.ACCEPTED, SECOND_NS)
+    assert answers(ended) == [CommandEnded(7, CommandKind.ARM, Result.ACCEPTED)]
+
+
+def test_not_yet_is_not_asked_again_past_the_deadline() -> None:
+    commands = Commands(255, 190)
+    arm(commands, told())
+    now_ns, tries, ended = 0, 1, False
+    while not ended:
+        out = answer(commands, Result.TEMPORARILY_REJECTED, now_ns)
+        ended = bool(answers(out))
+        if not ended:
+            assert commands.deadline_ns is not None
+            now_ns = commands.deadline_ns
+            tries += sent(commands.wake(told(), now_ns))
+    assert now_ns < DEADLINE_NS
+    assert tries == 10
+
+
+def test_a_no_is_a_no() -> None:
+    commands = Commands(255, 190)
+    arm(commands, told())
+    ended = answer(commands, Result.DENIED, 1)
+    assert answers(ended) == [CommandEnded(7, CommandKind.ARM, Result.DENIED)]
+    assert commands.deadline_ns is None
+
+
+def test_a_disarm_takes_back_the_arm_that_waits() -> None:
+    commands = Commands(255, 190)
+    arm(commands, told())
+    answer(commands, Result.TEMPORARILY_REJECTED, 1)
+    out = commands.send(SendCommand(8, CommandKind.DISARM, DEADLINE_NS), vehicle(), 2)
+    assert CommandEnded(7, CommandKind.ARM, Result.TEMPORARILY_REJECTED) in answers(out)
+    answer(commands, Result.ACCEPTED, 3)
+    assert commands.deadline_ns is None
+
+
+def test_silence_is_no_answer() -> None:
+    commands = Commands(255, 190)
+    arm(commands, told())
+    out: list[Work] = []
+    while commands.deadline_ns is not None:
+        out = commands.wake(told(), commands.deadline_ns)
+    (ended,) = answers(out)
+    assert ended.result is None
+
+
+def test_a_vehicle_that_says_it_would_not_arm_is_not_asked_until_the_time_is_nearly_over() -> None:
+    commands = Commands(255, 190)
+    assert sent(arm(commands, told(prearm_ok=False))) == 0
+    now_ns, tries = 0, 0
+    while not tries:
+        assert commands.deadline_ns is not None
+        now_ns = commands.deadline_ns
+        tries = sent(commands.wake(told(prearm_ok=False), now_ns))
+    assert DEADLINE_NS - SECOND_NS < now_ns < DEADLINE_NS
+
+
+def test_a_vehicle_that_says_nothing_of_its_checks_is_asked_a_little_later() -> None:
+    commands = Commands(255, 190)
+    assert sent(arm(commands, told(prearm_ok=None))) == 0
+    assert commands.deadline_ns is not None
+    assert sent(commands.wake(told(prearm_ok=None), commands.deadline_ns)) == 1
