@@ -63,7 +63,8 @@ from gcs.session.work import (
     FrameReceived,
     Log,
     PlaceFence,
-    TickDone,
+    SecondDue,
+    SnapshotDue,
     ToGate,
     Work,
 )
@@ -72,6 +73,7 @@ from gcs.wire.frame import Frame, Garbage
 TICK_NS = 50_000_000
 """20 Hz, on a grid that is fixed at start; a missed tick is reported and never made up for."""
 TICKS_A_SECOND = 20
+TICKS_A_SNAPSHOT = 2
 LATE_NS = 20_000_000
 """Of real time; a tick that comes later than this is logged."""
 VERY_LATE_NS = 250_000_000
@@ -215,8 +217,10 @@ class Session:
             case gate_effects.Outcome(request_id):
                 asked = self._requests.close(request_id)
                 return [*teller.outcome(item, asked, self._vehicle.sysid)]
-            case TickDone(tick):
-                return self._every_tick(tick, now_ns)
+            case SecondDue():
+                return self._every_second(now_ns)
+            case SnapshotDue():
+                return [Emit(self._snapshot(now_ns))]
             case (
                 PlaceFence()
                 | CheckStart()
@@ -262,7 +266,10 @@ class Session:
             self._next_tick_ns += TICK_NS * (lateness_ns // TICK_NS + 1)
             work.append(ToGate(gate_inputs.Tick(lateness_ns)))
             work += self._judge_lateness(lateness_ns, now_ns)
-            work.append(TickDone(self._tick))
+            if self._tick % TICKS_A_SECOND == 0:
+                work.append(SecondDue())
+            if self._tick % TICKS_A_SNAPSHOT == 0:
+                work.append(SnapshotDue())
             self._tick += 1
         return work
 
@@ -277,12 +284,6 @@ class Session:
             self._late_until_ns = now_ns + LATE_SHOWN_NS
         late = now_ns < self._late_until_ns
         return [*work, condition(Condition.TICK_LATE, late, text)]
-
-    def _every_tick(self, tick: int, now_ns: int) -> list[Work]:
-        work = self._every_second(now_ns) if tick % TICKS_A_SECOND == 0 else []
-        if tick % 2 == 0:
-            work.append(Emit(self._snapshot(now_ns)))
-        return work
 
     def _every_second(self, now_ns: int) -> list[Work]:
         """Heartbeat, what is missing, and the slow half of the record."""

@@ -74,10 +74,13 @@ class PlaceFence:
 
 
 @dataclass(frozen=True, slots=True)
-class TickDone:
-    """The gate has had its tick; what the session does at every tick is due."""
+class SecondDue:
+    """What the session does once a second is due."""
 
-    tick: int
+
+@dataclass(frozen=True, slots=True)
+class SnapshotDue:
+    """The operator is to be shown how everything stands."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +99,8 @@ Work: TypeAlias = (
     | Decide
     | FrameReceived
     | Log
-    | TickDone
+    | SecondDue
+    | SnapshotDue
     | PlaceFence
     | CheckStart
     | Send

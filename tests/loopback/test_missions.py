@@ -198,3 +198,22 @@ def test_a_file_that_is_not_there_is_refused() -> None:
     flight = Flight().connected()
     assert flight.done(flight.say("mission_upload", path="no/such.plan")) == "refused BAD_MISSION"
     assert flight.done(flight.say("mission_upload")) == "refused BAD_MISSION"
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_the_mission_mode_by_its_name_starts_the_mission_on_board(personality: Personality) -> None:
+    flight = Flight(personality).hovering(2.0)
+    flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
+    ask_id = flight.say("mode", mode="AUTO.MISSION" if personality == "px4" else "AUTO")
+    flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
+    assert [verdict.outcome for verdict in flight.verdicts(ask_id)] == ["accepted"]
+    assert flight.done(ask_id, 240.0) == "complete"
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_the_mission_mode_by_its_name_is_refused_where_no_mission_is_on_board(
+    personality: Personality,
+) -> None:
+    flight = Flight(personality).hovering(2.0)
+    ask_id = flight.say("mode", mode="AUTO.MISSION" if personality == "px4" else "AUTO")
+    assert flight.done(ask_id) == "refused NO_MISSION"

@@ -1,0 +1,96 @@
+"""The queue: in order, in place, and one gate input at a time."""
+
+from __future__ import annotations
+
+from gcs.gate.effects import Level
+from gcs.gate.inputs import MissionSeen
+from gcs.session.effects import Finish
+from gcs.session.queue import WorkQueue
+from gcs.session.work import GateAnswered, Log, ToGate, Work
+
+
+def effect(name: str) -> Finish:
+    """Any effect: the queue does not look into them."""
+    return Finish(0, name)
+
+
+def line(name: str) -> Log:
+    return Log(Level.INFO, "a test", name)
+
+
+def gate(seq: int) -> ToGate:
+    """Any input for the gate, told apart by a number."""
+    return ToGate(MissionSeen(seq, 9, False))
+
+
+class Script:
+    """Answers each item of work as the test says, and keeps the order of what it was asked."""
+
+    def __init__(self, answers: dict[Work, list[Work]]) -> None:
+        self._answers = answers
+        self.asked: list[Work] = []
+        self.queue = WorkQueue(self.step)
+
+    def step(self, item: Work, now_ns: int) -> list[Work]:
+        self.asked.append(item)
+        return self._answers.get(item, [])
+
+    def run(self, *work: Work) -> list[str]:
+        self.queue.add(work)
+        return [e.sentence for e in self.queue.run(0) if isinstance(e, Finish)]
+
+
+def test_effects_leave_in_the_order_in_which_they_were_returned() -> None:
+    assert Script({}).run(effect("a"), effect("b")) == ["a", "b"]
+
+
+def test_what_an_item_leads_to_is_done_in_its_place() -> None:
+    script = Script({line("a"): [effect("a1"), line("a2")], line("a2"): [effect("a2")]})
+    assert script.run(effect("first"), line("a"), effect("last")) == ["first", "a1", "a2", "last"]
+
+
+def test_a_gate_input_waits_until_the_effects_of_the_one_before_are_carried_out() -> None:
+    script = Script(
+        {
+            gate(1): [line("refused at once"), effect("first transition"), GateAnswered()],
+            line("refused at once"): [gate(2)],
+            gate(2): [effect("second transition"), GateAnswered()],
+        }
+    )
+    assert script.run(gate(1), effect("after")) == [
+        "first transition",
+        "second transition",
+        "after",
+    ]
+    assert script.asked == [gate(1), line("refused at once"), gate(2)]
+
+
+def test_two_gate_inputs_that_wait_are_taken_in_turn() -> None:
+    script = Script(
+        {
+            gate(1): [line("x"), line("y"), GateAnswered()],
+            line("x"): [gate(2)],
+            line("y"): [gate(3)],
+            gate(2): [effect("2"), GateAnswered()],
+            gate(3): [effect("3"), GateAnswered()],
+        }
+    )
+    assert script.run(gate(1)) == ["2", "3"]
+
+
+def test_what_follows_the_answer_comes_after_the_inputs_that_waited() -> None:
+    script = Script(
+        {
+            gate(1): [line("x"), GateAnswered(), effect("afterwards")],
+            line("x"): [gate(2)],
+            gate(2): [effect("2"), GateAnswered()],
+        }
+    )
+    assert script.run(gate(1)) == ["2", "afterwards"]
+
+
+def test_after_a_failure_nothing_of_it_is_left() -> None:
+    script = Script({gate(1): [line("x"), GateAnswered()]})
+    script.queue.add([effect("half done"), gate(1), gate(2)])
+    script.queue.clear()
+    assert script.run(effect("next")) == ["next"]
