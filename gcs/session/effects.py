@@ -1,57 +1,55 @@
-"""Everything that the session answers with, as a closed union of frozen dataclasses.
+"""Everything that the session answers with, as a closed union of frozen structs.
 
 The shell performs them in order.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import TypeAlias
+
+import msgspec
 
 from gcs import ipc
 from gcs.record.items import RecordItem
 
 
-@dataclass(frozen=True, slots=True)
-class Transmit:
+class ShellEffect(msgspec.Struct, frozen=True, gc=False):
+    """Base of all effects: what the queue passes on without looking at it."""
+
+
+class Transmit(ShellEffect, frozen=True, gc=False):
     """Put these bytes on link number `link`."""
 
     link: int
     data: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Record:
+class Record(ShellEffect, frozen=True, gc=False):
     item: RecordItem
 
 
-@dataclass(frozen=True, slots=True)
-class Emit:
+class Emit(ShellEffect, frozen=True, gc=False):
     """Tell the operator."""
 
     event: ipc.Event
 
 
-@dataclass(frozen=True, slots=True)
-class ReadFile:
+class ReadFile(ShellEffect, frozen=True, gc=False):
     token: int
     path: str
 
 
-@dataclass(frozen=True, slots=True)
-class WriteFile:
+class WriteFile(ShellEffect, frozen=True, gc=False):
     token: int
     path: str
     data: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Finish:
+class Finish(ShellEffect, frozen=True, gc=False):
     """Nothing is left to do: close the log, stop our own vehicle, go."""
 
     exit_code: int
     sentence: str
 
 
-EFFECTS: Final = (Transmit, Record, Emit, ReadFile, WriteFile, Finish)
 Effect: TypeAlias = Transmit | Record | Emit | ReadFile | WriteFile | Finish

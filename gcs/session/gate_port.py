@@ -20,7 +20,7 @@ from gcs.session import teller
 from gcs.session.effects import Emit, Record
 from gcs.session.fences import fence_item, fences_event
 from gcs.session.telemetry import Telemetry
-from gcs.session.work import CheckStart, Decide, GateAnswered, Log, PlaceFence, ToGate, Work
+from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
 
 
 class GatePort:
@@ -44,10 +44,9 @@ class GatePort:
 
     def handle(self, given: inputs.Input, now_ns: int) -> list[Work]:
         """The gate's effects, then what the session owes itself after such an input."""
-        work: list[Work] = []
-        if not isinstance(given, inputs.ConditionChanged) or self._is_news(given):
-            work += self.gate.handle(given, now_ns)
-        work.append(GateAnswered())
+        if isinstance(given, inputs.ConditionChanged) and not self._is_news(given):
+            return [GATE_ANSWERED]
+        work: list[Work] = [*self.gate.handle(given, now_ns), GATE_ANSWERED]
         if isinstance(given, inputs.HomeSeen):
             work.append(PlaceFence())
         elif isinstance(given, inputs.PositionSeen):

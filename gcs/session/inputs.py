@@ -100,9 +100,8 @@ class Wake:
     """`deadline_ns` has passed."""
 
 
-Input: TypeAlias = (
-    Datagram
-    | LinkEvent
+OtherInput: TypeAlias = (
+    LinkEvent
     | OperatorLine
     | OperatorNoise
     | OperatorGone
@@ -114,3 +113,6 @@ Input: TypeAlias = (
     | SimGone
     | Wake
 )
+"""What is recorded as an input of its own; a datagram is recorded frame by frame."""
+
+Input: TypeAlias = Datagram | OtherInput

@@ -1,6 +1,6 @@
 """Missions of one vehicle: which one is on board, how far it is flown, and one job at a time.
 
-What can be asked, step by step, is in `mission_jobs.py`.  A second request is refused BUSY.
+What can be asked, step by step, is in `jobs/`.  A second request is refused BUSY.
 Everything that moves still goes through the gate.
 """
 
@@ -16,18 +16,11 @@ from gcs.gate.states import State
 from gcs.protocol.effects import Address, Heard
 from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.mission_jobs import (
-    Asked,
-    Clear,
-    Download,
-    Job,
-    JobWork,
-    OnBoardChanged,
-    Start,
-    Upload,
-    VehicleView,
-    refused,
-)
+from gcs.session.jobs.clear import Clear
+from gcs.session.jobs.download import Download
+from gcs.session.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView, refused
+from gcs.session.jobs.start import Start
+from gcs.session.jobs.upload import Upload
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import AskGate, ToGate, Work

@@ -8,14 +8,13 @@ the middle of its own answer, and the record tells transitions in the order they
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from gcs.session.effects import EFFECTS, Effect
+from gcs.session.effects import Effect, ShellEffect
 from gcs.session.work import GateAnswered, ToGate, Work
 
-Step: TypeAlias = Callable[[Work, int], Iterable[Work]]
+Step: TypeAlias = Callable[[Work, int], Sequence[Work]]
 """Does one item at `now_ns` and returns what follows from it.  What follows from a `ToGate` holds
 one `GateAnswered`, behind the gate's own effects."""
 
@@ -25,40 +24,37 @@ class WorkQueue:
 
     def __init__(self, step: Step) -> None:
         self._step = step
-        self._agenda: deque[Work] = deque()
         self._postponed: list[ToGate] = []
-        self._gate_answers = False
         self._effects: list[Effect] = []
 
-    def add(self, work: Iterable[Work]) -> None:
-        """Behind everything that is to be done already."""
-        self._agenda.extend(work)
-
-    def run(self, now_ns: int) -> list[Effect]:
-        """Do everything; the effects in the order in which the shell is to perform them."""
-        agenda, step = self._agenda, self._step
+    def run(self, work: Sequence[Work], now_ns: int) -> None:
+        """Do all of it, and all that it leads to."""
+        agenda = list(reversed(work))  # the next item last
+        step, effects, postponed = self._step, self._effects, self._postponed
+        gate_answers = False
         while agenda:
-            item = agenda.popleft()
-            if isinstance(item, EFFECTS):
-                self._effects.append(item)
-            elif isinstance(item, ToGate):
-                if self._gate_answers:
-                    self._postponed.append(item)
-                    continue
-                self._gate_answers = True
-                agenda.extendleft(reversed(tuple(step(item, now_ns))))
+            item = agenda.pop()
+            if isinstance(item, ShellEffect):
+                effects.append(item)
             elif isinstance(item, GateAnswered):
-                self._gate_answers = False
-                agenda.extendleft(reversed(self._postponed))
-                self._postponed.clear()
+                gate_answers = False
+                agenda += reversed(postponed)
+                postponed.clear()
+            elif isinstance(item, ToGate):
+                if gate_answers:
+                    postponed.append(item)
+                else:
+                    gate_answers = True
+                    agenda += reversed(step(item, now_ns))
             else:
-                agenda.extendleft(reversed(tuple(step(item, now_ns))))
+                agenda += reversed(step(item, now_ns))
+
+    def take(self) -> list[Effect]:
+        """The effects so far, in the order in which the shell is to perform them."""
         effects, self._effects = self._effects, []
         return effects
 
-    def clear(self) -> None:
-        """Drop what is under way: a part has failed in the middle of it."""
-        self._agenda.clear()
+    def drop(self) -> None:
+        """Nothing of what is under way: a part has failed in the middle of it."""
         self._postponed.clear()
         self._effects.clear()
-        self._gate_answers = False

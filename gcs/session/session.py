@@ -22,13 +22,10 @@ from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC
 from gcs.protocol.effects import Send
 from gcs.record.items import (
-    AttachmentItem,
     Direction,
     FrameItem,
     GarbageItem,
     InputItem,
-    LogItem,
-    MetadataItem,
 )
 from gcs.session import teller
 from gcs.session.effects import Effect, Emit, Finish, Record
@@ -42,6 +39,7 @@ from gcs.session.inputs import (
     OperatorGone,
     OperatorLine,
     OperatorNoise,
+    OtherInput,
     RecorderChanged,
     RecorderGrew,
     SimGone,
@@ -51,6 +49,7 @@ from gcs.session.inputs import (
 from gcs.session.links import Links
 from gcs.session.missions import MISSION_WORDS
 from gcs.session.queue import WorkQueue
+from gcs.session.recorded import introduction, recorded, sim_line
 from gcs.session.requests import BadAskError, Requests, request_of
 from gcs.session.screen import snapshot
 from gcs.session.setup import Setup
@@ -60,7 +59,6 @@ from gcs.session.work import (
     AskGate,
     CheckStart,
     Decide,
-    FrameReceived,
     Log,
     PlaceFence,
     SecondDue,
@@ -132,17 +130,16 @@ class Session:
 
     def handle(self, given: Input, now_ns: int) -> list[Effect]:
         """Everything that follows from `given` at `now_ns`, in order."""
+        queue = self._queue
         if not self._introduced:
             self._introduced = True
-            self._queue.add(self._introduce())
-        self._queue.add(_recorded(given))
-        self._queue.add(self._begin(given, now_ns))
-        effects = self._queue.run(now_ns)
-        end = self._end_if_due(now_ns)
-        if end:
-            self._queue.add(end)
-            effects += self._queue.run(now_ns)
-        return effects
+            queue.run(introduction(self._setup), now_ns)
+        if isinstance(given, Datagram):
+            self._datagram(given, now_ns)
+        else:
+            queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
+        queue.run(self._end_if_due(now_ns), now_ns)
+        return queue.take()
 
     def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
         """A bug of ours, met while `given` was handled: the vehicle must not pay for it.
@@ -150,26 +147,26 @@ class Session:
         Bytes or words that we cannot take are dropped, said and recorded.  Where it happens on
         the clock, or again and again, the vehicle is told to hold and the station ends.
         """
-        self._queue.clear()
+        self._queue.drop()
         self._faults += 1
         text = f"internal error: {report.splitlines()[-1]}"
-        self._queue.add([Record(InputItem("Fault", msgspec.json.encode(report)))])
-        self._queue.add([Log(Level.FATAL, NODE, text)])
+        work: list[Work] = [
+            Record(InputItem("Fault", msgspec.json.encode(report))),
+            Log(Level.FATAL, NODE, text),
+        ]
         if isinstance(given, Wake) or self._faults > MAX_FAULTS:
             self._finished = True
             hold = self._vehicle.hold_without_gate(now_ns)
-            self._queue.add(item for item in hold if isinstance(item, Send))
-            sentence = "an internal error: the vehicle was told to hold"
-            self._queue.add([Finish(EXIT_BUG, sentence)])
-        return self._queue.run(now_ns)
+            work += [item for item in hold if isinstance(item, Send)]
+            work.append(Finish(EXIT_BUG, "an internal error: the vehicle was told to hold"))
+        self._queue.run(work, now_ns)
+        return self._queue.take()
 
     # ----------------------------------------------------------------------------- the work
 
-    def _begin(self, given: Input, now_ns: int) -> list[Work]:
+    def _begin(self, given: OtherInput, now_ns: int) -> list[Work]:
         """What an input means first; `_step` does the rest."""
         match given:
-            case Datagram(link, data):
-                return self._datagram(link, data)
             case Wake():
                 return self._wake(now_ns)
             case OperatorLine(command):
@@ -188,7 +185,7 @@ class Session:
                 self._recorded_bytes = size_bytes
                 return []
             case SimLine(text):
-                return [_sim_line(text)]
+                return [sim_line(text)]
             case SimGone(exit_code):
                 return self._sim_gone(exit_code)
         assert_never(given)
@@ -196,8 +193,6 @@ class Session:
     def _step(self, item: Work, now_ns: int) -> list[Work]:
         """Hand one item of work to the part that it is for."""
         match item:
-            case FrameReceived(link, frame):
-                return self._frame(link, frame, now_ns)
             case ToGate(given):
                 return self._vehicle.ask_gate(given, now_ns)
             case Log():
@@ -238,15 +233,15 @@ class Session:
 
     # ------------------------------------------------------------------------------- frames
 
-    def _datagram(self, link: int, data: bytes) -> list[Work]:
-        work: list[Work] = []
-        for item in self._links.split(link, data):
+    def _datagram(self, given: Datagram, now_ns: int) -> None:
+        """Frame by frame: what one leads to is done before the next is looked at."""
+        link, run = given.link, self._queue.run
+        for item in self._links.split(link, given.data):
             if isinstance(item, Garbage):
-                work.append(Record(GarbageItem(link, item.raw, item.reason.value)))
+                run([Record(GarbageItem(link, item.raw, item.reason.value))], now_ns)
             else:
-                work.append(Record(FrameItem(link, Direction.RECEIVED, item.raw)))
-                work.append(FrameReceived(link, item))
-        return work
+                received = Record(FrameItem(link, Direction.RECEIVED, item.raw))
+                run([received, *self._frame(link, item, now_ns)], now_ns)
 
     def _frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         self._links.peer_known(link)
@@ -380,27 +375,6 @@ class Session:
 
     # ---------------------------------------------------------------------------- record
 
-    def _introduce(self) -> list[Work]:
-        """First of all: what this session is, in the record and on the screen."""
-        setup = self._setup
-        config = setup.config
-        values = (
-            ("version", setup.version),
-            ("endpoints", " ".join(setup.endpoints)),
-            ("policy", setup.policy.name),
-            ("station", f"{config.sysid}/{config.compid}"),
-            ("speedup", f"{config.speedup:g}"),
-            ("seed", str(config.sim.seed) if config.sim else ""),
-        )
-        policy = setup.policy_text.encode()
-        hello = ipc.Hello(setup.version, setup.log_path, list(setup.endpoints), setup.policy.name)
-        return [
-            Record(MetadataItem("mavgate", values)),
-            Record(AttachmentItem("policy.toml", "application/toml", policy)),
-            Record(InputItem("Setup", msgspec.json.encode(config))),
-            Emit(hello),
-        ]
-
     def _recorder(self, news: RecorderChanged) -> list[Work]:
         self._recording, self._log_path = news.recording, news.path
         level = Level.INFO if news.recording else Level.ERROR
@@ -427,28 +401,3 @@ class Session:
             recording=self._recording,
             recorded_bytes=self._recorded_bytes,
         )
-
-
-def _recorded(given: Input) -> list[Work]:
-    """All but the frames, which are recorded as such; with them it is the audit's input."""
-    match given:
-        case Datagram() | RecorderGrew():
-            return []
-        case FileRead(token, path, data, error):
-            size = -1 if data is None else len(data)
-            told = {"token": token, "path": path, "size": size, "error": error}
-            return [Record(InputItem("FileRead", msgspec.json.encode(told)))]
-        case _:
-            return [Record(InputItem(type(given).__name__, msgspec.json.encode(given)))]
-
-
-def _sim_line(text: str) -> Work:
-    """`LEVEL node: text`, as vehicle-sim prints it; anything else is an INFO line."""
-    word, _, rest = text.partition(" ")
-    node, colon, line = rest.partition(": ")
-    if word in Level.__members__ and colon and node.startswith("vehicle"):
-        # The operator has it from the vehicle itself; the record keeps both.
-        return Record(LogItem(Level[word], f"sim.{node}", line))
-    if word in Level.__members__ and colon:
-        return Log(Level[word], f"sim.{node}", line)
-    return Log(Level.INFO, "sim", text)

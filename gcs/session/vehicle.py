@@ -6,7 +6,8 @@ All that is per vehicle is here and in the parts that this composes; what is per
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from typing import Final, get_args
 
 from gcs import ipc
 from gcs.config import LinkConfig
@@ -20,6 +21,7 @@ from gcs.gate.states import Control
 from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Heard, Send
 from gcs.protocol.sequence import SequenceTracker
+from gcs.protocol.transfer import PlanMessage
 from gcs.record.items import ParamItem, SetpointItem, StatusItem
 from gcs.session import discovery, teller
 from gcs.session.commands import Commands
@@ -27,7 +29,7 @@ from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.mission_jobs import VehicleView
+from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
 from gcs.session.screen import lost_pct
 from gcs.session.setpoints import setpoint
@@ -57,8 +59,14 @@ STATUSTEXT_LEVEL = {
     Severity.DEBUG: Level.DEBUG,
 }
 
-STATE_MESSAGES = (m.Heartbeat, m.ExtendedSysState, m.SysStatus, m.MissionCurrent)
+STATE_MESSAGES: Final = frozenset({m.Heartbeat, m.ExtendedSysState, m.SysStatus, m.MissionCurrent})
 """What tells a state is void once a newer one was seen; answers and events are not."""
+
+CAMERA_MESSAGES: Final = frozenset({m.CameraImageCaptured, m.CameraFeedback})
+PARAMETER_MESSAGES: Final = frozenset({m.ParamValue, m.ParamError})
+MISSION_MESSAGES: Final = frozenset(
+    {m.MissionCurrent, m.MissionItemReached, *get_args(PlanMessage)}
+)
 
 
 class Vehicle:
@@ -122,14 +130,16 @@ class Vehicle:
         number = self.losses.number(frame.sysid, frame.compid, frame.seq)
         self.losses.seen(frame.sysid, frame.compid, frame.seq)
         telemetry.count_frame(now_ns)
+        if frame.compid == telemetry.compid:
+            _choose_link(telemetry, link, now_ns)
         if message is not None and not self._overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
-            work += self._heard(telemetry, link, heard, now_ns)
+            work += self._heard(telemetry, heard, now_ns)
         return work
 
     def _overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
         """A state that is older than one of the same kind that has come: void."""
-        if not isinstance(message, STATE_MESSAGES):
+        if type(message) not in STATE_MESSAGES:
             return False
         key = (frame.compid, frame.msgid)
         newest = self._newest.get(key)
@@ -138,23 +148,26 @@ class Vehicle:
         self._newest[key] = number
         return False
 
-    def _heard(self, telemetry: Telemetry, link: int, heard: Heard, now_ns: int) -> Iterator[Work]:
-        yield from self._commands.heard(heard, now_ns)
-        yield from self._missions.heard(heard, self._view(telemetry), now_ns)
-        yield from self._settings(self._discovery.heard(heard, telemetry, now_ns), telemetry)
+    def _heard(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
+        work: list[Work] = []
         message = heard.message
-        if isinstance(message, m.Statustext):
+        if isinstance(message, m.CommandAck):
+            work += self._commands.heard(heard, now_ns)
+        elif type(message) in PARAMETER_MESSAGES:
+            work += self._settings(self._discovery.heard(heard, telemetry, now_ns), telemetry)
+        elif type(message) in MISSION_MESSAGES:
+            work += self._missions.heard(heard, self._view(telemetry), now_ns)
+        elif isinstance(message, m.Statustext):
             level = STATUSTEXT_LEVEL.get(Severity(message.severity & 7), Level.INFO)
-            yield Log(level, "vehicle", message.text)
-        if heard.compid == telemetry.compid:
-            _choose_link(telemetry, link, now_ns)
-        elif not isinstance(message, m.CameraImageCaptured | m.CameraFeedback):
-            return
+            work.append(Log(level, "vehicle", message.text))
+        if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
+            return work
         for update in updates(message, telemetry, now_ns):
             match update:
                 case ToGate(inputs.PositionSeen(reset=True)):
-                    yield from self._missions.forget()
-            yield update
+                    work += self._missions.forget()
+            work.append(update)
+        return work
 
     # ---------------------------------------------------------------------------- discovery
 

@@ -6,8 +6,9 @@ No part calls another one sideways.  A part returns a list of `Work`; the sessio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Final, TypeAlias
+
+import msgspec
 
 from gcs.frames import Vec3
 from gcs.gate import effects as gate_effects
@@ -17,31 +18,29 @@ from gcs.gate.refusal import Refusal
 from gcs.gate.requests import Request
 from gcs.protocol.effects import Send
 from gcs.session.effects import Effect
-from gcs.wire.frame import Frame
 
 
-@dataclass(frozen=True, slots=True)
-class ToGate:
+class ToGate(msgspec.Struct, frozen=True, gc=False):
     """An input for the vehicle's gate."""
 
     given: gate_inputs.Input
 
 
-@dataclass(frozen=True, slots=True)
-class GateAnswered:
+class GateAnswered(msgspec.Struct, frozen=True, gc=False):
     """All effects of one gate input are carried out; the gate can take the next one."""
 
 
-@dataclass(frozen=True, slots=True)
-class AskGate:
+GATE_ANSWERED: Final = GateAnswered()
+
+
+class AskGate(msgspec.Struct, frozen=True, gc=False):
     """The request that was opened as `request_id`, for the vehicle's gate."""
 
     request_id: int
     request: Request
 
 
-@dataclass(frozen=True, slots=True)
-class Decide:
+class Decide(msgspec.Struct, frozen=True, gc=False):
     """The verdict on a request that the gate does not decide (mission transfers) or has decided."""
 
     request_id: int
@@ -51,16 +50,7 @@ class Decide:
     goal_ned: Vec3 | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class FrameReceived:
-    """A good frame came in on link number `link`."""
-
-    link: int
-    frame: Frame
-
-
-@dataclass(frozen=True, slots=True)
-class Log:
+class Log(msgspec.Struct, frozen=True, gc=False):
     """A line of the node `node`, for the screen and the record."""
 
     level: Level
@@ -68,23 +58,19 @@ class Log:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class PlaceFence:
+class PlaceFence(msgspec.Struct, frozen=True, gc=False):
     """Home or origin became known or moved: the fence is to be placed anew."""
 
 
-@dataclass(frozen=True, slots=True)
-class SecondDue:
+class SecondDue(msgspec.Struct, frozen=True, gc=False):
     """What the session does once a second is due."""
 
 
-@dataclass(frozen=True, slots=True)
-class SnapshotDue:
+class SnapshotDue(msgspec.Struct, frozen=True, gc=False):
     """The operator is to be shown how everything stands."""
 
 
-@dataclass(frozen=True, slots=True)
-class CheckStart:
+class CheckStart(msgspec.Struct, frozen=True, gc=False):
     """A position was handled: is the vehicle inside the fence where it starts?"""
 
     pos_ned: Vec3
@@ -97,7 +83,6 @@ Work: TypeAlias = (
     | GateAnswered
     | AskGate
     | Decide
-    | FrameReceived
     | Log
     | SecondDue
     | SnapshotDue

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from gcs.gate.effects import Level
 from gcs.gate.inputs import MissionSeen
 from gcs.session.effects import Finish
@@ -33,11 +35,13 @@ class Script:
 
     def step(self, item: Work, now_ns: int) -> list[Work]:
         self.asked.append(item)
+        if item == line("fails"):
+            raise ZeroDivisionError
         return self._answers.get(item, [])
 
     def run(self, *work: Work) -> list[str]:
-        self.queue.add(work)
-        return [e.sentence for e in self.queue.run(0) if isinstance(e, Finish)]
+        self.queue.run(work, 0)
+        return [e.sentence for e in self.queue.take() if isinstance(e, Finish)]
 
 
 def test_effects_leave_in_the_order_in_which_they_were_returned() -> None:
@@ -90,7 +94,16 @@ def test_what_follows_the_answer_comes_after_the_inputs_that_waited() -> None:
 
 
 def test_after_a_failure_nothing_of_it_is_left() -> None:
-    script = Script({gate(1): [line("x"), GateAnswered()]})
-    script.queue.add([effect("half done"), gate(1), gate(2)])
-    script.queue.clear()
-    assert script.run(effect("next")) == ["next"]
+    """A part raises while a gate input waits for the end of another one's answer."""
+    script = Script(
+        {
+            gate(1): [effect("half done"), line("x"), line("fails"), GateAnswered()],
+            line("x"): [gate(2)],
+            gate(3): [effect("3"), GateAnswered()],
+        }
+    )
+    with pytest.raises(ZeroDivisionError):
+        script.run(gate(1))
+    script.queue.drop()
+    assert script.run(gate(3), effect("next")) == ["3", "next"]
+    assert gate(2) not in script.asked

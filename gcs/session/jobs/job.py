@@ -1,0 +1,213 @@
+"""What all jobs share: one request about missions, its transfer, its verdict and its outcome.
+
+Upload    READING -> (verdict) -> UPLOADING -> READING BACK -> on board
+Start     READING BACK -> (verdict: the gate's)
+Download  (verdict) -> DOWNLOADING -> WRITING -> done
+Clear     (verdict) -> CLEARING -> done
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from gcs import ipc
+from gcs.gate.airspace.verifier import Cleared
+from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
+from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import State
+from gcs.plan.model import Plan
+from gcs.protocol.effects import (
+    Address,
+    Cancel,
+    Heard,
+    Send,
+    TransferDone,
+    TransferEffect,
+    TransferFailed,
+    TransferProgress,
+    Wake,
+)
+from gcs.protocol.mission import MissionClear, MissionDownload, MissionUpload
+from gcs.protocol.transfer import Timing
+from gcs.session.effects import Emit
+from gcs.session.inputs import FileRead, FileWritten
+from gcs.session.paths import path_of, verify
+from gcs.session.plans import OnBoard
+from gcs.session.telemetry import Telemetry
+from gcs.session.work import Decide, Log, Work
+from gcs.wire.ids import MissionType
+from gcs.wire.messages import MissionItemInt
+
+NODE = "mission"
+EXIT_BAD_FILE = 4
+JOB_NS = 60_000_000_000
+ITEM_NS = 1_000_000_000
+"""How long a transfer may take: a minute, and a second an item."""
+
+Transfer: TypeAlias = MissionUpload | MissionDownload | MissionClear
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleView:
+    """What a job needs to know of the vehicle at this moment; it changes nothing of it."""
+
+    telemetry: Telemetry
+    state: State
+    policy: Policy
+
+
+@dataclass(frozen=True, slots=True)
+class OnBoardChanged:
+    """The mission that we know to be on board is now this one, or none."""
+
+    on_board: OnBoard | None
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """Whose request a job is, and between whom its transfers run."""
+
+    request_id: int
+    client_id: int
+    word: str
+    own: Address
+    timing: Timing
+
+
+JobWork: TypeAlias = Work | OnBoardChanged
+
+
+class Job(ABC):
+    """One request about missions, from its start to its refusal or outcome (`over`)."""
+
+    def __init__(self, asked: Asked) -> None:
+        self.asked = asked
+        self.over = False
+        self._transfer: Transfer | None = None
+        self._transfer_ends_ns = 0
+        """A vehicle that keeps asking for the same item must not keep a job open for ever."""
+
+    @property
+    def deadline_ns(self) -> int | None:
+        """When the transfer's present wait is over."""
+        return self._transfer.deadline_ns if self._transfer else None
+
+    @abstractmethod
+    def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """The first step."""
+
+    @abstractmethod
+    def done(
+        self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        """The transfer under way has ended well, with the items that came."""
+
+    @abstractmethod
+    def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """The answer to a ReadFile or WriteFile of this job."""
+
+    def failed(
+        self, result: int | None, text: str, view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        """The transfer under way has failed: MAV_MISSION_RESULT, or None for no answer."""
+        return self.end(OutcomeKind.ABORTED, code_of(result), text)
+
+    def leave(self) -> list[JobWork]:
+        """The session ends: what is under way ends with it, and is told so."""
+        return self.end(OutcomeKind.ABORTED, Code.OPERATOR_LOST, LEFT)
+
+    def heard(self, heard: Heard, view: VehicleView, now_ns: int) -> list[JobWork]:
+        if self._transfer is None:
+            return []
+        return self._follow(self._transfer.handle(heard, now_ns), view, now_ns)
+
+    def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        if self._transfer is None:
+            return []
+        given = Cancel() if now_ns >= self._transfer_ends_ns else Wake()
+        return self._follow(self._transfer.handle(given, now_ns), view, now_ns)
+
+    # --------------------------------------------------------------------------- transfer
+
+    def begin(
+        self, transfer: Transfer, items: int, view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        """Start a transfer of about `items` items, in place of the one before."""
+        self._transfer = transfer
+        self._transfer_ends_ns = now_ns + JOB_NS + ITEM_NS * items
+        return self._follow(transfer.start(now_ns), view, now_ns)
+
+    def stop_transfer(self) -> None:
+        self._transfer = None
+
+    def parties(self, view: VehicleView) -> tuple[Address, Address, MissionType]:
+        """Us, the vehicle, and that it is about the mission (not fence, not rally points)."""
+        telemetry = view.telemetry
+        return self.asked.own, Address(telemetry.sysid, telemetry.compid), MissionType.MISSION
+
+    def progress_of(self) -> str:
+        """What the transfer under way is called on the screen."""
+        return self.asked.word
+
+    def _follow(
+        self, effects: list[TransferEffect], view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        work: list[JobWork] = []
+        for effect in effects:
+            match effect:
+                case Send():
+                    work.append(effect)
+                case TransferProgress(done, total):
+                    client_id, what = self.asked.client_id, self.progress_of()
+                    work.append(Emit(ipc.ProgressEvent(client_id, what, done, total, "items")))
+                case TransferDone(_, items):
+                    work += self.done(items, view, now_ns)
+                case TransferFailed(_, result, text):
+                    work += self.failed(result, text, view, now_ns)
+        return work
+
+    # ------------------------------------------------------------------- verdict, outcome
+
+    def accept(self, evidence: tuple[tuple[str, float], ...] = ()) -> Decide:
+        return Decide(self.asked.request_id, Ruling.ACCEPTED, None, evidence)
+
+    def refuse(self, refusal: Refusal) -> list[JobWork]:
+        self.over = True
+        return [*refused(self.asked.request_id, self.asked.word, refusal)]
+
+    def bad_file(self, text: str, hint: str = "") -> list[JobWork]:
+        trouble = Emit(ipc.Trouble(text, hint, EXIT_BAD_FILE))
+        return [trouble, *self.refuse(Refusal(Code.BAD_MISSION, text))]
+
+    def end(self, kind: OutcomeKind, code: Code | None, sentence: str) -> list[JobWork]:
+        self.over = True
+        level = Level.INFO if kind is OutcomeKind.COMPLETE else Level.WARNING
+        return [
+            Outcome(self.asked.request_id, kind, code, sentence),
+            Log(level, NODE, f"{self.asked.word}: {kind.value}: {sentence}"),
+        ]
+
+
+LEFT = "the station left before it was done"
+
+
+def refused(request_id: int, word: str, refusal: Refusal) -> tuple[Work, ...]:
+    """The verdict, and a line for the log."""
+    text = f"{word}: refused {refusal.code.value}: {refusal.sentence}"
+    return Decide(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)
+
+
+def verify_whole(plan: Plan, view: VehicleView, now_ns: int) -> Cleared | Refusal:
+    """The whole path of `plan`, from where the vehicle is now."""
+    age_ns = round(view.policy.position_age_s * 1e9)
+    path = path_of(plan, view.telemetry, now_ns, age_ns)
+    if isinstance(path, Refusal):
+        return path
+    return verify(plan, path, view.policy, view.telemetry)
+
+
+def code_of(result: int | None) -> Code:
+    return Code.NO_ANSWER if result is None else Code.VEHICLE_REFUSED

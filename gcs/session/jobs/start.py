@@ -1,0 +1,72 @@
+"""Start: the mission on board is read back, compared and verified anew, then the gate decides.
+
+Another station may have put another mission in its place, and the path begins where the vehicle
+is now.
+"""
+
+from __future__ import annotations
+
+from gcs.gate.inputs import MissionLoaded
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import StartMission
+from gcs.plan import compare
+from gcs.protocol.mission import MissionDownload
+from gcs.session.inputs import FileRead, FileWritten
+from gcs.session.jobs.job import (
+    LEFT,
+    Asked,
+    Job,
+    JobWork,
+    OnBoardChanged,
+    VehicleView,
+    code_of,
+    verify_whole,
+)
+from gcs.session.paths import autopilot_name
+from gcs.session.plans import OnBoard, item_of
+from gcs.session.work import AskGate, ToGate
+from gcs.wire.messages import MissionItemInt
+
+
+class Start(Job):
+    """The mission on board, read back and verified once more; then the gate decides."""
+
+    def __init__(self, asked: Asked, on_board: OnBoard) -> None:
+        super().__init__(asked)
+        self._on_board = on_board
+
+    def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        download = MissionDownload(*self.parties(view), self.asked.timing)
+        return self.begin(download, len(self._on_board.sent), view, now_ns)
+
+    def progress_of(self) -> str:
+        return "reading back"
+
+    def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[JobWork]:
+        return []
+
+    def done(
+        self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        """It is still the mission that was verified, and its path still clears: the gate's turn."""
+        plan, sent = self._on_board.plan, self._on_board.sent
+        received = tuple(item_of(message) for message in items)
+        differences = compare.same_meaning(sent, received, autopilot_name(view.telemetry))
+        if differences:
+            text = f"another mission is on board than was verified: {differences[0]}"
+            forget: list[JobWork] = [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
+            return forget + self.refuse(Refusal(Code.BAD_MISSION, text))
+        answer = verify_whole(plan, view, now_ns)
+        if isinstance(answer, Refusal):
+            return self.refuse(answer)
+        self.over = True
+        return [AskGate(self.asked.request_id, StartMission())]
+
+    def failed(
+        self, result: int | None, text: str, view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        sentence = f"what is on board could not be read: {text}"
+        return self.refuse(Refusal(code_of(result), sentence))
+
+    def leave(self) -> list[JobWork]:
+        return self.refuse(Refusal(Code.OPERATOR_LOST, LEFT))

@@ -1,0 +1,59 @@
+"""What the record is told besides frames and decisions: the set-up, the inputs, the simulator."""
+
+from __future__ import annotations
+
+import msgspec
+
+from gcs import ipc
+from gcs.gate.effects import Level
+from gcs.record.items import AttachmentItem, InputItem, LogItem, MetadataItem
+from gcs.session.effects import Effect, Emit, Record
+from gcs.session.inputs import FileRead, OtherInput, RecorderGrew
+from gcs.session.setup import Setup
+from gcs.session.work import Log, Work
+
+
+def introduction(setup: Setup) -> list[Effect]:
+    """First of all: what this session is, in the record and on the screen."""
+    config = setup.config
+    values = (
+        ("version", setup.version),
+        ("endpoints", " ".join(setup.endpoints)),
+        ("policy", setup.policy.name),
+        ("station", f"{config.sysid}/{config.compid}"),
+        ("speedup", f"{config.speedup:g}"),
+        ("seed", str(config.sim.seed) if config.sim else ""),
+    )
+    policy = setup.policy_text.encode()
+    hello = ipc.Hello(setup.version, setup.log_path, list(setup.endpoints), setup.policy.name)
+    return [
+        Record(MetadataItem("mavgate", values)),
+        Record(AttachmentItem("policy.toml", "application/toml", policy)),
+        Record(InputItem("Setup", msgspec.json.encode(config))),
+        Emit(hello),
+    ]
+
+
+def recorded(given: OtherInput) -> list[Effect]:
+    """All but the frames, which are recorded as such; with them it is the audit's input."""
+    match given:
+        case RecorderGrew():
+            return []
+        case FileRead(token, path, data, error):
+            size = -1 if data is None else len(data)
+            told = {"token": token, "path": path, "size": size, "error": error}
+            return [Record(InputItem("FileRead", msgspec.json.encode(told)))]
+        case _:
+            return [Record(InputItem(type(given).__name__, msgspec.json.encode(given)))]
+
+
+def sim_line(text: str) -> Work:
+    """`LEVEL node: text`, as vehicle-sim prints it; anything else is an INFO line."""
+    word, _, rest = text.partition(" ")
+    node, colon, line = rest.partition(": ")
+    if word in Level.__members__ and colon and node.startswith("vehicle"):
+        # The operator has it from the vehicle itself; the record keeps both.
+        return Record(LogItem(Level[word], f"sim.{node}", line))
+    if word in Level.__members__ and colon:
+        return Log(Level[word], f"sim.{node}", line)
+    return Log(Level.INFO, "sim", text)
