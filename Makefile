@@ -13,7 +13,7 @@ OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
 WORKERS ?= 2
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check lint types contracts clients soak bench wheel clean
+.PHONY: help demo test check lint types contracts clients soak bench messages wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -44,6 +44,9 @@ soak: $(TEST) ## the properties on new random examples, and more of them than `t
 
 bench: $(TEST) ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench
+
+messages: $(RUN) ## regenerate gcs/wire/messages.py and ids.py from the dialect
+	$(BIN)/python -m gcs.wire.generate
 
 wheel: $(TEST) ## build the wheel into dist/
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .

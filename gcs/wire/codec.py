@@ -5,16 +5,14 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 from operator import itemgetter
-from types import MappingProxyType
 from typing import TypeAlias
 
 import msgspec
 
-from gcs.wire import messages
 from gcs.wire.crc import CRC_EXTRA, mcrf4xx
 from gcs.wire.dialect import MESSAGES, TYPE_CODES, FieldDef, MessageDef
 from gcs.wire.frame import MAGIC_V1, MAGIC_V2, Frame
-from gcs.wire.messages import Message
+from gcs.wire.messages import CLASSES, Message
 
 Scalar: TypeAlias = int | float | str
 Value: TypeAlias = Scalar | tuple[Scalar, ...]
@@ -122,14 +120,6 @@ def _encode_text(definition: MessageDef, field: FieldDef, text: str) -> bytes:
         )
     return raw
 
-
-def _classes() -> dict[int, type[Message]]:
-    found = [getattr(messages, name) for name in messages.__all__]
-    return {cls.MSG_ID: cls for cls in found if cls is not Message}
-
-
-CLASSES = MappingProxyType(_classes())
-"""Message id -> the class for it."""
 
 _LAYOUTS: dict[int, _Layout] = {msgid: _Layout(MESSAGES[msgid]) for msgid in CLASSES}
 _TYPED = {msgid: (cls, _LAYOUTS[msgid]) for msgid, cls in CLASSES.items()}

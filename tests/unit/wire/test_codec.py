@@ -22,8 +22,8 @@ from gcs.wire.messages import (
     HomePosition,
     Message,
     MissionCount,
+    MissionCurrent,
     MissionItemReached,
-    MissionSetCurrent,
     ParamValue,
     Statustext,
 )
@@ -126,6 +126,6 @@ def test_what_the_dialect_lacks_is_refused() -> None:
 
 def test_messages_of_different_kinds_are_never_equal() -> None:
     reached: Message = MissionItemReached(seq=3)
-    current: Message = MissionSetCurrent(seq=3, target_system=0, target_component=0)
+    current: Message = MissionCurrent(seq=3)
     assert reached != current
     assert reached == MissionItemReached(seq=3)

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as pymavlink_dialect
 
 from gcs.wire.codec import (
-    CLASSES,
     EncodeError,
     FrameWriter,
     Value,
@@ -23,7 +22,7 @@ from gcs.wire.codec import (
 )
 from gcs.wire.dialect import MESSAGES, FieldDef, MessageDef
 from gcs.wire.frame import Frame, split
-from gcs.wire.messages import Message
+from gcs.wire.messages import CLASSES, Message
 
 BITS = {"int8": 8, "int16": 16, "int32": 32, "int64": 64}
 BITS |= {f"u{name}": bits for name, bits in BITS.items()}

@@ -1,0 +1,218 @@
+"""What the ground station uses of the MAVLink dialect, by name.  `make messages` reads this.
+
+`generate.py` takes all numbers, fields, types and units from the dialect and writes `messages.py`
+and `ids.py`.  To use another message or enum entry, add its name here and run `make messages`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+MESSAGES = (
+    "HEARTBEAT",
+    "SYS_STATUS",
+    "PARAM_REQUEST_READ",
+    "PARAM_VALUE",
+    "PARAM_SET",
+    "ATTITUDE",
+    "LOCAL_POSITION_NED",
+    "GLOBAL_POSITION_INT",
+    "MISSION_REQUEST",
+    "MISSION_CURRENT",
+    "MISSION_REQUEST_LIST",
+    "MISSION_COUNT",
+    "MISSION_CLEAR_ALL",
+    "MISSION_ITEM_REACHED",
+    "MISSION_ACK",
+    "GPS_GLOBAL_ORIGIN",
+    "MISSION_REQUEST_INT",
+    "MISSION_ITEM_INT",
+    "COMMAND_INT",
+    "COMMAND_LONG",
+    "COMMAND_ACK",
+    "SET_POSITION_TARGET_LOCAL_NED",
+    "CAMERA_FEEDBACK",
+    "HOME_POSITION",
+    "EXTENDED_SYS_STATE",
+    "STATUSTEXT",
+    "CAMERA_IMAGE_CAPTURED",
+    "PARAM_ERROR",
+)
+"""Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
+
+IDS_ONLY = (
+    "GPS_RAW_INT",
+    "POSITION_TARGET_LOCAL_NED",
+    "BATTERY_STATUS",
+    "AUTOPILOT_VERSION",
+)
+"""Messages that are requested for the record and not interpreted: each gets an id only."""
+
+DEFAULTS = {("HEARTBEAT", "mavlink_version"): 3}
+"""Base fields that the protocol itself fills in; all other base fields must be given.
+
+3 is `<version>` in MAVLink's minimal.xml, which pymavlink writes into every heartbeat too.
+"""
+
+
+class EnumChoice(NamedTuple):
+    """One enum of the dialect, as a class in `ids.py`."""
+
+    class_name: str
+    name: str
+    """In the dialect, such as MAV_CMD."""
+    prefix: str
+    """What the members' names leave out: `Cmd.NAV_LAND` is MAV_CMD_NAV_LAND."""
+    about: str
+    """Docstring, behind the dialect's name."""
+    entries: tuple[str, ...] = ()
+    """The entries that are used, without the prefix; none listed: the whole enum."""
+
+
+COMMANDS = (
+    "NAV_WAYPOINT",
+    "NAV_LOITER_UNLIM",
+    "NAV_LOITER_TURNS",
+    "NAV_LOITER_TIME",
+    "NAV_RETURN_TO_LAUNCH",
+    "NAV_LAND",
+    "NAV_TAKEOFF",
+    "NAV_LOITER_TO_ALT",
+    "DO_ORBIT",
+    "NAV_ROI",
+    "NAV_SPLINE_WAYPOINT",
+    "NAV_GUIDED_ENABLE",
+    "NAV_DELAY",
+    "CONDITION_DELAY",
+    "CONDITION_DISTANCE",
+    "CONDITION_YAW",
+    "DO_SET_MODE",
+    "DO_JUMP",
+    "DO_CHANGE_SPEED",
+    "DO_SET_HOME",
+    "DO_FLIGHTTERMINATION",
+    "DO_CHANGE_ALTITUDE",
+    "DO_LAND_START",
+    "DO_REPOSITION",
+    "DO_PAUSE_CONTINUE",
+    "DO_SET_ROI_LOCATION",
+    "DO_SET_ROI_WPNEXT_OFFSET",
+    "DO_SET_ROI_NONE",
+    "DO_SET_ROI",
+    "DO_DIGICAM_CONFIGURE",
+    "DO_DIGICAM_CONTROL",
+    "DO_MOUNT_CONFIGURE",
+    "DO_MOUNT_CONTROL",
+    "DO_SET_CAM_TRIGG_DIST",
+    "DO_FENCE_ENABLE",
+    "DO_SET_CAM_TRIGG_INTERVAL",
+    "DO_SET_MISSION_CURRENT",
+    "PREFLIGHT_CALIBRATION",
+    "PREFLIGHT_STORAGE",
+    "PREFLIGHT_REBOOT_SHUTDOWN",
+    "MISSION_START",
+    "COMPONENT_ARM_DISARM",
+    "RUN_PREARM_CHECKS",
+    "GET_HOME_POSITION",
+    "INJECT_FAILURE",
+    "GET_MESSAGE_INTERVAL",
+    "SET_MESSAGE_INTERVAL",
+    "REQUEST_MESSAGE",
+    "REQUEST_PROTOCOL_VERSION",
+    "REQUEST_AUTOPILOT_CAPABILITIES",
+    "REQUEST_CAMERA_INFORMATION",
+    "SET_CAMERA_MODE",
+    "DO_SET_GLOBAL_ORIGIN",
+    "DO_GIMBAL_MANAGER_PITCHYAW",
+    "DO_GIMBAL_MANAGER_CONFIGURE",
+    "IMAGE_START_CAPTURE",
+    "IMAGE_STOP_CAPTURE",
+    "DO_TRIGGER_CONTROL",
+    "VIDEO_START_CAPTURE",
+    "VIDEO_STOP_CAPTURE",
+    "NAV_FENCE_RETURN_POINT",
+    "NAV_FENCE_POLYGON_VERTEX_INCLUSION",
+    "NAV_FENCE_POLYGON_VERTEX_EXCLUSION",
+    "NAV_FENCE_CIRCLE_INCLUSION",
+    "NAV_FENCE_CIRCLE_EXCLUSION",
+    "NAV_RALLY_POINT",
+)
+"""Sent, flown in missions, or called by name when a mission file has them."""
+
+ENUMS = (
+    EnumChoice(
+        "Cmd",
+        "MAV_CMD",
+        "MAV_CMD_",
+        "what this program sends, or knows in a mission",
+        COMMANDS,
+    ),
+    EnumChoice("Result", "MAV_RESULT", "MAV_RESULT_", "COMMAND_ACK.result"),
+    EnumChoice(
+        "MavFrame",
+        "MAV_FRAME",
+        "MAV_FRAME_",
+        "what a position is counted from",
+        (
+            "GLOBAL",
+            "LOCAL_NED",
+            "MISSION",
+            "GLOBAL_RELATIVE_ALT",
+            "GLOBAL_INT",
+            "GLOBAL_RELATIVE_ALT_INT",
+            "GLOBAL_TERRAIN_ALT",
+            "GLOBAL_TERRAIN_ALT_INT",
+        ),
+    ),
+    EnumChoice(
+        "MissionType", "MAV_MISSION_TYPE", "MAV_MISSION_TYPE_", "which plan a message is about"
+    ),
+    EnumChoice("MissionResult", "MAV_MISSION_RESULT", "MAV_MISSION_", "MISSION_ACK.type"),
+    EnumChoice("MissionState", "MISSION_STATE", "MISSION_STATE_", "MISSION_CURRENT.mission_state"),
+    EnumChoice("ModeFlag", "MAV_MODE_FLAG", "MAV_MODE_FLAG_", "bits of HEARTBEAT.base_mode"),
+    EnumChoice("MavState", "MAV_STATE", "MAV_STATE_", "HEARTBEAT.system_status"),
+    EnumChoice(
+        "MavAutopilot",
+        "MAV_AUTOPILOT",
+        "MAV_AUTOPILOT_",
+        "HEARTBEAT.autopilot",
+        ("GENERIC", "ARDUPILOTMEGA", "INVALID", "PX4"),
+    ),
+    EnumChoice(
+        "MavType",
+        "MAV_TYPE",
+        "MAV_TYPE_",
+        "HEARTBEAT.type",
+        (
+            "GENERIC",
+            "FIXED_WING",
+            "QUADROTOR",
+            "COAXIAL",
+            "HELICOPTER",
+            "ANTENNA_TRACKER",
+            "GCS",
+            "GROUND_ROVER",
+            "SURFACE_BOAT",
+            "SUBMARINE",
+            "HEXAROTOR",
+            "OCTOROTOR",
+            "TRICOPTER",
+            "ONBOARD_CONTROLLER",
+            "GIMBAL",
+            "ADSB",
+            "DODECAROTOR",
+            "CAMERA",
+        ),
+    ),
+    EnumChoice("Severity", "MAV_SEVERITY", "MAV_SEVERITY_", "STATUSTEXT.severity"),
+    EnumChoice("ParamType", "MAV_PARAM_TYPE", "MAV_PARAM_TYPE_", "PARAM_VALUE.param_type"),
+    EnumChoice("ParamError", "MAV_PARAM_ERROR", "MAV_PARAM_ERROR_", "PARAM_ERROR.error"),
+    EnumChoice("Component", "MAV_COMPONENT", "MAV_COMP_ID_", "component ids", ("AUTOPILOT1",)),
+    EnumChoice(
+        "TypeMask",
+        "POSITION_TARGET_TYPEMASK",
+        "POSITION_TARGET_TYPEMASK_",
+        "a set bit means that the field is ignored",
+    ),
+)
+"""The classes in `ids.py`, in their order there."""
