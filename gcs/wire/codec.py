@@ -1,4 +1,4 @@
-"""Frames <-> messages, by `struct` tables that are derived from the dialect once."""
+"""Frames <-> messages.  `struct` packs and unpacks payloads, with layouts from the dialect."""
 
 from __future__ import annotations
 
@@ -11,53 +11,59 @@ import msgspec
 
 from gcs.wire.crc import CRC_EXTRA, mcrf4xx
 from gcs.wire.dialect import MESSAGES, TYPE_CODES, FieldDef, MessageDef
-from gcs.wire.frame import MAGIC_V1, MAGIC_V2, Frame
+from gcs.wire.frame import MAGIC_V2, Frame
 from gcs.wire.messages import CLASSES, Message
 
 Scalar: TypeAlias = int | float | str
 Value: TypeAlias = Scalar | tuple[Scalar, ...]
 """A field's value: a string for `char`, a tuple for any other array."""
+_Unpacked: TypeAlias = "tuple[int | float | bytes, ...]"
+"""What `struct` gives: an array is as many values as it has elements, a string is bytes."""
+_Getter: TypeAlias = "Callable[[_Unpacked], Value]"
+"""Takes the value of one field out of what `struct` unpacked."""
 
 
 class EncodeError(ValueError):
-    """A message of ours does not fit its wire format: our own bug, or unchecked input."""
+    """A message does not fit its wire format: a bug here, or input that was not checked."""
 
 
-class _Layout:
-    """How one message's payload is packed and unpacked."""
+class Layout:
+    """How the payload of one message class is packed.
 
-    __slots__ = ("_cuts", "_struct", "definition", "plain", "size")
+    It has the fields of the class.  A newer dialect may know more extensions: those stand last,
+    so they are ignored on decoding and left out (which means zero) on encoding.
+    """
 
-    def __init__(self, definition: MessageDef) -> None:
-        self.definition = definition
-        self._struct = struct.Struct("<" + "".join(_format(f) for f in definition.fields))
-        self.size = self._struct.size
-        self.plain = all(f.type != "char" and not f.array_length for f in definition.fields)
-        """Whether what `struct` gives are the field values already."""
-        self._cuts = _cuts(definition.fields)
+    __slots__ = ("_fields", "_is_plain", "_name", "_pack", "decode")
 
-    def unpack(self, payload: bytes) -> tuple[Value, ...]:
-        """Field values in wire order.  A short payload is extended with zeros (MAVLink 2)."""
-        values = self._struct.unpack_from(payload.ljust(self.size, b"\0"))
-        return values if self.plain else tuple([cut(values) for cut in self._cuts])
+    def __init__(self, cls: type[Message], definition: MessageDef) -> None:
+        self._name = definition.name
+        self._fields = definition.fields[: len(cls.__struct_fields__)]
+        packed = struct.Struct("<" + "".join(_format(field) for field in self._fields))
+        self._pack = packed.pack
+        # Without text and arrays, `struct` takes and gives the field values as they are.
+        self._is_plain = all(f.type != "char" and not f.array_length for f in self._fields)
+        getters = None if self._is_plain else _getters(self._fields)
+        self.decode = _decoder(cls, packed, getters)
+        """Payload -> message.  A short payload is extended with zeros, which MAVLink 2 cuts."""
 
-    def pack(self, values: tuple[Value, ...]) -> bytes:
+    def encode(self, message: Message) -> bytes:
         """Raises EncodeError, which names the field."""
+        values: tuple[Value, ...] = msgspec.structs.astuple(message)
         try:
-            flat = values if self.plain else self._flat(values)
-            return self._struct.pack(*flat)
+            return self._pack(*(values if self._is_plain else self._flat(values)))
         except (struct.error, OverflowError, TypeError) as error:
-            raise EncodeError(f"{self.definition.name}: {self._blame(values)}: {error}") from error
+            raise EncodeError(f"{self._name}: {self._misfit(values)}: {error}") from error
 
     def _flat(self, values: tuple[Value, ...]) -> list[Scalar | bytes]:
         flat: list[Scalar | bytes] = []
-        for field, value in zip(self.definition.fields, values, strict=True):
+        for field, value in zip(self._fields, values, strict=True):
             if isinstance(value, str):
-                flat.append(_encode_text(self.definition, field, value))
+                flat.append(self._encode_text(field, value))
             elif isinstance(value, tuple):
                 if len(value) != field.array_length:
                     raise EncodeError(
-                        f"{self.definition.name}.{field.name}: "
+                        f"{self._name}.{field.name}: "
                         f"{len(value)} elements instead of {field.array_length}"
                     )
                 flat += value
@@ -65,9 +71,16 @@ class _Layout:
                 flat.append(value)
         return flat
 
-    def _blame(self, values: tuple[Value, ...]) -> str:
-        """The first field that does not pack by itself."""
-        for field, value in zip(self.definition.fields, values, strict=True):
+    def _encode_text(self, field: FieldDef, text: str) -> bytes:
+        raw = text.encode()
+        size = max(1, field.array_length)
+        if len(raw) > size:
+            raise EncodeError(f"{self._name}.{field.name}: {text!r} is longer than {size} bytes")
+        return raw
+
+    def _misfit(self, values: tuple[Value, ...]) -> str:
+        """The first field whose value does not pack by itself."""
+        for field, value in zip(self._fields, values, strict=True):
             items = value if isinstance(value, tuple) else (value,)
             try:
                 if field.type != "char":
@@ -77,143 +90,97 @@ class _Layout:
         return "wrong type of a value"
 
 
+def _decoder(
+    cls: type[Message], packed: struct.Struct, getters: list[_Getter] | None
+) -> Callable[[bytes], Message]:
+    """A closure, which is faster than a method: every received message passes through it."""
+    unpack, size = packed.unpack_from, packed.size
+    if getters is None:
+        return lambda payload: cls(*unpack(payload.ljust(size, b"\0")))
+
+    def decode(payload: bytes) -> Message:
+        values = unpack(payload.ljust(size, b"\0"))
+        return cls(*[get(values) for get in getters])
+
+    return decode
+
+
 def _format(field: FieldDef) -> str:
     if field.type == "char":
         return f"{max(1, field.array_length)}s"
     return f"{field.array_length or ''}{TYPE_CODES[field.type]}"
 
 
-_Flat: TypeAlias = "tuple[int | float | bytes, ...]"
-
-
-def _cuts(fields: tuple[FieldDef, ...]) -> list[Callable[[_Flat], Value]]:
-    """One function a field that takes its value from what `struct` unpacked."""
-    cuts: list[Callable[[_Flat], Value]] = []
+def _getters(fields: tuple[FieldDef, ...]) -> list[_Getter]:
+    """One for each field."""
+    getters: list[_Getter] = []
     at = 0
     for field in fields:
         if field.type == "char":
-            cuts.append(_text_cut(at))
+            getters.append(_text_getter(at))
             at += 1
         elif field.array_length:
-            cuts.append(itemgetter(slice(at, at + field.array_length)))
+            getters.append(itemgetter(slice(at, at + field.array_length)))
             at += field.array_length
         else:
-            cuts.append(itemgetter(at))
+            getters.append(itemgetter(at))
             at += 1
-    return cuts
+    return getters
 
 
-def _text_cut(at: int) -> Callable[[_Flat], Value]:
-    def cut(values: _Flat) -> Value:
+def _text_getter(at: int) -> Callable[[_Unpacked], str]:
+    """Text ends at its first NUL; bytes that are not UTF-8 become replacement characters."""
+
+    def get(values: _Unpacked) -> str:
         raw = values[at]
         assert isinstance(raw, bytes)
         return raw.partition(b"\0")[0].decode("utf-8", "replace")
 
-    return cut
+    return get
 
 
-def _encode_text(definition: MessageDef, field: FieldDef, text: str) -> bytes:
-    raw = text.encode()
-    if len(raw) > max(1, field.array_length):
-        raise EncodeError(
-            f"{definition.name}.{field.name}: {text!r} is longer than {field.array_length} bytes"
-        )
-    return raw
-
-
-_LAYOUTS: dict[int, _Layout] = {msgid: _Layout(MESSAGES[msgid]) for msgid in CLASSES}
-_TYPED = {msgid: (cls, _LAYOUTS[msgid]) for msgid, cls in CLASSES.items()}
-
-
-def _layout(msgid: int) -> _Layout | None:
-    """Layouts of messages without a class are made when they are first asked for."""
-    layout = _LAYOUTS.get(msgid)
-    if layout is None and msgid in MESSAGES:
-        layout = _LAYOUTS[msgid] = _Layout(MESSAGES[msgid])
-    return layout
+_LAYOUTS: dict[int, Layout] = {
+    msgid: Layout(cls, MESSAGES[msgid]) for msgid, cls in CLASSES.items()
+}
 
 
 def decode(frame: Frame) -> Message | None:
-    """The message in a frame, None if it is of a kind that has no class."""
-    typed = _TYPED.get(frame.msgid)
-    if typed is None:
-        return None
-    cls, layout = typed
-    return cls(*layout.unpack(frame.payload))
-
-
-def decode_fields(frame: Frame) -> dict[str, Value] | None:
-    """Field values by name in the order people read them, None if the dialect lacks the message."""
-    layout = _layout(frame.msgid)
-    if layout is None:
-        return None
-    names = (field.name for field in layout.definition.fields)
-    values = dict(zip(names, layout.unpack(frame.payload), strict=True))
-    return {name: values[name] for name in layout.definition.declared}
+    """The message in a frame, None if there is no class for it."""
+    layout = _LAYOUTS.get(frame.msgid)
+    return None if layout is None else layout.decode(frame.payload)
 
 
 def encode(message: Message) -> bytes:
-    """The whole payload, zeros and extensions included.  Raises EncodeError."""
-    return _LAYOUTS[message.MSG_ID].pack(msgspec.structs.astuple(message))
+    """The whole payload with trailing zeros and extensions.  Raises EncodeError."""
+    return _LAYOUTS[message.MSG_ID].encode(message)
 
 
-def encode_fields(msgid: int, fields: dict[str, Value]) -> bytes:
-    """The whole payload of any message of the dialect; fields that are left out are zero.
-
-    Raises EncodeError, also for a message or a field that does not exist.
-    """
-    layout = _layout(msgid)
-    if layout is None:
-        raise EncodeError(f"no message {msgid} in the dialect")
-    known = {field.name for field in layout.definition.fields}
-    if strange := fields.keys() - known:
-        raise EncodeError(f"{layout.definition.name} has no field {', '.join(sorted(strange))}")
-    zeros = layout.unpack(b"")
-    pairs = zip(layout.definition.fields, zeros, strict=True)
-    return layout.pack(tuple(fields.get(field.name, zero) for field, zero in pairs))
-
-
-# Without the magic, as the checksum wants them: length, (flags,) seq, sysid, compid, msgid.
-_V1_HEADER = struct.Struct("<BBBBB")
-_V2_HEADER = struct.Struct("<BBBBBBHB")
+_MAGIC = bytes((MAGIC_V2,))
+# The header without its magic, which the checksum leaves out:
+# length, two bytes of flags, seq, sysid, compid, msgid (3 bytes).
+_HEADER = struct.Struct("<BBBBBBHB")
 _CHECKSUM = struct.Struct("<H")
-_MAGIC = (bytes((MAGIC_V2,)), bytes((MAGIC_V1,)))
 
 
 class FrameWriter:
-    """Frames from one component on one link: it owns the sequence number."""
+    """Makes the MAVLink 2 frames that one component sends on one link, and numbers them."""
 
-    __slots__ = ("_mavlink1", "compid", "seq", "sysid")
+    __slots__ = ("compid", "seq", "sysid")
 
-    def __init__(self, sysid: int, compid: int, mavlink1: bool = False) -> None:
+    def __init__(self, sysid: int, compid: int) -> None:
         self.sysid = sysid
         self.compid = compid
         self.seq = 0
-        """Of the next frame."""
-        self._mavlink1 = mavlink1
+        """Sequence number of the next frame, 0 to 255."""
 
     def write(self, message: Message) -> bytes:
-        """One frame.  Raises EncodeError."""
+        """The message as one frame.  Raises EncodeError."""
         return self.write_payload(message.MSG_ID, encode(message))
 
     def write_payload(self, msgid: int, payload: bytes) -> bytes:
-        """One frame around a payload of the message's full length, which is cut as the version of
-        MAVLink asks.  Raises EncodeError for a message that the version cannot carry.
-        """
-        body = self._body_v1(msgid, payload) if self._mavlink1 else self._body_v2(msgid, payload)
-        self.seq = (self.seq + 1) & 0xFF
-        checksum = mcrf4xx(body + CRC_EXTRA[msgid])
-        return _MAGIC[self._mavlink1] + body + _CHECKSUM.pack(checksum)
-
-    def _body_v2(self, msgid: int, payload: bytes) -> bytes:
-        """MAVLink 2 cuts trailing zeros, but for the first byte."""
+        """One frame.  Trailing zeros of the payload are cut, but not its first byte (MAVLink 2)."""
         payload = payload.rstrip(b"\0") or payload[:1]
         ids = (self.seq, self.sysid, self.compid, msgid & 0xFFFF, msgid >> 16)
-        return _V2_HEADER.pack(len(payload), 0, 0, *ids) + payload
-
-    def _body_v1(self, msgid: int, payload: bytes) -> bytes:
-        """MAVLink 1 carries the base fields of messages up to id 255."""
-        if msgid > 0xFF:
-            raise EncodeError(f"{MESSAGES[msgid].name} does not exist in MAVLink 1")
-        payload = payload[: MESSAGES[msgid].min_len]
-        return _V1_HEADER.pack(len(payload), self.seq, self.sysid, self.compid, msgid) + payload
+        body = _HEADER.pack(len(payload), 0, 0, *ids) + payload
+        self.seq = (self.seq + 1) & 0xFF
+        return _MAGIC + body + _CHECKSUM.pack(mcrf4xx(body + CRC_EXTRA[msgid]))

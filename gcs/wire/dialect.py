@@ -1,15 +1,15 @@
-"""Every message and enum that this program knows, as tables.
+"""The MAVLink dialect as tables: every message and enum.
 
-Derived once, at import, from `pymavlink.dialects.v20.all` (a superset of common, ardupilotmega
-and development) and from `supplement.py`.  Importing it costs about 0.1 s, so only what speaks
-to a vehicle or a log does.
+Made at import from `pymavlink.dialects.v20.all` (a superset of common, ardupilotmega and
+development) and from `supplement.py`.  The import takes about 0.1 s, so only what talks to a
+vehicle or reads a record imports this.
 """
 
 from __future__ import annotations
 
 import struct
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from pymavlink.dialects.v20 import all as pymavlink_dialect
 
@@ -32,6 +32,8 @@ TYPE_CODES = MappingProxyType(
 )
 """Field type -> `struct` code.  All fields are little-endian and packed."""
 
+_SIZES = {type_: struct.calcsize("<" + code) for type_, code in TYPE_CODES.items()}
+
 
 class FieldDef(NamedTuple):
     """One field of a message, at its place on the wire."""
@@ -40,22 +42,20 @@ class FieldDef(NamedTuple):
     type: str
     """A key of `TYPE_CODES`."""
     array_length: int
-    """0 for a scalar; a `char` array is a string."""
+    """Number of elements, 0 for a scalar.  A `char` array is a string."""
     offset: int
     """Bytes from the start of the payload."""
     extension: bool
-    """MAVLink 2 only, and not part of the CRC extra."""
+    """Whether it exists in MAVLink 2 only; then it is not part of the CRC extra."""
     enum: str
-    """Name of the enum that gives its values meaning, or ""."""
+    """Name of the enum of its values, or ""."""
     units: str
     """As the dialect writes them ("cm/s", "degE7"), or ""."""
-    bitmask: bool
-    """Whether the enum's entries are bits."""
 
     @property
     def size(self) -> int:
         """Bytes on the wire."""
-        return struct.calcsize("<" + TYPE_CODES[self.type]) * max(1, self.array_length)
+        return _SIZES[self.type] * (self.array_length or 1)
 
 
 class MessageDef(NamedTuple):
@@ -65,13 +65,11 @@ class MessageDef(NamedTuple):
     name: str
     crc_extra: int
     min_len: int
-    """Length of the base fields: all that MAVLink 1 carries."""
+    """Bytes without extensions, as in MAVLink 1."""
     max_len: int
-    """Length with every extension the dialect knows."""
+    """Bytes with all extensions."""
     fields: tuple[FieldDef, ...]
     """In wire order."""
-    declared: tuple[str, ...]
-    """Field names in the order in which the dialect declares and people read them."""
 
 
 class EnumEntry(NamedTuple):
@@ -84,28 +82,22 @@ class EnumDef(NamedTuple):
     name: str
     entries: tuple[EnumEntry, ...]
 
-    def name_of(self, value: int) -> str | None:
-        """The entry with this value, None if there is none."""
-        return next((entry.name for entry in self.entries if entry.value == value), None)
+
+_Row: TypeAlias = tuple[str, str, int, bool, str, str]
+"""A field without its offset: name, type, array length, extension, enum, units."""
 
 
-def _lay_out(
-    msgid: int,
-    name: str,
-    crc_extra: int,
-    fields: list[tuple[str, str, int, bool, str, str, bool]],
-    declared: tuple[str, ...],
-) -> MessageDef:
-    """Give (name, type, array length, extension, enum, units, bitmask) rows their offsets."""
-    placed: list[FieldDef] = []
+def _lay_out(msgid: int, name: str, crc_extra: int, rows: list[_Row]) -> MessageDef:
+    """The message whose fields are these, in wire order."""
+    fields: list[FieldDef] = []
     offset = min_len = 0
-    for field_name, type_, array_length, extension, enum, units, bitmask in fields:
-        field = FieldDef(field_name, type_, array_length, offset, extension, enum, units, bitmask)
-        placed.append(field)
+    for field_name, type_, array_length, extension, enum, units in rows:
+        field = FieldDef(field_name, type_, array_length, offset, extension, enum, units)
+        fields.append(field)
         offset += field.size
         if not extension:
             min_len = offset
-    return MessageDef(msgid, name, crc_extra, min_len, offset, tuple(placed), declared)
+    return MessageDef(msgid, name, crc_extra, min_len, offset, tuple(fields))
 
 
 def _from_pymavlink(message: Any) -> MessageDef:
@@ -118,7 +110,7 @@ def _from_pymavlink(message: Any) -> MessageDef:
     base_count = init.__code__.co_argcount - 1 - len(init.__defaults__ or ())
     types = dict(zip(message.fieldnames, message.fieldtypes, strict=True))
     wire_order = zip(message.ordered_fieldnames, message.array_lengths, strict=True)
-    fields = [
+    rows = [
         (
             name,
             types[name].removesuffix("_t"),
@@ -126,27 +118,23 @@ def _from_pymavlink(message: Any) -> MessageDef:
             position >= base_count,
             message.fieldenums_by_name.get(name, ""),
             message.fieldunits_by_name.get(name, ""),
-            message.fielddisplays_by_name.get(name, "") == "bitmask",
         )
         for position, (name, array_length) in enumerate(wire_order)
     ]
-    declared = tuple(message.fieldnames)
-    return _lay_out(message.id, message.msgname, message.crc_extra, fields, declared)
+    return _lay_out(message.id, message.msgname, message.crc_extra, rows)
 
 
 def _from_supplement(
     message: supplement.SupplementMessage, shorter: MessageDef | None
 ) -> MessageDef:
-    """`shorter` is pymavlink's version, whose enums, units and reading order stay."""
+    """`shorter` is pymavlink's version of the message; its enums and units are kept."""
     known = {field.name: field for field in shorter.fields} if shorter else {}
-    fields = []
+    rows: list[_Row] = []
     for field in message.fields:
         twin = known.get(field.name)
-        meaning = (twin.enum, twin.units, twin.bitmask) if twin else ("", "", False)
-        fields.append((field.name, field.type, field.array_length, field.extension, *meaning))
-    first = shorter.declared if shorter else ()
-    declared = first + tuple(f.name for f in message.fields if f.name not in first)
-    return _lay_out(message.msgid, message.name, message.crc_extra, fields, declared)
+        meaning = (twin.enum, twin.units) if twin else ("", "")
+        rows.append((field.name, field.type, field.array_length, field.extension, *meaning))
+    return _lay_out(message.msgid, message.name, message.crc_extra, rows)
 
 
 def _load_messages() -> dict[int, MessageDef]:

@@ -1,8 +1,8 @@
-"""Bytes -> frames: what of a datagram or a stream is MAVLink, and what is left over.
+"""Bytes -> frames: finds the MAVLink frames in a datagram or a stream.
 
-A frame counts as found when its checksum is right; good frames are looked for first, so a stray
-magic byte swallows nothing.  Only what lies between good frames can be a frame of a message that
-the dialect lacks, whose checksum cannot be known; the rest is `Garbage`, with a reason.
+Frames with a right checksum are found first, so a stray magic byte hides no frame.  The checksum
+of a message that the dialect lacks cannot be checked; such a frame is accepted only between good
+frames.  All other bytes are `Garbage`, with a reason.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ CHECKSUM_SIZE = 2
 SIGNATURE_SIZE = 13
 MAX_FRAME = HEADER_V2 + 255 + CHECKSUM_SIZE + SIGNATURE_SIZE
 MAX_DATAGRAM = 16_384
-"""A longer datagram is garbage unseen: nobody sends one, and searching it would take time."""
+"""A longer datagram is garbage and is not searched: no sender makes one, and it would take long."""
 
 _V1_START = struct.Struct("<BBBBBB").unpack_from  # magic, length, seq, sysid, compid, msgid
 _V2_START = struct.Struct("<BBBBBBBI").unpack_from  # magic, length, flags, flags, then the same
-# Frame(...) checks and names its arguments one by one, which costs as much as the checksum.
+# Calling Frame(...) costs as much time as the checksum; this does not.
 _new = tuple.__new__
 _MAGIC = re.compile(b"[\xfd\xfe]")
 _MAGICS = b"\xfd\xfe"
@@ -41,20 +41,16 @@ class Frame(NamedTuple):
 
     raw: bytes
     """Magic to checksum or signature, unchanged."""
-    magic: int
-    incompat_flags: int
-    """0 in MAVLink 1, as is `compat_flags`."""
-    compat_flags: int
     seq: int
     sysid: int
     compid: int
     msgid: int
     payload: bytes
-    """As it came: MAVLink 2 cuts trailing zeros, a newer sender may send more than we know."""
+    """As received: MAVLink 2 cuts trailing zeros; a newer sender may add fields at the end."""
     signature: bytes
-    """Link id, timestamp and signature (13 bytes), or empty."""
+    """13 bytes (link id, timestamp, signature), or empty.  It is not checked."""
     known: bool
-    """False: the dialect lacks this message, so the checksum could not be checked."""
+    """Whether the dialect has the message.  If not, the checksum could not be checked."""
 
     @property
     def name(self) -> str:
@@ -64,7 +60,7 @@ class Frame(NamedTuple):
 
 
 class Reason(StrEnum):
-    """Why bytes are no frame."""
+    """Why bytes are not a frame."""
 
     CRC = "crc"
     TRUNCATED = "truncated"
@@ -75,7 +71,7 @@ class Reason(StrEnum):
 
 
 class Garbage(NamedTuple):
-    """A run of bytes that were no frame."""
+    """Bytes in a row that are not part of a frame."""
 
     raw: bytes
     reason: Reason
@@ -85,7 +81,7 @@ Item: TypeAlias = Frame | Garbage
 
 
 def split(data: bytes) -> list[Item]:
-    """Everything in one datagram, in order; every byte of it is in exactly one item."""
+    """The frames and garbage of one datagram, in order.  Every byte is in exactly one item."""
     if len(data) > MAX_DATAGRAM:
         return [Garbage(data, Reason.OVERSIZE)]
     if data:
@@ -97,9 +93,9 @@ def split(data: bytes) -> list[Item]:
 
 
 class StreamSplitter:
-    """The same for a byte stream (TCP, serial), where a frame may come in pieces.
+    """The same for a byte stream (TCP, serial), where a frame may arrive in pieces.
 
-    Holds back at most what could still become a frame, so the buffer stays under `MAX_FRAME`.
+    Keeps only bytes that may still become a frame, so at most `MAX_FRAME`.
     """
 
     __slots__ = ("_rest",)
@@ -109,67 +105,63 @@ class StreamSplitter:
 
     @property
     def waiting(self) -> int:
-        """Bytes that are held back."""
+        """Number of bytes kept for the next `feed`."""
         return len(self._rest)
 
     def feed(self, data: bytes) -> list[Item]:
-        """Take the next bytes; give what they complete."""
+        """Take the next bytes; return the items that they complete."""
         data = self._rest + data
         items, taken = _scan(data, whole=False)
         self._rest = data[taken:]
         return items
 
     def close(self) -> list[Item]:
-        """The stream ended: give what was held back, as far as it goes."""
+        """The stream ended: return what was kept."""
         data, self._rest = self._rest, b""
         return split(data)
 
 
-def extended(frame: Frame) -> bytes:
-    """The payload with its zeros restored: the dialect's full length, plus any bytes beyond it."""
-    message = MESSAGES.get(frame.msgid)
-    return frame.payload.ljust(message.max_len, b"\0") if message else frame.payload
-
-
 def _scan(data: bytes, whole: bool) -> tuple[list[Item], int]:
-    """Items found, and how many bytes they take: all if `whole`, else up to what may go on."""
+    """The items, and how many bytes they take: all of them if `whole`, else without the end that
+    the next bytes may complete.
+    """
     items: list[Item] = []
     size = len(data)
-    at = left = 0
+    at = rest = 0
     while at < size:
         frame = _frame_at(data, at, known=True)
         if frame is None:
             magic = _MAGIC.search(data, at + 1)
             at = magic.start() if magic else size
             continue
-        if left < at:
-            items += _without_known(data[left:at], closed=True)[0]
+        if rest < at:
+            items += _without_known(data[rest:at], closed=True)[0]
         items.append(frame)
-        at = left = at + len(frame.raw)
-    if left == size:
+        at = rest = at + len(frame.raw)
+    if rest == size:
         return items, size
-    more, taken = _without_known(data[left:], closed=whole)
-    return items + more, left + taken
+    more, taken = _without_known(data[rest:], closed=whole)
+    return items + more, rest + taken
 
 
 def _frame_at(data: bytes, at: int, known: bool) -> Frame | None:
-    """The frame that starts at `at`, if there is one: with a right checksum if the message is to
-    be `known`, else of a message that the dialect lacks.
+    """The frame that starts at `at`, if there is one: of a message that the dialect has and with
+    a right checksum if `known`, else of a message that the dialect lacks.
     """
     room = len(data) - at
     magic = data[at]
     if magic == MAGIC_V2 and room >= HEADER_V2 + CHECKSUM_SIZE:
-        _, length, incompat, compat, seq, sysid, compid, low = _V2_START(data, at)
+        _, length, incompat, _, seq, sysid, compid, low = _V2_START(data, at)
         msgid = low & 0xFFFFFF
         start = at + HEADER_V2
     elif magic == MAGIC_V1 and room >= HEADER_V1 + CHECKSUM_SIZE:
         _, length, seq, sysid, compid, msgid = _V1_START(data, at)
-        incompat = compat = 0
+        incompat = 0
         start = at + HEADER_V1
     else:
         return None
     stop = start + length
-    end = sealed = stop + CHECKSUM_SIZE
+    end = checked = stop + CHECKSUM_SIZE
     if incompat:
         if incompat != SIGNED:
             return None
@@ -182,22 +174,22 @@ def _frame_at(data: bytes, at: int, known: bool) -> Frame | None:
             return None
     elif not known or mcrf4xx(data[at + 1 : stop] + crc_extra) != data[stop] | data[stop + 1] << 8:
         return None
-    header = (magic, incompat, compat, seq, sysid, compid, msgid)
-    return _new(Frame, (data[at:end], *header, data[start:stop], data[sealed:end], known))
+    header = (seq, sysid, compid, msgid)
+    return _new(Frame, (data[at:end], *header, data[start:stop], data[checked:end], known))
 
 
 def _without_known(run: bytes, closed: bool) -> tuple[list[Item], int]:
-    """Items in a run of bytes that holds no frame of a known message, and how many they take.
+    """The items of bytes that hold no frame of a known message, and how many bytes they take.
 
-    A frame of an unknown message is believed if it starts where the last one ended and ends where
-    the run does or where another magic stands.  A run that is not `closed` may go on.
+    A frame of an unknown message is accepted if it starts where the one before ended, and ends
+    where `run` ends or at another magic byte.  A run that is not `closed` may continue.
     """
     items: list[Item] = []
     at = 0
     while at < len(run) and (frame := _frame_at(run, at, known=False)) is not None:
         end = at + len(frame.raw)
-        believed = closed if end == len(run) else run[end] in _MAGICS
-        if not believed:
+        accepted = closed if end == len(run) else run[end] in _MAGICS
+        if not accepted:
             break
         items.append(frame)
         at = end
@@ -208,7 +200,7 @@ def _without_known(run: bytes, closed: bool) -> tuple[list[Item], int]:
 
 
 def _unfinished_from(run: bytes, at: int) -> int:
-    """Where the first frame starts that the next bytes could complete or confirm."""
+    """Start of the first frame that the next bytes could complete or confirm, else the end."""
     for magic in _MAGIC.finditer(run, at):
         start = magic.start()
         length = _length_at(run, start)
@@ -220,7 +212,7 @@ def _unfinished_from(run: bytes, at: int) -> int:
 
 
 def _length_at(run: bytes, at: int) -> int | None:
-    """The length of the frame that would start at `at`: None = not to be told yet, 0 = none can."""
+    """Length of the frame that would start at `at`.  None: too few bytes; 0: no frame can start."""
     header = run[at : at + 3]
     if len(header) < 3:
         return None
@@ -233,7 +225,7 @@ def _length_at(run: bytes, at: int) -> int | None:
 
 
 def _why_not(run: bytes) -> Reason:
-    """What is wrong with bytes that are no frame, judged by the first magic among them."""
+    """Why bytes are not a frame, judged by the first magic byte in them."""
     magic = _MAGIC.search(run)
     if magic is None:
         return Reason.TEXT if _TEXT.match(run) else Reason.GARBAGE

@@ -25,6 +25,7 @@ What each message is for: https://mavlink.io/en/messages/all.html
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -41,7 +42,9 @@ class Message(msgspec.Struct, frozen=True, gc=False):
 
 MESSAGES_TAIL = '''
 
-CLASSES = MappingProxyType({cls.MSG_ID: cls for cls in Message.__subclasses__()})
+CLASSES: Mapping[int, type[Message]] = MappingProxyType(
+    {cls.MSG_ID: cls for cls in Message.__subclasses__()}
+)
 """Message id -> class."""
 '''
 

@@ -9,6 +9,7 @@ What each message is for: https://mavlink.io/en/messages/all.html
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -394,5 +395,7 @@ class ParamError(Message, frozen=True, gc=False):
     error: int  # MAV_PARAM_ERROR
 
 
-CLASSES = MappingProxyType({cls.MSG_ID: cls for cls in Message.__subclasses__()})
+CLASSES: Mapping[int, type[Message]] = MappingProxyType(
+    {cls.MSG_ID: cls for cls in Message.__subclasses__()}
+)
 """Message id -> class."""

@@ -1,8 +1,8 @@
-"""What upstream MAVLink's common dialect has and pymavlink 2.4.50 lacks, kept by hand.
+"""What MAVLink's common dialect had in August 2026 and pymavlink 2.4.50 lacks, kept by hand.
 
-A message a paragraph: `id NAME crc_extra: type[array] field, ... | extension fields`, in wire
-order.  Eight of them pymavlink knows in a shorter version; the longer one wins.  As upstream was
-in August 2026.  A later pymavlink that has them all makes this file superfluous.
+One paragraph a message: `id NAME crc_extra: type[array] field, ... | extension fields`, in wire
+order.  pymavlink has eight of them in a shorter version; `dialect.py` takes the longer one.
+Delete this file once pymavlink has them all.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ RESULTS = {
 
 
 def messages() -> tuple[SupplementMessage, ...]:
-    """The table below, read."""
+    """`_MESSAGES`, parsed."""
     return tuple(_message(paragraph) for paragraph in re.split(r"\n(?=\d)", _MESSAGES.strip()))
 
 

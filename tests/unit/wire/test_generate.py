@@ -97,7 +97,7 @@ def field(
     units: str = "",
     enum: str = "",
 ) -> FieldDef:
-    return FieldDef(name, type_, array_length, 0, extension, enum, units, bitmask=False)
+    return FieldDef(name, type_, array_length, 0, extension, enum, units)
 
 
 def test_a_message_of_every_kind_of_field() -> None:
@@ -112,7 +112,7 @@ def test_a_message_of_every_kind_of_field() -> None:
         field("cells", "int8", 3, extension=True),
         field("note", "char", 9, extension=True),
     )
-    source = generate.messages_source([MessageDef(900, "TEST_ALL", 1, 50, 70, fields, ())])
+    source = generate.messages_source([MessageDef(900, "TEST_ALL", 1, 50, 70, fields)])
     _, _, found = source.partition("    MSG_ID: ClassVar[MsgId]\n\n\n")
     wanted = '''class TestAll(Message, frozen=True, gc=False):
     """TEST_ALL (900): 50 bytes, 70 with extensions."""
@@ -132,7 +132,7 @@ def test_a_message_of_every_kind_of_field() -> None:
 
 
 def test_classes_stand_in_order_of_their_ids() -> None:
-    second = MessageDef(2, "SECOND", 1, 0, 0, (), ())
-    first = MessageDef(1, "FIRST", 1, 0, 0, (), ())
+    second = MessageDef(2, "SECOND", 1, 0, 0, ())
+    first = MessageDef(1, "FIRST", 1, 0, 0, ())
     source = generate.messages_source([second, first])
     assert source.index("class First(") < source.index("class Second(")
