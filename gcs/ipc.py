@@ -4,8 +4,9 @@ The operator (TUI, `--plain`, a one-shot command) writes `Command` lines to the 
 input and reads `Event` lines from its standard output.  The operator's frame is ENU, metres;
 angles are degrees, clockwise from north; everything is converted once, in the session.  Both
 unions are tagged by `type`; a line that does not decode is answered with a `Trouble` event.
+What the record keeps too is a struct of `gcs/report.py`, or is made of one.
 
-Wish words and their arguments are one table (`gcs/cli/words.py` parses them from text): both
+Request words and their arguments are one table (`gcs/cli/words.py` parses them from text): both
 `--plain` lines and one-shot commands become `Ask`.
 """
 
@@ -16,7 +17,10 @@ from typing import TypeAlias
 import msgspec
 from msgspec import DecodeError as DecodeError
 
-Vec3 = tuple[float, float, float]
+from gcs.frames import Vec3 as Vec3
+from gcs.report import FenceShape as FenceShape
+from gcs.report import LogEvent as LogEvent
+
 Maybe3 = tuple[float | None, float | None, float | None]
 """JSON has no NaN: what was typed as nan or inf travels as null and is refused by the gate."""
 
@@ -65,18 +69,6 @@ class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):
     fence: list[FenceShape] = []
 
 
-class FenceShape(msgspec.Struct, frozen=True):
-    """One zone for drawing: a polygon's corners or a circle, ENU metres."""
-
-    name: str
-    inclusion: bool
-    corners_en: list[tuple[float, float]] = []
-    centre_en: tuple[float, float] | None = None
-    radius_m: float = 0.0
-    floor_up_m: float | None = None
-    ceiling_up_m: float | None = None
-
-
 class Fences(msgspec.Struct, frozen=True, tag="fences", tag_field="type"):
     """The fence as it now stands (it is known in the local frame only once home or origin is)."""
 
@@ -84,6 +76,8 @@ class Fences(msgspec.Struct, frozen=True, tag="fences", tag_field="type"):
 
 
 class VerdictEvent(msgspec.Struct, frozen=True, tag="verdict", tag_field="type"):
+    """The answer to a request: `report.DecisionItem` for the client that asked."""
+
     id: int
     word: str
     outcome: str  # accepted | refused | superseded
@@ -95,6 +89,8 @@ class VerdictEvent(msgspec.Struct, frozen=True, tag="verdict", tag_field="type")
 
 
 class EndingEvent(msgspec.Struct, frozen=True, tag="ending", tag_field="type"):
+    """How an accepted request ended: `report.DecisionItem` for the client that asked."""
+
     id: int
     word: str
     ended: str  # complete | aborted | superseded | timed out | taken over
@@ -113,20 +109,13 @@ class ProgressEvent(msgspec.Struct, frozen=True, tag="progress", tag_field="type
 
 
 class StateEvent(msgspec.Struct, frozen=True, tag="state", tag_field="type"):
-    """The machine moved."""
+    """The gate's state machine moved: `report.FsaItem` after a transition."""
 
     before: str
     after: str
     event: str
     control: str
     severity: str
-
-
-class LogEvent(msgspec.Struct, frozen=True, tag="log", tag_field="type"):
-    time_ns: int
-    level: int  # 1 debug .. 5 fatal
-    node: str
-    text: str
 
 
 class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):

@@ -1,23 +1,23 @@
-"""Everything that is recorded beside the raw frames, so that a viewer shows the flight at once."""
+"""The topics beside the raw frames that let a viewer show the flight at once."""
 
 from __future__ import annotations
 
 from importlib.util import find_spec
 
-from gcs.record.items import RecordItem
-from gcs.record.readings import Readings
+from gcs.record.json_topics import JsonTopics
 from gcs.record.topics import Deriver, Out
+from gcs.report import RecordItem
 
 
 class Derived:
-    """All derivers as one.  Without a foxglove wheel there is no protobuf, only the readings."""
+    """All derivers as one.  Without foxglove-sdk there are the JSON topics only."""
 
     def __init__(self) -> None:
-        self._parts: list[Deriver] = [Readings()]
+        self._parts: list[Deriver] = [JsonTopics()]
         if find_spec("foxglove"):
-            from gcs.record.pictures import Pictures
+            from gcs.record.foxglove_topics import FoxgloveTopics
 
-            self._parts.append(Pictures())
+            self._parts.append(FoxgloveTopics())
 
     def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
         return [out for part in self._parts for out in part.handle(item, now_ns)]

@@ -30,9 +30,10 @@ def open_exclusive(path: Path) -> RawFile:
 
 
 class GuardedFile:
-    """Append-only bytes on disk.  After the first OSError it only pretends.
+    """Append-only bytes on disk.  After the first OSError nothing more is written, silently.
 
-    It answers `seek` only as far as MCAP writers that were told not to seek need it: where am I.
+    `seek` goes nowhere but to the present position: an MCAP writer that was told not to seek
+    asks only where it is.
     """
 
     __slots__ = ("_position", "_raw", "failure", "written")
@@ -41,11 +42,11 @@ class GuardedFile:
         self._raw = raw
         self._position = 0
         self.written = 0
-        """Bytes that really are in the file."""
+        """Bytes that the system took for the file."""
         self.failure: OSError | None = None
 
     def write(self, data: bytes | bytearray) -> int:
-        """Write all of `data`; always answers len(data), because the truth is in `failure`."""
+        """Write all of `data`.  Returns len(data) even after a failure: look at `failure`."""
         self._position += len(data)
         if self.failure is None:
             rest = memoryview(data)
@@ -59,7 +60,7 @@ class GuardedFile:
         return len(data)
 
     def seek(self, offset: int, whence: int = 0) -> int:
-        """Only `seek(0, SEEK_CUR)` and `seek(here)`; moving would overwrite what is safe."""
+        """Only `seek(0, SEEK_CUR)` and `seek(position)`.  Raises ValueError for anything else."""
         if (offset, whence) not in ((0, SEEK_CUR), (self._position, 0)):
             raise ValueError("a guarded file is written from its beginning to its end")
         return self._position

@@ -29,27 +29,25 @@ class TopicInfo:
     """Mean rate from its first message to its last; 0 where they are not `RATE_SPAN_NS` apart."""
 
 
-@dataclass(slots=True)
-class StateInfo:
+class StateInfo(msgspec.Struct, kw_only=True):
     """The gate's machine came to `state`; times count from the first message of the file."""
 
-    t_s: float
-    vehicle: int
+    t_s: float = 0.0
+    vehicle: int = 0
     state: str
-    event: str
+    event: str = ""
 
 
-@dataclass(slots=True)
-class DecisionInfo:
-    """A verdict or an ending of one request."""
+class DecisionInfo(msgspec.Struct, kw_only=True):
+    """A verdict or an ending of one request; `t_s` as in StateInfo."""
 
-    t_s: float
+    t_s: float = 0.0
     request_id: int
     word: str
     phase: str
     outcome: str
-    code: str
-    sentence: str
+    code: str = ""
+    sentence: str = ""
 
 
 @dataclass(slots=True)
@@ -77,22 +75,8 @@ class FlightInfo:
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
 
 
-class _Fsa(msgspec.Struct):
-    state: str
-    event: str = ""
-
-
-class _Decision(msgspec.Struct):
-    request_id: int
-    word: str
-    phase: str
-    outcome: str
-    code: str = ""
-    sentence: str = ""
-
-
-_fsa_decoder = msgspec.json.Decoder(_Fsa)
-_decision_decoder = msgspec.json.Decoder(_Decision)
+_fsa_decoder = msgspec.json.Decoder(StateInfo)
+_decision_decoder = msgspec.json.Decoder(DecisionInfo)
 
 _Handler: TypeAlias = Callable[[Message, float], None]
 
@@ -189,17 +173,8 @@ class _Survey:
         except msgspec.DecodeError:
             self.info.damaged += 1
             return
-        self.info.decisions.append(
-            DecisionInfo(
-                t_s,
-                found.request_id,
-                found.word,
-                found.phase,
-                found.outcome,
-                found.code,
-                found.sentence,
-            )
-        )
+        found.t_s = t_s
+        self.info.decisions.append(found)
 
     def _fsa(self, vehicle: int, message: Message, t_s: float) -> None:
         try:
@@ -209,4 +184,5 @@ class _Survey:
             return
         if self._states.get(vehicle) != found.state:
             self._states[vehicle] = found.state
-            self.info.states.append(StateInfo(t_s, vehicle, found.state, found.event))
+            found.t_s, found.vehicle = t_s, vehicle
+            self.info.states.append(found)

@@ -19,7 +19,7 @@ from struct import Struct
 from typing import TypeAlias
 
 from gcs.record.backend import Channel
-from gcs.record.items import Direction
+from gcs.report import Direction
 from gcs.wire.dialect import ENUMS, MESSAGES, FieldDef, MessageDef
 
 MAGIC_V1 = 0xFE
@@ -75,7 +75,7 @@ class Codec:
         self._v2 = Struct(f"<BB10sx{payload_length}sI")
 
     def encode(self, raw: bytes, link: int, direction: int) -> bytes:
-        """The message of one whole frame of either version."""
+        """The message of one whole frame, magic to signature; `direction` as in `Direction`."""
         known = raw[1]
         if known > self.payload_length:
             known = self.payload_length
@@ -115,11 +115,6 @@ def full_length(msgid: int) -> int:
     """Payload length with every extension that the dialect knows; 0 for an unknown message."""
     definition = MESSAGES.get(msgid)
     return definition.max_len if definition is not None else 0
-
-
-def encode(raw: bytes, link: int, direction: int) -> bytes:
-    """The message of one frame, `raw` = magic to signature; `direction` as in `Direction`."""
-    return codec(full_length(msgid_of(raw))).encode(raw, link, direction)
 
 
 def rebuild(message: bytes, *, payload_length: int | None = None) -> bytes:

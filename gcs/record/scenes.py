@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from math import cos, degrees, isfinite, pi, radians, sin, sqrt
+from math import cos, degrees, pi, radians, sin, sqrt
 
 from foxglove.messages import (
     Color,
@@ -28,11 +28,13 @@ from foxglove.messages import (
 )
 
 from gcs.frames import Vec3, enu_from_ned
-from gcs.record.items import FenceItem, MissionItem, ZoneItem
+from gcs.report import FenceItem, FenceShape, MissionItem
 
 CIRCLE_CORNERS = 72
-OPEN_CEILING_UP_M = 120.0
 EARTH_RADIUS_M = 6_371_000.0
+NO_BOUND_M = 1e4
+"""Where a zone without a floor or a ceiling is drawn to end; viewers take no infinity."""
+
 ARM_M = 0.35
 """Centre to motor: a little larger than life, so that it is seen from a hundred metres."""
 
@@ -142,7 +144,7 @@ def fence_geojson(item: FenceItem) -> GeoJson | None:
     return GeoJson(geojson=json.dumps({"type": "FeatureCollection", "features": features}))
 
 
-def corners(zone: ZoneItem) -> Corners:
+def corners(zone: FenceShape) -> Corners:
     """The zone's outline, east and north in metres; a circle as a polygon for drawing."""
     if zone.centre_en is None:
         return zone.corners_en
@@ -151,10 +153,10 @@ def corners(zone: ZoneItem) -> Corners:
     return [(east + zone.radius_m * sin(a), north + zone.radius_m * cos(a)) for a in turns]
 
 
-def _zone(zone: ZoneItem, stamp: Timestamp) -> SceneEntity:
+def _zone(zone: FenceShape, stamp: Timestamp) -> SceneEntity:
     red, green, blue = _INCLUSION if zone.inclusion else _EXCLUSION
-    floor = zone.floor_up_m if isfinite(zone.floor_up_m) else 0.0
-    ceiling = zone.ceiling_up_m if isfinite(zone.ceiling_up_m) else OPEN_CEILING_UP_M
+    floor = -NO_BOUND_M if zone.floor_up_m is None else max(zone.floor_up_m, -NO_BOUND_M)
+    ceiling = NO_BOUND_M if zone.ceiling_up_m is None else min(zone.ceiling_up_m, NO_BOUND_M)
     outline = corners(zone)
     low = [(east, north, floor) for east, north in outline]
     high = [(east, north, ceiling) for east, north in outline]

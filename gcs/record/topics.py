@@ -1,13 +1,12 @@
-"""What derived topics are made of: a message bound for a channel, and how often one may be sent."""
+"""What derived topics are made of: a message for a channel, and how often one may be sent."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 from typing import Protocol
 
 from gcs.record.backend import Channel
-from gcs.record.items import RecordItem
+from gcs.report import RecordItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +23,15 @@ class Out:
 
 
 class Deriver(Protocol):
-    """Makes viewer's messages of the session's items; time is the log_time that is passed in."""
+    """Makes messages for viewers of what the session reports; `now_ns` becomes their log_time."""
 
     def handle(self, item: RecordItem, now_ns: int) -> list[Out]: ...
     def tick(self, now_ns: int) -> list[Out]:
-        """What is due without an item: reminders."""
+        """What is due by the clock alone: a state is repeated once a second."""
         ...
 
     def close(self, now_ns: int) -> list[Out]:
-        """Last words: a viewer's state bar ends at the last message."""
+        """What is written at the end: a viewer's state bar stops at its last message."""
         ...
 
 
@@ -56,8 +55,3 @@ class Grid:
         behind = self._next_ns is None or now_ns - self._next_ns >= self._period_ns
         self._next_ns = (now_ns if behind else self._next_ns or now_ns) + self._period_ns
         return True
-
-
-def finite(value: float | None) -> float | None:
-    """None for what JSON cannot say; viewers break on NaN."""
-    return value if value is not None and isfinite(value) else None

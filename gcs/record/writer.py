@@ -1,10 +1,10 @@
-"""The flight recorder: everything, losslessly, in one MCAP per session, whatever the disk does.
+"""The flight recorder: all that a session reports, in one MCAP, whatever the disk does.
 
     recording --OSError--> lost --5 s--> recording, in <name>_part2.mcap, _part3 ...
 
-Nothing here raises into the link.  A failing disk sets `failed` in the same call; `tick` then says
-since when nothing is recorded, and tries a new part on its own.  What a killed process loses is
-what was written since the last flush, at most `FLUSH_NS` and one tick.
+Once it is open, no method raises.  When the disk fails, `failed` is set in the same call; `tick`
+then tells since when nothing is recorded, and tries to begin a new part every 5 s.  A process that
+is killed loses what was written since the last flush, at most `FLUSH_NS` and one tick.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from gcs.record import ros1
 from gcs.record.backend import Backend, Channel, Log, best_backend
 from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, Opener, open_exclusive
-from gcs.record.items import (
+from gcs.record.topics import Out
+from gcs.report import (
     AttachmentItem,
     FrameItem,
     GarbageItem,
     MetadataItem,
     RecordItem,
 )
-from gcs.record.topics import Out
 
 FLUSH_NS = 500_000_000
 RETRY_NS = 5_000_000_000
@@ -78,7 +78,7 @@ class Recorder:
         opener: Opener,
         now_ns: int,
     ) -> None:
-        """`Recorder.open` is the way in."""
+        """Call `Recorder.open` instead."""
         self._directory = directory
         self._stem = stem
         self._backend = backend
@@ -92,7 +92,7 @@ class Recorder:
         self._safe_ns = now_ns
         self._flush_at_ns = now_ns + FLUSH_NS
         self._retry_at_ns = 0
-        self._told = False
+        self._loss_told = False
         self._file: GuardedFile | None = None
         self._bytes_before = 0
         self.path = directory / f"{stem}.mcap"
@@ -142,7 +142,7 @@ class Recorder:
         """When `tick` has something to do."""
         if not self.failed:
             return self._flush_at_ns
-        return self._retry_at_ns if self._told else self._last_ns
+        return self._retry_at_ns if self._loss_told else self._last_ns
 
     @property
     def bytes_written(self) -> int:
@@ -156,7 +156,7 @@ class Recorder:
         if type(item) is not FrameItem:
             self._write_other(item, now_ns)
             return
-        # The hot path, in one piece: a bridge records every frame twice.
+        # Called for every frame, so it stays in one piece.
         raw = item.raw
         try:
             key = raw[5:10] if raw[0] == ros1.MAGIC_V2 else raw[3:6]
@@ -172,14 +172,14 @@ class Recorder:
         log(message, now_ns)
 
     def tick(self, now_ns: int) -> list[RecordNews]:
-        """Flush at 2 Hz, repeat what must be repeated, and come back after a failure."""
+        """Flush at 2 Hz, write what is due by the clock, begin a new part after a failure."""
         if not self.failed and now_ns >= self._flush_at_ns:
             self._emit(self._derived.tick(now_ns), now_ns)
             self._flush(now_ns)
         return self._recover(now_ns) if self.failed else []
 
     def close(self, now_ns: int) -> bool:
-        """Write the last words and finish the file; whether all of it reached the disk."""
+        """Finish the file; whether all that was recorded reached the disk, in one part."""
         if self._file is None:
             return False
         self._emit(self._derived.close(now_ns), now_ns)
@@ -236,7 +236,7 @@ class Recorder:
     # --------------------------------------------------------------------------- the file
 
     def _start(self, path: Path, now_ns: int) -> None:
-        """Begin a part with everything that the parts before it said once.  Raises OSError."""
+        """Begin a part; what is said only once in a record is repeated in it.  Raises OSError."""
         self._file = GuardedFile(self._opener(path))
         self.path = path
         self.parts.append(path)
@@ -259,8 +259,8 @@ class Recorder:
         self._file.close()
 
     def _recover(self, now_ns: int) -> list[RecordNews]:
-        if not self._told:
-            self._told = True
+        if not self._loss_told:
+            self._loss_told = True
             self._retry_at_ns = now_ns + RETRY_NS
             reason = self._drop_file()
             return [RecordLost(self.path, self._safe_ns, reason)]
@@ -279,7 +279,7 @@ class Recorder:
         return (failure.strerror or str(failure)) if failure is not None else "closed"
 
     def _retry(self, now_ns: int) -> list[RecordNews]:
-        """A part counts once its first flush is on the disk; a stillborn one is removed."""
+        """A part counts once its first flush is on the disk; one that fails before is removed."""
         path = self._directory / f"{self._stem}_part{len(self.parts) + 1}.mcap"
         since_ns = self._safe_ns
         try:
@@ -290,7 +290,7 @@ class Recorder:
         if self.failed:
             self._forget_part(path)
             return []
-        self._told = False
+        self._loss_told = False
         self._safe_ns = now_ns
         self._flush_at_ns = now_ns + FLUSH_NS
         return [RecordResumed(path, since_ns, now_ns)]

@@ -10,7 +10,7 @@ from typing import TypeAlias
 import msgspec
 
 from gcs import ipc
-from gcs.record.items import RecordItem
+from gcs.report import RecordItem
 
 
 class ShellEffect(msgspec.Struct, frozen=True, gc=False):

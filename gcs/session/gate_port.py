@@ -17,8 +17,6 @@ from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import State
 from gcs.session import teller
-from gcs.session.effects import Emit, Record
-from gcs.session.fences import fence_item, fences_event
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
 
@@ -93,8 +91,7 @@ class GatePort:
         )
         return [
             ToGate(inputs.VerifierChanged(verifier)),
-            Record(fence_item(verifier.zones, telemetry.origin)),
-            Emit(fences_event(verifier.zones)),
+            *teller.fence(verifier.zones, telemetry.origin),
         ]
 
     def check_start(self, at: CheckStart) -> None:

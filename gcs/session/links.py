@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from gcs.record.items import Direction, FrameItem
+from gcs.report import Direction, FrameItem
 from gcs.session.effects import Effect, Record, Transmit
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Item, StreamSplitter, split

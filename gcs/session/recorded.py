@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import msgspec
-
 from gcs import ipc
 from gcs.gate.effects import Level
-from gcs.record.items import AttachmentItem, InputItem, LogItem, MetadataItem
+from gcs.report import AttachmentItem, InputItem, LogEvent, MetadataItem
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.inputs import FileRead, OtherInput, RecorderGrew
 from gcs.session.setup import Setup
@@ -29,7 +27,7 @@ def introduction(setup: Setup) -> list[Effect]:
     return [
         Record(MetadataItem("mavgate", values)),
         Record(AttachmentItem("policy.toml", "application/toml", policy)),
-        Record(InputItem("Setup", msgspec.json.encode(config))),
+        Record(InputItem.of("Setup", config)),
         Emit(hello),
     ]
 
@@ -42,18 +40,18 @@ def recorded(given: OtherInput) -> list[Effect]:
         case FileRead(token, path, data, error):
             size = -1 if data is None else len(data)
             told = {"token": token, "path": path, "size": size, "error": error}
-            return [Record(InputItem("FileRead", msgspec.json.encode(told)))]
+            return [Record(InputItem.of("FileRead", told))]
         case _:
-            return [Record(InputItem(type(given).__name__, msgspec.json.encode(given)))]
+            return [Record(InputItem.of(type(given).__name__, given))]
 
 
-def sim_line(text: str) -> Work:
+def sim_line(text: str, now_ns: int) -> Work:
     """`LEVEL node: text`, as vehicle-sim prints it; anything else is an INFO line."""
     word, _, rest = text.partition(" ")
     node, colon, line = rest.partition(": ")
     if word in Level.__members__ and colon and node.startswith("vehicle"):
         # The operator has it from the vehicle itself; the record keeps both.
-        return Record(LogItem(Level[word], f"sim.{node}", line))
+        return Record(LogEvent(now_ns, Level[word], f"sim.{node}", line))
     if word in Level.__members__ and colon:
         return Log(Level[word], f"sim.{node}", line)
     return Log(Level.INFO, "sim", text)

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import assert_never
 
-import msgspec
-
 from gcs import ipc
 from gcs.gate import effects as gate_effects
 from gcs.gate import inputs as gate_inputs
@@ -21,7 +19,7 @@ from gcs.gate.requests import SetMode
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC
 from gcs.protocol.effects import Send
-from gcs.record.items import (
+from gcs.report import (
     Direction,
     FrameItem,
     GarbageItem,
@@ -151,7 +149,7 @@ class Session:
         self._faults += 1
         text = f"internal error: {report.splitlines()[-1]}"
         work: list[Work] = [
-            Record(InputItem("Fault", msgspec.json.encode(report))),
+            Record(InputItem.of("Fault", report)),
             Log(Level.FATAL, NODE, text),
         ]
         if isinstance(given, Wake) or self._faults > MAX_FAULTS:
@@ -185,7 +183,7 @@ class Session:
                 self._recorded_bytes = size_bytes
                 return []
             case SimLine(text):
-                return [sim_line(text)]
+                return [sim_line(text, now_ns)]
             case SimGone(exit_code):
                 return self._sim_gone(exit_code)
         assert_never(given)

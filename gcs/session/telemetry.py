@@ -12,7 +12,7 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import Autopilot
-from gcs.record.items import Quat
+from gcs.report import Quat
 
 POSITION_RATE_WINDOW_NS = 2_000_000_000
 

@@ -1,16 +1,24 @@
-"""What was decided, told twice: to the operator and to the record."""
+"""What was decided and what stands, as the record keeps it and as the operator is told it.
+
+Each fact is made once, as a struct of `gcs/report.py`.  What the operator gets of it is made from
+that struct, here.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from gcs import ipc
-from gcs.frames import Vec3, enu_from_ned
+from gcs.frames import Vec3
 from gcs.gate import effects
+from gcs.gate.airspace.projection import Origin
+from gcs.gate.airspace.zones import Zone
 from gcs.gate.effects import Level
+from gcs.gate.geometry import Circle
 from gcs.gate.machine.gate import Gate
 from gcs.gate.requests import GoTo, Request
-from gcs.record.items import DecisionItem, FsaItem, LogItem
+from gcs.report import DecisionItem, FenceItem, FenceShape, FsaItem, LogEvent, PointEnu
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.requests import Asked
 from gcs.session.work import Decide, Log
@@ -20,11 +28,8 @@ NODE = "state_and_safety"
 
 def log(line: Log, now_ns: int) -> list[Effect]:
     """One line, to the screen and to the record."""
-    level = int(line.level)
-    return [
-        Emit(ipc.LogEvent(now_ns, level, line.node, line.text)),
-        Record(LogItem(level, line.node, line.text)),
-    ]
+    event = LogEvent(now_ns, int(line.level), line.node, line.text)
+    return [Emit(event), Record(event)]
 
 
 def requested(asked: Asked, request: Request) -> Log:
@@ -37,74 +42,87 @@ def requested(asked: Asked, request: Request) -> Log:
 def verdict(told: Decide, asked: Asked, sysid: int) -> list[Effect]:
     """Accepted, refused or superseded; with the numbers it was decided on."""
     refusal = told.refusal
-    numbers = refusal.numbers if refusal else told.evidence
-    code = refusal.code.value if refusal else ""
-    sentence = refusal.sentence if refusal else ""
-    zone = refusal.zone if refusal else ""
-    goal_enu = None if told.goal_ned is None else enu_from_ned(told.goal_ned)
-    ruling = told.ruling.value
-    event = ipc.VerdictEvent(
-        asked.client_id, asked.word, ruling, code, sentence, zone, dict(numbers), goal_enu
-    )
     item = DecisionItem(
-        sysid,
-        told.request_id,
-        asked.source,
-        asked.word,
-        "verdict",
-        ruling,
-        code,
-        sentence,
-        zone,
-        told.goal_ned,
-        numbers,
+        vehicle=sysid,
+        request_id=told.request_id,
+        source=asked.source,
+        word=asked.word,
+        phase="verdict",
+        outcome=told.ruling.value,
+        code=refusal.code.value if refusal else "",
+        sentence=refusal.sentence if refusal else "",
+        zone=refusal.zone if refusal else "",
+        goal=_point(told.goal_ned),
+        numbers=dict(refusal.numbers if refusal else told.evidence),
+    )
+    event = ipc.VerdictEvent(
+        asked.client_id,
+        item.word,
+        item.outcome,
+        item.code,
+        item.sentence,
+        item.zone,
+        item.numbers,
+        item.goal.enu if item.goal else None,
     )
     return [Emit(event), Record(item)]
 
 
 def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
     """How an accepted request ended."""
-    code = told.code.value if told.code else ""
-    kind = told.kind.value
     item = DecisionItem(
-        sysid,
-        told.request_id,
-        asked.source,
-        asked.word,
-        "ending",
-        kind,
-        code,
-        told.sentence,
-        "",
-        None,
-        (),
+        vehicle=sysid,
+        request_id=told.request_id,
+        source=asked.source,
+        word=asked.word,
+        phase="ending",
+        outcome=told.kind.value,
+        code=told.code.value if told.code else "",
+        sentence=told.sentence,
+        zone="",
+        goal=None,
+        numbers={},
     )
-    event = ipc.EndingEvent(asked.client_id, asked.word, kind, code, told.sentence)
+    event = ipc.EndingEvent(asked.client_id, item.word, item.outcome, item.code, item.sentence)
     return [Emit(event), Record(item)]
 
 
 def transition(told: effects.Transition, goal_ned: Vec3 | None, sysid: int) -> list[Effect]:
     """The gate's state machine went to another state."""
-    before, after = told.before.name, told.after.name
-    control, severity = told.control.name, told.severity.name
-    item = FsaItem(sysid, int(told.after), after, before, told.event, control, severity, goal_ned)
-    return [Emit(ipc.StateEvent(before, after, told.event, control, severity)), Record(item)]
+    item = FsaItem(
+        sysid,
+        state=told.after.name,
+        state_id=int(told.after),
+        before=told.before.name,
+        event=told.event,
+        control=told.control.name,
+        severity=told.severity.name,
+        goal=_point(goal_ned),
+    )
+    event = ipc.StateEvent(item.before, item.state, item.event, item.control, item.severity)
+    return [Emit(event), Record(item)]
 
 
 def reminder(gate: Gate, sysid: int) -> list[Effect]:
-    """The state once more: a state bar in a viewer ends at its last message."""
-    state = gate.state
+    """The state once more, for the record: a state bar in a viewer ends at its last message."""
     item = FsaItem(
         sysid,
-        int(state),
-        state.name,
-        state.name,
-        "reminder",
-        gate.control.name,
-        gate.severity.name,
-        gate.active_goal_ned,
+        state=gate.state.name,
+        state_id=int(gate.state),
+        before=gate.state.name,
+        event="reminder",
+        control=gate.control.name,
+        severity=gate.severity.name,
+        goal=_point(gate.active_goal_ned),
     )
     return [Record(item)]
+
+
+def fence(zones: Iterable[Zone], origin: Origin | None) -> list[Effect]:
+    """The fence as the verifier stands on it, zones in the local tangent plane."""
+    where = None if origin is None else (origin.lat_deg, origin.lon_deg, origin.alt_amsl_m)
+    item = FenceItem([_shape(zone) for zone in zones], where)
+    return [Record(item), Emit(ipc.Fences(item.zones))]
 
 
 def triple(enu: Vec3) -> str:
@@ -114,3 +132,20 @@ def triple(enu: Vec3) -> str:
 
 def _number(value: float) -> str:
     return f"{value:.2f}" if not math.isfinite(value) or abs(value) >= 0.005 else "0.00"
+
+
+def _point(pos_ned: Vec3 | None) -> PointEnu | None:
+    return None if pos_ned is None else PointEnu.of(pos_ned)
+
+
+def _shape(zone: Zone) -> FenceShape:
+    """A polygon has no centre and a circle no corners; an infinite bound is none."""
+    floor_up_m = zone.floor_up_m if math.isfinite(zone.floor_up_m) else None
+    ceiling_up_m = zone.ceiling_up_m if math.isfinite(zone.ceiling_up_m) else None
+    if isinstance(zone.shape, Circle):
+        corners_en, centre_en, radius_m = [], zone.shape.centre_en, zone.shape.radius_m
+    else:
+        corners_en, centre_en, radius_m = list(zone.shape.corners_en), None, 0.0
+    return FenceShape(
+        zone.name, zone.inclusion, corners_en, centre_en, radius_m, floor_up_m, ceiling_up_m
+    )

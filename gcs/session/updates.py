@@ -15,7 +15,7 @@ from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.condition import Condition
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import mode_of
-from gcs.record.items import GeodeticItem, PoseItem
+from gcs.report import GeodeticItem, PoseItem
 from gcs.session.effects import Record
 from gcs.session.gate_port import condition
 from gcs.session.telemetry import Telemetry, quat_from_euler

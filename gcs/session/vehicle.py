@@ -22,7 +22,7 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
-from gcs.record.items import ParamItem, SetpointItem, StatusItem
+from gcs.report import ParamItem, SetpointItem, StatusItem
 from gcs.session import discovery, teller
 from gcs.session.commands import Commands
 from gcs.session.discovery import Discovery

@@ -1,18 +1,18 @@
-"""The recorder as the loop sees it: never in the way; its troubles are inputs to the session."""
+"""The recorder as the loop uses it: its failures become inputs of the session."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcs.record.items import RecordItem
 from gcs.record.writer import Recorder, RecordLost, RecordResumed
+from gcs.report import RecordItem
 from gcs.session.inputs import RecorderChanged, RecorderGrew
 
 GREW_STEP_BYTES = 50_000
 
 
 class Recording:
-    """A recorder, or none (`gcs status` and its like may go without)."""
+    """A recorder, or none: a command that only looks, such as `gcs status`, may go without."""
 
     def __init__(self, recorder: Recorder | None) -> None:
         self._recorder = recorder
@@ -35,13 +35,13 @@ class Recording:
             self._recorder.write(item, now_ns)
 
     def changes(self) -> Iterator[RecorderChanged]:
-        """A failure, told in the turn in which it happened."""
+        """That the recorder failed, once, right after the write that failed."""
         if self._recorder and self._recorder.failed and not self._told_failed:
             self._told_failed = True
             yield RecorderChanged(False, self.path, "the recorder failed")
 
     def upkeep(self, now_ns: int) -> Iterator[RecorderChanged | RecorderGrew]:
-        """Flush, retry, and what the session must hear of it."""
+        """Let the recorder flush or retry when that is due; what the session must know of it."""
         if self._recorder is None or now_ns < self._recorder.deadline_ns:
             return
         for news in self._recorder.tick(now_ns):

@@ -25,8 +25,8 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs.record import ros1
 from gcs.record.backend import Backend, FoxgloveBackend, Log, McapBackend
 from gcs.record.guarded_file import GuardedFile, open_exclusive
-from gcs.record.items import Direction, FrameItem
 from gcs.record.writer import Recorder
+from gcs.report import Direction, FrameItem
 
 FRAMES = 60_000
 ROUNDS = 7

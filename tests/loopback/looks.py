@@ -8,7 +8,7 @@ from typing import TypeVar
 from gcs import ipc
 from gcs.gate.condition import Condition
 from gcs.gate.states import State
-from gcs.record.items import GarbageItem, RecordItem
+from gcs.report import GarbageItem, RecordItem
 from gcs.session.session import Session
 from tests.loopback import eyes
 from tests.loopback.eyes import SeenSetpoint

@@ -9,7 +9,7 @@ import pytest
 
 from gcs import ipc
 from gcs.gate.states import State
-from gcs.record.items import DecisionItem, FsaItem
+from gcs.report import DecisionItem, FsaItem
 from gcs.session import inputs
 from tests.loopback import eyes
 from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality, lab_policy
@@ -72,7 +72,7 @@ def test_L03_enter_is_one_request_then_verifying_then_moving(personality: Person
     log = [line for t in ("keyboard_manager", "state_and_safety") for line in flight.lines(t)]
     assert log.count("Sending Position") == 1
     story = [
-        item.outcome if isinstance(item, DecisionItem) else item.state_name
+        item.outcome if isinstance(item, DecisionItem) else item.state
         for t, item in flight.records
         if t > since_ns
         and isinstance(item, DecisionItem | FsaItem)

@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.record import ros1
 from gcs.record.info import FlightInfo, read_info
-from gcs.record.items import Direction
+from gcs.report import Direction
 
 Json: TypeAlias = "dict[str, Json] | list[Json] | str | float | bool | None"
 

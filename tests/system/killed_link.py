@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from gcs.record.items import Direction
+from gcs.report import Direction
 from tests.system.flight_log import frames, whole, wire
 from tests.system.programs import gcs
 from tests.system.station import tapped

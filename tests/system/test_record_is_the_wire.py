@@ -12,7 +12,7 @@ from rich.console import Console
 
 from gcs import ipc, resources
 from gcs.cli.demo import run_over
-from gcs.record.items import Direction
+from gcs.report import Direction
 from gcs.shell.client import LinkClient
 from tests.system.flight_log import Json, decoded, frames, readings, whole, wire
 from tests.system.station import tapped

@@ -10,7 +10,7 @@ import pytest
 
 from gcs.cli.exits import Fail
 from gcs.config import LinkConfig, SimConfig
-from gcs.record.items import Direction
+from gcs.report import Direction
 from tests.system.flight_log import frames, readings, whole, wire
 from tests.system.programs import gcs
 from tests.system.station import station, tapped

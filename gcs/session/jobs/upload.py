@@ -14,7 +14,7 @@ from gcs.plan.errors import PlanError
 from gcs.plan.model import Plan
 from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload, MissionUpload
-from gcs.record.items import AttachmentItem, MissionItem
+from gcs.report import AttachmentItem, MissionItem
 from gcs.session.effects import ReadFile, Record
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import (

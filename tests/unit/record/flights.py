@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import struct
 from collections.abc import Iterable
 from pathlib import Path
@@ -12,28 +11,29 @@ from mcap.records import Channel
 from pymavlink.dialects.v20 import all as dialect
 from pymavlink.generator.mavcrc import x25crc
 
-from gcs.record.items import (
+from gcs.record.reading import Message, Reading
+from gcs.record.writer import Recorder
+from gcs.report import (
     AttachmentItem,
     DecisionItem,
     Direction,
     FenceItem,
+    FenceShape,
     FrameItem,
     FsaItem,
     GarbageItem,
     GeodeticItem,
     InputItem,
-    LogItem,
+    LogEvent,
     MetadataItem,
     MissionItem,
     ParamItem,
+    PointEnu,
     PoseItem,
     RecordItem,
     SetpointItem,
     StatusItem,
-    ZoneItem,
 )
-from gcs.record.reading import Message, Reading
-from gcs.record.writer import Recorder
 
 START_NS = 1_767_225_600_000_000_000
 MS = 1_000_000
@@ -99,22 +99,22 @@ def record(directory: Path, items: Iterable[RecordItem], step_ns: int = 20 * MS)
 def a_flight() -> list[RecordItem]:
     """One of everything, as a short flight with one refused goal."""
     upright = (1.0, 0.0, 0.0, 0.0)
-    home = ZoneItem("home", True, (), (0.0, 0.0), 150.0, 0.0, 50.0)
-    tower = ZoneItem("tower", False, ((10, 10), (20, 10), (20, 20)), None, 0.0, 0.0, math.inf)
+    home = FenceShape("home", True, [], (0.0, 0.0), 150.0, 0.0, 50.0)
+    tower = FenceShape("tower", False, [(10, 10), (20, 10), (20, 20)], None, 0.0, 0.0, None)
     return [
         MetadataItem("versions", (("mavgate", "0"),)),
         AttachmentItem("policy.toml", "text/toml", b"[fence]"),
-        InputItem("start", b'{"seed":1}'),
-        FenceItem((home, tower), (47.397742, 8.545594, 488.0)),
+        InputItem.of("start", {"seed": 1}),
+        FenceItem([home, tower], (47.397742, 8.545594, 488.0)),
         MissionItem("square", ((0.0, 0.0, -5.0), (10.0, 0.0, -5.0))),
         position_frame(0),
         PoseItem(1, (1.0, 2.0, -3.0), (3.0, 4.0, -0.5), upright),
         GeodeticItem(1, 47.397742, 8.545594, 491.0, 3.0),
         StatusItem(1, True, "OFFBOARD", "in_air", 80.0, 15.2, 100.0, 0.0),
-        FsaItem(1, 1, "HOVERING", "GROUNDED", "airborne", "ours", "nominal", None),
+        FsaItem(1, "HOVERING", 1, "GROUNDED", "airborne", "ours", "nominal", None),
         SetpointItem(1, (1.0, 2.0, -3.0), None),
         DecisionItem(
-            sysid=1,
+            vehicle=1,
             request_id=7,
             source="operator",
             word="goto",
@@ -123,11 +123,11 @@ def a_flight() -> list[RecordItem]:
             code="OUTSIDE_FENCE",
             sentence="500.0 m east is 350.0 m outside home",
             zone="home",
-            goal_ned=(0.0, 500.0, -2.0),
-            numbers=(("distance_m", 350.0),),
+            goal=PointEnu(500.0, 0.0, 2.0),
+            numbers={"distance_m": 350.0},
         ),
-        FsaItem(1, 3, "MOVING", "HOVERING", "goto", "ours", "nominal", (1.0, 0.0, -2.0)),
+        FsaItem(1, "MOVING", 3, "HOVERING", "goto", "ours", "nominal", PointEnu(0.0, 1.0, 2.0)),
         ParamItem(1, "MPC_XY_VEL_MAX", 12.0),
-        LogItem(2, "gate", "Complete"),
+        LogEvent(START_NS, 2, "gate", "Complete"),
         GarbageItem(0, b"\xfd\x00", "truncated"),
     ]

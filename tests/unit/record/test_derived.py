@@ -13,23 +13,24 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 from gcs.frames import Vec3, enu_from_ned
-from gcs.record.items import (
+from gcs.record.foxglove_topics import PATH_POINTS, Trail
+from gcs.record.json_topics import euler_deg
+from gcs.record.topics import Grid
+from gcs.report import (
     DecisionItem,
     FenceItem,
     FsaItem,
     GeodeticItem,
     InputItem,
-    LogItem,
+    LogEvent,
     MissionItem,
+    PointEnu,
     PoseItem,
     Quat,
     RecordItem,
     SetpointItem,
     StatusItem,
 )
-from gcs.record.pictures import PATH_POINTS, Trail
-from gcs.record.readings import euler_deg
-from gcs.record.topics import Grid
 from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
 
 UPRIGHT: Quat = (1.0, 0.0, 0.0, 0.0)
@@ -40,7 +41,7 @@ def pose(pos_ned: Vec3, sysid: int = 1, q: Quat = UPRIGHT) -> PoseItem:
 
 
 def fsa(state: str, number: int = 1) -> FsaItem:
-    return FsaItem(1, number, state, "", "event", "ours", "nominal", None)
+    return FsaItem(1, state, number, "", "event", "ours", "nominal", None)
 
 
 def pictures(path: Path, topic: str) -> list[Any]:
@@ -216,7 +217,7 @@ def test_a_hovering_vehicle_does_not_repeat_its_trail(tmp_path: Path) -> None:
 
 
 def test_the_state_is_recorded_on_change_every_second_and_at_close(tmp_path: Path) -> None:
-    silence: list[RecordItem] = [InputItem("tick", b"{}")] * 125  # 2.5 s
+    silence: list[RecordItem] = [InputItem.of("tick", {})] * 125  # 2.5 s
     path = record(tmp_path, [fsa("HOVERING"), *silence, fsa("MOVING", 3), *silence[:3]])
     found = [
         (message.log_time_ns - START_NS, json.loads(message.data)["state"])
@@ -287,8 +288,8 @@ def test_a_goal_that_is_no_number_is_still_json(tmp_path: Path) -> None:
         "NON_FINITE",
         "north is not a number",
         "",
-        (math.nan, 1.0, -math.inf),
-        (("distance_m", math.nan),),
+        PointEnu(1.0, math.nan, math.inf),
+        {"distance_m": math.nan},
     )
     (decision,) = readings(record(tmp_path, [item]), "/gate/decision")
     assert decision["goal"] == {"east_m": 1.0, "north_m": None, "up_m": None}
@@ -296,7 +297,7 @@ def test_a_goal_that_is_no_number_is_still_json(tmp_path: Path) -> None:
 
 
 def test_inputs_are_recorded_as_they_came(tmp_path: Path) -> None:
-    items = [InputItem("ask", b'{"word":"goto"}'), InputItem('odd "kind"', b"[1,2]")]
+    items = [InputItem.of("ask", {"word": "goto"}), InputItem.of('odd "kind"', [1, 2])]
     found = readings(record(tmp_path, items), "/session/input")
     assert found == [
         {"kind": "ask", "data": {"word": "goto"}},
@@ -305,7 +306,9 @@ def test_inputs_are_recorded_as_they_came(tmp_path: Path) -> None:
 
 
 def test_log_lines_keep_node_and_level(tmp_path: Path) -> None:
-    path = record(tmp_path, [LogItem(level, "gate", f"line {level}") for level in range(1, 6)])
+    path = record(
+        tmp_path, [LogEvent(START_NS, level, "gate", f"line {level}") for level in range(1, 6)]
+    )
     found = pictures(path, "/log")
     assert [(line.level, line.name, line.message) for line in found] == [
         (level, "gate", f"line {level}") for level in range(1, 6)
@@ -339,7 +342,7 @@ def test_the_fence_is_on_the_map_where_the_origin_is_known(tmp_path: Path) -> No
 
 
 def test_without_an_origin_there_is_no_fence_on_the_map(tmp_path: Path) -> None:
-    path = record(tmp_path, [FenceItem((), None)])
+    path = record(tmp_path, [FenceItem([], None)])
     assert {message.topic for message in messages_of(path)} == {"/geofence"}
 
 
@@ -355,6 +358,38 @@ def test_a_cleared_mission_disappears(tmp_path: Path) -> None:
     (scene,) = pictures(record(tmp_path, [MissionItem("", ())]), "/mission")
     assert not scene.entities
     assert scene.deletions
+
+
+def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
+    with open(record(tmp_path, a_flight()), "rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    fields = {
+        schema.name: [
+            (name, "goal" if name == "goal" else inner["type"])
+            for name, inner in json.loads(schema.data)["properties"].items()
+        ]
+        for schema in summary.schemas.values()
+        if schema.encoding == "jsonschema"
+    }
+    assert {name: " ".join(f"{n}:{t}" for n, t in found) for name, found in fields.items()} == {
+        "gate.Decision": (
+            "vehicle:integer request_id:integer source:string word:string phase:string"
+            " outcome:string code:string sentence:string zone:string goal:goal numbers:object"
+        ),
+        "gate.Fsa": (
+            "state:string state_id:integer before:string event:string control:string"
+            " severity:string goal:goal"
+        ),
+        "session.Input": "kind:string data:object",
+        "vehicle.Param": "name:string value:number",
+        "vehicle.State": (
+            "east_m:number north_m:number up_m:number groundspeed_mps:number climb_mps:number"
+            " roll_deg:number pitch_deg:number yaw_deg:number alt_amsl_m:number alt_rel_m:number"
+            " armed:boolean mode:string landed:string battery_pct:number battery_v:number"
+            " rx_hz:number lost_pct:number"
+        ),
+    }
 
 
 def test_json_schemas_use_only_what_viewers_read(tmp_path: Path) -> None:

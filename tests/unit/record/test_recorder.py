@@ -15,19 +15,19 @@ from mcap.reader import make_reader
 from gcs.record import ros1, writer
 from gcs.record.backend import FoxgloveBackend, McapBackend
 from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
-from gcs.record.items import (
+from gcs.record.reading import Reading
+from gcs.record.writer import Recorder, RecorderError, RecordLost, RecordResumed
+from gcs.report import (
     AttachmentItem,
     Direction,
     FrameItem,
     GarbageItem,
     InputItem,
-    LogItem,
+    LogEvent,
     MetadataItem,
     ParamItem,
     PoseItem,
 )
-from gcs.record.reading import Reading
-from gcs.record.writer import Recorder, RecorderError, RecordLost, RecordResumed
 from tests.unit.record.flights import (
     MS,
     SECOND,
@@ -330,7 +330,7 @@ def test_a_disk_that_is_full_when_the_file_is_closed_is_reported(tmp_path: Path)
 def test_closing_while_nothing_is_recorded_is_harmless(tmp_path: Path) -> None:
     disk = Disk(free=0)
     recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
-    recorder.write(LogItem(2, "gate", "hello"), START_NS)
+    recorder.write(LogEvent(START_NS, 2, "gate", "hello"), START_NS)
     recorder.tick(START_NS + SECOND)
     disk.free = 20  # room for a beginning, not for a part
     assert recorder.tick(START_NS + 6 * SECOND) == []
@@ -346,7 +346,7 @@ def test_every_part_keeps_attachments_and_metadata_once(tmp_path: Path) -> None:
         [
             AttachmentItem("fence.plan", "application/json", b"{}"),
             MetadataItem("endpoints", (("vehicle", "udpin://127.0.0.1:14540"),)),
-            InputItem("tick", b'{"lateness_ns":3}'),
+            InputItem.of("tick", {"lateness_ns": 3}),
         ],
     )
     with open(path, "rb") as file:

@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from gcs.record import ros1
-from gcs.record.items import Direction, FrameItem
 from gcs.record.reading import BadRecordError, Reading
 from gcs.record.recover import recover
 from gcs.record.writer import Recorder
+from gcs.report import Direction, FrameItem
 from tests.unit.record.flights import MS, START_NS, a_flight, frame_v2, messages_of, record
 
 

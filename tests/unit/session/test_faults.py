@@ -6,7 +6,7 @@ import pytest
 
 from gcs.config import LinkConfig
 from gcs.gate.policy.policy import DEFAULT
-from gcs.record.items import InputItem
+from gcs.report import InputItem
 from gcs.session import inputs
 from gcs.session.effects import Effect, Emit, Finish, Record
 from gcs.session.session import EXIT_BUG, MAX_FAULTS, Session

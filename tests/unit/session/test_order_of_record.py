@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcs import ipc
 from gcs.config import LinkConfig
 from gcs.gate.policy.policy import DEFAULT
-from gcs.record.items import FsaItem
+from gcs.report import FsaItem
 from gcs.session.effects import Record
 from gcs.session.inputs import Datagram, OperatorLine
 from gcs.session.session import Session
@@ -42,5 +42,5 @@ def test_a_landing_that_cannot_be_asked_for_is_recorded_after_it_began() -> None
 
     effects = session.handle(OperatorLine(ipc.Ask(1, "land")), SECOND_NS + 1)
     items = [effect.item for effect in effects if isinstance(effect, Record)]
-    moves = [(item.before_name, item.state_name) for item in items if isinstance(item, FsaItem)]
+    moves = [(item.before, item.state) for item in items if isinstance(item, FsaItem)]
     assert moves == [("EXTERNAL", "LANDING"), ("LANDING", "HOLDING")]

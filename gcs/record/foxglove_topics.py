@@ -1,4 +1,4 @@
-"""Derived topics in Foxglove's own schemas (protobuf): frames, trail, setpoint, map, scene, log.
+"""Topics in Foxglove's own schemas (protobuf): transforms, trail, setpoint, map, scenes, log.
 
 Frames: `map` (ENU) -> `local_ned` static, `local_ned` -> `base_link_frd` dynamic with MAVLink's
 values unchanged, `base_link_frd` -> `base_link` static.  A second vehicle's body frames carry
@@ -32,16 +32,16 @@ from foxglove.messages import (
 from gcs.frames import Vec3, enu_from_ned
 from gcs.record import scenes
 from gcs.record.backend import Channel
-from gcs.record.items import (
+from gcs.record.topics import Grid, Out
+from gcs.report import (
     FenceItem,
     GeodeticItem,
-    LogItem,
+    LogEvent,
     MissionItem,
     PoseItem,
     RecordItem,
     SetpointItem,
 )
-from gcs.record.topics import Grid, Out
 
 TF_HZ = 25.0
 PATH_HZ = 1.0
@@ -106,7 +106,7 @@ class _Vehicle:
     location_grid: Grid = field(default_factory=lambda: Grid(LOCATION_HZ))
 
 
-class Pictures:
+class FoxgloveTopics:
     """/tf_static, /vehicle/N/{tf,model,path,setpoint,location}, /mission, /geofence and /log."""
 
     def __init__(self) -> None:
@@ -129,6 +129,14 @@ class Pictures:
                 return [*before, Out(vehicle.setpoint, pose.encode())]
             case GeodeticItem():
                 return self._location(item, now_ns)
+            case LogEvent(_, level, node, text):
+                line = Log(
+                    timestamp=stamp(now_ns),
+                    level=_LEVELS.get(level, LogLevel.Unknown),
+                    name=node,
+                    message=text,
+                )
+                return [Out(self._log, line.encode())]
             case FenceItem():
                 walls = scenes.fence(item, stamp(now_ns))
                 on_map = scenes.fence_geojson(item)
@@ -137,14 +145,6 @@ class Pictures:
             case MissionItem():
                 route = scenes.mission(item, stamp(now_ns))
                 return [Out(self._mission, route.encode(), latch="mission")]
-            case LogItem(level, node, text):
-                line = Log(
-                    timestamp=stamp(now_ns),
-                    level=_LEVELS.get(level, LogLevel.Unknown),
-                    name=node,
-                    message=text,
-                )
-                return [Out(self._log, line.encode())]
             case _:
                 return []
 

@@ -1,0 +1,147 @@
+"""Each fact is made once: the line that the operator gets of it, and the message in the record."""
+
+from __future__ import annotations
+
+import math
+
+from gcs import ipc
+from gcs.gate.airspace.projection import Origin
+from gcs.gate.airspace.zones import Zone
+from gcs.gate.condition import Severity
+from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, Transition
+from gcs.gate.geometry import Circle, Polygon
+from gcs.gate.machine.gate import Gate
+from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import Control, State
+from gcs.record.json_topics import JsonTopics
+from gcs.report import FenceItem, LogEvent
+from gcs.session import teller
+from gcs.session.effects import Effect, Emit, Record
+from gcs.session.requests import Asked
+from gcs.session.work import Decide, Log
+
+ASKED = Asked(client_id=3, word="goto", source="operator")
+NOW_NS = 1_700_000_000_000_000_000
+
+
+def told(effects: list[Effect]) -> tuple[list[str], list[str]]:
+    """The operator's lines, and the messages of the JSON topics."""
+    lines, messages, topics = [], [], JsonTopics()
+    for effect in effects:
+        if isinstance(effect, Emit):
+            lines.append(ipc.encode(effect.event).decode().rstrip("\n"))
+        elif isinstance(effect, Record):
+            messages += [made.message.decode() for made in topics.handle(effect.item, NOW_NS)]
+    return lines, messages
+
+
+def test_a_refusal_is_told_with_its_numbers_in_the_operators_frame() -> None:
+    refusal = Refusal(Code.OUTSIDE_FENCE, "350 m outside", (("distance_m", 350.0),), "home")
+    goal_ned = (0.0, 500.0, -2.0)
+    decide = Decide(7, Ruling.REFUSED, refusal, goal_ned=goal_ned)
+    assert told(teller.verdict(decide, ASKED, 1)) == (
+        [
+            '{"type":"verdict","id":3,"word":"goto","outcome":"refused","code":"OUTSIDE_FENCE",'
+            '"sentence":"350 m outside","zone":"home","numbers":{"distance_m":350.0},'
+            '"goal_enu":[500.0,0.0,2.0]}'
+        ],
+        [
+            '{"vehicle":1,"request_id":7,"source":"operator","word":"goto","phase":"verdict",'
+            '"outcome":"refused","code":"OUTSIDE_FENCE","sentence":"350 m outside","zone":"home",'
+            '"goal":{"east_m":500.0,"north_m":0.0,"up_m":2.0},"numbers":{"distance_m":350.0}}'
+        ],
+    )
+
+
+def test_a_goal_that_is_no_number_is_null() -> None:
+    goal_ned = (math.nan, 1.0, -math.inf)
+    refusal = Refusal(Code.NON_FINITE, "north is no number")
+    decide = Decide(7, Ruling.REFUSED, refusal, goal_ned=goal_ned)
+    (line,), (message,) = told(teller.verdict(decide, ASKED, 1))
+    assert '"goal_enu":[1.0,null,null]' in line
+    assert '"goal":{"east_m":1.0,"north_m":null,"up_m":null}' in message
+
+
+def test_an_acceptance_has_its_evidence_and_a_request_without_a_goal_none() -> None:
+    decide = Decide(7, Ruling.ACCEPTED, evidence=(("stop_m", 1.5),))
+    (line,), (message,) = told(teller.verdict(decide, ASKED, 1))
+    assert '"numbers":{"stop_m":1.5},"goal_enu":null}' in line
+    assert '"code":"","sentence":"","zone":"","numbers":{"stop_m":1.5}}' in message
+    assert "goal" not in message
+
+
+def test_an_ending_is_a_decision_of_the_record() -> None:
+    ended = Outcome(7, OutcomeKind.ABORTED, Code.STALE, "no position")
+    assert told(teller.outcome(ended, ASKED, 1)) == (
+        [
+            '{"type":"ending","id":3,"word":"goto","ended":"aborted","code":"STALE",'
+            '"sentence":"no position"}'
+        ],
+        [
+            '{"vehicle":1,"request_id":7,"source":"operator","word":"goto","phase":"ending",'
+            '"outcome":"aborted","code":"STALE","sentence":"no position","zone":"","numbers":{}}'
+        ],
+    )
+
+
+def test_a_transition_and_its_goal() -> None:
+    moved = Transition(
+        State.HOVERING, State.MOVING, "goal verified", Control.OURS, Severity.CAUTION
+    )
+    assert told(teller.transition(moved, (1.0, 2.0, -3.0), 1)) == (
+        [
+            '{"type":"state","before":"HOVERING","after":"MOVING","event":"goal verified",'
+            '"control":"OURS","severity":"CAUTION"}'
+        ],
+        [
+            '{"state":"MOVING","state_id":3,"before":"HOVERING","event":"goal verified",'
+            '"control":"OURS","severity":"CAUTION",'
+            '"goal":{"east_m":2.0,"north_m":1.0,"up_m":3.0}}'
+        ],
+    )
+
+
+def test_a_reminder_is_for_the_record_only() -> None:
+    assert told(teller.reminder(Gate(DEFAULT, "px4", NOW_NS), 1)) == (
+        [],
+        [
+            '{"state":"NO_VEHICLE","state_id":4,"before":"NO_VEHICLE","event":"reminder",'
+            '"control":"NONE","severity":"NOMINAL"}'
+        ],
+    )
+
+
+def test_the_fence_is_one_list_of_zones_for_both() -> None:
+    circle = Zone("home", True, Circle((1.0, 2.0), 150.0), 0.0, 50.0)
+    corners = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0))
+    open_above = Zone("tower", False, Polygon(corners))
+    record, emit = teller.fence([circle, open_above], Origin(47.4, 8.5, 488.0))
+    assert isinstance(record, Record)
+    assert isinstance(record.item, FenceItem)
+    assert record.item.origin == (47.4, 8.5, 488.0)
+    assert isinstance(emit, Emit)
+    assert isinstance(emit.event, ipc.Fences)
+    assert emit.event.zones is record.item.zones
+    assert ipc.encode(emit.event) == (
+        b'{"type":"fences","zones":[{"name":"home","inclusion":true,"corners_en":[],'
+        b'"centre_en":[1.0,2.0],"radius_m":150.0,"floor_up_m":0.0,"ceiling_up_m":50.0},'
+        b'{"name":"tower","inclusion":false,"corners_en":[[0.0,0.0],[10.0,0.0],[10.0,10.0]],'
+        b'"centre_en":null,"radius_m":0.0,"floor_up_m":null,"ceiling_up_m":null}]}\n'
+    )
+
+
+def test_a_log_line_is_the_same_object_for_both() -> None:
+    emit, record = teller.log(Log(Level.WARNING, "gate", "too far"), NOW_NS)
+    assert isinstance(emit, Emit)
+    assert isinstance(record, Record)
+    assert emit.event is record.item
+    assert record.item == LogEvent(NOW_NS, 3, "gate", "too far")
+    assert ipc.encode(emit.event) == (
+        b'{"type":"log","time_ns":1700000000000000000,"level":3,"node":"gate","text":"too far"}\n'
+    )
+
+
+def test_a_triple_has_no_negative_zero() -> None:
+    assert teller.triple((-0.001, 1.0, -2.5)) == "(0.00, 1.00, -2.50)"
+    assert teller.triple((math.nan, -math.inf, 0.0)) == "(nan, -inf, 0.00)"
