@@ -35,6 +35,9 @@ MAX_FRAME_CHANNELS = 4096
 """An MCAP numbers channels with 16 bits; forged system ids must not use them up."""
 
 _SAME_SECOND_NAMES = 100
+"""Names that are tried for a session."""
+_PART_NAMES = 10_000
+"""Names that are tried for its next part."""
 
 
 class RecorderError(Exception):
@@ -97,6 +100,7 @@ class Recorder:
         self._bytes_before = 0
         self.path = directory / f"{stem}.mcap"
         self.parts: list[Path] = []
+        self._leftovers: list[Path] = []
 
     @classmethod
     def open(
@@ -279,27 +283,48 @@ class Recorder:
         return (failure.strerror or str(failure)) if failure is not None else "closed"
 
     def _retry(self, now_ns: int) -> list[RecordNews]:
-        """A part counts once its first flush is on the disk; one that fails before is removed."""
-        path = self._directory / f"{self._stem}_part{len(self.parts) + 1}.mcap"
+        """Begin the next part.  It counts once its first flush is on the disk."""
+        self._remove_leftovers()
         since_ns = self._safe_ns
         try:
-            self._start(path, now_ns)
+            self._start_next_part(now_ns)
         except OSError:
             return []
         self._backend.flush()
         if self.failed:
-            self._forget_part(path)
+            self._give_up_part()
             return []
         self._loss_told = False
         self._safe_ns = now_ns
         self._flush_at_ns = now_ns + FLUSH_NS
-        return [RecordResumed(path, since_ns, now_ns)]
+        return [RecordResumed(self.path, since_ns, now_ns)]
 
-    def _forget_part(self, path: Path) -> None:
+    def _start_next_part(self, now_ns: int) -> None:
+        """In the first file whose name is free.  Raises OSError."""
+        first = len(self.parts) + 1
+        for number in range(first, first + _PART_NAMES):
+            with suppress(FileExistsError):
+                self._start(self._directory / f"{self._stem}_part{number}.mcap", now_ns)
+                return
+        raise FileExistsError(f"{self._stem}_part{first}.mcap and the names after it are taken")
+
+    def _give_up_part(self) -> None:
+        """The part that was just begun does not reach the disk: it never was."""
         bytes_before = self._bytes_before
         self._drop_file()
         self._bytes_before = bytes_before
-        self.parts.pop()
+        self._leftovers.append(self.parts.pop())
         self.path = self.parts[-1]
-        with suppress(OSError):  # then the next part finds the name taken, and waits
-            path.unlink()
+        self._remove_leftovers()
+
+    def _remove_leftovers(self) -> None:
+        """Files of parts that were given up; one that cannot be removed yet stays in the list."""
+        self._leftovers = [path for path in self._leftovers if not _removed(path)]
+
+
+def _removed(path: Path) -> bool:
+    try:
+        path.unlink(missing_ok=True)
+    except OSError:
+        return False
+    return True

@@ -327,6 +327,63 @@ def test_a_disk_that_is_full_when_the_file_is_closed_is_reported(tmp_path: Path)
     assert recorder.close(START_NS) is False
 
 
+def test_a_part_that_cannot_be_removed_does_not_stand_in_the_next_ones_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk = Disk(free=0)
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder.write(position_frame(0), START_NS)
+    recorder.tick(START_NS + SECOND)
+    with monkeypatch.context() as locked:
+        locked.setattr(Path, "unlink", _in_use)
+        assert recorder.tick(START_NS + 6 * SECOND) == []  # part 2 is made, and stays empty
+        disk.free = 1_000_000
+        (resumed,) = recorder.tick(START_NS + 11 * SECOND)
+    part3 = tmp_path / "20260101-000000_f_part3.mcap"
+    assert resumed.path == part3
+    assert (tmp_path / "20260101-000000_f_part2.mcap").stat().st_size == 0
+    recorder.write(position_frame(1), START_NS + 12 * SECOND)
+    recorder.close(START_NS + 13 * SECOND)
+    assert [ros1.rebuild(m.data) for m in messages_of(part3)] == [position_frame(1).raw]
+
+
+def test_a_part_that_could_not_be_removed_is_removed_once_it_can_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk = Disk(free=0)
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder.write(position_frame(0), START_NS)
+    recorder.tick(START_NS + SECOND)
+    with monkeypatch.context() as locked:
+        locked.setattr(Path, "unlink", _in_use)
+        recorder.tick(START_NS + 6 * SECOND)
+        recorder.tick(START_NS + 11 * SECOND)
+    assert len(list(tmp_path.glob("*_part*"))) == 2
+    disk.free = 1_000_000
+    (resumed,) = recorder.tick(START_NS + 16 * SECOND)
+    assert list(tmp_path.glob("*_part*")) == [resumed.path]
+    assert resumed.path.name == "20260101-000000_f_part2.mcap"
+    recorder.close(START_NS + 17 * SECOND)
+
+
+def test_a_part_whose_name_is_taken_by_another_file_takes_the_next(tmp_path: Path) -> None:
+    disk = Disk(free=0)
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    foreign = tmp_path / "20260101-000000_f_part2.mcap"
+    foreign.write_bytes(b"somebody else's")
+    recorder.write(position_frame(0), START_NS)
+    recorder.tick(START_NS + SECOND)
+    disk.free = 1_000_000
+    (resumed,) = recorder.tick(START_NS + 6 * SECOND)
+    assert resumed.path.name == "20260101-000000_f_part3.mcap"
+    assert foreign.read_bytes() == b"somebody else's"
+    recorder.close(START_NS + 7 * SECOND)
+
+
+def _in_use(path: Path, missing_ok: bool = False) -> None:
+    raise PermissionError(errno.EACCES, "the file is in use", str(path))
+
+
 def test_closing_while_nothing_is_recorded_is_harmless(tmp_path: Path) -> None:
     disk = Disk(free=0)
     recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
