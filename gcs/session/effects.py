@@ -13,39 +13,35 @@ from gcs import ipc
 from gcs.report import RecordItem
 
 
-class ShellEffect(msgspec.Struct, frozen=True, gc=False):
-    """Base of all effects: what the queue passes on without looking at it."""
-
-
-class Transmit(ShellEffect, frozen=True, gc=False):
+class Transmit(msgspec.Struct, frozen=True, gc=False):
     """Put these bytes on link number `link`."""
 
     link: int
     data: bytes
 
 
-class Record(ShellEffect, frozen=True, gc=False):
+class Record(msgspec.Struct, frozen=True, gc=False):
     item: RecordItem
 
 
-class Emit(ShellEffect, frozen=True, gc=False):
+class Emit(msgspec.Struct, frozen=True, gc=False):
     """Tell the operator."""
 
     event: ipc.Event
 
 
-class ReadFile(ShellEffect, frozen=True, gc=False):
+class ReadFile(msgspec.Struct, frozen=True, gc=False):
     token: int
     path: str
 
 
-class WriteFile(ShellEffect, frozen=True, gc=False):
+class WriteFile(msgspec.Struct, frozen=True, gc=False):
     token: int
     path: str
     data: bytes
 
 
-class Finish(ShellEffect, frozen=True, gc=False):
+class Finish(msgspec.Struct, frozen=True, gc=False):
     """Nothing is left to do: close the log, stop our own vehicle, go."""
 
     exit_code: int

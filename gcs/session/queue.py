@@ -9,10 +9,13 @@ the middle of its own answer, and the record tells transitions in the order they
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from typing import Final, TypeAlias, cast, get_args
 
-from gcs.session.effects import Effect, ShellEffect
+from gcs.session.effects import Effect
 from gcs.session.work import GateAnswered, ToGate, Work
+
+EFFECT_TYPES: Final = frozenset(get_args(Effect))
+"""Looked up by type: `isinstance` costs more than the rest of a turn."""
 
 Step: TypeAlias = Callable[[Work, int], Sequence[Work]]
 """Does one item at `now_ns` and returns what follows from it.  What follows from a `ToGate` holds
@@ -24,8 +27,8 @@ class WorkQueue:
 
     def __init__(self, step: Step) -> None:
         self._step = step
-        self._postponed: list[ToGate] = []
-        self._effects: list[Effect] = []
+        self._postponed: list[Work] = []
+        self._effects: list[Work] = []
 
     def run(self, work: Sequence[Work], now_ns: int) -> None:
         """Do all of it, and all that it leads to."""
@@ -34,25 +37,23 @@ class WorkQueue:
         gate_answers = False
         while agenda:
             item = agenda.pop()
-            if isinstance(item, ShellEffect):
+            kind = type(item)
+            if kind in EFFECT_TYPES:
                 effects.append(item)
-            elif isinstance(item, GateAnswered):
+            elif kind is GateAnswered:
                 gate_answers = False
                 agenda += reversed(postponed)
                 postponed.clear()
-            elif isinstance(item, ToGate):
-                if gate_answers:
-                    postponed.append(item)
-                else:
-                    gate_answers = True
-                    agenda += reversed(step(item, now_ns))
+            elif kind is ToGate and gate_answers:
+                postponed.append(item)
             else:
+                gate_answers |= kind is ToGate
                 agenda += reversed(step(item, now_ns))
 
     def take(self) -> list[Effect]:
         """The effects so far, in the order in which the shell is to perform them."""
         effects, self._effects = self._effects, []
-        return effects
+        return cast("list[Effect]", effects)
 
     def drop(self) -> None:
         """Nothing of what is under way: a part has failed in the middle of it."""

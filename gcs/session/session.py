@@ -193,11 +193,26 @@ class Session:
         match item:
             case ToGate(given):
                 return self._vehicle.ask_gate(given, now_ns)
-            case Log():
-                return [*teller.log(item, now_ns)]
             case Send(message):
                 telemetry = self._vehicle.telemetry
                 return [] if telemetry is None else [*self._links.send(telemetry.link, message)]
+            case gate_effects.Outcome(request_id):
+                asked = self._requests.close(request_id)
+                return [*teller.outcome(item, asked, self._vehicle.sysid)]
+            case (
+                gate_effects.SendSetpoint()
+                | gate_effects.SendCommand()
+                | gate_effects.CancelCommand()
+                | gate_effects.SwitchedFence()
+                | gate_effects.Verdict()
+                | gate_effects.Transition()
+                | gate_effects.Say()
+                | PlaceFence()
+                | CheckStart()
+            ):
+                return self._vehicle.carry_out(item, now_ns)
+            case Log():
+                return [*teller.log(item, now_ns)]
             case AskGate(request_id, request):
                 asked = self._requests.get(request_id)
                 given = gate_inputs.Requested(request_id, asked.source, request)
@@ -207,25 +222,10 @@ class Session:
                 requests = self._requests
                 asked = requests.close(request_id) if over else requests.get(request_id)
                 return [*teller.verdict(item, asked, self._vehicle.sysid)]
-            case gate_effects.Outcome(request_id):
-                asked = self._requests.close(request_id)
-                return [*teller.outcome(item, asked, self._vehicle.sysid)]
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
                 return [Emit(self._snapshot(now_ns))]
-            case (
-                PlaceFence()
-                | CheckStart()
-                | gate_effects.SendSetpoint()
-                | gate_effects.SendCommand()
-                | gate_effects.CancelCommand()
-                | gate_effects.SwitchedFence()
-                | gate_effects.Verdict()
-                | gate_effects.Transition()
-                | gate_effects.Say()
-            ):
-                return self._vehicle.carry_out(item, now_ns)
             case _:
                 raise AssertionError(f"the queue keeps {item} for itself")
 
