@@ -6,8 +6,8 @@ angles are degrees, clockwise from north; everything is converted once, in the s
 unions are tagged by `type`; a line that does not decode is answered with a `Trouble` event.
 What the record keeps too is a struct of `gcs/report.py`, or is made of one.
 
-Request words and their arguments are one table (`gcs/cli/words.py` parses them from text): both
-`--plain` lines and one-shot commands become `Ask`.
+The words of requests and their arguments are one table (`gcs/operator/request_words.py`): typed
+lines and one-shot commands alike become `Ask`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`gcs demo`: one whole flight on a simulated vehicle, told as it happens, checked at the end."""
+"""`gcs demo`: one whole flight on a simulated vehicle, shown as it happens, checked at the end."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.exits import Exit, Fail
 from gcs.cli.options import LOG_DIR, TIMEOUT, with_options
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from gcs.cli.demo_script import Flown
-    from gcs.cli.dialogue import Interrupt, Link
+    from gcs.operator.dialogue import Connection, InterruptSource
 
 
 @click.command(
@@ -35,8 +36,8 @@ def demo(ctx: click.Context, autopilot: str, log_dir: str, timeout: float) -> No
 
     from gcs import resources
     from gcs.config import LinkConfig, SimConfig
-    from gcs.shell.client import LinkClient
-    from gcs.shell.interrupts import Interrupts
+    from gcs.operator.client import StationClient
+    from gcs.operator.interrupts import Interrupts
 
     config = LinkConfig(
         sim=SimConfig(autopilot=autopilot),
@@ -46,52 +47,57 @@ def demo(ctx: click.Context, autopilot: str, log_dir: str, timeout: float) -> No
     )
     mission_path = str(resources.find("demo.toml"))
     with Interrupts() as interrupts:
-        link = LinkClient.start(config)
+        station = StationClient.start(config)
         console = Console(highlight=False)
-        ctx.exit(run_over(link, interrupts, console, mission_path, timeout))
+        ctx.exit(run_over(station, interrupts, console, mission_path, timeout))
 
 
 def run_over(
-    link: Link, interrupts: Interrupt, console: Console, mission_path: str, timeout_s: float
+    connection: Connection,
+    interrupts: InterruptSource,
+    console: Console,
+    mission_path: str,
+    timeout_s: float,
 ) -> int:
-    """Fly the script over a link that is there already; gives the exit code."""
-    from gcs.cli import say
-    from gcs.cli.demo_script import SCRIPT, finish, perform
-    from gcs.cli.demo_show import Narrator, show_table, show_what_to_do
-    from gcs.cli.dialogue import Dialogue, Interrupted, final_exit
+    """Fly the script with a station that is there already; returns the exit code."""
+    from gcs.cli.demo_script import SCRIPT, perform, wait_for_all
+    from gcs.cli.demo_show import FlightPrinter, show_table, show_what_to_do
+    from gcs.operator import event_text
+    from gcs.operator.dialogue import Dialogue, exit_code_of
+    from gcs.operator.errors import Interrupted
 
     flown: list[Flown] = []
-    with Narrator(console, link.now_s) as narrator:
-        dialogue = Dialogue(link, interrupts, narrator.hear)
+    with FlightPrinter(console, connection.now_s) as printer:
+        dialogue = Dialogue(connection, interrupts, printer.show_event)
         try:
-            dialogue.connect(timeout_s)
-            narrator.connected(dialogue.hello, dialogue.snapshot)
+            dialogue.wait_for_vehicle(timeout_s)
+            printer.show_connected(dialogue.hello, dialogue.snapshot)
             for step in SCRIPT:
                 if step.say:
-                    finish(dialogue, flown)
-                    narrator.headline(step.say)
+                    wait_for_all(dialogue, flown)
+                    printer.show_headline(step.say)
                 flown.append(perform(dialogue, step, mission_path))
                 if step.wait and not flown[-1].as_expected:
                     break
         except Interrupted:
-            down = dialogue.leave("interrupted")
-            for line in say.farewell_lines(down.bye) if down.bye else ():
+            ended = dialogue.leave("interrupted")
+            for line in event_text.bye_lines(ended.bye) if ended.bye else ():
                 console.print(line, markup=False, soft_wrap=True)
-            return Exit.INTERRUPTED
-        except Fail:
+            return ExitCode.INTERRUPTED
+        except ExitError:
             dialogue.leave("failed")
             raise
-        down = dialogue.leave("the demo is over")
+        ended = dialogue.leave("the demo is over")
     show_table(console, flown)
-    log_path = down.bye.log_path if down.bye else ""
+    log_path = ended.bye.log_path if ended.bye else ""
     show_what_to_do(console, log_path)
-    strange = [one for one in flown if not one.as_expected]
-    if strange:
-        first = strange[0]
-        raise Fail(
-            Exit.NOT_COMPLETED,
-            f"the flight was not as scripted: {first.asked.label} came to {first.came_to!r}, "
+    unexpected = [one for one in flown if not one.as_expected]
+    if unexpected:
+        first = unexpected[0]
+        raise ExitError(
+            ExitCode.NOT_COMPLETED,
+            f"the flight was not as scripted: {first.request.label} came to {first.came_to!r}, "
             f"expected {first.step.expect!r}",
             f"the record tells why: gcs log info {log_path}" if log_path else "",
         )
-    return final_exit(down)
+    return exit_code_of(ended)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from gcs.cli.dialogue import Asked, Dialogue
-from gcs.cli.typed import parse_line
-from gcs.cli.words import Request
+from gcs.operator.dialogue import Dialogue, TrackedRequest
+from gcs.operator.line_parser import parse_line
+from gcs.operator.request_words import SendRequests
 
 STEP_WAIT_S: Final = 40.0
 COMPLETE: Final = "complete"
@@ -66,15 +66,15 @@ class Flown:
     """A step and what became of it."""
 
     step: Step
-    asked: Asked
+    request: TrackedRequest
 
     @property
     def came_to(self) -> str:
         """`complete`, `refused BUSY`, `aborted OPERATOR`, ..., in the words of `expect`."""
-        verdict, ending = self.asked.verdict, self.asked.ending
-        if ending is not None:
-            code = "" if ending.ended == COMPLETE else ending.code
-            return f"{ending.ended} {code}".rstrip()
+        verdict, outcome = self.request.verdict, self.request.outcome
+        if outcome is not None:
+            code = "" if outcome.ended == COMPLETE else outcome.code
+            return f"{outcome.ended} {code}".rstrip()
         if verdict is None:
             return "no answer"
         if verdict.outcome == "accepted":
@@ -86,21 +86,21 @@ class Flown:
         return self.came_to == self.step.expect
 
 
-def finish(dialogue: Dialogue, flown: Sequence[Flown]) -> None:
-    """Wait until all that was asked has ended."""
+def wait_for_all(dialogue: Dialogue, flown: Sequence[Flown]) -> None:
+    """Wait until every request is settled."""
     for one in flown:
-        dialogue.settle(one.asked, STEP_WAIT_S)
+        dialogue.wait_settled(one.request, STEP_WAIT_S)
 
 
 def perform(dialogue: Dialogue, step: Step, mission_path: str) -> Flown:
-    """Ask for it and wait as the step says."""
+    """Send its request and wait as the step says."""
     line = parse_line(step.line.format(mission=f'"{mission_path}"'))
     assert line is not None
-    assert isinstance(line.action, Request)
-    asked = dialogue.ask(line.action.asks[0])
+    assert isinstance(line.action, SendRequests)
+    request = dialogue.send(line.action.requests[0])
     if step.wait:
-        dialogue.settle(asked, STEP_WAIT_S)
+        dialogue.wait_settled(request, STEP_WAIT_S)
     else:
-        dialogue.until(lambda: asked.verdict is not None, STEP_WAIT_S)
-        dialogue.until(lambda: asked.settled, step.pause_s)
-    return Flown(step, asked)
+        dialogue.wait_until(lambda: request.verdict is not None, STEP_WAIT_S)
+        dialogue.wait_until(lambda: request.settled, step.pause_s)
+    return Flown(step, request)

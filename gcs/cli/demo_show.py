@@ -12,10 +12,11 @@ from rich.table import Table
 from rich.text import Text
 
 from gcs import ipc
-from gcs.cli import say
 from gcs.cli.demo_script import Flown
-from gcs.cli.dialogue import Asked
-from gcs.cli.hush import WARNING, Hush
+from gcs.enu_text import signed_enu
+from gcs.operator import event_text
+from gcs.operator.dialogue import TrackedRequest
+from gcs.operator.warning_filter import WARNING, WarningFilter
 
 STYLES = {
     "accepted": "cyan",
@@ -28,17 +29,17 @@ STYLES = {
 }
 
 
-class Narrator:
-    """Tells events line by line; on a terminal a last line shows where the vehicle is."""
+class FlightPrinter:
+    """Prints events line by line; on a terminal a last line shows where the vehicle is."""
 
     def __init__(self, console: Console, now_s: Callable[[], float]) -> None:
         self._console = console
         self._now_s = now_s
         self._start_s = now_s()
         self._status: Status | None = None
-        self._hush = Hush(cautions=False)
+        self._warnings = WarningFilter(cautions=False)
 
-    def __enter__(self) -> Narrator:
+    def __enter__(self) -> FlightPrinter:
         if self._console.is_terminal:
             self._status = self._console.status("starting a vehicle and a link")
             self._status.start()
@@ -53,39 +54,39 @@ class Narrator:
         if self._status is not None:
             self._status.stop()
 
-    def connected(self, hello: ipc.Hello | None, seen: ipc.Snapshot | None) -> None:
+    def show_connected(self, hello: ipc.Hello | None, seen: ipc.Snapshot | None) -> None:
         vehicle = seen.vehicle if seen is not None else "a vehicle"
         policy = hello.policy if hello is not None else "?"
         self._line(Text(f"{vehicle} is heard; policy {policy}"))
 
-    def headline(self, sentence: str) -> None:
+    def show_headline(self, sentence: str) -> None:
         self._console.print()
         self._console.print(Text(sentence, "bold"))
 
-    def hear(self, event: ipc.Event, asked: Asked | None) -> None:
-        if self._hush.hides(event, asked):
+    def show_event(self, event: ipc.Event, request: TrackedRequest | None) -> None:
+        if self._warnings.hides(event, request):
             return
         match event:
-            case ipc.VerdictEvent() if asked is not None:
-                self._told(asked.label, event.outcome, event.code, event.sentence)
-            case ipc.EndingEvent() if asked is not None:
-                self._told(asked.label, event.ended, event.code, event.sentence)
+            case ipc.VerdictEvent() if request is not None:
+                self._answer(request.label, event.outcome, event.code, event.sentence)
+            case ipc.EndingEvent() if request is not None:
+                self._answer(request.label, event.ended, event.code, event.sentence)
             case ipc.StateEvent():
                 self._line(Text(f"  {event.before} → {event.after}", "dim"))
             case ipc.LogEvent() if event.level >= WARNING:
-                self._line(Text(say.log_line(event), "yellow"))
+                self._line(Text(event_text.log_line(event), "yellow"))
             case ipc.Trouble() if not event.exit_code:
-                self._line(Text("\n".join(say.trouble_lines(event)), "red"))
+                self._line(Text("\n".join(event_text.trouble_lines(event)), "red"))
             case ipc.Snapshot() if self._status is not None:
-                self._status.update(Text(f"{event.state}  {say.enu(event.pos_enu)}", "dim"))
+                self._status.update(Text(f"{event.state}  {signed_enu(event.pos_enu)}", "dim"))
             case _:
                 pass
 
-    def _told(self, label: str, what: str, code: str, sentence: str) -> None:
+    def _answer(self, label: str, what: str, code: str, sentence: str) -> None:
         line = Text.assemble((label, "bold"), ": ", (what, STYLES.get(what, "")))
         if code:
             line.append(f" {code}", STYLES.get(what, ""))
-        if why := say.reason(what, code, sentence):
+        if why := event_text.reason(what, code, sentence):
             line.append(f": {why}")
         self._line(line)
 
@@ -95,20 +96,20 @@ class Narrator:
 
 
 def show_table(console: Console, flown: Sequence[Flown]) -> None:
-    """Request, verdict, ending, reason; what was not as scripted is marked."""
+    """Request, verdict, outcome, reason; what was not as scripted is marked."""
     table = Table(box=box.SIMPLE_HEAD, title="The flight", title_justify="left")
     for column in ("", "request", "verdict", "ending", "reason"):
         table.add_column(column, no_wrap=column not in ("request", "reason"))
     for one in flown:
-        verdict, ending = one.asked.verdict, one.asked.ending
-        outcome = verdict.outcome if verdict else "-"
-        ended = ending.ended if ending else ""
-        told = ending if ending and ending.ended != "complete" else verdict
-        reason = f"{told.code} {told.sentence}".strip() if told and told.code else ""
+        verdict, outcome = one.request.verdict, one.request.outcome
+        ruling = verdict.outcome if verdict else "-"
+        ended = outcome.ended if outcome else ""
+        last = outcome if outcome and outcome.ended != "complete" else verdict
+        reason = f"{last.code} {last.sentence}".strip() if last and last.code else ""
         table.add_row(
             Text("✓", "green") if one.as_expected else Text("✗", "bold red"),
-            Text(one.asked.label),
-            Text(outcome, STYLES.get(outcome, "")),
+            Text(one.request.label),
+            Text(ruling, STYLES.get(ruling, "")),
             Text(ended, STYLES.get(ended, "")),
             Text(reason, "dim"),
         )

@@ -1,4 +1,4 @@
-"""`gcs fly`: the keyboard ground station, or its words as plain lines."""
+"""`gcs fly`: the keyboard screen, or the same requests as typed lines."""
 
 from __future__ import annotations
 
@@ -115,13 +115,13 @@ def fly(
 
 def _fly_plain(config: LinkConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
     from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
-    from gcs.shell.client import LinkClient
-    from gcs.shell.interrupts import Interrupts
+    from gcs.operator.client import StationClient
+    from gcs.operator.interrupts import Interrupts
 
     how = PlainConfig(config.connect_timeout_s, min_level, as_json, strict, config.speedup)
     with Interrupts() as interrupts:
-        link = LinkClient.start(config)
-        return Plain(link, interrupts, how, to_stdout, to_stderr).run(stdin_input())
+        station = StationClient.start(config)
+        return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
 
 
 def _fly_keyboard(config: LinkConfig) -> int:
@@ -132,11 +132,11 @@ def _fly_keyboard(config: LinkConfig) -> int:
     if not (stdin_is_a_terminal() and sys.stdout.isatty() and sys.stderr.isatty()):
         raise click.UsageError("the keyboard station needs a terminal; use --plain on a pipe")
 
-    from gcs.shell.client import LinkClient
+    from gcs.operator.client import StationClient
     from gcs.tui.app import FlyApp
-    from gcs.tui.result import tell, until_hello
+    from gcs.tui.result import print_result, until_hello
 
-    link = LinkClient.start(config)
-    app = FlyApp(link, until_hello(link))
+    station = StationClient.start(config)
+    app = FlyApp(station, until_hello(station))
     app.run()
-    return tell(app.result, lambda line: click.echo(line, err=True))
+    return print_result(app.result, lambda line: click.echo(line, err=True))

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.exits import Exit, Fail
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.record.info import FlightInfo
@@ -113,7 +114,9 @@ def recover(file: Path, output: Path, as_json: bool) -> None:
         try:
             saved = recover(file, output, progress)
         except FileExistsError as error:
-            raise Fail(Exit.USAGE, f"{output}: exists already", "choose another name") from error
+            raise ExitError(
+                ExitCode.USAGE, f"{output}: exists already", "choose another name"
+            ) from error
         except OSError as error:
             if error.filename == str(file):
                 raise
@@ -194,15 +197,15 @@ def _told(file: Path) -> Iterator[None]:
     try:
         yield
     except BadRecordError as error:
-        raise Fail(
-            Exit.BAD_FILE, str(error), "gcs reads MCAP files, as it writes them into logs/"
+        raise ExitError(
+            ExitCode.BAD_FILE, str(error), "gcs reads MCAP files, as it writes them into logs/"
         ) from error
     except OSError as error:
-        raise Fail(Exit.BAD_FILE, f"{file}: {error.strerror or error}") from error
+        raise ExitError(ExitCode.BAD_FILE, f"{file}: {error.strerror or error}") from error
 
 
-def _cannot_write(path: Path, error: OSError) -> Fail:
-    return Fail(Exit.RECORDER, f"{path}: cannot write: {error.strerror or error}")
+def _cannot_write(path: Path, error: OSError) -> ExitError:
+    return ExitError(ExitCode.RECORDER, f"{path}: cannot write: {error.strerror or error}")
 
 
 @contextmanager

@@ -14,7 +14,8 @@ from typing import NamedTuple, NoReturn
 
 import click
 
-from gcs.cli.exits import Exit
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError, error_lines
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
 
@@ -146,28 +147,31 @@ def gcs() -> None:
 
 
 def run(args: Sequence[str] | None = None) -> int:
-    """Run one command line and give its exit code; users never see a traceback."""
+    """Run one command line and return its exit code; users never see a traceback."""
     try:
         result = gcs.main(args=args, prog_name="gcs", standalone_mode=False)
     except click.ClickException as error:
         error.show()
         return error.exit_code
+    except ExitError as error:
+        click.echo("\n".join(error_lines(str(error), error.hint)), err=True)
+        return error.exit_code
     except (click.Abort, KeyboardInterrupt):
         click.echo("gcs: interrupted", err=True)
-        return Exit.INTERRUPTED
+        return ExitCode.INTERRUPTED
     except (BrokenPipeError, SystemExit):
         # Whoever read our output has gone; click and rich make a SystemExit of it.
         _drop_output()
-        return Exit.INTERRUPTED
+        return ExitCode.INTERRUPTED
     except Exception as bug:  # noqa: BLE001  the one place: a bug is told, not spilled
         if isinstance(bug, OSError) and bug.errno in _NO_ROOM:
             _drop_output()
             click.echo(f"gcs: cannot write the output: {bug.strerror}", err=True)
-            return Exit.RECORDER
+            return ExitCode.RECORDER
         click.echo(f"gcs: internal error: {type(bug).__name__}: {bug}", err=True)
         click.echo(f"  details: {_keep_details(bug)}", err=True)
-        return Exit.BUG
-    return result if isinstance(result, int) else Exit.DONE
+        return ExitCode.BUG
+    return result if isinstance(result, int) else ExitCode.DONE
 
 
 def _drop_output() -> None:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.exits import Exit, Fail
 from gcs.cli.options import AS_JSON, POLICY, with_options
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.plan.model import AutopilotName, Geodetic, Plan
@@ -85,11 +86,14 @@ def show(file: str, autopilot: AutopilotName | None, as_json: bool) -> int:
         click.echo(plan_json(plan))
     else:
         print_plan(plan)
-    return Exit.DONE
+    return ExitCode.DONE
 
 
 def read_plan(file: str, autopilot: AutopilotName | None) -> Plan:
-    """The plan behind a path or the name of a shipped mission.  Fails with BAD_FILE."""
+    """The plan behind a path or the name of a shipped mission.
+
+    Raises ExitError with BAD_FILE.
+    """
     from gcs import resources
     from gcs.plan.errors import PlanError
     from gcs.plan.reader import read
@@ -98,8 +102,8 @@ def read_plan(file: str, autopilot: AutopilotName | None) -> Plan:
         path = resources.find(file)
         return read(str(path), path.read_bytes(), autopilot)
     except resources.MissionNotFoundError as error:
-        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None
+        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
     except OSError as error:
-        raise Fail(Exit.BAD_FILE, f"{file}: {error.strerror}") from None
+        raise ExitError(ExitCode.BAD_FILE, f"{file}: {error.strerror}") from None
     except PlanError as error:
-        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None
+        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gcs.cli.exits import Exit, Fail
+from gcs.exit_codes import ExitCode
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.verifier import check_start, verifier_for
 from gcs.gate.policy.policy import Policy, parse_policy
 from gcs.gate.policy.tomlfile import PolicyError
 from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
 from gcs.gate.refusal import Refusal
+from gcs.operator.errors import ExitError
 from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.lint import lint, worst
 from gcs.plan.model import AutopilotName, Geodetic, Plan
@@ -48,19 +49,19 @@ class Checked:
     start_refusal: Refusal | None
 
     @property
-    def exit_code(self) -> Exit:
+    def exit_code(self) -> ExitCode:
         if worst(list(self.findings)) is Level.ERROR:
-            return Exit.BAD_FILE
+            return ExitCode.BAD_FILE
         flown = self.verification
         if self.start_refusal is not None or (flown is not None and flown.refusal is not None):
-            return Exit.REFUSED_BY_GATE
-        return Exit.DONE
+            return ExitCode.REFUSED_BY_GATE
+        return ExitCode.DONE
 
 
 def check_plan(
     plan: Plan, autopilot: AutopilotName | None, policy_name: str, home: Geodetic | None
 ) -> Checked:
-    """Fails with BAD_FILE where the policy is wrong."""
+    """Raises ExitError with BAD_FILE if the policy is wrong."""
     autopilot = autopilot or plan.firmware or "px4"
     policy, policy_zones = load_policy(policy_name)
     own = sum(not isinstance(spec.shape, FileSpec) for spec in policy.fence) + len(policy_zones)
@@ -108,7 +109,10 @@ def _choose_home(
 
 
 def load_policy(name: str) -> tuple[Policy, tuple[ZoneSpec, ...]]:
-    """The policy, and the zones of the fence files that it names.  Fails with BAD_FILE."""
+    """The policy, and the zones of the fence files that it names.
+
+    Raises ExitError with BAD_FILE.
+    """
     path = policy_path(name)
     try:
         policy = parse_policy(path.read_text(encoding="utf-8"), str(path))
@@ -118,12 +122,12 @@ def load_policy(name: str) -> tuple[Policy, tuple[ZoneSpec, ...]]:
                 fence_path = path.parent / spec.shape.path
                 zones += zone_specs(read(str(fence_path), fence_path.read_bytes()).fence)
     except PolicyError as error:
-        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None
+        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
     except PlanError as error:
-        raise Fail(Exit.BAD_FILE, str(error), error.hint) from None
+        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
     except OSError as error:
         hint = "--policy takes `default`, `lab` or the path of a TOML file"
-        raise Fail(Exit.BAD_FILE, f"{error.filename}: {error.strerror}", hint) from None
+        raise ExitError(ExitCode.BAD_FILE, f"{error.filename}: {error.strerror}", hint) from None
     except UnicodeDecodeError:
-        raise Fail(Exit.BAD_FILE, f"{path}: is not UTF-8") from None
+        raise ExitError(ExitCode.BAD_FILE, f"{path}: is not UTF-8") from None
     return policy, tuple(zones)

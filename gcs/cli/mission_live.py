@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.exits import Exit, Fail
 from gcs.cli.options import (
     AS_JSON,
     LINK,
@@ -17,6 +16,8 @@ from gcs.cli.options import (
     link_config,
     with_options,
 )
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.ipc import Ask
@@ -51,8 +52,8 @@ def upload(
     """Verify a mission file, send it to the vehicle, read it back and compare."""
     from gcs.ipc import Ask
 
-    asks = (Ask(0, "mission_upload", path=_readable(file)),)
-    _run(asks, links, policy, log_dir, timeout, wait, as_json)
+    requests = (Ask(0, "mission_upload", path=_readable(file)),)
+    _run(requests, links, policy, log_dir, timeout, wait, as_json)
 
 
 @click.command(epilog=f"Example: gcs mission download -o on_board.plan\n\n{EXITS}")
@@ -80,8 +81,8 @@ def download(
     from gcs.ipc import Ask
 
     _check_output(output, force)
-    asks = (Ask(0, "mission_download", path=output),)
-    _run(asks, links, policy, log_dir, timeout, wait, as_json)
+    requests = (Ask(0, "mission_download", path=output),)
+    _run(requests, links, policy, log_dir, timeout, wait, as_json)
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -99,8 +100,8 @@ def fly(
     """Upload a mission file, then start it and wait for its end."""
     from gcs.ipc import Ask
 
-    asks = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
-    _run(asks, links, policy, log_dir, timeout, wait, as_json)
+    requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
+    _run(requests, links, policy, log_dir, timeout, wait, as_json)
 
 
 @click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
@@ -120,27 +121,27 @@ def clear(
 
 
 def _check_output(output: str, force: bool) -> None:
-    """Whether a mission may be written there: told before any link is started."""
+    """Whether a mission may be written there, checked before any station is started."""
     from pathlib import Path
 
     from gcs.plan.writer import SUFFIXES
 
     path = Path(output)
     if path.suffix.lower() not in SUFFIXES:
-        raise Fail(
-            Exit.USAGE,
+        raise ExitError(
+            ExitCode.USAGE,
             f"{output}: the suffix names no format that can be written",
             f"one of: {', '.join(SUFFIXES)}",
         )
     if path.exists() and not force:
-        raise Fail(Exit.USAGE, f"{output}: exists already", "--force writes over it")
+        raise ExitError(ExitCode.USAGE, f"{output}: exists already", "--force writes over it")
 
 
 def _readable(file: str) -> str:
     """Path of the file as typed, or of the shipped mission of that name.
 
-    It is read here first, so that a file that is no plan is told before any link is started.
-    Fails with BAD_FILE.
+    It is read here first, so that a file that is no plan is refused before any station is
+    started.  Raises ExitError with BAD_FILE.
     """
     from gcs import resources
     from gcs.cli.mission import read_plan
@@ -150,7 +151,7 @@ def _readable(file: str) -> str:
 
 
 def _run(
-    asks: tuple[Ask, ...],
+    requests: tuple[Ask, ...],
     links: tuple[str, ...],
     policy: str,
     log_dir: str,
@@ -158,9 +159,11 @@ def _run(
     wait: float,
     as_json: bool,
 ) -> None:
-    from gcs.cli import errand, words
+    from gcs.cli import oneshot_session
+    from gcs.operator.request_words import SendRequests, label
 
-    config = link_config(links, policy, log_dir, name="mission", timeout_s=timeout)
-    how = errand.ErrandConfig(timeout, wait, as_json, words.label(asks[0]))
-    code = errand.run(config, how, errand.asking(words.Request(asks), wait))
+    setup = link_config(links, policy, log_dir, name="mission", timeout_s=timeout)
+    how = oneshot_session.OneShotConfig(timeout, wait, as_json, label(requests[0]))
+    task = oneshot_session.sending(SendRequests(requests), wait)
+    code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from gcs.cli.exits import Exit
 from gcs.cli.mission_check import Checked
-from gcs.cli.say import enu
+from gcs.enu_text import signed_enu
+from gcs.exit_codes import ExitCode
 from gcs.frames import enu_from_ned
 from gcs.plan import commands
 from gcs.plan.errors import Finding, Level
@@ -68,7 +68,7 @@ def _finding_lines(plan: Plan, finding: Finding) -> Iterator[str]:
 
 def _verdict_line(plan: Plan, verdict: LegVerdict) -> str:
     answer = "clear  " if verdict.refusal is None else "refused"
-    to = enu(enu_from_ned(verdict.to_ned))
+    to = signed_enu(enu_from_ned(verdict.to_ned))
     what = f"circle of {verdict.radius_m:g} m about" if verdict.radius_m else f"{verdict.kind} to"
     line = f"  {answer}  {_told(plan, verdict.item)}: {what} {to}"
     if verdict.refusal is not None:
@@ -86,7 +86,7 @@ def _return_lines(plan: Plan, verification: Verification) -> Iterator[str]:
 
 def _summary(checked: Checked) -> str:
     verification = checked.verification
-    if checked.exit_code is Exit.BAD_FILE:
+    if checked.exit_code is ExitCode.BAD_FILE:
         return "not to be flown as it is"
     if verification is None:
         return "there is no mission in it to fly"

@@ -6,8 +6,8 @@ from functools import partial
 
 import click
 
-from gcs.cli import typed, words
 from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, Seconds, link_config
+from gcs.operator import line_parser, request_words
 
 EXITS = (
     "Exit codes: 0 done, 2 usage, 3 no vehicle, 5 refused by the vehicle, 6 refused by the gate, "
@@ -24,7 +24,7 @@ WAIT = click.Option(
 
 
 def _command(name: str) -> click.Command:
-    word = words.BY_NAME[name]
+    word = request_words.WORD_BY_NAME[name]
 
     def run_word(
         links: tuple[str, ...],
@@ -36,27 +36,28 @@ def _command(name: str) -> click.Command:
         arguments: tuple[str, ...] = (),
     ) -> None:
         try:
-            action = typed.parse_arguments(word, arguments, finite=True)
-        except typed.WordError as error:
+            action = line_parser.parse_arguments(word, arguments, finite=True)
+        except line_parser.LineError as error:
             raise click.UsageError(f"{error.sentence}\n  hint: {error.hint}") from None
-        assert isinstance(action, words.Request)
+        assert isinstance(action, request_words.SendRequests)
 
-        from gcs.cli import errand
+        from gcs.cli import oneshot_session
 
-        config = link_config(links, policy, log_dir, name=name, timeout_s=timeout)
-        how = errand.ErrandConfig(timeout, wait, as_json, name)
-        click.get_current_context().exit(errand.run(config, how, errand.asking(action, wait)))
+        setup = link_config(links, policy, log_dir, name=name, timeout_s=timeout)
+        how = oneshot_session.OneShotConfig(timeout, wait, as_json, name)
+        code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
+        click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=click.UNPROCESSED, metavar=word.usage)
     options: list[click.Parameter] = [LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
     return click.Command(
         name,
         callback=run_word,
-        params=[typed_here, *options] if word.params else options,
+        params=[typed_here, *options] if word.arguments else options,
         help=word.help[0].upper() + word.help[1:] + ".",
         epilog=f"Example: gcs {word.example}\n\n{EXITS}",
         # Negative numbers look like options; what is no option of ours is an argument.
-        context_settings={"ignore_unknown_options": bool(word.params)},
+        context_settings={"ignore_unknown_options": bool(word.arguments)},
         options_metavar="[OPTIONS]",
     )
 
@@ -78,12 +79,12 @@ photo = _command("photo")
 def _status(
     links: tuple[str, ...], policy: str, log_dir: str, timeout: float, as_json: bool
 ) -> None:
-    from gcs.cli import errand
+    from gcs.cli import oneshot_session
     from gcs.cli.status import report
 
-    config = link_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
-    how = errand.ErrandConfig(timeout, 0.0, as_json, "status", cautions=True)
-    code = errand.run(config, how, partial(report, as_json=as_json))
+    setup = link_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
+    how = oneshot_session.OneShotConfig(timeout, 0.0, as_json, "status", cautions=True)
+    code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)
 
 

@@ -1,4 +1,4 @@
-"""Options that every command with a link of its own shares, and what they add up to."""
+"""Options that every command with a station of its own shares, and what they add up to."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Any, TypeVar
 
 import click
 
-from gcs.cli.exits import Exit, Fail
 from gcs.config import LinkConfig
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
 
 DEFAULT_LINK = "udpin://127.0.0.1:14550"
 F = TypeVar("F", bound=Callable[..., Any])
@@ -28,7 +29,7 @@ class FiniteRange(click.FloatRange):
 
 
 class Seconds(FiniteRange):
-    """More than none, less than for ever."""
+    """More than 0, and finite."""
 
     def __init__(self) -> None:
         super().__init__(min=0, min_open=True)
@@ -78,7 +79,10 @@ def with_options(*options: click.Option) -> Callable[[F], F]:
 
 
 def policy_path(name: str) -> str:
-    """The file behind `--policy`; empty for the built-in default.  Fails with BAD_FILE."""
+    """The file behind `--policy`, empty for the built-in default.
+
+    Raises ExitError with BAD_FILE.
+    """
     if name == "default":
         return ""
     if name == "lab":
@@ -88,7 +92,9 @@ def policy_path(name: str) -> str:
     from pathlib import Path
 
     if not Path(name).is_file():
-        raise Fail(Exit.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab")
+        raise ExitError(
+            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab"
+        )
     return name
 
 
@@ -101,7 +107,7 @@ def link_config(
     timeout_s: float,
     record: bool = True,
 ) -> LinkConfig:
-    """For a link to a vehicle that somebody else has started."""
+    """For a station that flies a vehicle which somebody else has started."""
     return LinkConfig(
         endpoints=list(links) or [DEFAULT_LINK],
         policy_path=policy_path(policy),

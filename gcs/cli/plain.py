@@ -1,4 +1,4 @@
-"""`gcs fly --plain`: words from standard input, one answer line for each verdict and ending."""
+"""`gcs fly --plain`: lines from standard input, one answer for each verdict and outcome."""
 
 from __future__ import annotations
 
@@ -8,11 +8,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from gcs import ipc
-from gcs.cli import say, typed, words
-from gcs.cli.dialogue import Asked, Dialogue, Interrupt, Interrupted, Link, final_exit
-from gcs.cli.exits import Exit, Fail
-from gcs.cli.hush import Hush
-from gcs.shell.client import LinkDown
+from gcs.exit_codes import ExitCode
+from gcs.operator import event_text, line_parser, request_words
+from gcs.operator.client import StationEnded
+from gcs.operator.dialogue import (
+    Connection,
+    Dialogue,
+    InterruptSource,
+    TrackedRequest,
+    exit_code_of,
+)
+from gcs.operator.errors import ExitError, Interrupted
+from gcs.operator.warning_filter import WarningFilter
 from gcs.shell.pipes import LineSource
 
 FRESH_WAIT_S = 0.5
@@ -57,50 +64,50 @@ class Plain:
 
     def __init__(
         self,
-        link: Link,
-        interrupts: Interrupt,
+        connection: Connection,
+        interrupts: InterruptSource,
         config: PlainConfig,
         out: Printer,
         err: Printer,
     ) -> None:
         self._config = config
         self._out, self._err = out, err
-        self._dialogue = Dialogue(link, interrupts, self._watch)
-        self._hush = Hush(cautions=True)
+        self._dialogue = Dialogue(connection, interrupts, self._on_event)
+        self._warnings = WarningFilter(cautions=True)
         self._bad_lines = False
 
     def run(self, script: Input) -> int:
-        """Until `quit`, the end of the input, or Ctrl-C; gives the exit code."""
+        """Until `quit`, the end of the input, or Ctrl-C; returns the exit code."""
         try:
-            self._dialogue.connect(self._config.timeout_s)
-            self._obey(script)
+            self._dialogue.wait_for_vehicle(self._config.timeout_s)
+            self._run_lines(script)
         except Interrupted as interrupt:
             self._err(f"gcs: {interrupt}: leaving; the link holds the vehicle first")
-            self._farewell(self._dialogue.leave(str(interrupt)))
-            return Exit.INTERRUPTED
-        except Fail:
+            self._show_end(self._dialogue.leave(str(interrupt)))
+            return ExitCode.INTERRUPTED
+        except ExitError:
             self._dialogue.leave("failed")
             raise
-        down = self._dialogue.leave("quit")
-        self._farewell(down)
-        return self._exit(down)
+        ended = self._dialogue.leave("quit")
+        self._show_end(ended)
+        return self._exit_code(ended)
 
-    def _obey(self, script: Input) -> None:
+    def _run_lines(self, script: Input) -> None:
         while (text := self._next_line(script)) is not None:
             try:
-                line = typed.parse_line(text)
-            except typed.WordError as error:
+                line = line_parser.parse_line(text)
+            except line_parser.LineError as error:
                 self._bad_lines = True
                 self._err(f"{script.name}:{script.number}: {error.sentence}\n  hint: {error.hint}")
                 continue
             if line is None:
                 continue
-            if isinstance(line.action, words.Quit):
+            if isinstance(line.action, request_words.Quit):
                 return
             self._act(line)
 
     def _next_line(self, script: Input) -> str | None:
-        """None at the end of the input.  The link is followed meanwhile."""
+        """None at the end of the input.  The station's events are read meanwhile."""
         while True:
             text = script.take()
             if text is not None:
@@ -110,63 +117,63 @@ class Plain:
             if self._dialogue.poll(1.0, (script.source,)):
                 script.read()
 
-    def _act(self, line: typed.Line) -> None:
+    def _act(self, line: line_parser.Line) -> None:
         match line.action:
-            case words.Request() as request if line.wait:
-                self._dialogue.perform(request, line.text)
-            case words.Request() as request:
-                # Not waited for: what has to follow another ask cannot be sent blindly.
-                self._dialogue.ask(request.asks[0], line.text)
-            case words.Wait(seconds):
-                self._dialogue.until(lambda: False, seconds / self._config.speedup)
-            case words.ShowState():
+            case request_words.SendRequests(requests) if line.wait:
+                self._dialogue.send_in_turn(requests, line.text)
+            case request_words.SendRequests(requests):
+                # Not waited for: what has to follow another request cannot be sent blindly.
+                self._dialogue.send(requests[0], line.text)
+            case request_words.Wait(seconds):
+                self._dialogue.wait_until(lambda: False, seconds / self._config.speedup)
+            case request_words.ShowState():
                 self._show_state()
-            case words.Quit():
+            case request_words.Quit():
                 return
 
     def _show_state(self) -> None:
         """As it is after whatever was answered last: the latest snapshot may be from before."""
         latest = self._dialogue.snapshot
-        self._dialogue.until(lambda: self._dialogue.snapshot is not latest, FRESH_WAIT_S)
+        self._dialogue.wait_until(lambda: self._dialogue.snapshot is not latest, FRESH_WAIT_S)
         seen = self._dialogue.snapshot
         if self._config.as_json and seen is not None:
             self._out(ipc.encode(seen).decode().rstrip())
         else:
-            self._out(say.state_line(seen))
+            self._out(event_text.state_line(seen))
 
-    def _watch(self, event: ipc.Event, asked: Asked | None) -> None:
+    def _on_event(self, event: ipc.Event, request: TrackedRequest | None) -> None:
         if isinstance(event, ipc.Snapshot):
             return
         if self._config.as_json:
             self._out(ipc.encode(event).decode().rstrip())
             return
-        if self._hush.hides(event, asked):
+        if self._warnings.hides(event, request):
             return
         match event:
-            case ipc.VerdictEvent() if asked is not None:
-                self._out(say.verdict_line(asked.label, event))
-            case ipc.EndingEvent() if asked is not None:
-                self._out(say.ending_line(asked.label, event))
+            case ipc.VerdictEvent() if request is not None:
+                self._out(event_text.verdict_line(request.label, event))
+            case ipc.EndingEvent() if request is not None:
+                self._out(event_text.outcome_line(request.label, event))
             case ipc.LogEvent() if event.level >= self._config.min_level:
-                self._err(say.log_line(event))
+                self._err(event_text.log_line(event))
             case ipc.Trouble() if not event.exit_code:
-                self._err("\n".join(say.trouble_lines(event)))
+                self._err("\n".join(event_text.trouble_lines(event)))
             case _:
                 pass
 
-    def _farewell(self, down: LinkDown) -> None:
-        if down.bye is None:
-            self._err(f"gcs: the link ended without a good-bye\n{down.stderr_tail}".rstrip())
+    def _show_end(self, ended: StationEnded) -> None:
+        if ended.bye is None:
+            self._err(f"gcs: the link ended without a good-bye\n{ended.stderr_tail}".rstrip())
             return
-        for line in say.farewell_lines(down.bye):
+        for line in event_text.bye_lines(ended.bye):
             self._err(line)
 
-    def _exit(self, down: LinkDown) -> int:
-        if code := final_exit(down):
+    def _exit_code(self, ended: StationEnded) -> int:
+        if code := exit_code_of(ended):
             return code
         if self._bad_lines:
-            return Exit.USAGE
-        return self._dialogue.first_failure() if self._config.strict else Exit.DONE
+            return ExitCode.USAGE
+        return self._dialogue.first_failure() if self._config.strict else ExitCode.DONE
 
 
 def stdin_input() -> Input:

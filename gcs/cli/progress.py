@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from gcs import ipc
-from gcs.cli import say
+from gcs.enu_text import signed_enu
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 SHOW_AFTER_S = 1.0
 
 
-class Ticker:
-    """A progress display on standard error that comes to life late and leaves no trace.
+class ProgressDisplay:
+    """A line on standard error that is shown after a while and leaves no trace.
 
-    `hear` is given every event and the present time; it needs no thread of its own.  Whoever
+    `update` is given every event and the present time; it needs no thread of its own.  Whoever
     prints a line calls `clear` first; the display comes back below it by itself.
     """
 
@@ -30,7 +30,7 @@ class Ticker:
         self._task: TaskID | None = None
         self._transfer: ipc.ProgressEvent | None = None
 
-    def __enter__(self) -> Ticker:
+    def __enter__(self) -> ProgressDisplay:
         return self
 
     def __exit__(
@@ -47,7 +47,7 @@ class Ticker:
             self._progress.stop()
             self._progress = self._task = None
 
-    def hear(self, event: ipc.Event, now_s: float) -> None:
+    def update(self, event: ipc.Event, now_s: float) -> None:
         if not self._shown or now_s - self._started_s < SHOW_AFTER_S:
             return
         match event:
@@ -57,7 +57,7 @@ class Ticker:
                 text = f"{event.what}: {event.done:g} of {event.total:g}{unit}"
                 self._draw(text, event.done, event.total or None, now_s)
             case ipc.Snapshot() if self._transfer is None:
-                self._draw(f"{event.state}  {say.enu(event.pos_enu)}", 0.0, None, now_s)
+                self._draw(f"{event.state}  {signed_enu(event.pos_enu)}", 0.0, None, now_s)
             case ipc.EndingEvent():
                 self._transfer = None
             case _:

@@ -8,32 +8,33 @@ import click
 import msgspec
 
 from gcs import ipc
-from gcs.cli import say
-from gcs.cli.dialogue import Dialogue
-from gcs.cli.exits import Exit
-from gcs.cli.progress import Ticker
+from gcs.cli.progress import ProgressDisplay
+from gcs.enu_text import signed_enu
+from gcs.exit_codes import ExitCode
+from gcs.operator.dialogue import Dialogue
+from gcs.operator.event_text import whole_degrees
 
 SLOW_VALUES_WAIT_S = 1.5
 """Battery and mode come less often than the position."""
 
 
-def report(dialogue: Dialogue, ticker: Ticker, *, as_json: bool) -> Exit:
+def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> ExitCode:
     """Give the slower values a moment to arrive, then print."""
-    dialogue.until(
+    dialogue.wait_until(
         lambda: dialogue.snapshot is not None and dialogue.snapshot.battery_pct is not None,
         SLOW_VALUES_WAIT_S,
     )
-    ticker.clear()
+    display.clear()
     return show(dialogue.snapshot, as_json=as_json)
 
 
-def show(seen: ipc.Snapshot | None, *, as_json: bool) -> Exit:
-    """Print it; NO_LINK where nothing was heard."""
+def show(seen: ipc.Snapshot | None, *, as_json: bool) -> ExitCode:
+    """Print it; NO_VEHICLE if nothing was heard."""
     if seen is None:
-        return Exit.NO_LINK
+        return ExitCode.NO_VEHICLE
     if as_json:
         click.echo(msgspec.json.encode(seen).decode())
-        return Exit.DONE
+        return ExitCode.DONE
 
     from rich import box
     from rich.console import Console
@@ -45,7 +46,7 @@ def show(seen: ipc.Snapshot | None, *, as_json: bool) -> Exit:
     for name, value in rows(seen):
         table.add_row(name, value)
     Console(highlight=False, markup=False).print(table)
-    return Exit.DONE
+    return ExitCode.DONE
 
 
 def rows(seen: ipc.Snapshot) -> list[tuple[str, str]]:
@@ -57,10 +58,10 @@ def rows(seen: ipc.Snapshot) -> list[tuple[str, str]]:
         ("state", f"{seen.state}, control {seen.control}"),
         ("severity", f"{seen.severity}{conditions}"),
         ("mode", f"{seen.mode or '-'}, {armed}, {seen.landed or '-'}"),
-        ("position", f"{say.enu(seen.pos_enu)} m, {_fixed(seen.position_age_s, 's', 2)} old"),
-        ("velocity", f"{say.enu(seen.v_enu)} m/s, {_speed(seen.v_enu)}"),
-        ("heading", "-" if seen.yaw_deg is None else f"{say.heading(seen.yaw_deg)} deg"),
-        ("home", f"{say.enu(seen.home_enu)} m"),
+        ("position", f"{signed_enu(seen.pos_enu)} m, {_fixed(seen.position_age_s, 's', 2)} old"),
+        ("velocity", f"{signed_enu(seen.v_enu)} m/s, {_speed(seen.v_enu)}"),
+        ("heading", "-" if seen.yaw_deg is None else f"{whole_degrees(seen.yaw_deg)} deg"),
+        ("home", f"{signed_enu(seen.home_enu)} m"),
         ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
         ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),

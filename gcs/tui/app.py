@@ -1,4 +1,4 @@
-"""`gcs fly`: the keyboard ground station.  A process of its own; the link never waits for it."""
+"""`gcs fly`: the keyboard screen.  A process of its own; the station never waits for it."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from textual.widget import Widget
 from textual.widgets import RichLog
 
 from gcs import ipc
-from gcs.cli import say
-from gcs.shell.client import Heard, LinkDown
+from gcs.operator import event_text
+from gcs.operator.client import StationEnded, StationEvent
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keys import ABORT, ACTIONS, KEYS
-from gcs.tui.result import Result
+from gcs.tui.result import SessionResult
 from gcs.tui.scene import Answer, Scene
 
 REDRAW_S = 0.1
@@ -33,12 +33,12 @@ SMALL_ROWS = 34
 LOG_LINES = 2000
 
 
-class Link(Protocol):
-    """What the station needs of a link; `LinkClient` is one."""
+class Connection(Protocol):
+    """What the screen needs of the way to a station; `StationClient` is one."""
 
     def send(self, command: ipc.Command) -> bool: ...
-    def listen(self, tell: Callable[[Heard], None]) -> None: ...
-    def close(self) -> LinkDown: ...
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None: ...
+    def close(self) -> StationEnded: ...
 
 
 class Panel(Widget):
@@ -67,9 +67,9 @@ class Panel(Widget):
 class FlyApp(App[None]):
     """Keys change a pending goal; Enter and the command keys send requests to the gate.
 
-    Events are heard in a thread and handled in the application's loop; the screen is drawn from
-    the latest snapshot at 10 Hz, whatever comes in.  Requests are written to the link in the key
-    handler itself, so that an abort waits for no drawing.
+    Events are read in a thread and handled in the application's loop; the screen is drawn from
+    the latest snapshot at 10 Hz, whatever comes in.  Requests are written to the station in the
+    key handler itself, so that an abort waits for no drawing.
     """
 
     CSS_PATH = "fly.tcss"
@@ -81,21 +81,22 @@ class FlyApp(App[None]):
         for name in key.names
     ]
 
-    def __init__(self, link: Link, heard: Sequence[ipc.Event] = ()) -> None:
-        """`heard`: what the link has said already."""
+    def __init__(self, connection: Connection, events: Sequence[ipc.Event] = ()) -> None:
+        """`events`: those that came already."""
         super().__init__()
-        self._link = link
-        self._heard = heard
+        self._connection = connection
+        self._first_events = events
         self.scene = Scene()
         self._next_id = 1
         self._leaving = False
-        self._down: LinkDown | None = None
+        self._ended: StationEnded | None = None
         self._trouble: ipc.Trouble | None = None
 
     @property
-    def result(self) -> Result:
-        """How it ended, once `run` has returned; sees the link process end."""
-        return Result(self._down or self._link.close(), self._leaving, self._trouble)
+    def result(self) -> SessionResult:
+        """How it ended, once `run` has returned; waits for the station process to end."""
+        ended = self._ended or self._connection.close()
+        return SessionResult(ended, self._leaving, self._trouble)
 
     # ------------------------------------------------------------------------- screen
 
@@ -121,9 +122,9 @@ class FlyApp(App[None]):
 
     def on_mount(self) -> None:
         loop = asyncio.get_running_loop()
-        for event in self._heard:
-            self._hear(event)
-        self._link.listen(lambda heard: _tell_loop(loop, self._hear, heard))
+        for event in self._first_events:
+            self._handle(event)
+        self._connection.listen(lambda event: _call_in_loop(loop, self._handle, event))
         self.set_interval(REDRAW_S, self.redraw)
         if not self.is_headless and sys.platform != "win32":
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -139,17 +140,17 @@ class FlyApp(App[None]):
 
     # -------------------------------------------------------------------------- events
 
-    def _hear(self, heard: Heard) -> None:
-        if isinstance(heard, LinkDown):
-            self._link_down(heard)
+    def _handle(self, event: StationEvent) -> None:
+        if isinstance(event, StationEnded):
+            self._handle_end(event)
             return
-        self.scene.hear(heard)
-        match heard:
+        self.scene.update(event)
+        match event:
             case ipc.LogEvent():
-                self._log_line(say.log_line(heard), look.LEVEL[heard.level], heard.time_ns)
+                self._log_line(event_text.log_line(event), look.LEVEL[event.level], event.time_ns)
             case ipc.Trouble():
-                self._trouble = heard
-                for line in say.trouble_lines(heard):
+                self._trouble = event
+                for line in event_text.trouble_lines(event):
                     self._log_line(line, look.BAD)
             case ipc.Snapshot():
                 hover_enu = self.scene.take_hover_point()
@@ -158,14 +159,14 @@ class FlyApp(App[None]):
             case _:
                 pass
 
-    def _link_down(self, down: LinkDown) -> None:
-        self._down = down
+    def _handle_end(self, ended: StationEnded) -> None:
+        self._ended = ended
         if self._leaving:
             self.exit()
             return
-        told = f"the link process has ended (exit code {down.exit_code}); q leaves"
-        self.scene.answer = Answer(told.upper(), "refused")
-        for line in [told, *down.stderr_tail.splitlines()]:
+        sentence = f"the link process has ended (exit code {ended.exit_code}); q leaves"
+        self.scene.answer = Answer(sentence.upper(), "refused")
+        for line in [sentence, *ended.stderr_tail.splitlines()]:
             self._log_line(line, look.BAD)
 
     def _log_line(self, text: str, style: str, time_ns: int | None = None) -> None:
@@ -198,7 +199,7 @@ class FlyApp(App[None]):
     def _set_pending(self, pending: PendingGoal) -> None:
         before, self.scene.pending = self.scene.pending, pending
         if (before.goal_enu, before.yaw_deg) != (pending.goal_enu, pending.yaw_deg):
-            self._link.send(ipc.Pending(pending.goal_enu, pending.yaw_deg))
+            self._connection.send(ipc.Pending(pending.goal_enu, pending.yaw_deg))
         self.redraw()
 
     def action_move(self, direction: str) -> None:
@@ -221,25 +222,25 @@ class FlyApp(App[None]):
 
     # --------------------------------------------------------------------- keys: send
 
-    def _ask(self, ask: ipc.Ask) -> None:
-        self.scene.asked(ask)
+    def _request(self, request: ipc.Ask) -> None:
+        self.scene.note_request(request)
         self._next_id += 1
-        if not self._link.send(ask):
-            self.scene.answer = Answer(f"{ask.word}: not sent, the link is down", "refused")
+        if not self._connection.send(request):
+            self.scene.answer = Answer(f"{request.word}: not sent, the link is down", "refused")
 
-    def action_ask(self, word: str) -> None:
-        self._ask(ipc.Ask(self._next_id, word))
+    def action_request(self, word: str) -> None:
+        self._request(ipc.Ask(self._next_id, word))
 
     def action_send(self) -> None:
         pending = self.scene.pending
         goal = ipc.Ask(self._next_id, "goto", goal_enu=pending.goal_enu, yaw_deg=pending.yaw_deg)
-        self._ask(goal)
+        self._request(goal)
 
     def action_take_off(self) -> None:
-        self._ask(ipc.Ask(self._next_id, "takeoff", up_m=self.scene.pending.take_off_up_m))
+        self._request(ipc.Ask(self._next_id, "takeoff", up_m=self.scene.pending.take_off_up_m))
 
     def action_switch_fence(self) -> None:
-        self._ask(ipc.Ask(self._next_id, "fence", on=not self.scene.fence_on))
+        self._request(ipc.Ask(self._next_id, "fence", on=not self.scene.fence_on))
 
     # ------------------------------------------------------------------- keys: station
 
@@ -258,19 +259,19 @@ class FlyApp(App[None]):
         self._leave("quit")
 
     def _leave(self, reason: str) -> None:
-        """Once: say good-bye, show it, and go when the link has gone or after a few seconds."""
-        if self._down is not None:
+        """Once: say good-bye, show it, and exit when the station has ended, or after 8 s."""
+        if self._ended is not None:
             self.exit()
         elif not self._leaving:
             self._leaving = True
-            self._link.send(ipc.Leave(reason))
+            self._connection.send(ipc.Leave(reason))
             self.query_one("#farewell").display = True
             self.set_timer(LEAVE_WAIT_S, self.exit)
 
 
-def _tell_loop(
-    loop: asyncio.AbstractEventLoop, hear: Callable[[Heard], None], heard: Heard
+def _call_in_loop(
+    loop: asyncio.AbstractEventLoop, handle: Callable[[StationEvent], None], event: StationEvent
 ) -> None:
-    """From the reader's thread; a loop that has closed has nobody left to tell."""
+    """From the reader's thread; once the loop has closed, nothing handles events any more."""
     if not loop.is_closed():
-        loop.call_soon_threadsafe(hear, heard)
+        loop.call_soon_threadsafe(handle, event)

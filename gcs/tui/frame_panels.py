@@ -75,7 +75,7 @@ def help_table() -> Table:
 
 
 def farewell(scene: Scene) -> Text:
-    """While the link holds the vehicle and closes the log."""
+    """While the station holds the vehicle and closes the log."""
     state = scene.snapshot.state if scene.snapshot else "-"
     return Text.assemble(
         ("Leaving.\n\n", "bold"),

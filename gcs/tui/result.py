@@ -1,4 +1,4 @@
-"""How a session at the keyboard ended, told on the terminal that it was started from."""
+"""How a session at the keyboard ended, printed on the terminal that it was started from."""
 
 from __future__ import annotations
 
@@ -6,46 +6,49 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from gcs import ipc
-from gcs.cli import say
-from gcs.cli.dialogue import Link, death, final_exit
-from gcs.shell.client import LinkDown
+from gcs.operator import event_text
+from gcs.operator.client import StationEnded
+from gcs.operator.dialogue import Connection, exit_code_of, unexpected_end
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
-    """`asked` is False where the link ended before the operator wanted to leave."""
+class SessionResult:
+    """`asked` is False if the station ended before the operator wanted to leave."""
 
-    down: LinkDown
+    ended: StationEnded
     asked: bool
     trouble: ipc.Trouble | None = None
 
 
-def until_hello(link: Link) -> list[ipc.Event]:
-    """What a link says until it is there.  Raises Fail, with its own words, where it cannot be.
+def until_hello(connection: Connection) -> list[ipc.Event]:
+    """The events of a station until it is ready.  Raises ExitError if it cannot start.
 
     Only then is the screen taken: a port in use is told where the command was typed.
     """
     events: list[ipc.Event] = []
     trouble: ipc.Trouble | None = None
     while not any(isinstance(event, ipc.Hello) for event in events):
-        for heard in link.poll(1.0).heard:
-            if isinstance(heard, LinkDown):
-                link.close()
-                raise death(heard, trouble)
-            if isinstance(heard, ipc.Trouble):
-                trouble = heard
-            events.append(heard)
+        for event in connection.poll(1.0).events:
+            if isinstance(event, StationEnded):
+                connection.close()
+                raise unexpected_end(event, trouble)
+            if isinstance(event, ipc.Trouble):
+                trouble = event
+            events.append(event)
     return events
 
 
-def tell(result: Result, echo: Callable[[str], None]) -> int:
-    """Print log path and outcome; gives the exit code.  Raises Fail where the link died."""
+def print_result(result: SessionResult, echo: Callable[[str], None]) -> int:
+    """Print how it ended and the log's path; returns the exit code.
+
+    Raises ExitError if the station ended although nobody asked it to.
+    """
     if not result.asked:
-        raise death(result.down, result.trouble)
-    bye = result.down.bye
+        raise unexpected_end(result.ended, result.trouble)
+    bye = result.ended.bye
     if bye is None:
-        echo(f"gcs: the link ended without a good-bye\n{result.down.stderr_tail}".rstrip())
+        echo(f"gcs: the link ended without a good-bye\n{result.ended.stderr_tail}".rstrip())
     else:
-        for line in say.farewell_lines(bye):
+        for line in event_text.bye_lines(bye):
             echo(line)
-    return final_exit(result.down)
+    return exit_code_of(result.ended)

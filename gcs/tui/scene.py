@@ -1,4 +1,4 @@
-"""What the screen shows: the latest of everything, and the little that is remembered."""
+"""What the screen shows: the latest of everything, and the little that is kept from before."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from gcs import ipc
-from gcs.cli import say, words
 from gcs.gate.states import State
+from gcs.operator import event_text, request_words
 from gcs.tui.keyboard import PendingGoal
 
 TRAIL_POINTS = 800
@@ -26,7 +26,7 @@ class Answer:
 
 @dataclass(slots=True)
 class Scene:
-    """Fed with the link's events; read by the panels ten times a second."""
+    """Updated with the station's events; read by the panels ten times a second."""
 
     pending: PendingGoal = field(default_factory=PendingGoal)
     snapshot: ipc.Snapshot | None = None
@@ -38,7 +38,7 @@ class Scene:
     progress: ipc.ProgressEvent | None = None
     zoom: int = 0
     fence_on: bool = True
-    _asks: dict[int, ipc.Ask] = field(default_factory=dict)
+    _requests: dict[int, ipc.Ask] = field(default_factory=dict)
     _before_take_off: PendingGoal | None = None
     _up: bool = False
 
@@ -55,15 +55,15 @@ class Scene:
         held = seen is None or seen.state in (State.HOLDING.name, State.NO_VEHICLE.name)
         return None if seen is None or held else seen.active_goal_enu
 
-    def asked(self, ask: ipc.Ask) -> None:
-        """Remember what was asked, for its answers."""
-        self._asks[ask.id] = ask
-        if ask.word == "takeoff":
+    def note_request(self, request: ipc.Ask) -> None:
+        """Keep it for its answers."""
+        self._requests[request.id] = request
+        if request.word == "takeoff":
             self._before_take_off, self._up = self.pending, False
 
     def label(self, event: ipc.VerdictEvent | ipc.EndingEvent) -> str:
-        ask = self._asks.get(event.id)
-        return event.word.replace("_", " ") if ask is None else words.label(ask)
+        request = self._requests.get(event.id)
+        return event.word.replace("_", " ") if request is None else request_words.label(request)
 
     def take_hover_point(self) -> ipc.Vec3 | None:
         """Once after a take-off: where it hovers, if the pending goal is as it was before.
@@ -77,7 +77,7 @@ class Scene:
         touched = self.pending.goal_enu != (self._before_take_off or self.pending).goal_enu
         return None if touched else seen.active_goal_enu or seen.pos_enu
 
-    def hear(self, event: ipc.Event) -> None:
+    def update(self, event: ipc.Event) -> None:
         match event:
             case ipc.Hello():
                 self.hello = event
@@ -90,26 +90,26 @@ class Scene:
             case ipc.StateEvent():
                 self.last_move = event
             case ipc.VerdictEvent():
-                self._answered(self.label(event), event.outcome, event.code, event.sentence)
+                self._show_answer(self.label(event), event.outcome, event.code, event.sentence)
             case ipc.EndingEvent():
                 self.progress = None
-                self._ended(event)
-                self._answered(self.label(event), event.ended, event.code, event.sentence)
+                self._note_outcome(event)
+                self._show_answer(self.label(event), event.ended, event.code, event.sentence)
             case ipc.ProgressEvent():
                 self.progress = event
             case ipc.LogEvent() | ipc.Trouble() | ipc.Bye():
                 pass
 
-    def _answered(self, label: str, kind: str, code: str, sentence: str) -> None:
-        self.answer = Answer(say.told(label, kind, code, sentence), kind)
+    def _show_answer(self, label: str, kind: str, code: str, sentence: str) -> None:
+        self.answer = Answer(event_text.answer_line(label, kind, code, sentence), kind)
 
-    def _ended(self, event: ipc.EndingEvent) -> None:
-        ask = self._asks.get(event.id)
-        if ask is None or event.ended != COMPLETE:
+    def _note_outcome(self, event: ipc.EndingEvent) -> None:
+        request = self._requests.get(event.id)
+        if request is None or event.ended != COMPLETE:
             return
-        if ask.word == "fence":
-            self.fence_on = ask.on
-        elif ask.word == "takeoff":
+        if request.word == "fence":
+            self.fence_on = request.on
+        elif request.word == "takeoff":
             self._up = True
 
     def _leave_trail(self, pos_enu: ipc.Vec3 | None) -> None:

@@ -8,7 +8,8 @@ import msgspec
 from rich.text import Text
 
 from gcs import ipc
-from gcs.cli import say
+from gcs.enu_text import signed_enu
+from gcs.operator.event_text import whole_degrees
 from gcs.tui import look
 from gcs.tui.scene import Scene
 
@@ -44,12 +45,12 @@ def rows(seen: ipc.Snapshot, *, lost: bool = False) -> list[tuple[str, str, str]
 def _rows(seen: ipc.Snapshot) -> list[tuple[str, str, str]]:
     armed = {None: "arm?", True: "ARMED", False: "disarmed"}[seen.armed]
     speed = "-" if seen.v_enu is None else f"{math.hypot(*seen.v_enu):.1f} m/s"
-    heading = "-" if seen.yaw_deg is None else f"{say.heading(seen.yaw_deg):03d}°"
+    heading = "-" if seen.yaw_deg is None else f"{whole_degrees(seen.yaw_deg):03d}°"
     position_age = _age(seen.position_age_s)
     return [
         ("mode", f"{seen.mode or '-'} {armed}", look.WARN if seen.armed else look.PLAIN),
         ("ctrl", f"{seen.control} {seen.severity}", look.SEVERITY.get(seen.severity, look.BAD)),
-        ("pos", say.enu(seen.pos_enu), look.VEHICLE),
+        ("pos", signed_enu(seen.pos_enu), look.VEHICLE),
         ("", f"{speed} {heading} age {position_age}", _if(seen.position_age_s, OLD_POSITION_S)),
         ("batt", _battery(seen), _battery_style(seen.battery_pct)),
         ("link", f"{seen.rx_hz:.0f} Hz, {seen.lost_pct:.1f} % lost", look.PLAIN),
@@ -67,11 +68,11 @@ def goals(scene: Scene) -> Text:
     pending, seen = scene.pending, scene.snapshot
     yaw = "" if pending.yaw_deg is None else f" {pending.yaw_deg:03.0f}°"
     line = Text(no_wrap=True, end="", overflow="ellipsis")
-    line.append(f"◇ pending {say.enu(pending.goal_enu)}{yaw}", look.PENDING)
+    line.append(f"◇ pending {signed_enu(pending.goal_enu)}{yaw}", look.PENDING)
     line.append(f" ±{pending.step_m:g} m", look.DIM)
     active = scene.active_enu
     line.append("  ◉ active ", look.ACTIVE)
-    line.append(say.enu(active) if active else "none", look.ACTIVE if active else look.DIM)
+    line.append(signed_enu(active) if active else "none", look.ACTIVE if active else look.DIM)
     if seen is not None and seen.mission_total:
         item = "-" if seen.mission_seq is None else str(seen.mission_seq)
         line.append(f"  mission {item}/{seen.mission_total}", look.DIM)

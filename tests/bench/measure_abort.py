@@ -1,4 +1,4 @@
-"""From an abort to its bytes on the wire: a key in a terminal, and a line into the link itself.
+"""From an abort to its bytes on the wire: a key in a terminal, and a line into the station itself.
 
 Run: python -m tests.bench.measure_abort
 
@@ -18,7 +18,7 @@ from pathlib import Path
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs import ipc
-from gcs.cli.dialogue import Asked
+from gcs.operator.dialogue import TrackedRequest
 from tests.system.programs import GCS
 from tests.system.station import tapped
 from tests.system.terminal import terminal
@@ -80,14 +80,14 @@ def by_line(folder: Path) -> list[float]:
     found = []
     with tapped(folder, tap=WireTap(watch.hear)) as (operator, _):
         operator.fly("arm", "takeoff 1.5")
-        asked: list[Asked] = []
+        requests: list[TrackedRequest] = []
 
         def abort() -> None:
-            asked.append(operator.dialogue.ask(ipc.Ask(0, "abort")))
+            requests.append(operator.dialogue.send(ipc.Ask(0, "abort")))
 
         for _ in range(ABORTS):
             found.append(watch.latency_ms(abort))
-            operator.see_completed(asked[-1])
+            operator.see_completed(requests[-1])
             operator.fly("resume")
         operator.leave()
     return found
@@ -106,7 +106,7 @@ def main() -> None:
         tell("key in a terminal", by_key(folder))
         print(f"load {os.getloadavg()[0]:.2f}")
     with tempfile.TemporaryDirectory() as folder:
-        tell("line into the link", by_line(Path(folder)))
+        tell("line into the station", by_line(Path(folder)))
         print(f"load {os.getloadavg()[0]:.2f}")
 
 

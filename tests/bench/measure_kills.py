@@ -10,7 +10,7 @@ import random
 import tempfile
 from pathlib import Path
 
-from tests.system.killed_link import Loss, kill_and_recover
+from tests.system.killed_station import Loss, kill_and_recover
 
 KILLS = 20
 

@@ -1,4 +1,4 @@
-"""An operator in the test's own process, who speaks with a real link process."""
+"""An operator in the test's own process, who speaks with a real station process."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from gcs import ipc
-from gcs.cli import typed, words
-from gcs.cli.dialogue import Asked, Dialogue
 from gcs.config import LinkConfig, SimConfig
-from gcs.shell.client import LinkClient, LinkDown
+from gcs.operator.client import StationClient, StationEnded
+from gcs.operator.dialogue import Dialogue, TrackedRequest
+from gcs.operator.line_parser import parse_line
+from gcs.operator.request_words import SendRequests
 from tests.system.vehicle_program import vehicle_sim
 from tests.system.wire_tap import WireTap
 
@@ -42,11 +43,11 @@ class Station:
 
     def __init__(self, config: LinkConfig) -> None:
         self.events: list[ipc.Event] = []
-        self.link = LinkClient.start(config)
+        self.client = StationClient.start(config)
         self.interrupts = NoInterrupts()
-        self.dialogue = Dialogue(self.link, self.interrupts, self._keep)
+        self.dialogue = Dialogue(self.client, self.interrupts, self._keep)
 
-    def _keep(self, event: ipc.Event, _asked: Asked | None) -> None:
+    def _keep(self, event: ipc.Event, _request: TrackedRequest | None) -> None:
         self.events.append(event)
 
     @property
@@ -56,52 +57,52 @@ class Station:
 
     @property
     def ports(self) -> list[int]:
-        """Where the link waits for datagrams, once it has said so."""
+        """Where the station waits for datagrams, once it has said so."""
         self.until(lambda: self.dialogue.hello is not None, "hello")
         assert self.dialogue.hello is not None
         told = " ".join(self.dialogue.hello.endpoints)
         return [int(port) for port in re.findall(r"on udp [\d.]+:(\d+)", told)]
 
     def until(self, condition: Callable[[], bool], what: str, timeout_s: float = WAIT_S) -> None:
-        self.dialogue.until(condition, timeout_s)
+        self.dialogue.wait_until(condition, timeout_s)
         assert condition(), f"not within {timeout_s:g} s: {what}\n{self.events[-10:]}"
 
     def connect(self) -> None:
-        self.dialogue.connect(WAIT_S)
+        self.dialogue.wait_for_vehicle(WAIT_S)
 
-    def ask(self, line: str) -> Asked:
+    def send(self, line: str) -> TrackedRequest:
         """Send it, wait for the verdict."""
-        parsed = typed.parse_line(line)
+        parsed = parse_line(line)
         assert parsed is not None
-        assert isinstance(parsed.action, words.Request)
-        asked = self.dialogue.ask(parsed.action.asks[0], line)
-        self.until(lambda: asked.verdict is not None, f"a verdict on {line}")
-        return asked
+        assert isinstance(parsed.action, SendRequests)
+        request = self.dialogue.send(parsed.action.requests[0], line)
+        self.until(lambda: request.verdict is not None, f"a verdict on {line}")
+        return request
 
     def fly(self, *lines: str) -> None:
         """Send each, and see it complete before the next."""
         for line in lines:
-            self.see_completed(self.ask(line))
+            self.see_completed(self.send(line))
 
-    def see_completed(self, asked: Asked) -> None:
-        self.until(lambda: asked.settled, f"the ending of {asked.label}", 2 * WAIT_S)
-        assert asked.completed, f"{asked.label}: {asked.verdict} {asked.ending}"
+    def see_completed(self, request: TrackedRequest) -> None:
+        self.until(lambda: request.settled, f"the outcome of {request.label}", 2 * WAIT_S)
+        assert request.completed, f"{request.label}: {request.verdict} {request.outcome}"
 
     def said(self, text: str) -> bool:
         """Whether a log line so far contains `text`."""
         return any(isinstance(event, ipc.LogEvent) and text in event.text for event in self.events)
 
-    def leave(self) -> LinkDown:
+    def leave(self) -> StationEnded:
         return self.dialogue.leave()
 
     def close(self) -> None:
-        self.link.close()
+        self.client.close()
         self.interrupts.close()
 
 
 @contextmanager
 def station(config: LinkConfig) -> Iterator[Station]:
-    """A station whose link process is gone at the end, whatever happens."""
+    """A station whose process is gone at the end, whatever happens."""
     made = Station(config)
     try:
         yield made

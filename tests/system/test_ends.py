@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.system.flight_log import assert_held, only_log
-from tests.system.killed_link import kill_and_recover
+from tests.system.killed_station import kill_and_recover
 from tests.system.programs import GCS, Running, all_gone, children, descendants, running
 from tests.system.vehicle_program import until
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.system
 
 
 @pytest.mark.parametrize("recorded_s", [1.0, 1.3, 1.7])
-def test_a_killed_link_loses_at_most_a_second_and_recover_makes_its_record_whole(
+def test_a_killed_station_loses_at_most_a_second_and_recover_makes_its_record_whole(
     recorded_s: float, tmp_path: Path
 ) -> None:
     loss = kill_and_recover(tmp_path, recorded_s)
@@ -29,12 +29,12 @@ def in_mid_flight(log_dir: Path) -> tuple[str, ...]:
 
 
 def take_off_and_go(program: Running) -> tuple[int, int]:
-    """Flies; the process ids of the link and of its vehicle."""
+    """Flies; the process ids of the station and of its vehicle."""
     program.type("arm", "takeoff 2", "goto 40 0 2")
     program.until_out("goto 40 0 2: accepted")
-    (link,) = children(program.pid)
-    (vehicle,) = children(link)
-    return link, vehicle
+    (station,) = children(program.pid)
+    (vehicle,) = children(station)
+    return station, vehicle
 
 
 @pytest.mark.parametrize(
@@ -42,7 +42,7 @@ def take_off_and_go(program: Running) -> tuple[int, int]:
     [(signal.SIGKILL, -9), (signal.SIGINT, 130), (signal.SIGTERM, 130), (signal.SIGHUP, 130)],
     ids=lambda value: getattr(value, "name", ""),
 )
-def test_when_the_operators_program_goes_the_link_holds_the_vehicle_and_closes_the_log(
+def test_when_the_operators_program_goes_the_station_holds_the_vehicle_and_closes_the_log(
     number: signal.Signals, exit_code: int, tmp_path: Path
 ) -> None:
     with running(*in_mid_flight(tmp_path)) as program:
@@ -52,28 +52,28 @@ def test_when_the_operators_program_goes_the_link_holds_the_vehicle_and_closes_t
         else:
             os.kill(program.pid, number)
         assert program.process.wait(10.0) == exit_code
-        until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
+        until(lambda: all_gone(family), "the end of station and vehicle", 10.0)
 
     assert_held(only_log(tmp_path))
 
 
-def test_a_link_that_is_told_to_go_holds_the_vehicle_and_closes_the_log(tmp_path: Path) -> None:
+def test_a_station_that_is_told_to_go_holds_the_vehicle_and_closes_the_log(tmp_path: Path) -> None:
     with running(*in_mid_flight(tmp_path)) as program:
         family = take_off_and_go(program)
         os.kill(family[0], signal.SIGTERM)
         program.process.wait(10.0)
-        until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
+        until(lambda: all_gone(family), "the end of station and vehicle", 10.0)
 
     assert_held(only_log(tmp_path))
     assert "Traceback" not in "".join(program.err)
 
 
-def test_a_vehicle_of_our_own_does_not_survive_a_killed_link(tmp_path: Path) -> None:
+def test_a_vehicle_of_our_own_does_not_survive_a_killed_station(tmp_path: Path) -> None:
     with running(*in_mid_flight(tmp_path)) as program:
-        link, vehicle = take_off_and_go(program)
-        os.kill(link, signal.SIGKILL)
+        station, vehicle = take_off_and_go(program)
+        os.kill(station, signal.SIGKILL)
         program.process.wait(10.0)
-        until(lambda: all_gone([link, vehicle]), "the end of the vehicle", 10.0)
+        until(lambda: all_gone([station, vehicle]), "the end of the vehicle", 10.0)
 
     assert program.process.returncode == 70
     assert any("the link process died" in line for line in program.err)
@@ -88,7 +88,7 @@ def test_an_end_of_input_in_mid_flight_leaves_in_good_order(tmp_path: Path) -> N
         assert program.process.stdin is not None
         program.process.stdin.close()
         assert program.process.wait(10.0) == 0
-        until(lambda: all_gone(family), "the end of link and vehicle", 10.0)
+        until(lambda: all_gone(family), "the end of station and vehicle", 10.0)
 
     assert_held(only_log(tmp_path))
     assert any("in AUTO.LOITER" in line for line in program.err)

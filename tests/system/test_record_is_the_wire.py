@@ -12,8 +12,8 @@ from rich.console import Console
 
 from gcs import ipc, resources
 from gcs.cli.demo import run_over
+from gcs.operator.client import StationClient
 from gcs.report import Direction
-from gcs.shell.client import LinkClient
 from tests.system.flight_log import Json, decoded, frames, readings, whole, wire
 from tests.system.station import tapped
 from tests.system.wire_tap import Crossing, WireTap
@@ -31,17 +31,17 @@ class Flight:
     tap: WireTap
 
 
-class SilencingLink:
-    """A link before whose end the wire falls silent, so that both sides saw the same of it."""
+class SilencingConnection:
+    """The wire falls silent before the station ends, so that both sides saw the same of it."""
 
-    def __init__(self, link: LinkClient, tap: WireTap) -> None:
-        self._link, self._tap = link, tap
-        self.poll, self.now_s, self.close = link.poll, link.now_s, link.close
+    def __init__(self, client: StationClient, tap: WireTap) -> None:
+        self._client, self._tap = client, tap
+        self.poll, self.now_s, self.close = client.poll, client.now_s, client.close
 
     def send(self, command: ipc.Command) -> bool:
         if isinstance(command, ipc.Leave):
             self._tap.silence_vehicle()
-        return self._link.send(command)
+        return self._client.send(command)
 
 
 @pytest.fixture(scope="module")
@@ -49,9 +49,9 @@ def flight(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Flight]:
     folder = tmp_path_factory.mktemp("logs")
     with tapped(folder, speedup=3.0) as (operator, tap):
         told = StringIO()
-        link = SilencingLink(operator.link, tap)
+        connection = SilencingConnection(operator.client, tap)
         mission = str(resources.find("demo.toml"))
-        exit_code = run_over(link, operator.interrupts, Console(file=told), mission, 10.0)
+        exit_code = run_over(connection, operator.interrupts, Console(file=told), mission, 10.0)
         tap.drained()
         yield Flight(operator.log_path, exit_code, told.getvalue(), tap)
 

@@ -52,7 +52,7 @@ def test_a_stopped_operators_program_leaves_the_setpoint_stream_alone(tmp_path: 
 @pytest.mark.skipif(not hasattr(fcntl, "F_SETPIPE_SZ"), reason="needs a pipe of chosen size")
 def test_a_pipe_that_is_full_costs_snapshots_and_nothing_else(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator:
-        process = operator.link._process
+        process = operator.client._process
         assert process.stdout is not None
         fcntl.fcntl(process.stdout, fcntl.F_SETPIPE_SZ, 4096)
         operator.fly("arm", "takeoff 1.5")

@@ -1,4 +1,4 @@
-"""The demo's script, flown on a fake link on a virtual clock."""
+"""The demo's script, flown on a fake station on a virtual clock."""
 
 from __future__ import annotations
 
@@ -10,29 +10,30 @@ from rich.console import Console
 
 from gcs import ipc
 from gcs.cli import demo, demo_script
-from gcs.cli.exits import Exit, Fail
-from gcs.cli.typed import parse_line
-from tests.unit.cli.fake_link import FakeClient, NoInterrupts
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
+from gcs.operator.line_parser import parse_line
+from tests.unit.operator.fake_station import FakeConnection, NoInterrupts
 
 
-def fly(client: FakeClient) -> tuple[int, str]:
+def fly(connection: FakeConnection) -> tuple[int, str]:
     out = io.StringIO()
     console = Console(file=out, width=100, highlight=False)
-    code = demo.run_over(client, NoInterrupts(), console, "missions/demo.toml", 10.0)
+    code = demo.run_over(connection, NoInterrupts(), console, "missions/demo.toml", 10.0)
     return code, out.getvalue()
 
 
 def test_the_script_comes_out_as_written_and_is_told_on_a_pipe() -> None:
-    client = FakeClient()
-    code, told = fly(client)
-    assert code == Exit.DONE
+    connection = FakeConnection()
+    code, told = fly(connection)
+    assert code == ExitCode.DONE
     assert "\x1b" not in told
     assert "goto 500 0 2: refused OUTSIDE_FENCE: 350 m outside" in told
     assert "goto 12 1 2: aborted OPERATOR" in told
     assert "✗" not in told
     assert "logs/x.mcap" in told
-    assert client.link.state == "GROUNDED"
-    assert isinstance(client.sent[-1], ipc.Leave)
+    assert connection.station.state == "GROUNDED"
+    assert isinstance(connection.sent[-1], ipc.Leave)
 
 
 def test_it_shows_all_that_it_must() -> None:
@@ -48,17 +49,19 @@ def test_it_shows_all_that_it_must() -> None:
 def test_a_flight_that_is_not_as_scripted_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     first = replace(demo_script.SCRIPT[0], expect="refused BUSY")
     monkeypatch.setattr(demo_script, "SCRIPT", (first, *demo_script.SCRIPT[1:]))
-    with pytest.raises(Fail, match="arm came to 'complete', expected 'refused BUSY'") as failed:
-        fly(FakeClient())
-    assert failed.value.exit_code == Exit.NOT_COMPLETED
+    with pytest.raises(
+        ExitError, match="arm came to 'complete', expected 'refused BUSY'"
+    ) as failed:
+        fly(FakeConnection())
+    assert failed.value.exit_code == ExitCode.NOT_COMPLETED
 
 
-def test_ctrl_c_in_the_demo_leaves_through_the_link() -> None:
+def test_ctrl_c_in_the_demo_leaves_through_the_station() -> None:
     interrupts = NoInterrupts()
     interrupts.name = "SIGINT"
-    client = FakeClient()
+    connection = FakeConnection()
     out = io.StringIO()
     console = Console(file=out)
-    assert demo.run_over(client, interrupts, console, "x", 10.0) == Exit.INTERRUPTED
+    assert demo.run_over(connection, interrupts, console, "x", 10.0) == ExitCode.INTERRUPTED
     assert out.getvalue().endswith("gcs: left\nlog: logs/x.mcap\n")
-    assert client.sent == [ipc.Leave("interrupted")]
+    assert connection.sent == [ipc.Leave("interrupted")]

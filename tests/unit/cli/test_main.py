@@ -9,9 +9,10 @@ import sys
 import click
 import pytest
 
-from gcs.cli import errand, main, oneshot
-from gcs.cli.exits import Exit, Fail
+from gcs.cli import main, oneshot, oneshot_session
 from gcs.config import LinkConfig
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
 
 HEAVY = ("rich", "numpy", "msgspec", "pymavlink", "textual", "asyncio", "subprocess", "gcs.cli.fly")
 
@@ -35,7 +36,7 @@ def test_help_imports_nothing_heavy() -> None:
 
 def test_mavutil_is_never_loaded_by_a_command_line() -> None:
     code = (
-        "import sys, gcs.cli.fly, gcs.cli.demo, gcs.cli.oneshot, gcs.cli.errand, gcs.tui.app\n"
+        "import sys, gcs.cli.fly, gcs.cli.demo, gcs.cli.oneshot_session, gcs.tui.app\n"
         "sys.exit('pymavlink.mavutil' in sys.modules)"
     )
     assert run_python(code).returncode == 0
@@ -48,7 +49,7 @@ OURS = ("demo", "fly", *main.COMMANDS["One command, then leave"])
 def test_every_command_has_help_with_an_example(
     name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main.run([name, "--help"]) == Exit.DONE
+    assert main.run([name, "--help"]) == ExitCode.DONE
     assert "Example" in capsys.readouterr().out
 
 
@@ -63,20 +64,20 @@ def test_a_command_without_arguments_shows_none(capsys: pytest.CaptureFixture[st
 def test_a_glance_at_the_vehicle_keeps_no_record(monkeypatch: pytest.MonkeyPatch) -> None:
     started: dict[str, LinkConfig] = {}
 
-    def run(config: LinkConfig, how: errand.ErrandConfig, _: errand.Errand) -> int:
-        started[how.what] = config
-        return Exit.DONE
+    def run(setup: LinkConfig, how: oneshot_session.OneShotConfig, _: oneshot_session.Task) -> int:
+        started[how.what] = setup
+        return ExitCode.DONE
 
-    monkeypatch.setattr(errand, "run", run)
+    monkeypatch.setattr(oneshot_session, "run", run)
     main.run(["status"])
     main.run(["land"])
-    assert {what: config.record for what, config in started.items()} == {
+    assert {what: setup.record for what, setup in started.items()} == {
         "status": False, "land": True,
     }  # fmt: skip
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main.run(["--version"]) == Exit.DONE
+    assert main.run(["--version"]) == ExitCode.DONE
     assert capsys.readouterr().out.startswith("gcs ")
 
 
@@ -102,7 +103,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
 def test_usage_errors_are_two_and_say_why(
     args: list[str], told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main.run(args) == Exit.USAGE
+    assert main.run(args) == ExitCode.USAGE
     assert told in capsys.readouterr().err
 
 
@@ -114,7 +115,7 @@ def test_a_keyboard_station_needs_a_terminal(capsys: pytest.CaptureFixture[str])
         text=True,
         check=False,
     )
-    assert result.returncode == Exit.USAGE
+    assert result.returncode == ExitCode.USAGE
     assert "use --plain on a pipe" in result.stderr
 
 
@@ -128,7 +129,7 @@ def test_output_that_cannot_be_written_is_told_and_is_no_bug() -> None:
             text=True,
             check=False,
         )
-    assert result.returncode == Exit.RECORDER
+    assert result.returncode == ExitCode.RECORDER
     assert result.stderr == "gcs: cannot write the output: No space left on device\n"
 
 
@@ -143,7 +144,7 @@ def test_a_reader_that_has_gone_ends_it_quietly() -> None:
             text=True,
             check=False,
         )
-    assert result.returncode == Exit.INTERRUPTED
+    assert result.returncode == ExitCode.INTERRUPTED
     assert result.stderr == ""
 
 
@@ -157,15 +158,23 @@ def _raising(error: BaseException) -> click.Command:
 @pytest.mark.parametrize(
     ("error", "code", "told"),
     [
-        (Fail(Exit.BAD_FILE, "a.plan: no", "try b"), Exit.BAD_FILE, "gcs: a.plan: no\n  hint: try"),
-        (KeyboardInterrupt(), Exit.INTERRUPTED, "interrupted"),
-        (RuntimeError("boom"), Exit.BUG, "gcs: internal error: RuntimeError: boom\n  details: "),
+        (
+            ExitError(ExitCode.BAD_FILE, "a.plan: no", "try b"),
+            ExitCode.BAD_FILE,
+            "gcs: a.plan: no\n  hint: try",
+        ),
+        (KeyboardInterrupt(), ExitCode.INTERRUPTED, "interrupted"),
+        (
+            RuntimeError("boom"),
+            ExitCode.BUG,
+            "gcs: internal error: RuntimeError: boom\n  details: ",
+        ),
     ],
     ids=["fail", "ctrl-c", "bug"],
 )
 def test_errors_become_sentences_and_exit_codes(
     error: BaseException,
-    code: Exit,
+    code: ExitCode,
     told: str,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],

@@ -1,4 +1,4 @@
-"""`--plain`: one word at a time, one line for each verdict and each ending."""
+"""`--plain`: one word at a time, one line for each verdict and each outcome."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ import os
 import pytest
 
 from gcs import ipc
-from gcs.cli.exits import Exit, Fail
 from gcs.cli.plain import Input, Plain, PlainConfig
-from tests.unit.cli.fake_link import FakeClient, FakeLink, NoInterrupts
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
+from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 
 
 class Session:
-    """One run of the console over a pipe and a fake link on a virtual clock."""
+    """One run of the console over a pipe and a fake station on a virtual clock."""
 
     def __init__(self, script: str, config: PlainConfig | None = None, scenario: str = "flight"):
-        self.client = FakeClient(FakeLink(scenario))
+        self.connection = FakeConnection(FakeStation(scenario))
         self.interrupts = NoInterrupts()
         self.out: list[str] = []
         self.err: list[str] = []
@@ -25,20 +26,20 @@ class Session:
         with os.fdopen(writer, "w") as file:
             file.write(script)
         plain = Plain(
-            self.client,
+            self.connection,
             self.interrupts,
             config or PlainConfig(),
             self.out.append,
             self.err.append,
         )
         try:
-            self.exit = plain.run(Input(reader, "<stdin>"))
+            self.exit_code = plain.run(Input(reader, "<stdin>"))
         finally:
             os.close(reader)
 
     @property
-    def asked(self) -> list[str]:
-        return [command.word for command in self.client.sent if isinstance(command, ipc.Ask)]
+    def sent_words(self) -> list[str]:
+        return [command.word for command in self.connection.sent if isinstance(command, ipc.Ask)]
 
 
 FLIGHT = "arm\ntakeoff 2\ngoto 3 0 2\ngoto 500 0 2\nland\n"
@@ -57,13 +58,13 @@ def test_a_flight_is_answered_line_by_line_and_ends_in_order() -> None:
         "land: accepted",
         "land: complete",
     ]
-    assert session.exit == Exit.DONE
+    assert session.exit_code == ExitCode.DONE
     assert session.err[-1] == "log: logs/x.mcap"
-    assert session.client.sent[-1] == ipc.Leave("quit")
-    assert session.client.closed
+    assert session.connection.sent[-1] == ipc.Leave("quit")
+    assert session.connection.closed
 
 
-def test_the_next_word_waits_for_the_ending_of_the_one_before() -> None:
+def test_the_next_word_waits_for_the_outcome_of_the_one_before() -> None:
     session = Session("arm\ntakeoff 2\nphoto\ngoto 1 0 2\n")
     assert "goto 1 0 2: complete" in session.out
 
@@ -80,8 +81,8 @@ def test_a_word_not_understood_is_told_with_its_line_and_passed_over() -> None:
         "<stdin>:4: goto: expected 3 numbers EAST NORTH UP [YAW_DEG], got 2\n"
         "  hint: for example: goto 3 0 2" in session.err
     )
-    assert session.asked == ["arm", "land"]
-    assert session.exit == Exit.USAGE
+    assert session.sent_words == ["arm", "land"]
+    assert session.exit_code == ExitCode.USAGE
 
 
 def test_a_last_line_without_a_newline_counts() -> None:
@@ -89,28 +90,32 @@ def test_a_last_line_without_a_newline_counts() -> None:
 
 
 def test_quit_ends_it_before_the_end_of_the_input() -> None:
-    assert Session("arm\nquit\nland\n").asked == ["arm"]
+    assert Session("arm\nquit\nland\n").sent_words == ["arm"]
 
 
 @pytest.mark.parametrize(
     ("script", "code"),
-    [("arm\n", Exit.DONE), ("takeoff 2\n", Exit.REFUSED_BY_GATE), (FLIGHT, Exit.REFUSED_BY_GATE)],
+    [
+        ("arm\n", ExitCode.DONE),
+        ("takeoff 2\n", ExitCode.REFUSED_BY_GATE),
+        (FLIGHT, ExitCode.REFUSED_BY_GATE),
+    ],
 )
-def test_strict_makes_a_refusal_an_exit_code(script: str, code: Exit) -> None:
-    assert Session(script).exit == Exit.DONE
-    assert Session(script, PlainConfig(strict=True)).exit == code
+def test_strict_makes_a_refusal_an_exit_code(script: str, code: ExitCode) -> None:
+    assert Session(script).exit_code == ExitCode.DONE
+    assert Session(script, PlainConfig(strict=True)).exit_code == code
 
 
 def test_strict_counts_what_was_left_undone() -> None:
     script = "arm\ntakeoff 2\ngoto 9 0 2 &\nwait 1\nabort\n"
     session = Session(script, PlainConfig(strict=True))
     assert "goto 9 0 2: aborted OPERATOR" in session.out
-    assert session.exit == Exit.NOT_COMPLETED
+    assert session.exit_code == ExitCode.NOT_COMPLETED
 
 
 def test_mission_fly_starts_only_what_was_uploaded() -> None:
     session = Session("arm\ntakeoff 2\nmission fly demo.toml\n")
-    assert session.asked[-2:] == ["mission_upload", "mission_start"]
+    assert session.sent_words[-2:] == ["mission_upload", "mission_start"]
     assert session.out[-1] == "mission start: complete"
 
 
@@ -153,22 +158,22 @@ def test_nothing_is_asked_before_it_is_known_whether_the_vehicle_stands_or_flies
 
 
 def test_without_a_vehicle_it_fails_and_asks_nothing() -> None:
-    with pytest.raises(Fail, match=r"no vehicle heard within 10 s \(.+\)") as failed:
+    with pytest.raises(ExitError, match=r"no vehicle heard within 10 s \(.+\)") as failed:
         Session("arm\n", scenario="silent")
-    assert failed.value.exit_code == Exit.NO_LINK
+    assert failed.value.exit_code == ExitCode.NO_VEHICLE
 
 
-def test_a_port_in_use_is_the_links_own_exit_code() -> None:
-    with pytest.raises(Fail, match="address in use") as failed:
+def test_a_port_in_use_is_the_stations_own_exit_code() -> None:
+    with pytest.raises(ExitError, match="address in use") as failed:
         Session("arm\n", scenario="port in use")
-    assert failed.value.exit_code == Exit.ADDRESS_IN_USE
+    assert failed.value.exit_code == ExitCode.ADDRESS_IN_USE
 
 
-def test_ctrl_c_leaves_through_the_link_and_exits_130() -> None:
+def test_ctrl_c_leaves_through_the_station_and_exits_130() -> None:
     class PressedInFlight(NoInterrupts):
         pass
 
-    client = FakeClient()
+    connection = FakeConnection()
     interrupts = PressedInFlight()
     told: list[str] = []
 
@@ -180,11 +185,11 @@ def test_ctrl_c_leaves_through_the_link_and_exits_130() -> None:
     reader, writer = os.pipe()
     os.write(writer, b"arm\ntakeoff 2\ngoto 9 0 2\n")
     try:
-        plain = Plain(client, interrupts, PlainConfig(), listen, told.append)
-        assert plain.run(Input(reader, "<stdin>")) == Exit.INTERRUPTED
+        plain = Plain(connection, interrupts, PlainConfig(), listen, told.append)
+        assert plain.run(Input(reader, "<stdin>")) == ExitCode.INTERRUPTED
     finally:
         os.close(reader)
         os.close(writer)
-    assert client.sent[-1] == ipc.Leave("SIGINT")
+    assert connection.sent[-1] == ipc.Leave("SIGINT")
     assert "goto 9 0 2: aborted OPERATOR" in told
-    assert client.link.state == "HOLDING"
+    assert connection.station.state == "HOLDING"

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from gcs.cli.exits import Exit
 from gcs.cli.main import run
+from gcs.exit_codes import ExitCode
 from tests.unit.plan.samples import LOCAL, box, plan_document, shared, simple, waypoint
 
 
@@ -28,7 +28,7 @@ def write(path: Path, document: dict[str, Any]) -> str:
 def test_a_good_mission_is_cleared_leg_by_leg(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["mission", "check", str(file)]) == Exit.DONE
+    assert run(["mission", "check", str(file)]) == ExitCode.DONE
 
     out = capsys.readouterr().out
     assert "clear    item 2 (NAV_WAYPOINT): leg to E +0.00 N +11.12 U +10.00" in out
@@ -42,7 +42,7 @@ def test_a_mission_outside_the_fence_is_refused_with_distance_and_zone(
     document["mission"]["items"][1]["params"][4] = 47.3997420
     write(file, document)
 
-    assert run(["mission", "check", str(file)]) == Exit.REFUSED_BY_GATE
+    assert run(["mission", "check", str(file)]) == ExitCode.REFUSED_BY_GATE
 
     out = capsys.readouterr().out
     assert "refused  item 2 (NAV_WAYPOINT)" in out
@@ -55,7 +55,7 @@ def test_the_fence_of_the_file_counts_too(file: Path, capsys: pytest.CaptureFixt
     document["geoFence"]["circles"] = [{"inclusion": False, "circle": circle, "version": 1}]
     write(file, document)
 
-    assert run(["mission", "check", str(file), "--json"]) == Exit.REFUSED_BY_GATE
+    assert run(["mission", "check", str(file), "--json"]) == ExitCode.REFUSED_BY_GATE
 
     legs = json.loads(capsys.readouterr().out)["legs"]
     refused = [(leg["item"], leg["code"]) for leg in legs if not leg["cleared"]]
@@ -65,14 +65,14 @@ def test_the_fence_of_the_file_counts_too(file: Path, capsys: pytest.CaptureFixt
 def test_home_moves_the_fence(file: Path) -> None:
     far = ["--home", "47.4010,8.5456,488"]
 
-    assert run(["mission", "check", str(file), *far]) == Exit.REFUSED_BY_GATE
+    assert run(["mission", "check", str(file), *far]) == ExitCode.REFUSED_BY_GATE
 
 
 def test_what_cannot_be_known_is_refused(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     terrain = simple(2, 16, 10, [0, 0, 0, None, 47.3978, 8.5456, 10])
     path = write(file, plan_document(waypoint(1, 47.397742, 8.545594, 10, 22), terrain))
 
-    assert run(["mission", "check", path]) == Exit.REFUSED_BY_GATE
+    assert run(["mission", "check", path]) == ExitCode.REFUSED_BY_GATE
     assert "heights above terrain" in capsys.readouterr().out
 
 
@@ -81,14 +81,14 @@ def test_an_own_failsafe_return_through_the_ceiling_is_warned_of(
 ) -> None:
     (tmp_path / "a.toml").write_text(LOCAL.partition("[[fence.exclude]]")[0])
 
-    assert run(["mission", "check", str(tmp_path / "a.toml")]) == Exit.DONE
+    assert run(["mission", "check", str(tmp_path / "a.toml")]) == ExitCode.DONE
     assert "failsafe return cannot be gated" in capsys.readouterr().out
 
 
 def test_an_error_of_lint_is_a_bad_file(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(file, plan_document(simple(1, 177, 2, [1, 1, 0, 0, 0, 0, 0])))
 
-    assert run(["mission", "check", path]) == Exit.BAD_FILE
+    assert run(["mission", "check", path]) == ExitCode.BAD_FILE
     assert "mission.items[0]: item 1 (DO_JUMP): jumps to itself" in capsys.readouterr().out
 
 
@@ -99,7 +99,7 @@ def test_a_file_that_cannot_be_read_says_where_and_hints(
     path = tmp_path / "a.toml"
     path.write_text(LOCAL.replace("hold_s", "holds_s"))
 
-    assert run(["mission", command, str(path)]) == Exit.BAD_FILE
+    assert run(["mission", command, str(path)]) == ExitCode.BAD_FILE
 
     error = capsys.readouterr().err
     assert f"{path}:10: waypoint[1].holds_s: " in error
@@ -109,15 +109,15 @@ def test_a_file_that_cannot_be_read_says_where_and_hints(
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        (["nowhere.plan"], Exit.BAD_FILE),
-        (["demo", "--policy", "nowhere.toml"], Exit.BAD_FILE),
-        (["demo", "--home", "1,2"], Exit.USAGE),
-        (["demo", "--home", "100,2,3"], Exit.USAGE),
-        (["demo", "--autopilot", "other"], Exit.USAGE),
-        (["."], Exit.BAD_FILE),
+        (["nowhere.plan"], ExitCode.BAD_FILE),
+        (["demo", "--policy", "nowhere.toml"], ExitCode.BAD_FILE),
+        (["demo", "--home", "1,2"], ExitCode.USAGE),
+        (["demo", "--home", "100,2,3"], ExitCode.USAGE),
+        (["demo", "--autopilot", "other"], ExitCode.USAGE),
+        (["."], ExitCode.BAD_FILE),
     ],
 )
-def test_wrong_arguments(arguments: list[str], code: Exit) -> None:
+def test_wrong_arguments(arguments: list[str], code: ExitCode) -> None:
     assert run(["mission", "check", *arguments]) == code
 
 
@@ -134,14 +134,14 @@ def test_a_policy_of_ones_own_with_a_fence_file(
 
     code = run(["mission", "check", mission, "--policy", str(policy)])
 
-    assert code == Exit.REFUSED_BY_GATE
+    assert code == ExitCode.REFUSED_BY_GATE
     assert "inclusion circle" in capsys.readouterr().out
 
 
 def test_show_prints_every_item_and_the_notes(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["mission", "show", str(file)]) == Exit.DONE
+    assert run(["mission", "show", str(file)]) == ExitCode.DONE
 
     out = capsys.readouterr().out
     for word in ("NAV_TAKEOFF", "NAV_LAND", "above", "planned home: 47.3977420, 8.5455940, 488 m"):
@@ -149,7 +149,7 @@ def test_show_prints_every_item_and_the_notes(
 
 
 def test_show_prints_json_without_nan(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["mission", "show", str(file), "--json"]) == Exit.DONE
+    assert run(["mission", "show", str(file), "--json"]) == ExitCode.DONE
 
     shown = json.loads(capsys.readouterr().out)
     assert shown["items"][1]["params"] == [0, 0, 0, None]
@@ -160,8 +160,8 @@ def test_a_real_mission_keeps_to_a_real_fence(capsys: pytest.CaptureFixture[str]
     box_file = shared("plans", "MC_mission_box.plan")
     avoid = shared("plans", "multicopter_mission_geofence_avoid.plan")
 
-    assert run(["mission", "check", str(box_file)]) == Exit.DONE
-    assert run(["mission", "check", str(avoid)]) == Exit.REFUSED_BY_GATE
+    assert run(["mission", "check", str(box_file)]) == ExitCode.DONE
+    assert run(["mission", "check", str(avoid)]) == ExitCode.REFUSED_BY_GATE
     assert "outside inclusion circle 'home'" in capsys.readouterr().out
 
 
@@ -176,7 +176,7 @@ def test_show_breaks_no_word_on_a_narrow_terminal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
-    assert run(["mission", "show", "survey"]) == Exit.DONE
+    assert run(["mission", "show", "survey"]) == ExitCode.DONE
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
     assert any("DO_SET_CAM_TRIGG_DIST" in line for line in lines)
@@ -188,5 +188,5 @@ def test_a_mission_without_items_says_so(
 ) -> None:
     empty = tmp_path / "empty.waypoints"
     empty.write_text("QGC WPL 110\n")
-    assert run(["mission", "show", str(empty)]) == Exit.DONE
+    assert run(["mission", "show", str(empty)]) == ExitCode.DONE
     assert "no items" in capsys.readouterr().out

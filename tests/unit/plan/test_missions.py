@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from gcs import resources
-from gcs.cli.exits import Exit
 from gcs.cli.mission import read_plan
 from gcs.cli.mission_check import check_plan
+from gcs.exit_codes import ExitCode
 from gcs.plan.errors import Level
 from gcs.plan.model import AutopilotName
 
@@ -49,13 +49,13 @@ def test_each_is_clean_and_cleared_by_the_fence(name: str, policy: str) -> None:
     assert [f for f in checked.findings if f.level is not Level.NOTE] == []
     assert checked.verification is not None
     assert checked.verification.refusal is None
-    assert checked.exit_code is Exit.DONE
+    assert checked.exit_code is ExitCode.DONE
 
 
 @pytest.mark.parametrize("who", ["px4", "ardupilot"])
 @pytest.mark.parametrize("name", [name for name in EVERY if name.endswith(".toml")])
 def test_missions_in_metres_are_for_either_autopilot(name: str, who: AutopilotName) -> None:
-    assert check_plan(read_plan(name, None), who, "default", None).exit_code is Exit.DONE
+    assert check_plan(read_plan(name, None), who, "default", None).exit_code is ExitCode.DONE
 
 
 def test_a_mission_is_found_by_its_short_name_from_any_folder(

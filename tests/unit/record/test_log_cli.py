@@ -8,17 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 from mcap.reader import make_reader
 
-from gcs.cli.log import log
 from gcs.record.layout import ANY_FLIGHT, layout
 from gcs.record.writer import Recorder
+from tests.unit.cli.command_line import Ended, gcs
 from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
 
 
-def gcs_log(*args: str | Path) -> Result:
-    return CliRunner().invoke(log, [str(arg) for arg in args])
+def gcs_log(*args: str | Path) -> Ended:
+    return gcs("log", *args)
 
 
 @pytest.fixture

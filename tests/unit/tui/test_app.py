@@ -1,4 +1,4 @@
-"""The keyboard station, driven by real key presses against a fake link."""
+"""The keyboard station, driven by real key presses against a fake station."""
 
 from __future__ import annotations
 
@@ -10,26 +10,27 @@ import pytest
 from textual.pilot import Pilot
 
 from gcs import ipc
-from gcs.cli.exits import Exit, Fail
-from gcs.shell.client import LinkDown
+from gcs.exit_codes import ExitCode
+from gcs.operator.client import StationEnded
+from gcs.operator.errors import ExitError
 from gcs.tui.app import FlyApp
-from gcs.tui.result import tell, until_hello
-from tests.unit.cli.fake_link import FakeClient, FakeLink
-from tests.unit.tui.fake_station import StationLink
+from gcs.tui.result import print_result, until_hello
+from tests.unit.operator.fake_station import FakeConnection, FakeStation
+from tests.unit.tui.listening_station import ListeningStation
 
-Script = Callable[[FlyApp, StationLink, Pilot[None]], Awaitable[None]]
+Script = Callable[[FlyApp, ListeningStation, Pilot[None]], Awaitable[None]]
 
 
-def flown(script: Script, size: tuple[int, int] = (120, 40)) -> tuple[FlyApp, StationLink]:
+def flown(script: Script, size: tuple[int, int] = (120, 40)) -> tuple[FlyApp, ListeningStation]:
     """Run the station headless through `script`."""
 
-    async def run() -> tuple[FlyApp, StationLink]:
-        link = StationLink()
-        app = FlyApp(link)
+    async def run() -> tuple[FlyApp, ListeningStation]:
+        station = ListeningStation()
+        app = FlyApp(station)
         async with app.run_test(size=size) as pilot:
             await pilot.pause()
-            await script(app, link, pilot)
-        return app, link
+            await script(app, station, pilot)
+        return app, station
 
     return asyncio.run(run())
 
@@ -46,20 +47,20 @@ def screen_text(app: FlyApp) -> str:
 
 
 def test_moving_keys_send_no_request_and_one_keyboard_record_a_change() -> None:
-    async def script(_app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("right", "up", "d", "w", "pageup", "r", "left", "s", "f", "]", "\\", "x")
-        assert link.asks() == []
-        assert all(isinstance(command, ipc.Pending) for command in link.sent)
+        assert station.requests() == []
+        assert all(isinstance(command, ipc.Pending) for command in station.sent)
         # Twelve keys, of which the step changes no goal.
-        assert len(link.sent) == 11
+        assert len(station.sent) == 11
 
     flown(script)
 
 
 def test_enter_sends_the_pending_goal_once_and_keeps_it() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("right", "enter")
-        goals = [command for command in link.sent if isinstance(command, ipc.Ask)]
+        goals = [command for command in station.sent if isinstance(command, ipc.Ask)]
         assert [goal.word for goal in goals] == ["goto"]
         assert goals[0].goal_enu == (1.0, 0.0, 0.5)
         assert goals[0].yaw_deg is None
@@ -69,9 +70,9 @@ def test_enter_sends_the_pending_goal_once_and_keeps_it() -> None:
 
 
 def test_every_command_key_asks_for_its_word() -> None:
-    async def script(_app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("c", "m", "t", "l", "b", "h", "e", "p", "i", "k", "M")
-        assert link.asks() == [
+        assert station.requests() == [
             "control", "arm", "takeoff", "land", "rtl", "hold", "resume", "photo",
             "mission_start", "fence", "disarm",
         ]  # fmt: skip
@@ -81,9 +82,9 @@ def test_every_command_key_asks_for_its_word() -> None:
 
 @pytest.mark.parametrize("key", ["space", "escape"])
 def test_abort_is_one_key_and_is_on_its_way_before_anything_is_drawn(key: str) -> None:
-    async def script(_app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press(key)
-        assert link.asks() == ["abort"]
+        assert station.requests() == ["abort"]
 
     flown(script)
 
@@ -92,51 +93,51 @@ def test_abort_is_one_key_and_is_on_its_way_before_anything_is_drawn(key: str) -
     "key", ["escape", "question_mark", "enter", "m", "right", "q", "ctrl+c", "y", "tab"]
 )
 def test_under_the_help_page_any_key_closes_it_and_does_nothing_else(key: str) -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
         assert app.query_one("#help").display
         await pilot.press(key)
         assert not app.query_one("#help").display
-        assert link.sent == []
+        assert station.sent == []
         await pilot.press("m")
-        assert link.asks() == ["arm"]
+        assert station.requests() == ["arm"]
 
     flown(script)
 
 
 def test_under_the_help_page_space_aborts_and_closes_it() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark", "space")
-        assert link.asks() == ["abort"]
+        assert station.requests() == ["abort"]
         assert not app.query_one("#help").display
 
     flown(script)
 
 
 def test_a_fence_that_is_off_is_on_the_screen_until_it_is_on_again() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("k")
         await drawn(app, pilot)
         assert "FENCE OFF" in screen_text(app)
         await pilot.press("k")
         await drawn(app, pilot)
         assert "FENCE OFF" not in screen_text(app)
-        asks = [sent for sent in link.sent if isinstance(sent, ipc.Ask)]
-        assert [ask.on for ask in asks] == [False, True]
+        requests = [sent for sent in station.sent if isinstance(sent, ipc.Ask)]
+        assert [request.on for request in requests] == [False, True]
 
     flown(script)
 
 
 def test_after_a_take_off_the_pending_goal_is_where_it_hovers() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
-        link.link.pos = (0.04, -0.03, 0.0)
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.pos = (0.04, -0.03, 0.0)
         await pilot.press("m", "t")
-        link.fly(1.5)
+        station.fly(1.5)
         await pilot.pause()
         assert app.scene.pending.goal_enu == (0.0, 0.0, 1.5)
-        assert link.sent[-1] == ipc.Pending((0.0, 0.0, 1.5))
+        assert station.sent[-1] == ipc.Pending((0.0, 0.0, 1.5))
         await pilot.press("right")
-        link.fly(1.0)
+        station.fly(1.0)
         await pilot.pause()
         assert app.scene.pending.goal_enu == (1.0, 0.0, 1.5)
 
@@ -144,9 +145,9 @@ def test_after_a_take_off_the_pending_goal_is_where_it_hovers() -> None:
 
 
 def test_a_goal_chosen_during_the_take_off_stays() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("m", "t", "right")
-        link.fly(2.0)
+        station.fly(2.0)
         await pilot.pause()
         assert app.scene.pending.goal_enu == (1.0, 0.0, 0.5)
 
@@ -154,11 +155,11 @@ def test_a_goal_chosen_during_the_take_off_stays() -> None:
 
 
 def test_a_vehicle_that_is_lost_is_seen_to_be_lost() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         lost = msgspec.structs.replace(
-            link.link.snapshot(), state="NO_VEHICLE", heartbeat_age_s=12.3
+            station.station.snapshot(), state="NO_VEHICLE", heartbeat_age_s=12.3
         )
-        link.say(lost)
+        station.say(lost)
         await drawn(app, pilot)
         shown = screen_text(app)
         assert "LINK LOST 12 s" in shown
@@ -169,9 +170,9 @@ def test_a_vehicle_that_is_lost_is_seen_to_be_lost() -> None:
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
 def test_a_long_log_line_is_wrapped_with_its_last_word_in_sight(size: tuple[int, int]) -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         for number in range(20):
-            link.say(ipc.LogEvent(0, 2, "gate", f"{number} " + "abcdefghi " * 12 + "THE-END"))
+            station.say(ipc.LogEvent(0, 2, "gate", f"{number} " + "abcdefghi " * 12 + "THE-END"))
         await drawn(app, pilot)
         log = screen_text(app).splitlines()[:-2]
         assert "THE-END" in log[-1]
@@ -183,8 +184,8 @@ def test_a_long_log_line_is_wrapped_with_its_last_word_in_sight(size: tuple[int,
 
 
 def test_a_sentence_too_long_for_the_line_ends_in_an_ellipsis() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
-        link.say(ipc.VerdictEvent(1, "goto", "refused", "OUTSIDE_FENCE", "far away " * 20))
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.say(ipc.VerdictEvent(1, "goto", "refused", "OUTSIDE_FENCE", "far away " * 20))
         await drawn(app, pilot)
         (line,) = [row for row in screen_text(app).splitlines() if "OUTSIDE_FENCE" in row]
         assert line.rstrip().endswith("…")
@@ -193,12 +194,12 @@ def test_a_sentence_too_long_for_the_line_ends_in_an_ellipsis() -> None:
 
 
 def test_a_flight_is_seen_with_pending_and_active_goal_apart() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("m", "t")
-        link.fly(1.0)
+        station.fly(1.0)
         await pilot.pause()
         await pilot.press("right", "right", "right", "enter", "up")
-        link.fly(0.5)
+        station.fly(0.5)
         await drawn(app, pilot)
         shown = screen_text(app)
         assert "pending E +3.00 N +1.00 U +1.50" in shown
@@ -210,7 +211,7 @@ def test_a_flight_is_seen_with_pending_and_active_goal_apart() -> None:
 
 
 def test_a_refusal_is_shown_with_its_reason() -> None:
-    async def script(app: FlyApp, _link: StationLink, pilot: Pilot[None]) -> None:
+    async def script(app: FlyApp, _station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("t")
         await drawn(app, pilot)
         assert "takeoff 1.5: refused NOT_ARMED: the vehicle is not armed" in screen_text(app)
@@ -219,9 +220,9 @@ def test_a_refusal_is_shown_with_its_reason() -> None:
 
 
 def test_everything_that_matters_fits_a_small_terminal() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
-        link.link.pos = (1.0, 1.0, 0.0)
-        link.fly(0.2)
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.pos = (1.0, 1.0, 0.0)
+        station.fly(0.2)
         await pilot.press("right")
         await drawn(app, pilot)
         shown = screen_text(app)
@@ -232,9 +233,9 @@ def test_everything_that_matters_fits_a_small_terminal() -> None:
 
 
 def test_v_puts_the_pending_goal_where_the_vehicle_is() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
-        link.link.pos = (4.04, -2.0, 3.0)
-        link.fly(0.1)
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.pos = (4.04, -2.0, 3.0)
+        station.fly(0.1)
         await pilot.press("v")
         assert app.scene.pending.goal_enu == (4.0, -2.0, 3.0)
 
@@ -242,52 +243,52 @@ def test_v_puts_the_pending_goal_where_the_vehicle_is() -> None:
 
 
 @pytest.mark.parametrize("key", ["q", "ctrl+c"])
-def test_leaving_says_so_waits_for_the_link_and_gives_its_result(key: str) -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
+def test_leaving_says_so_waits_for_the_station_and_gives_its_result(key: str) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press(key)
-        assert isinstance(link.sent[-1], ipc.Leave)
+        assert isinstance(station.sent[-1], ipc.Leave)
         assert "Waiting until the vehicle is seen holding" in screen_text(app)
         await pilot.press(key)
-        assert sum(isinstance(command, ipc.Leave) for command in link.sent) == 1
-        link.say(LinkDown(ipc.Bye(0, "logs/x.mcap", "held"), 0, ""))
+        assert sum(isinstance(command, ipc.Leave) for command in station.sent) == 1
+        station.say(StationEnded(ipc.Bye(0, "logs/x.mcap", "held"), 0, ""))
         await pilot.pause()
         assert not app.is_running
 
     app, _ = flown(script)
     told: list[str] = []
-    assert tell(app.result, told.append) == Exit.DONE
+    assert print_result(app.result, told.append) == ExitCode.DONE
     assert told == ["gcs: held", "log: logs/x.mcap"]
 
 
-def test_a_link_that_dies_is_told_and_is_an_error() -> None:
-    async def script(app: FlyApp, link: StationLink, pilot: Pilot[None]) -> None:
-        link.say(LinkDown(None, -9, "last words"))
+def test_a_station_that_dies_is_shown_and_is_an_error() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.say(StationEnded(None, -9, "last words"))
         await drawn(app, pilot)
         assert "THE LINK PROCESS HAS ENDED (EXIT CODE -9)" in screen_text(app)
         assert "last words" in screen_text(app)
         await pilot.press("q")
 
-    app, link = flown(script)
-    assert not any(isinstance(command, ipc.Leave) for command in link.sent)
-    with pytest.raises(Fail, match="died") as failed:
-        tell(app.result, lambda _: None)
-    assert failed.value.exit_code == Exit.BUG
+    app, station = flown(script)
+    assert not any(isinstance(command, ipc.Leave) for command in station.sent)
+    with pytest.raises(ExitError, match="died") as failed:
+        print_result(app.result, lambda _: None)
+    assert failed.value.exit_code == ExitCode.BUG
 
 
 def test_a_port_in_use_is_told_before_the_screen_is_taken() -> None:
-    client = FakeClient(FakeLink("port in use"))
-    with pytest.raises(Fail, match="address in use") as failed:
+    client = FakeConnection(FakeStation("port in use"))
+    with pytest.raises(ExitError, match="address in use") as failed:
         until_hello(client)
-    assert failed.value.exit_code == Exit.ADDRESS_IN_USE
+    assert failed.value.exit_code == ExitCode.ADDRESS_IN_USE
     assert client.closed
 
 
-def test_what_the_link_said_before_the_screen_is_on_it() -> None:
-    events = until_hello(FakeClient())
+def test_what_the_station_said_before_the_screen_is_on_it() -> None:
+    events = until_hello(FakeConnection())
     assert isinstance(events[0], ipc.Hello)
 
     async def run() -> FlyApp:
-        app = FlyApp(StationLink(FakeLink("silent")), events)
+        app = FlyApp(ListeningStation(FakeStation("silent")), events)
         async with app.run_test() as pilot:
             await pilot.pause()
         return app

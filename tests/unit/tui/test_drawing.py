@@ -18,7 +18,7 @@ from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keys import KEYS
 from gcs.tui.scene import Scene
 from gcs.tui.view import HALF_SPANS_M, fit, nice_length, outline
-from tests.unit.cli.fake_link import FakeLink
+from tests.unit.operator.fake_station import FakeStation
 
 metres = st.floats(-1e4, 1e4)
 points = st.tuples(metres, metres)
@@ -26,12 +26,12 @@ points = st.tuples(metres, metres)
 
 def scene_at(pos_enu: ipc.Vec3, goal_enu: ipc.Vec3 | None = None) -> Scene:
     scene = Scene()
-    link = FakeLink()
-    for event in link.hello():
-        scene.hear(event)
-    link.pos = pos_enu
-    link.target = goal_enu
-    scene.hear(link.snapshot())
+    station = FakeStation()
+    for event in station.hello():
+        scene.update(event)
+    station.pos = pos_enu
+    station.target = goal_enu
+    scene.update(station.snapshot())
     return scene
 
 
@@ -162,7 +162,7 @@ def small_fence(across_m: float) -> Scene:
     scene = scene_at((0.0, 0.0, 0.0))
     half = across_m / 2
     corners = [(-half, -half), (half, -half), (half, half), (-half, half)]
-    scene.hear(ipc.Fences([ipc.FenceShape("cage", True, corners_en=corners)]))
+    scene.update(ipc.Fences([ipc.FenceShape("cage", True, corners_en=corners)]))
     return scene
 
 
@@ -189,13 +189,13 @@ def test_a_vehicle_that_holds_by_itself_has_no_active_goal() -> None:
     scene = scene_at((1.0, 0.0, 2.0), goal_enu=(3.0, 0.0, 2.0))
     assert scene.active_enu == (3.0, 0.0, 2.0)
     assert scene.snapshot is not None
-    scene.hear(msgspec.structs.replace(scene.snapshot, state="HOLDING"))
+    scene.update(msgspec.structs.replace(scene.snapshot, state="HOLDING"))
     assert "active none" in vehicle_panel.goals(scene).plain
 
 
 def test_of_a_lost_vehicle_only_the_ages_are_bright() -> None:
     seen = msgspec.structs.replace(
-        FakeLink().snapshot(), state="NO_VEHICLE", heartbeat_age_s=9.0, position_age_s=9.0
+        FakeStation().snapshot(), state="NO_VEHICLE", heartbeat_age_s=9.0, position_age_s=9.0
     )
     bright = [value for _, value, style in vehicle_panel.rows(seen, lost=True) if style != look.DIM]
     assert len(bright) == 2
@@ -213,13 +213,13 @@ def test_the_log_name_gives_way_to_what_is_wrong(columns: int, named: bool) -> N
 
 
 def test_a_heading_never_reads_360() -> None:
-    seen = msgspec.structs.replace(FakeLink().snapshot(), yaw_deg=359.9)
+    seen = msgspec.structs.replace(FakeStation().snapshot(), yaw_deg=359.9)
     assert any("000°" in value for _, value, _ in vehicle_panel.rows(seen))
 
 
 def test_unknown_values_are_dashes_not_zeros() -> None:
     scene = Scene()
-    scene.hear(FakeLink("silent").snapshot())
+    scene.update(FakeStation("silent").snapshot())
     assert "no vehicle heard yet" in vehicle_panel.draw(scene).plain
     scene = scene_at((0.0, 0.0, 0.0))
     assert "active none" in vehicle_panel.goals(scene).plain

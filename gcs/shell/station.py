@@ -1,8 +1,8 @@
-"""The link process: `python -m gcs.shell.link '<LinkConfig as JSON>'`.
+"""The station process: `python -m gcs.shell.station '<LinkConfig as JSON>'`.
 
 Opens what the configuration names, runs the one loop, closes in order: first the vehicle is seen
-safe (the session's affair), then the log, then a vehicle of our own.  Speaks JSON lines with its
-operator (`gcs.ipc`) and writes nothing else to standard output.
+safe (the session sees to that), then the log is closed, then a vehicle of our own is stopped.
+Speaks JSON lines with its operator (`gcs.ipc`) and writes nothing else to standard output.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pathlib import Path
 
 from gcs import __version__, config, ipc
 from gcs.config import LinkConfig
+from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import Policy, PolicyError, parse_policy
 from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
 from gcs.plan.errors import PlanError
@@ -33,15 +34,10 @@ from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 
-EXIT_USAGE = 2
-EXIT_BAD_FILE = 4
-EXIT_RECORDER = 7
-EXIT_ADDRESS = 9
-
 
 @dataclass(frozen=True, slots=True)
 class CannotStartError(Exception):
-    """What keeps the link from starting, in the operator's words."""
+    """What keeps the station from starting, as the operator is told it."""
 
     exit_code: int
     text: str
@@ -87,7 +83,7 @@ def _run(setup: LinkConfig, screen: LineSink, signals: SignalSource) -> int:
         operator = LineSource(sys.stdin.fileno())
         finish = Loop(session, clock, links, operator, screen, recording, signals, sim).run()
         whole = recording.close(clock.now_ns())
-    exit_code = finish.exit_code or (0 if whole else EXIT_RECORDER)
+    exit_code = finish.exit_code or (0 if whole else ExitCode.RECORDER)
     screen.put(ipc.encode(ipc.Bye(exit_code, recording.path, finish.sentence)))
     return exit_code
 
@@ -101,10 +97,10 @@ def _read_policy(path: str) -> tuple[Policy, str]:
         zones = [zone for spec in policy.fence for zone in _zones(spec, file.parent)]
         return dataclasses.replace(policy, fence=tuple(zones)), text
     except (PolicyError, PlanError) as error:
-        raise CannotStartError(EXIT_BAD_FILE, str(error), error.hint) from error
+        raise CannotStartError(ExitCode.BAD_FILE, str(error), error.hint) from error
     except (OSError, UnicodeDecodeError) as error:
         hint = "--policy takes `default`, `lab` or the path of a TOML file"
-        raise CannotStartError(EXIT_BAD_FILE, f"{path}: {error}", hint) from error
+        raise CannotStartError(ExitCode.BAD_FILE, f"{path}: {error}", hint) from error
 
 
 def _zones(spec: ZoneSpec, folder: Path) -> tuple[ZoneSpec, ...]:
@@ -122,13 +118,15 @@ def _open_links(setup: LinkConfig, opened: ExitStack) -> list[sockets.Link]:
         try:
             link = sockets.open_link(parse_endpoint(url))
         except EndpointError as error:
-            raise CannotStartError(EXIT_USAGE, str(error), error.hint) from error
+            raise CannotStartError(ExitCode.USAGE, str(error), error.hint) from error
         except sockets.AddressInUse as error:
             hint = "another ground station may be running; choose another port with --link"
-            raise CannotStartError(EXIT_ADDRESS, str(error), hint) from error
+            raise CannotStartError(ExitCode.ADDRESS_IN_USE, str(error), hint) from error
         except OSError as error:
             hint = "is the address one of this machine's?"
-            raise CannotStartError(EXIT_USAGE, f"{url}: {error.strerror or error}", hint) from error
+            raise CannotStartError(
+                ExitCode.USAGE, f"{url}: {error.strerror or error}", hint
+            ) from error
         opened.callback(link.close)
         links.append(link)
     return links
@@ -141,7 +139,7 @@ def _open_recording(setup: LinkConfig, clock: Clock) -> Recording:
         recorder = Recorder.open(Path(setup.log_dir), setup.name, clock.stamp(), clock.now_ns())
     except RecorderError as error:
         hint = "choose a folder that can be written with --log-dir"
-        raise CannotStartError(EXIT_RECORDER, str(error), hint) from error
+        raise CannotStartError(ExitCode.RECORDER, str(error), hint) from error
     return Recording(recorder)
 
 

@@ -1,7 +1,7 @@
-"""A small scripted link that speaks `gcs.ipc`: a point that flies, and a gate of four rules.
+"""A small scripted station that speaks `gcs.ipc`: a point that flies, and a gate of four rules.
 
-`FakeLink` is pure and runs on the time it is given.  `FakeClient` puts it in place of a
-`LinkClient` on a virtual clock.  Run as a program it takes the place of `gcs.shell.link`:
+`FakeStation` is pure and runs on the time it is given.  `FakeConnection` puts it in place of a
+`StationClient` on a virtual clock.  Run as a program it takes the place of `gcs.shell.station`:
 the `name` in its configuration chooses the scenario (see `SCENARIOS`).
 """
 
@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from gcs import config, ipc
-from gcs.shell.client import Heard, LinkDown, Polled, Readable
+from gcs.operator.client import Polled, Readable, StationEnded, StationEvent
 
 TICK_S = 0.1
 SPEED_M_S = 2.0
@@ -29,7 +29,7 @@ SCENARIOS = ("flight", "airborne", "silent", "late landed", "port in use", "cras
 
 
 @dataclass
-class FakeLink:
+class FakeStation:
     """States carry the gate's names; every accepted request ends exactly once."""
 
     scenario: str = "flight"
@@ -223,16 +223,16 @@ class FakeLink:
         )
 
 
-class FakeClient:
-    """In place of a `LinkClient`: each poll advances a virtual clock to the next tick."""
+class FakeConnection:
+    """In place of a `StationClient`: each poll advances a virtual clock to the next tick."""
 
-    def __init__(self, link: FakeLink | None = None) -> None:
-        self.link = link or FakeLink()
+    def __init__(self, station: FakeStation | None = None) -> None:
+        self.station = station or FakeStation()
         self.sent: list[ipc.Command] = []
         self.asked_at_s: list[float] = []
         self.time_s = 0.0
         self.closed = False
-        self._heard: list[Heard] = list(self.link.hello())
+        self._events: list[StationEvent] = list(self.station.hello())
 
     def now_s(self) -> float:
         return self.time_s
@@ -242,24 +242,27 @@ class FakeClient:
         self.sent.append(wire)
         if isinstance(wire, ipc.Ask):
             self.asked_at_s.append(self.time_s)
-        self._heard.extend(self.link.handle(wire, self.time_s))
-        return not self.link.done
+        self._events.extend(self.station.handle(wire, self.time_s))
+        return not self.station.done
 
     def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
         files = [source for source in also if source.fileno() >= 0]
         ready = select.select(files, [], [], 0.0)[0] if files else []
-        if not self._heard and not ready:
+        if not self._events and not ready:
             self.time_s += TICK_S
-            self._heard.extend([self._down()] if self.link.done else self.link.tick(self.time_s))
-        heard, self._heard = self._heard, []
-        return Polled(heard, ready)
+            self._events.extend(self._ended_or_tick())
+        events, self._events = self._events, []
+        return Polled(events, ready)
 
-    def close(self) -> LinkDown:
+    def close(self) -> StationEnded:
         self.closed = True
-        return self._down()
+        return self._ended()
 
-    def _down(self) -> LinkDown:
-        return LinkDown(ipc.Bye(0, "logs/x.mcap", "left"), 0, "")
+    def _ended_or_tick(self) -> Sequence[StationEvent]:
+        return [self._ended()] if self.station.done else self.station.tick(self.time_s)
+
+    def _ended(self) -> StationEnded:
+        return StationEnded(ipc.Bye(0, "logs/x.mcap", "left"), 0, "")
 
 
 class NoInterrupts:
@@ -276,15 +279,15 @@ class NoInterrupts:
 
 
 def main() -> None:
-    """In place of `python -m gcs.shell.link`, in real time."""
-    link_config = config.decode(sys.argv[1])
-    link = FakeLink(link_config.name)
-    sys.stdout.buffer.write(b"".join(map(ipc.encode, link.hello())))
+    """In place of `python -m gcs.shell.station`, in real time."""
+    setup = config.decode(sys.argv[1])
+    station = FakeStation(setup.name)
+    sys.stdout.buffer.write(b"".join(map(ipc.encode, station.hello())))
     rest = b""
     start_s = next_s = time.monotonic()
-    while not link.done:
+    while not station.done:
         sys.stdout.buffer.flush()
-        now_s = (time.monotonic() - start_s) * link_config.speedup
+        now_s = (time.monotonic() - start_s) * setup.speedup
         ready, _, _ = select.select([0], [], [], max(0.0, next_s - time.monotonic()))
         events: list[ipc.Event] = []
         if ready:
@@ -293,12 +296,12 @@ def main() -> None:
                 return
             *lines, rest = (rest + data).split(b"\n")
             for line in lines:
-                events += link.handle(ipc.decode_command(line), now_s)
+                events += station.handle(ipc.decode_command(line), now_s)
         if time.monotonic() >= next_s:
-            next_s += TICK_S / link_config.speedup
-            events += link.tick(now_s)
-        if link.scenario == "crash" and now_s > 0.3:
-            sys.exit("fake link: planted failure")
+            next_s += TICK_S / setup.speedup
+            events += station.tick(now_s)
+        if station.scenario == "crash" and now_s > 0.3:
+            sys.exit("fake station: planted failure")
         sys.stdout.buffer.write(b"".join(map(ipc.encode, events)))
     sys.stdout.buffer.flush()
 

@@ -1,4 +1,4 @@
-"""The operator's end of the link process: start it, speak JSON lines with it, see it end."""
+"""An operator's way to a station of its own: start it, speak JSON lines with it, see it end."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import msgspec
 from gcs import config, ipc
 from gcs.shell.pipes import LineSource
 
-LINK_COMMAND: tuple[str, ...] = (sys.executable, "-m", "gcs.shell.link")
+STATION_COMMAND: tuple[str, ...] = (sys.executable, "-m", "gcs.shell.station")
 STDERR_LINES = 40
 TERMINATE_WAIT_S = 5.0
 
@@ -30,10 +30,11 @@ class Readable(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class LinkDown:
-    """The link process has ended; nothing comes after this.
+class StationEnded:
+    """The station process has ended; nothing comes after this.
 
-    `bye` is None where it ended without a good-bye; then `stderr_tail` has its last words.
+    `bye` is None if it ended without a good-bye; then `stderr_tail` has the last lines that it
+    wrote to standard error.
     """
 
     bye: ipc.Bye | None
@@ -41,23 +42,23 @@ class LinkDown:
     stderr_tail: str
 
 
-Heard = ipc.Event | LinkDown
+StationEvent = ipc.Event | StationEnded
 
 
 @dataclass(frozen=True, slots=True)
 class Polled:
-    """What one wait brought: the link's events in order, and which of the others is readable."""
+    """What one wait brought: the station's events in order, and which other source is readable."""
 
-    heard: list[Heard] = field(default_factory=list)
+    events: list[StationEvent] = field(default_factory=list)
     ready: list[Readable] = field(default_factory=list)
 
 
-class LinkClient:
-    """A link process of our own.
+class StationClient:
+    """A station process that was started by this program, and ends with it.
 
     `poll` (or `listen`, which does it in a thread) brings its events; `send` writes one command
-    and never waits for the link.  Closing its standard input, or dying, tells it that the
-    operator is lost.
+    and never waits for the station.  When its standard input is closed, or this program dies, the
+    station knows that the operator is lost.
     """
 
     def __init__(self, process: subprocess.Popen[bytes]) -> None:
@@ -69,16 +70,16 @@ class LinkClient:
         self._stdout, self._stderr = process.stdout, process.stderr
         self._events = LineSource(process.stdout.fileno())
         self._errors = LineSource(process.stderr.fileno())
-        self._last_words: deque[str] = deque(maxlen=STDERR_LINES)
+        self._error_lines: deque[str] = deque(maxlen=STDERR_LINES)
         self._bye: ipc.Bye | None = None
-        self._down = False
+        self._ended = False
         self._send_lock = threading.Lock()
         self._listener: threading.Thread | None = None
 
     @classmethod
-    def start(cls, link: config.LinkConfig, command: Sequence[str] | None = None) -> LinkClient:
-        """Start `python -m gcs.shell.link '<config>'` (or `command` in its place)."""
-        words = [*(command or LINK_COMMAND), config.encode(link)]
+    def start(cls, setup: config.LinkConfig, command: Sequence[str] | None = None) -> StationClient:
+        """Start `python -m gcs.shell.station '<config>'` (or `command` in its place)."""
+        words = [*(command or STATION_COMMAND), config.encode(setup)]
         process = subprocess.Popen(
             words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
@@ -93,7 +94,7 @@ class LinkClient:
         return time.monotonic()
 
     def send(self, command: ipc.Command) -> bool:
-        """Write one command at once.  False where the link has gone.  From any thread."""
+        """Write one command at once.  False if the station has ended.  From any thread."""
         with self._send_lock:
             try:
                 self._stdin.write(ipc.encode(command))
@@ -103,12 +104,12 @@ class LinkClient:
         return True
 
     def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
-        """Wait until the link says something, one of `also` is readable, or the time is over.
+        """Wait until the station says something, one of `also` is readable, or the time is over.
 
-        The last thing heard is a `LinkDown`; after it every poll returns it again.
+        The last event is a `StationEnded`; after it every poll returns it again.
         """
-        if self._down:
-            return Polled([self._obituary()])
+        if self._ended:
+            return Polled([self._end()])
         sources: list[Readable] = [self._events, *also]
         if not self._errors.ended:
             sources.append(self._errors)
@@ -117,18 +118,18 @@ class LinkClient:
         if self._errors in ready:
             self._read_errors()
         if self._events in ready:
-            polled.heard.extend(self._read_events())
+            polled.events.extend(self._read_events())
         return polled
 
-    def listen(self, tell: Callable[[Heard], None]) -> None:
-        """Call `tell` for everything heard, in a thread, until the link is down."""
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
+        """Call `on_event` for every event, in a thread, until the station has ended."""
         self._listener = threading.Thread(
-            target=self._listen, args=(tell,), name="link-reader", daemon=True
+            target=self._listen, args=(on_event,), name="station-events", daemon=True
         )
         self._listener.start()
 
-    def close(self) -> LinkDown:
-        """See the link process end, by force where it does not after a SIGTERM of its own."""
+    def close(self) -> StationEnded:
+        """Wait for the process to end; send it a SIGTERM, then kill it, if it does not."""
         with self._send_lock, contextlib.suppress(OSError):
             self._stdin.close()
         try:
@@ -142,20 +143,20 @@ class LinkClient:
                 self._process.wait()
         if self._listener is not None:
             self._listener.join(TERMINATE_WAIT_S)
-        self._down = True
+        self._ended = True
         self._stdout.close()
         self._stderr.close()
-        return self._obituary()
+        return self._end()
 
-    def _listen(self, tell: Callable[[Heard], None]) -> None:
+    def _listen(self, on_event: Callable[[StationEvent], None]) -> None:
         while True:
-            for heard in self.poll(3600.0).heard:
-                tell(heard)
-                if isinstance(heard, LinkDown):
+            for event in self.poll(3600.0).events:
+                on_event(event)
+                if isinstance(event, StationEnded):
                     return
 
-    def _read_events(self) -> list[Heard]:
-        heard: list[Heard] = []
+    def _read_events(self) -> list[StationEvent]:
+        events: list[StationEvent] = []
         for line in self._events.read():
             try:
                 event = ipc.decode_event(line)
@@ -163,19 +164,19 @@ class LinkClient:
                 event = ipc.Trouble(f"the link wrote a line that is no event: {error}")
             if isinstance(event, ipc.Bye):
                 self._bye = event
-            heard.append(event)
+            events.append(event)
         if self._events.ended:
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(TERMINATE_WAIT_S)
             while not self._errors.ended and select.select([self._errors], [], [], 0.0)[0]:
                 self._read_errors()
-            self._down = True
-            heard.append(self._obituary())
-        return heard
+            self._ended = True
+            events.append(self._end())
+        return events
 
     def _read_errors(self) -> None:
         for line in self._errors.read():
-            self._last_words.append(line.decode(errors="replace").rstrip())
+            self._error_lines.append(line.decode(errors="replace").rstrip())
 
-    def _obituary(self) -> LinkDown:
-        return LinkDown(self._bye, self._process.poll(), "\n".join(self._last_words))
+    def _end(self) -> StationEnded:
+        return StationEnded(self._bye, self._process.poll(), "\n".join(self._error_lines))

@@ -1,4 +1,4 @@
-"""A link that is killed while it records, and what of the wire is then in its record."""
+"""A station that is killed while it records, and what of the wire is then in its record."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def kill_and_recover(folder: Path, recorded_s: float) -> Loss:
     """
     with tapped(folder) as (operator, tap):
         enough_s = time.monotonic() + recorded_s
-        operator.dialogue.until(lambda: time.monotonic() > enough_s, recorded_s)
-        os.kill(operator.link.pid, signal.SIGKILL)
+        operator.dialogue.wait_until(lambda: time.monotonic() > enough_s, recorded_s)
+        os.kill(operator.client.pid, signal.SIGKILL)
         killed_ns = time.monotonic_ns()
         tap.silence_vehicle()
         broken = operator.log_path

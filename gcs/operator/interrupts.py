@@ -1,4 +1,4 @@
-"""Signals of an operator's process as something to select on, so that none is lost mid-line."""
+"""Signals of an operator's program as something that `select` can wait for."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ _NAMES = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 class Interrupts:
     """Within the block a Ctrl-C (or SIGTERM, SIGHUP) is noted in `name` and wakes `select`.
 
-    Nothing is raised: whoever waits looks at `name` and leaves in good order.  Main thread only.
+    Nothing is raised, so that no line is left half done: whoever waits looks at `name` and leaves
+    in good order.  Main thread only.
     """
 
     def __init__(self) -> None:
@@ -43,7 +44,7 @@ class Interrupts:
         return self._read.fileno()
 
     def forget(self) -> None:
-        """Take note and be ready for the next: leaving waits, and a second Ctrl-C is another."""
+        """Be ready for the next one: leaving takes a while, and a second Ctrl-C ends that."""
         self.name = ""
         try:
             self._read.recv(64)

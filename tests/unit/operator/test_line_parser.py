@@ -1,4 +1,4 @@
-"""The table of operator words: every word, every way to get it wrong, and back to text."""
+"""Typed lines: every word of the table, every way to get it wrong, and back to text."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs import ipc
-from gcs.cli import words
-from gcs.cli.typed import WordError, parse_line
-from gcs.cli.words import Quit, Request, ShowState, Wait
+from gcs.operator import request_words
+from gcs.operator.line_parser import LineError, parse_line
+from gcs.operator.request_words import Quit, SendRequests, ShowState, Wait
 
 
-def asks(line: str) -> tuple[ipc.Ask, ...]:
+def requests(line: str) -> tuple[ipc.Ask, ...]:
     parsed = parse_line(line)
     assert parsed is not None
-    assert isinstance(parsed.action, Request)
-    return parsed.action.asks
+    assert isinstance(parsed.action, SendRequests)
+    return parsed.action.requests
 
 
-@pytest.mark.parametrize("word", words.WORDS, ids=lambda word: word.name)
-def test_every_example_is_understood_and_is_of_its_word(word: words.Word) -> None:
+@pytest.mark.parametrize("word", request_words.WORDS, ids=lambda word: word.name)
+def test_every_example_is_understood_and_is_of_its_word(word: request_words.Word) -> None:
     parsed = parse_line(word.example)
     assert parsed is not None
     assert parsed.text.startswith(word.name)
@@ -30,7 +30,7 @@ def test_every_example_is_understood_and_is_of_its_word(word: words.Word) -> Non
 
 
 @pytest.mark.parametrize(
-    ("line", "ask"),
+    ("line", "expected"),
     [
         ("arm", ipc.Ask(0, "arm")),
         ("takeoff 2", ipc.Ask(0, "takeoff", up_m=2.0)),
@@ -48,18 +48,19 @@ def test_every_example_is_understood_and_is_of_its_word(word: words.Word) -> Non
         ("mission clear", ipc.Ask(0, "mission_clear")),
     ],
 )
-def test_a_line_becomes_what_is_asked_of_the_link(line: str, ask: ipc.Ask) -> None:
-    assert asks(line) == (ask,)
+def test_a_line_becomes_a_request_to_the_station(line: str, expected: ipc.Ask) -> None:
+    assert requests(line) == (expected,)
 
 
 def test_mission_fly_uploads_then_starts() -> None:
-    assert [ask.word for ask in asks("mission fly a.toml")] == ["mission_upload", "mission_start"]
+    words = [request.word for request in requests("mission fly a.toml")]
+    assert words == ["mission_upload", "mission_start"]
 
 
 @pytest.mark.parametrize(
     ("line", "action"), [("wait 2.5", Wait(2.5)), ("state", ShowState()), ("quit", Quit())]
 )
-def test_words_for_the_console_ask_nothing(line: str, action: words.Action) -> None:
+def test_words_for_the_console_send_nothing(line: str, action: request_words.Action) -> None:
     parsed = parse_line(line)
     assert parsed is not None
     assert parsed.action == action
@@ -80,11 +81,11 @@ def test_nothing_is_nothing(line: str) -> None:
 
 @pytest.mark.parametrize("typed", ["nan", "inf", "-inf"])
 def test_what_is_no_number_for_flying_travels_as_null_for_the_gate_to_refuse(typed: str) -> None:
-    (ask,) = asks(f"goto {typed} 0 2")
-    sent = ipc.decode_command(ipc.encode(ask))
+    (request,) = requests(f"goto {typed} 0 2")
+    sent = ipc.decode_command(ipc.encode(request))
     assert isinstance(sent, ipc.Ask)
     assert sent.goal_enu == (None, 0.0, 2.0)
-    assert words.label(sent) == "goto nan 0 2"
+    assert request_words.label(sent) == "goto nan 0 2"
 
 
 @pytest.mark.parametrize(
@@ -109,14 +110,14 @@ def test_what_is_no_number_for_flying_travels_as_null_for_the_gate_to_refuse(typ
     ],
 )
 def test_a_wrong_line_says_what_was_expected(line: str, sentence: str) -> None:
-    with pytest.raises(WordError) as wrong:
+    with pytest.raises(LineError) as wrong:
         parse_line(line)
     assert wrong.value.sentence == sentence
     assert wrong.value.hint
 
 
 def test_an_unfinished_mission_word_lists_the_whole_ones() -> None:
-    with pytest.raises(WordError, match="expected one of: mission upload, mission start"):
+    with pytest.raises(LineError, match="expected one of: mission upload, mission start"):
         parse_line("mission")
 
 
@@ -127,8 +128,8 @@ numbers = st.floats(-1e4, 1e4).map(lambda metres: round(metres, 2))
 def test_a_label_reads_back_as_the_same_request(
     goal: tuple[float, float, float], yaw: float | None
 ) -> None:
-    ask = ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw)
-    (back,) = asks(words.label(ask))
+    request = ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw)
+    (back,) = requests(request_words.label(request))
     assert back.goal_enu == pytest.approx(goal, rel=1e-5)
     assert (back.yaw_deg is None) == (yaw is None)
 
@@ -138,10 +139,10 @@ def test_a_label_reads_back_as_the_same_request(
     ["arm", "takeoff 2", "disarm --force", "mode HOLD", "fence off", "mission upload a.plan"],
 )
 def test_labels_are_what_an_operator_would_type(line: str) -> None:
-    assert words.label(asks(line)[0]) == line
+    assert request_words.label(requests(line)[0]) == line
 
 
 def test_infinity_is_kept_until_it_is_encoded() -> None:
-    (ask,) = asks("takeoff inf")
-    assert ask.up_m is not None
-    assert math.isinf(ask.up_m)
+    (request,) = requests("takeoff inf")
+    assert request.up_m is not None
+    assert math.isinf(request.up_m)

@@ -1,0 +1,122 @@
+"""One command, then leave: start a station, wait for a vehicle, send, see the outcome, go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import click
+import msgspec
+
+from gcs import ipc
+from gcs.cli.progress import ProgressDisplay
+from gcs.config import LinkConfig
+from gcs.exit_codes import ExitCode
+from gcs.operator import event_text
+from gcs.operator.client import StationClient
+from gcs.operator.dialogue import (
+    Connection,
+    Dialogue,
+    InterruptSource,
+    TrackedRequest,
+    exit_code_of,
+)
+from gcs.operator.errors import ExitError, Interrupted
+from gcs.operator.interrupts import Interrupts
+from gcs.operator.request_words import NEEDS_CONTROL, SendRequests
+from gcs.operator.warning_filter import WARNING, WarningFilter
+
+Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
+"""What to do once a vehicle is heard.  It clears the display before it prints anything itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class OneShotConfig:
+    """`wait_s` limits the wait for the outcome, `timeout_s` that for a vehicle; seconds.
+
+    `cautions`: show what is always wrong with this vehicle, too.
+    """
+
+    timeout_s: float
+    wait_s: float
+    as_json: bool
+    what: str
+    cautions: bool = False
+
+
+def run(setup: LinkConfig, how: OneShotConfig, task: Task) -> int:
+    """Do it with a station of our own; returns the exit code."""
+    with Interrupts() as interrupts:
+        return run_over(StationClient.start(setup), interrupts, how, task)
+
+
+def run_over(
+    connection: Connection, interrupts: InterruptSource, how: OneShotConfig, task: Task
+) -> int:
+    """The same with a station that is there already."""
+    warnings = WarningFilter(cautions=how.cautions)
+    with ProgressDisplay(how.what, connection.now_s()) as display:
+
+        def on_event(event: ipc.Event, request: TrackedRequest | None) -> None:
+            display.update(event, connection.now_s())
+            if warnings.hides(event, request):
+                return
+            for line, err in _lines(event, request, as_json=how.as_json):
+                display.clear()
+                click.echo(line, err=err)
+
+        dialogue = Dialogue(connection, interrupts, on_event)
+        try:
+            dialogue.wait_for_vehicle(how.timeout_s)
+            code = task(dialogue, display)
+        except Interrupted:
+            ended = dialogue.leave("interrupted")
+            display.clear()
+            for line in event_text.bye_lines(ended.bye) if ended.bye else ():
+                click.echo(line, err=True)
+            return ExitCode.INTERRUPTED
+        except ExitError:
+            dialogue.leave("failed")
+            raise
+        ended = dialogue.leave("done")
+        return code or exit_code_of(ended)
+
+
+def sending(action: SendRequests, wait_s: float) -> Task:
+    """The task of sending these requests, after taking control if one of them needs it."""
+
+    def task(dialogue: Dialogue, display: ProgressDisplay) -> ExitCode:
+        if any(request.word in NEEDS_CONTROL for request in action.requests):
+            control = dialogue.take_control()
+            if control is not None and not control.completed:
+                return control.exit_code
+        for request in action.requests:
+            sent = dialogue.wait_settled(dialogue.send(request), wait_s)
+            if not sent.settled:
+                display.clear()
+                click.echo(f"{sent.label}: not completed within {wait_s:g} s", err=True)
+            if sent.exit_code:
+                return sent.exit_code
+        return ExitCode.DONE
+
+    return task
+
+
+def _lines(
+    event: ipc.Event, request: TrackedRequest | None, *, as_json: bool
+) -> Iterator[tuple[str, bool]]:
+    """What to print of an event, and whether it goes to standard error."""
+    match event:
+        case ipc.VerdictEvent() | ipc.EndingEvent() if request is not None and as_json:
+            yield msgspec.json.encode(event).decode(), False
+        case ipc.VerdictEvent() if request is not None:
+            if event.outcome != "accepted":
+                yield event_text.verdict_line(request.label, event), False
+        case ipc.EndingEvent() if request is not None:
+            yield event_text.outcome_line(request.label, event), False
+        case ipc.LogEvent() if event.level >= WARNING:
+            yield event_text.log_line(event), True
+        case ipc.Trouble() if not event.exit_code:
+            yield "\n".join(event_text.trouble_lines(event)), True
+        case _:
+            pass

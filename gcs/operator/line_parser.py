@@ -1,0 +1,130 @@
+"""Reads what an operator types: a line, or a word with its arguments, becomes what it does."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from gcs.operator.request_words import (
+    WORD_BY_NAME,
+    Action,
+    Argument,
+    ArgumentKind,
+    Values,
+    Word,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line that was understood.  `wait` is False if it ended in `&`."""
+
+    text: str
+    action: Action
+    wait: bool
+
+
+class LineError(Exception):
+    """A line that cannot be understood: what is wrong, and what would be right."""
+
+    def __init__(self, sentence: str, hint: str) -> None:
+        super().__init__(sentence)
+        self.sentence = sentence
+        self.hint = hint
+
+
+def parse_line(text: str) -> Line | None:
+    """One typed line; None for an empty one or a comment (`# ...`).  Raises LineError."""
+    lexer = shlex.shlex(text, posix=True)
+    lexer.whitespace_split = True
+    lexer.escape = ""  # a Windows path keeps its backslashes
+    try:
+        tokens = list(lexer)
+    except ValueError as error:
+        raise LineError(f"cannot read the line: {error}", "check the quotes") from None
+    wait = True
+    if tokens and tokens[-1].endswith("&"):
+        wait = False
+        tokens[-1] = tokens[-1][:-1]
+        tokens = [token for token in tokens if token]
+    if not tokens:
+        return None
+    word, arguments = _find(tokens)
+    return Line(" ".join(tokens), parse_arguments(word, arguments), wait)
+
+
+def parse_arguments(word: Word, typed: Sequence[str], *, finite: bool = False) -> Action:
+    """What `word` does with what was typed after it.  Raises LineError.
+
+    `finite`: refuse nan and inf here already, so that no station is started for them.
+    """
+    required = sum(not argument.optional for argument in word.arguments)
+    if not required <= len(typed) <= len(word.arguments):
+        raise _wrong(word, f"expected {_expectation(word)}, got {len(typed) or 'nothing'}")
+    numbers: list[float] = []
+    name, switch, flagged = "", True, False
+    for argument, text in zip(word.arguments, typed, strict=False):
+        match argument.kind:
+            case ArgumentKind.NUMBER | ArgumentKind.FINITE | ArgumentKind.SECONDS:
+                plain = finite and argument.kind is ArgumentKind.NUMBER
+                kind = ArgumentKind.FINITE if plain else argument.kind
+                numbers.append(_number(word, replace(argument, kind=kind), text))
+            case ArgumentKind.NAME | ArgumentKind.FILE:
+                name = text
+            case ArgumentKind.SWITCH:
+                if text not in ("on", "off"):
+                    raise _wrong(word, f"expected on or off, got {text!r}")
+                switch = text == "on"
+            case ArgumentKind.FLAG:
+                if text != argument.name:
+                    raise _wrong(word, f"expected {argument.name} or nothing, got {text!r}")
+                flagged = True
+    return word.build(Values(tuple(numbers), name, switch, flagged))
+
+
+def _find(tokens: list[str]) -> tuple[Word, list[str]]:
+    two = " ".join(tokens[:2])
+    if two in WORD_BY_NAME:
+        return WORD_BY_NAME[two], tokens[2:]
+    if tokens[0] in WORD_BY_NAME:
+        return WORD_BY_NAME[tokens[0]], tokens[1:]
+    seconds = [name for name in WORD_BY_NAME if name.startswith(tokens[0] + " ")]
+    if seconds:
+        raise LineError(f"{tokens[0]}: expected one of: {', '.join(seconds)}", f"try {seconds[0]}")
+    near = difflib.get_close_matches(tokens[0], WORD_BY_NAME, n=1)
+    hint = f"did you mean {near[0]}?" if near else f"words: {', '.join(WORD_BY_NAME)}"
+    raise LineError(f"{tokens[0]}: not a word of ours", hint)
+
+
+def _number(word: Word, argument: Argument, text: str) -> float:
+    wrong = f"{argument.name}: expected a {argument.kind.value}, got {text!r}"
+    try:
+        number = float(text)
+    except ValueError:
+        hint = " (the decimal mark is a point)" if "," in text else ""
+        raise _wrong(word, wrong + hint) from None
+    if argument.kind is not ArgumentKind.NUMBER and not math.isfinite(number):
+        raise _wrong(word, wrong)
+    if argument.kind is ArgumentKind.SECONDS and number < 0:
+        raise _wrong(word, wrong)
+    return number
+
+
+def _expectation(word: Word) -> str:
+    """`3 numbers EAST NORTH UP [YAW_DEG]`, `1 file FILE`, `no arguments`."""
+    required = [argument for argument in word.arguments if not argument.optional]
+    if not word.arguments:
+        return "no arguments"
+    if not required:
+        return f"at most {word.usage}"
+    kind = required[0].kind.value.split(",")[0]
+    if required[0].kind is ArgumentKind.SWITCH:
+        return kind
+    return f"{len(required)} {kind}{'s' if len(required) > 1 else ''} {word.usage}"
+
+
+def _wrong(word: Word, what: str) -> LineError:
+    return LineError(f"{word.name}: {what}", f"for example: {word.example}")

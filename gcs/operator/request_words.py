@@ -1,0 +1,227 @@
+"""The words that an operator can type: one table for typed lines and for one-shot commands.
+
+Some words are two (`mission fly`).  Most of them send a request to the station, or two in order;
+a few are for the console itself.  `gcs/operator/line_parser.py` reads them from text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+from gcs.ipc import Ask
+
+NEEDS_CONTROL = frozenset({"goto", "photo", "mission_start"})
+"""Requests (`Ask.word`) that the gate refuses while somebody else flies the vehicle."""
+
+
+class ArgumentKind(Enum):
+    """What an argument must look like."""
+
+    NUMBER = "number"  # nan and inf pass: the gate refuses them, with a verdict
+    FINITE = "finite number"
+    SECONDS = "number of seconds, not negative"
+    NAME = "name"
+    FILE = "file"
+    SWITCH = "on or off"
+    FLAG = "option"
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """`name` is what the help shows; for a FLAG it is what must be typed."""
+
+    name: str
+    kind: ArgumentKind
+    optional: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SendRequests:
+    """Send these one after the other, each when the one before is complete.
+
+    Their ids are given when they are sent.
+    """
+
+    requests: tuple[Ask, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Do nothing for so many seconds of flight."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class ShowState:
+    """Print the latest snapshot."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quit:
+    """Leave in good order."""
+
+
+Action: TypeAlias = SendRequests | Wait | ShowState | Quit
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """The arguments as typed, sorted by kind, in the order of the table."""
+
+    numbers: tuple[float, ...] = ()
+    text: str = ""
+    switch: bool = True
+    flagged: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """`build` makes of the arguments what the word does."""
+
+    name: str
+    arguments: tuple[Argument, ...]
+    help: str
+    example: str
+    build: Callable[[Values], Action]
+
+    @property
+    def usage(self) -> str:
+        """The arguments as the help shows them, `EAST NORTH UP [YAW_DEG]`."""
+        return " ".join(f"[{a.name}]" if a.optional else a.name for a in self.arguments)
+
+
+def _send(word: str) -> Callable[[Values], Action]:
+    return lambda _: SendRequests((Ask(0, word),))
+
+
+def _goto(values: Values) -> Action:
+    east, north, up, *yaw = values.numbers
+    return SendRequests(
+        (Ask(0, "goto", goal_enu=(east, north, up), yaw_deg=yaw[0] if yaw else None),)
+    )
+
+
+def _mission_fly(values: Values) -> Action:
+    return SendRequests((Ask(0, "mission_upload", path=values.text), Ask(0, "mission_start")))
+
+
+_UP = Argument("UP", ArgumentKind.NUMBER)
+_FILE = Argument("FILE", ArgumentKind.FILE)
+
+WORDS: tuple[Word, ...] = (
+    Word("control", (), "take control of a flying vehicle", "control", _send("control")),
+    Word("arm", (), "arm the motors", "arm", _send("arm")),
+    Word(
+        "takeoff",
+        (_UP,),
+        "climb to UP metres above the take-off point, take control and hover",
+        "takeoff 2",
+        lambda values: SendRequests((Ask(0, "takeoff", up_m=values.numbers[0]),)),
+    ),
+    Word(
+        "goto",
+        (
+            Argument("EAST", ArgumentKind.NUMBER),
+            Argument("NORTH", ArgumentKind.NUMBER),
+            _UP,
+            Argument("YAW_DEG", ArgumentKind.FINITE, optional=True),
+        ),
+        "fly straight to a point, metres from the local origin, and hover; "
+        "YAW_DEG is clockwise from north",
+        "goto 3 0 2",
+        _goto,
+    ),
+    Word("land", (), "land where it is", "land", _send("land")),
+    Word("rtl", (), "return to home and land", "rtl", _send("rtl")),
+    Word("hold", (), "stop and hold, in the vehicle's own hold mode", "hold", _send("hold")),
+    Word("abort", (), "stop now and forget the goal; never refused", "abort", _send("abort")),
+    Word("resume", (), "after a hold: hover under our control", "resume", _send("resume")),
+    Word("photo", (), "take a picture; moves are refused meanwhile", "photo", _send("photo")),
+    Word(
+        "disarm",
+        (Argument("--force", ArgumentKind.FLAG, optional=True),),
+        "stop the motors on the ground; --force asks for it in the air",
+        "disarm",
+        lambda values: SendRequests((Ask(0, "disarm", force=values.flagged),)),
+    ),
+    Word(
+        "mode",
+        (Argument("NAME", ArgumentKind.NAME),),
+        "ask for a flight mode by the autopilot's own name",
+        "mode LOITER",
+        lambda values: SendRequests((Ask(0, "mode", mode=values.text),)),
+    ),
+    Word(
+        "fence",
+        (Argument("on|off", ArgumentKind.SWITCH),),
+        "switch the fence, where the policy allows it (the lab's does)",
+        "fence off",
+        lambda values: SendRequests((Ask(0, "fence", on=values.switch),)),
+    ),
+    Word(
+        "mission upload",
+        (_FILE,),
+        "verify a mission file, send it to the vehicle and read it back",
+        "mission upload missions/demo.toml",
+        lambda values: SendRequests((Ask(0, "mission_upload", path=values.text),)),
+    ),
+    Word("mission start", (), "fly the mission on board", "mission start", _send("mission_start")),
+    Word(
+        "mission fly",
+        (_FILE,),
+        "upload a mission file, then start it",
+        "mission fly missions/demo.toml",
+        _mission_fly,
+    ),
+    Word(
+        "mission download",
+        (_FILE,),
+        "read the mission on board into a file",
+        "mission download on_board.plan",
+        lambda values: SendRequests((Ask(0, "mission_download", path=values.text),)),
+    ),
+    Word(
+        "mission clear",
+        (),
+        "remove the mission on board",
+        "mission clear",
+        _send("mission_clear"),
+    ),
+    Word(
+        "wait",
+        (Argument("SECONDS", ArgumentKind.SECONDS),),
+        "do nothing for so many seconds of flight",
+        "wait 2.5",
+        lambda values: Wait(values.numbers[0]),
+    ),
+    Word("state", (), "print what the vehicle reports", "state", lambda _: ShowState()),
+    Word("quit", (), "leave; a vehicle we fly is told to hold", "quit", lambda _: Quit()),
+)
+
+WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
+
+
+def label(request: Ask) -> str:
+    """A request as an operator would type it: the table read backwards."""
+    name = request.word.replace("mission_", "mission ")
+    parts: list[str] = [name]
+    if request.word == "takeoff":
+        parts.append(_shown(request.up_m))
+    if request.goal_enu is not None:
+        parts += [_shown(metres) for metres in request.goal_enu]
+    if request.yaw_deg is not None:
+        parts.append(_shown(request.yaw_deg))
+    if request.word == "fence":
+        parts.append("on" if request.on else "off")
+    parts += [
+        part for part in (request.mode, request.path, "--force" if request.force else "") if part
+    ]
+    return " ".join(parts)
+
+
+def _shown(number: float | None) -> str:
+    return "nan" if number is None else f"{number:g}"
