@@ -76,6 +76,18 @@ def test_a_glance_at_the_vehicle_keeps_no_record(monkeypatch: pytest.MonkeyPatch
     }  # fmt: skip
 
 
+def test_python_m_gcs_is_the_gcs_command() -> None:
+    ended = [
+        subprocess.run([sys.executable, *start, *args], capture_output=True, text=True, check=False)
+        for args in (["--help"], ["got"])
+        for start in (["-m", "gcs"], ["-c", "from gcs.cli.main import main; main()"])
+    ]
+    assert [each.returncode for each in ended] == [0, 0, ExitCode.USAGE, ExitCode.USAGE]
+    assert ended[0].stdout == ended[1].stdout != ""
+    assert ended[2].stderr == ended[3].stderr != ""
+    assert "Usage: gcs" in ended[0].stdout
+
+
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main.run(["--version"]) == ExitCode.DONE
     assert capsys.readouterr().out.startswith("gcs ")
