@@ -78,20 +78,19 @@ def with_options(*options: click.Option) -> Callable[[F], F]:
     return attach
 
 
-def policy_path(name: str) -> str:
-    """The file behind `--policy`, empty for the built-in default.
+def _policy_file(name: str) -> str:
+    """The file behind `--policy`, as a station is told it: empty for the built-in default.
 
     Raises ExitError with BAD_FILE.
     """
+    from gcs.resources import POLICIES, policy_path
+
     if name == "default":
         return ""
-    if name == "lab":
-        from importlib.resources import files
-
-        return str(files("gcs.gate.policy") / "lab.toml")
-    from pathlib import Path
-
-    if not Path(name).is_file():
+    path = policy_path(name)
+    if name in POLICIES:
+        return str(path)
+    if not path.is_file():
         raise ExitError(
             ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab"
         )
@@ -110,7 +109,7 @@ def link_config(
     """For a station that flies a vehicle which somebody else has started."""
     return LinkConfig(
         endpoints=list(links) or [DEFAULT_LINK],
-        policy_path=policy_path(policy),
+        policy_path=_policy_file(policy),
         log_dir=log_dir,
         name=name,
         connect_timeout_s=timeout_s,

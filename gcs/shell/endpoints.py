@@ -1,6 +1,6 @@
 """Where a link goes, as people write it: MAVSDK's URLs and pymavlink's device strings.
 
-One table of kinds feeds the parser, the help text and the errors.
+One table of forms feeds the parser and the errors.
 """
 
 from __future__ import annotations
@@ -60,33 +60,26 @@ class Form(NamedTuple):
     prefix: str
     kind: Kind
     example: str
-    meaning: str
 
 
 FORMS = (
-    Form("udpin://", Kind.UDP_IN, "udpin://127.0.0.1:14540", "wait for datagrams on a port"),
-    Form("udpout://", Kind.UDP_OUT, "udpout://192.168.1.20:14550", "send datagrams to a port"),
-    Form("tcpout://", Kind.TCP_OUT, "tcpout://127.0.0.1:5760", "connect, again and again"),
-    Form("tcpin://", Kind.TCP_IN, "tcpin://127.0.0.1:5760", "wait for one to connect"),
-    Form("serial://", Kind.SERIAL, "serial:///dev/ttyUSB0:57600", "a radio or a cable"),
-    Form("udpin:", Kind.UDP_IN, "udpin:127.0.0.1:14550", "as udpin://"),
-    Form("udpout:", Kind.UDP_OUT, "udpout:127.0.0.1:14550", "as udpout://"),
-    Form("udp:", Kind.UDP_IN, "udp:127.0.0.1:14550", "as udpin://"),
-    Form("tcpin:", Kind.TCP_IN, "tcpin:127.0.0.1:5760", "as tcpin://"),
-    Form("tcp:", Kind.TCP_OUT, "tcp:127.0.0.1:5760", "as tcpout://"),
-    Form("/dev/", Kind.SERIAL, "/dev/ttyUSB0,57600", "as serial://"),
-    Form("COM", Kind.SERIAL, "COM4,57600", "as serial://, on Windows"),
+    Form("udpin://", Kind.UDP_IN, "udpin://127.0.0.1:14540"),
+    Form("udpout://", Kind.UDP_OUT, "udpout://192.168.1.20:14550"),
+    Form("tcpout://", Kind.TCP_OUT, "tcpout://127.0.0.1:5760"),
+    Form("tcpin://", Kind.TCP_IN, "tcpin://127.0.0.1:5760"),
+    Form("serial://", Kind.SERIAL, "serial:///dev/ttyUSB0:57600"),
+    Form("udpin:", Kind.UDP_IN, "udpin:127.0.0.1:14550"),
+    Form("udpout:", Kind.UDP_OUT, "udpout:127.0.0.1:14550"),
+    Form("udp:", Kind.UDP_IN, "udp:127.0.0.1:14550"),
+    Form("tcpin:", Kind.TCP_IN, "tcpin:127.0.0.1:5760"),
+    Form("tcp:", Kind.TCP_OUT, "tcp:127.0.0.1:5760"),
+    Form("/dev/", Kind.SERIAL, "/dev/ttyUSB0,57600"),
+    Form("COM", Kind.SERIAL, "COM4,57600"),
 )
 """Longer prefixes stand before the shorter ones that they begin with."""
 
 _HOST_PORT = re.compile(r"(?:\[(?P<v6>[0-9A-Fa-f:.%]+)\]|(?P<host>[^:\[\]/]*)):(?P<port>\d+)")
 _SERIAL = re.compile(r"(?P<device>/[^,]+?|COM\d+)(?:[:,](?P<baud>\d+))?")
-
-
-def help_text() -> str:
-    """One line a form, for `--help`."""
-    width = max(len(form.example) for form in FORMS)
-    return "\n".join(f"{form.example:{width}}  {form.meaning}" for form in FORMS)
 
 
 def parse_endpoint(text: str) -> Endpoint:

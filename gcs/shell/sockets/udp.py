@@ -46,11 +46,6 @@ class UdpIn(_Udp):
     def port(self) -> int:
         return self._port
 
-    @property
-    def peers(self) -> tuple[tuple[str, int], ...]:
-        """Whom `send` reaches."""
-        return tuple(self._peers)
-
     def drain(self, limit: int) -> list[bytes]:
         datagrams: list[bytes] = []
         for _ in range(limit):

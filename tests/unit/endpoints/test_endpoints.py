@@ -10,7 +10,6 @@ from gcs.shell.endpoints import (
     EndpointError,
     Form,
     Kind,
-    help_text,
     parse_endpoint,
 )
 
@@ -67,7 +66,5 @@ def test_what_is_no_endpoint_is_told_why_with_a_hint(text: str, why: str, hint: 
 
 
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: form.example)
-def test_every_example_of_the_table_is_in_the_help_and_parses(form: Form) -> None:
-    kind, example = form.kind, form.example
-    assert parse_endpoint(example).kind is kind
-    assert example in help_text()
+def test_every_example_of_the_table_is_of_its_kind(form: Form) -> None:
+    assert parse_endpoint(form.example).kind is form.kind
