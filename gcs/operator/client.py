@@ -132,21 +132,30 @@ class StationClient:
         """Wait for the process to end; send it a SIGTERM, then kill it, if it does not."""
         with self._send_lock, contextlib.suppress(OSError):
             self._stdin.close()
-        try:
-            self._process.wait(TERMINATE_WAIT_S)
-        except subprocess.TimeoutExpired:
+        if not self._wait_for_end(TERMINATE_WAIT_S):
             self._process.terminate()
-            try:
-                self._process.wait(TERMINATE_WAIT_S)
-            except subprocess.TimeoutExpired:
+            if not self._wait_for_end(TERMINATE_WAIT_S):
                 self._process.kill()
                 self._process.wait()
         if self._listener is not None:
             self._listener.join(TERMINATE_WAIT_S)
         self._ended = True
+        self._events.close()
+        self._errors.close()
         self._stdout.close()
         self._stderr.close()
         return self._end()
+
+    def _wait_for_end(self, timeout_s: float) -> bool:
+        """Whether the process ended in time; its last events are read meanwhile."""
+        deadline_s = self.now_s() + timeout_s
+        while self._listener is None and not self._ended and self.now_s() < deadline_s:
+            self.poll(deadline_s - self.now_s())
+        try:
+            self._process.wait(max(0.0, deadline_s - self.now_s()))
+        except subprocess.TimeoutExpired:
+            return False
+        return True
 
     def _listen(self, on_event: Callable[[StationEvent], None]) -> None:
         while True:

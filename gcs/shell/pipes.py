@@ -1,11 +1,14 @@
-"""The link's pipes: lines in, lines out, and neither may ever make the link wait."""
+"""A station's pipes: lines in, lines out, and neither may ever make the station wait."""
 
 from __future__ import annotations
 
+import contextlib
 import os
+import select
 import socket
 import sys
 import threading
+import time
 from collections import deque
 
 MAX_LINE_BYTES = 65_536
@@ -46,7 +49,7 @@ class LineSource:
         except OSError:
             data = b""
         if not data:
-            self.ended = True
+            self.close()
             last, self._rest = self._rest, b""
             return [last] if last else []
         *lines, self._rest = (self._rest + data).split(b"\n")
@@ -55,10 +58,16 @@ class LineSource:
             self._rest = b""
         return [line for line in lines if line or self._keep_blank]
 
+    def close(self) -> None:
+        """Nothing more is read; the descriptor itself stays open, it is the caller's."""
+        self.ended = True
+        if self._forwarded is not None:
+            self._forwarded.close()
+
 
 def _forward(fd: int, feeder: socket.socket) -> None:
-    """Windows only: copy a pipe into a socket until either ends."""
-    with feeder:
+    """Windows only: copy a pipe into a socket until either ends, or is closed by us."""
+    with feeder, contextlib.suppress(OSError):
         while data := os.read(fd, MAX_LINE_BYTES):
             feeder.sendall(data)
 
@@ -67,7 +76,8 @@ class LineSink:
     """Lines to the operator.  A slow reader loses snapshots first; nothing ever waits for it.
 
     `offer` queues a line that may be dropped while others wait; `put` queues one that may not,
-    up to `MAX_QUEUED_BYTES`, after which the reader counts as lost (`broken`).
+    up to `MAX_QUEUED_BYTES`, after which the reader counts as lost (`broken`).  Only `drain`, for
+    the very end, waits for the reader.
     """
 
     def __init__(self, fd: int) -> None:
@@ -76,10 +86,10 @@ class LineSink:
         self._queued_bytes = 0
         self.broken = False
         self.dropped = 0
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
         self._thread: threading.Thread | None = None
         if sys.platform == "win32":
-            self._thread = threading.Thread(target=self._write_on, daemon=True)
+            self._thread = threading.Thread(target=self._write_in_thread, daemon=True)
             self._thread.start()
         else:
             os.set_blocking(fd, False)
@@ -103,13 +113,14 @@ class LineSink:
         if self.broken:
             return
         if self._queued_bytes + len(line) > MAX_QUEUED_BYTES:
-            self.broken = True
-            self._queue.clear()
+            with self._changed:
+                self._break()
+                self._changed.notify_all()
             return
         if self._thread is not None:
-            with self._news:
+            with self._changed:
                 self._append(line)
-                self._news.notify()
+                self._changed.notify()
         else:
             self._append(line)
             self.flush()
@@ -127,23 +138,51 @@ class LineSink:
             except BlockingIOError:
                 return
             except OSError:
-                self.broken = True
-                self._queue.clear()
+                self._break()
                 return
-            self._queued_bytes -= written
+            self._written(written)
             if written < len(line):
-                self._queue[0] = line[written:]
                 return
+
+    def drain(self, timeout_s: float) -> None:
+        """Write what is queued, as the reader takes it, for at most so long (real seconds)."""
+        deadline_s = time.monotonic() + timeout_s
+        if self._thread is not None:
+            with self._changed:
+                self._changed.wait_for(lambda: self.broken or not self._queue, timeout_s)
+            return
+        while self.waiting and (left_s := deadline_s - time.monotonic()) > 0.0:
+            if select.select([], [self], [], left_s)[1]:
+                self.flush()
+
+    def _written(self, size: int) -> None:
+        """So many bytes of the first line have gone."""
+        self._queued_bytes -= size
+        if size < len(self._queue[0]):
+            self._queue[0] = self._queue[0][size:]
+        else:
             self._queue.popleft()
 
-    def _write_on(self) -> None:
+    def _break(self) -> None:
+        """Nobody reads; what is queued is for nobody."""
+        self.broken = True
+        self._queue.clear()
+
+    def _write_in_thread(self) -> None:
         """Windows only: pipes cannot be made non-blocking there, so a thread waits instead."""
-        while not self.broken:
-            with self._news:
-                self._news.wait_for(lambda: bool(self._queue))
-                line = self._queue.popleft()
-                self._queued_bytes -= len(line)
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self.broken or bool(self._queue))
+                if self.broken:
+                    return
+                line = self._queue[0]
             try:
-                os.write(self._fd, line)
+                written = os.write(self._fd, line)
             except OSError:
-                self.broken = True
+                written = 0
+            with self._changed:
+                if written and self._queue:
+                    self._written(written)
+                else:
+                    self._break()
+                self._changed.notify_all()

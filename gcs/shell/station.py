@@ -34,6 +34,9 @@ from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 
+DRAIN_WAIT_S = 5.0
+"""How long the last events wait for an operator's program that does not read them at once."""
+
 
 @dataclass(frozen=True, slots=True)
 class CannotStartError(Exception):
@@ -54,6 +57,8 @@ def main(argument: str) -> int:
         screen.put(ipc.encode(ipc.Trouble(error.text, error.hint, error.exit_code)))
         screen.put(ipc.encode(ipc.Bye(error.exit_code, "", error.text)))
         return error.exit_code
+    finally:
+        screen.drain(DRAIN_WAIT_S)
 
 
 def _run(setup: LinkConfig, screen: LineSink, signals: SignalSource) -> int:

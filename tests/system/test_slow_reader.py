@@ -12,6 +12,9 @@ from pathlib import Path
 import pytest
 
 from gcs import ipc
+from gcs.config import LinkConfig
+from gcs.operator.client import StationClient, StationEnded, StationEvent
+from gcs.operator.dialogue import exit_code_of
 from tests.system.flight_log import only_log, times_ns, whole
 from tests.system.programs import GCS, running
 from tests.system.station import simulated
@@ -22,6 +25,9 @@ pytestmark = pytest.mark.system
 STOPPED_S = 3.0
 UNDISTURBED_S = 0.5
 """What a loaded machine may do to the stream by itself; a link that waits stands for seconds."""
+FILLS_S = 2.0
+"""Ten snapshots a second fill a pipe of 4096 bytes in less."""
+SLOW_S = 1.5
 
 
 def longest_gap_s(path: Path) -> float:
@@ -67,3 +73,24 @@ def test_a_pipe_that_is_full_costs_snapshots_and_nothing_else(tmp_path: Path) ->
     ages_s = [(b.time_ns - a.time_ns) / 1e9 for a, b in pairwise(snapshots)]
     assert max(ages_s) > STOPPED_S / 2, "some were dropped"
     assert longest_gap_s(path) < UNDISTURBED_S
+
+
+@pytest.mark.skipif(not hasattr(fcntl, "F_SETPIPE_SZ"), reason="needs a pipe of chosen size")
+def test_the_good_bye_comes_through_a_pipe_that_is_full_at_the_end() -> None:
+    client = StationClient.start(LinkConfig(endpoints=["udpin://127.0.0.1:0"], record=False))
+    try:
+        process = client._process
+        assert process.stdout is not None
+        fcntl.fcntl(process.stdout, fcntl.F_SETPIPE_SZ, 4096)
+        fills_s = time.monotonic() + FILLS_S
+        until(lambda: time.monotonic() > fills_s, "a full pipe")
+        client.send(ipc.Leave("done"))
+        resume_s = time.monotonic() + SLOW_S
+        until(lambda: time.monotonic() > resume_s, "a reader that is slow at the end")
+        events: list[StationEvent] = []
+        while not events or not isinstance(events[-1], StationEnded):
+            events += client.poll(10.0).events
+    finally:
+        client.close()
+    assert isinstance(events[-2], ipc.Bye)
+    assert exit_code_of(events[-1]) == 0

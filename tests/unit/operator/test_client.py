@@ -80,6 +80,13 @@ def test_a_listener_is_given_every_event_up_to_the_end() -> None:
     client.close()
 
 
+def test_a_good_bye_that_was_not_read_yet_is_not_lost_by_closing() -> None:
+    client = start("flight")
+    next(events_of(client))
+    client.send(ipc.Leave("done"))
+    assert client.close().bye == ipc.Bye(0, "logs/x.mcap", "done")
+
+
 def test_a_line_that_is_no_event_is_a_trouble_and_not_fatal() -> None:
     client = StationClient.start(LinkConfig(), (sys.executable, "-c", "print('Traceback?')"))
     first, *_, last = [event for event, _ in zip(events_of(client), range(2), strict=False)]

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import select
+import threading
+from types import SimpleNamespace
 
 import pytest
 
@@ -64,3 +67,62 @@ def test_a_reader_that_is_gone_breaks_the_sink_and_nothing_else(pipe: tuple[int,
     os.close(pipe[0])
     sink.put(b"hello\n")
     assert sink.broken
+
+
+@pytest.fixture(params=["posix", "win32"])
+def platform(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """On Windows threads read and write the pipes; they work here as well."""
+    platform: str = request.param
+    monkeypatch.setattr("gcs.shell.pipes.sys", SimpleNamespace(platform=platform))
+    return platform
+
+
+FILLER = b"filler\n" * 100
+MORE_THAN_A_PIPE = 1000
+"""So many fillers are more than any system's pipe takes, and fewer than a sink gives up at."""
+
+
+@pytest.mark.usefixtures("platform")
+def test_what_waits_at_the_end_is_written_as_the_reader_reads(pipe: tuple[int, int]) -> None:
+    sink = LineSink(pipe[1])
+    for _ in range(MORE_THAN_A_PIPE):
+        sink.put(FILLER)
+    sink.put(b"bye\n")
+    got: list[bytes] = []
+
+    def read_all() -> None:
+        with os.fdopen(pipe[0], "rb") as reader:
+            got.append(reader.read())
+
+    reading = threading.Thread(target=read_all)
+    reading.start()
+    try:
+        sink.drain(60.0)
+    finally:
+        os.close(pipe[1])
+        reading.join()
+    assert got == [FILLER * MORE_THAN_A_PIPE + b"bye\n"]
+
+
+@pytest.mark.usefixtures("platform")
+def test_a_reader_that_does_not_read_at_the_end_is_not_waited_for(pipe: tuple[int, int]) -> None:
+    sink = LineSink(pipe[1])
+    for _ in range(MORE_THAN_A_PIPE):
+        sink.put(FILLER)
+    sink.drain(0.0)
+    assert not sink.broken
+    os.close(pipe[0])
+    sink.drain(60.0)
+    assert sink.broken
+
+
+@pytest.mark.usefixtures("platform")
+def test_lines_come_through_whichever_way_the_platform_reads(pipe: tuple[int, int]) -> None:
+    source = LineSource(pipe[0])
+    os.write(pipe[1], b"one\ntwo\nthr")
+    os.close(pipe[1])
+    lines: list[bytes] = []
+    while not source.ended:
+        assert select.select([source], [], [], 60.0)[0] == [source]
+        lines += source.read()
+    assert lines == [b"one", b"two", b"thr"]
