@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, FiniteRange, with_options
+from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, FiniteRange, with_options
 
 if TYPE_CHECKING:
     from gcs.config import LinkConfig
@@ -69,7 +69,9 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
     help="Times real time, for vehicle and ground station.",
 )
 @with_options(POLICY, LOG_DIR, TIMEOUT)
-@click.option("--name", default="flight", show_default=True, help="Goes into the log's file name.")
+@click.option(
+    "--name", type=UTF8, default="flight", show_default=True, help="Goes into the log's file name."
+)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")

@@ -185,7 +185,12 @@ def _keep_details(bug: Exception) -> str:
     import traceback
 
     with tempfile.NamedTemporaryFile(
-        "w", prefix="gcs-bug-", suffix=".txt", delete=False, encoding="utf-8"
+        "w",
+        prefix="gcs-bug-",
+        suffix=".txt",
+        delete=False,
+        encoding="utf-8",
+        errors="backslashreplace",
     ) as file:
         file.write(f"gcs {' '.join(sys.argv[1:])}\n\n")
         traceback.print_exception(bug, file=file)

@@ -12,6 +12,7 @@ from gcs.cli.options import (
     LOG_DIR,
     POLICY,
     TIMEOUT,
+    UTF8,
     Seconds,
     link_config,
     with_options,
@@ -162,6 +163,8 @@ def _run(
     from gcs.cli import oneshot_session
     from gcs.operator.request_words import SendRequests, label
 
+    for request in requests:
+        UTF8.convert(request.path, None, None)
     setup = link_config(links, policy, log_dir, name="mission", timeout_s=timeout)
     how = oneshot_session.OneShotConfig(timeout, wait, as_json, label(requests[0]))
     task = oneshot_session.sending(SendRequests(requests), wait)

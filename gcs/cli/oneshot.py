@@ -6,7 +6,7 @@ from functools import partial
 
 import click
 
-from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, Seconds, link_config
+from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, Seconds, link_config
 from gcs.operator import line_parser, request_words
 
 EXITS = (
@@ -48,7 +48,7 @@ def _command(name: str) -> click.Command:
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
 
-    typed_here = click.Argument(["arguments"], nargs=-1, type=click.UNPROCESSED, metavar=word.usage)
+    typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
     options: list[click.Parameter] = [LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
     return click.Command(
         name,

@@ -35,9 +35,26 @@ class Seconds(FiniteRange):
         super().__init__(min=0, min_open=True)
 
 
+class Utf8Text(click.ParamType):
+    """What goes to a station goes as JSON, which has no other text; a file's name may be other."""
+
+    name = "text"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        text = str(value)
+        try:
+            text.encode()
+        except UnicodeEncodeError:
+            self.fail(f"{text!r} is not UTF-8.", param, ctx)
+        return text
+
+
+UTF8 = Utf8Text()
+
 LINK = click.Option(
     ["--link", "links"],
     multiple=True,
+    type=UTF8,
     metavar="URL",
     help=f"Where the vehicle is: udpin:// udpout:// tcpin:// tcpout:// serial://, or pymavlink's "
     f"forms. May be given more than once.  [default: {DEFAULT_LINK}]",
@@ -51,6 +68,7 @@ POLICY = click.Option(
 )
 LOG_DIR = click.Option(
     ["--log-dir"],
+    type=UTF8,
     default="logs",
     show_default=True,
     metavar="DIR",
@@ -94,7 +112,7 @@ def _policy_file(name: str) -> str:
         raise ExitError(
             ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab"
         )
-    return name
+    return UTF8.convert(name, POLICY, None)
 
 
 def link_config(

@@ -5,14 +5,17 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import click
 import pytest
 
+from gcs import resources
 from gcs.cli import main, oneshot, oneshot_session
 from gcs.config import LinkConfig
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
+from tests.unit.cli.command_line import gcs
 
 HEAVY = ("rich", "numpy", "msgspec", "pymavlink", "textual", "asyncio", "subprocess", "gcs.cli.fly")
 
@@ -119,6 +122,41 @@ def test_usage_errors_are_two_and_say_why(
     assert told in capsys.readouterr().err
 
 
+NOT_UTF8 = os.fsdecode(b"not-\xff-utf8")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a file's name is bytes on POSIX only")
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["status", "--log-dir", NOT_UTF8],
+        ["land", "--link", NOT_UTF8],
+        ["land", "--policy", NOT_UTF8],
+        ["mode", NOT_UTF8],
+        ["fly", "--plain", "--name", NOT_UTF8],
+        ["demo", "--log-dir", NOT_UTF8],
+        ["mission", "upload", NOT_UTF8 + ".toml"],
+        ["mission", "download", "-o", NOT_UTF8 + ".plan"],
+    ],
+    ids=lambda args: " ".join(args[:-1]),
+)
+def test_what_is_not_utf8_is_refused_before_any_station_is_started(
+    args: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def start(*_: object) -> None:
+        raise AssertionError("a station was started")
+
+    monkeypatch.setattr("gcs.operator.client.StationClient.start", start)
+    monkeypatch.chdir(tmp_path)
+    try:
+        Path(NOT_UTF8).write_text('name = "not UTF-8"\n')
+        Path(NOT_UTF8 + ".toml").write_bytes(resources.find("demo").read_bytes())
+    except OSError:
+        pytest.skip("this file system has no such names")
+    ended = gcs(*args)
+    assert (ended.exit_code, ended.output.count("is not UTF-8")) == (ExitCode.USAGE, 1)
+
+
 def test_a_keyboard_station_needs_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
     result = subprocess.run(
         [sys.executable, "-c", "from gcs.cli.main import main; main()", "fly", "--sim"],
@@ -207,3 +245,14 @@ def test_a_bug_leaves_its_details_in_a_file(
     path = capsys.readouterr().err.split("details: ")[1].strip()
     with open(path, encoding="utf-8") as file:
         assert "RuntimeError: boom" in file.read()
+
+
+def test_the_details_of_a_bug_are_kept_whatever_was_typed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr("sys.argv", ["gcs", "land", NOT_UTF8])
+    monkeypatch.setattr(oneshot, "land", _raising(RuntimeError("boom")))
+    assert gcs("land").exit_code == ExitCode.BUG
+    (details,) = tmp_path.iterdir()
+    assert "gcs land not-" in details.read_text(encoding="utf-8")
