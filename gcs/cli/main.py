@@ -10,6 +10,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 from typing import NamedTuple, NoReturn
 
 import click
@@ -199,4 +200,8 @@ def _keep_details(bug: Exception) -> str:
 
 def main() -> NoReturn:
     """The console script."""
+    if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
+        # Not every terminal, and no pipe on Windows, has every character that we print, and a
+        # file's name may be no text at all: what cannot be written is escaped, as on stderr.
+        sys.stdout.reconfigure(errors="backslashreplace")
     sys.exit(run())

@@ -198,6 +198,20 @@ def test_a_reader_that_has_gone_ends_it_quietly() -> None:
     assert result.stderr == ""
 
 
+def test_what_the_terminal_cannot_show_is_escaped(tmp_path: Path) -> None:
+    mission = tmp_path / "go\u2192.toml"
+    mission.write_bytes(resources.find("demo").read_bytes())
+    result = subprocess.run(
+        [sys.executable, "-m", "gcs", "mission", "check", str(mission)],
+        env={**os.environ, "PYTHONIOENCODING": "latin-1:strict"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (result.returncode, result.stderr) == (ExitCode.DONE, "")
+    assert "go\\u2192.toml: demo: 7 items" in result.stdout
+
+
 def _raising(error: BaseException) -> click.Command:
     def callback() -> None:
         raise error
