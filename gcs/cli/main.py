@@ -165,6 +165,9 @@ def run(args: Sequence[str] | None = None) -> int:
         _drop_output()
         return ExitCode.INTERRUPTED
     except Exception as bug:  # noqa: BLE001  the one place: a bug is told, not spilled
+        if _reader_has_gone(bug):
+            _drop_output()
+            return ExitCode.INTERRUPTED
         if isinstance(bug, OSError) and bug.errno in _NO_ROOM:
             _drop_output()
             click.echo(f"gcs: cannot write the output: {bug.strerror}", err=True)
@@ -173,6 +176,13 @@ def run(args: Sequence[str] | None = None) -> int:
         click.echo(f"  details: {_keep_details(bug)}", err=True)
         return ExitCode.BUG
     return result if isinstance(result, int) else ExitCode.DONE
+
+
+def _reader_has_gone(error: Exception, os_name: str = os.name) -> bool:
+    """Windows says EINVAL where others say that a pipe is broken; a file's error has its name."""
+    if os_name != "nt" or not isinstance(error, OSError):
+        return False
+    return error.errno == errno.EINVAL and error.filename is None
 
 
 def _drop_output() -> None:

@@ -10,6 +10,10 @@ from gcs.shell.pipes import LineSource
 
 STOP_WAIT_S = 3.0
 ENDING_S = 0.2
+if sys.platform == "win32":
+    _CREATION_FLAGS = subprocess.CREATE_NEW_PROCESS_GROUP
+else:
+    _CREATION_FLAGS = 0
 
 
 class SimProcess:
@@ -26,13 +30,15 @@ class SimProcess:
         if sim.home:
             words += ["--home", sim.home]
         # In a session of its own: a terminal that closes hangs up on all its programs at once, and
-        # would take the vehicle away before it is seen holding.
+        # would take the vehicle away before it is seen holding.  On Windows a Ctrl-C goes to all
+        # programs of a console, but not to other groups.
         self._child = subprocess.Popen(
             words,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             start_new_session=True,
+            creationflags=_CREATION_FLAGS,
         )
         assert self._child.stdout is not None
         self.lines = LineSource(self._child.stdout.fileno())

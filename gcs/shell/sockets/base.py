@@ -11,6 +11,7 @@ from gcs.shell.endpoints import Endpoint
 
 WANTED_RCVBUF = 4 << 20
 """Bytes of receive buffer to ask for: 0.1 s of garbage collection must not lose a burst."""
+LEAST_RCVBUF = 64 << 10
 MAX_READ = 65_536
 
 
@@ -107,6 +108,17 @@ def bind(sock: socket.socket, address: str, endpoint: Endpoint) -> int:
 
 
 def grow_buffer(sock: socket.socket) -> int:
-    """Ask for `WANTED_RCVBUF`; the bytes that the kernel granted."""
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, WANTED_RCVBUF)
+    """Ask for `WANTED_RCVBUF`; the bytes that the kernel granted.
+
+    Linux grants what it can.  macOS and the BSDs refuse what is over their limit
+    (kern.ipc.maxsockbuf), so there half as much is asked for, and again.
+    """
+    wanted = WANTED_RCVBUF
+    while wanted >= LEAST_RCVBUF:
+        try:
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, wanted)
+        except OSError:
+            wanted //= 2
+        else:
+            break
     return sock.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)

@@ -15,7 +15,9 @@ CONNECTING_NS = 50_000_000
 MAX_CONNECTING_NS = 5_000_000_000
 MAX_QUEUED = 65_536
 """Bytes that may wait for a slow peer; what comes on top is dropped, as UDP would."""
-_UNDER_WAY = (errno.EINPROGRESS, errno.EWOULDBLOCK, errno.EALREADY)
+_UNDER_WAY = {errno.EINPROGRESS, errno.EWOULDBLOCK, errno.EALREADY}
+if os.name == "nt":
+    _UNDER_WAY.add(errno.EINVAL)  # what Windows says to a second look at a connection being made
 
 
 class _Stream:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -196,6 +197,22 @@ def test_a_reader_that_has_gone_ends_it_quietly() -> None:
         )
     assert result.returncode == ExitCode.INTERRUPTED
     assert result.stderr == ""
+
+
+@pytest.mark.parametrize(
+    ("error", "os_name", "gone"),
+    [
+        (OSError(errno.EINVAL, "Invalid argument"), "nt", True),
+        (OSError(errno.EINVAL, "Invalid argument", "a:b"), "nt", False),
+        (OSError(errno.EINVAL, "Invalid argument"), "posix", False),
+        (OSError(errno.EACCES, "Permission denied"), "nt", False),
+        (ValueError("Invalid argument"), "nt", False),
+    ],
+)
+def test_a_broken_pipe_has_another_name_on_windows(
+    error: Exception, os_name: str, gone: bool
+) -> None:
+    assert main._reader_has_gone(error, os_name) is gone
 
 
 def test_what_the_terminal_cannot_show_is_escaped(tmp_path: Path) -> None:

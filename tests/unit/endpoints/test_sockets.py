@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import errno
 import select
 import socket
 from collections.abc import Callable, Iterator
@@ -12,6 +13,7 @@ import pytest
 
 from gcs.shell.endpoints import Endpoint, Kind, parse_endpoint
 from gcs.shell.sockets import AddressInUse, Link, SerialUnavailable, TcpIn, TcpOut, UdpIn, open_link
+from gcs.shell.sockets.base import grow_buffer
 from gcs.shell.sockets.tcp import MAX_QUEUED, RECONNECT_NS
 from gcs.shell.sockets.udp import MAX_PEERS
 
@@ -125,6 +127,27 @@ def test_garbage_makes_no_peer(opened: Opener) -> None:
     station.send(b"\xfdanswer")
     assert station.counters.dropped == 1
     assert stranger.drain(1) == []
+
+
+class LimitedSocket(socket.socket):
+    """As on macOS: more than its limit is refused, not cut."""
+
+    limit = 1 << 20
+
+    def setsockopt(self, level: int, option: int, value: int) -> None:  # type: ignore[override]
+        if option == socket.SO_RCVBUF and value > self.limit:
+            raise OSError(errno.ENOBUFS, "No buffer space available")
+        super().setsockopt(level, option, value)
+
+
+@pytest.mark.parametrize("limit", [1 << 20, 0])
+def test_a_receive_buffer_over_the_systems_limit_is_asked_for_smaller(limit: int) -> None:
+    with LimitedSocket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        before = sock.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+        sock.limit = limit
+        granted = grow_buffer(sock)
+        assert granted == sock.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+        assert (granted == before) is (limit == 0)
 
 
 def test_draining_takes_no_more_than_asked_and_never_waits(opened: Opener) -> None:

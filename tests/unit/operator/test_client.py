@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import socket
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -98,8 +98,8 @@ def test_a_line_that_is_no_event_is_a_trouble_and_not_fatal() -> None:
 
 def test_a_wait_ends_when_something_else_is_readable() -> None:
     client = start("silent")
-    reader, writer = os.pipe()
-    os.write(writer, b"x")
-    with os.fdopen(reader, "rb") as file, os.fdopen(writer, "wb"):
-        assert client.poll(60.0, (file,)).ready == [file]
+    reader, writer = socket.socketpair()
+    with reader, writer:
+        writer.send(b"x")
+        assert client.poll(60.0, (reader,)).ready == [reader]
     client.close()
