@@ -127,6 +127,8 @@ def _open_links(setup: LinkConfig, opened: ExitStack) -> list[sockets.Link]:
         except sockets.AddressInUse as error:
             hint = "another ground station may be running; choose another port with --link"
             raise CannotStartError(ExitCode.ADDRESS_IN_USE, str(error), hint) from error
+        except sockets.SerialUnavailable as error:
+            raise CannotStartError(ExitCode.USAGE, f"{url}: {error}", error.hint) from error
         except OSError as error:
             hint = "is the address one of this machine's?"
             raise CannotStartError(
