@@ -1,4 +1,4 @@
-"""How a link process is to be started: one object, passed as JSON in its first argument."""
+"""How a station process is to be started: one object, passed as JSON in its first argument."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import msgspec
 
 
 class SimConfig(msgspec.Struct, frozen=True):
-    """A vehicle of the link's own (`--sim`): started with it, stopped once it holds or landed."""
+    """A vehicle of the station's own (`--sim`), stopped once it holds or has landed."""
 
     autopilot: str = "px4"
     home: str = ""  # LAT,LON,ALT; empty = the autopilot's own
@@ -14,8 +14,8 @@ class SimConfig(msgspec.Struct, frozen=True):
     speedup: float = 1.0
 
 
-class LinkConfig(msgspec.Struct, frozen=True):
-    """Everything a link needs to know.  Times in seconds, paths as typed by the user."""
+class StationConfig(msgspec.Struct, frozen=True):
+    """Everything that a station needs to know.  Times in seconds, paths as typed by the user."""
 
     endpoints: list[str] = []  # empty with `sim`: a private free port
     sim: SimConfig | None = None
@@ -28,13 +28,13 @@ class LinkConfig(msgspec.Struct, frozen=True):
     speedup: float = 1.0
     connect_timeout_s: float = 10.0
     snapshots_hz: float = 10.0
-    record: bool = True  # False: nothing is written, as for a glance at the vehicle
+    record: bool = True  # False: nothing is written, as for a short look at the vehicle
 
 
-def encode(config: LinkConfig) -> str:
+def encode(config: StationConfig) -> str:
     return msgspec.json.encode(config).decode()
 
 
-def decode(text: str) -> LinkConfig:
+def decode(text: str) -> StationConfig:
     """Raises msgspec.ValidationError."""
-    return msgspec.json.decode(text.encode(), type=LinkConfig)
+    return msgspec.json.decode(text.encode(), type=StationConfig)

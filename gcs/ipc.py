@@ -1,6 +1,6 @@
-"""What the link process and its operator say to each other: JSON, one object a line.
+"""What a station and its operator say to each other: JSON, one object a line.
 
-The operator (TUI, `--plain`, a one-shot command) writes `Command` lines to the link's standard
+The operator (TUI, `--plain`, a one-shot command) writes `Command` lines to the station's standard
 input and reads `Event` lines from its standard output.  The operator's frame is ENU, metres;
 angles are degrees, clockwise from north; everything is converted once, in the session.  Both
 unions are tagged by `type`; a line that does not decode is answered with a `Trouble` event.
@@ -60,7 +60,7 @@ Command: TypeAlias = Ask | Pending | Leave
 
 
 class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):
-    """First event: where the record is and what the link listens to."""
+    """First event: where the record is and what the station listens to."""
 
     version: str
     log_path: str
@@ -161,7 +161,7 @@ class Trouble(msgspec.Struct, frozen=True, tag="trouble", tag_field="type"):
 
 
 class Bye(msgspec.Struct, frozen=True, tag="bye", tag_field="type"):
-    """Last event: the link is down, the log is closed."""
+    """Last event: the station has ended, the log is closed."""
 
     exit_code: int
     log_path: str

@@ -35,11 +35,11 @@ def demo(ctx: click.Context, autopilot: str, log_dir: str, timeout: float) -> No
     from rich.console import Console
 
     from gcs import resources
-    from gcs.config import LinkConfig, SimConfig
+    from gcs.config import SimConfig, StationConfig
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 
-    config = LinkConfig(
+    config = StationConfig(
         sim=SimConfig(autopilot=autopilot),
         log_dir=log_dir,
         name="demo",

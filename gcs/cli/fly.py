@@ -9,7 +9,7 @@ import click
 from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, FiniteRange, with_options
 
 if TYPE_CHECKING:
-    from gcs.config import LinkConfig
+    from gcs.config import StationConfig
 
 EPILOG = """\
 Examples:
@@ -99,12 +99,12 @@ def fly(
     """Fly by keyboard: keys change a pending goal, Enter sends it through the gate."""
     import msgspec
 
-    from gcs.cli.options import link_config
+    from gcs.cli.options import station_config
     from gcs.config import SimConfig
 
     if sim and links:
         raise click.UsageError("--sim starts a vehicle of its own: leave out --link")
-    config = link_config(links, policy, log_dir, name=name, timeout_s=timeout)
+    config = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
     if sim:
         vehicle = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
         config = msgspec.structs.replace(config, sim=vehicle, endpoints=[])
@@ -115,7 +115,7 @@ def fly(
     ctx.exit(_fly_keyboard(config))
 
 
-def _fly_plain(config: LinkConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
+def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
     from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
@@ -126,7 +126,7 @@ def _fly_plain(config: LinkConfig, *, min_level: int, as_json: bool, strict: boo
         return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
 
 
-def _fly_keyboard(config: LinkConfig) -> int:
+def _fly_keyboard(config: StationConfig) -> int:
     import sys
 
     from gcs.cli.plain import stdin_is_a_terminal

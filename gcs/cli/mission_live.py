@@ -14,7 +14,7 @@ from gcs.cli.options import (
     TIMEOUT,
     UTF8,
     Seconds,
-    link_config,
+    station_config,
     with_options,
 )
 from gcs.exit_codes import ExitCode
@@ -165,7 +165,7 @@ def _run(
 
     for request in requests:
         UTF8.convert(request.path, None, None)
-    setup = link_config(links, policy, log_dir, name="mission", timeout_s=timeout)
+    setup = station_config(links, policy, log_dir, name="mission", timeout_s=timeout)
     how = oneshot_session.OneShotConfig(timeout, wait, as_json, label(requests[0]))
     task = oneshot_session.sending(SendRequests(requests), wait)
     code = oneshot_session.run(setup, how, task)

@@ -6,7 +6,7 @@ from functools import partial
 
 import click
 
-from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, Seconds, link_config
+from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, Seconds, station_config
 from gcs.operator import line_parser, request_words
 
 EXITS = (
@@ -43,7 +43,7 @@ def _command(name: str) -> click.Command:
 
         from gcs.cli import oneshot_session
 
-        setup = link_config(links, policy, log_dir, name=name, timeout_s=timeout)
+        setup = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
         how = oneshot_session.OneShotConfig(timeout, wait, as_json, name)
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
@@ -82,7 +82,7 @@ def _status(
     from gcs.cli import oneshot_session
     from gcs.cli.status import report
 
-    setup = link_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
+    setup = station_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
     how = oneshot_session.OneShotConfig(timeout, 0.0, as_json, "status", cautions=True)
     code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)

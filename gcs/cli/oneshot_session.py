@@ -10,7 +10,7 @@ import msgspec
 
 from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
 from gcs.operator.client import StationClient
@@ -44,7 +44,7 @@ class OneShotConfig:
     cautions: bool = False
 
 
-def run(setup: LinkConfig, how: OneShotConfig, task: Task) -> int:
+def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
     """Do it with a station of our own; returns the exit code."""
     with Interrupts() as interrupts:
         return run_over(StationClient.start(setup), interrupts, how, task)

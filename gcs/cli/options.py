@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -35,13 +35,11 @@ class Seconds(FiniteRange):
         super().__init__(min=0, min_open=True)
 
 
-class Utf8Text(click.ParamType):
+class Utf8Text(click.types.StringParamType):
     """What goes to a station goes as JSON, which has no other text; a file's name may be other."""
 
-    name = "text"
-
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        text = str(value)
+        text = super().convert(value, param, ctx)
         try:
             text.encode()
         except UnicodeEncodeError:
@@ -115,7 +113,7 @@ def _policy_file(name: str) -> str:
     return UTF8.convert(name, POLICY, None)
 
 
-def link_config(
+def station_config(
     links: tuple[str, ...],
     policy: str,
     log_dir: str,
@@ -123,9 +121,9 @@ def link_config(
     name: str,
     timeout_s: float,
     record: bool = True,
-) -> LinkConfig:
+) -> StationConfig:
     """For a station that flies a vehicle which somebody else has started."""
-    return LinkConfig(
+    return StationConfig(
         endpoints=list(links) or [DEFAULT_LINK],
         policy_path=_policy_file(policy),
         log_dir=log_dir,

@@ -77,7 +77,9 @@ class StationClient:
         self._listener: threading.Thread | None = None
 
     @classmethod
-    def start(cls, setup: config.LinkConfig, command: Sequence[str] | None = None) -> StationClient:
+    def start(
+        cls, setup: config.StationConfig, command: Sequence[str] | None = None
+    ) -> StationClient:
         """Start `python -m gcs.shell.station '<config>'` (or `command` in its place)."""
         words = [*(command or STATION_COMMAND), config.encode(setup)]
         process = subprocess.Popen(

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.protocol.effects import (
     Address,
     Heard,
@@ -105,7 +105,7 @@ Found: TypeAlias = Send | ParameterKnown | SettingsKnown
 class Discovery:
     """Once for each time that a vehicle appears; then only what is missing is asked for again."""
 
-    def __init__(self, config: LinkConfig) -> None:
+    def __init__(self, config: StationConfig) -> None:
         self._own = Address(config.sysid, config.compid)
         self._speedup = config.speedup
         self._reader: ParamReader | None = None

@@ -7,7 +7,7 @@ Everything that moves still goes through the gate.
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.gate.inputs import MissionLoaded, MissionSeen
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
@@ -34,7 +34,7 @@ MISSION_WORDS = TRANSFER_WORDS | {"mission_start"}
 class Missions:
     """Takes the mission requests of one vehicle, and tells the gate how its mission goes."""
 
-    def __init__(self, config: LinkConfig) -> None:
+    def __init__(self, config: StationConfig) -> None:
         self._own = Address(config.sysid, config.compid)
         self._timing = Timing(
             round(SPEC_TIMING.wait_ns * config.speedup),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.gate.policy.policy import Policy
 
 
@@ -12,7 +12,7 @@ from gcs.gate.policy.policy import Policy
 class Setup:
     """`policy` has the zones of any fence file in it already; `policy_text` is as it was read."""
 
-    config: LinkConfig
+    config: StationConfig
     version: str
     policy: Policy
     policy_text: str

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Final, get_args
 
 from gcs import ipc
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.gate import effects, inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
@@ -72,7 +72,7 @@ MISSION_MESSAGES: Final = frozenset(
 class Vehicle:
     """The vehicle that a session flies; `telemetry` is None until it is heard."""
 
-    def __init__(self, config: LinkConfig, policy: Policy, now_ns: int) -> None:
+    def __init__(self, config: StationConfig, policy: Policy, now_ns: int) -> None:
         self._config = config
         self._start_ns = now_ns
         self._port = GatePort(policy, config.speedup, now_ns)

@@ -1,4 +1,4 @@
-"""A vehicle of the link's own (`--sim`), started beside it and stopped after it."""
+"""A vehicle of the station's own (`--sim`), started beside it and stopped after it."""
 
 from __future__ import annotations
 

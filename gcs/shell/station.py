@@ -1,4 +1,4 @@
-"""The station process: `python -m gcs.shell.station '<LinkConfig as JSON>'`.
+"""The station process: `python -m gcs.shell.station '<StationConfig as JSON>'`.
 
 Opens what the configuration names, runs the one loop, closes in order: first the vehicle is seen
 safe (the session sees to that), then the log is closed, then a vehicle of our own is stopped.
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gcs import __version__, config, ipc
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import Policy, PolicyError, parse_policy
 from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
@@ -61,7 +61,7 @@ def main(argument: str) -> int:
         screen.drain(DRAIN_WAIT_S)
 
 
-def _run(setup: LinkConfig, screen: LineSink, signals: SignalSource) -> int:
+def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
     policy, policy_text = _read_policy(setup.policy_path)
     clock = Clock(setup.speedup)
     with ExitStack() as opened:
@@ -116,7 +116,7 @@ def _zones(spec: ZoneSpec, folder: Path) -> tuple[ZoneSpec, ...]:
     return zone_specs(read(str(file), file.read_bytes()).fence)
 
 
-def _open_links(setup: LinkConfig, opened: ExitStack) -> list[sockets.Link]:
+def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
     urls = setup.endpoints or ["udpin://127.0.0.1:0"]
     links = []
     for url in urls:
@@ -139,7 +139,7 @@ def _open_links(setup: LinkConfig, opened: ExitStack) -> list[sockets.Link]:
     return links
 
 
-def _open_recording(setup: LinkConfig, clock: Clock) -> Recording:
+def _open_recording(setup: StationConfig, clock: Clock) -> Recording:
     if not setup.record:
         return Recording(None)
     try:

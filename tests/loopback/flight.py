@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 from gcs import ipc
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.frames import Vec3
 from gcs.gate.policy.policy import DEFAULT, Policy, parse_policy
 from gcs.gate.states import State
@@ -76,7 +76,7 @@ class Flight(Looks):
         self.vehicle = Autopilot(personality, HOMES[personality], seed, params=parameters)
         server = VehicleServer(self.vehicle, PROFILES[personality], parameters, 1)
         self.world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)
-        config = LinkConfig(endpoints=["test"], name="loopback")
+        config = StationConfig(endpoints=["test"], name="loopback")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
         self.session = Session(setup, START_NS)
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)

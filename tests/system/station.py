@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from gcs import ipc
-from gcs.config import LinkConfig, SimConfig
+from gcs.config import SimConfig, StationConfig
 from gcs.operator.client import StationClient, StationEnded
 from gcs.operator.dialogue import Dialogue, TrackedRequest
 from gcs.operator.line_parser import parse_line
@@ -41,7 +41,7 @@ class NoInterrupts:
 class Station:
     """Types lines and waits for what becomes of them; keeps every event, in order."""
 
-    def __init__(self, config: LinkConfig) -> None:
+    def __init__(self, config: StationConfig) -> None:
         self.events: list[ipc.Event] = []
         self.client = StationClient.start(config)
         self.interrupts = NoInterrupts()
@@ -101,7 +101,7 @@ class Station:
 
 
 @contextmanager
-def station(config: LinkConfig) -> Iterator[Station]:
+def station(config: StationConfig) -> Iterator[Station]:
     """A station whose process is gone at the end, whatever happens."""
     made = Station(config)
     try:
@@ -113,7 +113,7 @@ def station(config: LinkConfig) -> Iterator[Station]:
 @contextmanager
 def simulated(log_dir: Path, speedup: float = 1.0, policy_path: str = "") -> Iterator[Station]:
     """A station with a vehicle of its own, connected."""
-    config = LinkConfig(
+    config = StationConfig(
         sim=SimConfig(speedup=speedup),
         speedup=speedup,
         log_dir=str(log_dir),
@@ -129,7 +129,7 @@ def tapped(
     log_dir: Path, speedup: float = 1.0, tap: WireTap | None = None
 ) -> Iterator[tuple[Station, WireTap]]:
     """A station and a vehicle, separate programs, with an ear on the wire between them."""
-    config = LinkConfig(endpoints=["udpin://127.0.0.1:0"], speedup=speedup, log_dir=str(log_dir))
+    config = StationConfig(endpoints=["udpin://127.0.0.1:0"], speedup=speedup, log_dir=str(log_dir))
     with tap or WireTap() as ear, station(config) as made:
         ear.connect(made.ports[0])
         url = f"udpout://127.0.0.1:{ear.vehicle_port}"

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from gcs import ipc
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.operator.client import StationClient, StationEnded, StationEvent
 from gcs.operator.dialogue import exit_code_of
 from tests.system.flight_log import only_log, times_ns, whole
@@ -77,7 +77,7 @@ def test_a_pipe_that_is_full_costs_snapshots_and_nothing_else(tmp_path: Path) ->
 
 @pytest.mark.skipif(not hasattr(fcntl, "F_SETPIPE_SZ"), reason="needs a pipe of chosen size")
 def test_the_good_bye_comes_through_a_pipe_that_is_full_at_the_end() -> None:
-    client = StationClient.start(LinkConfig(endpoints=["udpin://127.0.0.1:0"], record=False))
+    client = StationClient.start(StationConfig(endpoints=["udpin://127.0.0.1:0"], record=False))
     try:
         process = client._process
         assert process.stdout is not None

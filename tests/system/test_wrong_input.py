@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from gcs.config import LinkConfig, SimConfig
+from gcs.config import SimConfig, StationConfig
 from gcs.operator.errors import ExitError
 from gcs.report import Direction
 from tests.system.flight_log import frames, readings, whole, wire
@@ -100,7 +100,7 @@ def test_a_home_that_is_no_place(home: str) -> None:
 
 
 def test_a_vehicle_of_our_own_that_does_not_start_is_told_at_once(tmp_path: Path) -> None:
-    config = LinkConfig(sim=SimConfig(home="nowhere"), log_dir=str(tmp_path))
+    config = StationConfig(sim=SimConfig(home="nowhere"), log_dir=str(tmp_path))
     with station(config) as operator, pytest.raises(ExitError, match="exit code 2") as failed:
         operator.connect()
     assert failed.value.exit_code == 3

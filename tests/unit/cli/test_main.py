@@ -13,7 +13,7 @@ import pytest
 
 from gcs import resources
 from gcs.cli import main, oneshot, oneshot_session
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from tests.unit.cli.command_line import gcs
@@ -66,9 +66,11 @@ def test_a_command_without_arguments_shows_none(capsys: pytest.CaptureFixture[st
 
 
 def test_a_glance_at_the_vehicle_keeps_no_record(monkeypatch: pytest.MonkeyPatch) -> None:
-    started: dict[str, LinkConfig] = {}
+    started: dict[str, StationConfig] = {}
 
-    def run(setup: LinkConfig, how: oneshot_session.OneShotConfig, _: oneshot_session.Task) -> int:
+    def run(
+        setup: StationConfig, how: oneshot_session.OneShotConfig, _: oneshot_session.Task
+    ) -> int:
         started[how.what] = setup
         return ExitCode.DONE
 

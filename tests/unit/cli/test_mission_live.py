@@ -8,7 +8,7 @@ import pytest
 
 from gcs import ipc, resources
 from gcs.cli import oneshot_session
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from tests.unit.cli.command_line import gcs
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
@@ -19,7 +19,9 @@ def connection(monkeypatch: pytest.MonkeyPatch) -> FakeConnection:
     """To the station that the commands will talk to, in place of a process of their own."""
     fake = FakeConnection(FakeStation("airborne"))
 
-    def run(_: LinkConfig, how: oneshot_session.OneShotConfig, task: oneshot_session.Task) -> int:
+    def run(
+        _: StationConfig, how: oneshot_session.OneShotConfig, task: oneshot_session.Task
+    ) -> int:
         return oneshot_session.run_over(fake, NoInterrupts(), how, task)
 
     monkeypatch.setattr(oneshot_session, "run", run)

@@ -11,7 +11,7 @@ from queue import Queue
 import pytest
 
 from gcs import ipc
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.operator.client import StationClient, StationEnded, StationEvent
 
 FAKE = (sys.executable, "-m", "tests.unit.operator.fake_station")
@@ -30,7 +30,7 @@ def events_of(client: StationClient) -> Iterator[StationEvent]:
 
 
 def start(scenario: str) -> StationClient:
-    return StationClient.start(LinkConfig(name=scenario, speedup=20.0), FAKE)
+    return StationClient.start(StationConfig(name=scenario, speedup=20.0), FAKE)
 
 
 def test_it_says_hello_answers_and_says_good_bye() -> None:
@@ -88,7 +88,7 @@ def test_a_good_bye_that_was_not_read_yet_is_not_lost_by_closing() -> None:
 
 
 def test_a_line_that_is_no_event_is_a_trouble_and_not_fatal() -> None:
-    client = StationClient.start(LinkConfig(), (sys.executable, "-c", "print('Traceback?')"))
+    client = StationClient.start(StationConfig(), (sys.executable, "-c", "print('Traceback?')"))
     first, *_, last = [event for event, _ in zip(events_of(client), range(2), strict=False)]
     assert isinstance(first, ipc.Trouble)
     assert "no event" in first.text

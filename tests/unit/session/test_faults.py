@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.gate.policy.policy import DEFAULT
 from gcs.report import InputItem
 from gcs.session import inputs
@@ -15,7 +15,7 @@ from gcs.session.setup import Setup
 
 @pytest.fixture
 def session() -> Session:
-    return Session(Setup(LinkConfig(), "test", DEFAULT, "", ("a link",), ""), now_ns=0)
+    return Session(Setup(StationConfig(), "test", DEFAULT, "", ("a link",), ""), now_ns=0)
 
 
 def finished(effects: list[Effect]) -> list[Finish]:

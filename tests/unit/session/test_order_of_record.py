@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.config import LinkConfig
+from gcs.config import StationConfig
 from gcs.gate.policy.policy import DEFAULT
 from gcs.report import FsaItem
 from gcs.session.effects import Record
@@ -20,7 +20,7 @@ IN_AIR = 2
 
 def test_a_landing_that_cannot_be_asked_for_is_recorded_after_it_began() -> None:
     """An autopilot of an unknown kind takes no commands: LANDING ends in the instant it begins."""
-    session = Session(Setup(LinkConfig(), "test", DEFAULT, "", ("a link",), ""), now_ns=0)
+    session = Session(Setup(StationConfig(), "test", DEFAULT, "", ("a link",), ""), now_ns=0)
     vehicle = FrameWriter(1, 1)
 
     def hear(message: Message) -> None:
