@@ -1,4 +1,8 @@
-"""What an action of the table does."""
+"""What each `Action` of the table does.
+
+Goals, control, the fence and what is noted are here; `commanding.py` and `holding.py` have the
+actions that send commands.
+"""
 
 from __future__ import annotations
 
@@ -9,42 +13,39 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, Level, OutcomeKind, Ruling, SwitchedFence
-from gcs.gate.machine import commanding, holding
+from gcs.gate.machine import commanding, holding, verifying
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.guards import allow, within
 from gcs.gate.machine.memory import Goal, Task
-from gcs.gate.machine.rules import Do, End
+from gcs.gate.machine.progress import within_arrival
+from gcs.gate.machine.rules import Action, End
 from gcs.gate.machine.turn import Turn
-from gcs.gate.refusal import Code, Refusal
+from gcs.gate.refusal import Code
 from gcs.gate.requests import GoTo, SwitchFence
 from gcs.gate.states import Control, LandedState
 
 TICK_S = 0.05
-"""The session ticks at 20 Hz."""
+"""The time from one tick to the next: the session ticks at 20 Hz."""
+
 DISARM_WAIT_S = 3.0
-"""How long a landing that is on the ground waits to be reported disarmed."""
+"""How long a request that ends on the ground waits for the vehicle to be reported disarmed."""
 
 # ------------------------------------------------------------------------------------ goals
 
 
-def _verify(turn: Turn) -> None:
-    """Judge the pending goal; the streamed one is not touched until the verdict is in."""
-    memory, requested = turn.memory, turn.memory.pending
+def _verify_goal(turn: Turn) -> None:
+    """Ask the verifier for the pending goal; its answer is the next event.
+
+    The setpoint that is being sent stays as it is until then.
+    """
+    requested = turn.memory.pending
     assert requested is not None
     assert isinstance(requested.request, GoTo)
-    if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
-        judged = allow(turn, Refusal(Code.NO_ORIGIN, "home and fence are not known yet"))
-    else:
-        judged = allow(
-            turn,
-            memory.verifier.goal(
-                requested.request.goal_ned, requested.request.yaw_rad, memory.pos_ned, memory.v_ned
-            ),
-        )
-    turn.raised.append(Event.GOAL_CLEARED if judged is None else Event.GOAL_REFUSED)
+    refusal = verifying.goal(turn, requested.request)
+    turn.raised.append(Event.GOAL_CLEARED if refusal is None else Event.GOAL_REFUSED)
 
 
 def _fly_goal(turn: Turn) -> None:
+    """Accept the pending go-to; the request that was under way is superseded."""
     memory, requested = turn.memory, turn.memory.pending
     assert requested is not None
     assert isinstance(requested.request, GoTo)
@@ -54,13 +55,13 @@ def _fly_goal(turn: Turn) -> None:
     goal_ned = requested.request.goal_ned
     memory.task = Task(requested, Event.GOTO)
     memory.goal = Goal(goal_ned, requested.request.yaw_rad, turn.evidence)
-    memory.within_since_ns = turn.now_ns if within(turn, goal_ned) else None
+    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal_ned) else None
     assert memory.pos_ned is not None
-    turn.due(_flight_s(turn, memory.pos_ned, goal_ned))
+    turn.set_deadline(_flight_s(turn, memory.pos_ned, goal_ned))
 
 
 def _flight_s(turn: Turn, pos_ned: Vec3, goal_ned: Vec3) -> float:
-    """The policy's deadline for the distance: the slowest healthy flight, times its factor."""
+    """Seconds allowed for a goal: the slowest healthy flight there, times the policy's factor."""
     speeds, policy = turn.policy.speeds, turn.policy
     down_m = goal_ned[2] - pos_ned[2]
     level_s = math.hypot(goal_ned[0] - pos_ned[0], goal_ned[1] - pos_ned[1]) / speeds.cruise_m_s
@@ -68,12 +69,13 @@ def _flight_s(turn: Turn, pos_ned: Vec3, goal_ned: Vec3) -> float:
     return max(policy.deadline_min_s, policy.deadline_factor * (level_s + climb_s))
 
 
-def _drop_goal(turn: Turn) -> None:
+def _refuse_goal(turn: Turn) -> None:
     assert turn.why is not None
     turn.refuse_pending(turn.why)
 
 
-def _keep_goal(turn: Turn) -> None:
+def _hold_at_goal(turn: Turn) -> None:
+    """The goal is reached: it is the hold goal from now on."""
     memory = turn.memory
     memory.hold, memory.goal = memory.goal, None
 
@@ -82,16 +84,19 @@ def _keep_goal(turn: Turn) -> None:
 
 
 def _take_control(turn: Turn) -> None:
-    """Stream the verified present position, then ask: at once, or after the policy's time."""
+    """Send the verified present position as setpoint from now on, and command guided mode.
+
+    ardupilot is asked at once; px4 wants setpoints first, for the policy's time.
+    """
     memory, times = turn.memory, turn.policy.control
     assert memory.pos_ned is not None
     turn.cancel_commands()
     memory.hold, memory.goal = Goal(memory.pos_ned, None, turn.evidence), None
     memory.control = Control.TAKING
-    # The stream begins with the next tick of its grid, not with the request.
+    # The first setpoint leaves with the next tick, not with the request.
     stream_s = 0.0 if memory.autopilot == "ardupilot" else times.stream_s + TICK_S
     memory.ask_control_ns = turn.after_ns(stream_s)
-    turn.due(stream_s + times.timeout_s)
+    turn.set_deadline(stream_s + times.timeout_s)
 
 
 def _ask_guided(turn: Turn) -> None:
@@ -104,7 +109,8 @@ def _gain_control(turn: Turn) -> None:
     turn.memory.asked_mode = None
 
 
-def _release(turn: Turn) -> None:
+def _release_control(turn: Turn) -> None:
+    """Send no more setpoints, and forget every command that has no answer yet."""
     memory = turn.memory
     turn.cancel_commands()
     memory.control = Control.NONE
@@ -123,74 +129,76 @@ def _switch_fence(turn: Turn) -> None:
 
 
 def _forget_interrupted(turn: Turn) -> None:
+    """In STALE: release control, and go back to no state when a fresh position arrives."""
     memory = turn.memory
-    _release(turn)
+    _release_control(turn)
     memory.back_to = None
     memory.grace_until_ns = None
 
 
 def _forget_vehicle(turn: Turn) -> None:
-    """What was reported is not known any more; that a vehicle was heard, is."""
+    """The vehicle is not heard any more: forget its reports, but not that it was heard."""
     memory = turn.memory
     memory.heard_ns = memory.pos_ns = None
     memory.pos_ned = memory.v_ned = None
     memory.armed = False
     memory.mode, memory.mode_name = None, ""
     memory.landed, memory.landed_ns = LandedState.UNDEFINED, None
-    memory.stood_down_m = None
+    memory.ground_down_m = None
     memory.lifted = False
     memory.back_to = None
     memory.grace_until_ns = None
 
 
 def _await_disarm(turn: Turn) -> None:
-    turn.due(DISARM_WAIT_S)
+    turn.set_deadline(DISARM_WAIT_S)
 
 
-def _note_lifted(turn: Turn) -> None:
+def _note_lift_off(turn: Turn) -> None:
     turn.memory.lifted = True
 
 
-def _note_force(turn: Turn) -> None:
+def _note_force_request(turn: Turn) -> None:
+    """Remember when a forced disarm was asked for first; only a second request has it."""
     turn.memory.force_asked_ns = turn.now_ns
     turn.say(Level.WARNING, "ask for the forced disarm again within 5 s to have it")
 
 
-ACTIONS: Final[Mapping[Do, Callable[[Turn], None]]] = MappingProxyType(
+ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
     {
-        Do.VERIFY: _verify,
-        Do.FLY_GOAL: _fly_goal,
-        Do.DROP_GOAL: _drop_goal,
-        Do.KEEP_GOAL: _keep_goal,
-        Do.TAKE_CONTROL: _take_control,
-        Do.ASK_GUIDED: _ask_guided,
-        Do.GAIN_CONTROL: _gain_control,
-        Do.RELEASE: _release,
-        Do.ARM: commanding.arm,
-        Do.DISARM: commanding.disarm,
-        Do.FORCE_DISARM: commanding.force_disarm,
-        Do.TAKE_OFF: commanding.take_off,
-        Do.CONTINUE: commanding.send_waiting,
-        Do.LAND: commanding.land,
-        Do.RETURN: commanding.return_home,
-        Do.HOLD: holding.hold,
-        Do.HOLD_ONCE: holding.hold_once,
-        Do.HOLD_BLIND: holding.hold_blind,
-        Do.REPEAT_HOLD: holding.repeat_hold,
-        Do.HOLD_SHOWN: holding.hold_shown,
-        Do.MODE_SETTLED: holding.mode_settled,
-        Do.HOLD_ANEW: holding.hold_anew,
-        Do.BRAKE: holding.brake,
-        Do.PHOTO: commanding.photo,
-        Do.START_MISSION: commanding.start_mission,
-        Do.SWITCH_FENCE: _switch_fence,
-        Do.START_GRACE: holding.start_grace,
-        Do.LET_GO: holding.let_go,
-        Do.FORGET_VEHICLE: _forget_vehicle,
-        Do.FORGET_INTERRUPTED: _forget_interrupted,
-        Do.AWAIT_DISARM: _await_disarm,
-        Do.NOTE_LIFTED: _note_lifted,
-        Do.NOTE_FORCE: _note_force,
+        Action.VERIFY_GOAL: _verify_goal,
+        Action.FLY_GOAL: _fly_goal,
+        Action.REFUSE_GOAL: _refuse_goal,
+        Action.HOLD_AT_GOAL: _hold_at_goal,
+        Action.TAKE_CONTROL: _take_control,
+        Action.ASK_GUIDED: _ask_guided,
+        Action.GAIN_CONTROL: _gain_control,
+        Action.RELEASE_CONTROL: _release_control,
+        Action.ARM: commanding.arm,
+        Action.DISARM: commanding.disarm,
+        Action.FORCE_DISARM: commanding.force_disarm,
+        Action.TAKE_OFF: commanding.take_off,
+        Action.SEND_WAITING: commanding.send_waiting,
+        Action.LAND: commanding.land,
+        Action.RETURN: commanding.return_home,
+        Action.HOLD: holding.hold,
+        Action.HOLD_ONCE: holding.hold_once,
+        Action.HOLD_MODE_ONLY: holding.hold_mode_only,
+        Action.REPEAT_HOLD: holding.repeat_hold,
+        Action.CONFIRM_HOLD: holding.confirm_hold,
+        Action.STOP_AWAITING_MODE: holding.stop_awaiting_mode,
+        Action.VERIFY_HELD_POINT: holding.verify_held_point,
+        Action.BRAKE: holding.brake,
+        Action.TAKE_PHOTO: commanding.photo,
+        Action.START_MISSION: commanding.start_mission,
+        Action.SWITCH_FENCE: _switch_fence,
+        Action.START_GRACE: holding.start_grace,
+        Action.STOP_STREAM: holding.stop_stream,
+        Action.FORGET_VEHICLE: _forget_vehicle,
+        Action.FORGET_INTERRUPTED: _forget_interrupted,
+        Action.AWAIT_DISARM: _await_disarm,
+        Action.NOTE_LIFT_OFF: _note_lift_off,
+        Action.NOTE_FORCE_REQUEST: _note_force_request,
     }
 )
-"""Total over `Do`, which a test asserts."""
+"""A test asserts that every `Action` is here."""

@@ -1,6 +1,8 @@
-"""What the rows of the table share: outcomes, common branches, and the plain cells.
+"""Outcomes, branches and cells that several rows of the table share.
 
-Read a cell from the top: the first branch whose guards hold is the one.
+The name of a branch says what it does; where it has a condition, the name ends with it
+(`..._if_on_ground`).  A cell is read from the top: the first branch whose condition holds is
+taken.
 """
 
 from __future__ import annotations
@@ -8,67 +10,79 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.gate.effects import OutcomeKind
-from gcs.gate.machine.rules import Answer, Branch, Cell, Do, End, Guard
+from gcs.gate.machine.row import EXTERNAL, GROUNDED, HOLDING, HOVERING
+from gcs.gate.machine.rules import Action, Branch, Cell, End, Guard, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 
 COMPLETE: Final = End(OutcomeKind.COMPLETE)
-STOPPED: Final = End(OutcomeKind.ABORTED, Code.OPERATOR)
-MISSED: Final = End(OutcomeKind.TIMED_OUT, Code.DEADLINE)
-SILENT: Final = End(OutcomeKind.TIMED_OUT, Code.NO_ANSWER)
-DENIED: Final = End(OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
-SEVERE: Final = End(OutcomeKind.ABORTED, Code.SEVERITY)
-DESERTED: Final = End(OutcomeKind.ABORTED, Code.OPERATOR_LOST)
-MOVED: Final = End(OutcomeKind.ABORTED, Code.HOME_MOVED)
-JUDGED: Final = End(OutcomeKind.ABORTED, judged=True)
-TAKEN: Final = End(OutcomeKind.TAKEN_OVER, Code.MODE_CHANGED)
+STOPPED_BY_OPERATOR: Final = End(OutcomeKind.ABORTED, Code.OPERATOR)
+DEADLINE_PASSED: Final = End(OutcomeKind.TIMED_OUT, Code.DEADLINE)
+NO_ANSWER: Final = End(OutcomeKind.TIMED_OUT, Code.NO_ANSWER)
+VEHICLE_REFUSED: Final = End(OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
+SEVERITY: Final = End(OutcomeKind.ABORTED, Code.SEVERITY)
+OPERATOR_LOST: Final = End(OutcomeKind.ABORTED, Code.OPERATOR_LOST)
+AS_JUDGED: Final = End(OutcomeKind.ABORTED, judged=True)
+TAKEN_OVER: Final = End(OutcomeKind.TAKEN_OVER, Code.MODE_CHANGED)
 
-GONE: Final = Branch(when=(Guard.OPERATOR_GONE,), refuse=Code.OPERATOR_LOST)
-"""Nobody is there any more to want this: a late request withdraws no hold."""
+CONTROL_REGAINABLE: Final = (Guard.AIRBORNE, Guard.SEVERITY_PERMITS, Guard.POSITION_CLEARS)
+"""The conditions under which a take-off or a mission ends in HOVERING, under our control."""
 
-imposs: Final[Cell] = ()
-stay: Final[Cell] = (Branch(),)
-done: Final[Cell] = (Branch(answer=Answer.DONE),)
-sile: Final[Cell] = (Branch(ends=SILENT),)
-
-RETAKE: Final = (Guard.AIRBORNE, Guard.SEVERITY_PERMITS, Guard.HERE_CLEARS)
-"""What it takes to end a take-off or a mission in HOVERING."""
+cannot_happen: Final[Cell] = ()
+unchanged: Final = Branch()
+complete_at_once: Final = Branch(reply=Reply.DONE)
+refuse_if_operator_lost: Final = Branch(when=(Guard.OPERATOR_LOST,), refuse=Code.OPERATOR_LOST)
 
 
-def refuse(code: Code) -> Cell:
-    """Refused, whatever else."""
-    return (Branch(refuse=code),)
+def refuse(code: Code) -> Branch:
+    """Refuse the request."""
+    return Branch(refuse=code)
 
 
-def hold_then(end: End) -> Branch:
-    """End the request so, command HOLD, and stay in HOLDING until somebody resumes."""
-    return Branch(ends=end, do=(Do.HOLD,), to=State.HOLDING)
+def end(outcome: End) -> Branch:
+    """End the request under way and do nothing else."""
+    return Branch(ends=outcome)
 
 
-def release_then(end: End, to: State) -> Branch:
-    """The vehicle does something else than we asked: end the request, let control go."""
-    return Branch(ends=end, do=(Do.RELEASE,), to=to)
+def hold_and_end(outcome: End) -> Branch:
+    """End the request, command HOLD, and stay in HOLDING until a `resume`."""
+    return Branch(ends=outcome, do=(Action.HOLD,), to=HOLDING)
 
 
-def grounded(end: End) -> Branch:
-    """Still on the ground, with a take-off or a mission under way: give it up."""
-    return Branch(when=(Guard.ON_GROUND,), ends=end, do=(Do.RELEASE,), to=State.GROUNDED)
+def hover_and_end(outcome: End) -> Branch:
+    """End the request and go on hovering."""
+    return Branch(ends=outcome, to=HOVERING)
 
 
-def give_up(end: End) -> Branch:
-    """As `grounded`, and what was commanded may come yet: hold what it may fly, and disarm."""
-    do = (Do.RELEASE, Do.HOLD_BLIND, Do.DISARM)
-    return Branch(when=(Guard.ON_GROUND,), ends=end, do=do, to=State.GROUNDED)
+def release_and_end(outcome: End, to: State) -> Branch:
+    """End the request and release control: the vehicle does not do what we asked for."""
+    return Branch(ends=outcome, do=(Action.RELEASE_CONTROL,), to=to)
 
 
-def let_go(end: End, *when: Guard) -> Cell:
-    """STALE: no verified point is left to stream to; hold, and come back to HOLDING."""
-    return (Branch(when=when, ends=end, do=(Do.LET_GO, Do.HOLD)), Branch())
+def end_if_on_ground(outcome: End) -> Branch:
+    """A take-off or a mission that has not left the ground: end it and release control."""
+    return Branch(when=(Guard.ON_GROUND,), ends=outcome, do=(Action.RELEASE_CONTROL,), to=GROUNDED)
 
 
-def lose_control(end: End) -> Branch:
-    """Control could not be taken; our command may yet take effect, so the vehicle is held."""
-    return Branch(when=(Guard.TAKING,), ends=end, do=(Do.RELEASE, Do.HOLD_ONCE), to=State.EXTERNAL)
+def disarm_if_on_ground(outcome: End) -> Branch:
+    """As `end_if_on_ground`.  A command that was sent may still lift the vehicle off, so it is
+    told to hold as well as to disarm."""
+    do = (Action.RELEASE_CONTROL, Action.HOLD_MODE_ONLY, Action.DISARM)
+    return Branch(when=(Guard.ON_GROUND,), ends=outcome, do=do, to=GROUNDED)
 
 
-sile_ho: Final[Cell] = (lose_control(SILENT), Branch())
+def stop_stream_if(guard: Guard, outcome: End) -> Branch:
+    """In STALE: no verified position is left to stream.  End the request and command HOLD; a
+    fresh position then leads to HOLDING."""
+    return Branch(when=(guard,), ends=outcome, do=(Action.STOP_STREAM, Action.HOLD))
+
+
+def release_if_taking_control(outcome: End) -> Branch:
+    """Control could not be taken.  Our command for guided mode may still take effect, so the
+    vehicle is told once to hold."""
+    return Branch(
+        when=(Guard.TAKING_CONTROL,),
+        ends=outcome,
+        do=(Action.RELEASE_CONTROL, Action.HOLD_ONCE),
+        to=EXTERNAL,
+    )

@@ -1,4 +1,4 @@
-"""The actions that ask the vehicle for something, but for the hold."""
+"""The actions that send a command to the vehicle; those for hold mode are in `holding.py`."""
 
 from __future__ import annotations
 
@@ -21,20 +21,22 @@ ARM_FROM: Final[Mapping[str, tuple[frozenset[FlightMode], CommandKind]]] = Mappi
         "ardupilot": (frozenset({FlightMode.GUIDED}), CommandKind.GUIDED),
     }
 )
-"""The modes an autopilot arms in, and what to ask for in any other."""
+"""For each autopilot the modes that it arms in, and the command that leads there from another."""
 
 
 def arm(turn: Turn) -> None:
+    """Command arming, after a mode that the autopilot arms in."""
     memory = turn.memory
-    turn.due(turn.policy.control.timeout_s)
+    turn.set_deadline(turn.policy.control.timeout_s)
     modes, first = ARM_FROM.get(memory.autopilot, (frozenset(FlightMode), CommandKind.HOLD))
     if memory.mode in modes:
         turn.command(CommandKind.ARM, "asked for on the ground")
     else:
-        _ask_first(turn, first, CommandKind.ARM)
+        _command_after(turn, first, CommandKind.ARM)
 
 
-def _ask_first(turn: Turn, first: CommandKind, then: CommandKind) -> None:
+def _command_after(turn: Turn, first: CommandKind, then: CommandKind) -> None:
+    """Command the mode `first`; `then` follows once the heartbeat shows it."""
     task = turn.memory.task
     assert task is not None
     turn.memory.task = replace(task, waiting=then)
@@ -42,6 +44,7 @@ def _ask_first(turn: Turn, first: CommandKind, then: CommandKind) -> None:
 
 
 def send_waiting(turn: Turn) -> None:
+    """Send the command that waited for its mode."""
     task = turn.memory.task
     assert task is not None
     assert task.waiting is not None
@@ -53,27 +56,28 @@ def send_waiting(turn: Turn) -> None:
 
 
 def disarm(turn: Turn) -> None:
-    turn.due(turn.policy.control.timeout_s)
+    turn.set_deadline(turn.policy.control.timeout_s)
     turn.command(CommandKind.DISARM, "on the ground")
 
 
 def force_disarm(turn: Turn) -> None:
-    turn.due(turn.policy.control.timeout_s)
+    turn.set_deadline(turn.policy.control.timeout_s)
     turn.command(CommandKind.FORCE_DISARM, "allowed by the policy and asked for twice")
 
 
 def take_off(turn: Turn) -> None:
+    """Note from where and to what height it climbs, and command the take-off."""
     memory, task = turn.memory, turn.memory.task
     assert task is not None
     assert isinstance(task.requested.request, TakeOff)
     assert memory.pos_ned is not None
     memory.control = Control.OURS
     memory.lifted = False
-    memory.stood_down_m = memory.pos_ned[2]
+    memory.ground_down_m = memory.pos_ned[2]
     memory.top_down_m = memory.pos_ned[2] - task.requested.request.up_m
-    turn.due(turn.policy.takeoff.timeout_s)
+    turn.set_deadline(turn.policy.takeoff.timeout_s)
     if memory.autopilot == "ardupilot" and memory.mode is not FlightMode.GUIDED:
-        _ask_first(turn, CommandKind.GUIDED, CommandKind.TAKE_OFF)
+        _command_after(turn, CommandKind.GUIDED, CommandKind.TAKE_OFF)
     else:
         _climb(turn)
 
@@ -89,13 +93,16 @@ def _climb(turn: Turn) -> None:
 
 
 def _fly_by_itself(turn: Turn, kind: CommandKind, reason: str, seconds: float | None) -> None:
-    """A mode in which the vehicle flies by itself, at our command: nothing is streamed."""
+    """Command a mode in which the vehicle flies by itself; no setpoints are sent meanwhile.
+
+    `seconds` is the deadline of the request; None: it has none.
+    """
     memory = turn.memory
     turn.cancel_commands()
     memory.control = Control.OURS
     memory.hold = memory.goal = None
     memory.ask_control_ns = None
-    turn.due(seconds)
+    turn.set_deadline(seconds)
     turn.command(kind, reason)
 
 
@@ -106,6 +113,7 @@ def land(turn: Turn) -> None:
 
 
 def return_home(turn: Turn) -> None:
+    """Command the return; a blocked one that the policy forwards is announced."""
     if turn.why is not None:
         turn.say(Level.WARNING, f"{turn.why.sentence}; the policy forwards it")
     _fly_by_itself(turn, CommandKind.RETURN, "the return path is judged", None)
@@ -119,5 +127,5 @@ def start_mission(turn: Turn) -> None:
 
 
 def photo(turn: Turn) -> None:
-    turn.due(turn.policy.photo_timeout_s)
+    turn.set_deadline(turn.policy.photo_timeout_s)
     turn.command(CommandKind.PHOTO, "asked for while hovering")

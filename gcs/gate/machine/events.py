@@ -1,8 +1,7 @@
-"""Everything that can happen to the gate, by name: the rows of the table.
+"""The events: everything that can happen to the gate, by name.  Each is a row of the table.
 
-An input becomes facts in the gate's memory and, from what changed, events.  What a request is
-called here follows from the request alone; a mode that is asked for by name is the request that
-the mode means.
+`facts.py` makes events from inputs.  The event of a request follows from the request alone; a
+request for a mode by its name is the event of the request that means the same.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from gcs.gate.states import FlightMode
 
 
 class Event(StrEnum):
-    """The value is the name in records, transitions and drawings."""
+    """The values are the names in records, transitions and the printed table."""
 
     GOTO = "goto"
     CONTROL = "control"
@@ -52,14 +51,14 @@ class Event(StrEnum):
     GOAL_CLEARED = "goal cleared"
     GOAL_REFUSED = "goal refused"
 
-    HEARD = "heard"
-    LOST = "lost"
+    VEHICLE_HEARD = "heard"
+    VEHICLE_LOST = "lost"
     POSITION = "position"
-    AGED = "position aged"
-    JUMPED = "position jumped"
+    POSITION_AGED = "position aged"
+    POSITION_JUMPED = "position jumped"
     BREACH = "breach predicted"
     HOME_MOVED = "home moved"
-    UNVERIFIED = "clears no more"
+    CLEARS_NO_MORE = "clears no more"
     ARMED = "armed"
     DISARMED = "disarmed"
     AIRBORNE = "airborne"
@@ -75,13 +74,13 @@ class Event(StrEnum):
     SAW_LAND = "land mode"
     SAW_OTHER = "another mode"
 
-    COMMAND_DONE = "command accepted"
+    COMMAND_ACCEPTED = "command accepted"
     COMMAND_REFUSED = "command refused"
-    COMMAND_SILENT = "command unanswered"
+    COMMAND_UNANSWERED = "command unanswered"
     DISARM_REFUSED = "disarm refused"
     HOLD_REFUSED = "hold refused"
-    HOLD_SILENT = "hold unanswered"
-    COMMAND_LATE = "late answer"
+    HOLD_UNANSWERED = "hold unanswered"
+    LATE_ANSWER = "late answer"
     PHOTO_SEEN = "photo seen"
     MISSION_ITEM = "mission item"
     MISSION_FINISHED = "mission finished"
@@ -94,7 +93,7 @@ class Event(StrEnum):
     MUST_HOLD = "must hold"
     MUST_RETURN = "must return"
     MUST_LAND = "must land"
-    EASED = "eased"
+    SEVERITY_EASED = "eased"
     OPERATOR_LOST = "operator lost"
 
 
@@ -117,16 +116,17 @@ REQUESTS: Final = frozenset(
         Event.FENCE,
     }
 )
-"""Events that are somebody's request: each is owed one verdict."""
+"""The events that are requests: each gets exactly one verdict."""
 
-ATTENDED: Final = REQUESTS - {
+NEEDS_OPERATOR: Final = REQUESTS - {
     Event.ABORT,
     Event.HOLD,
     Event.LAND,
     Event.DISARM,
     Event.FORCE_DISARM,
 }
-"""Requests that want an operator who is there; the others make it safer whoever asks."""
+"""Requests that are refused once the operator is lost.  The others make it safer, and are heard
+without an operator too."""
 
 ASKED: Final = {
     FlightMode.GUIDED: Event.CONTROL,
@@ -137,7 +137,7 @@ ASKED: Final = {
     FlightMode.LAND: Event.LAND,
     FlightMode.OTHER: Event.OTHER_MODE,
 }
-"""What asking for a mode by its name means."""
+"""The event of a request for a mode by its name."""
 
 SAW: Final = {
     FlightMode.GUIDED: Event.SAW_GUIDED,
@@ -148,11 +148,11 @@ SAW: Final = {
     FlightMode.LAND: Event.SAW_LAND,
     FlightMode.OTHER: Event.SAW_OTHER,
 }
-"""A mode that the heartbeat shows and that was not the one last asked for."""
+"""The event of a mode that the heartbeat newly shows and that we did not command."""
 
 
 def event_of(request: Request) -> Event:
-    """The row of the table that decides on `request`."""
+    """The event, and so the row of the table, that decides on `request`."""
     match request:
         case GoTo():
             return Event.GOTO

@@ -1,10 +1,13 @@
-"""From an input to facts, and from what changed to events; nothing is decided here."""
+"""Stores what an input reports in the gate's memory, and makes events of what changed.
+
+Nothing is decided here: what follows from an event is in the table.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Final, TypeAlias, assert_never
+from typing import Final, NamedTuple, assert_never
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Breach, Verifier
@@ -27,19 +30,20 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.events import SAW, Event, event_of
-from gcs.gate.machine.guards import cleared_no_more, within
 from gcs.gate.machine.memory import SECOND_NS
+from gcs.gate.machine.progress import within_arrival
 from gcs.gate.machine.sentences import ASKED_FOR, where
 from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.verifying import refusal_of_what_is_flown
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import Control, LandedState, State
 
 HOME_MOVED_M = 1.0
-"""Arming moves home by centimetres; further, it is another place."""
+"""Home that moves further than this is another place; arming moves it by centimetres."""
 
 JUMP_LEAST_M = 0.5
-"""Noise between two samples that arrive in one instant is no jump."""
+"""A position that changes by less is no jump, however short the time between the samples."""
 
 ACCEPTED = 0
 """MAV_RESULT_ACCEPTED"""
@@ -48,31 +52,31 @@ REFUSED_AS: Final = {
     CommandKind.HOLD: Event.HOLD_REFUSED,
     CommandKind.DISARM: Event.DISARM_REFUSED,
 }
-"""What a refusal of these means is not what any other command's means."""
-
-Told: TypeAlias = tuple[Event, Refusal | None, Breach | None]
-"""An event, why it happened where that has words, and the breach where it is one."""
+"""The commands whose refusal is an event of its own; of all others it is COMMAND_REFUSED."""
 
 FLOOR_FREE = frozenset({State.GROUNDED, State.TAKING_OFF, State.LANDING, State.RETURNING})
 """States that begin or end on the ground: the fence's floor does not apply to their stop."""
 
 
-def _plain(*events: Event) -> Iterator[Told]:
-    for event in events:
-        yield event, None, None
+class Occurrence(NamedTuple):
+    """An event with its reason, where there is one, and its breach, where one is predicted."""
+
+    event: Event
+    why: Refusal | None = None
+    breach: Breach | None = None
 
 
-def events_from(turn: Turn, given: Input) -> Iterator[Told]:
-    """Store what `given` says, and tell what that means.
+def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
+    """Store what `given` reports, and yield the events that follow from it.
 
-    Lazy on purpose: each event is handled before the next is looked for.
+    A generator because the caller handles each event before the next one is looked for.
     """
     memory = turn.memory
     match given:
         case Requested():
             if isinstance(given.request, GoTo):
                 turn.say(Level.INFO, f"Requested Position: {where(given.request.goal_ned)}")
-            yield from _plain(event_of(given.request))
+            yield Occurrence(event_of(given.request))
         case HeartbeatSeen():
             yield from _heartbeat(turn, given)
         case LandedSeen(landed):
@@ -80,7 +84,7 @@ def events_from(turn: Turn, given: Input) -> Iterator[Told]:
         case PositionSeen():
             yield from _position(turn, given)
         case CommandEnded():
-            yield from _answer(turn, given)
+            yield from _command_answer(turn, given)
         case HomeSeen(pos_ned):
             yield from _home(turn, pos_ned)
         case ReturnHeightSeen(up_m):
@@ -94,39 +98,40 @@ def events_from(turn: Turn, given: Input) -> Iterator[Told]:
             memory.mission_over = False
         case MissionSeen(seq, total, finished):
             memory.mission_over = finished or 0 < total <= seq + 1
-            yield from _plain(Event.MISSION_FINISHED if finished else Event.MISSION_ITEM)
+            yield Occurrence(Event.MISSION_FINISHED if finished else Event.MISSION_ITEM)
         case ConditionChanged():
             _condition(turn, given)
         case OperatorLost(reason):
             turn.say(Level.INFO, f"The operator leaves: {reason}")
-            memory.deserted = True
-            yield from _plain(Event.OPERATOR_LOST)
+            memory.operator_lost = True
+            yield Occurrence(Event.OPERATOR_LOST)
         case Tick():
             return
         case _:
             assert_never(given)
 
 
-def _heartbeat(turn: Turn, seen: HeartbeatSeen) -> Iterator[Told]:
+def _heartbeat(turn: Turn, seen: HeartbeatSeen) -> Iterator[Occurrence]:
     memory = turn.memory
     was_armed, was_mode = memory.armed, memory.mode
     memory.heard_ns, memory.heard_before = turn.now_ns, True
     memory.armed, memory.mode, memory.mode_name = seen.armed, seen.mode, seen.mode_name
     if memory.state is State.NO_VEHICLE:
-        yield from _plain(Event.HEARD)
+        yield Occurrence(Event.VEHICLE_HEARD)
         return
     if seen.armed and not was_armed:
-        yield from _plain(Event.ARMED)
+        yield Occurrence(Event.ARMED)
     elif not seen.armed and (was_armed or _disarm_answered(turn)):
-        yield from _plain(Event.DISARMED)
+        yield Occurrence(Event.DISARMED)
     if seen.mode is memory.asked_mode:
-        yield from _plain(Event.MODE_CONFIRMED)
+        yield Occurrence(Event.MODE_CONFIRMED)
     elif seen.mode is not was_mode:
-        yield from _plain(SAW[seen.mode])
+        yield Occurrence(SAW[seen.mode])
 
 
 def _disarm_answered(turn: Turn) -> bool:
-    """A disarm of a vehicle that was never seen armed: its answer and a heartbeat end it."""
+    """A vehicle that was never seen armed was told to disarm, and has answered: the heartbeat
+    that follows counts as the report that it is disarmed."""
     memory = turn.memory
     return (
         memory.state is State.GROUNDED
@@ -136,54 +141,55 @@ def _disarm_answered(turn: Turn) -> bool:
     )
 
 
-def _landed(turn: Turn, landed: LandedState) -> Iterator[Told]:
+def _landed(turn: Turn, landed: LandedState) -> Iterator[Occurrence]:
     memory = turn.memory
     was, flew = memory.landed, memory.airborne
     memory.landed, memory.landed_ns = landed, turn.now_ns
-    climbs = memory.flies is State.TAKING_OFF or turn.now_ns < memory.takeoff_until_ns
+    climbs = memory.flown_state is State.TAKING_OFF or turn.now_ns < memory.takeoff_until_ns
     if landed is LandedState.ON_GROUND and memory.pos_ned is not None and not climbs:
-        memory.stood_down_m = memory.pos_ned[2]
+        memory.ground_down_m = memory.pos_ned[2]
     if landed is LandedState.ON_GROUND and was is not landed:
-        yield from _plain(Event.LANDED)
+        yield Occurrence(Event.LANDED)
     elif memory.airborne and not flew:
-        yield from _plain(Event.AIRBORNE)
+        yield Occurrence(Event.AIRBORNE)
 
 
-def _home(turn: Turn, pos_ned: Vec3) -> Iterator[Told]:
+def _home(turn: Turn, pos_ned: Vec3) -> Iterator[Occurrence]:
     memory = turn.memory
     was_ned, memory.home_ned = memory.home_ned, pos_ned
     if was_ned is None or memory.on_ground or math.dist(was_ned, pos_ned) <= HOME_MOVED_M:
         return
     moved_m = math.dist(was_ned, pos_ned)
     turn.say(Level.WARNING, f"Home moved by {moved_m:.1f} m while the vehicle flies")
-    yield from _plain(Event.HOME_MOVED)
+    yield Occurrence(Event.HOME_MOVED)
 
 
-def _verifier(turn: Turn, verifier: Verifier) -> Iterator[Told]:
-    """What was cleared by another fence is judged anew by this one."""
+def _verifier(turn: Turn, verifier: Verifier) -> Iterator[Occurrence]:
+    """What is flown under our control is judged anew by a verifier that changed."""
     memory = turn.memory
     was, memory.verifier = memory.verifier, verifier
     memory.autopilot = verifier.autopilot
     if verifier == was or memory.control is Control.NONE:
         return
-    why = cleared_no_more(memory, verifier, was)
+    why = refusal_of_what_is_flown(memory, verifier, was)
     if why is not None:
-        yield Event.UNVERIFIED, why, None
+        yield Occurrence(Event.CLEARS_NO_MORE, why)
 
 
-def _photo(turn: Turn, seen: PhotoSeen) -> Iterator[Told]:
-    """One told before the picture was asked for is another picture, told again."""
+def _photo(turn: Turn, seen: PhotoSeen) -> Iterator[Occurrence]:
+    """A picture with the same index as the last one is that picture, reported again."""
     memory = turn.memory
-    told, memory.photo_index = memory.photo_index, seen.index
-    if seen.index == told:
+    was_index, memory.photo_index = memory.photo_index, seen.index
+    if seen.index == was_index:
         return
     memory.photo_ok = seen.ok
     why = Refusal(Code.VEHICLE_REFUSED, "the camera took no picture")
-    yield Event.PHOTO_SEEN, why, None
+    yield Occurrence(Event.PHOTO_SEEN, why)
 
 
-def _position(turn: Turn, seen: PositionSeen) -> Iterator[Told]:
-    """A sample that is no number, or older than one that came before it, is not a position."""
+def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
+    """Drops a sample that is not finite or older than the last one.  From every other the stop is
+    predicted, where we have or take control."""
     memory = turn.memory
     if not all(map(math.isfinite, (*seen.pos_ned, *seen.v_ned))):
         return
@@ -191,33 +197,37 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Told]:
         return
     jumped = seen.reset or _faster_than_allowed(turn, seen)
     if jumped:
-        memory.stood_down_m = None
+        memory.ground_down_m = None
     memory.pos_ned, memory.v_ned = seen.pos_ned, seen.v_ned
     memory.pos_ns, memory.boot_ms = turn.now_ns, seen.time_boot_ms
-    if memory.goal is None or not within(turn, memory.goal.pos_ned):
+    if memory.goal is None or not within_arrival(turn, memory.goal.pos_ned):
         memory.within_since_ns = None
     elif memory.within_since_ns is None:
         memory.within_since_ns = turn.now_ns
     if jumped:
-        yield from _plain(Event.JUMPED)
+        yield Occurrence(Event.POSITION_JUMPED)
     if memory.verifier is not None and memory.control is not Control.NONE:
         breach = memory.verifier.predicted_stop(
             seen.pos_ned, seen.v_ned, floor_applies=_floor_applies(turn)
         )
         if breach is not None:
             why = Refusal(Code.FENCE_BREACH, breach.sentence, breach.numbers, breach.zone)
-            yield Event.BREACH, why, breach
-    yield from _plain(Event.POSITION)
+            yield Occurrence(Event.BREACH, why, breach)
+    yield Occurrence(Event.POSITION)
 
 
 def _floor_applies(turn: Turn) -> bool:
     memory = turn.memory
-    return memory.flies not in FLOOR_FREE and memory.landed is LandedState.IN_AIR
+    return memory.flown_state not in FLOOR_FREE and memory.landed is LandedState.IN_AIR
 
 
 def _faster_than_allowed(turn: Turn, seen: PositionSeen) -> bool:
-    """By the vehicle's own clock, as samples may queue on their way; but one that comes in time
-    cannot have been queued for longer than a position stays fresh."""
+    """Did the position move faster than the policy allows: is it a jump?
+
+    The time between two samples is taken from the vehicle's own stamps, because samples may wait
+    in queues on their way.  A stamp that advanced by more than the time between the arrivals plus
+    the age at which a position is too old cannot be explained by that: it counts as a jump.
+    """
     memory = turn.memory
     late_ns = round(turn.policy.position_age_s * SECOND_NS)
     if memory.pos_ned is None or memory.pos_ns is None:
@@ -231,31 +241,32 @@ def _faster_than_allowed(turn: Turn, seen: PositionSeen) -> bool:
     return math.dist(seen.pos_ned, memory.pos_ned) > allowed_m
 
 
-def _answer(turn: Turn, ended: CommandEnded) -> Iterator[Told]:
-    """An answer ends a command and nothing else; one that nobody waits for is reported."""
+def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
+    """An answer, or its absence, ends a command and nothing else.  What the vehicle does follows
+    from its own reports.  An answer to a command that is not outstanding is only reported."""
     memory, key = turn.memory, (ended.request_id, ended.kind)
     name = ended.kind.value.replace("_", " ")
     asked_for = ASKED_FOR[ended.kind]
     said = f": {ended.text}" if ended.text else ""
     if key not in memory.outstanding:
         turn.say(Level.INFO, f"A late answer to {name}, not acted on{said}")
-        yield from _plain(Event.COMMAND_LATE)
+        yield Occurrence(Event.LATE_ANSWER)
         return
     memory.outstanding = tuple(other for other in memory.outstanding if other != key)
     if ended.result is not None:
-        memory.silence_told = None
+        memory.silence_reported = None
     if ended.result == ACCEPTED:
-        yield from _plain(Event.COMMAND_DONE)
+        yield Occurrence(Event.COMMAND_ACCEPTED)
     elif ended.result is None:
-        if memory.silence_told is not ended.kind:
+        if memory.silence_reported is not ended.kind:
             turn.say(Level.WARNING, f"No answer to the request for {asked_for}")
-        memory.silence_told = ended.kind
+        memory.silence_reported = ended.kind
         silent = ended.kind is CommandKind.HOLD
-        yield from _plain(Event.HOLD_SILENT if silent else Event.COMMAND_SILENT)
+        yield Occurrence(Event.HOLD_UNANSWERED if silent else Event.COMMAND_UNANSWERED)
     else:
         sentence = f"the vehicle refused {asked_for} (result {ended.result}){said}"
         why = Refusal(Code.VEHICLE_REFUSED, sentence, (("result", float(ended.result)),))
-        yield REFUSED_AS.get(ended.kind, Event.COMMAND_REFUSED), why, None
+        yield Occurrence(REFUSED_AS.get(ended.kind, Event.COMMAND_REFUSED), why)
 
 
 def _condition(turn: Turn, changed: ConditionChanged) -> None:

@@ -1,13 +1,17 @@
-"""The gate: inputs become facts, facts become events, and the table says what follows.
+"""The gate: runs the state machine's table, and issues the permits.
 
-Every event is looked up in `table.TABLE`; the first branch whose guards hold is taken, and its
-actions run.  This is the one module that issues permits: motion leaves it only with the goal
-that the verifier cleared, or in answer to a branch of the table.
+An input is stored as facts, its changes become events (`facts.py`), and every event is looked up
+in `table.TABLE`: the first branch whose guards hold is taken, and its actions run.  This is the
+only module that issues permits: for setpoints to a goal that the verifier cleared, and for
+commands that a branch of the table sends.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate import permit
@@ -23,42 +27,46 @@ from gcs.gate.effects import (
 )
 from gcs.gate.inputs import Input, OperatorLost, Requested, Tick
 from gcs.gate.machine.actions import ACTIONS
+from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.facts import events_from
-from gcs.gate.machine.guards import CHECKS, GUARDS
+from gcs.gate.machine.guards import GUARDS
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.machine.rules import BACK, STAY, Answer, Branch, Next
+from gcs.gate.machine.rules import BACK, STAY, Branch, Next, Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
 from gcs.gate.machine.turn import CommandDraft, Draft, SetpointDraft, Turn
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import Control, FlightMode, LandedState, State
 
-MOTION = frozenset(CommandKind) - {
+MOTION: Final = frozenset(CommandKind) - {
     CommandKind.HOLD,
     CommandKind.DISARM,
     CommandKind.FORCE_DISARM,
     CommandKind.PHOTO,
 }
-"""What sets the vehicle in motion, or may: these carry a permit."""
+"""The commands that set the vehicle in motion, or may: they carry a permit."""
 
-MUST = {
-    Severity.HOLD: Event.MUST_HOLD,
-    Severity.RETURN: Event.MUST_RETURN,
-    Severity.LAND: Event.MUST_LAND,
-    Severity.TERMINATE: Event.MUST_LAND,
-}
-"""What a severity demands.  TERMINATE is reported; the gate itself goes no further than land."""
+MUST: Final[Mapping[Severity, Event]] = MappingProxyType(
+    {
+        Severity.HOLD: Event.MUST_HOLD,
+        Severity.RETURN: Event.MUST_RETURN,
+        Severity.LAND: Event.MUST_LAND,
+        Severity.TERMINATE: Event.MUST_LAND,
+    }
+)
+"""What a severity demands.  At TERMINATE the gate commands no more than landing."""
 
 
 class ImpossibleError(Exception):
-    """A cell that cannot be entered was entered: a bug of the gate's own, not of any peer."""
+    """An event happened in a state where the table says that it cannot: a bug of the gate."""
 
 
 class Gate:
-    """`handle(input, now_ns) -> effects`; time is handed in and nothing else is looked at.
+    """`handle(input, now_ns) -> effects`.
 
-    `autopilot` ("px4", "ardupilot", "" while it is not known) decides how control is taken and
-    what the vehicle arms from; a `VerifierChanged` brings it too.
+    Times are nanoseconds of one monotonic clock; positions are metres in local NED.  `autopilot`
+    ("px4", "ardupilot", or "" while it is not known) decides how control is taken and in which
+    modes the vehicle arms; a `VerifierChanged` sets it too.
     """
 
     def __init__(self, policy: Policy, autopilot: str, now_ns: int, table: Table = TABLE) -> None:
@@ -67,7 +75,7 @@ class Gate:
 
     @classmethod
     def resumed(cls, policy: Policy, memory: Memory, now_ns: int, table: Table = TABLE) -> Gate:
-        """A gate that goes on from `memory`, which it owns from here on."""
+        """A gate that goes on from `memory`, which belongs to it from now on."""
         gate = cls(policy, memory.autopilot, now_ns, table)
         gate._turn.memory = memory
         return gate
@@ -76,7 +84,7 @@ class Gate:
 
     @property
     def memory(self) -> Memory:
-        """A copy of what the gate knows and intends."""
+        """A copy of what the gate knows and has accepted."""
         return self._turn.memory.copy()
 
     @property
@@ -89,7 +97,7 @@ class Gate:
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """Everything that is wrong now."""
+        """The active conditions."""
         return tuple(condition for condition, _ in self._turn.memory.conditions)
 
     @property
@@ -98,7 +106,7 @@ class Gate:
 
     @property
     def active_goal_ned(self) -> Vec3 | None:
-        """Where the vehicle is asked to be: the goal it flies to, or the one it hovers at."""
+        """The goal that the vehicle flies to, else the one that it hovers at; None without one."""
         memory = self._turn.memory
         flown = memory.goal or memory.hold
         return None if flown is None else flown.pos_ned
@@ -118,7 +126,8 @@ class Gate:
 
     @property
     def settled(self) -> bool:
-        """The vehicle may be left: seen holding, on the ground, or not ours to hold."""
+        """May the station leave?  The vehicle is seen holding, or is on the ground with no command
+        unanswered, or is not under our control."""
         memory = self._turn.memory
         if memory.state is State.GROUNDED:
             return not memory.outstanding
@@ -130,7 +139,7 @@ class Gate:
 
     @property
     def deadline_ns(self) -> int | None:
-        """The next time that something is due; it is judged at the tick that follows."""
+        """When the next thing is due; it happens at the first tick after it.  None: nothing is."""
         memory, policy = self._turn.memory, self._turn.policy
         times = [
             memory.ask_control_ns,
@@ -146,34 +155,34 @@ class Gate:
     # -------------------------------------------------------------------------- handling
 
     def handle(self, given: Input, now_ns: int) -> list[Effect]:
-        """Everything that follows from `given` at `now_ns`, in order.
+        """The effects of `given` at `now_ns`, in order.
 
-        Raises ImpossibleError for a bug of the gate's own, and for nothing else.
+        Raises ImpossibleError where the table has a bug; every input is legal at any time.
         """
         turn = self._turn = Turn(self._turn.policy, self._turn.memory, now_ns)
         if isinstance(given, Requested | OperatorLost | Tick):
-            self._judge_ages()
+            self._check_ages()
         if isinstance(given, Requested):
             turn.requested = given
         severity = turn.severity
         for event, why, breach in events_from(turn, given):
             turn.why, turn.breach = why, breach
             self._fire(event)
-        self._weigh(severity)
+        self._demand(severity)
         if isinstance(given, Tick):
             self._tick()
-        return [self._seal(draft) for draft in turn.out]
+        return [self._permitted(draft) for draft in turn.out]
 
-    def _judge_ages(self) -> None:
-        """What has become too old, before anything is decided on it."""
+    def _check_ages(self) -> None:
+        """Handle what has become too old, before anything is decided on it."""
         turn, memory, now_ns = self._turn, self._turn.memory, self._turn.now_ns
         if _due(_plus(memory.landed_ns, turn.policy.heartbeat_age_s), now_ns):
             memory.landed, memory.landed_ns = LandedState.UNDEFINED, None
         if memory.state is not State.NO_VEHICLE:
             if _due(_plus(memory.heard_ns, turn.policy.heartbeat_age_s), now_ns):
-                self._fire(Event.LOST)
+                self._fire(Event.VEHICLE_LOST)
             elif turn.stale:
-                self._fire(Event.AGED)
+                self._fire(Event.POSITION_AGED)
         if memory.task is not None and _due(memory.task.deadline_ns, now_ns):
             self._fire(Event.DEADLINE)
         overdue = memory.asked_mode is not None and now_ns >= memory.asked_until_ns
@@ -189,31 +198,33 @@ class Gate:
         self._fire(Event.TICK)
         self._stream()
 
-    def _weigh(self, before: Severity) -> None:
+    def _demand(self, before: Severity) -> None:
+        """Handle a change of severity, which was `before` when the input came."""
         after = self._turn.severity
         if after > before and after in MUST:
             self._fire(MUST[after])
         elif after < before:
-            self._fire(Event.EASED)
+            self._fire(Event.SEVERITY_EASED)
 
     def _fire(self, event: Event) -> None:
-        """Run the cell of `event` in the present state, and of what that raises."""
+        """Take a branch of the cell for `event` in the present state, then handle the events that
+        its actions raised."""
         turn = self._turn
         branch = self._branch(event)
         for check in branch.needs:
-            objection = CHECKS[check](turn)
-            if objection is not None:
+            refusal = CHECKS[check](turn)
+            if refusal is not None:
                 assert turn.requested is not None
-                turn.verdict(turn.requested, Ruling.REFUSED, objection)
+                turn.verdict(turn.requested, Ruling.REFUSED, refusal)
                 return
         if branch.refuse is not None:
             turn.refuse(branch.refuse)
-        if branch.answer is not Answer.NONE:
-            turn.answer(branch.answer, event, branch.ends)
+        if branch.reply is not Reply.NONE:
+            turn.reply(branch.reply, event, branch.ends)
         elif branch.ends is not None:
             turn.end(branch.ends)
-        for do in branch.do:
-            ACTIONS[do](turn)
+        for action in branch.do:
+            ACTIONS[action](turn)
         self._enter(branch.to, event)
         while turn.raised:
             self._fire(turn.raised.pop(0))
@@ -226,6 +237,11 @@ class Gate:
         raise ImpossibleError(f"{event} in {state.name}")
 
     def _enter(self, to: Next, event: Event) -> None:
+        """Change the state.
+
+        In STALE what a severity demands may be left undone, so it is demanded again when a fresh
+        position leads back to the interrupted state.
+        """
         turn, memory = self._turn, self._turn.memory
         if to is STAY:
             return
@@ -247,10 +263,10 @@ class Gate:
         if to is BACK and turn.severity in MUST:
             turn.raised.append(MUST[turn.severity])
 
-    # ------------------------------------------------------------------------ permitting
+    # --------------------------------------------------------------------------- permits
 
     def _stream(self) -> None:
-        """The setpoint of this tick, where the state streams and control is there to stream."""
+        """Send the setpoint of this tick, in the states that send one and with control."""
         turn, memory = self._turn, self._turn.memory
         if memory.control is Control.NONE:
             return
@@ -265,8 +281,8 @@ class Gate:
         if goal is not None:
             turn.out.append(SetpointDraft(goal, memory.state.name))
 
-    def _seal(self, draft: Draft) -> Effect:
-        """Issue the permit that a moving frame must carry."""
+    def _permitted(self, draft: Draft) -> Effect:
+        """Make the effect of a draft: the permit is issued here, where one is needed."""
         now_ns = self._turn.now_ns
         if isinstance(draft, SetpointDraft):
             goal = draft.goal

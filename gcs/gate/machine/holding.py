@@ -1,9 +1,13 @@
-"""The actions that stop the vehicle: hold, brake, and what a position too old leads to."""
+"""The actions that stop the vehicle: hold, brake, and what follows from a position too old.
+
+"Hold" is the vehicle's own hold mode, commanded once a second until the heartbeat shows it.
+Beside it the held position is sent as a setpoint, where it was verified.
+"""
 
 from __future__ import annotations
 
 from gcs.gate.effects import CommandKind, Level
-from gcs.gate.machine.guards import here
+from gcs.gate.machine import verifying
 from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.sentences import where
 from gcs.gate.machine.turn import SetpointDraft, Turn
@@ -11,53 +15,66 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
 
 HOLD_EVERY_S = 1.0
+"""How often HOLD is commanded until the heartbeat shows it."""
 
 
 def hold(turn: Turn) -> None:
-    """Hold mode, until the heartbeat shows it; stream the held point where one is verified."""
+    """Take control, forget the goal, and command hold mode until the heartbeat shows it.
+
+    The held position is where the vehicle is, or the brake's where one was just sent.
+    """
     memory = turn.memory
     turn.cancel_commands()
     memory.ask_control_ns = None
     memory.goal = None
     braking = turn.breach is not None and turn.breach.brake_pos_ned is not None
     if not braking:
-        hold_anew(turn)
+        verify_held_point(turn)
     memory.control = Control.OURS
-    turn.due(turn.policy.control.timeout_s)
+    turn.set_deadline(turn.policy.control.timeout_s)
     repeat_hold(turn)
 
 
-def hold_anew(turn: Turn) -> None:
+def verify_held_point(turn: Turn) -> None:
+    """Hold where the vehicle is now, where that clears and we have or take control; otherwise no
+    setpoint is sent."""
     memory = turn.memory
-    known = here(turn) is None and memory.control is not Control.NONE
-    memory.hold = Goal(memory.pos_ned, None, turn.evidence) if known and memory.pos_ned else None
+    clears = verifying.position(turn) is None and memory.control is not Control.NONE
+    memory.hold = Goal(memory.pos_ned, None, turn.evidence) if clears and memory.pos_ned else None
 
 
 def hold_once(turn: Turn) -> None:
+    """Command hold mode once, in the gate's own name."""
     turn.command(CommandKind.HOLD, "our own guided command may yet take effect", own=True)
 
 
-def hold_blind(turn: Turn) -> None:
-    turn.due(turn.policy.control.timeout_s)
+def hold_mode_only(turn: Turn) -> None:
+    """Command hold mode until the heartbeat shows it; control and setpoints stay as they are."""
+    turn.set_deadline(turn.policy.control.timeout_s)
     repeat_hold(turn)
 
 
 def repeat_hold(turn: Turn) -> None:
+    """Command hold mode, and again after `HOLD_EVERY_S`."""
     turn.command(CommandKind.HOLD, "hold is never refused")
     turn.memory.hold_again_ns = turn.after_ns(HOLD_EVERY_S)
 
 
-def hold_shown(turn: Turn) -> None:
+def confirm_hold(turn: Turn) -> None:
+    """The heartbeat shows hold mode, or the hold is not needed any more: repeat it no more."""
     memory = turn.memory
-    memory.hold_again_ns = memory.asked_mode = memory.silence_told = None
+    memory.hold_again_ns = memory.asked_mode = memory.silence_reported = None
 
 
-def mode_settled(turn: Turn) -> None:
+def stop_awaiting_mode(turn: Turn) -> None:
     turn.memory.asked_mode = None
 
 
 def brake(turn: Turn) -> None:
-    """The setpoint leaves in the instant of the sample; its point is the verifier's own."""
+    """Send the setpoint of the brake at once, with the position sample that predicted the breach.
+
+    The verifier gives its position; where it finds none, only hold mode is left.
+    """
     memory, breach = turn.memory, turn.breach
     assert breach is not None
     turn.say(Level.ERROR, f"Brake: {breach.sentence}")
@@ -69,13 +86,15 @@ def brake(turn: Turn) -> None:
 
 
 def start_grace(turn: Turn) -> None:
+    """The position is too old: remember the state, and let the setpoints go on for the grace."""
     memory = turn.memory
     turn.refuse_pending(Refusal(Code.STALE, "the vehicle's position is too old"))
     memory.back_to = memory.state
     memory.grace_until_ns = turn.after_ns(turn.policy.stale_grace_s)
 
 
-def let_go(turn: Turn) -> None:
+def stop_stream(turn: Turn) -> None:
+    """Send no more setpoints; a fresh position then leads from STALE to HOLDING."""
     memory = turn.memory
     memory.goal = memory.hold = None
     memory.back_to = State.HOLDING

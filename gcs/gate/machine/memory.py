@@ -1,9 +1,9 @@
-"""What the gate knows and intends: one owner, values that do not change under a reader.
+"""What the gate knows and what it has accepted to do.
 
-Facts are what was reported, with the time it arrived; None is not known, never zero.
-Intentions are what was accepted and not yet ended.  There is at most one request under way
-(`task`) and at most one go-to waiting for its tick (`pending`), so "exactly one verdict, exactly
-one outcome" is a matter of two fields.
+What is known was reported, and is kept with the time at which it arrived; None means "not known"
+and is never replaced by zero.  At most one accepted request is under way (`task`), and at most
+one go-to waits for its tick (`pending`); so two fields are enough to give every request exactly
+one verdict and every accepted one exactly one outcome.
 """
 
 from __future__ import annotations
@@ -21,15 +21,17 @@ from gcs.gate.states import Control, FlightMode, LandedState, State
 SECOND_NS = 1_000_000_000
 
 CLIMBED_M = 0.5
-"""Higher than this above where it stood, a vehicle is not on the ground, whatever it reports."""
+"""A vehicle that is higher than this above the ground it stood on does not stand there, even if
+it reports so."""
 
 GATE = 0
-"""The request id of what nobody asked for: the gate's own holds, landings and returns."""
+"""The request id of commands that the gate sends without a request: its own holds, landings and
+returns."""
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """A verified position, and the numbers it was cleared on; nothing else is ever streamed."""
+    """A verified position with the numbers it was cleared on.  Only these are sent as setpoints."""
 
     pos_ned: Vec3
     yaw_rad: float | None
@@ -40,7 +42,8 @@ class Goal:
 class Task:
     """The accepted request that has no outcome yet.
 
-    `waiting` is a command that goes out once the vehicle shows the mode it needs first.
+    `deadline_ns` None: it may take as long as it takes.  `waiting` is a command that is sent as
+    soon as the vehicle shows the mode that it needs for it.
     """
 
     requested: Requested
@@ -51,7 +54,8 @@ class Task:
 
 @dataclass
 class Memory:
-    """Mutable, and owned by one gate.  Every field's value is immutable: a copy is shallow."""
+    """Mutable, and owned by one gate.  The values of all fields are immutable, so a shallow copy
+    is enough."""
 
     autopilot: str
     state: State = State.NO_VEHICLE
@@ -65,78 +69,77 @@ class Memory:
     mode_name: str = ""
     landed: LandedState = LandedState.UNDEFINED
     landed_ns: int | None = None
-    stood_down_m: float | None = None  # local down of where it stood last
+    ground_down_m: float | None = None  # local down of the ground that it stood on last
     pos_ned: Vec3 | None = None
     v_ned: Vec3 | None = None
     pos_ns: int | None = None
-    boot_ms: int = 0
+    boot_ms: int = 0  # the vehicle's own time stamp of the last position
     home_ned: Vec3 | None = None
-    return_up_m: float | None = None
+    return_up_m: float | None = None  # the vehicle's return height, above home
     verifier: Verifier | None = None
     conditions: tuple[tuple[Condition, str], ...] = ()
     mission_name: str = ""
     mission_items: int = 0
-    mission_over: bool = False
+    mission_over: bool = False  # the mission on board is at its last item, or past it
     photo_ok: bool = False
-    photo_index: int | None = None  # of the last picture that was told
-    silence_told: CommandKind | None = None
-    deserted: bool = False  # the operator is lost, and does not come back
+    photo_index: int | None = None  # of the last picture that was reported
+    silence_reported: CommandKind | None = None  # the operator knows that this had no answer
+    operator_lost: bool = False  # and does not come back
 
-    # intended
+    # accepted
     task: Task | None = None
-    pending: Requested | None = None
-    hold: Goal | None = None
-    goal: Goal | None = None
-    within_since_ns: int | None = None
+    pending: Requested | None = None  # a go-to that waits for the next tick
+    hold: Goal | None = None  # where the vehicle hovers
+    goal: Goal | None = None  # where the vehicle flies to
+    within_since_ns: int | None = None  # inside the arrival radius of `goal` since then
 
     # commanded
-    outstanding: tuple[tuple[int, CommandKind], ...] = ()
-    asked_mode: FlightMode | None = None
-    asked_until_ns: int = 0
-    guided_until_ns: int = 0  # our own GUIDED may still take effect
-    takeoff_until_ns: int = 0  # our own take-off may still take effect
-    ask_control_ns: int | None = None
-    hold_again_ns: int | None = None  # HOLD is commanded, and not shown yet
+    outstanding: tuple[tuple[int, CommandKind], ...] = ()  # (request id, kind), not answered yet
+    asked_mode: FlightMode | None = None  # commanded, and not shown by the heartbeat yet
+    asked_until_ns: int = 0  # when that mode is overdue
+    guided_until_ns: int = 0  # until then our own GUIDED command may still take effect
+    takeoff_until_ns: int = 0  # until then our own take-off command may still take effect
+    ask_control_ns: int | None = None  # when GUIDED is to be commanded
+    hold_again_ns: int | None = None  # when HOLD, not shown yet, is to be commanded again
     top_down_m: float = 0.0  # local down of the height a take-off ends at
-    lifted: bool = False
+    lifted: bool = False  # it was reported in the air since the take-off or mission began
+    force_asked_ns: int | None = None  # when a forced disarm was asked for the first time
 
-    # interrupted by a position too old
-    back_to: State | None = None
-    grace_until_ns: int | None = None
-
-    force_asked_ns: int | None = None
+    # in STALE
+    back_to: State | None = None  # the state that a position too old interrupted
+    grace_until_ns: int | None = None  # until then the verified setpoints go on
 
     def copy(self) -> Memory:
-        """Another memory of the same; far cheaper than `dataclasses.replace`."""
-        twin = object.__new__(Memory)
-        twin.__dict__.update(self.__dict__)
-        return twin
+        """An independent copy; far cheaper than `dataclasses.replace`."""
+        copied = object.__new__(Memory)
+        copied.__dict__.update(self.__dict__)
+        return copied
 
     @property
     def airborne(self) -> bool:
-        """Reported in the air; not known is not in the air, and not on the ground either."""
+        """Reported in the air.  Where nothing is known, neither this nor `on_ground` is sure."""
         return self.landed in (LandedState.IN_AIR, LandedState.TAKEOFF, LandedState.LANDING)
 
     @property
     def climbed(self) -> bool:
-        """Its position is above where it stood."""
-        if self.pos_ned is None or self.stood_down_m is None:
+        """Its position is higher than the ground that it stood on."""
+        if self.pos_ned is None or self.ground_down_m is None:
             return False
-        return self.stood_down_m - self.pos_ned[2] > CLIMBED_M
+        return self.ground_down_m - self.pos_ned[2] > CLIMBED_M
 
     @property
     def on_ground(self) -> bool:
-        """Reported so and seen no higher, or disarmed and not reported in the air; armed and not
-        known is not."""
+        """Reported to stand, and its position is no higher; or disarmed, and not reported in the
+        air.  An armed vehicle of which nothing is reported is not taken to stand."""
         if self.landed is LandedState.ON_GROUND and not self.climbed:
             return True
         return not (self.armed or self.airborne)
 
     @property
-    def flies(self) -> State:
-        """The state, or the one that a position too old interrupted."""
+    def flown_state(self) -> State:
+        """The state; in STALE the state that a position too old interrupted, if there is one."""
         return self.back_to or self.state
 
     def position_age_ns(self, now_ns: int) -> int | None:
-        """None before the first position."""
+        """How long ago the last position arrived; None before the first one."""
         return None if self.pos_ns is None else now_ns - self.pos_ns

@@ -1,7 +1,7 @@
-"""The table, printed from the table: text for people, DOT for drawings.
+"""Prints the table: as text for people, and as a DOT graph for drawings.
 
-Nothing here knows a state or an event by name; a table that changes prints differently, which
-a golden copy in the tests notices.
+Nothing here names a state or an event, so a table that changes prints differently; a golden copy
+in the tests notices it.
 """
 
 from __future__ import annotations
@@ -9,15 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gcs.gate.machine.events import REQUESTS, Event
-from gcs.gate.machine.rules import BACK, BACK_STATES, COLUMNS, STAY, Answer, Branch, Cell
+from gcs.gate.machine.row import COLUMNS
+from gcs.gate.machine.rules import BACK, BACK_STATES, STAY, Branch, Cell, Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
 from gcs.gate.states import State
 
-IMPOSSIBLE = "cannot happen"
-
 
 def text(table: Table = TABLE) -> str:
-    """Every cell, one state after the other; cells that do nothing are named in one line."""
+    """Every cell, one state after the other; the events that change nothing share one line."""
     lines = [
         f"{len(COLUMNS)} states x {len(Event)} events, {len(table)} cells.",
         "The first line of a cell whose conditions hold is taken; after -> is the next state.",
@@ -29,18 +28,14 @@ def text(table: Table = TABLE) -> str:
 
 def _state(table: Table, state: State) -> Iterator[str]:
     yield f"{state.name} = {state.value}    streams {STREAMS[state].value}"
-    quiet = [event for event in Event if _is_quiet(table[state, event])]
-    never = [event for event in Event if not table[state, event]]
+    idle = [event for event in Event if table[state, event] == (Branch(),)]
+    impossible = [event for event in Event if not table[state, event]]
     for event in Event:
-        if event not in quiet and event not in never:
+        if event not in idle and event not in impossible:
             yield from _cell(event, table[state, event])
-    for word, events in (("changes nothing", quiet), (IMPOSSIBLE, never)):
+    for heading, events in (("changes nothing", idle), ("cannot happen", impossible)):
         if events:
-            yield from _wrapped(f"  {word}: ", [event.value for event in events])
-
-
-def _is_quiet(cell: Cell) -> bool:
-    return cell == (Branch(),)
+            yield from _wrapped(f"  {heading}: ", [event.value for event in events])
 
 
 def _cell(event: Event, cell: Cell) -> Iterator[str]:
@@ -51,7 +46,7 @@ def _cell(event: Event, cell: Cell) -> Iterator[str]:
 
 
 def describe(branch: Branch) -> str:
-    """One line: conditions, answer, outcome, actions, next state."""
+    """One line: conditions, checks, refusal or reply, outcome, actions, next state."""
     parts: list[str] = []
     if branch.when:
         parts.append(f"if {' and '.join(branch.when)}:")
@@ -59,8 +54,8 @@ def describe(branch: Branch) -> str:
         parts.append(f"needs [{'; '.join(branch.needs)}]")
     if branch.refuse is not None:
         parts.append(f"refused {branch.refuse}")
-    if branch.answer is not Answer.NONE:
-        parts.append(branch.answer.value)
+    if branch.reply is not Reply.NONE:
+        parts.append(branch.reply.value)
     if branch.ends is not None:
         why = "" if branch.ends.code is None else f" {branch.ends.code}"
         why = " as judged" if branch.ends.judged else why
@@ -86,7 +81,11 @@ def _wrapped(head: str, words: list[str], width: int = 98) -> Iterator[str]:
 
 
 def dot(table: Table = TABLE) -> str:
-    """A directed graph: an edge a pair of states, labelled with the events that lead there."""
+    """A directed graph: one edge for each pair of states, labelled with its events.
+
+    States that send setpoints have a heavy frame.  An edge is dashed where an event that is not
+    a request takes it.
+    """
     edges: dict[tuple[State, State], list[Event]] = {}
     for (state, event), cell in table.items():
         for branch in cell:
@@ -105,8 +104,8 @@ def dot(table: Table = TABLE) -> str:
         lines.append(f'  {state.name} [label="{state.name}\\n{state.value}"{heavy}];')
     for (before, after), events in sorted(edges.items()):
         if events:
-            asked = all(event in REQUESTS for event in events)
-            style = "" if asked else ", style=dashed"
+            requested = all(event in REQUESTS for event in events)
+            style = "" if requested else ", style=dashed"
             label = "\\n".join(event.value for event in events)
             lines.append(f'  {before.name} -> {after.name} [label="{label}"{style}];')
     lines += ["}", ""]

@@ -1,4 +1,7 @@
-"""Rows of the table: the verdict on a goal, and how commands, pictures and missions end."""
+"""Rows of the table: the verdict on a goal, and what the vehicle answers.
+
+Its answers to commands, the picture that it took, and how far its mission is.
+"""
 
 from __future__ import annotations
 
@@ -7,79 +10,164 @@ from typing import Final
 
 from gcs.gate.machine.cells import (
     COMPLETE,
-    DENIED,
-    RETAKE,
-    SILENT,
-    grounded,
-    hold_then,
-    imposs,
-    lose_control,
-    sile,
-    sile_ho,
-    stay,
+    CONTROL_REGAINABLE,
+    NO_ANSWER,
+    VEHICLE_REFUSED,
+    cannot_happen,
+    end,
+    end_if_on_ground,
+    hold_and_end,
+    hover_and_end,
+    release_if_taking_control,
+    stop_stream_if,
+    unchanged,
 )
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.rules import Branch, Cell, Do, Guard, Row
-from gcs.gate.states import State
+from gcs.gate.machine.row import (
+    EXTERNAL,
+    FLYING_MISSION,
+    GROUNDED,
+    HOLDING,
+    HOVERING,
+    LANDING,
+    MOVING,
+    NO_VEHICLE,
+    RETURNING,
+    STALE,
+    STREAMING,
+    TAKING_OFF,
+    TAKING_PICTURE,
+    VERIFYING,
+    Row,
+    during,
+    row,
+)
+from gcs.gate.machine.rules import Action, Branch, Guard
 
-clears: Final[Cell] = (Branch(do=(Do.FLY_GOAL,), to=State.MOVING),)
-drops: Final[Cell] = (
-    Branch(when=(Guard.ACTIVE_GOAL,), do=(Do.DROP_GOAL,), to=State.MOVING),
-    Branch(do=(Do.DROP_GOAL,), to=State.HOVERING),
+fly_goal: Final = Branch(do=(Action.FLY_GOAL,), to=MOVING)
+refuse_goal_and_move_on_if_goal_active: Final = Branch(
+    when=(Guard.GOAL_ACTIVE,), do=(Action.REFUSE_GOAL,), to=MOVING
 )
+refuse_goal_and_hover: Final = Branch(do=(Action.REFUSE_GOAL,), to=HOVERING)
 
-deni: Final[Cell] = (Branch(ends=DENIED),)
-deni_to: Final[Cell] = (grounded(DENIED), hold_then(DENIED))
-deni_ho: Final[Cell] = (lose_control(DENIED), Branch())
-deni_ph: Final[Cell] = (Branch(ends=DENIED, to=State.HOVERING),)
-deni_fl: Final[Cell] = (hold_then(DENIED),)
-deni_st: Final[Cell] = (
-    Branch(when=(Guard.IN_GRACE,), ends=DENIED, do=(Do.LET_GO, Do.HOLD)),
-    *deni,
+# A vehicle that refuses to disarm may be flying, or about to: it is told to hold.
+end_if_surely_on_ground: Final = Branch(when=(Guard.SURELY_ON_GROUND,), ends=VEHICLE_REFUSED)
+hold_mode_if_on_ground: Final = Branch(
+    when=(Guard.ON_GROUND,), ends=VEHICLE_REFUSED, do=(Action.HOLD_MODE_ONLY,)
 )
-# It may fly, or begin to, and would not be disarmed: hold it.
-dsno_gr: Final[Cell] = (
-    Branch(when=(Guard.STANDS,), ends=DENIED),
-    Branch(when=(Guard.ON_GROUND,), ends=DENIED, do=(Do.HOLD_BLIND,)),
-    hold_then(DENIED),
-)
-dsno_st: Final[Cell] = (
-    Branch(when=(Guard.STANDS,), ends=DENIED),
-    Branch(ends=DENIED, do=(Do.HOLD_BLIND,)),
-)
-sile_to: Final[Cell] = (grounded(SILENT), hold_then(SILENT))
-sile_ph: Final[Cell] = (Branch(ends=SILENT, to=State.HOVERING),)
-sile_fl: Final[Cell] = (hold_then(SILENT),)
-sile_st: Final[Cell] = (
-    Branch(when=(Guard.IN_GRACE,), ends=SILENT, do=(Do.LET_GO, Do.HOLD)),
-    *sile,
-)
-noho: Final[Cell] = (Branch(when=(Guard.TASK_WANTS_HOLD,), ends=DENIED), Branch())
-shot: Final[Cell] = (
-    Branch(when=(Guard.PHOTO_OK,), ends=COMPLETE, to=State.HOVERING),
-    *deni_ph,
-)
-fini: Final[Cell] = (
-    Branch(when=RETAKE, do=(Do.TAKE_CONTROL,), to=State.HOVERING),
-    Branch(when=(Guard.ON_GROUND,)),
-    hold_then(COMPLETE),
-)
+hold_mode: Final = Branch(ends=VEHICLE_REFUSED, do=(Action.HOLD_MODE_ONLY,))
 
-# fmt: off
-# ruff: noqa: E501 - a table is read along its rows
+end_if_task_ends_held: Final = Branch(when=(Guard.TASK_ENDS_HELD,), ends=VEHICLE_REFUSED)
+complete_if_photo_taken: Final = Branch(when=(Guard.PHOTO_TAKEN,), ends=COMPLETE, to=HOVERING)
+take_control_if_regainable: Final = Branch(
+    when=CONTROL_REGAINABLE, do=(Action.TAKE_CONTROL,), to=HOVERING
+)
+unchanged_if_on_ground: Final = Branch(when=(Guard.ON_GROUND,))
+
 ANSWER_ROWS: Final[Mapping[Event, Row]] = {
-    #                        NO_VE   STALE    GROUN   TAKOF    HOVER    VERIF   MOVIN   STREA   PICTU    MISSI    RETUR    LANDI    HOLDI   EXTER
-    Event.GOAL_CLEARED:      (imposs, imposs,  imposs, imposs,  imposs,  clears, imposs, imposs, imposs,  imposs,  imposs,  imposs,  imposs, imposs),
-    Event.GOAL_REFUSED:      (imposs, imposs,  imposs, imposs,  imposs,  drops,  imposs, imposs, imposs,  imposs,  imposs,  imposs,  imposs, imposs),
-    Event.COMMAND_DONE:      (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   stay),
-    Event.COMMAND_REFUSED:   (stay,   deni_st, deni,   deni_to, deni_ho, imposs, stay,   stay,   deni_ph, deni_to, deni_fl, deni_fl, stay,   deni),
-    Event.COMMAND_SILENT:    (stay,   sile_st, sile,   sile_to, sile_ho, imposs, stay,   stay,   sile_ph, sile_to, sile_fl, sile_fl, stay,   sile),
-    Event.DISARM_REFUSED:    (stay,   dsno_st, dsno_gr, stay,   stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   deni),
-    Event.COMMAND_LATE:      (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   stay),
-    Event.HOLD_REFUSED:      (noho,   noho,    noho,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    noho,   noho),
-    Event.HOLD_SILENT:       (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   stay),
-    Event.PHOTO_SEEN:        (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   shot,    stay,    stay,    stay,    stay,   stay),
-    Event.MISSION_ITEM:      (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    stay,    stay,    stay,    stay,   stay),
-    Event.MISSION_FINISHED:  (stay,   stay,    stay,   stay,    stay,    imposs, stay,   stay,   stay,    fini,    stay,    stay,    stay,   stay),
+    Event.GOAL_CLEARED: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=cannot_happen),
+        during(VERIFYING, then=fly_goal),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=cannot_happen),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=cannot_happen),
+    ),
+    Event.GOAL_REFUSED: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=cannot_happen),
+        during(VERIFYING, then=(refuse_goal_and_move_on_if_goal_active, refuse_goal_and_hover)),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=cannot_happen),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=cannot_happen),
+    ),
+    Event.COMMAND_ACCEPTED: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
+    ),
+    Event.COMMAND_REFUSED: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=(stop_stream_if(Guard.IN_GRACE, VEHICLE_REFUSED), end(VEHICLE_REFUSED))),
+        during(GROUNDED, then=end(VEHICLE_REFUSED)),
+        during(TAKING_OFF, then=(end_if_on_ground(VEHICLE_REFUSED), hold_and_end(VEHICLE_REFUSED))),
+        during(HOVERING, then=(release_if_taking_control(VEHICLE_REFUSED), unchanged)),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, then=unchanged),
+        during(TAKING_PICTURE, then=hover_and_end(VEHICLE_REFUSED)),
+        during(
+            FLYING_MISSION,
+            then=(end_if_on_ground(VEHICLE_REFUSED), hold_and_end(VEHICLE_REFUSED)),
+        ),
+        during(RETURNING, LANDING, then=hold_and_end(VEHICLE_REFUSED)),
+        during(HOLDING, then=unchanged),
+        during(EXTERNAL, then=end(VEHICLE_REFUSED)),
+    ),
+    Event.COMMAND_UNANSWERED: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=(stop_stream_if(Guard.IN_GRACE, NO_ANSWER), end(NO_ANSWER))),
+        during(GROUNDED, then=end(NO_ANSWER)),
+        during(TAKING_OFF, then=(end_if_on_ground(NO_ANSWER), hold_and_end(NO_ANSWER))),
+        during(HOVERING, then=(release_if_taking_control(NO_ANSWER), unchanged)),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, then=unchanged),
+        during(TAKING_PICTURE, then=hover_and_end(NO_ANSWER)),
+        during(FLYING_MISSION, then=(end_if_on_ground(NO_ANSWER), hold_and_end(NO_ANSWER))),
+        during(RETURNING, LANDING, then=hold_and_end(NO_ANSWER)),
+        during(HOLDING, then=unchanged),
+        during(EXTERNAL, then=end(NO_ANSWER)),
+    ),
+    Event.DISARM_REFUSED: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=(end_if_surely_on_ground, hold_mode)),
+        during(
+            GROUNDED,
+            then=(end_if_surely_on_ground, hold_mode_if_on_ground, hold_and_end(VEHICLE_REFUSED)),
+        ),
+        during(TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),
+        during(RETURNING, LANDING, HOLDING, then=unchanged),
+        during(EXTERNAL, then=end(VEHICLE_REFUSED)),
+    ),
+    Event.LATE_ANSWER: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
+    ),
+    Event.HOLD_REFUSED: row(
+        during(NO_VEHICLE, STALE, GROUNDED, then=(end_if_task_ends_held, unchanged)),
+        during(TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),
+        during(RETURNING, LANDING, then=unchanged),
+        during(HOLDING, EXTERNAL, then=(end_if_task_ends_held, unchanged)),
+    ),
+    Event.HOLD_UNANSWERED: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
+    ),
+    Event.PHOTO_SEEN: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, then=unchanged),
+        during(TAKING_PICTURE, then=(complete_if_photo_taken, hover_and_end(VEHICLE_REFUSED))),
+        during(FLYING_MISSION, RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
+    ),
+    Event.MISSION_ITEM: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
+    ),
+    Event.MISSION_FINISHED: row(
+        during(NO_VEHICLE, STALE, GROUNDED, TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=unchanged),
+        during(
+            FLYING_MISSION,
+            then=(take_control_if_regainable, unchanged_if_on_ground, hold_and_end(COMPLETE)),
+        ),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
+    ),
 }
-# fmt: on

@@ -1,4 +1,8 @@
-"""Rows of the table: what a mode shown by the heartbeat means in each state."""
+"""Rows of the table: what a mode that the heartbeat shows means in each state.
+
+The mode that we commanded is confirmed, or is overdue.  Any other change of mode was made by
+somebody else or by the vehicle itself: we release control, and the state follows the mode.
+"""
 
 from __future__ import annotations
 
@@ -7,88 +11,257 @@ from typing import Final
 
 from gcs.gate.machine.cells import (
     COMPLETE,
-    RETAKE,
-    SILENT,
-    TAKEN,
-    grounded,
-    imposs,
-    lose_control,
-    release_then,
-    stay,
+    CONTROL_REGAINABLE,
+    NO_ANSWER,
+    TAKEN_OVER,
+    cannot_happen,
+    end_if_on_ground,
+    release_and_end,
+    release_if_taking_control,
+    unchanged,
 )
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.rules import Branch, Cell, Do, Guard, Row
-from gcs.gate.states import State
+from gcs.gate.machine.row import (
+    EXTERNAL,
+    FLYING_MISSION,
+    GROUNDED,
+    HOLDING,
+    HOVERING,
+    LANDING,
+    MOVING,
+    NO_VEHICLE,
+    RETURNING,
+    STALE,
+    STREAMING,
+    TAKING_OFF,
+    TAKING_PICTURE,
+    VERIFYING,
+    Row,
+    during,
+    row,
+)
+from gcs.gate.machine.rules import Action, Branch, Cell, Guard
 
-conf: Final[Cell] = (
-    Branch(when=(Guard.HOLD_AWAITED, Guard.TASK_WANTS_HOLD), ends=COMPLETE, do=(Do.HOLD_SHOWN,)),
-    Branch(when=(Guard.HOLD_AWAITED,), do=(Do.HOLD_SHOWN,)),
-    Branch(when=(Guard.TASK_WANTS_MODE,), do=(Do.MODE_SETTLED, Do.CONTINUE)),
-    Branch(do=(Do.MODE_SETTLED,)),
-)
-conf_st: Final[Cell] = (*conf[:2], Branch())
-conf_ho: Final[Cell] = (
-    Branch(when=(Guard.TAKING,), ends=COMPLETE, do=(Do.GAIN_CONTROL,)),
-    Branch(do=(Do.MODE_SETTLED,)),
-)
-_natural: Final = Branch(when=(Guard.MODE_NATURAL,), do=(Do.MODE_SETTLED,))
-_guided: Final = Branch(when=(Guard.MODE_GUIDED,), ends=SILENT, do=(Do.HOLD,), to=State.HOLDING)
-_pending: Final = Branch(when=(Guard.MODE_PENDING,))
-_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,))
+unchanged_while_mode_awaited: Final = Branch(when=(Guard.MODE_AWAITED,))
+unchanged_while_hold_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,))
+unchanged_while_taking_control: Final = Branch(when=(Guard.TAKING_CONTROL,))
+unchanged_unless_airborne: Final = Branch(when=(Guard.NOT_AIRBORNE,))
+unchanged_if_mode_fits_state: Final = Branch(when=(Guard.MODE_FITS_STATE,))
 
-settl: Final[Cell] = (Branch(do=(Do.MODE_SETTLED,)),)
-over: Final[Cell] = (_natural, _guided, release_then(SILENT, State.EXTERNAL))
-over_to: Final[Cell] = (_natural, grounded(SILENT), *over[1:])
-over_ho: Final[Cell] = (lose_control(SILENT), *settl)
+# -------------------------------------------------------------- the mode that we commanded
 
-gone: Final[Cell] = (release_then(TAKEN, State.EXTERNAL),)
-gone_ho: Final[Cell] = (Branch(when=(Guard.TAKING,)), *gone)
-gone_pe: Final[Cell] = (_pending, *gone)
-gone_to: Final[Cell] = (_pending, grounded(TAKEN), *gone)
-gone_hd: Final[Cell] = (_awaited, *gone)
-gone_st: Final[Cell] = (
-    _awaited,
-    _pending,
-    Branch(when=(Guard.MODE_NATURAL,)),
-    Branch(when=(Guard.RETURNS_TO_STATE,), ends=TAKEN, do=(Do.RELEASE, Do.FORGET_INTERRUPTED)),
-    Branch(),
+stop_awaiting_mode: Final = Branch(do=(Action.STOP_AWAITING_MODE,))
+complete_if_task_ends_held: Final = Branch(
+    when=(Guard.HOLD_AWAITED, Guard.TASK_ENDS_HELD), ends=COMPLETE, do=(Action.CONFIRM_HOLD,)
 )
-late_hd: Final[Cell] = (
-    _awaited,
-    Branch(when=(Guard.GUIDED_LATE,), do=(Do.HOLD,)),
-    *gone,
+confirm_hold_if_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,), do=(Action.CONFIRM_HOLD,))
+send_command_that_waited_for_mode: Final = Branch(
+    when=(Guard.TASK_WAITS_FOR_MODE,), do=(Action.STOP_AWAITING_MODE, Action.SEND_WAITING)
 )
-late_ex: Final[Cell] = (Branch(when=(Guard.GUIDED_LATE,), do=(Do.HOLD_ONCE,)), Branch())
-hold_mi: Final[Cell] = (
-    _pending,
-    Branch(when=(Guard.MISSION_OVER, *RETAKE), do=(Do.TAKE_CONTROL,), to=State.HOVERING),
-    Branch(when=(Guard.MISSION_OVER,), ends=COMPLETE, do=(Do.HOLD,), to=State.HOLDING),
-    *gone,
+gain_control_if_taking_it: Final = Branch(
+    when=(Guard.TAKING_CONTROL,), ends=COMPLETE, do=(Action.GAIN_CONTROL,)
+)
+stop_awaiting_if_mode_fits_state: Final = Branch(
+    when=(Guard.MODE_FITS_STATE,), do=(Action.STOP_AWAITING_MODE,)
+)
+hold_if_guided: Final = Branch(
+    when=(Guard.MODE_GUIDED,), ends=NO_ANSWER, do=(Action.HOLD,), to=HOLDING
 )
 
-homes: Final[Cell] = (release_then(TAKEN, State.RETURNING),)
-home_pe: Final[Cell] = (_pending, *homes)
-home_mi: Final[Cell] = (Branch(to=State.RETURNING),)
-home_hd: Final[Cell] = (_awaited, *homes)
-home_st: Final[Cell] = (Branch(when=(Guard.NOT_AIRBORNE,)), _awaited, _pending, *homes)
-falls: Final[Cell] = (release_then(TAKEN, State.LANDING),)
-fall_pe: Final[Cell] = (_pending, *falls)
-fall_mi: Final[Cell] = (Branch(to=State.LANDING),)
-fall_hd: Final[Cell] = (_awaited, *falls)
-fall_st: Final[Cell] = (Branch(when=(Guard.NOT_AIRBORNE,)), _awaited, _pending, *falls)
+mode_confirmed: Final[Cell] = (
+    complete_if_task_ends_held,
+    confirm_hold_if_awaited,
+    send_command_that_waited_for_mode,
+    stop_awaiting_mode,
+)
+mode_overdue_on_the_way_up: Final[Cell] = (
+    stop_awaiting_if_mode_fits_state,
+    end_if_on_ground(NO_ANSWER),
+    hold_if_guided,
+    release_and_end(NO_ANSWER, EXTERNAL),
+)
+mode_overdue_on_the_way_down: Final[Cell] = (
+    stop_awaiting_if_mode_fits_state,
+    hold_if_guided,
+    release_and_end(NO_ANSWER, EXTERNAL),
+)
 
-# fmt: off
-# ruff: noqa: E501 - a table is read along its rows
+# -------------------------------------------------------- a mode that we did not command
+
+to_external: Final = release_and_end(TAKEN_OVER, EXTERNAL)
+to_returning: Final = release_and_end(TAKEN_OVER, RETURNING)
+to_landing: Final = release_and_end(TAKEN_OVER, LANDING)
+mission_returns: Final = Branch(to=RETURNING)
+mission_lands: Final = Branch(to=LANDING)
+
+taken_over_if_it_returns_to_state: Final = Branch(
+    when=(Guard.RETURNS_TO_STATE,),
+    ends=TAKEN_OVER,
+    do=(Action.RELEASE_CONTROL, Action.FORGET_INTERRUPTED),
+)
+hold_again_if_guided_may_come_late: Final = Branch(
+    when=(Guard.GUIDED_MAY_COME_LATE,), do=(Action.HOLD,)
+)
+hold_once_if_guided_may_come_late: Final = Branch(
+    when=(Guard.GUIDED_MAY_COME_LATE,), do=(Action.HOLD_ONCE,)
+)
+take_control_if_mission_over: Final = Branch(
+    when=(Guard.MISSION_AT_LAST_ITEM, *CONTROL_REGAINABLE),
+    do=(Action.TAKE_CONTROL,),
+    to=HOVERING,
+)
+hold_if_mission_over: Final = Branch(
+    when=(Guard.MISSION_AT_LAST_ITEM,), ends=COMPLETE, do=(Action.HOLD,), to=HOLDING
+)
+
+mode_seen_in_stale: Final[Cell] = (
+    unchanged_while_hold_awaited,
+    unchanged_while_mode_awaited,
+    unchanged_if_mode_fits_state,
+    taken_over_if_it_returns_to_state,
+    unchanged,
+)
+
 MODE_ROWS: Final[Mapping[Event, Row]] = {
-    #                      NO_VE  STALE    GROUN  TAKOF    HOVER    VERIF   MOVIN  STREA  PICTU  MISSI    RETUR    LANDI    HOLDI    EXTER
-    Event.MODE_CONFIRMED:  (stay,  conf_st, conf,  conf,    conf_ho, imposs, settl, settl, settl, settl,   settl,   settl,   conf,    conf),
-    Event.MODE_OVERDUE:    (settl, settl,   settl, over_to, over_ho, imposs, settl, settl, settl, over_to, over,    over,    settl,   settl),
-    Event.SAW_GUIDED:      (stay,  gone_st, stay,  stay,    stay,    imposs, stay,  stay,  stay,  gone_pe, gone_pe, gone_pe, late_hd, late_ex),
-    Event.SAW_HOLD:        (stay,  gone_st, stay,  stay,    gone_ho, imposs, gone,  gone,  gone,  hold_mi, gone_pe, gone_pe, stay,    stay),
-    Event.SAW_TAKE_OFF:    (stay,  gone_st, stay,  stay,    gone,    imposs, gone,  gone,  gone,  gone_pe, gone_pe, gone_pe, gone_hd, stay),
-    Event.SAW_MISSION:     (stay,  gone_st, stay,  gone_to, gone,    imposs, gone,  gone,  gone,  stay,    gone_pe, gone_pe, gone_hd, stay),
-    Event.SAW_OTHER:       (stay,  gone_st, stay,  gone_to, gone,    imposs, gone,  gone,  gone,  gone_pe, gone_pe, gone_pe, gone_hd, stay),
-    Event.SAW_RETURN:      (stay,  home_st, stay,  homes,   homes,   imposs, homes, homes, homes, home_mi, stay,    home_pe, home_hd, homes),
-    Event.SAW_LAND:        (stay,  fall_st, stay,  falls,   falls,   imposs, falls, falls, falls, fall_mi, fall_mi, stay,    fall_hd, falls),
+    Event.MODE_CONFIRMED: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=(complete_if_task_ends_held, confirm_hold_if_awaited, unchanged)),
+        during(GROUNDED, TAKING_OFF, then=mode_confirmed),
+        during(HOVERING, then=(gain_control_if_taking_it, stop_awaiting_mode)),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=stop_awaiting_mode),
+        during(FLYING_MISSION, RETURNING, LANDING, then=stop_awaiting_mode),
+        during(HOLDING, EXTERNAL, then=mode_confirmed),
+    ),
+    Event.MODE_OVERDUE: row(
+        during(NO_VEHICLE, STALE, GROUNDED, then=stop_awaiting_mode),
+        during(TAKING_OFF, then=mode_overdue_on_the_way_up),
+        during(HOVERING, then=(release_if_taking_control(NO_ANSWER), stop_awaiting_mode)),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=stop_awaiting_mode),
+        during(FLYING_MISSION, then=mode_overdue_on_the_way_up),
+        during(RETURNING, LANDING, then=mode_overdue_on_the_way_down),
+        during(HOLDING, EXTERNAL, then=stop_awaiting_mode),
+    ),
+    Event.SAW_GUIDED: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=mode_seen_in_stale),
+        during(GROUNDED, TAKING_OFF, HOVERING, then=unchanged),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=unchanged),
+        during(
+            FLYING_MISSION, RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)
+        ),
+        during(
+            HOLDING,
+            then=(unchanged_while_hold_awaited, hold_again_if_guided_may_come_late, to_external),
+        ),
+        during(EXTERNAL, then=(hold_once_if_guided_may_come_late, unchanged)),
+    ),
+    Event.SAW_HOLD: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=mode_seen_in_stale),
+        during(GROUNDED, TAKING_OFF, then=unchanged),
+        during(HOVERING, then=(unchanged_while_taking_control, to_external)),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=to_external),
+        during(
+            FLYING_MISSION,
+            then=(
+                unchanged_while_mode_awaited,
+                take_control_if_mission_over,
+                hold_if_mission_over,
+                to_external,
+            ),
+        ),
+        during(RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)),
+        during(HOLDING, EXTERNAL, then=unchanged),
+    ),
+    Event.SAW_TAKE_OFF: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=mode_seen_in_stale),
+        during(GROUNDED, TAKING_OFF, then=unchanged),
+        during(HOVERING, then=to_external),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=to_external),
+        during(
+            FLYING_MISSION, RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)
+        ),
+        during(HOLDING, then=(unchanged_while_hold_awaited, to_external)),
+        during(EXTERNAL, then=unchanged),
+    ),
+    Event.SAW_MISSION: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=mode_seen_in_stale),
+        during(GROUNDED, then=unchanged),
+        during(
+            TAKING_OFF,
+            then=(unchanged_while_mode_awaited, end_if_on_ground(TAKEN_OVER), to_external),
+        ),
+        during(HOVERING, then=to_external),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=to_external),
+        during(FLYING_MISSION, then=unchanged),
+        during(RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)),
+        during(HOLDING, then=(unchanged_while_hold_awaited, to_external)),
+        during(EXTERNAL, then=unchanged),
+    ),
+    Event.SAW_OTHER: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(STALE, then=mode_seen_in_stale),
+        during(GROUNDED, then=unchanged),
+        during(
+            TAKING_OFF,
+            then=(unchanged_while_mode_awaited, end_if_on_ground(TAKEN_OVER), to_external),
+        ),
+        during(HOVERING, then=to_external),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=to_external),
+        during(
+            FLYING_MISSION, RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)
+        ),
+        during(HOLDING, then=(unchanged_while_hold_awaited, to_external)),
+        during(EXTERNAL, then=unchanged),
+    ),
+    Event.SAW_RETURN: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(
+            STALE,
+            then=(
+                unchanged_unless_airborne,
+                unchanged_while_hold_awaited,
+                unchanged_while_mode_awaited,
+                to_returning,
+            ),
+        ),
+        during(GROUNDED, then=unchanged),
+        during(TAKING_OFF, HOVERING, then=to_returning),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=to_returning),
+        during(FLYING_MISSION, then=mission_returns),
+        during(RETURNING, then=unchanged),
+        during(LANDING, then=(unchanged_while_mode_awaited, to_returning)),
+        during(HOLDING, then=(unchanged_while_hold_awaited, to_returning)),
+        during(EXTERNAL, then=to_returning),
+    ),
+    Event.SAW_LAND: row(
+        during(NO_VEHICLE, then=unchanged),
+        during(
+            STALE,
+            then=(
+                unchanged_unless_airborne,
+                unchanged_while_hold_awaited,
+                unchanged_while_mode_awaited,
+                to_landing,
+            ),
+        ),
+        during(GROUNDED, then=unchanged),
+        during(TAKING_OFF, HOVERING, then=to_landing),
+        during(VERIFYING, then=cannot_happen),
+        during(MOVING, STREAMING, TAKING_PICTURE, then=to_landing),
+        during(FLYING_MISSION, RETURNING, then=mission_lands),
+        during(LANDING, then=unchanged),
+        during(HOLDING, then=(unchanged_while_hold_awaited, to_landing)),
+        during(EXTERNAL, then=to_landing),
+    ),
 }
-# fmt: on

@@ -1,8 +1,8 @@
-"""The words that the table is written in: guards, checks, actions, and the branch they make.
+"""The vocabulary of the table: guards, checks, actions, and the branch that is made of them.
 
-Nothing here decides or does anything.  `guards.py` says when a `Guard` holds and what a
-`Check` objects, `actions.py` what a `Do` does; both are total over these enumerations, which
-a test asserts.  The values are what the printed table says.
+These are names only.  `guards.py` evaluates each `Guard`, `checks.py` each `Check`, and
+`actions.py` carries out each `Action`; a test asserts that none is missing there.  The values
+are the texts of the printed table (`gcs fsa`).
 """
 
 from __future__ import annotations
@@ -17,121 +17,128 @@ from gcs.gate.states import State
 
 
 class Guard(StrEnum):
-    """A question about the gate's memory, without side effects."""
+    """A condition of a branch.  Evaluating it does not change the gate's memory."""
 
-    HEARD_ONCE = "a vehicle was heard before"
+    HEARD_BEFORE = "a vehicle was heard before"
     AIRBORNE = "it flies"
     NOT_AIRBORNE = "it is not known to fly"
     ON_GROUND = "it stands on the ground"
     ARMED = "it is armed"
     DISARMED = "it is disarmed"
-    STANDS = "it stands, and no take-off can be under way"
-    SAFE = "it is disarmed and nothing is under way"
-    LIFTED = "it had lifted off"
-    LATE_TAKE_OFF = "our own take-off comes late"
-    OURS = "we have control"
-    TAKING = "control is being taken"
-    TASK = "a request is under way"
+    SURELY_ON_GROUND = "it stands, and no take-off can be under way"
+    DISARMED_AND_IDLE = "it is disarmed and nothing is under way"
+    LIFTED_OFF = "it had lifted off"
+    TAKE_OFF_MAY_COME_LATE = "our own take-off comes late"
+    IN_CONTROL = "we have control"
+    TAKING_CONTROL = "control is being taken"
+    TASK_UNDER_WAY = "a request is under way"
     TASK_IS_ARM = "the request is to arm"
-    TASK_WANTS_MODE = "the request waited for this mode"
-    TASK_WANTS_HOLD = "the request is to hold or abort"
-    TASK_HAS_LANDED = "the request is to come down, and it stands"
+    TASK_WAITS_FOR_MODE = "the request waited for this mode"
+    TASK_ENDS_HELD = "the request is to hold or abort"
+    TASK_ENDS_LANDED = "the request is to come down, and it stands"
     TASK_ENDS_DISARMED = "the request ends when disarmed"
     MISSION_GOES_ON = "the mission lifts off again"
-    PENDING = "a goal is pending"
-    ACTIVE_GOAL = "a goal is being flown"
+    GOAL_PENDING = "a goal is pending"
+    GOAL_ACTIVE = "a goal is being flown"
     ARRIVED = "it arrived"
     AT_HEIGHT = "it reached the height"
-    CLIMB_SHORT = "the climb ended elsewhere"
-    CLIMBS_ON = "it climbs above the height"
-    FLIES_ON = "a position too old interrupted its flight"
-    OPERATOR_GONE = "the operator is lost"
-    HERE_CLEARS = "the present position clears"
-    PATH_CLEARS = "the return path clears"
-    RTL_FORWARD = "policy forwards blocked returns"
-    RTL_LAND = "policy lands on blocked returns"
-    RETARGET = "policy lets the goal's owner replace it"
+    CLIMB_ENDED_ELSEWHERE = "the climb ended elsewhere"
+    CLIMBS_TOO_HIGH = "it climbs above the height"
+    RETURNS_TO_FLIGHT = "a position too old interrupted its flight"
+    OPERATOR_LOST = "the operator is lost"
+    POSITION_CLEARS = "the present position clears"
+    RETURN_PATH_CLEARS = "the return path clears"
+    BLOCKED_RETURN_FORWARDED = "policy forwards blocked returns"
+    BLOCKED_RETURN_LANDS = "policy lands on blocked returns"
+    RETARGET_ALLOWED = "policy lets the goal's owner replace it"
     FENCE_SWITCHABLE = "policy lets the fence be switched"
-    FORCE_FORBIDDEN = "policy forbids disarming in the air"
-    FORCE_UNCONFIRMED = "it was asked for only once"
+    FORCE_DISARM_FORBIDDEN = "policy forbids disarming in the air"
+    FORCE_DISARM_UNCONFIRMED = "it was asked for only once"
     SEVERITY_PERMITS = "severity permits motion"
-    SEVERITY_RETURNS = "severity demands return or landing"
+    SEVERITY_DEMANDS_RETURN = "severity demands return or landing"
     HOLD_AWAITED = "hold is commanded and not shown yet"
-    MODE_PENDING = "a commanded mode is not shown yet"
-    MODE_NATURAL = "the mode belongs to the state"
+    MODE_AWAITED = "a commanded mode is not shown yet"
+    MODE_FITS_STATE = "the mode belongs to the state"
     MODE_GUIDED = "the mode is guided"
     MODE_RETURN = "the mode is return"
     MODE_LAND = "the mode is land"
-    GUIDED_LATE = "our own guided command comes late"
-    MISSION_OVER = "the mission reached its last item"
+    GUIDED_MAY_COME_LATE = "our own guided command comes late"
+    MISSION_AT_LAST_ITEM = "the mission reached its last item"
     IN_GRACE = "a verified stream is in its grace"
     GRACE_OVER = "the grace is over"
     RETURNS_TO_STATE = "it was interrupted in flight"
-    PHOTO_OK = "the picture was taken"
+    PHOTO_TAKEN = "the picture was taken"
 
 
 class Check(StrEnum):
-    """A condition of acceptance; where it fails it says why, and that refuses the request."""
+    """A condition for accepting a request.  Where it fails it gives the refusal with its reason."""
 
     SEVERITY = "severity permits motion"
     RECORDER = "the recorder runs where policy asks for it"
     ARMED = "it is armed"
     ON_GROUND = "it stands on the ground"
-    HERE = "the present position clears"
-    TAKE_OFF = "the climb clears"
+    POSITION = "the present position clears"
+    CLIMB = "the climb clears"
     MISSION = "a verified mission is on board"
-    VERIFIER = "home and fence are known"
+    HOME_AND_FENCE = "home and fence are known"
 
 
-class Do(StrEnum):
-    """An action: effects, and what the gate remembers."""
+class Action(StrEnum):
+    """What a branch does: it emits effects and changes the gate's memory."""
 
-    VERIFY = "verify the pending goal"
+    VERIFY_GOAL = "verify the pending goal"
     FLY_GOAL = "accept the goal and fly it"
-    DROP_GOAL = "refuse the goal"
-    KEEP_GOAL = "hold at the goal"
+    REFUSE_GOAL = "refuse the goal"
+    HOLD_AT_GOAL = "hold at the goal"
     TAKE_CONTROL = "stream the present position"
     ASK_GUIDED = "command guided"
     GAIN_CONTROL = "control is ours"
-    RELEASE = "let control go"
+    RELEASE_CONTROL = "let control go"
     ARM = "command arm"
     DISARM = "command disarm"
     FORCE_DISARM = "command forced disarm"
     TAKE_OFF = "command take-off"
-    CONTINUE = "send the command that waited"
+    SEND_WAITING = "send the command that waited"
     LAND = "command land"
     RETURN = "command return"
     HOLD = "command hold"
     HOLD_ONCE = "command hold once"
-    HOLD_BLIND = "command hold unseen"
+    HOLD_MODE_ONLY = "command hold unseen"
     REPEAT_HOLD = "command hold again"
-    HOLD_SHOWN = "hold is confirmed"
-    MODE_SETTLED = "no mode is awaited any more"
-    HOLD_ANEW = "verify the held point anew"
+    CONFIRM_HOLD = "hold is confirmed"
+    STOP_AWAITING_MODE = "no mode is awaited any more"
+    VERIFY_HELD_POINT = "verify the held point anew"
     BRAKE = "send the brake setpoint"
-    PHOTO = "command photo"
+    TAKE_PHOTO = "command photo"
     START_MISSION = "command mission start"
     SWITCH_FENCE = "switch the fence"
     START_GRACE = "keep the verified stream for its grace"
-    LET_GO = "stop the stream"
+    STOP_STREAM = "stop the stream"
     FORGET_VEHICLE = "forget the vehicle"
     FORGET_INTERRUPTED = "forget what was interrupted"
     AWAIT_DISARM = "wait shortly for disarm"
-    NOTE_LIFTED = "note the lift-off"
-    NOTE_FORCE = "note the first asking"
+    NOTE_LIFT_OFF = "note the lift-off"
+    NOTE_FORCE_REQUEST = "note the first asking"
 
 
-class Answer(Enum):
-    """What a request gets when it is not refused."""
+class Reply(Enum):
+    """What a branch replies to a request that it does not refuse.
+
+    NONE is for events that are not requests.  PENDING gives no verdict yet: the request waits
+    for the next tick.
+    """
 
     NONE = "none"
-    TASK = "accepted"
+    ACCEPTED = "accepted"
     DONE = "accepted, complete at once"
     PENDING = "pending until the tick"
 
 
 class Elsewhere(Enum):
-    """Next states that are not one state by name."""
+    """Next states that are not given by their name.
+
+    STAY is the present state; BACK, in STALE, the state that `Memory.back_to` remembers.
+    """
 
     STAY = "stay"
     BACK = "back"
@@ -149,16 +156,17 @@ BACK_STATES: Final = (
     State.FLYING_MISSION,
     State.HOLDING,
 )
-"""Where STALE may lead back to: the states that a position too old interrupts in flight."""
+"""The states that BACK may stand for: those in which a position too old leads to STALE, and from
+which the flight may go on when a fresh position arrives."""
 
 Next: TypeAlias = State | Elsewhere
 
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """How the request under way ends; a goal still pending is refused with the same code.
+    """The outcome of the request under way; a goal that is still pending is refused with the code.
 
-    `judged`: the code is that of the refusal which led here.
+    `judged` True: the code and the sentence are those of the refusal that caused the event.
     """
 
     kind: OutcomeKind
@@ -168,46 +176,30 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """One line of a cell.  The first branch whose guards all hold is taken.
+    """One alternative of a cell: the first whose guards (`when`) all hold is taken.
 
-    Its checks are then asked in order; the first that objects refuses the request and nothing
-    else of the branch happens.  `refuse` refuses outright (`do` and `to` still happen: a
-    blocked return holds).  Otherwise the request is answered, the task ends as `ends` says
-    (an accepted request that displaces one, and says nothing, supersedes it), the actions run
-    in order, and the state becomes `to`.
+    What a branch that was taken does, in this order:
+
+    1. `needs`: its checks are made.  The first that fails refuses the request, and nothing else
+       of the branch happens.
+    2. `refuse`: the request is refused with this code.  The rest of the branch still happens: a
+       return whose path is blocked is refused, and the vehicle is held.
+    3. `reply`: the request is accepted, or kept until the tick.
+    4. `ends`: the outcome of the request that was under way before.  Where it is None and the
+       reply is ACCEPTED, that request is superseded by the new one.
+    5. `do`: the actions, in order.
+    6. `to`: the next state.
     """
 
     when: tuple[Guard, ...] = ()
     needs: tuple[Check, ...] = ()
     refuse: Code | None = None
-    answer: Answer = Answer.NONE
+    reply: Reply = Reply.NONE
     ends: End | None = None
-    do: tuple[Do, ...] = ()
+    do: tuple[Action, ...] = ()
     to: Next = STAY
 
 
 Cell: TypeAlias = tuple[Branch, ...]
-"""Branches in order; the last one has no guard.  An empty cell cannot happen: entering it is
-a bug of the gate's own."""
-
-Row: TypeAlias = tuple[
-    Cell, Cell, Cell, Cell, Cell, Cell, Cell, Cell, Cell, Cell, Cell, Cell, Cell, Cell
-]
-"""One event's cells, in the order of `COLUMNS`."""
-
-COLUMNS: Final = (
-    State.NO_VEHICLE,
-    State.STALE,
-    State.GROUNDED,
-    State.TAKING_OFF,
-    State.HOVERING,
-    State.VERIFYING,
-    State.MOVING,
-    State.STREAMING,
-    State.TAKING_PICTURE,
-    State.FLYING_MISSION,
-    State.RETURNING,
-    State.LANDING,
-    State.HOLDING,
-    State.EXTERNAL,
-)
+"""The branches of one state and one event, in order; the last one has no guard.  An empty cell
+says that the event cannot happen in the state: if it does, the gate has a bug."""

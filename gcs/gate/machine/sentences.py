@@ -1,4 +1,7 @@
-"""The sentences of the gate's own refusals and outcomes; the verifier brings its own."""
+"""The sentences of the gate's own refusals and outcomes.
+
+Refusals by the verifier carry sentences of their own (`gcs/gate/airspace/explain.py`).
+"""
 
 from __future__ import annotations
 
@@ -49,8 +52,7 @@ ENDED: Final[Mapping[Code, str]] = MappingProxyType(
         Code.SEVERITY: "severity forbids motion",
     }
 )
-"""Why a request ends otherwise than complete."""
-
+"""Why a request ended otherwise than complete."""
 
 ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(
     {
@@ -67,14 +69,10 @@ ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(
         CommandKind.SET_MODE: "the mode",
     }
 )
-"""What a command asks for: the vehicle refused it, or did not answer the request for it."""
-
-
-def ended_because(code: Code) -> str:
-    return ENDED[code]
+"""What a command asks for, for "the vehicle refused ..." and "No answer to the request for ..."."""
 
 
 def where(pos_ned: Vec3) -> str:
-    """In the operator's frame."""
+    """A position in the operator's frame: east, north, up, metres."""
     east, north, up = enu_from_ned(pos_ned)
     return f"({east:.2f} E, {north:.2f} N, {up:.2f} U)"

@@ -1,12 +1,11 @@
 """The gate's state machine: every (state, event) pair, literally, with no cell missing.
 
 The machine runs from this table and from nothing else, and `gcs fsa` prints it.  The rows are
-written where their cells are, by subject; here they become one.
+written in the files `rows_*.py`, by subject, and are put together here.
 
-VERIFYING lasts no longer than the tick that entered it, so nothing but the verifier's answer
-can happen there.  STREAMING has no way in yet: its samples come from a client, and no
-client's stream reaches this gate before the bridge does; what would happen there is written
-all the same.
+VERIFYING ends within the tick that enters it, so only the verifier's answer can happen there.
+No event leads to STREAMING yet: its samples come from a client's stream, which reaches this gate
+only through the bridge, and the bridge is not built.  Its cells are written all the same.
 """
 
 from __future__ import annotations
@@ -16,34 +15,49 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
-from gcs.gate.machine.cells import GONE
-from gcs.gate.machine.events import ATTENDED, Event
+from gcs.gate.machine.cells import refuse_if_operator_lost
+from gcs.gate.machine.events import NEEDS_OPERATOR, Event
+from gcs.gate.machine.row import Row
 from gcs.gate.machine.rows_answers import ANSWER_ROWS
+from gcs.gate.machine.rows_failsafe import FAILSAFE_ROWS
+from gcs.gate.machine.rows_flight import FLIGHT_ROWS
 from gcs.gate.machine.rows_modes import MODE_ROWS
-from gcs.gate.machine.rows_requests import REQUEST_ROWS
+from gcs.gate.machine.rows_position import POSITION_ROWS
+from gcs.gate.machine.rows_requests_to_fly import REQUEST_TO_FLY_ROWS
+from gcs.gate.machine.rows_requests_to_stop import REQUEST_TO_STOP_ROWS
 from gcs.gate.machine.rows_time import TIME_ROWS
-from gcs.gate.machine.rows_vehicle import VEHICLE_ROWS
-from gcs.gate.machine.rules import COLUMNS, Cell, Row
+from gcs.gate.machine.rules import Cell
 from gcs.gate.states import State
 
 Table: TypeAlias = Mapping[tuple[State, Event], Cell]
 
 ROWS: Final[Mapping[Event, Row]] = MappingProxyType(
-    {**REQUEST_ROWS, **ANSWER_ROWS, **VEHICLE_ROWS, **MODE_ROWS, **TIME_ROWS}
+    {
+        **REQUEST_TO_FLY_ROWS,
+        **REQUEST_TO_STOP_ROWS,
+        **ANSWER_ROWS,
+        **POSITION_ROWS,
+        **FLIGHT_ROWS,
+        **MODE_ROWS,
+        **TIME_ROWS,
+        **FAILSAFE_ROWS,
+    }
 )
 
 TABLE: Final[Table] = MappingProxyType(
     {
-        (state, event): (GONE, *cell) if cell and event in ATTENDED else cell
+        (state, event): (refuse_if_operator_lost, *cell)
+        if cell and event in NEEDS_OPERATOR
+        else cell
         for event in Event
-        for state, cell in zip(COLUMNS, ROWS[event], strict=True)
+        for state, cell in ROWS[event].items()
     }
 )
-"""The rows, and in front of every request that wants an operator the refusal once he is lost."""
+"""The rows.  Every request that needs an operator is refused first where the operator is lost."""
 
 
 class Streams(StrEnum):
-    """Which goal a state puts on the wire at every tick, control given."""
+    """Which goal a state sends as a setpoint at every tick, as long as we have or take control."""
 
     NOTHING = "nothing"
     HOLD_GOAL = "the hold goal"

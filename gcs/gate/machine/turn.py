@@ -1,7 +1,7 @@
-"""What guards and actions work with: the memory, the policy, the time, and a way to speak.
+"""A turn: the working state of one `Gate.handle` call, which guards and actions share.
 
-Motion leaves here as drafts.  Only `gate.py` can turn a draft into an effect, because only
-there a permit is issued.
+It holds the memory, the policy, the time, and the effects so far.  What moves the vehicle is
+added as a draft: only `gate.py` makes an effect of it, because only there a permit is issued.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from gcs.gate.effects import (
 from gcs.gate.inputs import Requested
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import GATE, SECOND_NS, Goal, Memory, Task
-from gcs.gate.machine.rules import Answer, End
-from gcs.gate.machine.sentences import REFUSED, ended_because, where
+from gcs.gate.machine.rules import End, Reply
+from gcs.gate.machine.sentences import ENDED, REFUSED, where
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import FlightMode
@@ -36,7 +36,7 @@ from gcs.gate.states import FlightMode
 
 @dataclass(frozen=True, slots=True)
 class SetpointDraft:
-    """A setpoint to a verified goal, not yet permitted."""
+    """A setpoint to a verified goal, still without its permit."""
 
     goal: Goal
     reason: str
@@ -44,7 +44,7 @@ class SetpointDraft:
 
 @dataclass(frozen=True, slots=True)
 class CommandDraft:
-    """A command, not yet permitted."""
+    """A command, still without its permit."""
 
     request_id: int
     kind: CommandKind
@@ -65,11 +65,17 @@ MODE_OF: Final[Mapping[CommandKind, FlightMode]] = MappingProxyType(
         CommandKind.START_MISSION: FlightMode.MISSION,
     }
 )
-"""The mode by which the heartbeat shows that the command took effect."""
+"""The mode in which the heartbeat shows that a command took effect."""
 
 
 class Turn:
-    """One gate's inside, for the length of one `handle` call."""
+    """The working state of one `Gate.handle` call.
+
+    `out` is what leaves the gate, in order; `raised` are events that an action causes and that
+    are handled next; `requested` is the request that came in, if one did.  `why` is the reason
+    for the present event, or of the verifier's last refusal; `evidence` the numbers of its last
+    clearance; `breach` the predicted breach that is the present event.
+    """
 
     def __init__(self, policy: Policy, memory: Memory, now_ns: int) -> None:
         self.policy = policy
@@ -82,11 +88,11 @@ class Turn:
         self.why: Refusal | None = None
         self.evidence: tuple[tuple[str, float], ...] = ()
 
-    # --------------------------------------------------------------------------- judging
+    # -------------------------------------------------------------------- severity and time
 
     @property
     def severity(self) -> Severity:
-        """Of all active conditions the worst wins."""
+        """The worst of all active conditions."""
         severities = self.policy.severities
         return max(
             (severities[condition] for condition, _ in self.memory.conditions),
@@ -94,6 +100,7 @@ class Turn:
         )
 
     def after_ns(self, seconds: float) -> int:
+        """The time so many seconds from now."""
         return self.now_ns + round(seconds * SECOND_NS)
 
     @property
@@ -102,13 +109,14 @@ class Turn:
         age_ns = self.memory.position_age_ns(self.now_ns)
         return age_ns is None or age_ns > round(self.policy.position_age_s * SECOND_NS)
 
-    # -------------------------------------------------------------------------- speaking
+    # ----------------------------------------------------------------------------- verdicts
 
     def say(self, level: Level, text: str) -> None:
+        """Add a line for the operator and the log."""
         self.out.append(Say(level, text))
 
     def verdict(self, requested: Requested, ruling: Ruling, refusal: Refusal | None) -> None:
-        """The one and only verdict on `request`."""
+        """Give the one verdict on `requested`."""
         memory = self.memory
         flown = memory.goal or memory.hold
         self.out.append(
@@ -126,7 +134,8 @@ class Turn:
             self.say(Level.WARNING, f"Refused ({refusal.code}): {refusal.sentence}")
 
     def refuse(self, code: Code) -> None:
-        """Refuse the present request; a check that objected has said why already."""
+        """Refuse the present request: for the reason `why` where there is one, else with the
+        sentence for `code`."""
         assert self.requested is not None
         flown = self.memory.goal or self.memory.hold
         sentence = REFUSED.get(code, "it is not possible now")
@@ -136,17 +145,20 @@ class Turn:
 
     # ------------------------------------------------------------------ tasks and outcomes
 
-    def answer(self, answer: Answer, kind: Event, ends: End | None) -> None:
-        """Accept the present request, as the table says."""
+    def reply(self, reply: Reply, kind: Event, ends: End | None) -> None:
+        """Accept the present request, or keep it until the tick, as the table says.
+
+        `kind` is the request's event, `ends` the outcome of the request that it displaces.
+        """
         memory = self.memory
-        if answer is Answer.NONE or self.requested is None:
+        if reply is Reply.NONE or self.requested is None:
             return
-        if answer is Answer.PENDING:
+        if reply is Reply.PENDING:
             self.supersede_pending()
             memory.pending = self.requested
             return
         self.verdict(self.requested, Ruling.ACCEPTED, None)
-        if answer is Answer.DONE:
+        if reply is Reply.DONE:
             self.out.append(
                 Outcome(
                     self.requested.request_id, OutcomeKind.COMPLETE, None, "nothing is left to do"
@@ -158,20 +170,24 @@ class Turn:
         memory.task = Task(self.requested, kind)
 
     def supersede_pending(self) -> None:
-        """The go-to that waits for its tick is overtaken before it got a verdict."""
-        overtaken, self.memory.pending = self.memory.pending, None
-        if overtaken is not None:
+        """A newer request replaces the go-to that waits for its tick, before its verdict."""
+        pending, self.memory.pending = self.memory.pending, None
+        if pending is not None:
             refusal = Refusal(Code.SUPERSEDED, "a newer request came before the tick")
-            self.verdict(overtaken, Ruling.SUPERSEDED, refusal)
+            self.verdict(pending, Ruling.SUPERSEDED, refusal)
 
     def refuse_pending(self, refusal: Refusal) -> None:
-        """What is refused is gone: never queued, never replayed (invariant 4)."""
-        refused, self.memory.pending = self.memory.pending, None
-        if refused is not None:
-            self.verdict(refused, Ruling.REFUSED, refusal)
+        """Refuse the go-to that waits for its tick.  It is forgotten: never queued, never sent
+        later (invariant 4)."""
+        pending, self.memory.pending = self.memory.pending, None
+        if pending is not None:
+            self.verdict(pending, Ruling.REFUSED, refusal)
 
     def end(self, end: End) -> None:
-        """End the request under way, and stop every command that was sent for it."""
+        """Give the request under way its outcome, and cancel every command that was sent for it.
+
+        Also refuses a pending go-to, unless the outcome is COMPLETE.
+        """
         memory = self.memory
         task, memory.task = memory.task, None
         why = self._why(end)
@@ -186,7 +202,7 @@ class Turn:
         self.say(level, sentence if code is None else f"{task.kind}: {end.kind}: {sentence}")
 
     def _why(self, end: End) -> Refusal | None:
-        """Why a request ends otherwise than complete, in the words of whoever said so."""
+        """Code and sentence of an outcome; None where it is COMPLETE."""
         if end.judged:
             assert self.why is not None
             return self.why
@@ -196,14 +212,15 @@ class Turn:
             return Refusal(end.code, self.why.sentence)
         if end.code is Code.SEVERITY:
             return Refusal(end.code, self.severity_sentence())
-        return Refusal(end.code, ended_because(end.code))
+        return Refusal(end.code, ENDED[end.code])
 
     def severity_sentence(self) -> str:
+        """The severity, and the conditions that are active."""
         names = ", ".join(condition.value for condition, _ in self.memory.conditions)
         return f"severity is {self.severity.name}: {names}"
 
-    def due(self, seconds: float | None) -> None:
-        """Give the request under way so long from now; None: as long as it takes."""
+    def set_deadline(self, seconds: float | None) -> None:
+        """Give the request under way so many seconds from now; None: as long as it takes."""
         task = self.memory.task
         if task is not None:
             deadline_ns = None if seconds is None else self.after_ns(seconds)
@@ -214,7 +231,10 @@ class Turn:
     def command(
         self, kind: CommandKind, reason: str, *, up_m: float = 0.0, own: bool = False
     ) -> None:
-        """Ask the vehicle; where a mode will show the effect, wait for that mode."""
+        """Send a command in the name of the request under way, or of the gate itself (`own`).
+
+        Where a mode shows the effect of the command, that mode is awaited from now on.
+        """
         memory, timeout_s = self.memory, self.policy.control.timeout_s
         task = None if own else memory.task
         request_id = GATE if task is None else task.requested.request_id
@@ -229,14 +249,16 @@ class Turn:
             memory.guided_until_ns = self.after_ns(2 * timeout_s)
 
     def await_mode(self, mode: FlightMode) -> None:
+        """Expect the heartbeat to show `mode` within the policy's time."""
         self.memory.asked_mode = mode
         self.memory.asked_until_ns = self.after_ns(self.policy.control.timeout_s)
 
     def cancel_commands(self) -> None:
-        """No retry of an abandoned command may leave; what comes of it late is reported."""
+        """Forget every command that has no answer yet: it is not sent again, and an answer or an
+        effect that comes later is only reported."""
         for request_id, kind in self.memory.outstanding:
             self.out.append(CancelCommand(request_id, kind))
         self.memory.outstanding = ()
         self.memory.asked_mode = None
         self.memory.hold_again_ns = None
-        self.memory.silence_told = None
+        self.memory.silence_reported = None

@@ -78,7 +78,7 @@ class Edge:
         )
         if not before.armed:
             return not (fresh and before.airborne)
-        lifts = self.now_ns < before.takeoff_until_ns or before.flies is State.TAKING_OFF
+        lifts = self.now_ns < before.takeoff_until_ns or before.flown_state is State.TAKING_OFF
         told = fresh and before.landed is LandedState.ON_GROUND
         return told and not before.climbed and not lifts
 

@@ -183,7 +183,7 @@ def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     """
     age_ns = memory.position_age_ns(now_ns)
     stale = age_ns is None or age_ns > policy.position_age_s * SECOND_NS
-    task, state, flies = memory.task, memory.state, memory.flies
+    task, state, flies = memory.task, memory.state, memory.flown_state
     told_ns = memory.landed_ns
     aged = told_ns is not None and now_ns - told_ns >= policy.heartbeat_age_s * SECOND_NS
     climbs = state in (State.GROUNDED, State.STALE) and now_ns < memory.takeoff_until_ns
@@ -201,7 +201,7 @@ def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         (memory.airborne, memory.on_ground) if not aged else not memory.armed,
         memory.climbed if flies is State.TAKING_OFF else None,
         memory.pos_ned in (TOP, ABOVE) and memory.pos_ned if flies is State.TAKING_OFF else None,
-        memory.deserted,
+        memory.operator_lost,
         stale,
         memory.pos_ned == EDGE and state in PLACES_THAT_MATTER,
         memory.pos_ned == GOAL and memory.goal is not None,

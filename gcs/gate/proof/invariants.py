@@ -200,9 +200,9 @@ def _brakes(edge: Edge) -> Iterator[str]:
     before, given = edge.before, edge.given
     if not isinstance(given, PositionSeen) or before.verifier is None:
         return
-    if before.control is Control.NONE or before.flies not in GUARDED:
+    if before.control is Control.NONE or before.flown_state not in GUARDED:
         return
-    floor = before.landed is LandedState.IN_AIR and before.flies not in (
+    floor = before.landed is LandedState.IN_AIR and before.flown_state not in (
         State.TAKING_OFF,
         State.RETURNING,
     )
@@ -225,9 +225,9 @@ def _verified(edge: Edge) -> Iterator[str]:
     if new and after.control is not Control.NONE and verifier and pos_ned and v_ned:
         judged: object = None
         silent = after.state is State.STALE and after.grace_until_ns is None
-        if silent or after.flies not in STREAMING_STATES:
+        if silent or after.flown_state not in STREAMING_STATES:
             judged = None
-        elif after.flies is State.MOVING and after.goal is not None:
+        elif after.flown_state is State.MOVING and after.goal is not None:
             judged = verifier.goal(after.goal.pos_ned, None, pos_ned, v_ned)
         elif after.hold is not None:
             judged = verifier.hold_point(after.hold.pos_ned, STANDING, floor_applies=True)
@@ -305,7 +305,7 @@ def _dangerous(edge: Edge) -> Iterator[str]:
 
 def _attended(edge: Edge) -> Iterator[str]:
     """Once the operator is lost, nobody withdraws the hold that followed."""
-    if edge.before.deserted and not isinstance(edge.request, Abort | Hold | Land | Disarm):
+    if edge.before.operator_lost and not isinstance(edge.request, Abort | Hold | Land | Disarm):
         refusal = None if edge.verdict is None else edge.verdict.refusal
         if edge.request is not None and (refusal is None or refusal.code is not Code.OPERATOR_LOST):
             yield f"{edge.request} is heard though the operator is lost"
@@ -328,7 +328,7 @@ def _never_refused(edge: Edge) -> Iterator[str]:
     ground = standing or edge.before.on_ground
     if isinstance(edge.request, Hold | Land) or (isinstance(edge.request, Disarm) and ground):
         yield f"{edge.request} is refused in {edge.before.state.name}"
-    if edge.before.deserted:
+    if edge.before.operator_lost:
         return
     if isinstance(edge.request, ReturnHome) and verdict.refusal.code is not Code.RTL_BLOCKED:
         yield f"a return is refused with {verdict.refusal.code} in {edge.before.state.name}"

@@ -9,7 +9,7 @@ import pytest
 from gcs.gate.condition import Severity
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.rules import Answer, Branch, Cell, Check, Do, End, Guard
+from gcs.gate.machine.rules import Action, Branch, Cell, Check, End, Guard, Reply
 from gcs.gate.machine.table import TABLE
 from gcs.gate.proof.alphabet import CONDITIONS, YARD
 from gcs.gate.proof.explorer import Explored, explore
@@ -40,14 +40,21 @@ def test_so_it_does_for_the_other_autopilot_under_the_other_choices_of_the_polic
     clean(explore(policy=GUARDED, autopilot="ardupilot", return_up_m=90.0))
 
 
-TAKEN = Branch(answer=Answer.PENDING)
+TAKEN = Branch(reply=Reply.PENDING)
 
 FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
-    ("moving while stale", State.MOVING, Event.AGED, (Branch(),), 7, "wait: position too old"),
+    (
+        "moving while stale",
+        State.MOVING,
+        Event.POSITION_AGED,
+        (Branch(),),
+        7,
+        "wait: position too old",
+    ),
     (
         "hovering while stale",
         State.HOVERING,
-        Event.AGED,
+        Event.POSITION_AGED,
         (Branch(),),
         7,
         "wait: position too old",
@@ -59,9 +66,9 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         Event.CONTROL,
         (
             Branch(
-                needs=(Check.HERE,),
-                answer=Answer.TASK,
-                do=(Do.TAKE_CONTROL,),
+                needs=(Check.POSITION,),
+                reply=Reply.ACCEPTED,
+                do=(Action.TAKE_CONTROL,),
                 to=State.HOVERING,
             ),
         ),
@@ -96,7 +103,7 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         "a breach is held but not braked",
         State.TAKING_OFF,
         Event.BREACH,
-        (Branch(do=(Do.HOLD,), to=State.HOLDING),),
+        (Branch(do=(Action.HOLD,), to=State.HOLDING),),
         6,
         "position dashing for the fence",
     ),
@@ -104,7 +111,7 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         "holding is left without resume",
         State.HOLDING,
         Event.MODE_CONFIRMED,
-        (Branch(ends=End(OutcomeKind.COMPLETE), do=(Do.HOLD_SHOWN,), to=State.HOVERING),),
+        (Branch(ends=End(OutcomeKind.COMPLETE), do=(Action.CONFIRM_HOLD,), to=State.HOVERING),),
         5,
         "hold mode",
     ),
@@ -120,7 +127,7 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         "a refused goal is flown",
         State.VERIFYING,
         Event.GOAL_REFUSED,
-        (Branch(do=(Do.FLY_GOAL,), to=State.MOVING),),
+        (Branch(do=(Action.FLY_GOAL,), to=State.MOVING),),
         1,
         "tick",
     ),
@@ -135,7 +142,7 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
     (
         "a goal is flown on in a fence that refuses it",
         State.MOVING,
-        Event.UNVERIFIED,
+        Event.CLEARS_NO_MORE,
         (Branch(),),
         2,
         "fence moves, and back",
@@ -152,7 +159,7 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         "a hold is over at once though the vehicle may fly",
         State.GROUNDED,
         Event.HOLD,
-        (Branch(answer=Answer.DONE),),
+        (Branch(reply=Reply.DONE),),
         10,
         "ask: hold",
     ),
@@ -169,7 +176,7 @@ FAULTS: list[tuple[str, State, Event, Cell, int, str]] = [
         State.TAKING_OFF,
         Event.TICK,
         (
-            Branch(when=(Guard.LIFTED,), do=(Do.TAKE_CONTROL,), to=State.HOVERING),
+            Branch(when=(Guard.LIFTED_OFF,), do=(Action.TAKE_CONTROL,), to=State.HOVERING),
             Branch(),
         ),
         2,

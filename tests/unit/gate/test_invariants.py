@@ -28,7 +28,7 @@ from gcs.gate.inputs import (
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.memory import SECOND_NS
-from gcs.gate.machine.rules import Answer, Branch
+from gcs.gate.machine.rules import Branch, Reply
 from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.alphabet import ALPHABET, TICK_NS, YARD
@@ -185,7 +185,7 @@ def test_L17_any_interleaving_with_any_numbers_from_hovering(
 
 def test_the_books_notice_a_goal_that_is_queued() -> None:
     """A planted fault: what is sent while moving waits, and is flown later."""
-    queued = {**TABLE, (State.MOVING, Event.GOTO): (Branch(answer=Answer.PENDING),)}
+    queued = {**TABLE, (State.MOVING, Event.GOTO): (Branch(reply=Reply.PENDING),)}
     run = Run(table=queued).hover()
     run.ask(GoTo((3.0, 0.0, -5.0)))
     run.feed(Tick(0), TICK_NS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -10,11 +11,14 @@ from click.testing import CliRunner
 
 import gcs
 from gcs.cli.fsa import fsa
-from gcs.gate.machine import render
+from gcs.gate.machine import render, table
 from gcs.gate.machine.actions import ACTIONS
+from gcs.gate.machine.cells import cannot_happen, unchanged
+from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.events import REQUESTS, Event, event_of
-from gcs.gate.machine.guards import CHECKS, GUARDS
-from gcs.gate.machine.rules import COLUMNS, Answer, Branch, Check, Do, Guard
+from gcs.gate.machine.guards import GUARDS
+from gcs.gate.machine.row import COLUMNS, during, row
+from gcs.gate.machine.rules import Action, Branch, Check, Guard, Reply
 from gcs.gate.machine.sentences import ENDED, REFUSED
 from gcs.gate.machine.table import ROWS, STREAMS, TABLE, Streams
 from gcs.gate.requests import Land, SetMode, TakeControl
@@ -31,6 +35,25 @@ def test_every_state_and_event_has_its_cell() -> None:
     assert set(STREAMS) == set(State)
 
 
+def test_a_row_that_leaves_a_state_out_is_not_built() -> None:
+    with pytest.raises(ValueError, match=r"^HOLDING, EXTERNAL: missing in a row"):
+        row(during(*COLUMNS[:-2], then=unchanged))
+
+
+def test_a_row_that_names_a_state_twice_is_not_built() -> None:
+    with pytest.raises(ValueError, match=r"^MOVING is named twice in a row"):
+        row(during(*COLUMNS, then=unchanged), during(State.MOVING, then=cannot_happen))
+
+
+def test_no_event_has_rows_in_two_files() -> None:
+    written = [
+        event
+        for path in Path(table.__file__).parent.glob("rows_*.py")
+        for event in re.findall(r"^    Event\.(\w+): row\(", path.read_text("utf-8"), re.MULTILINE)
+    ]
+    assert sorted(written) == sorted(event.name for event in Event)
+
+
 def test_the_last_branch_of_a_cell_has_no_condition_and_no_other_has_none() -> None:
     for where, cell in TABLE.items():
         if cell:
@@ -41,14 +64,14 @@ def test_the_last_branch_of_a_cell_has_no_condition_and_no_other_has_none() -> N
 def test_every_word_has_a_meaning_and_is_used() -> None:
     assert set(GUARDS) == set(Guard) == {guard for b in BRANCHES for guard in b.when}
     assert set(CHECKS) == set(Check) == {check for b in BRANCHES for check in b.needs}
-    assert set(ACTIONS) == set(Do) == {do for b in BRANCHES for do in b.do}
+    assert set(ACTIONS) == set(Action) == {do for b in BRANCHES for do in b.do}
 
 
 @pytest.mark.parametrize("event", sorted(REQUESTS))
 def test_a_request_is_answered_by_every_branch_it_can_take(event: Event) -> None:
     for state in State:
         for branch in TABLE[state, event]:
-            answered = branch.answer is not Answer.NONE
+            answered = branch.reply is not Reply.NONE
             assert answered != (branch.refuse is not None), (state, branch)
 
 
@@ -56,7 +79,7 @@ def test_only_requests_are_answered() -> None:
     for (_, event), cell in TABLE.items():
         for branch in cell:
             if event not in REQUESTS:
-                assert branch.answer is Answer.NONE
+                assert branch.reply is Reply.NONE
                 assert branch.refuse is None
                 assert branch.needs == ()
 

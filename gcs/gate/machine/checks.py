@@ -1,0 +1,63 @@
+"""What each `Check` of the table does: it returns the refusal, or None where it passes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from gcs.gate.condition import Condition, Severity
+from gcs.gate.machine import verifying
+from gcs.gate.machine.rules import Check
+from gcs.gate.machine.turn import Turn
+from gcs.gate.refusal import Code, Refusal
+
+
+def _severity(turn: Turn) -> Refusal | None:
+    if turn.severity < Severity.HOLD:
+        return None
+    return Refusal(Code.SEVERITY, turn.severity_sentence(), (("severity", float(turn.severity)),))
+
+
+def _recorder(turn: Turn) -> Refusal | None:
+    failed = any(name is Condition.RECORDER_FAILED for name, _ in turn.memory.conditions)
+    if turn.policy.arm_requires_recording and failed:
+        return Refusal(Code.RECORDER_DOWN, "nothing is recorded, and the policy wants it so")
+    return None
+
+
+def _armed(turn: Turn) -> Refusal | None:
+    if turn.memory.armed:
+        return None
+    return Refusal(Code.NOT_ARMED, "the vehicle is not armed")
+
+
+def _on_ground(turn: Turn) -> Refusal | None:
+    if turn.memory.on_ground:
+        return None
+    return Refusal(Code.IN_AIR, "the vehicle is not known to stand on the ground")
+
+
+def _mission(turn: Turn) -> Refusal | None:
+    if turn.memory.mission_items > 0:
+        return None
+    return Refusal(Code.NO_MISSION, "no verified mission is on board: upload one first")
+
+
+def _home_and_fence(turn: Turn) -> Refusal | None:
+    return verifying.home_or_fence_unknown() if turn.memory.verifier is None else None
+
+
+CHECKS: Final[Mapping[Check, Callable[[Turn], Refusal | None]]] = MappingProxyType(
+    {
+        Check.SEVERITY: _severity,
+        Check.RECORDER: _recorder,
+        Check.ARMED: _armed,
+        Check.ON_GROUND: _on_ground,
+        Check.POSITION: verifying.position,
+        Check.CLIMB: verifying.climb,
+        Check.MISSION: _mission,
+        Check.HOME_AND_FENCE: _home_and_fence,
+    }
+)
+"""A test asserts that every `Check` is here."""

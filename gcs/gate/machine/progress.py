@@ -1,0 +1,85 @@
+"""How far a flight is: whether it is at its goal, and whether its climb is over."""
+
+from __future__ import annotations
+
+import math
+
+from gcs.frames import Vec3
+from gcs.gate.machine.memory import SECOND_NS
+from gcs.gate.machine.turn import Turn
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import FlightMode
+
+CLIMB_ENDED_M_S = 0.3
+"""Near its top a climb is over when the vehicle is slower than this: it overshoots no more."""
+
+OVERSHOOT_M = 1.0
+"""How far above its top, the arrival radius added, a climb may overshoot."""
+
+
+def within_arrival(turn: Turn, goal_ned: Vec3) -> bool:
+    """Strictly inside the arrival radius, and slow enough where the policy asks for it."""
+    memory, arrival = turn.memory, turn.policy.arrival
+    if memory.pos_ned is None or memory.v_ned is None:
+        return False
+    near = math.dist(memory.pos_ned, goal_ned) < arrival.radius_m
+    return near and (arrival.speed_m_s is None or math.hypot(*memory.v_ned) <= arrival.speed_m_s)
+
+
+def arrived(turn: Turn) -> bool:
+    """Within the arrival radius for as long as the policy asks, by a fresh position."""
+    since_ns = turn.memory.within_since_ns
+    if since_ns is None or turn.stale:
+        return False
+    return turn.now_ns - since_ns >= round(turn.policy.arrival.dwell_s * SECOND_NS)
+
+
+def at_height(turn: Turn) -> bool:
+    """The climb is over, at its top."""
+    above_m = _above_top_m(turn)
+    if not turn.memory.airborne or above_m is None:
+        return False
+    return abs(above_m) < turn.policy.arrival.radius_m and (_shows_hold(turn) or _slow(turn))
+
+
+def climb_ended_elsewhere(turn: Turn) -> bool:
+    """The vehicle shows that its climb is over, and stands still in the air.
+
+    To be asked after `at_height`: it does not look at the height itself.
+    """
+    above_m = _above_top_m(turn)
+    if not turn.memory.airborne or above_m is None or not (_shows_hold(turn) and _slow(turn)):
+        return False
+    side = "below" if above_m < 0.0 else "above"
+    sentence = f"the vehicle ended its climb {abs(above_m):.1f} m {side} the height asked for"
+    turn.why = Refusal(Code.VEHICLE_REFUSED, sentence, (("above_top_m", above_m),))
+    return True
+
+
+def climbs_too_high(turn: Turn) -> bool:
+    """Further above the top of the climb than an overshoot explains."""
+    above_m = _above_top_m(turn)
+    return above_m is not None and above_m > turn.policy.arrival.radius_m + OVERSHOOT_M
+
+
+def _above_top_m(turn: Turn) -> float | None:
+    """Metres above the top of the climb, negative below it; None where the position is too old."""
+    memory = turn.memory
+    if turn.stale or memory.pos_ned is None:
+        return None
+    return memory.top_down_m - memory.pos_ned[2]
+
+
+def _slow(turn: Turn) -> bool:
+    v_ned = turn.memory.v_ned
+    return v_ned is not None and math.hypot(*v_ned) < CLIMB_ENDED_M_S
+
+
+def _shows_hold(turn: Turn) -> bool:
+    """The heartbeat shows hold mode, as px4 does after a climb.
+
+    As long as the take-off mode is awaited, a hold mode is still that of before the take-off.
+    """
+    memory = turn.memory
+    shown = memory.asked_mode is None
+    return memory.lifted and shown and memory.mode is FlightMode.HOLD

@@ -1,0 +1,113 @@
+"""Questions to the verifier about what is asked for and what is flown.
+
+`position`, `climb`, `goal` and `return_path` return None where the verifier clears, else its
+refusal.  Each leaves the numbers of the answer in the turn: as evidence where it clears, as the
+reason where it refuses; the verdict then carries them.
+"""
+
+from __future__ import annotations
+
+from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.verifier import Cleared, Verifier
+from gcs.gate.machine.memory import Memory
+from gcs.gate.machine.turn import Turn
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import GoTo, TakeOff
+from gcs.gate.states import State
+
+
+def position(turn: Turn) -> Refusal | None:
+    """May the vehicle stay where it is?  Refused where the position is too old."""
+    memory = turn.memory
+    if memory.verifier is None:
+        return _keep(turn, home_or_fence_unknown())
+    if turn.stale or memory.pos_ned is None or memory.v_ned is None:
+        return _keep(turn, _position_too_old())
+    return _keep(turn, memory.verifier.hold_point(memory.pos_ned, memory.v_ned, floor_applies=True))
+
+
+def climb(turn: Turn) -> Refusal | None:
+    """May the vehicle climb straight up to the height of the take-off that is asked for?"""
+    memory = turn.memory
+    assert turn.requested is not None
+    assert isinstance(turn.requested.request, TakeOff)
+    if memory.verifier is None:
+        return _keep(turn, home_or_fence_unknown())
+    if turn.stale or memory.pos_ned is None:
+        return _keep(turn, _position_too_old())
+    return _keep(turn, memory.verifier.takeoff(turn.requested.request.up_m, memory.pos_ned))
+
+
+def goal(turn: Turn, request: GoTo) -> Refusal | None:
+    """May the vehicle fly straight from where it is to the goal of `request`?"""
+    memory = turn.memory
+    if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
+        return _keep(turn, home_or_fence_unknown())
+    return _keep(
+        turn,
+        memory.verifier.goal(request.goal_ned, request.yaw_rad, memory.pos_ned, memory.v_ned),
+    )
+
+
+def return_path(turn: Turn) -> Refusal | None:
+    """Is the vehicle's own way home clear?  Every refusal has the code RTL_BLOCKED and offers
+    landing instead."""
+    memory = turn.memory
+    if memory.verifier is None or memory.home_ned is None:
+        return _keep(turn, Refusal(Code.RTL_BLOCKED, "home or fence is not known: land instead"))
+    if memory.return_up_m is None:
+        return _keep(
+            turn,
+            Refusal(Code.RTL_BLOCKED, "the vehicle's return height is not known: land instead"),
+        )
+    if turn.stale or memory.pos_ned is None:
+        return _keep(turn, Refusal(Code.RTL_BLOCKED, "the position is too old: land instead"))
+    judged = memory.verifier.return_path(memory.pos_ned, memory.home_ned, memory.return_up_m)
+    if isinstance(judged, Refusal):
+        sentence = f"{judged.sentence}: land instead"
+        judged = Refusal(Code.RTL_BLOCKED, sentence, judged.numbers, judged.zone)
+    return _keep(turn, judged)
+
+
+def refusal_of_what_is_flown(
+    memory: Memory, verifier: Verifier, was: Verifier | None
+) -> Refusal | None:
+    """Why `verifier`, which replaces `was`, refuses what is flown now; None where it clears it.
+
+    Of a mission only its fence is known here, not its legs: a mission that flies is refused
+    where the fence is on and is not the one that the mission was verified by.
+    """
+    if memory.pos_ned is None or memory.v_ned is None:
+        return None
+    judged: Cleared | Refusal | None = None
+    if memory.flown_state is State.TAKING_OFF:
+        top_ned = (*memory.pos_ned[:2], memory.top_down_m)
+        judged = verifier.hold_point(top_ned, STANDING, floor_applies=True)
+    elif memory.flown_state is State.FLYING_MISSION:
+        same = was is not None and (was.fence_on, len(was.zones)) == (True, len(verifier.zones))
+        if verifier.fence_on and not same:
+            return Refusal(Code.BAD_MISSION, "the mission was not verified by this fence")
+    elif memory.goal is not None:
+        judged = verifier.goal(
+            memory.goal.pos_ned, memory.goal.yaw_rad, memory.pos_ned, memory.v_ned
+        )
+    elif memory.hold is not None:
+        judged = verifier.hold_point(memory.hold.pos_ned, STANDING, floor_applies=True)
+    return judged if isinstance(judged, Refusal) else None
+
+
+def home_or_fence_unknown() -> Refusal:
+    return Refusal(Code.NO_ORIGIN, "home and fence are not known yet")
+
+
+def _position_too_old() -> Refusal:
+    return Refusal(Code.STALE, "the vehicle's position is too old")
+
+
+def _keep(turn: Turn, judged: Cleared | Refusal) -> Refusal | None:
+    """Leave the answer's numbers in the turn."""
+    if isinstance(judged, Refusal):
+        turn.why = judged
+        return judged
+    turn.evidence = judged.evidence
+    return None
