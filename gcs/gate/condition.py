@@ -1,4 +1,4 @@
-"""What can be wrong, and how severe it is."""
+"""The conditions that can go wrong, and how severe they are."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum, StrEnum
 
 
 class Severity(IntEnum):
-    """How bad it is.  Ordered: of all active conditions the worst wins."""
+    """How bad a condition is, in ascending order; of all active conditions the worst counts."""
 
     NOMINAL = 0
     CAUTION = 1
@@ -17,7 +17,7 @@ class Severity(IntEnum):
 
 
 class Condition(StrEnum):
-    """What can be wrong, each mapped to a severity by the policy."""
+    """What can be wrong.  The policy gives each condition its severity."""
 
     RECORDER_FAILED = "recorder_failed"
     BATTERY_LOW = "battery_low"

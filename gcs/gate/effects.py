@@ -1,7 +1,8 @@
-"""Everything that the gate answers with, as a closed union of frozen dataclasses.
+"""The effects: what `Gate.handle` returns, as a closed union of frozen dataclasses.
 
-Whoever matches effects does so exhaustively.  Only `SendSetpoint` and `SendCommand` reach the
-vehicle, and what moves it carries a `Permit`.
+Code that matches effects does so exhaustively.  Only `SendSetpoint` and `SendCommand` reach the
+vehicle, and those that move it carry a `Permit`.  Positions are metres in the vehicle's local NED
+frame.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from gcs.gate.states import Control, State
 
 
 class CommandKind(Enum):
-    """What the gate may ask the vehicle to do, apart from setpoints."""
+    """The commands that the gate sends to the vehicle, apart from setpoints."""
 
     HOLD = "hold"
     GUIDED = "guided"
@@ -36,18 +37,19 @@ class CommandKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SendSetpoint:
-    """SET_POSITION_TARGET_LOCAL_NED, position (and yaw) only.  The permit carries the values."""
+    """Send SET_POSITION_TARGET_LOCAL_NED with the permit's position, and its yaw if it has one."""
 
     permit: Permit
 
 
 @dataclass(frozen=True, slots=True)
 class SendCommand:
-    """Ask the vehicle.  No try may leave after `deadline_ns` (invariant 9).
+    """Send a command.  Until it is answered it may be sent again, but never after `deadline_ns`.
 
-    `permit` is required for the kinds that set the vehicle in motion (TAKE_OFF, LAND, RETURN,
-    START_MISSION, GUIDED, SET_MODE, ARM); HOLD, DISARM and PHOTO go without.
-    `request_id` 0 is the gate's own: nobody asked for it.
+    A command whose late effect is dangerous must not be sent after its deadline (invariant 9).
+    The kinds that set the vehicle in motion (TAKE_OFF, LAND, RETURN, START_MISSION, GUIDED,
+    SET_MODE, ARM) need a `permit`; the others go without.  `request_id` 0 is a command of the
+    gate's own, without a request.
     """
 
     request_id: int
@@ -60,7 +62,7 @@ class SendCommand:
 
 @dataclass(frozen=True, slots=True)
 class CancelCommand:
-    """No further try of that command may leave, and its answer no longer matters."""
+    """Do not send that command again; its answer no longer matters."""
 
     request_id: int
     kind: CommandKind
@@ -68,12 +70,14 @@ class CancelCommand:
 
 @dataclass(frozen=True, slots=True)
 class SwitchedFence:
-    """The fence is now on or off; a `VerifierChanged` that knows so is due at once."""
+    """The fence was switched on or off: a `VerifierChanged` with that fence must follow at once."""
 
     on: bool
 
 
 class Ruling(StrEnum):
+    """What a verdict says.  SUPERSEDED: a newer request replaced this one before its verdict."""
+
     ACCEPTED = "accepted"
     REFUSED = "refused"
     SUPERSEDED = "superseded"
@@ -81,7 +85,11 @@ class Ruling(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Exactly one for every request.  `evidence` holds the numbers, accepted or not."""
+    """The gate's decision on a request: exactly one for each.
+
+    `refusal` is None where the request is accepted.  `evidence` has the numbers that were decided
+    on, in either case.  `active_goal_ned` is the position that is flown to or held meanwhile.
+    """
 
     request_id: int
     source: str
@@ -93,6 +101,11 @@ class Verdict:
 
 
 class OutcomeKind(StrEnum):
+    """How an accepted request ended.
+
+    TAKEN_OVER: the vehicle, or somebody else, did something other than what was requested.
+    """
+
     COMPLETE = "complete"
     ABORTED = "aborted"
     SUPERSEDED = "superseded"
@@ -102,7 +115,7 @@ class OutcomeKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Exactly one for every accepted request."""
+    """How an accepted request ended, and why: exactly one for each.  `code` is None if COMPLETE."""
 
     request_id: int
     kind: OutcomeKind
@@ -112,7 +125,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """The machine went from `before` to `after` because of `event` (a name of the table)."""
+    """The state changed from `before` to `after` because of `event`, as the table names it."""
 
     before: State
     after: State
@@ -122,7 +135,7 @@ class Transition:
 
 
 class Level(IntEnum):
-    """foxglove.Log levels, and the lab's five."""
+    """How important a log line is, with the numbers of foxglove.Log and of the lab's levels."""
 
     DEBUG = 1
     INFO = 2
@@ -133,7 +146,7 @@ class Level(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Say:
-    """A line for the operator and the log; the node name is the gate's."""
+    """A line for the operator and the log."""
 
     level: Level
     text: str

@@ -1,15 +1,16 @@
-"""Plane geometry in the local tangent plane, with three answers.
+"""Plane geometry in the local tangent plane, with three answers: inside, outside, too close to say.
 
-Points are (east, north) in metres.  The measure of everything is a *clearance*: the distance to
-a boundary, positive on the allowed side and negative by how far a point is on the wrong one.
+Points are (east, north) in metres.  The *clearance* of a point is its distance to the boundary of
+a shape: positive inside, negative outside.
 
-How far to trust it.  Every quantity starts from a difference of two coordinates, which floating
-point gives to a relative error u = 2^-53; a product or a sum of two such adds a few u.  A
+Rounding errors.  Every quantity starts from a difference of two coordinates, which floating point
+gives with a relative error u = 2^-53; a product or a sum of two such quantities adds a few u.  A
 clearance among coordinates up to REACH_M is therefore wrong by less than 16 u REACH_M < 2e-9 m.
-The side of an edge that a point lies on is the sign of a difference of two products whose
-wrong sign needs them equal to a few u, that is, the point within a few u of the edge, where the
-clearance is next to nothing.  TOLERANCE_M stands five hundred times above both: INSIDE is never
-said of a point that exact arithmetic puts outside.  (The tests ask `fractions.Fraction`.)
+On which side of an edge a point lies is the sign of a difference of two products.  The sign can
+be wrong only where the products are equal to within a few u, so only where the point is within a
+few u of the edge and the clearance is almost zero.  TOLERANCE_M is five hundred times larger than
+both errors, so INSIDE is never answered for a point that exact arithmetic puts outside.  The
+tests compare with exact rational arithmetic (`fractions.Fraction`).
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ from typing import TypeAlias
 Point = tuple[float, float]
 
 REACH_M = 1.0e6
-"""No coordinate may exceed this; whoever takes numbers from outside sees to it."""
+"""No coordinate may exceed this; the callers that take numbers from outside check it."""
 
 TOLERANCE_M = 1.0e-6
-"""Closer to a boundary than this is too close to say."""
+"""A point that is closer to a boundary than this is too close to say on which side it is."""
 
 
 class Side(Enum):
@@ -36,12 +37,12 @@ class Side(Enum):
 
 
 def side(clearance_m: float, margin_m: float = 0.0) -> Side:
-    """Inside by the margin for certain, outside for certain, or neither."""
+    """INSIDE: for certain, and by the margin.  OUTSIDE: for certain.  TOO_CLOSE: neither."""
     if clearance_m >= margin_m + TOLERANCE_M:
         return Side.INSIDE
     if clearance_m < -TOLERANCE_M:
         return Side.OUTSIDE
-    return Side.TOO_CLOSE  # NaN ends here as well
+    return Side.TOO_CLOSE  # NaN too
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,19 +55,19 @@ class Circle:
         return self.radius_m - _distance(p, self.centre_en)
 
     def inner_clearance(self, a: Point, b: Point) -> float:
-        """The least clearance along a-b; a disc is convex, so an end has it."""
+        """The least clearance along a-b.  A disc is convex, so it is at one of the ends."""
         return min(self.clearance(a), self.clearance(b))
 
     def outer_clearance(self, a: Point, b: Point) -> float:
-        """Metres that a-b keeps outside the circle, negative by how deep it goes."""
+        """Metres from the circle to a-b, outside it; negative by how deep a-b goes inside."""
         return point_segment_distance(self.centre_en, a, b) - self.radius_m
 
 
 @dataclass(frozen=True, slots=True)
 class Polygon:
-    """A simple polygon, either way round, the last corner joined to the first.
+    """A simple polygon, clockwise or not; an edge joins the last corner to the first.
 
-    Make sure of it with `polygon_fault` first; nothing here looks again.
+    Check the corners with `polygon_fault` first: no method checks them again.
     """
 
     corners_en: tuple[Point, ...]
@@ -78,7 +79,7 @@ class Polygon:
         object.__setattr__(self, "convex", _is_convex(self.corners_en))
 
     def contains(self, p: Point) -> bool:
-        """Crossings of the ray to the east; meaningful only off the boundary."""
+        """Counts crossings of the ray to the east.  The answer means nothing on the boundary."""
         inside = False
         for a, b in self.edges:
             if (a[1] > p[1]) != (b[1] > p[1]) and (_turn(a, b, p) > 0.0) == (b[1] > a[1]):
@@ -93,9 +94,9 @@ class Polygon:
     def inner_clearance(self, a: Point, b: Point) -> float:
         """The least clearance along a-b, negative if any of it is outside.
 
-        Inside a convex polygon the clearance is concave and outside it the distance is convex,
-        so an end has the least.  Otherwise the boundary may cut a leg whose ends are inside:
-        then the pieces between the places where it meets the boundary are asked for themselves.
+        Inside a convex polygon the clearance is concave, and outside it the distance is convex, so
+        the least is at one of the ends.  In any other polygon the boundary may cut a leg whose ends
+        are inside: then each piece between two cuts is examined by itself.
         """
         ends = min(self.clearance(a), self.clearance(b))
         if self.convex:
@@ -104,7 +105,7 @@ class Polygon:
         return min(ends, gap, *(self.clearance(m) for m in self._middles(a, b, gap)))
 
     def outer_clearance(self, a: Point, b: Point) -> float:
-        """Metres that a-b keeps outside the polygon, negative if any of it is inside."""
+        """Metres from the polygon to a-b, outside it; negative if any part of a-b is inside."""
         gap = self._gap(a, b)
         return min(gap, *(-self.clearance(p) for p in (a, b, *self._middles(a, b, gap))))
 
@@ -112,14 +113,14 @@ class Polygon:
         return min(segment_distance(a, b, c, d) for c, d in self.edges)
 
     def _middles(self, a: Point, b: Point, gap: float) -> list[Point]:
-        """One point of every piece that the boundary cuts a-b into, if it does."""
+        """The middle of each piece that the boundary cuts a-b into; none where it does not."""
         if gap > TOLERANCE_M:
             return []
         cuts = sorted({0.0, 1.0, *self._meetings(a, b)})
         return [along(a, b, 0.5 * (s + t)) for s, t in pairwise(cuts)]
 
     def _meetings(self, a: Point, b: Point) -> list[float]:
-        """Parameters along a-b at which it meets the boundary: crossings, corners on it."""
+        """Parameters along a-b of its crossings with edges, and of the corners that lie on it."""
         found = []
         for c, d in self.edges:
             t = crossing(a, b, c, d)
@@ -134,15 +135,17 @@ Shape: TypeAlias = Circle | Polygon
 
 
 def along(a: Point, b: Point, t: float) -> Point:
+    """The point of the line a-b at parameter t: a at 0, b at 1."""
     return (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))
 
 
 def point_segment_distance(p: Point, a: Point, b: Point) -> float:
+    """Metres from p to the nearest point of the segment a-b."""
     return _distance(p, along(a, b, _projection(p, a, b)))
 
 
 def segment_distance(a: Point, b: Point, c: Point, d: Point) -> float:
-    """Between segments a-b and c-d: zero where they cross, otherwise an end is nearest."""
+    """Metres between the segments a-b and c-d: 0 where they cross, else measured from an end."""
     if crossing(a, b, c, d) is not None:
         return 0.0
     return min(
@@ -154,9 +157,9 @@ def segment_distance(a: Point, b: Point, c: Point, d: Point) -> float:
 
 
 def crossing(a: Point, b: Point, c: Point, d: Point) -> float | None:
-    """The parameter along a-b at which c-d properly crosses it; None if it does not.
+    """The parameter along a-b at which c-d crosses it; None if it does not.
 
-    Touching in an end is not crossing: the distance says that.
+    Touching at an end is not a crossing; `segment_distance` is zero there all the same.
     """
     a_side, b_side = _turn(c, d, a), _turn(c, d, b)
     c_side, d_side = _turn(a, b, c), _turn(a, b, d)
@@ -168,10 +171,10 @@ def crossing(a: Point, b: Point, c: Point, d: Point) -> float | None:
 
 
 def polygon_fault(corners: tuple[Point, ...]) -> str | None:
-    """Why these corners are no simple polygon, in words; None if they are one.
+    """A sentence that says why these corners make no simple polygon; None if they make one.
 
-    Raises nothing.  Edges nearer than TOLERANCE_M to one that is not their neighbour count as
-    touching, and a spike (an edge that runs back over its neighbour) as self-intersection.
+    Raises nothing.  Two edges that are not neighbours and are closer than TOLERANCE_M count as
+    meeting; an edge that runs back over its neighbour counts as lying on it.
     """
     n = len(corners)
     if n < 3:
@@ -217,7 +220,7 @@ def _projection(p: Point, a: Point, b: Point) -> float:
 
 
 def _is_convex(corners: tuple[Point, ...]) -> bool:
-    """All turns the one way; of a simple polygon that is enough."""
+    """All corners turn the same way, which is enough for a simple polygon."""
     n = len(corners)
     turns = [_turn(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]) for i in range(n)]
     return all(t >= 0.0 for t in turns) or all(t <= 0.0 for t in turns)

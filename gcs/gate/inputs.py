@@ -1,7 +1,8 @@
-"""Everything that reaches the gate, as a closed union of frozen dataclasses.
+"""The inputs of the gate, as a closed union of frozen dataclasses.
 
 Positions are metres and velocities metres per second in the vehicle's local NED frame
-(MAV_FRAME_LOCAL_NED), times integer nanoseconds of the one clock that is passed in.
+(MAV_FRAME_LOCAL_NED).  The time of arrival is not part of an input: it is the `now_ns` that is
+passed to `Gate.handle`.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from gcs.gate.states import FlightMode, LandedState
 
 @dataclass(frozen=True, slots=True)
 class Requested:
-    """Somebody wants something.  `request_id` is unique in a session; `source` names who."""
+    """A request by a client.  `request_id` is unique in a session; `source` names the client."""
 
     request_id: int
     source: str
@@ -28,7 +29,7 @@ class Requested:
 
 @dataclass(frozen=True, slots=True)
 class HeartbeatSeen:
-    """HEARTBEAT of the vehicle."""
+    """HEARTBEAT of the vehicle.  `mode_name` is the autopilot's own name of the mode."""
 
     armed: bool
     mode: FlightMode
@@ -44,10 +45,10 @@ class LandedSeen:
 
 @dataclass(frozen=True, slots=True)
 class PositionSeen:
-    """LOCAL_POSITION_NED.  `time_boot_ms` is the vehicle's own stamp; arrival is `now_ns`.
+    """LOCAL_POSITION_NED.  `time_boot_ms` is the vehicle's own time stamp.
 
-    `reset` is set by the session when the vehicle's clock went backwards or a reset counter
-    jumped: the frame may have moved under us.
+    `reset` says that the vehicle's clock went backwards or that one of its reset counters
+    changed: the origin of the local frame may have moved.
     """
 
     pos_ned: Vec3
@@ -58,14 +59,14 @@ class PositionSeen:
 
 @dataclass(frozen=True, slots=True)
 class HomeSeen:
-    """HOME_POSITION in the local frame: where returns end and where the default fence stands."""
+    """HOME_POSITION in the local frame: a return ends there, and the default fence surrounds it."""
 
     pos_ned: Vec3
 
 
 @dataclass(frozen=True, slots=True)
 class ReturnHeightSeen:
-    """The vehicle's own return height (px4 RTL_RETURN_ALT, ardupilot RTL_ALT), above home."""
+    """The vehicle's return height in metres above home (px4 RTL_RETURN_ALT, ardupilot RTL_ALT)."""
 
     up_m: float
 
@@ -74,7 +75,7 @@ class ReturnHeightSeen:
 class VerifierChanged:
     """Home, origin, fence or autopilot became known or changed.
 
-    Without a verifier nothing that moves is accepted.  It also tells the autopilot.
+    Until the first one no request that moves the vehicle is accepted.
     """
 
     verifier: Verifier
@@ -82,7 +83,7 @@ class VerifierChanged:
 
 @dataclass(frozen=True, slots=True)
 class CommandEnded:
-    """A command of ours was answered for good (`result` = MAV_RESULT), or never (`result` None)."""
+    """A command of ours was answered with `result` (MAV_RESULT); None: not answered in time."""
 
     request_id: int
     kind: CommandKind
@@ -92,7 +93,7 @@ class CommandEnded:
 
 @dataclass(frozen=True, slots=True)
 class PhotoSeen:
-    """CAMERA_IMAGE_CAPTURED (263) or CAMERA_FEEDBACK (180)."""
+    """CAMERA_IMAGE_CAPTURED or CAMERA_FEEDBACK.  `index` is the vehicle's number of the picture."""
 
     index: int
     ok: bool
@@ -100,7 +101,8 @@ class PhotoSeen:
 
 @dataclass(frozen=True, slots=True)
 class MissionLoaded:
-    """A mission was verified whole, uploaded and read back equal (or `items` = 0: none is)."""
+    """A mission was verified whole, uploaded, and read back equal; `items` 0: no such mission is
+    on board."""
 
     name: str
     items: int
@@ -108,7 +110,7 @@ class MissionLoaded:
 
 @dataclass(frozen=True, slots=True)
 class MissionSeen:
-    """Progress of the mission that flies: item `seq` of `total`; `finished` after the last."""
+    """Progress of the mission: it is at item `seq` of `total`; `finished` after the last one."""
 
     seq: int
     total: int
@@ -117,6 +119,8 @@ class MissionSeen:
 
 @dataclass(frozen=True, slots=True)
 class ConditionChanged:
+    """A condition became active, or is over; `text` has its details."""
+
     condition: Condition
     active: bool
     text: str = ""
@@ -124,14 +128,15 @@ class ConditionChanged:
 
 @dataclass(frozen=True, slots=True)
 class OperatorLost:
-    """The command stream ended, or the operator leaves: hold where we control a flying vehicle."""
+    """The operator left, or is not connected any more.  Where we control a flying vehicle, the
+    gate holds it."""
 
     reason: str
 
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """The 20 Hz tick, on the absolute grid.  `lateness_ns` is how late the shell was."""
+    """The 20 Hz tick.  Ticks lie on an absolute grid; `lateness_ns` is how late this one came."""
 
     lateness_ns: int
 

@@ -1,9 +1,8 @@
-"""The paper that a moving frame must carry, and that only the gate can write.
+"""The permit to send one frame that moves the vehicle.  Only the gate issues permits.
 
-The session encodes a motion frame from a `Permit` and from nothing else, so a goal that was
-never verified has no way onto the wire (invariant 1).  The seal makes an accidental permit
-impossible and a deliberate one visible in review: `issue` is called in `gcs/gate/machine/gate.py`
-only, which a test holds.
+The session encodes such a frame from a `Permit` and from nothing else, so a position that was
+not verified cannot be sent (invariant 1).  `Permit` cannot be constructed without the private
+seal, and a test asserts that only `gcs/gate/machine/gate.py` calls `issue`.
 """
 
 from __future__ import annotations
@@ -17,7 +16,10 @@ _SEAL = object()
 
 @dataclass(frozen=True, slots=True, init=False)
 class Permit:
-    """Leave for one frame: the verified position (None for a command without one) and yaw."""
+    """Permits one frame with this verified position (local NED, metres) and yaw (radians).
+
+    `pos_ned` is None for a command; `yaw_rad` None leaves the heading to the autopilot.
+    """
 
     pos_ned: Vec3 | None
     yaw_rad: float | None
@@ -41,5 +43,5 @@ class Permit:
 
 
 def issue(pos_ned: Vec3 | None, yaw_rad: float | None, now_ns: int, reason: str) -> Permit:
-    """For `gcs.gate.machine.gate` alone: leave to transmit this, now, because of `reason`."""
+    """Issue a permit.  To be called by `gcs.gate.machine.gate` only."""
     return Permit(_SEAL, pos_ned, yaw_rad, now_ns, reason)

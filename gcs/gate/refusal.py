@@ -1,4 +1,4 @@
-"""Why something is refused: a code, a sentence, the numbers and the zone."""
+"""The reason of a refusal: a code, a sentence, the numbers, and the zone of the fence."""
 
 from __future__ import annotations
 
@@ -50,7 +50,11 @@ class Code(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why not: a code for programs, a sentence for people, the numbers it was decided on."""
+    """The reason of a refusal: a code for programs, a sentence for people, and the numbers.
+
+    `numbers` are (name, value) pairs that the refusal was decided on, with the unit at the end of
+    the name.  `zone` is the zone of the fence that refuses; empty where none does.
+    """
 
     code: Code
     sentence: str

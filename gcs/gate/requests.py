@@ -1,4 +1,4 @@
-"""What can be asked of the gate, as a closed union.
+"""The requests that a client can make, as a closed union of frozen dataclasses.
 
 Positions are metres in the vehicle's local NED frame (MAV_FRAME_LOCAL_NED).
 """
@@ -14,7 +14,7 @@ from gcs.gate.states import FlightMode
 
 @dataclass(frozen=True, slots=True)
 class GoTo:
-    """Fly straight to `goal_ned` and hover; `yaw_rad` None leaves heading to the autopilot."""
+    """Fly straight to `goal_ned` and hover; `yaw_rad` None leaves the heading to the autopilot."""
 
     goal_ned: Vec3
     yaw_rad: float | None = None
@@ -22,16 +22,20 @@ class GoTo:
 
 @dataclass(frozen=True, slots=True)
 class TakeControl:
-    """Verify the present position as the hold goal, stream it, ask for OFFBOARD / GUIDED."""
+    """Take control of a vehicle that flies: verify the present position as hold goal, send it as
+    setpoint, and command guided mode (px4 OFFBOARD, ardupilot GUIDED)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    pass
+    """Arm the vehicle on the ground."""
 
 
 @dataclass(frozen=True, slots=True)
 class Disarm:
+    """Disarm the vehicle on the ground; with `force` in the air too, where the policy allows it
+    and it is requested twice."""
+
     force: bool = False
 
 
@@ -44,42 +48,44 @@ class TakeOff:
 
 @dataclass(frozen=True, slots=True)
 class Land:
-    pass
+    """Land where the vehicle is."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReturnHome:
-    pass
+    """Return home in the vehicle's own return mode, if the way is clear."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    pass
+    """Stop in the vehicle's own hold mode and stay there; the goal is forgotten."""
 
 
 @dataclass(frozen=True, slots=True)
 class Abort:
-    """Hold now, forget the goal; on the ground: disarm if armed."""
+    """As `Hold`; a vehicle that stands on the ground is disarmed, if it is armed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resume:
-    """Leave HOLDING (or EXTERNAL) for HOVERING at the present position."""
+    """Take control again after a hold: from HOLDING (or EXTERNAL) to HOVERING, at the present
+    position."""
 
 
 @dataclass(frozen=True, slots=True)
 class TakePhoto:
-    pass
+    """Take a picture while hovering."""
 
 
 @dataclass(frozen=True, slots=True)
 class StartMission:
-    pass
+    """Start the verified mission that is on board."""
 
 
 @dataclass(frozen=True, slots=True)
 class SetMode:
-    """A mode by the autopilot's own name; motion modes map to the request they mean."""
+    """Set a mode by the autopilot's own name.  It is treated as the request that means the same;
+    `meaning` OTHER is refused."""
 
     name: str
     meaning: FlightMode
@@ -87,7 +93,7 @@ class SetMode:
 
 @dataclass(frozen=True, slots=True)
 class SwitchFence:
-    """The lab's cage switch; refused under any policy that does not allow it."""
+    """Switch the fence on or off, where the policy allows it (the lab's does)."""
 
     on: bool
 

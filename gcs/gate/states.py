@@ -1,4 +1,4 @@
-"""The words for what the gate and the vehicle are doing."""
+"""The states of the gate's machine, and of the vehicle as it reports them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,12 @@ from enum import IntEnum, StrEnum
 
 
 class State(IntEnum):
-    """Where the machine is.  The lab's three keep the lab's names and numbers."""
+    """The state of the gate's machine.  HOVERING, VERIFYING and MOVING have the lab's names and
+    numbers.
+
+    STALE: the vehicle is heard, but its position is too old.  HOLDING: stopped by a request or by
+    the gate, left by `resume` only.  EXTERNAL: it flies, and not under our control.
+    """
 
     HOVERING = 1
     VERIFYING = 2
@@ -25,7 +30,8 @@ class State(IntEnum):
 
 
 class Control(IntEnum):
-    """Who flies.  TAKING: we stream the hold goal and wait for the heartbeat to confirm."""
+    """Who controls the vehicle.  TAKING: we send the hold goal as setpoint and wait for the
+    heartbeat to show guided mode."""
 
     NONE = 0
     TAKING = 1
@@ -33,7 +39,7 @@ class Control(IntEnum):
 
 
 class FlightMode(StrEnum):
-    """What the vehicle's mode means to the gate, whatever the autopilot calls it."""
+    """What a mode means to the gate; the autopilots have different names for the same meaning."""
 
     GUIDED = "guided"  # px4 OFFBOARD, ardupilot GUIDED
     HOLD = "hold"  # px4 AUTO.LOITER, ardupilot BRAKE or LOITER
@@ -41,11 +47,11 @@ class FlightMode(StrEnum):
     MISSION = "mission"  # px4 AUTO.MISSION, ardupilot AUTO
     RETURN = "return"  # px4 AUTO.RTL, ardupilot RTL or SMART_RTL
     LAND = "land"  # px4 AUTO.LAND or AUTO.PRECLAND, ardupilot LAND
-    OTHER = "other"  # flown by somebody else
+    OTHER = "other"  # any other mode: somebody else flies
 
 
 class LandedState(IntEnum):
-    """MAV_LANDED_STATE, with the same numbers."""
+    """MAV_LANDED_STATE, with its numbers."""
 
     UNDEFINED = 0
     ON_GROUND = 1

@@ -1,15 +1,16 @@
-"""How clear of a zone a straight motion keeps, and the three rules that are made of it.
+"""The clearance of a straight motion from a zone, which three rules compare with their limits.
 
-A motion is a straight line (a point is one of no length).  Its clearance is measured face by
-face: an inclusion zone has sides, a ceiling and a floor, each to be kept apart; an exclusion
-zone is one body, clear of which is whoever is beside it *or* above *or* below.  Each measure
-says how clear the start is and how clear the least clear place is, and that is all a rule needs:
+A motion is a straight line; a point is a line of length zero.  Clearances are metres, negative on
+the forbidden side, and are measured for each face of the zone.  An inclusion zone has three faces:
+its sides, its ceiling and its floor.  An exclusion zone has one, its body: a point that is beside
+it *or* above it *or* below it is clear of it.  A `Measure` has the clearance at the start of the
+motion and the least one along it:
 
-point   the least is at least the margin;
-leg     the same, but one that starts within the margin may run as close as it started;
-stop    the least stays above a limit below the margin, see `Keep`.
+point   the least must be at least the margin;
+leg     the same, but a leg that starts closer than the margin may be as close as at its start;
+stop    the least must not be below a limit that is smaller than the margin, see `StopLimit`.
 
-All three limits grow with the margin, so a wider one never accepts what a narrower refuses.
+All three limits grow with the margin: a wider margin never accepts what a narrower one refuses.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from gcs.gate.geometry import TOLERANCE_M, Point, along
 
 
 class Face(Enum):
+    """A face of a zone; the values are parts of sentences."""
+
     SIDES = "outside"
     CEILING = "above the ceiling of"
     FLOOR = "below the floor of"
@@ -31,7 +34,7 @@ class Face(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """Metres clear of one face at the start of a motion and where it is least."""
+    """The clearance from one face, in metres: at the start of a motion, and the least along it."""
 
     zone: Zone
     face: Face
@@ -40,8 +43,8 @@ class Measure:
 
 
 @dataclass(frozen=True, slots=True)
-class Widths:
-    """A horizontal and a vertical distance to keep."""
+class Margins:
+    """A horizontal and a vertical distance, in metres."""
 
     h_m: float
     v_m: float
@@ -50,12 +53,12 @@ class Widths:
         return self.v_m if face in (Face.CEILING, Face.FLOOR) else self.h_m
 
 
-NO_WIDTHS = Widths(0.0, 0.0)
+NO_MARGINS = Margins(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """From `a` to `b`, each (east, north) and metres up of the local origin."""
+    """A straight line from `a` to `b`: each (east, north) and up, metres from the local origin."""
 
     a_en: Point
     a_up_m: float
@@ -69,7 +72,7 @@ class Motion:
 
 
 def inclusion_measures(zone: Zone, motion: Motion, *, floor_applies: bool) -> list[Measure]:
-    """Sides, ceiling and, where it applies, floor."""
+    """The measures of an inclusion zone: sides, ceiling and, where it applies, floor."""
     m = motion
     sides = Measure(
         zone, Face.SIDES, zone.shape.clearance(m.a_en), zone.shape.inner_clearance(m.a_en, m.b_en)
@@ -84,13 +87,16 @@ def inclusion_measures(zone: Zone, motion: Motion, *, floor_applies: bool) -> li
 
 
 def body_clearance(zone: Zone, en: Point, up_m: float) -> float:
-    """Metres that a point is clear of an exclusion zone, whichever way it is clear most."""
+    """The clearance of a point from an exclusion zone: the largest of beside, above and below."""
     return max(-zone.shape.clearance(en), zone.floor_up_m - up_m, up_m - zone.ceiling_up_m)
 
 
 def leg_body_clearance(zone: Zone, motion: Motion, beside_m: float) -> float | None:
-    """Metres beside an exclusion zone of that part of a leg which is less than `beside_m` above
-    or below it; None if no part is."""
+    """The horizontal clearance of a leg from an exclusion zone.
+
+    Only that part of the leg counts which is less than `beside_m` above or below the zone; None
+    if no part is.
+    """
     m = motion
     low, high = zone.floor_up_m - beside_m, zone.ceiling_up_m + beside_m
     climb = m.b_up_m - m.a_up_m
@@ -108,8 +114,11 @@ def leg_body_clearance(zone: Zone, motion: Motion, beside_m: float) -> float | N
 
 
 def swept_body_measure(zone: Zone, motion: Motion, beside_m: float) -> Measure | None:
-    """As above for a motion whose horizontal and vertical parts do not keep step: if any height
-    it passes is too near the zone's, its whole ground track has to be beside the zone."""
+    """As `leg_body_clearance`, for a motion that is not a straight line in height.
+
+    A vehicle that brakes stops at different times horizontally and vertically.  So if any height
+    that it passes is too close to the zone, its whole ground track has to be beside the zone.
+    """
     m = motion
     lowest, highest = min(m.a_up_m, m.b_up_m), max(m.a_up_m, m.b_up_m)
     if highest <= zone.floor_up_m - beside_m or lowest >= zone.ceiling_up_m + beside_m:
@@ -119,12 +128,12 @@ def swept_body_measure(zone: Zone, motion: Motion, beside_m: float) -> Measure |
 
 
 @dataclass(frozen=True, slots=True)
-class Keep:
-    """What a predicted stop must keep, for one face.
+class StopLimit:
+    """The least clearance that a predicted stop must have from one face.
 
-    `error_m + margin_m - slack_m` is the limit.  Within it a vehicle may creep: `creep_m` nearer
-    than it is now is the noise of hovering, and moving away is always allowed; but not nearer
-    than `error_m`, where it could be outside without knowing.
+    The limit is `error_m + margin_m - slack_m`.  A vehicle that is closer already may move away,
+    and may come `creep_m` closer than it is now, which is the noise of hovering; but never closer
+    than `error_m`, the error of its position, where it could be outside without our knowing.
     """
 
     error_m: float
@@ -138,13 +147,14 @@ class Keep:
 
     @property
     def outermost_m(self) -> float:
-        """A present position with less clearance is a breach, wherever it moves."""
+        """With less clearance than this the present position is a breach, however it moves."""
         return min(0.0, self.limit_m)
 
     def broken_by(self, measure: Measure) -> bool:
-        """Non-finite measures break it."""
+        """Does the measured way to the stop break the limit?  One that is not finite does."""
         start_m = measure.start_m
-        hard_m = min(self.error_m, self.limit_m, start_m - TOLERANCE_M)
-        soft_m = min(self.limit_m, start_m - self.creep_m)
-        kept = start_m >= self.outermost_m and measure.least_m >= max(hard_m, soft_m)
+        error_bound_m = min(self.error_m, self.limit_m, start_m - TOLERANCE_M)
+        creep_bound_m = min(self.limit_m, start_m - self.creep_m)
+        bound_m = max(error_bound_m, creep_bound_m)
+        kept = start_m >= self.outermost_m and measure.least_m >= bound_m
         return not kept

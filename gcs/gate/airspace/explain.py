@@ -1,4 +1,4 @@
-"""The verifier's sentences: operator's frame, metres, and never -0.0."""
+"""The verifier's sentences, in metres and in the operator's frame (east, north, up)."""
 
 from __future__ import annotations
 
@@ -9,25 +9,26 @@ from gcs.gate.refusal import Code, Refusal
 
 
 def fixed(value: float, decimals: int) -> str:
-    """Rounded first, so that a small negative number is not written -0.0."""
+    """A number with so many decimals.  It is rounded first, so that -0.0 is never written."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 
 def metres(value: float) -> str:
-    """Two decimals below a metre, one above: 0.01, 350.0."""
+    """Metres as a number: two decimals below 1 m, one above (0.01, 350.0)."""
     return fixed(value, 2 if abs(value) < 1.0 else 1)
 
 
 def place(pos_ned: Vec3) -> str:
+    """A position in the operator's frame: east, north, up, metres."""
     east, north, up = enu_from_ned(pos_ned)
     return f"({fixed(east, 2)} E, {fixed(north, 2)} N, {fixed(up, 2)} U)"
 
 
 def zone_refusal(subject: str, measure: Measure, margin_m: float, *, leg: bool) -> Refusal:
-    """Why `subject` is not clear of the measured face.
+    """The refusal of `subject`, which does not keep the margin from the measured face.
 
-    Outside for certain or too close to say; the numbers carry how far outside (`outside_m`) or
-    how much of the margin is there (`clear_m`), and the margin.
+    Either it is outside for certain, and the numbers say by how much (`outside_m`); or it is too
+    close, and they say how close (`clear_m`).  Both give the margin.
     """
     zone, clear_m = measure.zone, measure.least_m
     if side(clear_m) is Side.OUTSIDE or (leg and clear_m <= 0.0):

@@ -1,7 +1,7 @@
-"""The zones' own verdicts: is a place, a leg, a stop clear of every one of them?
+"""Is a point, a leg or a stop clear of every zone of the fence?
 
-Knows the fence and the policy's distances, and nothing of limits, home or finite numbers: its
-caller, the verifier, has seen to those.
+Only the fence and the policy's distances are considered here.  Limits of height and distance, and
+whether the numbers are finite, are checked by the caller, the verifier.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.clearance import (
-    NO_WIDTHS,
+    NO_MARGINS,
     Face,
-    Keep,
+    Margins,
     Measure,
     Motion,
-    Widths,
+    StopLimit,
     body_clearance,
     inclusion_measures,
     leg_body_clearance,
@@ -31,19 +31,25 @@ from gcs.gate.refusal import Refusal
 
 
 @dataclass(frozen=True, slots=True)
-class Judge:
+class FenceJudge:
+    """Judges by the zones of one fence; see `clearance.py` for the three rules.
+
+    `subject` is what a refusal's sentence begins with.  `floor_applies` says whether the floors of
+    inclusion zones are considered.
+    """
+
     zones: tuple[Zone, ...]
     policy: Policy
     braking: Braking
 
     @property
-    def margins(self) -> Widths:
-        return Widths(self.policy.margin_h_m, self.policy.margin_v_m)
+    def margins(self) -> Margins:
+        return Margins(self.policy.margin_h_m, self.policy.margin_v_m)
 
     def point(
         self, subject: str, pos_ned: Vec3, *, floor_applies: bool, radius_m: float = 0.0
     ) -> Refusal | None:
-        """Clear by the margin, a disc of `radius_m` about `pos_ned` included."""
+        """Refuses a point that does not keep the margin, with a disc of `radius_m` around it."""
         here = Motion.between(pos_ned, pos_ned)
         for zone in self.zones:
             for measure in self._point_measures(zone, here, floor_applies, radius_m):
@@ -53,9 +59,12 @@ class Judge:
         return None
 
     def leg(
-        self, subject: str, a_ned: Vec3, b_ned: Vec3, margins: Widths, *, floor_applies: bool
+        self, subject: str, a_ned: Vec3, b_ned: Vec3, margins: Margins, *, floor_applies: bool
     ) -> Refusal | None:
-        """Clear all along by the margin; or, where it starts nearer, never nearer than that."""
+        """Refuses a leg that does not keep the margin all along.
+
+        A leg that starts closer than the margin must not come closer than at its start.
+        """
         motion = Motion.between(a_ned, b_ned)
         for zone in self.zones:
             if zone.inclusion:
@@ -67,32 +76,35 @@ class Judge:
         return None
 
     def outside(self, subject: str, pos_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
-        """Inside at all (by the lab's slack, where there is one); no margin is asked for."""
+        """Refuses a point that is outside.  No margin is asked for; a policy whose slack is larger
+        than its margin (the lab's) allows a point to be outside by the difference."""
         here = Motion.between(pos_ned, pos_ned)
         for zone in self.zones:
-            for measure in self._point_measures(zone, here, floor_applies, 0.0, NO_WIDTHS):
+            for measure in self._point_measures(zone, here, floor_applies, 0.0, NO_MARGINS):
                 if not measure.least_m >= self._outermost(measure.face):
                     return zone_refusal(subject, measure, 0.0, leg=False)
         return None
 
     def broken_stop(self, pos_ned: Vec3, stop_ned: Vec3, *, floor_applies: bool) -> Measure | None:
-        """The first face that the way from here to the stop does not keep clear of."""
+        """The first measure of the way to a predicted stop that breaks its limit; None if none
+        does."""
         motion = Motion.between(pos_ned, stop_ned)
         measures = self._stop_measures(motion, floor_applies)
-        return next((m for m in measures if self.keep(m.face).broken_by(m)), None)
+        return next((m for m in measures if self.stop_limit(m.face).broken_by(m)), None)
 
-    def keep(self, face: Face) -> Keep:
-        """The slack reaches out of an inclusion zone, never into an exclusion zone."""
+    def stop_limit(self, face: Face) -> StopLimit:
+        """The limit for a predicted stop.  The slack may let it leave an inclusion zone, but never
+        enter an exclusion zone."""
         p, b = self.policy, self.braking
         if face in (Face.CEILING, Face.FLOOR):
-            return Keep(b.position_error_v_m, p.margin_v_m, p.brake_slack_v_m, p.creep_m)
+            return StopLimit(b.position_error_v_m, p.margin_v_m, p.brake_slack_v_m, p.creep_m)
         slack_m = p.brake_slack_h_m
         if face is Face.BODY:
             slack_m = min(slack_m, b.position_error_h_m + p.margin_h_m)
-        return Keep(b.position_error_h_m, p.margin_h_m, slack_m, p.creep_m)
+        return StopLimit(b.position_error_h_m, p.margin_h_m, slack_m, p.creep_m)
 
-    def nearest(self, a_ned: Vec3, b_ned: Vec3) -> Widths:
-        """How near a-b comes to any boundary, beside it and above or below; inf for none."""
+    def nearest(self, a_ned: Vec3, b_ned: Vec3) -> Margins:
+        """The least horizontal and vertical distance from a-b to any boundary; inf without one."""
         motion = Motion.between(a_ned, b_ned)
         beside, stacked = [math.inf], [math.inf]
         for zone in self.zones:
@@ -102,16 +114,19 @@ class Judge:
                 continue
             for measure in inclusion_measures(zone, motion, floor_applies=True):
                 (beside if measure.face is Face.SIDES else stacked).append(measure.least_m)
-        return Widths(min(beside), min(stacked))
+        return Margins(min(beside), min(stacked))
 
     def _need(self, face: Face, margin_m: float) -> float:
-        """What counts as clear for certain.  A policy with inclusive bounds gives what is too
-        close to say to the inside of an inclusion zone; an exclusion zone gets it always."""
+        """The clearance that counts as keeping the margin.
+
+        What is too close to say counts as not keeping it, unless the policy's bounds are inclusive
+        and the zone is an inclusion zone.
+        """
         given = self.policy.bounds_inclusive and face is not Face.BODY
         return margin_m - TOLERANCE_M if given else margin_m + TOLERANCE_M
 
     def _outermost(self, face: Face) -> float:
-        return self._need(face, self.keep(face).outermost_m)
+        return self._need(face, self.stop_limit(face).outermost_m)
 
     def _point_measures(
         self,
@@ -119,7 +134,7 @@ class Judge:
         here: Motion,
         floor_applies: bool,
         radius_m: float,
-        margins: Widths | None = None,
+        margins: Margins | None = None,
     ) -> Iterator[Measure]:
         if zone.inclusion:
             for m in inclusion_measures(zone, here, floor_applies=floor_applies):
@@ -132,7 +147,7 @@ class Judge:
             yield Measure(zone, Face.BODY, beside_m, beside_m)
 
     def _inclusion_leg(
-        self, zone: Zone, subject: str, motion: Motion, margins: Widths, floor_applies: bool
+        self, zone: Zone, subject: str, motion: Motion, margins: Margins, floor_applies: bool
     ) -> Refusal | None:
         for measure in inclusion_measures(zone, motion, floor_applies=floor_applies):
             margin_m = margins.of(measure.face)
@@ -143,7 +158,7 @@ class Judge:
         return None
 
     def _exclusion_leg(
-        self, zone: Zone, subject: str, motion: Motion, margins: Widths
+        self, zone: Zone, subject: str, motion: Motion, margins: Margins
     ) -> Refusal | None:
         start_m = body_clearance(zone, motion.a_en, motion.a_up_m)
         if not start_m >= TOLERANCE_M:

@@ -1,4 +1,5 @@
-"""What needs no fence: finite numbers, numbers within reach, the policy's height and distance."""
+"""The limits that need no fence: numbers that can be computed with, and the policy's height and
+distance from home."""
 
 from __future__ import annotations
 
@@ -6,19 +7,21 @@ import math
 from collections.abc import Mapping, Sequence
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.clearance import Widths
+from gcs.gate.airspace.clearance import Margins
 from gcs.gate.airspace.explain import metres
 from gcs.gate.geometry import REACH_M
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 
 STANDING: Vec3 = (0.0, 0.0, 0.0)
+"""The velocity of a vehicle that does not move."""
 
 FASTEST_M_S = 1.0e4
-"""A velocity beyond this is no velocity."""
+"""No vehicle is faster than this; a larger velocity is a wrong number."""
 
 
 def not_finite(values: Mapping[str, Sequence[float]]) -> Refusal | None:
+    """Refuses values, by name, with an infinite number or a NaN among them."""
     for name, numbers in values.items():
         if not all(map(math.isfinite, numbers)):
             return Refusal(Code.NON_FINITE, f"{name} is not finite")
@@ -26,7 +29,7 @@ def not_finite(values: Mapping[str, Sequence[float]]) -> Refusal | None:
 
 
 def beyond_reach(pos_ned: Vec3, v_ned: Vec3 = STANDING) -> Refusal | None:
-    """Finite and still nonsense: geometry and stopping distance hold up to here only."""
+    """Refuses numbers too large for the geometry and for the stopping distance to be exact."""
     if not all(abs(x) <= REACH_M for x in pos_ned):
         return Refusal(Code.TOO_FAR, f"a position beyond {REACH_M / 1000:.0f} km of the origin")
     if not all(abs(v) <= FASTEST_M_S for v in v_ned):
@@ -40,12 +43,12 @@ def beyond_limits(
     subject: str,
     pos_ned: Vec3,
     *,
-    allow: Widths,
+    allow: Margins,
     floor_applies: bool,
 ) -> Refusal | None:
-    """Too high, too low or too far from home, by more than `allow`.
+    """Refuses a position too high, too low or too far from home, by more than `allow`.
 
-    The least altitude is a floor, and does not apply where floors do not.
+    The policy's least height is a floor: it is not considered where `floor_applies` is False.
     """
     up_m = home_ned[2] - pos_ned[2]
     distance_m = math.hypot(pos_ned[0] - home_ned[0], pos_ned[1] - home_ned[1])

@@ -1,4 +1,4 @@
-"""Where the vehicle would come to rest, judged and told."""
+"""Predicts where the vehicle would stop if it were told to stop now, and judges that stop."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from gcs.frames import Vec3
 from gcs.gate.airspace import stopping
 from gcs.gate.airspace.clearance import Measure
 from gcs.gate.airspace.explain import fixed, metres
-from gcs.gate.airspace.judge import Judge
+from gcs.gate.airspace.judge import FenceJudge
 
 
 @dataclass(frozen=True, slots=True)
 class BadStop:
-    """A stop that does not keep clear: where, of what, and by how much."""
+    """A predicted stop that breaks a limit: where it is, and which measure breaks it."""
 
     stop_ned: Vec3
     measure: Measure
@@ -23,11 +23,11 @@ class BadStop:
 
 
 def bad_stop(
-    judge: Judge, home_ned: Vec3 | None, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool
+    judge: FenceJudge, home_ned: Vec3 | None, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool
 ) -> BadStop | None:
-    """None if the vehicle, told to stop now, keeps clear of every boundary.
+    """The predicted stop, if it or the way to it breaks a limit of the fence; else None.
 
-    Where the floor does not apply the stop is clipped to the ground, at home's height.
+    Where the floor does not apply, the stop is no lower than the ground, at home's height.
     """
     north_m, east_m, down_m = stopping.stop_point(pos_ned, v_ned, judge.braking)
     if not floor_applies and home_ned is not None:
@@ -36,7 +36,7 @@ def bad_stop(
     measure = judge.broken_stop(pos_ned, stop_ned, floor_applies=floor_applies)
     if measure is None:
         return None
-    limit_m, rest_m = judge.keep(measure.face).limit_m, measure.least_m
+    limit_m, rest_m = judge.stop_limit(measure.face).limit_m, measure.least_m
     sentence = (
         f"at {fixed(math.hypot(*v_ned), 1)} m/s it would come to rest {metres(abs(rest_m))} m "
         f"{'past' if rest_m < 0.0 else 'from'} the edge of {measure.zone.title}, "
@@ -46,8 +46,8 @@ def bad_stop(
     return BadStop(stop_ned, measure, sentence, (*numbers, *stopping_numbers(judge, v_ned)))
 
 
-def stopping_numbers(judge: Judge, v_ned: Vec3) -> tuple[tuple[str, float], ...]:
-    """The whole stopping distances, horizontal and vertical."""
+def stopping_numbers(judge: FenceJudge, v_ned: Vec3) -> tuple[tuple[str, float], ...]:
+    """The stopping distances, horizontal and vertical, as evidence for a verdict."""
     margins = judge.margins
     return (
         ("stopping_h_m", stopping.distance_h_m(v_ned, judge.braking, margins.h_m)),

@@ -1,7 +1,8 @@
-"""Geodetic to local NED and back, as the vehicle itself does it.
+"""Converts geodetic coordinates to local NED and back, as the vehicle itself does.
 
-The vehicle flies local coordinates that *it* projected, so the gate must project the same way;
-the ellipsoid would be more true and two to three metres per kilometre away from what is flown.
+The vehicle flies in local coordinates that it projected itself, so the gate has to project in the
+same way.  The WGS84 ellipsoid would be more accurate, but two to three metres per kilometre away
+from what the vehicle flies.
 
 px4: azimuthal equidistant projection about the origin on a sphere of 6,371,000 m (J. P. Snyder,
 Map Projections: A Working Manual, 1987, equations 5-3, 25-2 to 25-4, 20-14 and 20-15).
@@ -67,8 +68,8 @@ def _wrapped(lon_deg: float) -> float:
 def _azimuthal_forward(origin: Origin, lat_deg: float, lon_deg: float) -> tuple[float, float]:
     lat0, lat = math.radians(origin.lat_deg), math.radians(lat_deg)
     dlon = math.radians(lon_deg - origin.lon_deg)
-    # Unit vector to the point, in the origin's north, east and up: its horizontal part is sin c,
-    # which keeps the precision that the arc cosine of a number next to 1 throws away.
+    # The unit vector to the point, in the origin's north, east and up.  The length of its
+    # horizontal part is sin c; the arc cosine of `up`, close to 1, would lose precision.
     north = math.cos(lat0) * math.sin(lat) - math.sin(lat0) * math.cos(lat) * math.cos(dlon)
     east = math.cos(lat) * math.sin(dlon)
     up = math.sin(lat0) * math.sin(lat) + math.cos(lat0) * math.cos(lat) * math.cos(dlon)
@@ -104,5 +105,5 @@ def _flat_inverse(origin: Origin, north_m: float, east_m: float) -> tuple[float,
 
 
 def _longitude_scale(lat_rad: float) -> float:
-    """Never below 0.01, as in the vehicle: at a pole longitudes meet."""
+    """The cosine of the latitude, at least 0.01 as in the vehicle: it is zero at the poles."""
     return max(math.cos(lat_rad), 0.01)

@@ -1,7 +1,8 @@
-"""How far a vehicle goes before it stands: d = v t_react + v^2 / (2 a_brake) + error + margin.
+"""The stopping distance: d = v t_react + v^2 / (2 a_brake) + position error + margin.
 
-The horizontal and the vertical are apart, for a multirotor brakes them apart.  The first two
-terms are travel, along the velocity; the last two are a keep-out, in every direction.
+Horizontal and vertical are computed apart, because a multirotor brakes them apart.  The first two
+terms are the way that it travels, along its velocity; the last two are a distance to keep in every
+direction.
 """
 
 from __future__ import annotations
@@ -13,25 +14,25 @@ from gcs.gate.policy.policy import Braking
 
 
 def travel_m(speed_m_s: float, react_s: float, a_brake_m_s2: float) -> float:
-    """v t_react + v^2 / (2 a_brake), never negative and never falling with |v|."""
+    """v t_react + v^2 / (2 a_brake) in metres: never negative, never less for a larger |v|."""
     v = abs(speed_m_s)
     return v * react_s + v * v / (2.0 * a_brake_m_s2)
 
 
 def distance_h_m(v_ned: Vec3, braking: Braking, margin_m: float) -> float:
-    """The whole d, in the horizontal."""
+    """The stopping distance d, horizontally, in metres."""
     travel = travel_m(math.hypot(v_ned[0], v_ned[1]), braking.react_s, braking.a_brake_h_m_s2)
     return travel + braking.position_error_h_m + margin_m
 
 
 def distance_v_m(v_ned: Vec3, braking: Braking, margin_m: float) -> float:
-    """The whole d, in the vertical."""
+    """The stopping distance d, vertically, in metres."""
     travel = travel_m(v_ned[2], braking.react_s, braking.a_brake_v_m_s2)
     return travel + braking.position_error_v_m + margin_m
 
 
 def stop_point(pos_ned: Vec3, v_ned: Vec3, braking: Braking) -> Vec3:
-    """Where the vehicle would stand if it were told to stop now: present position plus travel."""
+    """Where the vehicle would stop if it were told to now: its position plus the way it travels."""
     north, east, down = v_ned
     speed_h = math.hypot(north, east)
     run_h = travel_m(speed_h, braking.react_s, braking.a_brake_h_m_s2)

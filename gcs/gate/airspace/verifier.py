@@ -1,9 +1,9 @@
-"""The verifier: may the vehicle go there, stay here, come back, and can it still stop?
+"""The verifier: may the vehicle fly to a goal, stay, take off, return, and can it still stop?
 
-A `Verifier` is immutable: a new home, origin, fence or autopilot makes a new one.  Every
-question is answered from its arguments alone; freshness of the position is the machine's to
-judge, before it asks.  Whatever is not finite, not known or beyond what can be computed with is
-refused, with the fence on or off.
+A `Verifier` is immutable: a new home, origin, fence or autopilot makes a new one.  Every question
+is answered from its arguments alone; the state machine makes sure before it asks that the position
+is fresh.  Numbers that are not finite, not known or too large to compute with are refused, whether
+the fence is on or off.
 """
 
 from __future__ import annotations
@@ -11,11 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.clearance import NO_WIDTHS, Widths
+from gcs.gate.airspace.clearance import NO_MARGINS, Margins
 from gcs.gate.airspace.explain import metres, place
-from gcs.gate.airspace.judge import Judge
+from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
 from gcs.gate.airspace.prediction import bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
@@ -24,22 +25,25 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
 from gcs.gate.refusal import Code, Refusal
 
-_BRAKE_STEPS = 16
+BRAKE_STEPS: Final = 16
+"""How many positions between the predicted stop and the vehicle are tried for the brake."""
+
+LOCAL_ORIGIN: Final[Vec3] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Cleared:
-    """Yes, with the numbers it was decided on."""
+    """The verifier allows it; `evidence` has the numbers that this was decided on."""
 
     evidence: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Breach:
-    """The vehicle would come to rest outside, or is outside.
+    """The vehicle would stop outside the fence, or is outside already.
 
-    `brake_pos_ned` is the verified point to stop at; None where there is none (the vehicle is
-    outside already, or its position is no number): then the hold mode is all there is.
+    `brake_pos_ned` is a verified position to stop at.  It is None where there is none, because the
+    vehicle is outside or its position is not finite: then only hold mode is left.
     """
 
     zone: str
@@ -50,10 +54,11 @@ class Breach:
 
 @dataclass(frozen=True, slots=True)
 class Verifier:
-    """Positions and velocities are local NED, metres and metres per second.
+    """Answers for one fence, home and autopilot.  Positions and velocities are local NED, in metres
+    and metres per second.
 
-    `zones` is the whole fence in the local frame.  An empty one with the fence on means that the
-    fence is not known (yet), and refuses everything that moves; `unplaced` says why.
+    `zones` is the whole fence in the local frame.  Where it is empty and the fence is on, the fence
+    is not known yet: everything that moves is refused, and `unplaced` says why.
     """
 
     policy: Policy
@@ -99,8 +104,8 @@ class Verifier:
     def hold_point(self, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Cleared | Refusal:
         """May the vehicle stay where it is?
 
-        A hold goes nowhere, so it need not keep the margin of a goal: it must be inside, within
-        the limits, and the vehicle must be able to stop inside.
+        The margin is not asked for, because a hold leads nowhere: the position must be inside the
+        fence and within the limits, and the vehicle must be able to stop inside.
         """
         refusal = self._unusable(position=pos_ned, velocity=v_ned)
         if refusal is not None:
@@ -119,7 +124,7 @@ class Verifier:
     def takeoff(self, up_m: float, pos_ned: Vec3) -> Cleared | Refusal:
         """May the vehicle climb straight up to `up_m` metres above where it stands?
 
-        The floor does not apply to the climb; the top is a place to hover, so there it does.
+        The floor does not apply to the climb.  It applies to its top, where the vehicle hovers.
         """
         refusal = self._unusable(height=(up_m,), position=pos_ned)
         if refusal is not None:
@@ -143,9 +148,9 @@ class Verifier:
         return refusal or Cleared((*self._nearest("top", top_ned, top_ned), ("leg_m", up_m)))
 
     def predicted_stop(self, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Breach | None:
-        """Would the vehicle, told to stop now, come to rest outside (or is it there)?
+        """Would the vehicle stop outside if it were told to stop now, or is it outside already?
 
-        Without the floor the stop is clipped to the ground: a landing ends there.
+        Where the floor does not apply, the stop is no lower than the ground: a landing ends there.
         """
         unusable = self._unusable(position=pos_ned, velocity=v_ned) or beyond_reach(pos_ned, v_ned)
         if unusable is not None:
@@ -157,11 +162,11 @@ class Verifier:
         return Breach(bad.measure.zone.name, bad.sentence, bad.numbers, brake_pos_ned)
 
     def return_path(self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> Cleared | Refusal:
-        """Is the vehicle's own way home clear: climb to its return height (metres above home,
-        or stay if higher), straight leg, descent?
+        """Is the vehicle's own way home clear?
 
-        A return is asked for to be safe, so no margin is demanded of it, only that it stays
-        inside for certain.  The floor does not apply: it ends on the ground.
+        It climbs to its return height (metres above home) unless it is higher, flies straight home
+        and descends.  A return makes it safer, so no margin is asked for, only that it stays inside
+        for certain.  The floor does not apply: a return ends on the ground.
         """
         down_m = min(pos_ned[2], home_ned[2] - return_up_m)
         top_ned, over_ned = (*pos_ned[:2], down_m), (*home_ned[:2], down_m)
@@ -185,11 +190,11 @@ class Verifier:
         circles: Sequence[tuple[Vec3, float]] = (),
         floor_free: frozenset[int] = frozenset(),
     ) -> Cleared | tuple[int, Refusal]:
-        """A mission, whole: every leg with its end, every loiter circle (centre, radius).
+        """Is a whole mission clear: every leg with its end, and every loiter circle?
 
-        `floor_free` holds the indices of the legs that leave or reach the ground.  The first
-        thing refused is returned with its index; circles are counted on after the legs.  The
-        disc of a circle, not its rim alone, has to be clear.
+        `circles` are (centre, radius).  `floor_free` are the indices of the legs that begin or end
+        on the ground.  Of a circle the whole disc has to be clear.  Returns the first refusal with
+        the index of its leg; the indices of circles follow those of the legs.
         """
         for i, (a_ned, b_ned) in enumerate(legs):
             refusal = self._mission_leg(a_ned, b_ned, floor_applies=i not in floor_free)
@@ -210,32 +215,37 @@ class Verifier:
             or self._judge.outside(f"start position {place(pos_ned)}", pos_ned, floor_applies=False)
         )
 
-    # -------------------------------------------------------------------------- answers
+    # ---------------------------------------------------------------- parts of the answers
 
     @property
-    def _judge(self) -> Judge:
+    def _judge(self) -> FenceJudge:
         zones = self.zones if self.fence_on else ()
-        return Judge(zones, self.policy, self.policy.braking_of(self.autopilot))
+        return FenceJudge(zones, self.policy, self.policy.braking_of(self.autopilot))
 
     def _unusable(self, **values: Sequence[float]) -> Refusal | None:
-        """NON_FINITE for numbers that are none, NO_ORIGIN for a fence that is not known."""
+        """NON_FINITE where a number is not finite, NO_ORIGIN where the fence is not known."""
         refusal = not_finite({"home": self.home_ned or (), **values})
         if refusal is None and self.fence_on and not self.zones:
             return self.unplaced or Refusal(Code.NO_ORIGIN, "the fence is not known yet")
         return refusal
 
     def _limits(
-        self, subject: str, pos_ned: Vec3, *, allow: Widths = NO_WIDTHS, floor_applies: bool = True
+        self,
+        subject: str,
+        pos_ned: Vec3,
+        *,
+        allow: Margins = NO_MARGINS,
+        floor_applies: bool = True,
     ) -> Refusal | None:
-        """From home, or from the local origin until home is known."""
-        home_ned = self.home_ned or STANDING
+        """The policy's limits, counted from the local origin until home is known."""
+        home_ned = self.home_ned or LOCAL_ORIGIN
         return beyond_limits(
             self.policy, home_ned, subject, pos_ned, allow=allow, floor_applies=floor_applies
         )
 
-    def _error(self) -> Widths:
+    def _error(self) -> Margins:
         b = self.policy.braking_of(self.autopilot)
-        return Widths(b.position_error_h_m, b.position_error_v_m)
+        return Margins(b.position_error_h_m, b.position_error_v_m)
 
     def _cannot_stop(self, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
         bad = bad_stop(self._judge, self.home_ned, pos_ned, v_ned, floor_applies=floor_applies)
@@ -244,17 +254,18 @@ class Verifier:
         return Refusal(Code.CANNOT_STOP, bad.sentence, bad.numbers, bad.measure.zone.name)
 
     def _nearest(self, what: str, a_ned: Vec3, b_ned: Vec3) -> tuple[tuple[str, float], ...]:
-        """Distances to the nearest boundary; left out where there is none."""
+        """The distances of a-b to the nearest boundary, as evidence; infinite ones are left out."""
         near = self._judge.nearest(a_ned, b_ned)
         named = ((f"{what}_clear_h_m", near.h_m), (f"{what}_clear_v_m", near.v_m))
         return tuple((name, value) for name, value in named if math.isfinite(value))
 
     def _brake_point(self, pos_ned: Vec3, stop_ned: Vec3, *, floor_applies: bool) -> Vec3 | None:
-        """The predicted stop, pulled back until it is a place that would be verified as a goal;
-        else the present position where that may be held; else nowhere."""
+        """Where to brake: the predicted stop, or the first position back from it towards the
+        vehicle that would be accepted as a goal; else the vehicle's position, if it may stay
+        there; else None."""
         judge = self._judge
-        for step in range(_BRAKE_STEPS, -1, -1):
-            t = step / _BRAKE_STEPS
+        for step in range(BRAKE_STEPS, -1, -1):
+            t = step / BRAKE_STEPS
             n, e, d = (a + t * (b - a) for a, b in zip(pos_ned, stop_ned, strict=True))
             point_ned = (n, e, self._above_ground(d, floor_applies=floor_applies))
             if (
@@ -272,13 +283,13 @@ class Verifier:
         return here_ned if isinstance(here, Cleared) else None
 
     def _above_ground(self, down_m: float, *, floor_applies: bool) -> float:
-        """Where no floor is asked for, the ground is one all the same: no brake points below it."""
+        """No brake leads below the ground, even where the floor does not apply."""
         if floor_applies or self.home_ned is None:
             return down_m
         return min(down_m, self.home_ned[2])
 
     def _return_leg(self, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusal | None:
-        return self._judge.leg(subject, a_ned, b_ned, NO_WIDTHS, floor_applies=False)
+        return self._judge.leg(subject, a_ned, b_ned, NO_MARGINS, floor_applies=False)
 
     def _mission_leg(self, a_ned: Vec3, b_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
         judge = self._judge
@@ -303,7 +314,7 @@ class Verifier:
             return refusal
         reach_m = abs(radius_m)
         subject = f"the circle of {metres(reach_m)} m about {place(centre_ned)}"
-        return self._limits(subject, centre_ned, allow=Widths(-reach_m, 0.0)) or self._judge.point(
+        return self._limits(subject, centre_ned, allow=Margins(-reach_m, 0.0)) or self._judge.point(
             subject, centre_ned, floor_applies=True, radius_m=reach_m
         )
 
@@ -317,10 +328,11 @@ def verifier_for(
     *,
     fence_on: bool = True,
 ) -> Verifier:
-    """A verifier over the policy's fence and a plan's, placed from what is known now.
+    """A verifier for the policy's fence and the fence of a plan file, from what is known now.
 
-    `plan_zones` are those of a plan file, the policy's own fence file included.  All zones are
-    placed or none: with one missing, everything that moves is refused with the reason of that one.
+    `plan_zones` are the zones that were read from files: a plan's, and those of the policy's fence
+    file.  Where one zone cannot be placed in the local frame yet, none is, and everything that
+    moves is refused for that reason.
     """
     projection = None if origin is None else Projection(origin, autopilot)
     built = build_zones((*policy.fence, *plan_zones), home_ned, projection)

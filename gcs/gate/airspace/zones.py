@@ -1,9 +1,9 @@
-"""The fence: zones as prisms in the local frame, and how they are placed there.
+"""The zones of the fence in the local frame, and how they are placed there.
 
-A vehicle must be inside every inclusion zone and outside every exclusion zone, as in the
-autopilots' own fences.  A zone as written (`ZoneSpec`) counts from home, from the local origin
-or from the equator; placed (`Zone`) it stands in local east and north, and its floor and
-ceiling are metres up of the local origin.
+A vehicle must be inside every inclusion zone and outside every exclusion zone, as with the
+autopilots' own fences.  A zone as it is written (`ZoneSpec`) is relative to home, relative to the
+local origin, or geographic.  A zone that is placed (`Zone`) has local east and north coordinates,
+and a floor and a ceiling in metres above the local origin.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from gcs.gate.refusal import Code, Refusal
 
 @dataclass(frozen=True, slots=True)
 class Zone:
-    """A prism.  An infinite floor or ceiling is none."""
+    """A prism; a floor of -inf or a ceiling of inf means that it has none."""
 
     name: str
     inclusion: bool
@@ -31,7 +31,7 @@ class Zone:
 
     @property
     def title(self) -> str:
-        """How sentences call it: inclusion circle 'home'."""
+        """Its name in sentences, such as: inclusion circle 'home'."""
         kind = "circle" if isinstance(self.shape, Circle) else "polygon"
         return f"{'inclusion' if self.inclusion else 'exclusion'} {kind} '{self.name}'"
 
@@ -39,10 +39,10 @@ class Zone:
 def build_zones(
     specs: Sequence[ZoneSpec], home_ned: Vec3 | None, projection: Projection | None
 ) -> tuple[Zone, ...] | Refusal:
-    """Place every zone, or none: NO_ORIGIN where home or the origin is wanted and not known,
-    POLICY where a geographic polygon is none.
+    """Place all zones in the local frame, or refuse.
 
-    A `FileSpec` yields nothing here: whoever read the file appends its zones to `specs`.
+    NO_ORIGIN: home or the origin is needed and not known.  POLICY: a geographic polygon is not a
+    simple one.  A `FileSpec` is skipped: the caller appends the zones of that file to `specs`.
     """
     zones = []
     for spec in specs:
