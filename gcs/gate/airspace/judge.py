@@ -76,8 +76,11 @@ class FenceJudge:
         return None
 
     def outside(self, subject: str, pos_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
-        """Refuses a point that is outside.  No margin is asked for; a policy whose slack is larger
-        than its margin (the lab's) allows a point to be outside by the difference."""
+        """Refuses a point that is outside.  No margin is asked for.
+
+        Where the policy's slack is larger than its margin and position error together (as in the
+        lab), a point may be outside by the difference.
+        """
         here = Motion.between(pos_ned, pos_ned)
         for zone in self.zones:
             for measure in self._point_measures(zone, here, floor_applies, 0.0, NO_MARGINS):

@@ -65,16 +65,16 @@ class Script:
         self.now_ns = start_ns
         self.gate = Gate(rules, autopilot, start_ns, table)
         self.autopilot = autopilot
-        self.said: list[tuple[int, Effect]] = []
+        self.effects: list[tuple[int, Effect]] = []
         self.armed = False
         self.mode = FlightMode.HOLD
         self.landed = LandedState.ON_GROUND
         self.pos_ned: Vec3 = (0.0, 0.0, 0.0)
         self.v_ned: Vec3 = (0.0, 0.0, 0.0)
         self.flown = False
-        self.telling = True
-        self.beating = True
-        self.landed_told = True
+        self.reports_position = True
+        self.reports_heartbeat = True
+        self.reports_landed = True
         self._next_id = 0
         self._ticks = 0
 
@@ -82,7 +82,7 @@ class Script:
 
     def feed(self, given: Input) -> list[Effect]:
         effects = self.gate.handle(given, self.now_ns)
-        self.said += [(self.now_ns, effect) for effect in effects]
+        self.effects += [(self.now_ns, effect) for effect in effects]
         for effect in effects:
             if isinstance(effect, SwitchedFence):
                 self.place(fence_on=effect.on)
@@ -141,11 +141,11 @@ class Script:
         for _ in range(ticks):
             self._ticks += 1
             self.now_ns += TICK
-            if self.beating and self._ticks % 20 == 0:
+            if self.reports_heartbeat and self._ticks % 20 == 0:
                 self.heartbeat()
-                if self.landed_told:
+                if self.reports_landed:
                     self.feed(LandedSeen(self.landed))
-            if self.telling:
+            if self.reports_position:
                 self.position()
             effects += self.feed(Tick(0))
         return effects
@@ -184,7 +184,7 @@ class Script:
     # ----------------------------------------------------------------------------- effects
 
     def all(self, kind: type[E]) -> list[E]:
-        return [effect for _, effect in self.said if isinstance(effect, kind)]
+        return [effect for _, effect in self.effects if isinstance(effect, kind)]
 
     def verdict(self, request_id: int) -> Verdict:
         """The one verdict; a missing or second one fails the test."""
@@ -196,9 +196,9 @@ class Script:
         assert refusal is not None
         return refusal.code
 
-    def ending(self, request_id: int) -> Outcome:
-        (ending,) = [e for e in self.all(Outcome) if e.request_id == request_id]
-        return ending
+    def outcome(self, request_id: int) -> Outcome:
+        (outcome,) = [e for e in self.all(Outcome) if e.request_id == request_id]
+        return outcome
 
     def ended(self, request_id: int) -> bool:
         return any(e.request_id == request_id for e in self.all(Outcome))
@@ -211,10 +211,10 @@ class Script:
 
     def setpoints(self) -> Iterator[tuple[int, Vec3]]:
         """Time and place (E N U) of every setpoint that left."""
-        for now_ns, effect in self.said:
+        for now_ns, effect in self.effects:
             if isinstance(effect, SendSetpoint) and effect.permit.pos_ned is not None:
                 yield now_ns, enu_from_ned(effect.permit.pos_ned)
 
     def forget(self) -> None:
         """Look only at what comes from here on."""
-        self.said.clear()
+        self.effects.clear()

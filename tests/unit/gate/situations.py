@@ -20,7 +20,7 @@ def lead_to(state: State, script: Script) -> None:
             pass
         case State.STALE:
             script.take_control(UP)
-            script.telling = False
+            script.reports_position = False
             script.wait(script.policy.position_age_s + 0.1)
         case State.GROUNDED | State.TAKING_OFF:
             script.connect()

@@ -45,7 +45,7 @@ def test_L03_enter_gives_requested_verified_moving_in_that_order() -> None:
     assert script.gate.state is State.HOVERING
     assert not script.all(Verdict)
     script.tick()
-    told = [e for _, e in script.said if isinstance(e, Transition | Verdict)]
+    told = [e for _, e in script.effects if isinstance(e, Transition | Verdict)]
     first, verdict, second = told
     assert isinstance(first, Transition)
     assert isinstance(second, Transition)
@@ -61,11 +61,11 @@ def test_L04_moving_without_positions_never_completes(name: str) -> None:
     script = hovering(name)
     requested = script.goto(*near(name))
     script.tick()
-    script.telling = False
+    script.reports_position = False
     script.wait(script.policy.position_age_s + 0.1)
     assert script.gate.state is State.STALE
     script.wait(20.0)
-    assert script.ending(requested).code is Code.STALE
+    assert script.outcome(requested).code is Code.STALE
 
 
 @BOTH
@@ -81,7 +81,7 @@ def test_L05_second_request_is_refused_busy(name: str) -> None:
     script.wait(0.5)
     script.at(*goal)
     script.wait(5.0)
-    assert script.ending(first).kind is OutcomeKind.COMPLETE
+    assert script.outcome(first).kind is OutcomeKind.COMPLETE
     assert (goal[0], 2.0, goal[2]) not in {place for _, place in script.setpoints()}
 
 
@@ -91,7 +91,7 @@ def test_L06_in_range_is_complete_and_the_stream_goes_on_at_the_goal() -> None:
     script.wait(0.5)
     script.at(0.9, 0.0, 0.5)
     script.tick()
-    assert script.ending(requested).kind is OutcomeKind.COMPLETE
+    assert script.outcome(requested).kind is OutcomeKind.COMPLETE
     assert script.gate.state is State.HOVERING
     script.forget()
     script.wait(1.0)
@@ -120,7 +120,7 @@ def test_L08_exactly_at_the_radius_is_not_complete_and_just_below_is() -> None:
     assert not script.ended(requested)
     script.at(math.nextafter(0.5, 1.0), 0.0, 0.5)
     script.tick()
-    assert script.ending(requested).kind is OutcomeKind.COMPLETE
+    assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
 
 def test_L09_the_present_position_as_goal_is_one_tick_of_moving_then_complete() -> None:
@@ -131,7 +131,7 @@ def test_L09_the_present_position_as_goal_is_one_tick_of_moving_then_complete() 
     assert not script.ended(requested)
     script.tick()
     assert script.states()[2:] == [State.HOVERING]
-    assert script.ending(requested).kind is OutcomeKind.COMPLETE
+    assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
 
 def test_L10_of_two_requests_in_one_tick_the_second_wins() -> None:
@@ -188,7 +188,7 @@ def test_L13_a_refused_goal_is_gone_and_flies_only_when_sent_again() -> None:
     script.tick()
     assert script.verdict(requested).ruling is Ruling.REFUSED
     switch = script.ask(SwitchFence(on=False))
-    assert script.ending(switch).kind is OutcomeKind.COMPLETE
+    assert script.outcome(switch).kind is OutcomeKind.COMPLETE
     script.wait(3.0)
     assert script.gate.state is State.HOVERING
     assert (8.0, 0.0, 1.0) not in {place for _, place in script.setpoints()}
@@ -208,14 +208,14 @@ def test_L14_a_position_that_stops_arriving_degrades_within_the_limit(name: str)
     script = hovering(name)
     requested = script.goto(*near(name))
     script.wait(0.5)
-    script.telling = False
+    script.reports_position = False
     stopped_ns = script.now_ns
     while script.gate.state is not State.STALE:
         script.tick()
     limit_ns = round(script.policy.position_age_s * SECOND) + TICK
     assert script.now_ns - stopped_ns <= limit_ns
     script.wait(script.policy.stale_grace_s + 0.05)
-    assert script.ending(requested).kind is OutcomeKind.ABORTED
+    assert script.outcome(requested).kind is OutcomeKind.ABORTED
     assert script.commands()[-1] is CommandKind.HOLD
     script.forget()
     script.wait(5.0)
@@ -271,7 +271,7 @@ def test_L16_a_move_while_a_picture_is_taken_is_refused_busy(name: str) -> None:
     script.wait(1.0)
     assert script.refusal(move) is Code.BUSY
     script.feed(PhotoSeen(0, ok=True))
-    assert script.ending(photo).kind is OutcomeKind.COMPLETE
+    assert script.outcome(photo).kind is OutcomeKind.COMPLETE
     again = script.goto(*near(name))
     script.tick()
     assert script.verdict(again).ruling is Ruling.ACCEPTED
@@ -306,7 +306,7 @@ def test_arrival_by_the_expert_rules_waits_for_speed_and_dwell() -> None:
     script.wait(0.45)
     assert not script.ended(requested)
     script.wait(0.1)
-    assert script.ending(requested).kind is OutcomeKind.COMPLETE
+    assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
 
 def test_the_heartbeat_confirms_control_and_a_goal_before_that_is_refused() -> None:
@@ -322,4 +322,4 @@ def test_the_heartbeat_confirms_control_and_a_goal_before_that_is_refused() -> N
     script.answer(CommandKind.GUIDED, 0)
     assert not script.ended(control)
     script.heartbeat(FlightMode.GUIDED)
-    assert script.ending(control).kind is OutcomeKind.COMPLETE
+    assert script.outcome(control).kind is OutcomeKind.COMPLETE

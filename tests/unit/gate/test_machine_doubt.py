@@ -73,7 +73,7 @@ class TestSlowPositions:
     @pytest.mark.parametrize("state", [State.MOVING, State.HOVERING, State.FLYING_MISSION])
     def test_every_sample_is_predicted(self, state: State, period_s: float) -> None:
         script = in_state(state)
-        script.telling = False
+        script.reports_position = False
         east = 0.0
         while east < 150.0 and script.gate.state is not State.HOLDING:
             script.wait(period_s)
@@ -88,7 +88,7 @@ class TestSlowPositions:
         script = in_state(State.HOVERING)
         goto = script.goto(100.0, 0.0, UP)
         script.at(120.0, 0.0, UP, (12.0, 0.0, 0.0))
-        script.telling = False
+        script.reports_position = False
         script.wait(1.2)
         assert script.gate.state is State.STALE
         script.forget()
@@ -97,13 +97,13 @@ class TestSlowPositions:
         assert script.commands() == [CommandKind.HOLD]
         assert len(list(script.setpoints())) == 1
         assert script.states() == [State.HOLDING]
-        assert script.ending(goto).code is Code.FENCE_BREACH
+        assert script.outcome(goto).code is Code.FENCE_BREACH
 
 
 class TestLandedState:
     def test_it_ages_while_the_vehicle_is_heard(self) -> None:
         script = armed()
-        script.landed_told = False
+        script.reports_landed = False
         script.wait(4.0)
         assert script.gate.memory.landed is LandedState.UNDEFINED
         assert script.gate.state is State.GROUNDED
@@ -122,7 +122,7 @@ class TestLandedState:
         self, wanted: Request, command: CommandKind, state: State
     ) -> None:
         script = armed()
-        script.landed_told = False
+        script.reports_landed = False
         script.wait(4.0)
         script.forget()
         requested = script.ask(wanted)
@@ -132,7 +132,7 @@ class TestLandedState:
 
     def test_what_climbed_does_not_stand_whatever_was_reported_last(self) -> None:
         script = armed()
-        script.landed_told = False
+        script.reports_landed = False
         script.at(0.0, 0.0, 0.8)
         script.forget()
         requested = script.ask(Hold())
@@ -142,11 +142,11 @@ class TestLandedState:
     @pytest.mark.parametrize("wanted", [Hold(), Land(), ReturnHome()], ids=["hold", "land", "rtl"])
     def test_what_is_reported_to_stand_has_nothing_left_to_do(self, wanted: Request) -> None:
         script = armed()
-        assert script.ending(script.ask(wanted)).kind is OutcomeKind.COMPLETE
+        assert script.outcome(script.ask(wanted)).kind is OutcomeKind.COMPLETE
 
     def test_abort_in_a_climb_whose_landed_state_is_lost_holds(self) -> None:
         script = climbing()
-        script.landed_told = False
+        script.reports_landed = False
         script.at(0.0, 0.0, 1.0)
         script.forget()
         script.ask(Abort())
@@ -161,16 +161,16 @@ class TestLandedState:
         script.heartbeat(FlightMode.HOLD)
         assert not script.ended(abort)
         script.heartbeat(armed=False)
-        assert script.ending(abort).kind is OutcomeKind.COMPLETE
+        assert script.outcome(abort).kind is OutcomeKind.COMPLETE
 
     def test_a_disarm_refused_in_the_air_is_a_hold(self) -> None:
         script = armed()
-        script.landed_told = False
+        script.reports_landed = False
         script.wait(4.0)
         disarm = script.ask(Disarm())
         script.forget()
         script.feed(CommandEnded(disarm, CommandKind.DISARM, 4))
-        assert script.ending(disarm).code is Code.VEHICLE_REFUSED
+        assert script.outcome(disarm).code is Code.VEHICLE_REFUSED
         assert script.commands() == [CommandKind.HOLD]
         assert script.gate.state is State.HOLDING
 
@@ -185,7 +185,7 @@ class TestLandedState:
 
     def test_no_take_off_from_what_is_not_known_to_stand(self) -> None:
         script = armed()
-        script.landed_told = False
+        script.reports_landed = False
         script.wait(4.0)
         assert script.refusal(script.ask(TakeOff(2.0))) is Code.IN_AIR
 
@@ -202,8 +202,8 @@ class TestMovedFence:
         goto = script.goto(100.0, 0.0, UP)
         script.wait(0.5)
         script.feed(VerifierChanged(elsewhere(script, -100.0)))
-        ending = script.ending(goto)
-        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.OUTSIDE_FENCE)
+        outcome = script.outcome(goto)
+        assert (outcome.kind, outcome.code) == (OutcomeKind.ABORTED, Code.OUTSIDE_FENCE)
         assert script.gate.state is State.HOLDING
         assert script.commands() == [CommandKind.HOLD]
 
@@ -214,7 +214,7 @@ class TestMovedFence:
         script.tick()
         assert script.states()[-1] is State.MOVING
         script.ask(SwitchFence(on=True))
-        assert script.ending(goto).kind is OutcomeKind.ABORTED
+        assert script.outcome(goto).kind is OutcomeKind.ABORTED
         assert script.gate.state is State.HOLDING
 
     def test_a_hover_outside_the_new_fence_streams_nothing_more(self) -> None:
@@ -284,9 +284,9 @@ class TestClimb:
         script.at(0.0, 0.0, 4.0)
         script.heartbeat(FlightMode.HOLD)
         script.tick()
-        ending = script.ending(take_off)
-        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
-        assert "6.0 m below the height" in ending.sentence
+        outcome = script.outcome(take_off)
+        assert (outcome.kind, outcome.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
+        assert "6.0 m below the height" in outcome.sentence
         assert script.gate.state is State.HOLDING
         assert script.gate.hold_goal_ned == (0.0, 0.0, -4.0)
 
@@ -308,7 +308,7 @@ class TestClimb:
         script.v_ned = (0.0, 0.0, -1.0)
         script.at(0.0, 0.0, 6.8, v_enu=(0.0, 0.0, 1.0))
         script.tick()
-        assert script.ending(take_off).code is Code.TOO_HIGH
+        assert script.outcome(take_off).code is Code.TOO_HIGH
         assert script.gate.state is State.HOLDING
 
 
@@ -338,7 +338,7 @@ class TestPictures:
         script.feed(PhotoSeen(7, ok=True))
         assert not script.ended(photo)
         script.feed(PhotoSeen(8, ok=True))
-        assert script.ending(photo).kind is OutcomeKind.COMPLETE
+        assert script.outcome(photo).kind is OutcomeKind.COMPLETE
 
 
 class TestWords:
@@ -347,7 +347,7 @@ class TestWords:
         requested = script.ask(TakeControl())
         script.wait(1.1)
         script.answer(CommandKind.GUIDED, 4)
-        assert script.ending(requested).sentence == "the vehicle refused guided mode (result 4)"
+        assert script.outcome(requested).sentence == "the vehicle refused guided mode (result 4)"
 
     def test_a_hold_that_nobody_answers_is_told_once(self) -> None:
         script = in_state(State.MOVING)
@@ -362,6 +362,6 @@ class TestWords:
 def test_a_mission_waits_for_a_vehicle_that_is_known_to_stand() -> None:
     script = armed()
     script.feed(MissionLoaded("square", 4))
-    script.landed_told = False
+    script.reports_landed = False
     script.wait(4.0)
     assert script.refusal(script.ask(StartMission())) is Code.IN_AIR

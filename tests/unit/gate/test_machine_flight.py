@@ -59,7 +59,7 @@ class TestControl:
         script = Script(policy("default")).fly(UP)
         requested = script.ask(TakeControl())
         script.wait(6.1)
-        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
+        assert script.outcome(requested).kind is OutcomeKind.TIMED_OUT
         assert script.gate.state is State.EXTERNAL
         assert script.commands() == [CommandKind.GUIDED, CommandKind.HOLD]
 
@@ -76,15 +76,15 @@ class TestControl:
         requested = script.ask(TakeControl())
         script.wait(1.1)
         script.answer(CommandKind.GUIDED, 1, "no position")
-        ending = script.ending(requested)
-        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
-        assert "no position" in ending.sentence
-        assert "result 1" in ending.sentence
+        outcome = script.outcome(requested)
+        assert (outcome.kind, outcome.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
+        assert "no position" in outcome.sentence
+        assert "result 1" in outcome.sentence
 
     def test_on_the_ground_control_is_complete_at_once(self) -> None:
         script = Script(policy("default")).connect()
         requested = script.ask(TakeControl())
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
         assert script.gate.control is Control.NONE
 
     def test_a_mode_that_we_did_not_command_takes_the_vehicle_over(self) -> None:
@@ -113,7 +113,7 @@ class TestControl:
         requested = script.goto(3.0, 0.0, UP)
         script.tick()
         script.heartbeat(FlightMode.HOLD)
-        assert script.ending(requested).kind is OutcomeKind.TAKEN_OVER
+        assert script.outcome(requested).kind is OutcomeKind.TAKEN_OVER
 
     def test_the_old_mode_is_tolerated_while_our_command_is_under_way(self) -> None:
         script = in_state(State.HOVERING)
@@ -137,7 +137,7 @@ class TestTakeOff:
         script.answer(CommandKind.ARM, 0)
         assert not script.ended(requested)
         script.heartbeat(armed=True)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
     def test_not_armed_no_take_off(self) -> None:
         script = Script(policy("default")).connect()
@@ -167,7 +167,7 @@ class TestTakeOff:
         assert not script.ended(requested)
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
         assert script.gate.control is Control.OURS
 
     def test_the_hold_mode_of_an_old_heartbeat_is_not_the_end_of_the_climb(self) -> None:
@@ -186,7 +186,7 @@ class TestTakeOff:
         script.heartbeat(FlightMode.GUIDED)
         assert script.commands() == [CommandKind.GUIDED, CommandKind.ARM]
         script.heartbeat(armed=True)
-        assert script.ending(arm).kind is OutcomeKind.COMPLETE
+        assert script.outcome(arm).kind is OutcomeKind.COMPLETE
         script.ask(TakeOff(2.0))
         assert script.commands()[-1] is CommandKind.TAKE_OFF
 
@@ -204,7 +204,7 @@ class TestTakeOff:
         requested = script.ask(TakeOff(2.0))
         script.wait(5.0)
         script.answer(CommandKind.TAKE_OFF, None)
-        assert script.ending(requested).code is Code.NO_ANSWER
+        assert script.outcome(requested).code is Code.NO_ANSWER
         assert script.states()[-1] is State.GROUNDED
         script.land_state(LandedState.IN_AIR)
         assert script.gate.state is State.HOLDING
@@ -214,7 +214,7 @@ class TestTakeOff:
         script = Script(policy("default")).connect()
         requested = script.ask(Arm())
         script.wait(5.1)
-        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
+        assert script.outcome(requested).kind is OutcomeKind.TIMED_OUT
         assert CancelCommand(requested, CommandKind.ARM) in script.all(CancelCommand)
         before = script.gate.memory
         effects = script.feed(CommandEnded(requested, CommandKind.ARM, 0))
@@ -225,10 +225,10 @@ class TestTakeOff:
         script = self.script()
         take_off = script.ask(TakeOff(2.0))
         abort = script.ask(Abort())
-        assert script.ending(take_off).code is Code.OPERATOR
+        assert script.outcome(take_off).code is Code.OPERATOR
         assert script.commands()[-1] is CommandKind.DISARM
         script.heartbeat(armed=False)
-        assert script.ending(abort).kind is OutcomeKind.COMPLETE
+        assert script.outcome(abort).kind is OutcomeKind.COMPLETE
 
 
 class TestComingDown:
@@ -240,7 +240,7 @@ class TestComingDown:
         assert script.gate.state is State.GROUNDED
         assert not script.ended(requested)
         script.heartbeat(armed=False)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_vehicle_that_stays_armed_is_waited_for_shortly(self) -> None:
         script = in_state(State.HOVERING)
@@ -248,7 +248,7 @@ class TestComingDown:
         script.heartbeat(FlightMode.LAND)
         script.land_state(LandedState.ON_GROUND)
         script.wait(3.1)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_bounce_goes_on_landing(self) -> None:
         script = in_state(State.HOVERING)
@@ -282,7 +282,7 @@ class TestComingDown:
         script.heartbeat(FlightMode.RETURN)
         script.land_state(LandedState.ON_GROUND)
         script.heartbeat(armed=False)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_blocked_return_holds_at_once_and_offers_to_land(self) -> None:
         script = in_state(State.HOVERING)
@@ -308,7 +308,7 @@ class TestHolding:
         script.wait(2.5)
         assert script.commands() == [CommandKind.HOLD] * 3
         script.heartbeat(FlightMode.HOLD)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
         script.forget()
         script.wait(3.0)
         assert not script.commands()
@@ -335,7 +335,7 @@ class TestHolding:
         resume = script.ask(Resume())
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
-        assert script.ending(resume).kind is OutcomeKind.COMPLETE
+        assert script.outcome(resume).kind is OutcomeKind.COMPLETE
         assert script.gate.state is State.HOVERING
         assert script.gate.hold_goal_ned == (0.0, 0.0, -UP)
 
@@ -356,7 +356,7 @@ class TestPictureAndMission:
         script = in_state(State.HOVERING)
         requested = script.ask(TakePhoto())
         script.wait(10.1)
-        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
+        assert script.outcome(requested).kind is OutcomeKind.TIMED_OUT
         assert script.gate.state is State.HOVERING
 
     def test_a_camera_that_fails_ends_the_request(self) -> None:
@@ -380,7 +380,7 @@ class TestPictureAndMission:
         assert script.gate.state is State.HOVERING
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_mission_that_ends_in_a_landing_is_complete_on_the_ground(self) -> None:
         script = in_state(State.HOVERING)
@@ -392,7 +392,7 @@ class TestPictureAndMission:
         assert not script.ended(requested)
         script.land_state(LandedState.ON_GROUND)
         script.heartbeat(armed=False)
-        assert script.ending(requested).kind is OutcomeKind.COMPLETE
+        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
     def test_a_mission_that_somebody_pauses_is_taken_over(self) -> None:
         script = in_state(State.FLYING_MISSION)
@@ -410,6 +410,6 @@ class TestPictureAndMission:
         script = in_state(State.HOVERING)
         requested = script.ask(GoTo((0.0, 3.0, -UP)))
         script.wait(10.2)
-        assert script.ending(requested).kind is OutcomeKind.TIMED_OUT
+        assert script.outcome(requested).kind is OutcomeKind.TIMED_OUT
         assert script.gate.state is State.HOLDING
         assert CommandKind.HOLD in script.commands()

@@ -52,7 +52,7 @@ def in_state(state: State, **severities: Severity) -> Script:
 class TestStale:
     def test_the_verified_stream_goes_on_for_the_grace_then_hold_then_silence(self) -> None:
         script = in_state(State.MOVING)
-        script.telling = False
+        script.reports_position = False
         start_ns = script.now_ns
         script.wait(4.0)
         last_ns = max(now_ns for now_ns, _ in script.setpoints())
@@ -63,31 +63,31 @@ class TestStale:
 
     def test_a_position_within_the_grace_goes_on_as_before(self) -> None:
         script = in_state(State.MOVING)
-        script.telling = False
+        script.reports_position = False
         script.wait(1.2)
         assert script.states() == [State.STALE]
-        script.telling = True
+        script.reports_position = True
         script.tick()
         assert script.states() == [State.STALE, State.MOVING]
 
     def test_a_position_after_the_grace_finds_the_vehicle_held(self) -> None:
         script = in_state(State.MOVING)
-        script.telling = False
+        script.reports_position = False
         script.wait(2.0)
-        script.telling = True
+        script.reports_position = True
         script.tick()
         assert script.gate.state is State.HOLDING
 
     def test_a_landing_needs_no_position_of_ours(self) -> None:
         script = in_state(State.LANDING)
-        script.telling = False
+        script.reports_position = False
         script.wait(3.0)
         assert script.gate.state is State.LANDING
         assert not script.commands()
 
     def test_a_pending_goal_is_refused_when_the_position_is_too_old_at_the_tick(self) -> None:
         script = in_state(State.HOVERING)
-        script.telling = False
+        script.reports_position = False
         script.wait(1.0)
         requested = script.goto(3.0, 0.0, UP)
         script.tick()
@@ -95,14 +95,14 @@ class TestStale:
 
     def test_a_sample_that_is_no_number_or_older_than_the_last_does_not_count(self) -> None:
         script = in_state(State.HOVERING)
-        script.telling = False
+        script.reports_position = False
         script.feed(PositionSeen((float("nan"), 0.0, 0.0), (0.0, 0.0, 0.0), script.now_ns // MS))
         script.feed(PositionSeen((9.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1))
         assert script.gate.pos_ned == (0.0, 0.0, -UP)
 
     def test_no_heartbeat_is_no_vehicle_and_one_that_returns_is_somebody_elses(self) -> None:
         script = in_state(State.MOVING)
-        script.beating = script.telling = False
+        script.reports_heartbeat = script.reports_position = False
         script.wait(5.0)
         assert script.states()[-1] is State.NO_VEHICLE
         assert script.gate.control is Control.NONE
@@ -113,13 +113,13 @@ class TestStale:
 
     def test_abort_is_sent_even_to_a_vehicle_that_is_not_heard_any_more(self) -> None:
         script = in_state(State.MOVING)
-        script.beating = script.telling = False
+        script.reports_heartbeat = script.reports_position = False
         script.wait(5.0)
         script.forget()
         abort = script.ask(Abort())
         assert script.commands() == [CommandKind.HOLD]
         script.wait(6.0)
-        assert script.ending(abort).kind is OutcomeKind.TIMED_OUT
+        assert script.outcome(abort).kind is OutcomeKind.TIMED_OUT
 
 
 class TestBreach:
@@ -153,9 +153,9 @@ class TestBreach:
         requested = script.goto(3.0, 0.0, UP)
         script.tick()
         script.feed(self.dash(script))
-        ending = script.ending(requested)
-        assert (ending.kind, ending.code) == (OutcomeKind.ABORTED, Code.FENCE_BREACH)
-        assert "home" in ending.sentence
+        outcome = script.outcome(requested)
+        assert (outcome.kind, outcome.code) == (OutcomeKind.ABORTED, Code.FENCE_BREACH)
+        assert "home" in outcome.sentence
 
     def test_what_somebody_else_flies_is_not_braked(self) -> None:
         script = in_state(State.EXTERNAL)
@@ -170,7 +170,7 @@ class TestJump:
         requested = script.goto(3.0, 0.0, UP)
         script.tick()
         script.feed(PositionSeen((20.0, 0.0, -UP), (0.0, 0.0, 0.0), script.now_ns // MS))
-        assert script.ending(requested).code is Code.ESTIMATOR_RESET
+        assert script.outcome(requested).code is Code.ESTIMATOR_RESET
         assert script.gate.state is State.HOLDING
         assert script.gate.hold_goal_ned == (20.0, 0.0, -UP)
 
@@ -268,7 +268,7 @@ class TestOperatorLost:
         script = Script(policy("default")).connect()
         requested = script.ask(Arm())
         script.feed(OperatorLost("quit"))
-        assert script.ending(requested).code is Code.OPERATOR_LOST
+        assert script.outcome(requested).code is Code.OPERATOR_LOST
         assert CancelCommand(requested, CommandKind.ARM) in script.all(CancelCommand)
 
 
