@@ -13,7 +13,7 @@ Vec3 = tuple[float, float, float]
 
 
 def ned_from_enu(v_enu: Vec3) -> Vec3:
-    """East, north, up -> north, east, down.  Never yields -0.0, which nobody wants to read."""
+    """East, north, up -> north, east, down.  Never yields -0.0."""
     east, north, up = v_enu
     return (north, east, 0.0 - up)
 

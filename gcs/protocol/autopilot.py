@@ -32,7 +32,7 @@ class ParamEncoding(Enum):
     CAST = "cast"
 
 
-class CannotAskError(Exception):
+class CannotCommandError(Exception):
     """This autopilot cannot be asked for that; the message says why, for the operator."""
 
 
@@ -47,7 +47,7 @@ class Mode:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class WantedCommand:
     """What the operator or the gate wants, with the numbers that some kinds need."""
 
     kind: CommandKind
@@ -171,7 +171,7 @@ GENERIC = Autopilot(
     takeoff_above_sea=False,
     blank=0.0,
 )
-"""It can be watched, not asked: every mode is somebody else's, every order is refused."""
+"""An autopilot that we do not know: its reports are shown, every command to it is refused."""
 
 _BY_MAV_AUTOPILOT = {row.mav_autopilot: row for row in (PX4, ARDUPILOT, GENERIC)}
 
@@ -200,16 +200,16 @@ def mode_named(autopilot: Autopilot, name: str) -> Mode | None:
     return None
 
 
-def ask(autopilot: Autopilot, order: Order, target: Address) -> CommandLong:
-    """The command that this autopilot understands as `order`.  Raises CannotAskError."""
+def command_long_for(autopilot: Autopilot, wanted: WantedCommand, target: Address) -> CommandLong:
+    """`wanted` as this autopilot understands it.  Raises CannotCommandError."""
     if not autopilot.modes:
-        raise CannotAskError(f"the autopilot is {autopilot.name}: how to ask it is not known")
+        raise CannotCommandError(f"the autopilot is {autopilot.name}: how to ask it is not known")
     blank = autopilot.blank
-    match order.kind:
+    match wanted.kind:
         case CommandKind.HOLD | CommandKind.GUIDED:
-            return _set_mode(autopilot, autopilot.mode_of_kind[order.kind], target)
+            return _set_mode(autopilot, autopilot.mode_of_kind[wanted.kind], target)
         case CommandKind.SET_MODE:
-            return _set_mode(autopilot, order.mode_name, target)
+            return _set_mode(autopilot, wanted.mode_name, target)
         case CommandKind.ARM:
             return _command(target, Cmd.COMPONENT_ARM_DISARM, 1.0)
         case CommandKind.DISARM:
@@ -217,7 +217,7 @@ def ask(autopilot: Autopilot, order: Order, target: Address) -> CommandLong:
         case CommandKind.FORCE_DISARM:
             return _command(target, Cmd.COMPONENT_ARM_DISARM, 0.0, FORCE_DISARM)
         case CommandKind.TAKE_OFF:
-            height_m = _takeoff_height_m(autopilot, order)
+            height_m = _takeoff_height_m(autopilot, wanted)
             place = (0.0, 0.0, 0.0, blank, blank, blank, height_m)
             return _command(target, Cmd.NAV_TAKEOFF, *place)
         case CommandKind.LAND:
@@ -228,17 +228,17 @@ def ask(autopilot: Autopilot, order: Order, target: Address) -> CommandLong:
             return _command(target, Cmd.MISSION_START)
         case CommandKind.PHOTO:
             camera, interval_s, count = 0.0, 0.0, 1.0
-            shot = (camera, interval_s, count, float(order.photo_seq))
+            shot = (camera, interval_s, count, float(wanted.photo_seq))
             return _command(target, Cmd.IMAGE_START_CAPTURE, *shot)
         case _:
-            assert_never(order.kind)
+            assert_never(wanted.kind)
 
 
 def _set_mode(autopilot: Autopilot, name: str, target: Address) -> CommandLong:
     mode = mode_named(autopilot, name)
     if mode is None:
         names = ", ".join(mode.name for mode in autopilot.modes)
-        raise CannotAskError(f"{autopilot.name} has no mode {name!r}; it has: {names}")
+        raise CannotCommandError(f"{autopilot.name} has no mode {name!r}; it has: {names}")
     flags = float(ModeFlag.CUSTOM_MODE_ENABLED)
     if autopilot.mode_in_two_parts:
         main, sub = mode.custom_mode >> 16 & 0xFF, mode.custom_mode >> 24
@@ -246,15 +246,15 @@ def _set_mode(autopilot: Autopilot, name: str, target: Address) -> CommandLong:
     return _command(target, Cmd.DO_SET_MODE, flags, float(mode.custom_mode))
 
 
-def _takeoff_height_m(autopilot: Autopilot, order: Order) -> float:
+def _takeoff_height_m(autopilot: Autopilot, wanted: WantedCommand) -> float:
     if not autopilot.takeoff_above_sea:
-        return order.up_m
-    if order.ground_amsl_m is None:
-        raise CannotAskError(
+        return wanted.up_m
+    if wanted.ground_amsl_m is None:
+        raise CannotCommandError(
             f"{autopilot.name} takes off to a height above mean sea level, and that of the "
             "ground is not known yet"
         )
-    return order.ground_amsl_m + order.up_m
+    return wanted.ground_amsl_m + wanted.up_m
 
 
 def _command(target: Address, command: Cmd, *params: float) -> CommandLong:

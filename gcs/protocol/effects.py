@@ -44,7 +44,7 @@ class Wake:
 
 @dataclass(frozen=True, slots=True)
 class Cancel:
-    """Whoever wanted the transfer does not want it any more."""
+    """The transfer is not wanted any more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ class TransferDone:
 
 @dataclass(frozen=True, slots=True)
 class TransferFailed:
-    """MAV_MISSION_RESULT `result`, or None when nobody answered or we cancelled."""
+    """MAV_MISSION_RESULT `result`, or None for no answer and for a transfer that we cancelled."""
 
     mission_type: MissionType
     result: int | None

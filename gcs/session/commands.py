@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from gcs.gate.effects import CommandKind, Level, SendCommand
 from gcs.gate.inputs import CommandEnded
-from gcs.protocol.autopilot import CannotAskError, Order, ask
+from gcs.protocol.autopilot import CannotCommandError, WantedCommand, command_long_for
 from gcs.protocol.command import ACK_WAIT_NS, CommandClient
 from gcs.protocol.effects import (
     Address,
@@ -55,7 +55,7 @@ REPEAT_AFTER_NS = 500_000_000
 """Such an answer ends nothing yet: the command is repeated, but never past its deadline."""
 
 UNANSWERED_TOKEN = 0
-"""Of commands whose answer nobody waits for."""
+"""The token of the station's own commands: the gate is not told how they end."""
 OWN_COMMAND_NS = 10_000_000_000
 
 
@@ -90,7 +90,7 @@ class Commands:
             raise PermissionError(f"{wanted.kind.value} needs the gate's permit")
         if wanted.kind is CommandKind.PHOTO:
             self._photo_seq += 1
-        order = Order(
+        abstract = WantedCommand(
             wanted.kind,
             up_m=wanted.up_m + _above_home_m(telemetry),
             ground_amsl_m=_ground_amsl_m(telemetry),
@@ -99,8 +99,8 @@ class Commands:
         )
         try:
             target = Address(telemetry.sysid, telemetry.compid)
-            command = ask(telemetry.autopilot, order, target)
-        except CannotAskError as error:
+            command = command_long_for(telemetry.autopilot, abstract, target)
+        except CannotCommandError as error:
             return [_answer(wanted, Result.UNSUPPORTED, str(error))]
         token = self._next_token
         self._next_token += 1

@@ -136,7 +136,7 @@ class Discovery:
         return []
 
     def _changed(self, news: ParamValue, telemetry: Telemetry, now_ns: int) -> list[Found]:
-        """Somebody asked for, or set, a parameter: what we have read of it must stay true."""
+        """A parameter came unasked, as after another station set it: keep ours up to date."""
         if news.param_id not in self._values or news.param_type not in PARAM_TYPES:
             return []
         kind = ParamType(news.param_type)

@@ -90,7 +90,7 @@ class SimLine:
 
 @dataclass(frozen=True, slots=True)
 class SimGone:
-    """Our own vehicle's process ended though nobody asked it to."""
+    """The process of the station's own vehicle ended by itself."""
 
     exit_code: int
 

@@ -26,7 +26,7 @@ def snapshot(
 ) -> ipc.Snapshot:
     """Everything a panel shows; what is not known is None, never a zero."""
     goal_ned = gate.active_goal_ned
-    nobody = ipc.Snapshot(
+    without_vehicle = ipc.Snapshot(
         time_ns=now_ns,
         state=gate.state.name,
         control=gate.control.name,
@@ -39,10 +39,10 @@ def snapshot(
         recorded_mb=recorded_bytes / 1e6,
     )
     if telemetry is None:
-        return nobody
+        return without_vehicle
     placed = telemetry.pos_ned is not None
     return msgspec.structs.replace(
-        nobody,
+        without_vehicle,
         vehicle=telemetry.label,
         mode=telemetry.mode_name,
         armed=telemetry.armed,

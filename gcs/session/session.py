@@ -140,9 +140,9 @@ class Session:
         return queue.take()
 
     def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
-        """A bug of ours, met while `given` was handled: the vehicle must not pay for it.
+        """Handling `given` raised an exception, which is a bug of ours: keep the vehicle safe.
 
-        Bytes or words that we cannot take are dropped, said and recorded.  Where it happens on
+        Bytes or words that we cannot take are dropped, logged and recorded.  Where it happens on
         the clock, or again and again, the vehicle is told to hold and the station ends.
         """
         self._queue.drop()

@@ -21,4 +21,4 @@ class Setup:
     streams: frozenset[int] = frozenset()
     """Links that carry a byte stream (TCP, serial), not datagrams."""
     waiting: frozenset[int] = frozenset()
-    """Links that reach nobody until somebody has spoken on them."""
+    """Links whose peer is not known before it has sent something (`udpin`)."""

@@ -13,10 +13,10 @@ from gcs.protocol.autopilot import (
     GENERIC,
     PX4,
     Autopilot,
-    CannotAskError,
-    Order,
-    ask,
+    CannotCommandError,
+    WantedCommand,
     autopilot_of,
+    command_long_for,
     mode_named,
     mode_of,
 )
@@ -28,6 +28,8 @@ from gcs.wire.messages import CommandLong
 TARGET = Address(3, 1)
 CUSTOM = 0x81
 NAN = math.nan
+
+SET_MODE, TAKE_OFF = Cmd.DO_SET_MODE, Cmd.NAV_TAKEOFF
 
 
 def params(command: CommandLong) -> list[float]:
@@ -41,35 +43,45 @@ def equal(left: list[float], right: list[float]) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("who", "order", "command", "expected"),
+    ("who", "wanted", "command", "expected"),
     [
-        (PX4, Order(CommandKind.HOLD), Cmd.DO_SET_MODE, [1, 4, 3]),
-        (ARDUPILOT, Order(CommandKind.HOLD), Cmd.DO_SET_MODE, [1, 17]),
-        (PX4, Order(CommandKind.GUIDED), Cmd.DO_SET_MODE, [1, 6, 0]),
-        (ARDUPILOT, Order(CommandKind.GUIDED), Cmd.DO_SET_MODE, [1, 4]),
-        (PX4, Order(CommandKind.SET_MODE, mode_name="posctl"), Cmd.DO_SET_MODE, [1, 3, 0]),
-        (ARDUPILOT, Order(CommandKind.SET_MODE, mode_name="Loiter"), Cmd.DO_SET_MODE, [1, 5]),
-        (PX4, Order(CommandKind.ARM), Cmd.COMPONENT_ARM_DISARM, [1]),
-        (PX4, Order(CommandKind.DISARM), Cmd.COMPONENT_ARM_DISARM, [0]),
-        (PX4, Order(CommandKind.FORCE_DISARM), Cmd.COMPONENT_ARM_DISARM, [0, 21196]),
+        (PX4, WantedCommand(CommandKind.HOLD), Cmd.DO_SET_MODE, [1, 4, 3]),
+        (ARDUPILOT, WantedCommand(CommandKind.HOLD), Cmd.DO_SET_MODE, [1, 17]),
+        (PX4, WantedCommand(CommandKind.GUIDED), Cmd.DO_SET_MODE, [1, 6, 0]),
+        (ARDUPILOT, WantedCommand(CommandKind.GUIDED), Cmd.DO_SET_MODE, [1, 4]),
+        (PX4, WantedCommand(CommandKind.SET_MODE, mode_name="posctl"), SET_MODE, [1, 3, 0]),
+        (
+            ARDUPILOT,
+            WantedCommand(CommandKind.SET_MODE, mode_name="Loiter"),
+            Cmd.DO_SET_MODE,
+            [1, 5],
+        ),
+        (PX4, WantedCommand(CommandKind.ARM), Cmd.COMPONENT_ARM_DISARM, [1]),
+        (PX4, WantedCommand(CommandKind.DISARM), Cmd.COMPONENT_ARM_DISARM, [0]),
+        (PX4, WantedCommand(CommandKind.FORCE_DISARM), Cmd.COMPONENT_ARM_DISARM, [0, 21196]),
         (
             PX4,
-            Order(CommandKind.TAKE_OFF, up_m=2.5, ground_amsl_m=488.0),
+            WantedCommand(CommandKind.TAKE_OFF, up_m=2.5, ground_amsl_m=488.0),
             Cmd.NAV_TAKEOFF,
             [0, 0, 0, NAN, NAN, NAN, 490.5],
         ),
-        (ARDUPILOT, Order(CommandKind.TAKE_OFF, up_m=2.5), Cmd.NAV_TAKEOFF, [0] * 6 + [2.5]),
-        (PX4, Order(CommandKind.LAND), Cmd.NAV_LAND, [0, 0, 0, NAN, NAN, NAN, 0]),
-        (ARDUPILOT, Order(CommandKind.LAND), Cmd.NAV_LAND, [0]),
-        (ARDUPILOT, Order(CommandKind.RETURN), Cmd.NAV_RETURN_TO_LAUNCH, [0]),
-        (PX4, Order(CommandKind.START_MISSION), Cmd.MISSION_START, [0]),
-        (PX4, Order(CommandKind.PHOTO, photo_seq=4), Cmd.IMAGE_START_CAPTURE, [0, 0, 1, 4]),
+        (
+            ARDUPILOT,
+            WantedCommand(CommandKind.TAKE_OFF, up_m=2.5),
+            Cmd.NAV_TAKEOFF,
+            [0] * 6 + [2.5],
+        ),
+        (PX4, WantedCommand(CommandKind.LAND), Cmd.NAV_LAND, [0, 0, 0, NAN, NAN, NAN, 0]),
+        (ARDUPILOT, WantedCommand(CommandKind.LAND), Cmd.NAV_LAND, [0]),
+        (ARDUPILOT, WantedCommand(CommandKind.RETURN), Cmd.NAV_RETURN_TO_LAUNCH, [0]),
+        (PX4, WantedCommand(CommandKind.START_MISSION), Cmd.MISSION_START, [0]),
+        (PX4, WantedCommand(CommandKind.PHOTO, photo_seq=4), Cmd.IMAGE_START_CAPTURE, [0, 0, 1, 4]),
     ],
 )
 def test_an_order_becomes_this_command(
-    who: Autopilot, order: Order, command: Cmd, expected: list[float]
+    who: Autopilot, wanted: WantedCommand, command: Cmd, expected: list[float]
 ) -> None:
-    asked = ask(who, order, TARGET)
+    asked = command_long_for(who, wanted, TARGET)
     assert (asked.target_system, asked.target_component) == (3, 1)
     assert asked.command == command
     assert equal(params(asked), [float(p) for p in expected] + [0.0] * (7 - len(expected)))
@@ -79,24 +91,24 @@ def test_an_order_becomes_this_command(
 @pytest.mark.parametrize("who", [PX4, ARDUPILOT])
 @pytest.mark.parametrize("kind", CommandKind)
 def test_there_is_a_command_for_every_kind(who: Autopilot, kind: CommandKind) -> None:
-    order = Order(kind, up_m=1.0, ground_amsl_m=0.0, mode_name="land")
-    assert encode(ask(who, order, TARGET))
+    wanted = WantedCommand(kind, up_m=1.0, ground_amsl_m=0.0, mode_name="land")
+    assert encode(command_long_for(who, wanted, TARGET))
 
 
 @pytest.mark.parametrize("kind", CommandKind)
 def test_an_unknown_autopilot_is_asked_for_nothing(kind: CommandKind) -> None:
-    with pytest.raises(CannotAskError, match="unknown kind"):
-        ask(GENERIC, Order(kind), TARGET)
+    with pytest.raises(CannotCommandError, match="unknown kind"):
+        command_long_for(GENERIC, WantedCommand(kind), TARGET)
 
 
 def test_a_take_off_above_an_unknown_ground_is_refused() -> None:
-    with pytest.raises(CannotAskError, match="not known yet"):
-        ask(PX4, Order(CommandKind.TAKE_OFF, up_m=2.0), TARGET)
+    with pytest.raises(CannotCommandError, match="not known yet"):
+        command_long_for(PX4, WantedCommand(CommandKind.TAKE_OFF, up_m=2.0), TARGET)
 
 
 def test_a_mode_that_does_not_exist_is_refused_with_those_that_do() -> None:
-    with pytest.raises(CannotAskError, match=r"no mode 'warp'.*AUTO\.LOITER"):
-        ask(PX4, Order(CommandKind.SET_MODE, mode_name="warp"), TARGET)
+    with pytest.raises(CannotCommandError, match=r"no mode 'warp'.*AUTO\.LOITER"):
+        command_long_for(PX4, WantedCommand(CommandKind.SET_MODE, mode_name="warp"), TARGET)
 
 
 @pytest.mark.parametrize("who", [PX4, ARDUPILOT])
