@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gcs.frames import Vec3
+from gcs.frames import Vec3, enu_from_ned
 
 DECIMALS = 2
 
@@ -32,6 +32,11 @@ def labelled_enu(enu: Vec3) -> str:
     """`(1.00 E, 0.00 N, 2.00 U)`, for the gate's sentences."""
     east, north, up = (fixed(value, DECIMALS) for value in enu)
     return f"({east} E, {north} N, {up} U)"
+
+
+def place(pos_ned: Vec3) -> str:
+    """A NED position as `labelled_enu` writes it: the gate thinks in NED and speaks in ENU."""
+    return labelled_enu(enu_from_ned(pos_ned))
 
 
 def plain_enu(enu: Vec3) -> str:

@@ -10,6 +10,8 @@ from __future__ import annotations
 from typing import assert_never
 
 from gcs import ipc
+from gcs.enu_text import plain_enu
+from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.condition import Condition
@@ -79,9 +81,6 @@ OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
 
 NODE = "link"
-EXIT_NO_LINK = 3
-EXIT_REFUSED_BY_GATE = 6
-EXIT_BUG = 70
 MAX_FAULTS = 10
 
 
@@ -156,7 +155,7 @@ class Session:
             self._finished = True
             hold = self._vehicle.hold_without_gate(now_ns)
             work += [item for item in hold if isinstance(item, Send)]
-            work.append(Finish(EXIT_BUG, "an internal error: the vehicle was told to hold"))
+            work.append(Finish(ExitCode.BUG, "an internal error: the vehicle was told to hold"))
         self._queue.run(work, now_ns)
         return self._queue.take()
 
@@ -295,7 +294,7 @@ class Session:
         where = ", ".join(self._setup.endpoints)
         hint = "is the vehicle running, and does it send to this address? (try: gcs fly --sim)"
         text = f"no vehicle heard for {waited_s:.0f} s ({where})"
-        return [Emit(ipc.Trouble(text, hint, EXIT_NO_LINK)), Log(Level.WARNING, NODE, text)]
+        return [Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)), Log(Level.WARNING, NODE, text)]
 
     # -------------------------------------------------------------------------- operator
 
@@ -304,7 +303,7 @@ class Session:
             case ipc.Ask():
                 return self._ask(command, now_ns)
             case ipc.Pending(goal_enu, _):
-                text = f"Keyboard: {teller.triple(goal_enu)}"
+                text = f"Keyboard: {plain_enu(goal_enu)}"
                 return [Log(Level.INFO, "keyboard_manager", text)]
             case ipc.Leave(reason):
                 return self._leave(reason, now_ns)
@@ -344,8 +343,8 @@ class Session:
             policy = self._setup.config.policy_path or self._setup.policy.name
             text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
             hint = "fly from inside the fence, or give a policy for this place with --policy"
-            trouble = Emit(ipc.Trouble(text, hint, EXIT_REFUSED_BY_GATE))
-            return [trouble, *self._finish(EXIT_REFUSED_BY_GATE, text)]
+            trouble = Emit(ipc.Trouble(text, hint, ExitCode.REFUSED_BY_GATE))
+            return [trouble, *self._finish(ExitCode.REFUSED_BY_GATE, text)]
         if self._leaving_since_ns is None:
             return []
         overdue = now_ns - self._leaving_since_ns >= LEAVING_NS
@@ -386,7 +385,11 @@ class Session:
         if self._vehicle.telemetry is not None:
             return [log]
         hint = "the lines from `sim` in the log tell why"
-        return [log, Emit(ipc.Trouble(text, hint, EXIT_NO_LINK)), *self._finish(EXIT_NO_LINK, text)]
+        return [
+            log,
+            Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)),
+            *self._finish(ExitCode.NO_VEHICLE, text),
+        ]
 
     def _snapshot(self, now_ns: int) -> ipc.Snapshot:
         return snapshot(

@@ -125,15 +125,6 @@ def fence(zones: Iterable[Zone], origin: Origin | None) -> list[Effect]:
     return [Record(item), Emit(ipc.Fences(item.zones))]
 
 
-def triple(enu: Vec3) -> str:
-    """(east, north, up) for a log line, without a negative zero."""
-    return "(" + ", ".join(_number(value) for value in enu) + ")"
-
-
-def _number(value: float) -> str:
-    return f"{value:.2f}" if not math.isfinite(value) or abs(value) >= 0.005 else "0.00"
-
-
 def _point(pos_ned: Vec3 | None) -> PointEnu | None:
     return None if pos_ned is None else PointEnu.of(pos_ned)
 

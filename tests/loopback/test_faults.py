@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from gcs.exit_codes import ExitCode
 from gcs.gate.states import State
 from gcs.session import inputs
 from gcs.session.effects import Finish, Transmit
-from gcs.session.session import EXIT_BUG
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
 
 
@@ -21,7 +21,7 @@ def test_a_fault_on_the_clock_in_flight_holds_the_vehicle(personality: Personali
     effects = flight.session.fault(inputs.Wake(), "ZeroDivisionError: a bug", fault_ns)
     sent = [effect.data for effect in effects if isinstance(effect, Transmit)]
     (finish,) = [effect for effect in effects if isinstance(effect, Finish)]
-    assert finish.exit_code == EXIT_BUG
+    assert finish.exit_code == ExitCode.BUG
     for data in sent:
         flight.up.send(data, fault_ns)
     flight.vehicle_silent = True  # the link is gone: nobody listens, nobody speaks

@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from gcs.frames import Vec3, enu_from_ned
+from gcs.enu_text import fixed
 from gcs.gate.airspace.clearance import Face, Measure
 from gcs.gate.geometry import Side, side
 from gcs.gate.refusal import Code, Refusal
 
 
-def fixed(value: float, decimals: int) -> str:
-    """A number with so many decimals.  It is rounded first, so that -0.0 is never written."""
-    return f"{round(value, decimals) + 0.0:.{decimals}f}"
-
-
 def metres(value: float) -> str:
     """Metres as a number: two decimals below 1 m, one above (0.01, 350.0)."""
     return fixed(value, 2 if abs(value) < 1.0 else 1)
-
-
-def place(pos_ned: Vec3) -> str:
-    """A position in the operator's frame: east, north, up, metres."""
-    east, north, up = enu_from_ned(pos_ned)
-    return f"({fixed(east, 2)} E, {fixed(north, 2)} N, {fixed(up, 2)} U)"
 
 
 def zone_refusal(subject: str, measure: Measure, margin_m: float, *, leg: bool) -> Refusal:

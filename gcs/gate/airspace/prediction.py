@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gcs.enu_text import fixed
 from gcs.frames import Vec3
 from gcs.gate.airspace import stopping
 from gcs.gate.airspace.clearance import Measure
-from gcs.gate.airspace.explain import fixed, metres
+from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
 
 

@@ -13,9 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.clearance import NO_MARGINS, Margins
-from gcs.gate.airspace.explain import metres, place
+from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
 from gcs.gate.airspace.prediction import bad_stop, stopping_numbers

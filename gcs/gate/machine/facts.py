@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator
 from typing import Final, NamedTuple, assert_never
 
+from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Breach, Verifier
 from gcs.gate.effects import CommandKind, Level
@@ -32,7 +33,7 @@ from gcs.gate.inputs import (
 from gcs.gate.machine.events import SAW, Event, event_of
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.progress import within_arrival
-from gcs.gate.machine.sentences import ASKED_FOR, where
+from gcs.gate.machine.sentences import ASKED_FOR
 from gcs.gate.machine.turn import Turn
 from gcs.gate.machine.verifying import refusal_of_what_is_flown
 from gcs.gate.refusal import Code, Refusal
@@ -75,7 +76,7 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
     match given:
         case Requested():
             if isinstance(given.request, GoTo):
-                turn.say(Level.INFO, f"Requested Position: {where(given.request.goal_ned)}")
+                turn.say(Level.INFO, f"Requested Position: {place(given.request.goal_ned)}")
             yield Occurrence(event_of(given.request))
         case HeartbeatSeen():
             yield from _heartbeat(turn, given)

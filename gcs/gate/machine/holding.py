@@ -6,10 +6,10 @@ Beside it the held position is sent as a setpoint, where it was verified.
 
 from __future__ import annotations
 
+from gcs.enu_text import place
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying
 from gcs.gate.machine.memory import Goal
-from gcs.gate.machine.sentences import where
 from gcs.gate.machine.turn import SetpointDraft, Turn
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
@@ -82,7 +82,7 @@ def brake(turn: Turn) -> None:
         memory.hold = None
         return
     memory.hold = Goal(breach.brake_pos_ned, None, breach.numbers)
-    turn.out.append(SetpointDraft(memory.hold, f"brake at {where(breach.brake_pos_ned)}"))
+    turn.out.append(SetpointDraft(memory.hold, f"brake at {place(breach.brake_pos_ned)}"))
 
 
 def start_grace(turn: Turn) -> None:

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
-from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.effects import CommandKind
 from gcs.gate.refusal import Code
 
@@ -70,9 +69,3 @@ ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(
     }
 )
 """What a command asks for, for "the vehicle refused ..." and "No answer to the request for ..."."""
-
-
-def where(pos_ned: Vec3) -> str:
-    """A position in the operator's frame: east, north, up, metres."""
-    east, north, up = enu_from_ned(pos_ned)
-    return f"({east:.2f} E, {north:.2f} N, {up:.2f} U)"

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
+from gcs.enu_text import place
 from gcs.gate.airspace.verifier import Breach
 from gcs.gate.condition import Severity
 from gcs.gate.effects import (
@@ -28,7 +29,7 @@ from gcs.gate.inputs import Requested
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import GATE, SECOND_NS, Goal, Memory, Task
 from gcs.gate.machine.rules import End, Reply
-from gcs.gate.machine.sentences import ENDED, REFUSED, where
+from gcs.gate.machine.sentences import ENDED, REFUSED
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import FlightMode
@@ -140,7 +141,7 @@ class Turn:
         flown = self.memory.goal or self.memory.hold
         sentence = REFUSED.get(code, "it is not possible now")
         if code is Code.BUSY and flown is not None:
-            sentence = f"{sentence}: {self.memory.state.name}, goal {where(flown.pos_ned)}"
+            sentence = f"{sentence}: {self.memory.state.name}, goal {place(flown.pos_ned)}"
         self.verdict(self.requested, Ruling.REFUSED, self.why or Refusal(code, sentence))
 
     # ------------------------------------------------------------------ tasks and outcomes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from gcs import ipc
+from gcs.exit_codes import ExitCode
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code
 from gcs.plan.errors import PlanError
@@ -12,7 +13,6 @@ from gcs.protocol.mission import MissionDownload
 from gcs.session.effects import Emit, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import (
-    EXIT_BAD_FILE,
     Asked,
     Job,
     JobWork,
@@ -55,5 +55,5 @@ class Download(Job):
         if not news.error:
             return self.end(OutcomeKind.COMPLETE, None, f"written to {news.path}")
         text = f"{news.path}: {news.error}"
-        trouble = Emit(ipc.Trouble(text, "", EXIT_BAD_FILE))
+        trouble = Emit(ipc.Trouble(text, "", ExitCode.BAD_FILE))
         return [trouble, *self.end(OutcomeKind.ABORTED, Code.BAD_MISSION, text)]

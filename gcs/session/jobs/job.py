@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs import ipc
+from gcs.exit_codes import ExitCode
 from gcs.gate.airspace.verifier import Cleared
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
 from gcs.gate.policy.policy import Policy
@@ -42,7 +43,6 @@ from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
 
 NODE = "mission"
-EXIT_BAD_FILE = 4
 JOB_NS = 60_000_000_000
 ITEM_NS = 1_000_000_000
 """How long a transfer may take: a minute, and a second an item."""
@@ -179,7 +179,7 @@ class Job(ABC):
         return [*refused(self.asked.request_id, self.asked.word, refusal)]
 
     def bad_file(self, text: str, hint: str = "") -> list[JobWork]:
-        trouble = Emit(ipc.Trouble(text, hint, EXIT_BAD_FILE))
+        trouble = Emit(ipc.Trouble(text, hint, ExitCode.BAD_FILE))
         return [trouble, *self.refuse(Refusal(Code.BAD_MISSION, text))]
 
     def end(self, kind: OutcomeKind, code: Code | None, sentence: str) -> list[JobWork]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 
 from gcs.config import StationConfig
+from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import DEFAULT
 from gcs.report import InputItem
 from gcs.session import inputs
 from gcs.session.effects import Effect, Emit, Finish, Record
-from gcs.session.session import EXIT_BUG, MAX_FAULTS, Session
+from gcs.session.session import MAX_FAULTS, Session
 from gcs.session.setup import Setup
 
 
@@ -34,7 +35,7 @@ def test_bytes_that_we_cannot_take_are_dropped_said_and_recorded(session: Sessio
 
 def test_a_fault_on_the_clock_ends_the_session(session: Session) -> None:
     (finish,) = finished(session.fault(inputs.Wake(), "ValueError: bad", 1))
-    assert finish.exit_code == EXIT_BUG
+    assert finish.exit_code == ExitCode.BUG
 
 
 def test_fault_upon_fault_ends_the_session(session: Session) -> None:

@@ -140,8 +140,3 @@ def test_a_log_line_is_the_same_object_for_both() -> None:
     assert ipc.encode(emit.event) == (
         b'{"type":"log","time_ns":1700000000000000000,"level":3,"node":"gate","text":"too far"}\n'
     )
-
-
-def test_a_triple_has_no_negative_zero() -> None:
-    assert teller.triple((-0.001, 1.0, -2.5)) == "(0.00, 1.00, -2.50)"
-    assert teller.triple((math.nan, -math.inf, 0.0)) == "(nan, -inf, 0.00)"
