@@ -54,6 +54,7 @@ from gcs.session.requests import BadAskError, Requests, request_of
 from gcs.session.screen import snapshot
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
+from gcs.session.ticks import Ticks
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import (
     AskGate,
@@ -68,14 +69,6 @@ from gcs.session.work import (
 )
 from gcs.wire.frame import Frame, Garbage
 
-TICK_NS = 50_000_000
-"""20 Hz, on a grid that is fixed at start; a missed tick is reported and never made up for."""
-TICKS_A_SECOND = 20
-TICKS_A_SNAPSHOT = 2
-LATE_NS = 20_000_000
-"""Of real time; a tick that comes later than this is logged."""
-VERY_LATE_NS = 250_000_000
-LATE_SHOWN_NS = 10_000_000_000
 LEAVING_NS = 3_000_000_000
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
@@ -91,8 +84,7 @@ class Session:
         config = setup.config
         self._setup = setup
         self._start_ns = now_ns
-        self._next_tick_ns = now_ns + TICK_NS
-        self._tick = 0
+        self._ticks = Ticks(now_ns, config.speedup)
         count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
         self._links = Links(config.sysid, config.compid, count, streams, waiting)
         self._vehicle = Vehicle(config, setup.policy, now_ns)
@@ -103,7 +95,6 @@ class Session:
         self._recorded_bytes = 0
         self._leaving_since_ns: int | None = None
         self._told_no_vehicle = False
-        self._late_until_ns = 0
         self._other_station_ns = 0
         self._faults = 0
         self._introduced = False
@@ -113,7 +104,8 @@ class Session:
     def deadline_ns(self) -> int:
         """When `Wake` is due; no side effects."""
         vehicle_ns = self._vehicle.deadline_ns
-        return self._next_tick_ns if vehicle_ns is None else min(self._next_tick_ns, vehicle_ns)
+        tick_ns = self._ticks.next_ns
+        return tick_ns if vehicle_ns is None else min(tick_ns, vehicle_ns)
 
     @property
     def gate(self) -> Gate:
@@ -165,7 +157,7 @@ class Session:
         """What an input means first; `_step` does the rest."""
         match given:
             case Wake():
-                return self._wake(now_ns)
+                return self._vehicle.wake(now_ns) + self._ticks.wake(now_ns)
             case OperatorLine(command):
                 return self._operator(command, now_ns)
             case OperatorNoise(text):
@@ -250,32 +242,6 @@ class Session:
         return self._vehicle.frame(link, frame, now_ns)
 
     # ------------------------------------------------------------------------------ time
-
-    def _wake(self, now_ns: int) -> list[Work]:
-        work = self._vehicle.wake(now_ns)
-        if now_ns >= self._next_tick_ns:
-            lateness_ns = now_ns - self._next_tick_ns
-            self._next_tick_ns += TICK_NS * (lateness_ns // TICK_NS + 1)
-            work.append(ToGate(gate_inputs.Tick(lateness_ns)))
-            work += self._judge_lateness(lateness_ns, now_ns)
-            if self._tick % TICKS_A_SECOND == 0:
-                work.append(SecondDue())
-            if self._tick % TICKS_A_SNAPSHOT == 0:
-                work.append(SnapshotDue())
-            self._tick += 1
-        return work
-
-    def _judge_lateness(self, lateness_ns: int, now_ns: int) -> list[Work]:
-        """A late tick is logged; one so late that the stream had a gap is a condition for 10 s."""
-        speedup = self._setup.config.speedup
-        text = f"a tick came {lateness_ns / 1e6 / speedup:.0f} ms late"
-        work: list[Work] = []
-        if lateness_ns > LATE_NS * speedup:
-            work.append(Log(Level.DEBUG, NODE, text))
-        if lateness_ns > VERY_LATE_NS * speedup:
-            self._late_until_ns = now_ns + LATE_SHOWN_NS
-        late = now_ns < self._late_until_ns
-        return [*work, condition(Condition.TICK_LATE, late, text)]
 
     def _every_second(self, now_ns: int) -> list[Work]:
         """Heartbeat, what is missing, and the slow half of the record."""
