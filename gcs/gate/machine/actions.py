@@ -86,7 +86,7 @@ def _hold_at_goal(turn: Turn) -> None:
 def _take_control(turn: Turn) -> None:
     """Send the verified present position as setpoint from now on, and command guided mode.
 
-    ardupilot is asked at once; px4 wants setpoints first, for the policy's time.
+    ardupilot is asked at once; px4 needs setpoints first, for the policy's time.
     """
     memory, times = turn.memory, turn.policy.control
     assert memory.pos_ned is not None

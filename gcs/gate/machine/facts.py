@@ -166,7 +166,7 @@ def _home(turn: Turn, pos_ned: Vec3) -> Iterator[Occurrence]:
 
 
 def _verifier(turn: Turn, verifier: Verifier) -> Iterator[Occurrence]:
-    """What is flown under our control is judged anew by a verifier that changed."""
+    """What is flown under our control is judged again by a verifier that changed."""
     memory = turn.memory
     was, memory.verifier = memory.verifier, verifier
     memory.autopilot = verifier.autopilot
