@@ -7,20 +7,17 @@ from dataclasses import dataclass
 from gcs.exit_codes import ExitCode
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.verifier import check_start, verifier_for
-from gcs.gate.policy.policy import Policy, parse_policy
-from gcs.gate.policy.tomlfile import PolicyError
-from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
+from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.operator.errors import ExitError
-from gcs.plan.errors import Finding, Level, PlanError
+from gcs.plan.errors import Finding, Level
 from gcs.plan.lint import lint, worst
 from gcs.plan.model import AutopilotName, Geodetic, Plan
 from gcs.plan.path import Ground
 from gcs.plan.place import georeference
-from gcs.plan.reader import read
 from gcs.plan.verify import Verification, verify
 from gcs.plan.zones import zone_specs
-from gcs.resources import policy_path
+from gcs.policy_file import PolicyFileError, load_policy
 
 HOMES: dict[AutopilotName, Geodetic] = {
     "px4": Geodetic(47.397742, 8.545594, 488.0),
@@ -34,15 +31,13 @@ RETURN_UP_M: dict[AutopilotName, float] = {"px4": 30.0, "ardupilot": 15.0}
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """`policy_zones` counts the zones of the policy, fence files it names included.
-    `verification` is None where there is nothing to fly, or it has errors: neither is put to the
-    fence.  `home` is None only where nobody gave one and nothing flies.
+    """`verification` is None where there is nothing to fly, or it has errors: neither is put to
+    the fence.  `home` is None only where nobody gave one and nothing flies.
     """
 
     plan: Plan
     autopilot: AutopilotName
     policy: Policy
-    policy_zones: int
     home: Geodetic | None
     findings: tuple[Finding, ...]
     verification: Verification | None
@@ -63,18 +58,19 @@ def check_plan(
 ) -> Checked:
     """Raises ExitError with BAD_FILE if the policy is wrong."""
     autopilot = autopilot or plan.firmware or "px4"
-    policy, policy_zones = load_policy(policy_name)
-    own = sum(not isinstance(spec.shape, FileSpec) for spec in policy.fence) + len(policy_zones)
+    try:
+        policy, _ = load_policy(policy_name)
+    except PolicyFileError as error:
+        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
     at_home, notes = _choose_home(plan, autopilot, home)
     findings = (*notes, *lint(plan, autopilot, at_home))
     if at_home is None or not plan.items or worst(list(findings)) is Level.ERROR:
-        return Checked(plan, autopilot, policy, own, at_home, findings, None, None)
+        return Checked(plan, autopilot, policy, at_home, findings, None, None)
     origin = Origin(at_home.lat_deg, at_home.lon_deg, at_home.alt_amsl_m or 0.0)
     projection = Projection(origin, autopilot)
     placed = georeference(plan, projection.lat_lon, home=at_home)
-    zones = (*policy_zones, *zone_specs(placed.fence))
     home_ned = (0.0, 0.0, 0.0)
-    verifier = verifier_for(policy, autopilot, home_ned, origin, zones)
+    verifier = verifier_for(policy, autopilot, home_ned, origin, zone_specs(placed.fence))
     ground = Ground(
         autopilot,
         home_ned=home_ned,
@@ -85,7 +81,7 @@ def check_plan(
     )
     verification = verify(placed, ground, verifier)
     start = check_start(verifier, home_ned)
-    return Checked(plan, autopilot, policy, own, at_home, findings, verification, start)
+    return Checked(plan, autopilot, policy, at_home, findings, verification, start)
 
 
 def _choose_home(
@@ -106,28 +102,3 @@ def _choose_home(
         home = Geodetic(plan.home.lat_deg, plan.home.lon_deg, usual.alt_amsl_m)
         return home, (Finding(Level.NOTE, "", "home", what, "give --home LAT,LON,ALT"),)
     return plan.home, ()
-
-
-def load_policy(name: str) -> tuple[Policy, tuple[ZoneSpec, ...]]:
-    """The policy, and the zones of the fence files that it names.
-
-    Raises ExitError with BAD_FILE.
-    """
-    path = policy_path(name)
-    try:
-        policy = parse_policy(path.read_text(encoding="utf-8"), str(path))
-        zones: list[ZoneSpec] = []
-        for spec in policy.fence:
-            if isinstance(spec.shape, FileSpec):
-                fence_path = path.parent / spec.shape.path
-                zones += zone_specs(read(str(fence_path), fence_path.read_bytes()).fence)
-    except PolicyError as error:
-        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
-    except PlanError as error:
-        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
-    except OSError as error:
-        hint = "--policy takes `default`, `lab` or the path of a TOML file"
-        raise ExitError(ExitCode.BAD_FILE, f"{error.filename}: {error.strerror}", hint) from None
-    except UnicodeDecodeError:
-        raise ExitError(ExitCode.BAD_FILE, f"{path}: is not UTF-8") from None
-    return policy, tuple(zones)

@@ -40,7 +40,7 @@ def check_lines(checked: Checked) -> Iterator[str]:
         f"{plan.source}: {plan.name}: {len(plan.items)} items, "
         f"for {checked.autopilot}, under policy {checked.policy.name}"
     )
-    from_policy = _zones(checked.policy_zones)
+    from_policy = _zones(len(checked.policy.fence))
     yield f"fence: {from_policy} from the policy, {len(plan.fence.zones)} from the file"
     for finding in checked.findings:
         yield from _finding_lines(plan, finding)

@@ -12,22 +12,31 @@ def zone_specs(fence: Fence) -> tuple[ZoneSpec, ...]:
 
 
 def _spec(number: int, zone: Zone) -> ZoneSpec:
-    shape: CircleSpec | PolygonSpec
-    if isinstance(zone.shape, Circle):
-        first = zone.shape.centre
-        shape = CircleSpec(zone.shape.radius_m, _pair(first))
-    else:
-        first = zone.shape.corners[0]
-        shape = PolygonSpec(tuple(_pair(corner) for corner in zone.shape.corners))
-    frame: Frame = "geographic" if isinstance(first, LatLon) else "home"
-    return ZoneSpec(
-        zone.name or f"zone {number}",
-        shape,
-        zone.inclusion,
-        frame,
-        zone.floor_above_home_m,
-        zone.ceiling_above_home_m,
+    shape = zone.shape
+    name, inclusion = zone.name or f"zone {number}", zone.inclusion
+    floor_m, ceiling_m = zone.floor_above_home_m, zone.ceiling_above_home_m
+    if isinstance(shape, Circle):
+        return CircleSpec(
+            shape.radius_m,
+            _pair(shape.centre),
+            name=name,
+            inclusion=inclusion,
+            frame=_frame(shape.centre),
+            floor_up_m=floor_m,
+            ceiling_up_m=ceiling_m,
+        )
+    return PolygonSpec(
+        tuple(_pair(corner) for corner in shape.corners),
+        name=name,
+        inclusion=inclusion,
+        frame=_frame(shape.corners[0]),
+        floor_up_m=floor_m,
+        ceiling_up_m=ceiling_m,
     )
+
+
+def _frame(point: LatLon | EastNorth) -> Frame:
+    return "geographic" if isinstance(point, LatLon) else "home"
 
 
 def _pair(point: LatLon | EastNorth) -> tuple[float, float]:

@@ -6,7 +6,7 @@ reaches the vehicle's motion on any other path.
 
 from __future__ import annotations
 
-import dataclasses
+from msgspec import structs
 
 from gcs.gate import effects, inputs
 from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
@@ -120,7 +120,7 @@ def on_wall_time(policy: Policy, speedup: float) -> Policy:
     ordinary clients stay connected; on the session's clock that takes `speedup` times as long.
     """
     times = policy.control
-    return dataclasses.replace(
+    return structs.replace(
         policy,
         heartbeat_age_s=policy.heartbeat_age_s * speedup,
         control=ControlTimes(times.stream_s * speedup, times.timeout_s * speedup),

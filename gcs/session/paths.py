@@ -72,8 +72,10 @@ def path_of(
 
 def verify(plan: Plan, path: FlightPath, policy: Policy, telemetry: Telemetry) -> Cleared | Refusal:
     """Every leg and circle against the policy's fence and the plan's own; says which item."""
-    both = dataclasses.replace(policy, fence=(*policy.fence, *zone_specs(plan.fence)))
-    verifier = verifier_for(both, telemetry.autopilot.name, telemetry.home_ned, telemetry.origin)
+    zones = zone_specs(plan.fence)
+    verifier = verifier_for(
+        policy, telemetry.autopilot.name, telemetry.home_ned, telemetry.origin, zones
+    )
     answer = verifier.path(path.segments, path.discs, path.floor_free)
     if isinstance(answer, Cleared):
         return answer

@@ -7,7 +7,6 @@ Speaks JSON lines with its operator (`gcs.ipc`) and writes nothing else to stand
 
 from __future__ import annotations
 
-import dataclasses
 import sys
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -16,13 +15,9 @@ from pathlib import Path
 from gcs import __version__, config, ipc
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
-from gcs.gate.policy.policy import Policy, PolicyError, parse_policy
-from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
-from gcs.plan.errors import PlanError
-from gcs.plan.reader import read
-from gcs.plan.zones import zone_specs
+from gcs.gate.policy.policy import Policy
+from gcs.policy_file import PolicyFileError, load_policy
 from gcs.record.writer import Recorder, RecorderError
-from gcs.resources import policy_path
 from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.shell import sockets
@@ -94,26 +89,11 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
 
 
 def _read_policy(path: str) -> tuple[Policy, str]:
-    """The policy with the zones of every fence file that it names, and its text for the record."""
+    """The policy, and its text for the record."""
     try:
-        file = policy_path(path or "default")
-        text = file.read_text(encoding="utf-8")
-        policy = parse_policy(text, str(file))
-        zones = [zone for spec in policy.fence for zone in _zones(spec, file.parent)]
-        return dataclasses.replace(policy, fence=tuple(zones)), text
-    except (PolicyError, PlanError) as error:
+        return load_policy(path or "default")
+    except PolicyFileError as error:
         raise CannotStartError(ExitCode.BAD_FILE, str(error), error.hint) from error
-    except (OSError, UnicodeDecodeError) as error:
-        hint = "--policy takes `default`, `lab` or the path of a TOML file"
-        raise CannotStartError(ExitCode.BAD_FILE, f"{path}: {error}", hint) from error
-
-
-def _zones(spec: ZoneSpec, folder: Path) -> tuple[ZoneSpec, ...]:
-    """A zone as it is, or those of the plan file that it stands for."""
-    if not isinstance(spec.shape, FileSpec):
-        return (spec,)
-    file = folder / spec.shape.path
-    return zone_specs(read(str(file), file.read_bytes()).fence)
 
 
 def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:

@@ -15,7 +15,8 @@ from typing import Literal
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.frames import Vec3
-from gcs.gate.policy.policy import DEFAULT, Policy, parse_policy
+from gcs.gate.policy.parse import DEFAULT, parse_policy
+from gcs.gate.policy.policy import Policy
 from gcs.gate.states import State
 from gcs.resources import policy_path
 from gcs.session import effects, inputs

@@ -72,6 +72,21 @@ def test_a_policy_with_an_unknown_key(tmp_path: Path) -> None:
     assert "hint: did you mean radius_m?" in told
 
 
+def test_a_fence_file_with_exclusion_zones_only(tmp_path: Path) -> None:
+    circle = '{"center": [47.398, 8.546], "radius": 5}'
+    zone = f'{{"version": 1, "inclusion": false, "circle": {circle}}}'
+    fence = f'{{"version": 2, "polygons": [], "circles": [{zone}]}}'
+    (tmp_path / "yard.plan").write_text(
+        f'{{"fileType": "Plan", "version": 1, "geoFence": {fence}}}'
+    )
+    policy = tmp_path / "mine.toml"
+    policy.write_text('[[fence]]\nkind = "file"\npath = "yard.plan"\n')
+    code, told = refused("fly", "--sim", "--plain", "--policy", str(policy))
+    assert code == 4
+    assert f"{policy}:1: fence: has no inclusion zone" in told
+    assert "hint: yard.plan only says where it may not be" in told
+
+
 def test_a_start_position_outside_the_fence(tmp_path: Path) -> None:
     policy = tmp_path / "elsewhere.toml"
     policy.write_text(FAR_FENCE)

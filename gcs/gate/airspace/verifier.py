@@ -23,7 +23,7 @@ from gcs.gate.airspace.prediction import bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.policy.policy import Policy
-from gcs.gate.policy.zonespec import FileSpec, ZoneSpec
+from gcs.gate.policy.zonespec import ZoneSpec
 from gcs.gate.refusal import Code, Refusal
 
 BRAKE_STEPS: Final = 16
@@ -331,16 +331,11 @@ def verifier_for(
 ) -> Verifier:
     """A verifier for the policy's fence and the fence of a plan file, from what is known now.
 
-    `plan_zones` are the zones that were read from files: a plan's, and those of the policy's fence
-    file.  Where one zone cannot be placed in the local frame yet, none is, and everything that
-    moves is refused for that reason.
+    `plan_zones` are the zones of a mission's own fence.  Where one zone cannot be placed in the
+    local frame yet, none is, and everything that moves is refused for that reason.
     """
     projection = None if origin is None else Projection(origin, autopilot)
     built = build_zones((*policy.fence, *plan_zones), home_ned, projection)
-    unread = [z.name for z in policy.fence if isinstance(z.shape, FileSpec)]
-    if unread and not plan_zones:
-        sentence = f"the zones of fence file '{unread[0]}' are not known"
-        built = Refusal(Code.NO_ORIGIN, sentence, zone=unread[0])
     zones, unplaced = ((), built) if isinstance(built, Refusal) else (built, None)
     known = origin is not None
     return Verifier(policy, zones, autopilot, home_ned, known, fence_on, unplaced)

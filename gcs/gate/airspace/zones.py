@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.projection import Projection
 from gcs.gate.geometry import Circle, Point, Polygon, Shape, polygon_fault
-from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec, ZoneSpec
 from gcs.gate.refusal import Code, Refusal
 
 
@@ -42,25 +42,18 @@ def build_zones(
     """Place all zones in the local frame, or refuse.
 
     NO_ORIGIN: home or the origin is needed and not known.  POLICY: a geographic polygon is not a
-    simple one.  A `FileSpec` is skipped: the caller appends the zones of that file to `specs`.
+    simple one.
     """
     zones = []
     for spec in specs:
-        if isinstance(spec.shape, FileSpec):
-            continue
-        placed = _place(spec, spec.shape, home_ned, projection)
+        placed = _place(spec, home_ned, projection)
         if isinstance(placed, Refusal):
             return placed
         zones.append(placed)
     return tuple(zones)
 
 
-def _place(
-    spec: ZoneSpec,
-    shape: CircleSpec | BoxSpec | PolygonSpec,
-    home_ned: Vec3 | None,
-    projection: Projection | None,
-) -> Zone | Refusal:
+def _place(spec: ZoneSpec, home_ned: Vec3 | None, projection: Projection | None) -> Zone | Refusal:
     bounded = spec.floor_up_m is not None or spec.ceiling_up_m is not None
     if home_ned is None and (spec.frame == "home" or (spec.frame == "geographic" and bounded)):
         return _unplaced(spec, "home is not known yet")
@@ -78,7 +71,7 @@ def _place(
         return p
 
     placed: Shape
-    match shape:
+    match spec:
         case CircleSpec(radius_m, centre):
             placed = Circle(local(centre), radius_m)
         case BoxSpec((west, east), (south, north)):

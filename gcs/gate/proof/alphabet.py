@@ -13,6 +13,8 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
+from msgspec import structs
+
 from gcs.frames import Vec3
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.condition import Condition, Severity
@@ -35,8 +37,9 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.policy.policy import Arrival, Policy, TakeOffLimits
-from gcs.gate.policy.zonespec import CircleSpec, ZoneSpec
+from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.policy import Arrival, Policy
+from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.requests import (
     Abort,
     Arm,
@@ -78,12 +81,13 @@ CONDITIONS: Final[Mapping[Condition, Severity]] = MappingProxyType(
 )
 """One condition of each severity is enough: the gate knows conditions by severity alone."""
 
-YARD: Final = Policy(
+YARD: Final = structs.replace(
+    DEFAULT,
     name="yard",
     fence=(
-        ZoneSpec(
-            "yard",
-            CircleSpec(20.0),
+        CircleSpec(
+            20.0,
+            name="yard",
             frame="local",
             floor_up_m=0.0,
             ceiling_up_m=30.0,
@@ -92,7 +96,7 @@ YARD: Final = Policy(
     fence_switchable=True,
     arrival=Arrival(radius_m=0.5, speed_m_s=None, dwell_s=0.0),
     jump_speed_m_s=1e12,
-    takeoff=TakeOffLimits(max_up_m=20.0),
+    takeoff=structs.replace(DEFAULT.takeoff, max_up_m=20.0),
     severities={condition: CONDITIONS.get(condition, Severity.CAUTION) for condition in Condition},
     allow_force_disarm=True,
 )

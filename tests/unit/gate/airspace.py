@@ -9,7 +9,8 @@ from gcs.frames import Vec3, ned_from_enu
 from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon
-from gcs.gate.policy.policy import DEFAULT, Policy, parse_policy
+from gcs.gate.policy.parse import DEFAULT, parse_policy
+from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 
 HOME: Vec3 = (0.0, 0.0, 0.0)

@@ -37,7 +37,8 @@ from gcs.gate.inputs import (
 )
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.table import TABLE, Table
-from gcs.gate.policy.policy import Policy, parse_policy
+from gcs.gate.policy.parse import parse_policy
+from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.gate.requests import GoTo, Request, TakeControl
 from gcs.gate.states import FlightMode, LandedState, State

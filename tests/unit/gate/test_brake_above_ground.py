@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.verifier import verifier_for
-from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.policy.parse import DEFAULT
 
 
 def test_no_brake_points_below_the_ground() -> None:

@@ -9,8 +9,8 @@ import pytest
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import Circle, Polygon
-from gcs.gate.policy.policy import DEFAULT
-from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec
 from gcs.gate.refusal import Code, Refusal
 
 HOME_NED = (10.0, 20.0, -3.0)
@@ -38,7 +38,8 @@ def test_the_default_cannot_be_placed_before_home_is_known() -> None:
 
 
 def test_a_local_box_needs_neither_home_nor_origin_and_counts_heights_from_the_origin() -> None:
-    spec = ZoneSpec("cage", BoxSpec((-5.0, 6.0), (-7.0, 8.0)), True, "local", 0.0, 2.0)
+    sides = ((-5.0, 6.0), (-7.0, 8.0))
+    spec = BoxSpec(*sides, name="cage", frame="local", floor_up_m=0.0, ceiling_up_m=2.0)
     corners = ((-5.0, -7.0), (6.0, -7.0), (6.0, 8.0), (-5.0, 8.0))
     for home_ned in (None, HOME_NED):
         zone = only(build_zones([spec], home_ned, None))
@@ -46,13 +47,14 @@ def test_a_local_box_needs_neither_home_nor_origin_and_counts_heights_from_the_o
 
 
 def test_a_box_of_home_moves_with_home() -> None:
-    spec = ZoneSpec("yard", BoxSpec((-1.0, 1.0), (-2.0, 2.0)), frame="home")
+    spec = BoxSpec((-1.0, 1.0), (-2.0, 2.0), name="yard", frame="home")
     shape = only(build_zones([spec], HOME_NED, None)).shape
     assert shape == Polygon(((19.0, 8.0), (21.0, 8.0), (21.0, 12.0), (19.0, 12.0)))
 
 
 def test_a_geographic_zone_is_projected_as_the_vehicle_does() -> None:
-    spec = ZoneSpec("field", CircleSpec(50.0, PX4.lat_lon(100.0, 200.0)), False, "geographic")
+    centre = PX4.lat_lon(100.0, 200.0)
+    spec = CircleSpec(50.0, centre, name="field", inclusion=False, frame="geographic")
     zone = only(build_zones([spec], None, PX4))
     assert isinstance(zone.shape, Circle)
     assert zone.shape.centre_en == pytest.approx((200.0, 100.0), abs=1e-6)
@@ -61,7 +63,7 @@ def test_a_geographic_zone_is_projected_as_the_vehicle_does() -> None:
 
 
 def test_a_geographic_zone_without_an_origin_is_no_origin() -> None:
-    spec = ZoneSpec("field", CircleSpec(50.0, (47.4, 8.5)), True, "geographic")
+    spec = CircleSpec(50.0, (47.4, 8.5), name="field", frame="geographic")
     refusal = build_zones([spec], HOME_NED, None)
     assert isinstance(refusal, Refusal)
     assert refusal.code is Code.NO_ORIGIN
@@ -69,14 +71,14 @@ def test_a_geographic_zone_without_an_origin_is_no_origin() -> None:
 
 
 def test_a_geographic_ceiling_counts_from_home_and_waits_for_it() -> None:
-    spec = ZoneSpec("field", CircleSpec(50.0, (47.4, 8.5)), True, "geographic", ceiling_up_m=30.0)
+    spec = CircleSpec(50.0, (47.4, 8.5), name="field", frame="geographic", ceiling_up_m=30.0)
     assert isinstance(build_zones([spec], None, PX4), Refusal)
     assert only(build_zones([spec], HOME_NED, PX4)).ceiling_up_m == 33.0
 
 
 def test_a_geographic_polygon_that_crosses_itself_is_refused_by_name() -> None:
     bow = ((47.0, 8.0), (47.001, 8.001), (47.001, 8.0), (47.0, 8.001))
-    refusal = build_zones([ZoneSpec("bow", PolygonSpec(bow), True, "geographic")], None, PX4)
+    refusal = build_zones([PolygonSpec(bow, name="bow", frame="geographic")], None, PX4)
     assert isinstance(refusal, Refusal)
     assert refusal.code is Code.POLICY
     assert "'bow'" in refusal.sentence
@@ -84,9 +86,5 @@ def test_a_geographic_polygon_that_crosses_itself_is_refused_by_name() -> None:
 
 
 def test_one_zone_that_cannot_be_placed_leaves_none() -> None:
-    specs = [*DEFAULT.fence, ZoneSpec("far", CircleSpec(9.0, (47.4, 8.5)), True, "geographic")]
-    assert isinstance(build_zones(specs, HOME_NED, None), Refusal)
-
-
-def test_a_file_is_somebody_elses_to_read() -> None:
-    assert build_zones([ZoneSpec("field", FileSpec("field.plan"))], None, None) == ()
+    far = CircleSpec(9.0, (47.4, 8.5), name="far", frame="geographic")
+    assert isinstance(build_zones([*DEFAULT.fence, far], HOME_NED, None), Refusal)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from msgspec import structs
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import verifier_for
@@ -169,7 +170,7 @@ def test_L17_any_interleaving_from_nothing(autopilot: str, word: list[str]) -> N
 def test_L17_any_interleaving_with_any_numbers_from_hovering(
     retarget: str, steps: list[str | GoTo | PositionSeen | int]
 ) -> None:
-    run = Run(replace(YARD, retarget="replace" if retarget == "replace" else "refuse")).hover()
+    run = Run(structs.replace(YARD, retarget=retarget)).hover()
     for step in steps:
         match step:
             case str():

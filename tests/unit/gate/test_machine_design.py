@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from msgspec import structs
 
 from gcs.gate.airspace.verifier import verifier_for
 from gcs.gate.airspace.zones import Zone
@@ -68,7 +69,7 @@ class TestForcedDisarm:
     """Force-disarm in the air needs policy permission and a second, explicit request."""
 
     def script(self, state: State = State.HOVERING) -> Script:
-        return in_flight(state, replace(policy("default"), allow_force_disarm=True))
+        return in_flight(state, structs.replace(policy("default"), allow_force_disarm=True))
 
     @pytest.mark.parametrize("state", FLOWN, ids=lambda s: s.name)
     def test_the_first_request_is_refused_and_the_motors_keep_turning(self, state: State) -> None:

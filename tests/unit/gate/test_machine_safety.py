@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
+from msgspec.structs import replace
 
 from gcs.frames import enu_from_ned
 from gcs.gate.condition import Condition, Severity

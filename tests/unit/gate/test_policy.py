@@ -2,32 +2,46 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 
 import pytest
+from msgspec import Struct, structs
 
-import gcs.gate.policy.policy
+import gcs.gate.policy
 from gcs.gate.condition import Condition, Severity
-from gcs.gate.policy.policy import DEFAULT, Policy, PolicyError, parse_policy
-from gcs.gate.policy.tomlfile import find_lines
-from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, FileSpec, PolygonSpec
+from gcs.gate.policy.parse import DEFAULT, parse_policy
+from gcs.gate.policy.policy import (
+    Arrival,
+    Braking,
+    ControlTimes,
+    Policy,
+    Speeds,
+    TakeOffLimits,
+)
+from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec, ZoneSpec
+from gcs.toml import TomlError
+from gcs.toml_lines import find_lines
 
-SHIPPED = Path(gcs.gate.policy.__file__).parent
+SHIPPED = Path(next(iter(gcs.gate.policy.__path__)))
 
 
 def shipped(name: str) -> str:
     return (SHIPPED / name).read_text(encoding="utf-8")
 
 
-def error(text: str) -> PolicyError:
-    with pytest.raises(PolicyError) as caught:
+def error(text: str) -> TomlError:
+    with pytest.raises(TomlError) as caught:
         parse_policy(text, "my.toml")
     return caught.value
 
 
 def test_the_shipped_default_is_the_default() -> None:
-    assert parse_policy(shipped("default.toml"), "default.toml") == DEFAULT == Policy()
+    assert parse_policy(shipped("default.toml"), "default.toml") == DEFAULT
+
+
+@pytest.mark.parametrize("kind", [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes])
+def test_no_default_stands_anywhere_but_in_the_shipped_file(kind: type[Struct]) -> None:
+    assert all(key.required for key in structs.fields(kind))
 
 
 def test_an_empty_file_is_the_default() -> None:
@@ -36,16 +50,16 @@ def test_an_empty_file_is_the_default() -> None:
 
 def test_the_shipped_default_names_every_key_there_is() -> None:
     lines = find_lines(shipped("default.toml"))
-    for key in dataclasses.fields(Policy):
+    for key in structs.fields(Policy):
         assert (key.name,) in lines or (key.name, 0) in lines, key.name
     for condition in Condition:
         assert ("severities", condition.value) in lines
     for part in (DEFAULT.arrival, DEFAULT.speeds, DEFAULT.takeoff, DEFAULT.control):
-        name = next(f.name for f in dataclasses.fields(Policy) if getattr(DEFAULT, f.name) is part)
-        for key in dataclasses.fields(part):
+        name = next(f.name for f in structs.fields(Policy) if getattr(DEFAULT, f.name) is part)
+        for key in structs.fields(part):
             assert (name, key.name) in lines, (name, key.name)
     for autopilot, braking in DEFAULT.braking.items():
-        for key in dataclasses.fields(braking):
+        for key in structs.fields(braking):
             assert ("braking", autopilot, key.name) in lines
 
 
@@ -56,8 +70,9 @@ def test_the_labs_policy_is_the_labs() -> None:
     assert (lab.margin_h_m, lab.margin_v_m, lab.bounds_inclusive) == (0.0, 0.0, True)
     assert (lab.brake_slack_h_m, lab.brake_slack_v_m, lab.fence_switchable) == (0.5, 0.5, True)
     (cage,) = lab.fence
-    assert cage.shape == BoxSpec((-5.0, 5.0), (-5.0, 5.0))
-    assert (cage.frame, cage.floor_up_m, cage.ceiling_up_m) == ("local", 0.0, 2.0)
+    assert cage == BoxSpec(
+        (-5.0, 5.0), (-5.0, 5.0), name="cage", frame="local", floor_up_m=0.0, ceiling_up_m=2.0
+    )
 
 
 def test_every_kind_of_zone() -> None:
@@ -80,16 +95,20 @@ def test_every_kind_of_zone() -> None:
         radius_m = 8
         ceiling_up_m = "none"
         [[fence]]
-        kind = "file"
-        path = "field.plan"
+        name = "street"
+        kind = "box"
+        frame = "local"
+        east_m = [-50, 50]
+        north_m = [0, 60.5]
+        floor_up_m = 1
         """,
         "my.toml",
     )
-    field, tower, file = policy.fence
-    assert field.shape == PolygonSpec(((47.0, 8.0), (47.0, 8.1), (47.1, 8.0)))
-    assert (tower.shape, tower.inclusion) == (CircleSpec(8.0, (20.0, 35.0)), False)
-    assert tower.ceiling_up_m is None
-    assert file.shape == FileSpec("field.plan")
+    assert policy.fence == (
+        PolygonSpec(((47.0, 8.0), (47.0, 8.1), (47.1, 8.0)), name="field", frame="geographic"),
+        CircleSpec(8.0, (20.0, 35.0), name="tower", inclusion=False),
+        BoxSpec((-50.0, 50.0), (0.0, 60.5), name="street", frame="local", floor_up_m=1.0),
+    )
 
 
 def test_severities_are_mapped_by_name() -> None:
@@ -251,3 +270,72 @@ def test_a_goal_at_the_margin_may_be_hovered_at_without_a_brake() -> None:
     for braking in DEFAULT.braking.values():
         assert braking.position_error_h_m <= DEFAULT.brake_slack_h_m <= DEFAULT.margin_h_m
         assert braking.position_error_v_m <= DEFAULT.brake_slack_v_m <= DEFAULT.margin_v_m
+
+
+# ----------------------------------------------------------- brakes that come too late
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "what"),
+    [
+        ("margin_h_m = 0.5", "margin_h_m", "0.5 is less than brake_slack_h_m of 1.5"),
+        ("margin_h_m = 0.0", "margin_h_m", "0 is less than brake_slack_h_m of 1.5"),
+        ("margin_h_m = 1.49", "margin_h_m", "1.49 is less than brake_slack_h_m of 1.5"),
+        ("brake_slack_h_m = 2.01", "brake_slack_h_m", "2.01 is more than margin_h_m of 2"),
+        ("margin_v_m = 0.2", "margin_v_m", "0.2 is less than brake_slack_v_m of 0.3"),
+        ("brake_slack_v_m = 0.4", "brake_slack_v_m", "0.4 is more than margin_v_m of 0.3"),
+    ],
+)
+def test_a_slack_beyond_the_margin_is_refused(text: str, key: str, what: str) -> None:
+    """The vehicle was out by 0.49 m before the brake with the first of these."""
+    found = error(text)
+    assert (found.line, found.key) == (1, key)
+    assert found.what.startswith(what)
+    assert "could leave the fence before the gate brakes" in found.what
+    assert "allow_stop_outside = true" in found.hint
+    assert parse_policy(f"{text}\nallow_stop_outside = true", "my.toml").allow_stop_outside
+
+
+def test_a_slack_as_large_as_the_margin_is_no_fault() -> None:
+    assert parse_policy("margin_h_m = 1.5", "my.toml").margin_h_m == 1.5
+    both = parse_policy("margin_h_m = 0.5\nbrake_slack_h_m = 0.5", "my.toml")
+    assert (both.margin_h_m, both.brake_slack_h_m) == (0.5, 0.5)
+
+
+# ------------------------------------------------------------------------ fence files
+
+FILE = '[[fence]]\nkind = "file"\npath = "yard.plan"\n'
+
+
+def yard(*, inclusion: bool = True, radius_m: float = 50.0) -> tuple[ZoneSpec, ...]:
+    return (CircleSpec(radius_m, (47.0, 8.0), name="y", inclusion=inclusion, frame="geographic"),)
+
+
+def test_the_zones_of_a_fence_file_stand_where_it_is_named() -> None:
+    asked: list[str] = []
+
+    def read(path: str) -> tuple[ZoneSpec, ...]:
+        asked.append(path)
+        return yard()
+
+    policy = parse_policy(f"{ZONE}radius_m = 9\n{FILE}", "my.toml", read)
+    assert asked == ["yard.plan"]
+    assert [zone.name for zone in policy.fence] == ["a", "y"]
+    assert policy.fence[1:] == yard()
+
+
+def test_a_fence_file_of_exclusion_zones_alone_is_no_fence() -> None:
+    with pytest.raises(TomlError, match="has no inclusion zone") as caught:
+        parse_policy(FILE, "my.toml", lambda _: yard(inclusion=False))
+    assert (caught.value.line, caught.value.key) == (1, "fence")
+    assert "yard.plan" in caught.value.hint
+
+
+def test_a_fence_file_is_held_to_the_margins_too() -> None:
+    with pytest.raises(TomlError, match="leaves nothing of this zone") as caught:
+        parse_policy(FILE, "my.toml", lambda _: yard(radius_m=2.0))
+    assert (caught.value.line, caught.value.key) == (3, "fence[1].path")
+
+
+def test_a_fence_file_where_none_can_be_read_is_refused() -> None:
+    assert (error(FILE).line, error(FILE).key) == (3, "fence[1].path")

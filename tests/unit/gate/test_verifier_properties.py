@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from types import MappingProxyType
 
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from msgspec import structs
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Cleared, Verifier
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon, polygon_fault
-from gcs.gate.policy.policy import DEFAULT, Policy
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code, Refusal
 
 STILL: Vec3 = (0.0, 0.0, 0.0)
@@ -54,7 +54,7 @@ def zones(draw: st.DrawFn, inclusion: bool) -> Zone:
 def verifiers(draw: st.DrawFn) -> Verifier:
     inside = draw(st.lists(zones(inclusion=True), min_size=1, max_size=2))
     outside = draw(st.lists(zones(inclusion=False), max_size=2))
-    policy = dataclasses.replace(
+    policy = structs.replace(
         DEFAULT,
         bounds_inclusive=draw(st.booleans()),
         min_up_m=-5.0,
@@ -65,7 +65,7 @@ def verifiers(draw: st.DrawFn) -> Verifier:
 
 
 def changed(verifier: Verifier, **keys: float) -> Verifier:
-    policy: Policy = dataclasses.replace(verifier.policy, **keys)  # type: ignore[arg-type]
+    policy = structs.replace(verifier.policy, **keys)
     return dataclasses.replace(verifier, policy=policy)
 
 
@@ -128,10 +128,10 @@ def test_weaker_brakes_and_a_stranger_never_permit_more(
     verifier: Verifier, goal: Vec3, start: Vec3, v: Vec3
 ) -> None:
     stranger = dataclasses.replace(verifier, autopilot="betaflight")
-    weak = dataclasses.replace(
+    weak = structs.replace(
         verifier.policy.braking["px4"], react_s=1.0, a_brake_h_m_s2=1.0, a_brake_v_m_s2=1.0
     )
-    policy = dataclasses.replace(verifier.policy, braking=MappingProxyType({"px4": weak}))
+    policy = structs.replace(verifier.policy, braking={"px4": weak})
     for worse in (stranger, dataclasses.replace(verifier, policy=policy)):
         if isinstance(worse.goal(goal, None, start, v), Cleared):
             assert isinstance(verifier.goal(goal, None, start, v), Cleared)

@@ -8,7 +8,7 @@ from gcs.frames import enu_from_ned
 from gcs.gate.airspace.verifier import Breach, Cleared
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon
-from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code
 from tests.unit.gate.airspace import LAB, OUTER, STILL, TOWER, around, at, flying, go
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 from gcs.frames import Vec3
@@ -10,8 +9,8 @@ from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.verifier import Cleared, Verifier, check_start, verifier_for
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle
-from gcs.gate.policy.policy import DEFAULT
-from gcs.gate.policy.zonespec import CircleSpec, FileSpec, PolygonSpec, ZoneSpec
+from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.refusal import Code, Refusal
 from tests.unit.gate.airspace import HOME, OUTER, STILL, TOWER, around, at, flying, go
 
@@ -142,23 +141,13 @@ def test_without_home_the_default_fence_refuses_everything_that_moves() -> None:
 
 
 def test_a_geographic_plan_zone_waits_for_the_origin_and_is_then_kept_out_of() -> None:
-    hangar = ZoneSpec("hangar", CircleSpec(10.0, (47.001, 8.0)), False, "geographic")
+    hangar = CircleSpec(10.0, (47.001, 8.0), name="hangar", inclusion=False, frame="geographic")
     before = verifier_for(DEFAULT, "px4", HOME, None, [hangar])
     assert go(before, at(0, 10, 2), at(0, 0, 2)) is Code.NO_ORIGIN
     after = verifier_for(DEFAULT, "px4", HOME, Origin(47.0, 8.0, 400.0), [hangar])
     assert after.origin_known
     assert go(after, at(0, 10, 2), at(0, 0, 2)) is None
     assert go(after, at(0, 111, 2), at(0, 0, 2)) is Code.INSIDE_EXCLUSION
-
-
-def test_a_fence_file_that_nobody_read_refuses() -> None:
-    policy = dataclasses.replace(DEFAULT, fence=(ZoneSpec("f.plan", FileSpec("f.plan")),))
-    unread = verifier_for(policy, "px4", HOME, Origin(47.0, 8.0, 400.0))
-    assert go(unread, at(0, 10, 2), at(0, 0, 2)) is Code.NO_ORIGIN
-    corners = ((46.999, 7.999), (46.999, 8.001), (47.001, 8.001), (47.001, 7.999))
-    field = ZoneSpec("field", PolygonSpec(corners), True, "geographic")
-    read = verifier_for(policy, "px4", HOME, Origin(47.0, 8.0, 400.0), [field])
-    assert go(read, at(0, 10, 2), at(0, 0, 2)) is None
 
 
 def test_a_verifier_without_zones_and_with_the_fence_on_knows_nothing() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
-from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.policy.parse import DEFAULT
 from gcs.report import InputItem
 from gcs.session import inputs
 from gcs.session.effects import Effect, Emit, Finish, Record

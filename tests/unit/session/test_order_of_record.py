@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.config import StationConfig
-from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.policy.parse import DEFAULT
 from gcs.report import FsaItem
 from gcs.session.effects import Record
 from gcs.session.inputs import Datagram, OperatorLine

@@ -11,7 +11,7 @@ from gcs.gate.condition import Severity
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, Transition
 from gcs.gate.geometry import Circle, Polygon
 from gcs.gate.machine.gate import Gate
-from gcs.gate.policy.policy import DEFAULT
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
 from gcs.record.json_topics import JsonTopics

@@ -1,0 +1,202 @@
+"""A policy file's text -> `Policy`: its keys over those of `default.toml`, then checked whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final, NamedTuple, TypeAlias
+
+from msgspec import Struct
+
+from gcs import toml
+from gcs.gate.condition import Severity
+from gcs.gate.policy.policy import Policy
+from gcs.gate.policy.zonespec import KINDS, Text, ZoneSpec, room_fault, zone_fault
+from gcs.toml_lines import KeyPath
+
+Table: TypeAlias = dict[str, object]
+
+_BOUNDS = ("floor_up_m", "ceiling_up_m")
+
+FenceFile: TypeAlias = Callable[[str], tuple[ZoneSpec, ...]]
+"""The zones of the fence file of that name, as the policy writes it."""
+
+
+class _FileSpec(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="file"):
+    """A `[[fence]]` table that stands for all zones of a plan file."""
+
+    path: Text
+    name: Text | None = None
+
+
+class _Written(NamedTuple):
+    """A zone, and where it is from: its table, or the key that names its file."""
+
+    at: KeyPath
+    zone: ZoneSpec
+    file: str = ""
+
+
+def parse_policy(text: str, file: str, fence_file: FenceFile | None = None) -> Policy:
+    """`file` is what errors call it; `fence_file` reads the plan files that the fence names.
+
+    Raises TomlError for unknown keys, wrong types, impossible values, contradictions, and for a
+    fence file where there is no `fence_file`; lets through what `fence_file` raises.
+    """
+    return _build(toml.read(text, file), _DEFAULTS, fence_file)
+
+
+def _build(doc: toml.Document, defaults: Table, fence_file: FenceFile | None) -> Policy:
+    table = _overlay(doc, defaults, doc.data)
+    table["arrival"] = _without_none(table["arrival"], "speed_m_s")
+    table["severities"] = _severities(doc, table["severities"])
+    zones = _read_fence(doc, table["fence"], fence_file)
+    policy = doc.convert(Policy, {**table, "fence": [written.zone for written in zones]})
+    _check_limits(doc, policy)
+    _check_slack(doc, policy)
+    _check_zones(doc, policy, zones)
+    return policy
+
+
+def _overlay(doc: toml.Document, defaults: Table, own: Table, at: KeyPath = ()) -> Table:
+    """`defaults` with the values of `own` in their place, table by table; arrays are replaced."""
+    merged = dict(defaults)
+    for key, value in own.items():
+        if key not in defaults:
+            raise doc.unknown((*at, key), defaults)
+        default = defaults[key]
+        if isinstance(default, dict) and isinstance(value, dict):
+            value = _overlay(doc, default, value, (*at, key))
+        merged[key] = value
+    return merged
+
+
+def _without_none(value: object, *keys: str) -> object:
+    """The table with None for the word "none", which TOML writes for it."""
+    if not isinstance(value, dict):
+        return value
+    return {k: None if k in keys and v == "none" else v for k, v in value.items()}
+
+
+def _severities(doc: toml.Document, value: object) -> object:
+    if not isinstance(value, dict):
+        return value
+    words = {severity.name.lower(): severity for severity in Severity}
+    for name, word in value.items():
+        if not (isinstance(word, str) and word in words):
+            raise doc.error(("severities", name), *toml.none_of(word, words))
+    return {name: words[word] for name, word in value.items()}
+
+
+# ------------------------------------------------------------------------------- the fence
+
+
+def _read_fence(doc: toml.Document, value: object, fence_file: FenceFile | None) -> list[_Written]:
+    if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
+        raise doc.error(("fence",), "is a list of tables", "write each as [[fence]]")
+    zones: list[_Written] = []
+    names: list[str] = []
+    for number, table in enumerate(value):
+        at = ("fence", number)
+        if table.get("kind") == "file":
+            named = doc.convert(_FileSpec, table, at)
+            zones += _read_file(doc, named.path, (*at, "path"), fence_file)
+            names.append(named.name or named.path)
+        else:
+            zone = _read_zone(doc, table, at)
+            zones.append(_Written(at, zone))
+            names.append(zone.name)
+    for number, name in enumerate(names):
+        if names.count(name) > 1:
+            raise doc.error(("fence", number, "name"), f'two zones are called "{name}"')
+    return zones
+
+
+def _read_file(
+    doc: toml.Document, path: str, at: KeyPath, fence_file: FenceFile | None
+) -> list[_Written]:
+    if fence_file is None:
+        raise doc.error(at, "a fence file cannot be read here")
+    return [_Written(at, zone, path) for zone in fence_file(path)]
+
+
+def _read_zone(doc: toml.Document, table: Table, at: KeyPath) -> ZoneSpec:
+    kind = table.get("kind", "circle")
+    spec = KINDS.get(kind) if isinstance(kind, str) else None
+    if spec is None:
+        raise doc.error((*at, "kind"), *toml.none_of(kind, (*KINDS, "file")))
+    if table.get("frame") == "geographic":
+        if kind == "box":
+            raise doc.error((*at, "frame"), "a box is in metres", "write a polygon")
+        if kind == "circle" and "centre" not in table:
+            hint = "centre = [latitude, longitude]"
+            raise doc.error((*at, "centre"), "is missing", hint)
+    zone = doc.convert(spec, _without_none({**table, "kind": kind}, *_BOUNDS), at)
+    if fault := zone_fault(zone):
+        raise doc.error((*at, fault.key), fault.what, fault.hint)
+    return zone
+
+
+# --------------------------------------------------------------------------- contradictions
+
+
+def _check_limits(doc: toml.Document, p: Policy) -> None:
+    if p.min_up_m >= p.max_up_m:
+        what = f"{p.max_up_m:g} is not above min_up_m of {p.min_up_m:g}"
+        raise doc.error(("max_up_m",), what)
+    if doc.has(("takeoff", "max_up_m")) and p.takeoff.max_up_m > p.max_up_m:
+        what = f"{p.takeoff.max_up_m:g} is above the policy's max_up_m of {p.max_up_m:g}"
+        raise doc.error(("takeoff", "max_up_m"), what)
+    if p.control.timeout_s <= p.control.stream_s:
+        what = "is over before the stream has even begun to count"
+        raise doc.error(("control", "timeout_s"), what)
+
+
+def _check_slack(doc: toml.Document, p: Policy) -> None:
+    """A slack beyond the margin lets the vehicle out of the fence before the gate brakes."""
+    if p.allow_stop_outside:
+        return
+    for slack_key, slack_m, margin_key, margin_m in (
+        ("brake_slack_h_m", p.brake_slack_h_m, "margin_h_m", p.margin_h_m),
+        ("brake_slack_v_m", p.brake_slack_v_m, "margin_v_m", p.margin_v_m),
+    ):
+        if slack_m <= margin_m:
+            continue
+        key, what = margin_key, f"{margin_m:g} is less than {slack_key} of {slack_m:g}"
+        if not doc.has((margin_key,)):
+            key, what = slack_key, f"{slack_m:g} is more than {margin_key} of {margin_m:g}"
+        raise doc.error(
+            (key,),
+            f"{what}: the vehicle could leave the fence before the gate brakes",
+            f"{slack_key} = {margin_m:g} keeps it inside; `allow_stop_outside = true` accepts this",
+        )
+
+
+def _check_zones(doc: toml.Document, p: Policy, zones: list[_Written]) -> None:
+    for at, zone, file in zones:
+        fault = room_fault(zone, p.margin_h_m, p.margin_v_m)
+        if fault is None:
+            continue
+        if not doc.has(("fence",)):
+            key = "margin_v_m" if fault.key in _BOUNDS else "margin_h_m"
+            hint = f"the default fence has {fault.key} = {getattr(zone, fault.key):g}"
+            raise doc.error((key,), fault.what, hint)
+        if file:
+            raise doc.error(at, f"zone '{zone.name}' of {file}: {fault.key}: {fault.what}")
+        raise doc.error((*at, fault.key), fault.what)
+    if not any(written.zone.inclusion for written in zones):
+        files = sorted({written.file for written in zones if written.file})
+        hint = "the gate must know where the vehicle may be"
+        if files:
+            hint = f"{', '.join(files)} only says where it may not be: {hint}"
+        raise doc.error(("fence",), "has no inclusion zone", hint)
+
+
+# -------------------------------------------------------------------------------- defaults
+
+_FILE = Path(__file__).with_name("default.toml")
+_DOCUMENT = toml.read(_FILE.read_text(encoding="utf-8"), str(_FILE))
+_DEFAULTS: Final = _DOCUMENT.data
+
+DEFAULT: Final = _build(_DOCUMENT, _DEFAULTS, None)
+"""The policy of `default.toml`, which is also that of an empty file."""
