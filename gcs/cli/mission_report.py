@@ -51,7 +51,7 @@ def check_lines(checked: Checked) -> Iterator[str]:
         yield _verdict_line(plan, verdict)
     for problem in checked.verification.path.problems:
         yield f"  refused  {problem.sentence}"
-    yield from _return_lines(plan, checked.verification)
+    yield from _return_lines(checked.verification)
     yield f"verdict: {_summary(checked)}"
 
 
@@ -76,12 +76,11 @@ def _verdict_line(plan: Plan, verdict: LegVerdict) -> str:
     return line
 
 
-def _return_lines(plan: Plan, verification: Verification) -> Iterator[str]:
-    blocked = verification.blocked_returns
-    if blocked:
-        items = ", ".join(str(entry.item + 1) for entry in blocked)
-        yield f"warning: the vehicle's own failsafe return cannot be gated; after item {items}:"
-        yield f"  {blocked[0].refusal.sentence}"
+def _return_lines(verification: Verification) -> Iterator[str]:
+    if verification.return_warning is not None:
+        after, why = verification.return_warning
+        yield f"warning: {after}:"
+        yield f"  {why}"
 
 
 def _summary(checked: Checked) -> str:

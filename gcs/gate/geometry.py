@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import lru_cache
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -88,8 +89,7 @@ class Polygon:
 
     def clearance(self, p: Point) -> float:
         """Metres inside the polygon, negative outside."""
-        gap = min(point_segment_distance(p, a, b) for a, b in self.edges)
-        return gap if self.contains(p) else 0.0 - gap
+        return _polygon_clearance(self, p)
 
     def inner_clearance(self, a: Point, b: Point) -> float:
         """The least clearance along a-b, negative if any of it is outside.
@@ -132,6 +132,13 @@ class Polygon:
 
 
 Shape: TypeAlias = Circle | Polygon
+
+
+@lru_cache(maxsize=64)
+def _polygon_clearance(polygon: Polygon, p: Point) -> float:
+    """Remembered: a leg asks for each of its ends up to six times, and every edge is looked at."""
+    gap = min(point_segment_distance(p, a, b) for a, b in polygon.edges)
+    return gap if polygon.contains(p) else 0.0 - gap
 
 
 def along(a: Point, b: Point, t: float) -> Point:

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import dataclasses
+from dataclasses import dataclass
 from typing import Literal
 
 from gcs.gate.airspace.projection import Projection
-from gcs.gate.airspace.verifier import Cleared, verifier_for
+from gcs.gate.airspace.verifier import verifier_for
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.model import AutopilotName, Geodetic, Plan
-from gcs.plan.path import FlightPath, Ground, ProblemKind, flight_path
+from gcs.plan.path import FlightPath, Ground, flight_path
 from gcs.plan.place import georeference
+from gcs.plan.verify import verify as verify_plan
 from gcs.plan.zones import zone_specs
 from gcs.session.telemetry import Telemetry
-
-PROBLEM_CODES = {
-    ProblemKind.NO_ORIGIN: Code.NO_ORIGIN,
-    ProblemKind.NO_RETURN_HEIGHT: Code.RTL_BLOCKED,
-}
 
 
 def autopilot_name(telemetry: Telemetry) -> AutopilotName:
@@ -42,43 +38,51 @@ def on_earth(plan: Plan, telemetry: Telemetry) -> Plan | Refusal:
     )
 
 
-def path_of(
-    plan: Plan, telemetry: Telemetry, now_ns: int = 0, age_ns: int | None = None
-) -> FlightPath | Refusal:
-    """The whole path from where the vehicle is now, local NED; refused where it is not known.
+@dataclass(frozen=True, slots=True)
+class ClearedMission:
+    """A mission that may be flown; `warnings` are for the operator before it is."""
 
-    With `age_ns`, also where its position is older than that at `now_ns`.
-    """
-    if age_ns is not None and now_ns - telemetry.position_ns > age_ns:
+    evidence: tuple[tuple[str, float], ...]
+    warnings: tuple[str, ...]
+
+
+def path_of(plan: Plan, telemetry: Telemetry) -> FlightPath | Refusal:
+    """The whole path from where the vehicle is now, local NED; refused where it is not known."""
+    ground = _ground(telemetry)
+    return ground if isinstance(ground, Refusal) else flight_path(plan, ground)
+
+
+def verify(
+    plan: Plan, policy: Policy, telemetry: Telemetry, now_ns: int
+) -> ClearedMission | Refusal:
+    """The whole mission, from where the vehicle is now, against the policy's fence and its own."""
+    if now_ns - telemetry.position_ns > round(policy.position_age_s * 1e9):
         return Refusal(Code.STALE, "the vehicle's position is too old")
+    ground = _ground(telemetry)
+    if isinstance(ground, Refusal):
+        return ground
+    verifier = verifier_for(
+        policy,
+        telemetry.autopilot.name,
+        telemetry.home_ned,
+        telemetry.origin,
+        zone_specs(plan.fence),
+    )
+    found = verify_plan(plan, ground, verifier)
+    if found.refusal is not None:
+        return found.refusal
+    warning = found.return_warning
+    return ClearedMission(found.evidence, (": ".join(warning),) if warning else ())
+
+
+def _ground(telemetry: Telemetry) -> Ground | Refusal:
     if telemetry.origin is None or telemetry.home_ned is None or telemetry.pos_ned is None:
         return Refusal(Code.NO_ORIGIN, "the vehicle's origin, home or position is not known yet")
-    path = flight_path(
-        plan,
-        Ground(
-            autopilot_name(telemetry),
-            telemetry.home_ned,
-            telemetry.pos_ned,
-            Projection(telemetry.origin, telemetry.autopilot.name).north_east,
-            telemetry.origin.alt_amsl_m,
-            telemetry.return_up_m,
-        ),
+    return Ground(
+        autopilot_name(telemetry),
+        telemetry.home_ned,
+        telemetry.pos_ned,
+        Projection(telemetry.origin, telemetry.autopilot.name).north_east,
+        telemetry.origin.alt_amsl_m,
+        telemetry.return_up_m,
     )
-    if path.problems:
-        problem = path.problems[0]
-        return Refusal(PROBLEM_CODES.get(problem.kind, Code.BAD_MISSION), problem.sentence)
-    return path
-
-
-def verify(plan: Plan, path: FlightPath, policy: Policy, telemetry: Telemetry) -> Cleared | Refusal:
-    """Every leg and circle against the policy's fence and the plan's own; says which item."""
-    zones = zone_specs(plan.fence)
-    verifier = verifier_for(
-        policy, telemetry.autopilot.name, telemetry.home_ned, telemetry.origin, zones
-    )
-    answer = verifier.path(path.segments, path.discs, path.floor_free)
-    if isinstance(answer, Cleared):
-        return answer
-    index, refusal = answer
-    sentence = f"item {path.item_of(index) + 1}: {refusal.sentence}"
-    return dataclasses.replace(refusal, sentence=sentence)

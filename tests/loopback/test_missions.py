@@ -12,6 +12,8 @@ from typing import Any
 import pymap3d
 import pytest
 
+from gcs import ipc
+from gcs.gate.effects import Level
 from gcs.gate.states import State
 from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
@@ -132,6 +134,42 @@ def test_a_mission_that_leaves_the_fence_is_refused_before_the_first_frame(tmp_p
     assert verdict.sentence.startswith("item ")
     assert verdict.numbers
     assert not [name for name in flight.sent_types() if name.startswith("MISSION")]
+
+
+ROUND_A_TOWER = """
+schema = 1
+frame = "home"
+[fence]
+north_m = [-40, 40]
+east_m = [-40, 40]
+[[fence.exclude]]
+name = "tower"
+radius_m = 3
+north_m = 10
+east_m = 10
+"""
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_blocked_failsafe_return_is_warned_of_and_uploaded(
+    personality: Personality, tmp_path: Path
+) -> None:
+    """Every leg goes round the tower; the vehicle's own way home from the far corner does not."""
+    path = tmp_path / "round.toml"
+    corners = ((0, 20), (20, 20), (20, 0), (0, 0))
+    places = [f"[[waypoint]]\nnorth_m = {n}\neast_m = {e}\nup_m = 5\n" for n, e in corners]
+    path.write_text(ROUND_A_TOWER + "".join(places), encoding="utf-8")
+    flight = Flight(personality).connected()
+    flight.until(lambda: flight.session.gate.memory.return_up_m is not None)
+    ask = flight.say("mission_upload", path=str(path))
+    assert flight.done(ask) == "complete"
+    [warning] = [line for line in flight.of(ipc.LogEvent) if "failsafe return" in line.text]
+    assert (warning.node, warning.level) == ("mission", Level.WARNING)
+    assert "after item 3: " in warning.text
+    assert "exclusion circle 'tower'" in warning.text
+    [verdict] = flight.verdicts(ask)
+    assert (verdict.outcome, verdict.numbers["returns_blocked"]) == ("accepted", 1.0)
+    assert verdict.numbers["return_blocked_after_item"] == 3.0
 
 
 def test_a_mission_is_verified_anew_from_where_it_starts() -> None:

@@ -163,27 +163,34 @@ class Verifier:
         return Breach(bad.measure.zone.name, bad.sentence, bad.numbers, brake_pos_ned)
 
     def return_path(self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> Cleared | Refusal:
-        """Is the vehicle's own way home clear?
+        """As `return_refusal`, with the numbers where the way home is clear."""
+        refusal = self.return_refusal(pos_ned, home_ned, return_up_m)
+        if refusal is not None:
+            return refusal
+        top_ned, over_ned = _way_home(pos_ned, home_ned, return_up_m)
+        numbers = self._nearest("leg", top_ned, over_ned)
+        return Cleared((*numbers, ("leg_m", math.dist(top_ned, over_ned))))
+
+    def return_refusal(self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> Refusal | None:
+        """What blocks the vehicle's own way home; None if it is clear.
 
         It climbs to its return height (metres above home) unless it is higher, flies straight home
         and descends.  A return makes it safer, so no margin is asked for, only that it stays inside
         for certain.  The floor does not apply: a return ends on the ground.
         """
-        down_m = min(pos_ned[2], home_ned[2] - return_up_m)
-        top_ned, over_ned = (*pos_ned[:2], down_m), (*home_ned[:2], down_m)
+        top_ned, over_ned = _way_home(pos_ned, home_ned, return_up_m)
         blocked = (
             self._unusable(position=pos_ned, home=home_ned, height=(return_up_m,))
             or beyond_reach(pos_ned)
-            or beyond_reach((*home_ned[:2], down_m))
+            or beyond_reach(over_ned)
             or self._return_leg("the climb to return height", pos_ned, top_ned)
             or self._return_leg("the way home", top_ned, over_ned)
             or self._return_leg("the descent at home", over_ned, home_ned)
         )
-        if blocked is not None:
-            sentence = f"return blocked: {blocked.sentence}"
-            return Refusal(Code.RTL_BLOCKED, sentence, blocked.numbers, blocked.zone)
-        numbers = self._nearest("leg", top_ned, over_ned)
-        return Cleared((*numbers, ("leg_m", math.dist(top_ned, over_ned))))
+        if blocked is None:
+            return None
+        sentence = f"return blocked: {blocked.sentence}"
+        return Refusal(Code.RTL_BLOCKED, sentence, blocked.numbers, blocked.zone)
 
     def path(
         self,
@@ -318,6 +325,12 @@ class Verifier:
         return self._limits(subject, centre_ned, allow=Margins(-reach_m, 0.0)) or self._judge.point(
             subject, centre_ned, floor_applies=True, radius_m=reach_m
         )
+
+
+def _way_home(pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> tuple[Vec3, Vec3]:
+    """The ends of the straight leg: above the vehicle, and above home."""
+    down_m = min(pos_ned[2], home_ned[2] - return_up_m)
+    return (*pos_ned[:2], down_m), (*home_ned[:2], down_m)
 
 
 def verifier_for(

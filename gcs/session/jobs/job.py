@@ -14,12 +14,10 @@ from typing import TypeAlias
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
-from gcs.gate.airspace.verifier import Cleared
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
-from gcs.plan.model import Plan
 from gcs.protocol.effects import (
     Address,
     Cancel,
@@ -35,7 +33,6 @@ from gcs.protocol.mission import MissionClear, MissionDownload, MissionUpload
 from gcs.protocol.transfer import Timing
 from gcs.session.effects import Emit
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.paths import path_of, verify
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import Decide, Log, Work
@@ -198,15 +195,6 @@ def refused(request_id: int, word: str, refusal: Refusal) -> tuple[Work, ...]:
     """The verdict, and a line for the log."""
     text = f"{word}: refused {refusal.code.value}: {refusal.sentence}"
     return Decide(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)
-
-
-def verify_whole(plan: Plan, view: VehicleView, now_ns: int) -> Cleared | Refusal:
-    """The whole path of `plan`, from where the vehicle is now."""
-    age_ns = round(view.policy.position_age_s * 1e9)
-    path = path_of(plan, view.telemetry, now_ns, age_ns)
-    if isinstance(path, Refusal):
-        return path
-    return verify(plan, path, view.policy, view.telemetry)
 
 
 def code_of(result: int | None) -> Code:

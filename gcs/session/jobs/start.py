@@ -20,9 +20,8 @@ from gcs.session.jobs.job import (
     OnBoardChanged,
     VehicleView,
     code_of,
-    verify_whole,
 )
-from gcs.session.paths import autopilot_name
+from gcs.session.paths import autopilot_name, verify
 from gcs.session.plans import OnBoard, item_of
 from gcs.session.work import AskGate, ToGate
 from gcs.wire.messages import MissionItemInt
@@ -56,7 +55,7 @@ class Start(Job):
             text = f"another mission is on board than was verified: {differences[0]}"
             forget: list[JobWork] = [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
             return forget + self.refuse(Refusal(Code.BAD_MISSION, text))
-        answer = verify_whole(plan, view, now_ns)
+        answer = verify(plan, view.policy, view.telemetry, now_ns)
         if isinstance(answer, Refusal):
             return self.refuse(answer)
         self.over = True

@@ -25,9 +25,8 @@ from gcs.session.jobs.job import (
     JobWork,
     OnBoardChanged,
     VehicleView,
-    verify_whole,
 )
-from gcs.session.paths import autopilot_name, path_of
+from gcs.session.paths import autopilot_name, path_of, verify
 from gcs.session.plans import item_of, message_of, on_board, prepare
 from gcs.session.work import Log, ToGate
 from gcs.wire.messages import MissionItemInt
@@ -63,9 +62,10 @@ class Upload(Job):
         work: list[JobWork] = [
             Log(level, NODE, f"{path}: {text}") for level, text in prepared.remarks
         ]
-        answer = verify_whole(prepared.plan, view, now_ns)
+        answer = verify(prepared.plan, view.policy, view.telemetry, now_ns)
         if isinstance(answer, Refusal):
             return work + self.refuse(answer)
+        work += [Log(Level.WARNING, NODE, f"{path}: {text}") for text in answer.warnings]
         self._plan, self._sent = prepared.plan, prepared.sent
         work += [
             Record(AttachmentItem(path, "application/octet-stream", data)),
