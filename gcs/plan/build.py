@@ -1,4 +1,4 @@
-"""Seven numbers and a frame -> an `Item`: the one gate that every format's items pass."""
+"""Seven numbers and a frame -> an `Item`: the one check that items of every format pass."""
 
 from __future__ import annotations
 

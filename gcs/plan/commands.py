@@ -1,4 +1,4 @@
-"""What the mission runner of a quadrotor knows of MAV_CMD, as one table."""
+"""The mission commands (MAV_CMD) that a quadrotor flies, as one table."""
 
 from __future__ import annotations
 
@@ -70,12 +70,13 @@ _KNOWN = frozenset(int(command) for command in Cmd)
 
 
 def name(command: int) -> str:
-    """`NAV_WAYPOINT`, or `MAV_CMD 30001` for a stranger."""
+    """`NAV_WAYPOINT`, or `MAV_CMD 30001` for a command that is not known here."""
     return Cmd(command).name if command in _KNOWN else f"MAV_CMD {command}"
 
 
 def has_place(command: int, frame_number: int) -> bool:
-    """Whether parameters 5 to 7 are a position: known commands say, of others the frame does."""
+    """Whether parameters 5 to 7 are a position: the table says it of known commands, the frame of
+    all others."""
     if command in _KNOWN:
         return command in WITH_PLACE
     return frame_number != 2

@@ -64,7 +64,7 @@ class Difference:
 def same_meaning(
     sent: Sequence[WireItem], received: Sequence[WireItem], autopilot: AutopilotName
 ) -> list[Difference]:
-    """Every difference that the vehicle would fly otherwise for; none means the same mission."""
+    """Every difference that would change the flight; an empty list means the same mission."""
     differences: list[Difference] = []
     if len(sent) != len(received):
         differences.append(

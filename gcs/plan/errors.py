@@ -7,7 +7,7 @@ from enum import IntEnum
 
 
 class Level(IntEnum):
-    """NOTE: what was decided.  WARNING: look at it.  ERROR: it cannot be flown as it is."""
+    """NOTE: what the reader decided.  WARNING: should be looked at.  ERROR: cannot be flown."""
 
     NOTE = 1
     WARNING = 2
@@ -31,7 +31,7 @@ class Finding:
 
 
 class PlanError(Exception):
-    """A file that is no plan, or a plan that cannot become what was asked of it."""
+    """A file that is not a plan, or a plan that cannot be converted as was asked."""
 
     def __init__(
         self, file: str, where: str, item: str, what: str, expected: str = "", hint: str = ""

@@ -1,4 +1,4 @@
-"""A fence as mission items 5000 to 5004 and rally points as 5100: on the wire and in WPL files."""
+"""A fence as mission items 5000 to 5004 and rally points as 5100, as WPL files hold them."""
 
 from __future__ import annotations
 
@@ -21,15 +21,6 @@ from gcs.plan.model import (
 )
 from gcs.wire.ids import Cmd
 
-FENCE_COMMANDS = frozenset(
-    {
-        Cmd.NAV_FENCE_RETURN_POINT,
-        Cmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION,
-        Cmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION,
-        Cmd.NAV_FENCE_CIRCLE_INCLUSION,
-        Cmd.NAV_FENCE_CIRCLE_EXCLUSION,
-    }
-)
 _VERTEX = {
     True: Cmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION,
     False: Cmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION,

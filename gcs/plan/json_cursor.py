@@ -12,7 +12,8 @@ Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | Non
 
 
 class _DuplicateKeyError(ValueError):
-    """JSON allows it and readers differ in which one they keep."""
+    """A key that stands twice in one object: JSON allows it, and readers differ in which value
+    they keep."""
 
 
 def _unique(pairs: list[tuple[str, Json]]) -> dict[str, Json]:

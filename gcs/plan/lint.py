@@ -1,7 +1,7 @@
 """What is doubtful or wrong about a plan before any vehicle is asked.
 
-The distances here are for telling nonsense from sense, on a sphere; what may be flown is judged
-elsewhere, in the vehicle's own projection.
+The distances here are rough, on a sphere, and only find absurd values; what may be flown is
+judged elsewhere, in the vehicle's own projection.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FAR_M = 2_000.0
 ABSURD_M = 20_000.0
 HIGH_M = 500.0
 LOWEST_GROUND_AMSL_M = -430.0
-"""The shore of the Dead Sea: no place to fly is lower."""
+"""The shore of the Dead Sea, the lowest ground on Earth."""
 
 _HERE_ALLOWED = frozenset(
     {Cmd.NAV_LAND, Cmd.NAV_TAKEOFF, Cmd.NAV_LOITER_UNLIM, Cmd.NAV_LOITER_TIME}
@@ -62,7 +62,7 @@ def worst(findings: list[Finding]) -> Level | None:
     return max((finding.level for finding in findings), default=None)
 
 
-def told(index: int, item: Item) -> str:
+def item_label(index: int, item: Item) -> str:
     """How findings call an item: `item 3 (NAV_WAYPOINT)`."""
     return f"item {index + 1} ({commands.name(item.command)})"
 
@@ -82,13 +82,13 @@ def _whole_mission(plan: Plan) -> Iterator[Finding]:
         first = plan.items[moving[0]]
         what = "is the first to fly, and no take-off comes before it"
         hint = "a vehicle on the ground will not start this mission"
-        label = told(moving[0], first)
+        label = item_label(moving[0], first)
         yield Finding(Level.WARNING, first.where, label, what, hint, moving[0])
     for index, kind in enumerate(kinds[:-1]):
         if kind is Kind.RETURN:
             item = plan.items[index]
             what = "ends the flight; what follows is only reached by a jump"
-            yield Finding(Level.WARNING, item.where, told(index, item), what, index=index)
+            yield Finding(Level.WARNING, item.where, item_label(index, item), what, index=index)
             break
     ids = [item.do_jump_id for item in plan.items]
     if ids != list(range(1, len(ids) + 1)) and any(kind is Kind.JUMP for kind in kinds):
@@ -99,7 +99,7 @@ def _whole_mission(plan: Plan) -> Iterator[Finding]:
 def _one_item(
     index: int, item: Item, autopilot: AutopilotName | None, home: Geodetic | None
 ) -> Iterator[Finding]:
-    label = told(index, item)
+    label = item_label(index, item)
 
     def finding(level: Level, what: str, hint: str = "") -> Finding:
         return Finding(level, item.where, label, what, hint, index)
@@ -191,5 +191,5 @@ def _distances(plan: Plan, home: Geodetic | None) -> Iterator[Finding]:
                 level = Level.ERROR if far_m > ABSURD_M else Level.WARNING
                 what = f"is {far_m / 1000:.1f} km from {before_told}"
                 hint = "are latitude and longitude in this order, and home right?"
-                yield Finding(level, item.where, told(index, item), what, hint, index)
+                yield Finding(level, item.where, item_label(index, item), what, hint, index)
         before, before_told = here, f"item {index + 1}"

@@ -1,4 +1,4 @@
-"""What is wrong with the shape of a fence."""
+"""Mistakes in the shape of a fence."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ _FAR_M = 20_000.0
 
 
 def lint_fence(plan: Plan, home: Geodetic | None) -> Iterator[Finding]:
-    """Polygons that are none, upside-down heights, zones far from home."""
+    """Bad polygons (too few corners, crossing edges), ceilings below floors, zones far from
+    home."""
     for number, zone in enumerate(plan.fence.zones, start=1):
         for level, what in _zone_faults(zone, home):
             yield Finding(level, zone.where, f"fence zone {number}", what)

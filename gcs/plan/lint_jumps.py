@@ -1,4 +1,4 @@
-"""The traps of DO_JUMP."""
+"""Mistakes in DO_JUMP items."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ _STAYS = (Kind.MOVE, Kind.RETURN, Kind.WAIT)
 
 
 def lint_jumps(plan: Plan) -> Iterator[Finding]:
-    """Jumps to nowhere, to themselves, round and round without flying, and for ever."""
+    """Jumps to items that are not there or to themselves, loops without a waypoint, loops without
+    an end."""
     for index, item in enumerate(plan.items):
         if item.command == Cmd.DO_JUMP:
             yield from _lint_jump(plan, index, item)

@@ -131,7 +131,7 @@ class Zone:
 
 @dataclass(frozen=True, slots=True)
 class BreachReturn:
-    """Where a vehicle that left the fence should go, where its autopilot knows such a thing."""
+    """Where a vehicle that left the fence should go, for autopilots that have such a point."""
 
     lat_deg: float
     lon_deg: float
@@ -156,8 +156,9 @@ class RallyPoint:
 class Plan:
     """A mission with its fence and rally points.
 
-    `firmware` is whom the file was written for, None where it does not say.  `home` is the
-    planned home, which is never an item.  `notes` tells what the reader decided or doubts.
+    `firmware` is the autopilot that the file was written for, None where it does not say.
+    `home` is the planned home, which is never an item.  `notes` tells what the reader decided or
+    doubts.
     """
 
     name: str

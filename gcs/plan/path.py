@@ -1,6 +1,6 @@
 """The path that a plan flies, as straight legs and circles in the vehicle's local frame.
 
-Geometry only: what may be flown is the gate's to say.  Every way through the DO_JUMPs is
+Geometry only: the gate decides what may be flown.  Every way through the DO_JUMPs is
 walked, so the legs are those of the whole mission, each once.  Where a quadrotor's behaviour
 depends on the autopilot, it follows PX4's navigator and ArduCopter's AUTO mode:
 
@@ -39,7 +39,7 @@ class LegKind(Enum):
 
 
 class ProblemKind(Enum):
-    """What about a path cannot be known, or not be flown, so that it cannot be verified."""
+    """Why a path cannot be verified: something about it is not known, or cannot be flown."""
 
     NO_ORIGIN = "the vehicle's origin is not known"
     TERRAIN = "heights above terrain need a terrain model"
@@ -65,7 +65,7 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """Straight, in local NED metres.  The floor does not apply to what leaves or reaches ground."""
+    """A straight leg in local NED, metres."""
 
     item: int
     kind: LegKind
@@ -74,6 +74,7 @@ class Leg:
 
     @property
     def floor_applies(self) -> bool:
+        """Not to legs that leave or reach the ground."""
         return self.kind not in (LegKind.CLIMB, LegKind.DESCENT)
 
 
@@ -114,20 +115,6 @@ class FlightPath:
         return tuple((leg.from_ned, leg.to_ned) for leg in self.legs)
 
     @property
-    def discs(self) -> tuple[tuple[Vec3, float], ...]:
-        return tuple((circle.centre_ned, circle.radius_m) for circle in self.circles)
-
-    @property
-    def floor_free(self) -> frozenset[int]:
-        """Indices of the legs to which the floor does not apply."""
-        return frozenset(i for i, leg in enumerate(self.legs) if not leg.floor_applies)
-
-    def item_of(self, index: int) -> int:
-        """The item behind leg `index`, circles counted on after the legs."""
-        count = len(self.legs)
-        return self.legs[index].item if index < count else self.circles[index - count].item
-
-    @property
     def length_m(self) -> float:
         """Of the legs, without the circles."""
         return sum(math.dist(leg.from_ned, leg.to_ned) for leg in self.legs)
@@ -163,7 +150,8 @@ class _Walk:
         return FlightPath(tuple(self._legs), tuple(self._circles), tuple(self._problems))
 
     def _follow(self, index: int, pos_ned: Vec3) -> None:
-        """From item `index` on, entered at `pos_ned`, to the end or to where it was before."""
+        """Walk from item `index`, entered at `pos_ned`, to the end of the mission or to where this
+        walk was before."""
         while index < len(self._plan.items) and (index, pos_ned) not in self._seen:
             self._seen.add((index, pos_ned))
             self._visits[index] = self._visits.get(index, 0) + 1

@@ -26,14 +26,8 @@ LatLonOf: TypeAlias = Callable[[float, float], tuple[float, float]]
 projection, so that the vehicle flies back to the metres that were meant."""
 
 _DIGITS = 7
-"""Of a degree: what MISSION_ITEM_INT carries.  Rounded here, what is verified is what flies."""
-
-
-def is_local(plan: Plan) -> bool:
-    """Whether any item or zone counts in metres."""
-    return any(isinstance(item.place, Local) for item in plan.items) or any(
-        _is_local_zone(zone) for zone in plan.fence.zones
-    )
+"""Decimal places of a degree that MISSION_ITEM_INT carries.  Rounded before it is verified, a
+place is flown exactly as it was verified."""
 
 
 def georeference(
@@ -74,9 +68,3 @@ def georeference(
         items=tuple(item_on_earth(item) for item in plan.items),
         fence=Fence(tuple(map(zone_on_earth, plan.fence.zones)), plan.fence.breach_return),
     )
-
-
-def _is_local_zone(zone: Zone) -> bool:
-    if isinstance(zone.shape, Circle):
-        return isinstance(zone.shape.centre, EastNorth)
-    return any(isinstance(corner, EastNorth) for corner in zone.shape.corners)

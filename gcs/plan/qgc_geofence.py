@@ -14,7 +14,7 @@ def read_fence(node: Node, notes: list[Finding]) -> Fence:
     """`inclusion: false` is an exclusion zone.  Raises PlanError with the JSON path.
 
     A fence of version 1 or lower is an error, as other programs drop it silently; an empty one
-    has nothing to drop and is told in `notes`.
+    has nothing to drop and goes into `notes`.
     """
     if node.get("version").integer(0, 1000) < 2:
         corners = node.find("polygon")

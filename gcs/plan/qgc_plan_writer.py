@@ -1,4 +1,4 @@
-"""Plan -> QGroundControl's .plan, and by name what the format cannot keep."""
+"""Plan -> QGroundControl's .plan, with a list of what that format cannot keep."""
 
 from __future__ import annotations
 

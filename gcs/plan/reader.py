@@ -1,4 +1,4 @@
-"""Any mission file -> Plan, by what is in it."""
+"""Any mission file -> Plan; what is in the file decides which format it is."""
 
 from __future__ import annotations
 

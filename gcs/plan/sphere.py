@@ -1,4 +1,4 @@
-"""Rough distances on the globe, for finding nonsense; never for judging a flight."""
+"""Rough distances on the globe, to find absurd values; never to decide about a flight."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A whole mission before the verifier: every leg, every circle, and the way home from each.
+"""Verification of a whole mission: every leg, every circle, and the way home from each leg.
 
-The verdict is the gate's verifier's alone; this walks the plan and asks it.
+The gate's verifier judges; this module walks the plan and asks it.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def verify(plan: Plan, ground: Ground, verifier: Verifier) -> Verification:
             leg.from_ned,
             leg.to_ned,
             0.0,
-            _ask(verifier, [(leg.from_ned, leg.to_ned)], [], floor_applies=leg.floor_applies),
+            verifier.mission_leg(leg.from_ned, leg.to_ned, floor_applies=leg.floor_applies),
         )
         for leg in path.legs
     ]
@@ -110,22 +110,11 @@ def verify(plan: Plan, ground: Ground, verifier: Verifier) -> Verification:
             circle.centre_ned,
             circle.centre_ned,
             circle.radius_m,
-            _ask(verifier, [], [(circle.centre_ned, circle.radius_m)], floor_applies=True),
+            verifier.mission_circle(circle.centre_ned, circle.radius_m),
         )
         for circle in path.circles
     ]
     return Verification(path, (*legs, *circles), _blocked_returns(path, ground, verifier))
-
-
-def _ask(
-    verifier: Verifier,
-    legs: list[tuple[Vec3, Vec3]],
-    circles: list[tuple[Vec3, float]],
-    *,
-    floor_applies: bool,
-) -> Refusal | None:
-    answer = verifier.path(legs, circles, frozenset() if floor_applies else frozenset({0}))
-    return answer[1] if isinstance(answer, tuple) else None
 
 
 def _blocked_returns(

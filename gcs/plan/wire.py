@@ -13,10 +13,8 @@ from typing import NamedTuple
 from gcs.plan import commands
 from gcs.plan.build import item_from_numbers
 from gcs.plan.errors import PlanError
-from gcs.plan.fence_items import fence_rows, split_fence
 from gcs.plan.model import (
     AutopilotName,
-    Fence,
     Frame,
     Geodetic,
     Geographic,
@@ -24,7 +22,6 @@ from gcs.plan.model import (
     Local,
     Params,
     Plan,
-    RallyPoint,
 )
 from gcs.wire.ids import Cmd, MavFrame, MissionType
 
@@ -179,40 +176,3 @@ def _from_wire(name: str, item: WireItem, do_jump_id: int) -> Item:
         do_jump_id,
         bool(item.autocontinue),
     )
-
-
-def fence_to_wire(plan: Plan) -> tuple[WireItem, ...]:
-    """The fence as items 5000 to 5004, mission type 1.  Floors and ceilings are not sent.
-
-    Raises PlanError for a fence that is not on Earth yet.
-    """
-    return tuple(
-        WireItem(
-            seq=seq,
-            frame=MavFrame.GLOBAL_INT,
-            command=row.command,
-            current=0,
-            autocontinue=1,
-            param1=row.p1,
-            param2=0.0,
-            param3=0.0,
-            param4=0.0,
-            x=round(row.lat_deg * _SCALE),
-            y=round(row.lon_deg * _SCALE),
-            z=row.alt_m,
-            mission_type=MissionType.FENCE,
-        )
-        for seq, row in enumerate(fence_rows(plan.source or plan.name, plan.fence))
-    )
-
-
-def fence_from_wire(
-    items: Sequence[WireItem], name: str = "on board"
-) -> tuple[Fence, tuple[RallyPoint, ...]]:
-    """The fence and rally points among items of mission type 1 and 2.  Raises PlanError."""
-    read = [_from_wire(name, item, item.seq + 1) for item in items]
-    flown, fence, rally = split_fence(name, read)
-    if flown:
-        label = commands.name(flown[0].command)
-        raise PlanError(name, flown[0].where, label, "is no part of a fence")
-    return fence, rally

@@ -143,7 +143,7 @@ def _decide_home(
             hint = "ArduPilot's own files carry home as item 0"
             notes.append(Finding(Level.WARNING, first.line, told, what, hint))
         return None
-    if autopilot == "px4" and not _home_by_company(rows):
+    if autopilot == "px4" and not _first_must_be_home(rows):
         what = "could be home, but PX4 files carry none: it is flown as the first waypoint"
         hint = "read it with --autopilot ardupilot if it is home"
         notes.append(Finding(Level.WARNING, first.line, told, what, hint))
@@ -164,8 +164,9 @@ def _looks_like_home(row: _Row) -> bool:
     )
 
 
-def _home_by_company(rows: list[_Row]) -> bool:
-    """Whether what follows makes no sense unless item 0 is home: a take-off, or other heights."""
+def _first_must_be_home(rows: list[_Row]) -> bool:
+    """Whether the second item shows that the first is home: it is a take-off, or its height counts
+    from home or terrain."""
     if len(rows) == 1:
         return False
     follower = rows[1].item

@@ -156,24 +156,6 @@ class ParamsDone:
     """Every name that was asked for is read or absent."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParamStored:
-    """The vehicle confirmed the new value."""
-
-    name: str
-    value: int | float
-
-
-@dataclass(frozen=True, slots=True)
-class ParamRefused:
-    """It kept the old value (`kept`), gave an error, or never answered."""
-
-    name: str
-    kept: int | float | None
-    text: str
-
-
 CommandEffect: TypeAlias = Send | Finished | InProgress | LateAck
 TransferEffect: TypeAlias = Send | TransferProgress | TransferDone | TransferFailed
 ParamEffect: TypeAlias = Send | ParamRead | ParamAbsent | ParamsDone
-ParamSetEffect: TypeAlias = Send | ParamStored | ParamRefused

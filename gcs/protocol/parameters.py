@@ -18,10 +18,7 @@ from gcs.protocol.effects import (
     ParamAbsent,
     ParamEffect,
     ParamRead,
-    ParamRefused,
     ParamsDone,
-    ParamSetEffect,
-    ParamStored,
     Send,
     Wake,
 )
@@ -29,17 +26,12 @@ from gcs.wire.ids import ParamError, ParamType
 from gcs.wire.messages import (
     Message,
     ParamRequestRead,
-    ParamSet,
     ParamValue,
 )
 from gcs.wire.messages import ParamError as ParamErrorMessage
 
 READ_WAIT_NS = 500_000_000
 READ_TRIES = 3
-SET_WAIT_NS = 1_000_000_000
-SET_TRIES = 3
-"""QGroundControl's: one second, two retries."""
-MAX_NAME = 16
 BY_NAME = -1
 """param_index that says: look at the name."""
 
@@ -68,23 +60,6 @@ def decode_value(wire: float, type_: ParamType, encoding: ParamEncoding) -> int 
         value: int = struct.unpack_from("<" + code, struct.pack("<f", wire))[0]
         return value
     return round(wire) if math.isfinite(wire) else wire
-
-
-def encode_value(value: int | float, type_: ParamType, encoding: ParamEncoding) -> float:
-    """The float for PARAM_SET.  Raises ValueError for a value that the type cannot hold."""
-    code = _INTEGER.get(type_)
-    if code is None:
-        return float(value)
-    if value != int(value):
-        raise ValueError(f"{value} is no whole number, as {type_.name} asks")
-    try:
-        raw = struct.pack("<" + code, int(value))
-    except struct.error as error:
-        raise ValueError(f"{value} does not fit {type_.name}") from error
-    if encoding is ParamEncoding.BYTEWISE:
-        wire: float = struct.unpack("<f", raw.ljust(4, b"\0"))[0]
-        return wire
-    return float(value)
 
 
 def _answer(heard: Heard, own: Address, target: Address, name: str) -> Message | None:
@@ -165,86 +140,6 @@ class ParamReader:
         return [Send(ask)]
 
 
-class ParamSetter:
-    """Change one parameter; ends as ParamStored or ParamRefused.
-
-    The vehicle's echo is compared with what was asked for; an echo of the old value is its way to
-    refuse.  `check` False takes any echo as a yes.
-    """
-
-    def __init__(
-        self,
-        own: Address,
-        target: Address,
-        encoding: ParamEncoding,
-        name: str,
-        value: int | float,
-        type_: ParamType,
-        check: bool = True,
-    ) -> None:
-        """Raises ValueError if the type cannot hold the value or the name is too long."""
-        if len(name.encode()) > MAX_NAME:
-            raise ValueError(f"{name!r} is longer than a parameter's name can be")
-        self._own = own
-        self._target = target
-        self._encoding = encoding
-        self._name = name
-        self._check = check
-        self._message = ParamSet(
-            param_value=encode_value(value, type_, encoding),
-            target_system=target.sysid,
-            target_component=target.compid,
-            param_id=name,
-            param_type=type_,
-        )
-        self._value = value
-        self._tries = 0
-        self.deadline_ns: int | None = None
-        self.ended = False
-
-    def start(self, now_ns: int) -> list[ParamSetEffect]:
-        return self._try(now_ns)
-
-    def handle(self, event: Input, now_ns: int) -> list[ParamSetEffect]:
-        if self.ended:
-            return []
-        match event:
-            case Heard():
-                return self._heard(event)
-            case Wake():
-                if self.deadline_ns is None or now_ns < self.deadline_ns:
-                    return []
-                if self._tries < SET_TRIES:
-                    return self._try(now_ns)
-                return self._end(ParamRefused(self._name, None, "the vehicle did not answer"))
-            case _:
-                assert_never(event)
-
-    def _try(self, now_ns: int) -> list[ParamSetEffect]:
-        self._tries += 1
-        self.deadline_ns = now_ns + SET_WAIT_NS
-        return [Send(self._message)]
-
-    def _heard(self, heard: Heard) -> list[ParamSetEffect]:
-        match _answer(heard, self._own, self._target, self._name):
-            case ParamValue() as answer:
-                kept = _read(answer, self._encoding).value
-                if not self._check or _same(kept, self._value):
-                    return self._end(ParamStored(self._name, kept))
-                text = f"the vehicle keeps {kept} and did not take {self._value}"
-                return self._end(ParamRefused(self._name, kept, text))
-            case ParamErrorMessage(error=error):
-                text = f"the vehicle answered {_error_name(error)}"
-                return self._end(ParamRefused(self._name, None, text))
-            case _:
-                return []
-
-    def _end(self, effect: ParamStored | ParamRefused) -> list[ParamSetEffect]:
-        self.ended = True
-        self.deadline_ns = None
-        return [effect]
-
-
 def _read(answer: ParamValue, encoding: ParamEncoding) -> ParamRead:
     """A type that does not exist is taken for a float."""
     known = answer.param_type in ParamType.__members__.values()
@@ -252,15 +147,5 @@ def _read(answer: ParamValue, encoding: ParamEncoding) -> ParamRead:
     return ParamRead(answer.param_id, decode_value(answer.param_value, type_, encoding), type_)
 
 
-def _same(a: int | float, b: int | float) -> bool:
-    """Equal as float32, which is what went over the wire."""
-    return a == b or struct.pack("<f", a) == struct.pack("<f", b)
-
-
 def _param_error(error: int) -> ParamError | int:
     return ParamError(error) if error in ParamError.__members__.values() else error
-
-
-def _error_name(error: int) -> str:
-    known = _param_error(error)
-    return known.name if isinstance(known, ParamError) else f"error {error}"

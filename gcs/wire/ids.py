@@ -17,7 +17,6 @@ class MsgId(IntEnum):
     SYS_STATUS = 1
     PARAM_REQUEST_READ = 20
     PARAM_VALUE = 22
-    PARAM_SET = 23
     GPS_RAW_INT = 24
     ATTITUDE = 30
     LOCAL_POSITION_NED = 32

@@ -79,17 +79,6 @@ class ParamValue(Message, frozen=True, gc=False):
     param_type: int  # MAV_PARAM_TYPE
 
 
-class ParamSet(Message, frozen=True, gc=False):
-    """PARAM_SET (23): 23 bytes."""
-
-    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_SET
-    param_value: float
-    target_system: int
-    target_component: int
-    param_id: str  # at most 16 bytes
-    param_type: int  # MAV_PARAM_TYPE
-
-
 class Attitude(Message, frozen=True, gc=False):
     """ATTITUDE (30): 28 bytes."""
 

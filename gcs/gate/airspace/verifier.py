@@ -172,7 +172,7 @@ class Verifier:
         return Cleared((*numbers, ("leg_m", math.dist(top_ned, over_ned))))
 
     def return_refusal(self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> Refusal | None:
-        """What blocks the vehicle's own way home; None if it is clear.
+        """Why the vehicle's own way home is refused; None if it is clear.
 
         It climbs to its return height (metres above home) unless it is higher, flies straight home
         and descends.  A return makes it safer, so no margin is asked for, only that it stays inside
@@ -192,28 +192,40 @@ class Verifier:
         sentence = f"return blocked: {blocked.sentence}"
         return Refusal(Code.RTL_BLOCKED, sentence, blocked.numbers, blocked.zone)
 
-    def path(
-        self,
-        legs: Sequence[tuple[Vec3, Vec3]],
-        circles: Sequence[tuple[Vec3, float]] = (),
-        floor_free: frozenset[int] = frozenset(),
-    ) -> Cleared | tuple[int, Refusal]:
-        """Is a whole mission clear: every leg with its end, and every loiter circle?
+    def mission_leg(self, a_ned: Vec3, b_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
+        """Why a straight leg of a mission, or its end, is refused; None if both are clear.
 
-        `circles` are (centre, radius).  `floor_free` are the indices of the legs that begin or end
-        on the ground.  Of a circle the whole disc has to be clear.  Returns the first refusal with
-        the index of its leg; the indices of circles follow those of the legs.
+        The floor does not apply to legs that leave or reach the ground.
         """
-        for i, (a_ned, b_ned) in enumerate(legs):
-            refusal = self._mission_leg(a_ned, b_ned, floor_applies=i not in floor_free)
-            if refusal is not None:
-                return i, refusal
-        for i, (centre_ned, radius_m) in enumerate(circles, start=len(legs)):
-            refusal = self._mission_circle(centre_ned, radius_m)
-            if refusal is not None:
-                return i, refusal
-        length_m = sum(math.dist(a, b) for a, b in legs)
-        return Cleared((("legs", float(len(legs))), ("length_m", length_m)))
+        judge = self._judge
+        subject = f"waypoint {place(b_ned)}" if all(map(math.isfinite, b_ned)) else "a waypoint"
+        return (
+            self._unusable(waypoint=(*a_ned, *b_ned))
+            or self._limits(subject, b_ned, floor_applies=floor_applies)
+            or beyond_reach(a_ned)
+            or judge.point(subject, b_ned, floor_applies=floor_applies)
+            or judge.leg(
+                f"the leg to {place(b_ned)}",
+                a_ned,
+                b_ned,
+                judge.margins,
+                floor_applies=floor_applies,
+            )
+        )
+
+    def mission_circle(self, centre_ned: Vec3, radius_m: float) -> Refusal | None:
+        """Why a loiter circle is refused; None if it is clear.
+
+        The disc of the circle, not its rim alone, has to be clear.
+        """
+        refusal = self._unusable(circle=(*centre_ned, radius_m))
+        if refusal is not None:
+            return refusal
+        reach_m = abs(radius_m)
+        subject = f"the circle of {metres(reach_m)} m about {place(centre_ned)}"
+        return self._limits(subject, centre_ned, allow=Margins(-reach_m, 0.0)) or self._judge.point(
+            subject, centre_ned, floor_applies=True, radius_m=reach_m
+        )
 
     def start(self, pos_ned: Vec3) -> Refusal | None:
         """See `check_start`."""
@@ -298,33 +310,6 @@ class Verifier:
 
     def _return_leg(self, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusal | None:
         return self._judge.leg(subject, a_ned, b_ned, NO_MARGINS, floor_applies=False)
-
-    def _mission_leg(self, a_ned: Vec3, b_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
-        judge = self._judge
-        subject = f"waypoint {place(b_ned)}" if all(map(math.isfinite, b_ned)) else "a waypoint"
-        return (
-            self._unusable(waypoint=(*a_ned, *b_ned))
-            or self._limits(subject, b_ned, floor_applies=floor_applies)
-            or beyond_reach(a_ned)
-            or judge.point(subject, b_ned, floor_applies=floor_applies)
-            or judge.leg(
-                f"the leg to {place(b_ned)}",
-                a_ned,
-                b_ned,
-                judge.margins,
-                floor_applies=floor_applies,
-            )
-        )
-
-    def _mission_circle(self, centre_ned: Vec3, radius_m: float) -> Refusal | None:
-        refusal = self._unusable(circle=(*centre_ned, radius_m))
-        if refusal is not None:
-            return refusal
-        reach_m = abs(radius_m)
-        subject = f"the circle of {metres(reach_m)} m about {place(centre_ned)}"
-        return self._limits(subject, centre_ned, allow=Margins(-reach_m, 0.0)) or self._judge.point(
-            subject, centre_ned, floor_applies=True, radius_m=reach_m
-        )
 
 
 def _way_home(pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> tuple[Vec3, Vec3]:

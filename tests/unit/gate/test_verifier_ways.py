@@ -92,37 +92,36 @@ def test_a_return_needs_no_floor_and_no_margin() -> None:
 # ----------------------------------------------------------------------------- mission
 
 
-def test_a_mission_is_judged_whole_and_the_first_fault_is_told_with_its_index() -> None:
+def code_of(refusal: Refusal | None) -> Code | None:
+    return None if refusal is None else refusal.code
+
+
+def test_a_leg_of_a_mission_is_judged_with_its_end() -> None:
     verifier = around(OUTER, TOWER)
-    off = (at(0, 0, 0), at(0, 0, 10))
-    out = (at(0, 0, 10), at(0, 40, 10))
-    through = (at(0, 40, 10), at(50, -40, 10))
-    down = (at(0, 40, 10), at(0, 40, 0))
-    assert isinstance(verifier.path([off, out, down], floor_free=frozenset({0, 2})), Cleared)
-    answer = verifier.path([off, out, through], floor_free=frozenset({0}))
-    assert isinstance(answer, tuple)
-    assert (answer[0], answer[1].code) == (2, Code.LEG_LEAVES_FENCE)
-    grounded = verifier.path([off, out, down], floor_free=frozenset({0}))
-    assert isinstance(grounded, tuple)
-    assert grounded[0] == 2
+    corner = at(0, 40, 10)
+    assert verifier.mission_leg(at(0, 0, 10), corner, floor_applies=True) is None
+    through = verifier.mission_leg(corner, at(50, -40, 10), floor_applies=True)
+    assert code_of(through) is Code.LEG_LEAVES_FENCE
+    outside = verifier.mission_leg(corner, at(160, 40, 10), floor_applies=True)
+    assert code_of(outside) is Code.OUTSIDE_FENCE
+    nowhere = verifier.mission_leg(corner, at(NAN, 0, 10), floor_applies=True)
+    assert code_of(nowhere) is Code.NON_FINITE
+
+
+def test_a_leg_that_leaves_or_reaches_the_ground_is_free_of_the_floor() -> None:
+    verifier = around(OUTER, TOWER)
+    over, ground = at(0, 40, 10), at(0, 40, 0)
+    assert verifier.mission_leg(ground, over, floor_applies=False) is None
+    assert verifier.mission_leg(over, ground, floor_applies=False) is None
+    assert code_of(verifier.mission_leg(over, ground, floor_applies=True)) is Code.TOO_CLOSE
 
 
 def test_a_loiter_circle_is_judged_by_its_whole_disc() -> None:
     verifier = around(OUTER, TOWER)
-    leg = (at(0, 0, 10), at(0, 40, 10))
-    assert isinstance(verifier.path([leg], [(at(0, 40, 10), 20.0)]), Cleared)
-    too_wide = verifier.path([leg], [(at(0, 40, 10), 60.0)])
-    assert isinstance(too_wide, tuple)
-    assert (too_wide[0], too_wide[1].code) == (1, Code.INSIDE_EXCLUSION)
-    over_the_edge = verifier.path([leg], [(at(0, 40, 30), 111.0)])
-    assert isinstance(over_the_edge, tuple)
-    assert over_the_edge[1].code is Code.OUTSIDE_FENCE
-    nan = verifier.path([leg], [(at(0, 40, 10), NAN)])
-    assert isinstance(nan, tuple)
-    assert nan[1].code is Code.NON_FINITE
-    bad_leg = verifier.path([leg, (at(0, 40, 10), at(NAN, 0, 10))])
-    assert isinstance(bad_leg, tuple)
-    assert (bad_leg[0], bad_leg[1].code) == (1, Code.NON_FINITE)
+    assert verifier.mission_circle(at(0, 40, 10), 20.0) is None
+    assert code_of(verifier.mission_circle(at(0, 40, 10), 60.0)) is Code.INSIDE_EXCLUSION
+    assert code_of(verifier.mission_circle(at(0, 40, 30), 111.0)) is Code.OUTSIDE_FENCE
+    assert code_of(verifier.mission_circle(at(0, 40, 10), NAN)) is Code.NON_FINITE
 
 
 # ----------------------------------------------------------------------- what is unknown

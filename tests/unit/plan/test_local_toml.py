@@ -8,8 +8,18 @@ import pytest
 
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.plan.errors import PlanError
-from gcs.plan.model import Circle, EastNorth, Frame, Geodetic, Geographic, LatLon, Local, Polygon
-from gcs.plan.place import georeference, is_local
+from gcs.plan.model import (
+    Circle,
+    EastNorth,
+    Frame,
+    Geodetic,
+    Geographic,
+    LatLon,
+    Local,
+    Plain,
+    Polygon,
+)
+from gcs.plan.place import georeference
 from gcs.plan.zones import zone_specs
 from tests.unit.plan.samples import LOCAL, read_text
 
@@ -61,7 +71,7 @@ def test_placed_on_earth_it_counts_above_home_and_comes_back_to_the_metre() -> N
     assert place.alt_m == 1.5
     assert projection.north_east(place.lat_deg, place.lon_deg) == pytest.approx((11, 22), abs=0.01)
     assert plan.home == home
-    assert not is_local(plan)
+    assert all(isinstance(item.place, Geographic | Plain) for item in plan.items)
     assert isinstance(plan.fence.zones[0].shape, Polygon)
     assert isinstance(plan.fence.zones[0].shape.corners[0], LatLon)
 

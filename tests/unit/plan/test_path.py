@@ -10,7 +10,7 @@ import pytest
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
-from gcs.plan.path import FlightPath, Ground, LegKind, ProblemKind, flight_path
+from gcs.plan.path import FlightPath, Ground, LegKind, LoiterCircle, ProblemKind, flight_path
 
 ORIGIN = Origin(47.397742, 8.545594, 488.0)
 PROJECTION = Projection(ORIGIN, "px4")
@@ -55,9 +55,8 @@ def test_take_off_waypoints_and_landing() -> None:
         (3, "STRAIGHT", (0, 0, -8)),
         (3, "DESCENT", (0, 0, 0)),
     ]
-    assert flown.floor_free == {0, 4}
+    assert [leg.floor_applies for leg in flown.legs] == [False, True, True, True, False]
     assert flown.problems == ()
-    assert flown.item_of(4) == 3
 
 
 def test_px4_flies_from_its_climb_to_the_take_off_position_and_ardupilot_does_not() -> None:
@@ -130,10 +129,9 @@ def test_a_jump_loop_without_a_waypoint_ends() -> None:
 def test_a_circle_is_entered_at_its_nearest_point_and_left_there_after_whole_turns() -> None:
     flown = path(at(0, 0, 5, 22), at(20, 0, 5, 18, (2.0, 0.0, 6.0, 0.0)), at(20, 30, 5))
 
-    assert flown.discs == (((20.0, 0.0, -5.0), 6.0),)
+    assert flown.circles == (LoiterCircle(1, (20.0, 0.0, -5.0), 6.0),)
     assert flown.segments[1][1] == pytest.approx((14, 0, -5))
     assert flown.segments[2][0] == pytest.approx((14, 0, -5))
-    assert flown.item_of(len(flown.legs)) == 1
 
 
 @pytest.mark.parametrize(("radius", "east"), [(6.0, -6.0), (-6.0, 6.0)])

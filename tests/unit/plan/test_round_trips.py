@@ -13,7 +13,7 @@ from gcs.plan.compare import same_meaning
 from gcs.plan.errors import PlanError
 from gcs.plan.model import AutopilotName, Circle, Fence, Geodetic, Item, LatLon, Plan, Zone
 from gcs.plan.reader import read
-from gcs.plan.wire import fence_from_wire, fence_to_wire, from_wire, to_wire
+from gcs.plan.wire import from_wire, to_wire
 from gcs.plan.wpl_writer import write_wpl
 from gcs.plan.writer import write
 from tests.unit.plan.samples import LOCAL, WHO, shared
@@ -62,14 +62,6 @@ def test_a_plan_survives_the_wire(plan: Plan, who: AutopilotName) -> None:
     assert to_wire(again, who) == sent
     assert same_meaning(sent, to_wire(again, who), who) == []
     assert [item.seq for item in sent] == list(range(len(sent)))
-
-
-@given(plans("px4"))
-def test_a_fence_survives_the_wire(plan: Plan) -> None:
-    again, rally = fence_from_wire(fence_to_wire(plan))
-
-    assert again == plan.fence
-    assert rally == ()
 
 
 def test_floors_and_ceilings_are_named_when_they_are_lost() -> None:

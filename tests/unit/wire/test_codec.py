@@ -19,7 +19,6 @@ from gcs.wire.messages import (
     MissionCount,
     MissionCurrent,
     MissionItemReached,
-    ParamSet,
     ParamValue,
     Statustext,
 )
@@ -84,11 +83,9 @@ def test_an_array_of_the_wrong_length_is_named() -> None:
 
 
 def test_a_number_too_large_for_float32_is_named() -> None:
-    setting = ParamSet(
-        param_value=1e39, target_system=1, target_component=1, param_id="P", param_type=9
-    )
-    with pytest.raises(EncodeError, match="PARAM_SET: param_value = 1e"):
-        encode(setting)
+    told = ParamValue(param_value=1e39, param_count=1, param_index=0, param_id="P", param_type=9)
+    with pytest.raises(EncodeError, match="PARAM_VALUE: param_value = 1e"):
+        encode(told)
 
 
 def test_text_ends_at_its_nul_and_may_fill_its_field() -> None:
