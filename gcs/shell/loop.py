@@ -9,6 +9,7 @@ from __future__ import annotations
 import select
 import traceback
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
 
@@ -83,24 +84,32 @@ class Loop:
     def run(self) -> Finish:
         """Returns when the session says so; whoever called closes what it opened."""
         while self._finish is None:
-            readable, writable = self._wait()
-            if self._screen in writable:
-                self._screen.flush()
-            self._read_links(readable)
-            if self._signals in readable:
-                for name in self._signals.read():
-                    self._feed(OperatorGone(name))
-            if self._operator_open and self._operator in readable:
-                self._read_operator()
-            if self._sim_open and self._sim is not None and self._sim.lines in readable:
-                self._read_sim(self._sim)
-            if self._screen.broken and self._operator_open:
-                self._operator_open = False
-                self._feed(OperatorGone("nobody reads the link's output"))
-            self._wake_if_due()
-            for change in self._recording.upkeep(self._clock.now_ns()):
-                self._feed(change)
+            try:
+                self._turn()
+            except Exception:  # noqa: BLE001 - the last resort: a bug of ours must not drop a vehicle
+                # Met outside of any input, it is one of the loop itself: as if it were the clock's.
+                self._fault(Wake(), traceback.format_exc(), self._clock.now_ns())
         return self._finish
+
+    def _turn(self) -> None:
+        """Wait once, and hand on all that came."""
+        readable, writable = self._wait()
+        if self._screen in writable:
+            self._screen.flush()
+        self._read_links(readable)
+        if self._signals in readable:
+            for name in self._signals.read():
+                self._feed(OperatorGone(name))
+        if self._operator_open and self._operator in readable:
+            self._read_operator()
+        if self._sim_open and self._sim is not None and self._sim.lines in readable:
+            self._read_sim(self._sim)
+        if self._screen.broken and self._operator_open:
+            self._operator_open = False
+            self._feed(OperatorGone("nobody reads the link's output"))
+        self._wake_if_due()
+        for change in self._recording.upkeep(self._clock.now_ns()):
+            self._feed(change)
 
     def _wait(self) -> tuple[list[Source], list[LineSink]]:
         sources: list[Source] = [link for link in self._links if link.fileno() >= 0]
@@ -152,20 +161,43 @@ class Loop:
             self._feed(SimGone(sim.ended()))
 
     def _feed(self, given: Input) -> None:
-        """One input, and whatever its effects lead back to."""
+        """One input with all its effects; then whatever they lead back to."""
         if self._finish is not None:
             return
         now_ns = self._clock.now_ns()
+        effects: Sequence[Effect] = ()
+        answers: list[Input] = []
+        report = ""
         try:
             effects = self._core.handle(given, now_ns)
         except Exception:  # noqa: BLE001 - the last resort: a bug of ours must not drop a vehicle
-            effects = self._core.fault(given, traceback.format_exc(), now_ns)
+            report = traceback.format_exc()
         for effect in effects:
-            self._perform(effect, now_ns)
-        for change in self._recording.changes():
-            self._feed(change)
+            try:
+                answer = self._perform(effect, now_ns)
+            except Exception:  # noqa: BLE001 - the same; and the effects after it still count
+                report = report or traceback.format_exc()
+            else:
+                if answer is not None:
+                    answers.append(answer)
+        if report:
+            self._fault(given, report, now_ns)
+        answers += self._recording.changes()
+        for follows in answers:
+            self._feed(follows)
 
-    def _perform(self, effect: Effect, now_ns: int) -> None:
+    def _fault(self, given: Input, report: str, now_ns: int) -> None:
+        """Perform the session's answer to a bug of ours.
+
+        What fails of it, perhaps for the same reason, must not keep the rest from leaving: a hold
+        for the vehicle may be in it.
+        """
+        for effect in self._core.fault(given, report, now_ns):
+            with suppress(Exception):
+                self._perform(effect, now_ns)
+
+    def _perform(self, effect: Effect, now_ns: int) -> FileRead | FileWritten | None:
+        """Do it; the answer, where it has one."""
         match effect:
             case Transmit(link, data):
                 self._links[link].send(data)
@@ -178,11 +210,12 @@ class Loop:
                     put = self._screen.offer
                 put(line)
             case ReadFile(token, path):
-                self._feed(_read(token, path))
+                return _read(token, path)
             case WriteFile(token, path, data):
-                self._feed(_write(token, path, data))
+                return _write(token, path, data)
             case Finish():
                 self._finish = effect
+        return None
 
 
 def _read(token: int, path: str) -> FileRead:

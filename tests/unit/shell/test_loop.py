@@ -1,0 +1,357 @@
+"""The one loop: every effect is performed, every input is handed on, and a bug costs no vehicle."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from gcs import ipc
+from gcs.session.effects import Emit, Finish, ReadFile, Transmit, WriteFile
+from gcs.session.inputs import (
+    Datagram,
+    FileRead,
+    FileWritten,
+    LinkEvent,
+    OperatorGone,
+    OperatorLine,
+    OperatorNoise,
+    RecorderChanged,
+    RecorderGrew,
+    SimGone,
+    SimLine,
+    Wake,
+)
+from gcs.shell.loop import MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
+from tests.unit.shell.rig import DONE, EXIT_BUG, MS, START_NS, TICK_NS, Rig, recorded
+
+FIRST = Datagram(0, b"first")
+HOLD = Transmit(0, b"hold")
+
+
+@pytest.fixture
+def rig() -> Iterator[Rig]:
+    made = Rig()
+    yield made
+    made.close()
+
+
+def trouble(text: str) -> Emit:
+    return Emit(ipc.Trouble(text))
+
+
+def texts(events: list[ipc.Event]) -> list[str]:
+    return [event.text for event in events if isinstance(event, ipc.Trouble)]
+
+
+# ------------------------------------------------------------------------------- effects
+
+
+def test_frames_go_to_the_link_that_they_are_for(rig: Rig) -> None:
+    rig.core.answers[FIRST] = [Transmit(1, b"to one"), Transmit(0, b"to nought")]
+    assert rig.run(lambda: rig.links[0].bring(b"first")) == DONE
+    assert [link.sent for link in rig.links] == [[b"to nought"], [b"to one"]]
+
+
+def test_what_is_recorded_bears_the_time_that_the_core_was_told(rig: Rig) -> None:
+    rig.core.answers[FIRST] = [recorded("a"), recorded("b")]
+    rig.core.does[FIRST] = lambda: rig.advance(7)
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    assert rig.recording.written == [(START_NS, "a"), (START_NS, "b")]
+    assert rig.times_ns(FIRST) == [START_NS]
+
+
+def test_the_operator_is_told_in_order(rig: Rig) -> None:
+    rig.core.answers[FIRST] = [trouble("one"), trouble("two")]
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    assert texts(rig.events()) == ["one", "two"]
+
+
+def test_a_snapshot_is_dropped_where_the_pipe_is_full_and_a_verdict_is_not(rig: Rig) -> None:
+    snapshot = ipc.Snapshot(0, "", "", "", [], 0.0, "", False, 0.0)
+    flood = [trouble("x" * 1000) for _ in range(200)]
+    verdict = Emit(ipc.VerdictEvent(1, "arm", "accepted"))
+    rig.core.answers[FIRST] = [*flood, Emit(snapshot), verdict]
+    seen: list[ipc.Event] = []
+    look = [lambda: seen.extend(rig.events())] * 5
+    rig.run(lambda: rig.links[0].bring(b"first"), *look)
+    assert seen[-1] == verdict.event
+    assert len(seen) == 201
+
+
+def test_the_finish_ends_the_loop_and_nothing_is_handled_after_it(rig: Rig) -> None:
+    rig.core.answers[FIRST] = [Finish(5, "enough"), trouble("said after it all the same")]
+    finish = rig.run(lambda: rig.links[0].bring(b"first", b"second"))
+    assert finish == Finish(5, "enough")
+    assert rig.core.inputs == [FIRST]
+    assert texts(rig.events()) == ["said after it all the same"]
+
+
+# --------------------------------------------------------------------------------- files
+
+
+def read_answer(rig: Rig, path: str) -> FileRead:
+    """What the core hears of a file that it asks for."""
+    rig.core.answers[FIRST] = [ReadFile(9, path)]
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    (answer,) = [given for given in rig.core.inputs if isinstance(given, FileRead)]
+    assert (answer.token, answer.path) == (9, path)
+    return answer
+
+
+def test_a_file_that_is_asked_for_is_read(rig: Rig, tmp_path: Path) -> None:
+    (tmp_path / "a.plan").write_bytes(b"\0\xff plan")
+    assert read_answer(rig, str(tmp_path / "a.plan")).data == b"\0\xff plan"
+
+
+def test_a_shipped_mission_is_found_by_its_name(rig: Rig) -> None:
+    shipped = Path(__file__).parents[3] / "missions" / "demo.toml"
+    assert read_answer(rig, "demo").data == shipped.read_bytes()
+
+
+def test_a_file_that_is_not_there_is_told_with_what_there_is(rig: Rig, tmp_path: Path) -> None:
+    answer = read_answer(rig, str(tmp_path / "none.plan"))
+    assert answer.data is None
+    assert "no such file" in answer.error
+    assert "demo.toml" in answer.error
+
+
+def test_a_name_that_no_file_can_have_is_an_error_and_no_fault(rig: Rig) -> None:
+    answer = read_answer(rig, "a\0b")
+    assert answer.data is None
+    assert answer.error
+    assert rig.core.faults == []
+
+
+def test_a_file_that_is_too_large_is_not_taken(rig: Rig, tmp_path: Path) -> None:
+    (tmp_path / "huge.plan").touch()
+    os.truncate(tmp_path / "huge.plan", MAX_PLAN_BYTES + 1)
+    answer = read_answer(rig, str(tmp_path / "huge.plan"))
+    assert answer.data is None
+    assert answer.error == "larger than 16 MiB"
+
+
+@pytest.mark.parametrize(
+    ("name", "error"),
+    [
+        ("new.plan", ""),
+        ("a folder", "is no regular file"),
+        ("no folder/new.plan", "No such file or directory"),
+        ("a\0b", "embedded null byte"),
+    ],
+)
+def test_a_file_is_written_or_it_is_told_why_not(
+    rig: Rig, tmp_path: Path, name: str, error: str
+) -> None:
+    (tmp_path / "a folder").mkdir()
+    path = str(tmp_path / name)
+    rig.core.answers[FIRST] = [WriteFile(9, path, b"data")]
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    assert [given for given in rig.core.inputs if isinstance(given, FileWritten)] == [
+        FileWritten(9, path, error)
+    ]
+    if not error:
+        assert Path(path).read_bytes() == b"data"
+
+
+def test_what_a_file_leads_to_comes_after_all_effects_of_the_input_that_asked(
+    rig: Rig, tmp_path: Path
+) -> None:
+    """The record is the order in which the core was given its inputs."""
+    path = str(tmp_path / "new.plan")
+    rig.core.answers[FIRST] = [recorded("before"), WriteFile(9, path, b""), recorded("after")]
+    rig.core.answers[FileWritten(9, path)] = [recorded("written")]
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    assert [item for _, item in rig.recording.written] == ["before", "after", "written"]
+
+
+# -------------------------------------------------------------------------------- faults
+
+
+def test_a_bug_in_the_core_is_reported_to_it_and_its_answer_is_performed(rig: Rig) -> None:
+    rig.core.fails_at.add(FIRST)
+    rig.core.answer_to_fault = [HOLD]
+    rig.run(lambda: rig.links[0].bring(b"first", b"second"))
+    ((given, report),) = rig.core.faults
+    assert given == FIRST
+    assert report.splitlines()[-1] == "ZeroDivisionError: planted"
+    assert rig.links[0].sent == [b"hold"]
+    assert Datagram(0, b"second") in rig.core.inputs
+
+
+def test_an_effect_that_cannot_be_performed_is_a_fault_and_the_rest_is_performed(rig: Rig) -> None:
+    rig.links[1].send_fails = True
+    rig.core.answers[FIRST] = [Transmit(1, b"x"), trouble("the rest"), Transmit(0, b"y")]
+    rig.core.answer_to_fault = [HOLD]
+    assert rig.run(lambda: rig.links[0].bring(b"first")) == DONE
+    ((given, report),) = rig.core.faults
+    assert given == FIRST
+    assert "planted: send" in report
+    assert rig.links[0].sent == [b"y", b"hold"]
+    assert texts(rig.events()) == ["the rest"]
+
+
+def test_an_effect_that_fails_on_the_clock_ends_the_link_after_the_hold_has_left(rig: Rig) -> None:
+    """A recorder that raises what nobody foresaw must not leave a vehicle to itself."""
+    rig.recording.fails_at.append("a tick")
+    rig.core.answers[Wake()] = [recorded("a tick")]
+    rig.core.answer_to_fault = [HOLD]
+    assert rig.run(lambda: rig.advance(50)).exit_code == EXIT_BUG
+    assert rig.links[0].sent == [b"hold"]
+
+
+def test_an_answer_to_a_fault_that_fails_too_keeps_no_other_from_leaving(rig: Rig) -> None:
+    rig.links[1].send_fails = True
+    rig.recording.fails_at.append("the fault")
+    rig.core.answers[Wake()] = [Transmit(1, b"x")]
+    rig.core.answer_to_fault = [recorded("the fault"), Transmit(1, b"hold"), HOLD]
+    assert rig.run(lambda: rig.advance(50)).exit_code == EXIT_BUG
+    assert rig.links[0].sent == [b"hold"]
+    assert len(rig.core.faults) == 1
+
+
+def test_a_failure_outside_of_any_input_ends_the_link_after_the_hold_has_left(rig: Rig) -> None:
+    rig.links[1].drain_fails = True
+    rig.core.answer_to_fault = [HOLD]
+    assert rig.run(lambda: rig.links[1].bring(b"x")).exit_code == EXIT_BUG
+    assert "planted: drain" in rig.core.faults[0][1]
+    assert rig.links[0].sent == [b"hold"]
+
+
+# ---------------------------------------------------------------------------------- time
+
+
+def test_it_wakes_the_core_at_its_deadline_and_not_before(rig: Rig) -> None:
+    rig.run(lambda: rig.advance(49.999), lambda: rig.advance(0.001))
+    assert rig.times_ns(Wake()) == [START_NS + TICK_NS, START_NS + 2 * TICK_NS]
+
+
+def test_a_wake_that_comes_late_comes_once(rig: Rig) -> None:
+    rig.run(lambda: rig.advance(175))
+    assert rig.times_ns(Wake()) == [START_NS + 175 * MS, START_NS + 4 * TICK_NS]
+
+
+def test_a_deadline_that_passes_while_datagrams_keep_coming_is_served_between_them(
+    rig: Rig,
+) -> None:
+    rig.core.does[FIRST] = lambda: rig.advance(51)
+    rig.run(lambda: rig.links[0].bring(b"first", b"second"))
+    assert rig.core.inputs[:3] == [FIRST, Wake(), Datagram(0, b"second")]
+
+
+def test_one_turn_takes_no_more_than_its_share_of_a_flood(rig: Rig) -> None:
+    flood = [b"%d" % n for n in range(MAX_DATAGRAMS_A_TURN + 1)]
+    rig.run(lambda: rig.links[0].bring(*flood), lambda: rig.advance(50))
+    assert rig.core.inputs.index(Wake()) == MAX_DATAGRAMS_A_TURN
+
+
+def test_it_waits_for_the_first_deadline_of_core_recorder_and_links(rig: Rig) -> None:
+    def recorder_is_due() -> None:
+        rig.recording.due_ns = START_NS + 20 * MS
+
+    def link_is_due() -> None:
+        rig.links[1].due_ns = START_NS + 10 * MS
+
+    rig.run(recorder_is_due, link_is_due, lambda: None)
+    assert rig.clock.waits_s[:3] == pytest.approx([0.050, 0.020, 0.010])
+
+
+def test_a_link_that_is_due_is_poked_though_nothing_came(rig: Rig) -> None:
+    rig.links[1].open = False
+    rig.links[1].due_ns = START_NS + 10 * MS
+    rig.links[1].tell("connected")
+    rig.run(lambda: rig.advance(9), lambda: rig.advance(1))
+    assert rig.links[1].pokes_ns == [START_NS + 10 * MS]
+    assert LinkEvent(1, "connected") in rig.core.inputs
+
+
+def test_what_a_link_tells_of_itself_follows_what_it_brought(rig: Rig) -> None:
+    rig.links[0].tell("127.0.0.1:5 sends to us")
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    assert rig.core.inputs[:2] == [FIRST, LinkEvent(0, "127.0.0.1:5 sends to us")]
+
+
+# ------------------------------------------------------------------------------ operator
+
+
+def test_the_operator_s_lines_are_commands(rig: Rig) -> None:
+    asked = ipc.Ask(1, "land")
+    rig.run(lambda: rig.type(ipc.encode(asked) + ipc.encode(ipc.Leave())))
+    assert rig.core.inputs[:2] == [OperatorLine(asked), OperatorLine(ipc.Leave())]
+
+
+@pytest.mark.parametrize(
+    "line", ["land!", "{}", '{"type":"ask","id":"one","word":"land"}', "[" * 5000, b"\xff\xfe"]
+)
+def test_a_line_that_is_no_command_is_told_with_its_beginning(rig: Rig, line: str | bytes) -> None:
+    data = line.encode() if isinstance(line, str) else line
+    rig.run(lambda: rig.type(data + b"\n" + ipc.encode(ipc.Ask(1, "land"))))
+    noise, next_one = rig.core.inputs[:2]
+    assert isinstance(noise, OperatorNoise)
+    assert repr(data[:200]) in noise.text
+    assert next_one == OperatorLine(ipc.Ask(1, "land"))
+    assert rig.core.faults == []
+
+
+def test_the_end_of_the_command_stream_is_told_once_after_its_last_line(rig: Rig) -> None:
+    rig.run(
+        lambda: rig.type(ipc.encode(ipc.Ask(1, "land"))[:-1]),
+        rig.hang_up,
+        lambda: None,
+        lambda: rig.advance(50),
+    )
+    assert rig.core.inputs[:3] == [
+        OperatorLine(ipc.Ask(1, "land")),
+        OperatorGone("the command stream ended"),
+        Wake(),
+    ]
+
+
+def test_a_screen_that_nobody_reads_is_an_operator_who_is_gone_and_told_once(rig: Rig) -> None:
+    rig.core.answers[FIRST] = [trouble("is anybody there?")]
+    rig.run(rig.look_away, lambda: rig.links[0].bring(b"first"), rig.hang_up, lambda: None)
+    gone = [given for given in rig.core.inputs if isinstance(given, OperatorGone)]
+    assert gone == [OperatorGone("nobody reads the link's output")]
+
+
+def test_a_signal_is_an_operator_who_is_gone_by_its_name(rig: Rig) -> None:
+    rig.run(lambda: rig.signals.bring("SIGTERM"))
+    assert rig.core.inputs[0] == OperatorGone("SIGTERM")
+
+
+# ---------------------------------------------------------------------- recorder, vehicle
+
+
+def test_a_recorder_that_fails_is_told_before_the_next_input(rig: Rig) -> None:
+    failed = RecorderChanged(False, "a.mcap", "disk full")
+    rig.core.does[FIRST] = lambda: rig.recording.news.append(failed)
+    rig.run(lambda: rig.links[0].bring(b"first", b"second"))
+    assert rig.core.inputs[:3] == [FIRST, failed, Datagram(0, b"second")]
+    assert rig.times_ns(failed) == rig.times_ns(FIRST)
+
+
+def test_what_the_recorder_finds_at_its_own_time_is_handed_on(rig: Rig) -> None:
+    grew = RecorderGrew(123_456)
+    rig.run(lambda: rig.recording.upkeep_news.append(grew))
+    assert grew in rig.core.inputs
+
+
+def test_a_vehicle_of_our_own_is_heard_line_by_line_and_its_end_once(rig: Rig) -> None:
+    rig.run(
+        lambda: rig.sim_prints("INFO sim: ready\nhalf"),
+        lambda: rig.sim_prints(" a line \u00fc\n"),
+        rig.sim_ends,
+        lambda: None,
+    )
+    told = [given for given in rig.core.inputs if isinstance(given, SimLine | SimGone)]
+    assert told == [SimLine("INFO sim: ready"), SimLine("half a line \u00fc"), SimGone(3)]
+
+
+def test_an_event_on_the_pipe_is_one_line_of_json(rig: Rig) -> None:
+    rig.core.answers[FIRST] = [trouble("a\nb")]
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    (event,) = rig.events()
+    assert json.loads(ipc.encode(event))["text"] == "a\nb"
