@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import pytest
+
 from gcs.gate.effects import CommandKind, SendCommand
 from gcs.gate.inputs import CommandEnded
 from gcs.gate.permit import issue
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.protocol.effects import Heard, Send
 from gcs.session.commands import Commands
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import Log, ToGate, Work
 from gcs.wire.ids import Cmd, Result
-from gcs.wire.messages import CommandAck
-from tests.unit.session.vehicles import SECOND_NS, vehicle
+from gcs.wire.messages import CommandAck, CommandLong
+from tests.unit.session.vehicles import HOME, SECOND_NS, vehicle
 
 DEADLINE_NS = 5 * SECOND_NS
 
@@ -113,3 +116,66 @@ def test_a_vehicle_that_says_nothing_of_its_checks_is_asked_a_little_later() -> 
     assert sent(arm(commands, told(prearm_ok=None))) == 0
     assert commands.deadline_ns is not None
     assert sent(commands.wake(told(prearm_ok=None), commands.deadline_ns)) == 1
+
+
+def test_an_arm_that_waits_and_is_taken_back_is_not_asked_again() -> None:
+    commands = Commands(255, 190)
+    arm(commands, told())
+    answer(commands, Result.TEMPORARILY_REJECTED, 1)
+    assert commands.cancel(7, CommandKind.ARM, 2) == []
+    assert commands.deadline_ns is None
+    assert commands.wake(told(), 4 * SECOND_NS) == []
+
+
+def test_the_taking_back_of_another_request_s_arm_changes_nothing() -> None:
+    commands = Commands(255, 190)
+    arm(commands, told())
+    answer(commands, Result.TEMPORARILY_REJECTED, 1)
+    commands.cancel(8, CommandKind.ARM, 2)
+    commands.cancel(7, CommandKind.LAND, 2)
+    assert commands.deadline_ns is not None
+    assert sent(commands.wake(told(), commands.deadline_ns)) == 1
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "altitude_m"),
+    [
+        (PX4, 488.0 + 3.0 + 10.0),  # above the sea
+        (ARDUPILOT, 2.0 + 10.0),  # above home
+    ],
+)
+def test_a_climb_counts_from_where_the_vehicle_stands(
+    autopilot: Autopilot, altitude_m: float
+) -> None:
+    """The origin lies 488 m above the sea, home 1 m above it, and the vehicle 2 m above home."""
+    telemetry = vehicle(autopilot)
+    telemetry.origin, telemetry.home_ned, telemetry.pos_ned = (
+        HOME,
+        (5.0, 5.0, -1.0),
+        (9.0, 9.0, -3.0),
+    )
+    permit = issue(None, None, 0, "a test")
+    wanted = SendCommand(7, CommandKind.TAKE_OFF, DEADLINE_NS, permit, up_m=10.0)
+    (climb,) = Commands(255, 190).send(wanted, telemetry, 0)
+    assert isinstance(climb, Send)
+    assert isinstance(climb.message, CommandLong)
+    assert climb.message.command == Cmd.NAV_TAKEOFF
+    assert climb.message.param7 == pytest.approx(altitude_m)
+
+
+def test_every_picture_has_a_number_of_its_own_and_one_try() -> None:
+    """IMAGE_START_CAPTURE: param3 is how many, param4 the number that tells a repetition."""
+    commands = Commands(255, 190)
+    numbers = []
+    for _ in range(2):
+        photo = SendCommand(7, CommandKind.PHOTO, DEADLINE_NS)
+        (taken,) = commands.send(photo, vehicle(), 0)
+        assert isinstance(taken, Send)
+        assert isinstance(taken.message, CommandLong)
+        assert (taken.message.command, taken.message.param3) == (Cmd.IMAGE_START_CAPTURE, 1.0)
+        numbers.append(taken.message.param4)
+        out: list[Work] = []
+        while commands.deadline_ns is not None:
+            out += commands.wake(vehicle(), commands.deadline_ns)
+        assert sent(out) == 0
+    assert len(set(numbers)) == 2

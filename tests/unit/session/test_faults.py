@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from gcs.config import StationConfig
@@ -12,6 +14,8 @@ from gcs.session import inputs
 from gcs.session.effects import Effect, Emit, Finish, Record
 from gcs.session.session import MAX_FAULTS, Session
 from gcs.session.setup import Setup
+from tests.unit.session import wire
+from tests.unit.session.station import Script
 
 
 @pytest.fixture
@@ -36,6 +40,33 @@ def test_bytes_that_we_cannot_take_are_dropped_said_and_recorded(session: Sessio
 def test_a_fault_on_the_clock_ends_the_session(session: Session) -> None:
     (finish,) = finished(session.fault(inputs.Wake(), "ValueError: bad", 1))
     assert finish.exit_code == ExitCode.BUG
+
+
+def test_a_fault_on_the_clock_tells_a_vehicle_that_we_fly_to_hold() -> None:
+    script = Script().hovering()
+    effects = script.session.fault(inputs.Wake(), "ValueError: bad", script.now_ns)
+    (hold,) = wire.sent(effects)
+    assert (hold.get_type(), hold.command) == ("COMMAND_LONG", 176)  # DO_SET_MODE
+    assert (hold.param2, hold.param3) == (4, 3)  # px4's AUTO.LOITER
+    assert effects.index(finished(effects)[0]) == len(effects) - 1
+
+
+@pytest.mark.parametrize("situation", [Script.met, Script.flying])
+def test_a_vehicle_that_we_do_not_fly_is_left_alone(
+    situation: Callable[[Script], Script],
+) -> None:
+    script = situation(Script())
+    effects = script.session.fault(inputs.Wake(), "ValueError: bad", script.now_ns)
+    assert wire.sent(effects) == []
+    assert finished(effects)
+
+
+def test_after_a_fault_that_ends_nothing_the_flight_goes_on() -> None:
+    script = Script().hovering()
+    script.session.fault(inputs.Datagram(0, b"?"), "ValueError: bad", script.now_ns)
+    script.forget()
+    script.run(1.0)
+    assert len(script.sent("SET_POSITION_TARGET_LOCAL_NED")) == 20
 
 
 def test_fault_upon_fault_ends_the_session(session: Session) -> None:

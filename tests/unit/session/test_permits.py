@@ -21,7 +21,8 @@ def calls_of(name: str) -> set[str]:
     """Files of the package that call `name` or `<module>.name`."""
     found = set()
     for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)) if name in text else ():
             if isinstance(node, ast.Call):
                 called = node.func
                 word = getattr(called, "attr", None) or getattr(called, "id", None)

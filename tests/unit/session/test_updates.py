@@ -92,12 +92,20 @@ def test_an_attitude_that_is_no_number_is_none() -> None:
     assert seen.yaw_rad == 0.5
 
 
-@pytest.mark.parametrize(("left_pct", "low", "critical"), [(80, 0, 0), (15, 1, 0), (5, 1, 1)])
+@pytest.mark.parametrize(
+    ("left_pct", "low", "critical"), [(80, 0, 0), (16, 0, 0), (15, 1, 0), (7, 1, 1), (0, 1, 1)]
+)
 def test_a_low_battery_is_a_condition(left_pct: int, low: int, critical: int) -> None:
     heard = list(updates(system_status(left_pct), vehicle(), SECOND_NS))
     told = {x.condition: x.active for x in given(heard) if isinstance(x, inputs.ConditionChanged)}
     assert told[Condition.BATTERY_LOW] is bool(low)
     assert told[Condition.BATTERY_CRITICAL] is bool(critical)
+
+
+def test_a_battery_that_is_not_measured_is_not_empty() -> None:
+    seen = vehicle()
+    assert list(updates(system_status(-1), seen, SECOND_NS)) == []
+    assert seen.battery_pct is None
 
 
 def test_a_heartbeat_of_another_kind_from_the_same_ids_is_not_the_vehicle_s() -> None:
@@ -139,6 +147,24 @@ def test_local_and_global_positions_that_disagree_are_a_condition(
     (told,) = [told for told in given(heard) if isinstance(told, inputs.ConditionChanged)]
     assert told.condition is Condition.ORIGIN_MISMATCH
     assert told.active is disagree
+
+
+@pytest.mark.parametrize(("north_m", "east_m"), [(500.0, 0.0), (0.0, 500.0), (-300.0, 200.0)])
+def test_away_from_the_origin_a_pair_of_positions_that_agrees_is_none(
+    north_m: float, east_m: float
+) -> None:
+    """On px4's sphere of 6,371,000 m a degree of latitude is 111,194.93 m."""
+    seen = vehicle()
+    list(updates(origin(), seen, SECOND_NS))
+    list(updates(position(1000, north_m, east_m), seen, SECOND_NS))
+    degree_m = 111_194.93
+    east_degree_m = degree_m * math.cos(math.radians(HOME.lat_deg))
+    message = global_position(
+        HOME.lat_deg + north_m / degree_m, HOME.lon_deg + east_m / east_degree_m
+    )
+    heard = list(updates(message, seen, SECOND_NS + 1))
+    (told,) = [told for told in given(heard) if isinstance(told, inputs.ConditionChanged)]
+    assert not told.active
 
 
 def test_an_old_pair_of_positions_is_not_compared() -> None:

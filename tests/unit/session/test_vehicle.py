@@ -1,0 +1,374 @@
+"""One vehicle: which one is ours, over which link it is answered, and what of it is void."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pytest
+
+from gcs.config import StationConfig
+from gcs.gate import inputs
+from gcs.gate.condition import Condition
+from gcs.gate.effects import Level
+from gcs.gate.policy.parse import DEFAULT
+from gcs.protocol.effects import Send
+from gcs.session.vehicle import Vehicle
+from gcs.session.work import Log, PlaceFence, ToGate, Work
+from gcs.wire.frame import Frame, split
+from gcs.wire.ids import Cmd, MsgId
+from gcs.wire.messages import CommandLong
+from tests.unit.session import wire
+from tests.unit.session.wire import MS_NS, SECOND_NS, START_NS, Message, Sender
+
+
+class Script:
+    """One vehicle of the session, a clock, and senders for it and for others."""
+
+    def __init__(self, config: StationConfig | None = None) -> None:
+        self.config = config or StationConfig()
+        self.vehicle = Vehicle(self.config, DEFAULT, START_NS)
+        self.now_ns = START_NS
+        self.sender = Sender()
+
+    def hear(
+        self,
+        *messages: Message,
+        link: int = 0,
+        sender: Sender | None = None,
+        mavlink1: bool = False,
+    ) -> list[Work]:
+        sender = sender or self.sender
+        work: list[Work] = []
+        for message in messages:
+            work += self.bytes(sender.frame(message, mavlink1=mavlink1), link)
+        return work
+
+    def bytes(self, raw: bytes, link: int = 0) -> list[Work]:
+        (frame,) = split(raw)
+        assert isinstance(frame, Frame)
+        return self.vehicle.frame(link, frame, self.now_ns)
+
+    def wait(self, seconds: float) -> None:
+        self.now_ns += round(seconds * SECOND_NS)
+
+    @property
+    def link(self) -> int:
+        assert self.vehicle.telemetry is not None
+        return self.vehicle.telemetry.link
+
+
+def gate_inputs(work: Iterable[Work]) -> list[inputs.Input]:
+    return [item.given for item in work if isinstance(item, ToGate)]
+
+
+def log(work: Iterable[Work]) -> list[tuple[Level, str]]:
+    return [(item.level, item.text) for item in work if isinstance(item, Log)]
+
+
+def requested(work: Iterable[Work]) -> set[float]:
+    """Message ids that are asked for once."""
+    sent = [item.message for item in work if isinstance(item, Send)]
+    asks = [message for message in sent if isinstance(message, CommandLong)]
+    return {ask.param1 for ask in asks if ask.command == Cmd.REQUEST_MESSAGE}
+
+
+# ---------------------------------------------------------------------------- which one
+
+
+def test_the_first_autopilot_that_is_heard_is_our_vehicle() -> None:
+    script = Script()
+    assert script.vehicle.sysid == 0
+    work = script.hear(wire.heartbeat(), sender=Sender(3))
+    assert (Level.INFO, "vehicle 3/1 px4 quadrotor on link 0") in log(work)
+    script.hear(wire.heartbeat(), sender=Sender(4))
+    assert script.vehicle.sysid == 3
+
+
+@pytest.mark.parametrize(
+    ("sender", "beat"),
+    [
+        (Sender(254, 190), wire.heartbeat(wire.NO_AUTOPILOT, type_=wire.GCS)),
+        (Sender(2, 1), wire.heartbeat(wire.PX4, type_=wire.GCS)),
+        (Sender(1, 100), wire.heartbeat(wire.NO_AUTOPILOT, type_=30)),  # a camera
+        (Sender(1, 191), wire.heartbeat(wire.PX4)),  # not the autopilot's component id
+    ],
+)
+def test_stations_cameras_and_companions_are_no_vehicle(sender: Sender, beat: Message) -> None:
+    script = Script()
+    assert script.hear(beat, sender=sender) == []
+    assert script.vehicle.telemetry is None
+
+
+def test_a_vehicle_that_was_named_is_waited_for() -> None:
+    script = Script(StationConfig(target_sysid=4))
+    assert script.hear(wire.heartbeat(), sender=Sender(3)) == []
+    script.hear(wire.heartbeat(), sender=Sender(4))
+    assert script.vehicle.sysid == 4
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "name"),
+    [(wire.PX4, "px4"), (wire.ARDUPILOT, "ardupilot"), (99, "of an unknown kind")],
+)
+def test_its_heartbeat_tells_which_autopilot_it_is(autopilot: int, name: str) -> None:
+    script = Script()
+    script.hear(wire.heartbeat(autopilot))
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.autopilot.name == name
+
+
+def test_before_a_heartbeat_nothing_is_believed() -> None:
+    script = Script()
+    assert script.hear(wire.position(1, (1.0, 2.0, 3.0)), wire.landed(wire.IN_AIR)) == []
+
+
+def test_a_vehicle_that_is_met_is_asked_for_its_origin_its_home_and_its_version() -> None:
+    work = Script().hear(wire.heartbeat())
+    assert requested(work) == {MsgId.GPS_GLOBAL_ORIGIN}  # one at a time
+    names = [
+        item.message.param_id
+        for item in work
+        if isinstance(item, Send) and hasattr(item.message, "param_id")
+    ]
+    assert len(names) == 1
+
+
+# ----------------------------------------------------------------------------- its links
+
+
+def test_it_is_answered_where_it_was_heard_first_while_that_link_is_alive() -> None:
+    script = Script()
+    script.hear(wire.heartbeat(), link=1)
+    script.wait(1.9)
+    script.hear(wire.heartbeat(), link=0)
+    assert script.link == 1
+
+
+def test_a_link_that_is_silent_for_two_seconds_is_replaced_by_the_one_that_is_not() -> None:
+    script = Script()
+    script.hear(wire.heartbeat(), link=1)
+    script.wait(2.1)
+    script.hear(wire.heartbeat(), link=0)
+    assert script.link == 0
+    script.hear(wire.heartbeat(), link=1)
+    assert script.link == 0
+
+
+def test_only_the_autopilot_itself_keeps_a_link_alive() -> None:
+    script = Script()
+    script.hear(wire.heartbeat(), link=1)
+    script.wait(1.5)
+    script.hear(wire.text(6, "hello"), link=1, sender=Sender(1, 191))
+    script.wait(1.0)
+    script.hear(wire.text(6, "hello"), link=0, sender=Sender(1, 191))
+    assert script.link == 1
+    script.hear(wire.heartbeat(), link=0)
+    assert script.link == 0
+
+
+# -------------------------------------------------------------------------- what is void
+
+
+def overtaken(script: Script, first: Message, second: Message) -> list[Work]:
+    """`second` was sent after `first` and comes before it; what `first` then still leads to."""
+    early, late = script.sender.frame(first), script.sender.frame(second)
+    script.bytes(late)
+    return script.bytes(early)
+
+
+def test_a_heartbeat_that_a_newer_one_overtook_says_nothing_of_now() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    armed = wire.heartbeat(armed=True, mode=wire.OFFBOARD)
+    assert gate_inputs(overtaken(script, wire.heartbeat(armed=False), armed)) == []
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.armed is True
+
+
+def test_a_landed_state_that_a_newer_one_overtook_says_nothing_of_now() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    work = overtaken(script, wire.landed(wire.ON_GROUND), wire.landed(wire.IN_AIR))
+    assert gate_inputs(work) == []
+
+
+def test_a_state_is_overtaken_by_its_own_kind_only() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    work = overtaken(script, wire.landed(wire.IN_AIR), wire.heartbeat())
+    assert [type(given) for given in gate_inputs(work)] == [inputs.LandedSeen]
+
+
+def test_an_answer_is_heard_though_something_newer_came_before_it() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    assert log(overtaken(script, wire.text(6, "late"), wire.heartbeat())) == [(Level.INFO, "late")]
+
+
+def test_the_same_state_over_two_links_is_heard_once() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    raw = script.sender.frame(wire.landed(wire.IN_AIR))
+    assert len(gate_inputs(script.bytes(raw, link=0))) == 1
+    assert gate_inputs(script.bytes(raw, link=1)) == []
+
+
+def test_the_round_of_the_sequence_numbers_overtakes_nothing() -> None:
+    script = Script()
+    script.sender.seq = 253
+    script.hear(wire.heartbeat())
+    for _ in range(6):
+        assert len(gate_inputs(script.hear(wire.landed(wire.IN_AIR)))) == 1
+
+
+# ------------------------------------------------------------------------ away and back
+
+
+def test_a_vehicle_that_was_away_is_met_anew_and_its_place_is_not_known() -> None:
+    script = Script()
+    script.hear(wire.heartbeat(), wire.origin(), wire.home())
+    telemetry = script.vehicle.telemetry
+    assert telemetry is not None
+    assert None not in [telemetry.origin, telemetry.home_ned]
+    script.wait(3.6)
+    script.sender.seq = 0  # it restarted
+    work = script.hear(wire.heartbeat())
+    assert (Level.INFO, "vehicle 1/1 px4 quadrotor is back") in log(work)
+    assert PlaceFence() in work
+    assert [telemetry.origin, telemetry.home_ned] == [None, None]
+    assert inputs.HeartbeatSeen in [type(given) for given in gate_inputs(work)]
+    assert len(gate_inputs(script.hear(wire.landed(wire.ON_GROUND)))) == 1
+
+
+def test_one_heartbeat_that_was_lost_is_no_absence() -> None:
+    script = Script()
+    script.hear(wire.heartbeat(), wire.origin())
+    script.wait(3.4)
+    work = script.hear(wire.heartbeat())
+    assert not any("is back" in text for _, text in log(work))
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.origin is not None
+
+
+def test_a_sped_up_vehicle_is_away_after_as_much_real_time() -> None:
+    script = Script(StationConfig(speedup=10.0))
+    script.hear(wire.heartbeat())
+    script.wait(30.0)
+    assert not any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
+    script.wait(36.0)
+    assert any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
+
+
+def test_losses_are_counted_over_gaps_and_not_over_an_absence() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    script.sender.seq += 3
+    script.hear(wire.heartbeat())
+    assert script.vehicle.losses.lost == 3
+    script.wait(10.0)
+    script.sender.seq = 100
+    script.hear(wire.heartbeat(), wire.heartbeat())
+    assert script.vehicle.losses.lost == 3
+
+
+# --------------------------------------------------------------------------- its settings
+
+
+def settings(script: Script, **params: float) -> list[Work]:
+    """The vehicle answers what it is asked about its failsafes; px4's integers are bytes."""
+    work = script.hear(wire.heartbeat())
+    answered: list[Work] = []
+    for name in ("NAV_DLL_ACT", "GF_ACTION", "COM_LOW_BAT_ACT"):
+        answered += script.hear(wire.int_param(name, int(params.get(name, 2))))
+    answered += script.hear(wire.float_param("COM_OF_LOSS_T", 1.0))
+    answered += script.hear(wire.int_param("COM_OBL_RC_ACT", 0))
+    if "RTL_RETURN_ALT" in params:
+        answered += script.hear(wire.float_param("RTL_RETURN_ALT", params["RTL_RETURN_ALT"]))
+    else:
+        answered += script.hear(wire.no_param("RTL_RETURN_ALT"))
+    return [*work, *answered]
+
+
+def weak(work: list[Work]) -> list[bool]:
+    """What the gate hears of the vehicle's own failsafes."""
+    changed = [g for g in gate_inputs(work) if isinstance(g, inputs.ConditionChanged)]
+    return [g.active for g in changed if g.condition is Condition.VEHICLE_FAILSAFE_WEAK]
+
+
+def test_the_gate_is_told_the_return_height_and_that_nothing_is_weak() -> None:
+    script = Script()
+    work = settings(script, RTL_RETURN_ALT=45.0)
+    assert inputs.ReturnHeightSeen(45.0) in gate_inputs(work)
+    assert weak(work) == [False]
+    assert (Level.INFO, "the vehicle's own failsafes: all on") in log(work)
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.return_up_m == 45.0
+
+
+def test_a_return_height_that_the_vehicle_does_not_have_is_not_known() -> None:
+    script = Script()
+    work = settings(script)
+    assert not any(isinstance(given, inputs.ReturnHeightSeen) for given in gate_inputs(work))
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.return_up_m is None
+
+
+def test_a_failsafe_that_is_off_is_a_condition_and_not_called_on() -> None:
+    work = settings(Script(), GF_ACTION=0, RTL_RETURN_ALT=30.0)
+    assert weak(work) == [True]
+    assert not any("all on" in text for _, text in log(work))
+
+
+# ------------------------------------------------------------------------------- its words
+
+
+@pytest.mark.parametrize(
+    ("severity", "level"),
+    [
+        (0, Level.FATAL),  # MAV_SEVERITY_EMERGENCY
+        (1, Level.ERROR),
+        (2, Level.ERROR),
+        (3, Level.ERROR),
+        (4, Level.WARNING),
+        (5, Level.INFO),
+        (6, Level.INFO),
+        (7, Level.DEBUG),
+    ],
+)
+def test_what_the_vehicle_says_is_logged_as_severe_as_it_says(severity: int, level: Level) -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    assert log(script.hear(wire.text(severity, "words"))) == [(level, "words")]
+
+
+def test_a_severity_that_no_standard_knows_is_words_all_the_same() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    ((_, words),) = log(script.hear(wire.text(255, "words")))
+    assert words == "words"
+
+
+def test_a_picture_of_the_camera_component_is_heard() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    work = script.hear(wire.picture(5), sender=Sender(1, 100))
+    assert gate_inputs(work) == [inputs.PhotoSeen(5, True)]
+
+
+@pytest.mark.parametrize("mavlink1", [False, True])
+def test_it_may_speak_either_mavlink(mavlink1: bool) -> None:
+    script = Script()
+    script.hear(wire.heartbeat(), mavlink1=mavlink1)
+    work = script.hear(wire.position(1, (1.0, 2.0, -3.0)), mavlink1=mavlink1)
+    assert gate_inputs(work) == [inputs.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1)]
+
+
+# -------------------------------------------------------------------- without the gate
+
+
+def test_the_last_resort_holds_nothing_that_is_not_ours() -> None:
+    script = Script()
+    assert script.vehicle.hold_without_gate(script.now_ns) == []
+    script.hear(wire.heartbeat(armed=True, mode=wire.POSCTL), wire.landed(wire.IN_AIR))
+    script.hear(wire.position(script.now_ns // MS_NS, (0.0, 0.0, -5.0)))
+    assert script.vehicle.hold_without_gate(script.now_ns) == []

@@ -1,0 +1,77 @@
+"""What the operator and the record are told, in short tuples.
+
+Only here do the session's tests know how such a fact is written down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, TypeAlias, TypeVar
+
+from gcs import ipc
+from gcs.session.effects import Emit, Finish, ReadFile, Record, WriteFile
+
+E = TypeVar("E")
+Told: TypeAlias = Iterable[object]
+"""Effects, or any work with effects in it."""
+
+INFO, WARNING, ERROR, FATAL = 2, 3, 4, 5
+
+
+def events(effects: Told, kind: type[E]) -> list[E]:
+    """What the operator's screen is told, of one kind."""
+    told = (effect.event for effect in effects if isinstance(effect, Emit))
+    return [event for event in told if isinstance(event, kind)]
+
+
+def recorded(effects: Told, kind: str) -> list[Any]:
+    """What the record is told, of one kind by its name: `FrameItem`, `InputItem`..."""
+    items = (effect.item for effect in effects if isinstance(effect, Record))
+    return [item for item in items if type(item).__name__ == kind]
+
+
+def verdicts(effects: Told) -> list[tuple[int, str, str]]:
+    """(the client's number, accepted | refused | superseded, code)."""
+    return [(e.id, e.outcome, e.code) for e in events(effects, ipc.VerdictEvent)]
+
+
+def outcomes(effects: Told) -> list[tuple[int, str, str]]:
+    """(the client's number, complete | aborted..., code)."""
+    return [(e.id, e.ended, e.code) for e in events(effects, ipc.EndingEvent)]
+
+
+def lines(effects: Told) -> list[tuple[int, str]]:
+    """(level, text) of the log."""
+    return [(e.level, e.text) for e in events(effects, ipc.LogEvent)]
+
+
+def log(effects: Told) -> str:
+    """All lines of the log."""
+    return "\n".join(text for _, text in lines(effects))
+
+
+def states(effects: Told) -> list[str]:
+    """The states of the gate that were entered."""
+    return [e.after for e in events(effects, ipc.StateEvent)]
+
+
+def troubles(effects: Told) -> list[ipc.Trouble]:
+    return events(effects, ipc.Trouble)
+
+
+def snapshots(effects: Told) -> list[ipc.Snapshot]:
+    return events(effects, ipc.Snapshot)
+
+
+def finishes(effects: Told) -> list[Finish]:
+    return [effect for effect in effects if isinstance(effect, Finish)]
+
+
+def files(effects: Told) -> list[ReadFile | WriteFile]:
+    return [effect for effect in effects if isinstance(effect, ReadFile | WriteFile)]
+
+
+def frames(effects: Told) -> list[tuple[int, int, bytes]]:
+    """(link, 0 received | 1 sent, bytes) of every frame in the record."""
+    items = recorded(effects, "FrameItem")
+    return [(i.link, int(i.direction), i.raw) for i in items]
