@@ -1,0 +1,128 @@
+"""What the record is told besides frames and decisions."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from gcs import ipc
+from gcs.config import SimConfig, StationConfig
+from gcs.gate.policy.parse import DEFAULT
+from gcs.session.effects import Record
+from gcs.session.inputs import (
+    FileRead,
+    FileWritten,
+    LinkEvent,
+    OperatorGone,
+    OperatorLine,
+    OtherInput,
+    RecorderChanged,
+    RecorderGrew,
+    SimGone,
+    SimLine,
+    Wake,
+)
+from gcs.session.recorded import introduction, recorded, sim_line
+from gcs.session.setup import Setup
+from gcs.session.work import Log, Work
+from tests.unit.session import told
+
+
+def item_of(given: OtherInput) -> Any:  # whatever the record keeps
+    (item,) = told.recorded(recorded(given), "InputItem")
+    return item
+
+
+def as_json(item: Any) -> Any:
+    return json.loads(bytes(item.data))
+
+
+@pytest.mark.parametrize(
+    ("given", "told_as"),
+    [
+        (Wake(), {}),
+        (OperatorGone("SIGTERM"), {"reason": "SIGTERM"}),
+        (LinkEvent(1, "lost", True), {"link": 1, "text": "lost", "trouble": True}),
+        (SimGone(3), {"exit_code": 3}),
+        (SimLine("INFO sim: x"), {"text": "INFO sim: x"}),
+        (FileWritten(1, "a", "full"), {"token": 1, "path": "a", "error": "full"}),
+        (
+            RecorderChanged(False, "a.mcap", "full"),
+            {"recording": False, "path": "a.mcap", "text": "full"},
+        ),
+        (
+            OperatorLine(ipc.Ask(1, "takeoff", up_m=2.0)),
+            {"command": {"type": "ask", "id": 1, "word": "takeoff", "up_m": 2.0}},
+        ),
+        (FileRead(1, "a", b"12345"), {"token": 1, "path": "a", "size": 5, "error": ""}),
+        (FileRead(1, "a", None, "gone"), {"token": 1, "path": "a", "size": -1, "error": "gone"}),
+    ],
+)
+def test_every_input_is_kept_under_its_own_name(given: OtherInput, told_as: object) -> None:
+    item = item_of(given)
+    assert item.kind == type(given).__name__
+    assert as_json(item) == told_as
+
+
+def test_the_growth_of_the_record_is_not_recorded() -> None:
+    assert recorded(RecorderGrew(1_000)) == []
+
+
+def test_the_set_up_is_told_before_anything_else() -> None:
+    config = StationConfig(sysid=254, speedup=2.0, sim=SimConfig(seed=42))
+    setup = Setup(config, "1.2.3", DEFAULT, "name = 'x'", ("udpin://:1", "tcp:h:2"), "logs/a.mcap")
+    effects = introduction(setup)
+    (values,) = told.recorded(effects, "MetadataItem")
+    assert dict(values.values) == {
+        "version": "1.2.3",
+        "endpoints": "udpin://:1 tcp:h:2",
+        "policy": "default",
+        "station": "254/190",
+        "speedup": "2",
+        "seed": "42",
+    }
+    (policy,) = told.recorded(effects, "AttachmentItem")
+    assert policy.data == b"name = 'x'"
+    (kept,) = told.recorded(effects, "InputItem")
+    assert as_json(kept)["sysid"] == 254
+    (hello,) = told.events(effects, ipc.Hello)
+    assert hello.endpoints == ["udpin://:1", "tcp:h:2"]
+
+
+def test_without_a_vehicle_of_our_own_there_is_no_seed() -> None:
+    (values,) = told.recorded(
+        introduction(Setup(StationConfig(), "1", DEFAULT, "", (), "")), "MetadataItem"
+    )
+    assert dict(values.values)["seed"] == ""
+
+
+def work_of(line: str) -> Work:
+    return sim_line(line, 1_000)
+
+
+@pytest.mark.parametrize(
+    ("line", "level", "node", "text"),
+    [
+        ("WARNING world: gusts: 5 m/s", 3, "sim.world", "gusts: 5 m/s"),
+        ("ERROR sim: no port", 4, "sim.sim", "no port"),
+        ("Traceback (most recent call last):", 2, "sim", "Traceback (most recent call last):"),
+        ("INFO without a node", 2, "sim", "INFO without a node"),
+        ("LOUD node: text", 2, "sim", "LOUD node: text"),
+        ("", 2, "sim", ""),
+    ],
+)
+def test_a_line_of_our_own_vehicle_s_process_is_logged_for_what_it_is(
+    line: str, level: int, node: str, text: str
+) -> None:
+    work = work_of(line)
+    assert isinstance(work, Log)
+    assert (work.level, work.node, work.text) == (level, node, text)
+
+
+def test_what_the_vehicle_says_itself_is_not_shown_twice_and_is_kept() -> None:
+    work = work_of("ERROR vehicle 1: no GPS")
+    assert isinstance(work, Record)
+    assert "no GPS" in repr(work.item)
+    assert "sim.vehicle 1" in repr(work.item)

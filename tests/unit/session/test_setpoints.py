@@ -1,0 +1,76 @@
+"""A setpoint on the wire: what the standard says of each field, read by pymavlink."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from gcs.gate.permit import issue
+from gcs.session.links import Links
+from gcs.session.setpoints import setpoint
+from tests.unit.session import wire
+from tests.unit.session.vehicles import SECOND_NS, vehicle
+
+START_NS = 5 * SECOND_NS
+IGNORE_ALL_BUT_POSITION = 3576
+"""POSITION_TARGET_TYPEMASK: bits 3 to 8, 10 and 11 (bit 9 would make accelerations forces)."""
+IGNORE_ALL_BUT_POSITION_AND_YAW = 2552
+
+
+def on_the_wire(
+    pos_ned: tuple[float, float, float], yaw_rad: float | None, now_ns: int
+) -> wire.Message:
+    permit = issue(pos_ned, yaw_rad, now_ns, "a test")
+    message = setpoint(vehicle(), permit, START_NS, now_ns)
+    (sent,) = wire.sent(Links(255, 190, count=1).send(0, message))
+    return sent
+
+
+def test_a_position_without_a_heading_ignores_everything_else() -> None:
+    sent = on_the_wire((1.5, -2.5, -3.5), None, START_NS)
+    assert sent.get_type() == "SET_POSITION_TARGET_LOCAL_NED"
+    assert (sent.x, sent.y, sent.z) == (1.5, -2.5, -3.5)
+    assert sent.type_mask == IGNORE_ALL_BUT_POSITION
+    assert sent.coordinate_frame == 1  # MAV_FRAME_LOCAL_NED
+    assert (sent.target_system, sent.target_component) == (1, 1)
+    rest = (sent.vx, sent.vy, sent.vz, sent.afx, sent.afy, sent.afz, sent.yaw, sent.yaw_rate)
+    assert rest == (0.0,) * 8
+
+
+def test_a_heading_is_sent_with_its_bit_cleared() -> None:
+    sent = on_the_wire((0.0, 0.0, -1.0), 0.5, START_NS)
+    assert sent.type_mask == IGNORE_ALL_BUT_POSITION_AND_YAW
+    assert sent.yaw == 0.5
+
+
+def test_a_heading_of_north_is_a_heading() -> None:
+    sent = on_the_wire((0.0, 0.0, -1.0), 0.0, START_NS)
+    assert sent.type_mask == IGNORE_ALL_BUT_POSITION_AND_YAW
+
+
+def test_its_clock_counts_milliseconds_of_the_session_in_32_bits() -> None:
+    assert on_the_wire((0.0, 0.0, 0.0), None, START_NS + 1_234_999_999).time_boot_ms == 1234
+    long_ns = START_NS + (2**32 + 5) * 1_000_000
+    assert on_the_wire((0.0, 0.0, 0.0), None, long_ns).time_boot_ms == 5
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_position_that_is_no_number_never_leaves(axis: int, bad: float) -> None:
+    pos = [0.0, 0.0, 0.0]
+    pos[axis] = bad
+    with pytest.raises(PermissionError):
+        on_the_wire((pos[0], pos[1], pos[2]), None, START_NS)
+
+
+@pytest.mark.parametrize("off_ns", [1, -1, SECOND_NS])
+def test_a_permit_of_another_moment_moves_nothing(off_ns: int) -> None:
+    permit = issue((0.0, 0.0, 0.0), None, START_NS + off_ns, "a test")
+    with pytest.raises(PermissionError):
+        setpoint(vehicle(), permit, START_NS, START_NS)
+
+
+def test_a_permit_for_a_command_is_none_for_a_place() -> None:
+    with pytest.raises(PermissionError):
+        setpoint(vehicle(), issue(None, None, START_NS, "a test"), START_NS, START_NS)
