@@ -1,0 +1,327 @@
+"""Missions of one vehicle: one job at a time, which mission is on board, how far it is flown."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from gcs import ipc
+from gcs.config import StationConfig
+from gcs.gate.effects import Outcome, Ruling
+from gcs.gate.inputs import MissionLoaded, MissionSeen
+from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.refusal import Code
+from gcs.gate.requests import StartMission
+from gcs.gate.states import State
+from gcs.protocol.effects import Heard, Send
+from gcs.session.effects import ReadFile, WriteFile
+from gcs.session.inputs import FileRead, FileWritten
+from gcs.session.jobs.job import VehicleView
+from gcs.session.missions import Missions
+from gcs.session.telemetry import Telemetry
+from gcs.session.work import AskGate, Decide, ToGate, Work
+from gcs.wire.messages import Message, MissionCurrent, MissionItemReached
+from tests.unit.plan import samples
+from tests.unit.session.jobs.script import START_NS, Board, placed
+from tests.unit.session.plans import BOX, LAT, LON, plan
+from tests.unit.session.vehicles import SECOND_NS
+
+ACTIVE, COMPLETE = 3, 5
+"""MISSION_STATE."""
+FOUR = 4
+OPEN_END = plan(samples.waypoint(1, LAT, LON, 10, command=22), samples.waypoint(2, LAT, LON, 12))
+"""It ends hovering at its second item."""
+LOOP = plan(
+    samples.waypoint(1, LAT, LON, 10, command=22),
+    samples.waypoint(2, LAT, LON, 12),
+    samples.simple(3, 177, 2, [2, 3, 0, 0, 0, 0, 0]),  # back to item 2, three times
+)
+
+
+class Script:
+    """The missions of one px4, a board that keeps them, and a clock."""
+
+    def __init__(self) -> None:
+        self.missions = Missions(StationConfig())
+        self.board = Board()
+        self.telemetry: Telemetry | None = placed()
+        self.state = State.GROUNDED
+        self.now_ns = START_NS
+        self._requests = 0
+
+    def ask(self, word: str, path: str = "") -> list[Work]:
+        """The next request; its id is `self.last`."""
+        self._requests += 1
+        ask = ipc.Ask(100 + self._requests, word, path=path)
+        policy, state = DEFAULT, self.state
+        work = self.missions.ask(self._requests, ask, self.telemetry, state, policy, self.now_ns)
+        return self._with_replies(work)
+
+    @property
+    def last(self) -> int:
+        return self._requests
+
+    def read(self, data: bytes, token: int | None = None) -> list[Work]:
+        news = FileRead(self.last if token is None else token, "a.plan", data)
+        return self._with_replies(self.missions.file(news, self._view(), self.now_ns))
+
+    def written(self, token: int) -> list[Work]:
+        news = FileWritten(token, "out.plan")
+        return self._with_replies(self.missions.file(news, self._view(), self.now_ns))
+
+    def hear(self, message: Message) -> list[Work]:
+        heard = Heard(1, 1, message)
+        return self._with_replies(self.missions.heard(heard, self._view(), self.now_ns))
+
+    def upload(self, data: bytes) -> None:
+        self.ask("mission_upload", "a.plan")
+        (ended,) = [item for item in self.read(data) if isinstance(item, Outcome)]
+        assert ended.code is None
+
+    def _view(self) -> VehicleView:
+        assert self.telemetry is not None
+        return VehicleView(self.telemetry, self.state, DEFAULT)
+
+    def _with_replies(self, work: list[Work]) -> list[Work]:
+        done: list[Work] = []
+        agenda = list(work)
+        while agenda:
+            item = agenda.pop(0)
+            done.append(item)
+            if isinstance(item, Send):
+                for reply in self.board.hear(item.message):
+                    heard = Heard(1, 1, reply)
+                    agenda += self.missions.heard(heard, self._view(), self.now_ns)
+        return done
+
+
+def refusals(work: list[Work]) -> list[tuple[int, Code]]:
+    verdicts = [item for item in work if isinstance(item, Decide)]
+    return [(v.request_id, v.refusal.code) for v in verdicts if v.refusal is not None]
+
+
+def rulings(work: list[Work]) -> list[Ruling]:
+    return [item.ruling for item in work if isinstance(item, Decide)]
+
+
+def seen(work: list[Work]) -> list[MissionSeen]:
+    given = [item.given for item in work if isinstance(item, ToGate)]
+    return [told for told in given if isinstance(told, MissionSeen)]
+
+
+def current(seq: int, state: int = ACTIVE) -> MissionCurrent:
+    return MissionCurrent(seq=seq, total=FOUR, mission_state=state)
+
+
+# ---------------------------------------------------------------------------- what is refused
+
+
+@pytest.mark.parametrize("word", ["mission_upload", "mission_download", "mission_clear"])
+def test_while_one_job_is_under_way_another_is_refused_and_does_it_no_harm(word: str) -> None:
+    script = Script()
+    script.ask("mission_upload", "a.plan")
+    work = script.ask(word, "b.plan")
+    assert refusals(work) == [(2, Code.BUSY)]
+    assert rulings(script.read(BOX, token=1)) == [Ruling.ACCEPTED]
+
+
+def test_after_a_job_has_ended_the_next_may_begin() -> None:
+    script = Script()
+    script.upload(BOX)
+    assert rulings(script.ask("mission_download")) == [Ruling.ACCEPTED]
+    assert rulings(script.ask("mission_clear")) == [Ruling.ACCEPTED]
+
+
+def test_after_a_job_was_refused_the_next_may_begin() -> None:
+    script = Script()
+    script.ask("mission_upload", "a.plan")
+    assert refusals(script.read(b"no plan")) == [(1, Code.BAD_MISSION)]
+    assert rulings(script.ask("mission_download")) == [Ruling.ACCEPTED]
+
+
+@pytest.mark.parametrize(
+    ("word", "state", "code"),
+    [
+        ("mission_upload", State.NO_VEHICLE, Code.NO_VEHICLE),
+        ("mission_download", State.NO_VEHICLE, Code.NO_VEHICLE),
+        ("mission_start", State.NO_VEHICLE, Code.NO_VEHICLE),
+        ("mission_upload", State.STALE, Code.STALE),
+        ("mission_clear", State.STALE, Code.STALE),
+        ("mission_upload", State.FLYING_MISSION, Code.BUSY),
+        ("mission_clear", State.FLYING_MISSION, Code.BUSY),
+    ],
+)
+def test_where_it_cannot_be_it_is_refused_and_nothing_is_asked_of_anybody(
+    word: str, state: State, code: Code
+) -> None:
+    script = Script()
+    script.state = state
+    work = script.ask(word, "a.plan")
+    assert refusals(work) == [(1, code)]
+    assert not any(isinstance(item, Send | ReadFile | AskGate) for item in work)
+
+
+def test_a_mission_may_be_read_while_it_is_flown() -> None:
+    script = Script()
+    script.state = State.FLYING_MISSION
+    assert rulings(script.ask("mission_download")) == [Ruling.ACCEPTED]
+
+
+def test_before_a_vehicle_is_met_there_is_nobody_to_ask() -> None:
+    script = Script()
+    script.telemetry = None
+    assert refusals(script.ask("mission_download")) == [(1, Code.NO_VEHICLE)]
+
+
+def test_an_upload_wants_a_file() -> None:
+    assert refusals(Script().ask("mission_upload")) == [(1, Code.BAD_MISSION)]
+
+
+def test_after_leaving_nothing_begins() -> None:
+    script = Script()
+    assert script.missions.leave() == []
+    assert refusals(script.ask("mission_download")) == [(1, Code.OPERATOR_LOST)]
+
+
+def test_leaving_ends_the_job_under_way_once() -> None:
+    script = Script()
+    script.ask("mission_upload", "a.plan")
+    assert refusals(script.missions.leave()) == [(1, Code.OPERATOR_LOST)]
+    assert script.missions.leave() == []
+    assert script.read(BOX) == []
+
+
+# --------------------------------------------------------------------------------- the start
+
+
+@pytest.mark.parametrize("state", [State.GROUNDED, State.HOVERING, State.EXTERNAL])
+def test_without_a_mission_of_ours_on_board_a_start_is_the_gate_s_to_refuse(state: State) -> None:
+    script = Script()
+    script.state = state
+    assert script.ask("mission_start") == [AskGate(1, StartMission())]
+
+
+def test_where_no_mission_can_be_started_nothing_is_read_back_first() -> None:
+    script = Script()
+    script.upload(BOX)
+    script.state = State.MOVING
+    assert script.ask("mission_start") == [AskGate(2, StartMission())]
+
+
+@pytest.mark.parametrize("word", ["mission_start", "mode"])
+def test_in_whatever_word_a_start_is_read_back_and_verified_before_the_gate_is_asked(
+    word: str,
+) -> None:
+    script = Script()
+    script.upload(BOX)
+    script.state = State.HOVERING
+    work = script.ask(word)
+    assert isinstance(work[0], Send)
+    assert work[-1] == AskGate(2, StartMission())
+
+
+def test_after_a_restart_of_the_vehicle_nothing_is_known_of_what_is_on_board() -> None:
+    script = Script()
+    script.upload(BOX)
+    assert script.missions.forget() == [ToGate(MissionLoaded("", 0))]
+    assert script.missions.forget() == []
+    assert script.ask("mission_start") == [AskGate(2, StartMission())]
+    assert seen(script.hear(current(1))) == []
+
+
+# ---------------------------------------------------------------------------------- answers
+
+
+def test_the_answer_to_another_request_s_file_is_none_to_this_one_s() -> None:
+    script = Script()
+    script.ask("mission_upload", "a.plan")
+    assert script.read(BOX, token=99) == []
+    assert rulings(script.read(BOX)) == [Ruling.ACCEPTED]
+
+
+def test_a_late_answer_to_a_job_that_is_over_is_nobody_s() -> None:
+    script = Script()
+    script.upload(BOX)
+    assert script.read(BOX, token=1) == []
+    work = script.ask("mission_download", "out.plan")
+    assert any(isinstance(item, WriteFile) for item in work)
+    assert script.written(token=1) == []
+    assert any(isinstance(item, Outcome) for item in script.written(token=2))
+
+
+def test_a_job_s_time_is_the_missions_time() -> None:
+    script = Script()
+    assert script.missions.deadline_ns is None
+    script.ask("mission_upload", "a.plan")
+    assert script.missions.deadline_ns is None  # it waits for a file, not for the vehicle
+    script.board.deaf_from_seq = 0
+    script.read(BOX)
+    assert script.missions.deadline_ns == START_NS + 3 * SECOND_NS // 2
+
+
+# --------------------------------------------------------------------------------- progress
+
+
+def test_of_a_mission_that_is_not_ours_there_is_no_progress() -> None:
+    script = Script()
+    assert seen(script.hear(current(1))) == []
+    assert seen(script.hear(MissionItemReached(seq=1))) == []
+
+
+def test_the_gate_sees_which_item_is_flown() -> None:
+    script = Script()
+    script.upload(BOX)
+    assert script.missions.total == FOUR
+    assert seen(script.hear(current(2))) == [MissionSeen(2, FOUR, False)]
+    assert seen(script.hear(MissionItemReached(seq=1))) == [MissionSeen(1, FOUR, False)]
+
+
+def test_the_last_item_reached_ends_a_mission_that_ends_in_the_air() -> None:
+    script = Script()
+    script.upload(OPEN_END)
+    assert seen(script.hear(MissionItemReached(seq=0))) == [MissionSeen(0, 2, False)]
+    assert seen(script.hear(MissionItemReached(seq=1))) == [MissionSeen(1, 2, True)]
+
+
+@pytest.mark.parametrize("message", [MissionItemReached(seq=3), current(3, COMPLETE)])
+def test_a_mission_that_ends_with_a_landing_is_over_when_it_has_landed(message: Message) -> None:
+    script = Script()
+    script.upload(BOX)
+    script.hear(current(3))
+    assert [told.finished for told in seen(script.hear(message))] == [False]
+
+
+def test_a_mission_that_the_vehicle_calls_complete_is_over() -> None:
+    script = Script()
+    script.upload(OPEN_END)
+    script.hear(current(1))
+    assert seen(script.hear(current(1, COMPLETE))) == [MissionSeen(1, 2, True)]
+
+
+def test_complete_before_it_was_seen_flying_is_of_the_mission_before() -> None:
+    script = Script()
+    script.upload(OPEN_END)
+    assert seen(script.hear(current(1, COMPLETE))) == [MissionSeen(1, 2, False)]
+    script.hear(current(0))
+    script.state = State.HOVERING
+    script.ask("mission_start")
+    assert seen(script.hear(current(1, COMPLETE))) == [MissionSeen(1, 2, False)]
+
+
+def test_a_mission_that_jumps_back_is_not_over_at_its_last_stop() -> None:
+    script = Script()
+    script.upload(LOOP)
+    last_item = MissionSeen(2, 3, False)  # from there on its mode tells whether it is over
+    assert seen(script.hear(MissionItemReached(seq=1))) == [last_item]
+    script.hear(current(1))
+    (told,) = seen(script.hear(current(1, COMPLETE)))
+    assert told.finished
+
+
+def test_a_refused_upload_leaves_the_mission_on_board_as_it_is() -> None:
+    script = Script()
+    script.upload(BOX)
+    script.ask("mission_upload", "b.plan")
+    script.read(json.dumps({}).encode())
+    assert seen(script.hear(current(2))) == [MissionSeen(2, FOUR, False)]
