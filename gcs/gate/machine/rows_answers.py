@@ -57,7 +57,9 @@ hold_mode_if_on_ground: Final = Branch(
 )
 hold_mode: Final = Branch(ends=VEHICLE_REFUSED, do=(Action.HOLD_MODE_ONLY,))
 
-end_if_task_ends_held: Final = Branch(when=(Guard.TASK_ENDS_HELD,), ends=VEHICLE_REFUSED)
+end_if_task_ends_held: Final = Branch(
+    when=(Guard.TASK_ENDS_HELD,), ends=VEHICLE_REFUSED, do=(Action.GO_ON_COMMANDING_HOLD,)
+)
 complete_if_photo_taken: Final = Branch(when=(Guard.PHOTO_TAKEN,), ends=COMPLETE, to=HOVERING)
 take_control_if_regainable: Final = Branch(
     when=CONTROL_REGAINABLE, do=(Action.TAKE_CONTROL,), to=HOVERING

@@ -267,6 +267,29 @@ class TestRefusedHold:
         requested = script.ask(Abort())
         self.expect_refused(script, requested)
 
+    @pytest.mark.parametrize("wanted", [Hold(), Abort()], ids=["hold", "abort"])
+    @pytest.mark.parametrize("state", [State.MOVING, State.STALE], ids=lambda s: s.name)
+    def test_it_goes_on_being_commanded_at_1_hz_though_its_request_has_ended(
+        self, state: State, wanted: Hold | Abort
+    ) -> None:
+        script = in_flight(state)
+        self.expect_refused(script, script.ask(wanted))
+        before = len(script.commands())
+        for count in (1, 2, 3):
+            script.wait(1.1)
+            assert script.commands()[before:] == [CommandKind.HOLD] * count
+            script.answer(CommandKind.HOLD, 2, "not now")
+
+    def test_it_ends_once_the_heartbeat_shows_hold(self) -> None:
+        script = in_flight(State.MOVING)
+        self.expect_refused(script, script.ask(Hold()))
+        script.wait(1.1)
+        script.heartbeat(FlightMode.HOLD)
+        script.heartbeat(FlightMode.HOLD)
+        before = len(script.commands())
+        script.wait(5.0)
+        assert script.commands()[before:] == []
+
     def test_the_gates_own_hold_is_commanded_at_1_hz_whatever_the_answer(self) -> None:
         script = in_flight(State.MOVING)
         script.feed(OperatorLost("quit"))
