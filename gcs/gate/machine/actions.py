@@ -185,7 +185,6 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.HOLD_ONCE: holding.hold_once,
         Action.HOLD_MODE_ONLY: holding.hold_mode_only,
         Action.REPEAT_HOLD: holding.repeat_hold,
-        Action.GO_ON_COMMANDING_HOLD: holding.go_on_commanding_hold,
         Action.CONFIRM_HOLD: holding.confirm_hold,
         Action.STOP_AWAITING_MODE: holding.stop_awaiting_mode,
         Action.VERIFY_HELD_POINT: holding.verify_held_point,

@@ -44,6 +44,10 @@ def end(outcome: End) -> Branch:
     return Branch(ends=outcome)
 
 
+hold_if_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,), do=(Action.HOLD,), to=HOLDING)
+"""HOLD was commanded and is not shown: what is found to fly is held."""
+
+
 def hold_and_end(outcome: End) -> Branch:
     """End the request, command HOLD, and stay in HOLDING until a `resume`."""
     return Branch(ends=outcome, do=(Action.HOLD,), to=HOLDING)

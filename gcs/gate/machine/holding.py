@@ -60,11 +60,6 @@ def repeat_hold(turn: Turn) -> None:
     turn.memory.hold_again_ns = turn.after_ns(HOLD_EVERY_S)
 
 
-def go_on_commanding_hold(turn: Turn) -> None:
-    """The request for it is over, the hold is not: it is commanded again after `HOLD_EVERY_S`."""
-    turn.memory.hold_again_ns = turn.after_ns(HOLD_EVERY_S)
-
-
 def confirm_hold(turn: Turn) -> None:
     """The heartbeat shows hold mode, or the hold is not needed any more: repeat it no more."""
     memory = turn.memory

@@ -51,15 +51,15 @@ refuse_goal_and_move_on_if_goal_active: Final = Branch(
 refuse_goal_and_hover: Final = Branch(do=(Action.REFUSE_GOAL,), to=HOVERING)
 
 # A vehicle that refuses to disarm may be flying, or about to: it is told to hold.
-end_if_surely_on_ground: Final = Branch(when=(Guard.SURELY_ON_GROUND,), ends=VEHICLE_REFUSED)
+end_if_surely_on_ground: Final = Branch(
+    when=(Guard.SURELY_ON_GROUND,), ends=VEHICLE_REFUSED, do=(Action.CONFIRM_HOLD,)
+)
 hold_mode_if_on_ground: Final = Branch(
     when=(Guard.ON_GROUND,), ends=VEHICLE_REFUSED, do=(Action.HOLD_MODE_ONLY,)
 )
 hold_mode: Final = Branch(ends=VEHICLE_REFUSED, do=(Action.HOLD_MODE_ONLY,))
 
-end_if_task_ends_held: Final = Branch(
-    when=(Guard.TASK_ENDS_HELD,), ends=VEHICLE_REFUSED, do=(Action.GO_ON_COMMANDING_HOLD,)
-)
+end_if_task_ends_held: Final = Branch(when=(Guard.TASK_ENDS_HELD,), ends=VEHICLE_REFUSED)
 complete_if_photo_taken: Final = Branch(when=(Guard.PHOTO_TAKEN,), ends=COMPLETE, to=HOVERING)
 take_control_if_regainable: Final = Branch(
     when=CONTROL_REGAINABLE, do=(Action.TAKE_CONTROL,), to=HOVERING

@@ -11,6 +11,7 @@ from gcs.gate.machine.cells import (
     STOPPED_BY_OPERATOR,
     TAKEN_OVER,
     cannot_happen,
+    hold_if_awaited,
     release_and_end,
     unchanged,
 )
@@ -43,7 +44,9 @@ ON_GROUND: Final = End(OutcomeKind.TAKEN_OVER, Code.NOT_FLYING)
 # ---------------------------------------------------------------------- armed and disarmed
 
 complete_if_task_is_arm: Final = Branch(when=(Guard.TASK_IS_ARM,), ends=COMPLETE)
-complete_if_task_ends_disarmed: Final = Branch(when=(Guard.TASK_ENDS_DISARMED,), ends=COMPLETE)
+complete_if_task_ends_disarmed: Final = Branch(
+    when=(Guard.TASK_ENDS_DISARMED,), ends=COMPLETE, do=(Action.CONFIRM_HOLD,)
+)
 confirm_hold_if_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,), do=(Action.CONFIRM_HOLD,))
 complete_in_stale_if_task_ends_disarmed: Final = Branch(
     when=(Guard.TASK_ENDS_DISARMED,), ends=COMPLETE, do=(Action.FORGET_INTERRUPTED,)
@@ -70,6 +73,7 @@ lifted_off_from_ground: Final[Cell] = (
         do=(Action.HOLD,),
         to=HOLDING,
     ),
+    hold_if_awaited,
     Branch(when=(Guard.MISSION_GOES_ON,), to=FLYING_MISSION),
     Branch(when=(Guard.MODE_LAND,), to=LANDING),
     Branch(when=(Guard.MODE_RETURN,), to=RETURNING),

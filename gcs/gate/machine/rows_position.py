@@ -14,6 +14,7 @@ from gcs.gate.machine.cells import (
     cannot_happen,
     disarm_if_on_ground,
     hold_and_end,
+    hold_if_awaited,
     stop_stream_if,
     unchanged,
 )
@@ -55,7 +56,7 @@ forget_vehicle: Final = Branch(
 leave_stale: Final[Cell] = (
     Branch(when=(Guard.RETURNS_TO_STATE,), to=BACK),
     Branch(when=(Guard.ON_GROUND,), to=GROUNDED),
-    Branch(when=(Guard.HOLD_AWAITED,), do=(Action.HOLD,), to=HOLDING),
+    hold_if_awaited,
     Branch(when=(Guard.DISARMED,), to=GROUNDED),
     Branch(when=(Guard.MODE_RETURN,), to=RETURNING),
     Branch(when=(Guard.MODE_LAND,), to=LANDING),

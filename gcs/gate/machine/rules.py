@@ -105,7 +105,6 @@ class Action(StrEnum):
     HOLD_ONCE = "command hold once"
     HOLD_MODE_ONLY = "command hold unseen"
     REPEAT_HOLD = "command hold again"
-    GO_ON_COMMANDING_HOLD = "go on commanding hold"
     CONFIRM_HOLD = "hold is confirmed"
     STOP_AWAITING_MODE = "no mode is awaited any more"
     VERIFY_HELD_POINT = "verify the held point anew"

@@ -167,6 +167,7 @@ class Turn:
             )
             return
         self.supersede_pending()
+        memory.hold_again_ns = None  # the new request takes the place of a hold, too
         self.end(ends or End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED))
         memory.task = Task(self.requested, kind)
 
@@ -187,6 +188,7 @@ class Turn:
     def end(self, end: End) -> None:
         """Give the request under way its outcome, and cancel every command that was sent for it.
 
+        A HOLD that is not shown yet outlives its request: it is commanded again when it is due.
         Also refuses a pending go-to, unless the outcome is COMPLETE.
         """
         memory = self.memory
@@ -194,7 +196,9 @@ class Turn:
         why = self._why(end)
         if why is not None:
             self.refuse_pending(why)
+        hold_again_ns = memory.hold_again_ns
         self.cancel_commands()
+        memory.hold_again_ns = hold_again_ns
         if task is None:
             return
         code, sentence = (None, "Complete") if why is None else (why.code, why.sentence)

@@ -40,6 +40,7 @@ from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Arrival, Policy
 from gcs.gate.policy.zonespec import CircleSpec
+from gcs.gate.proof.invariants import FORCE_REPEAT_NS
 from gcs.gate.requests import (
     Abort,
     Arm,
@@ -251,6 +252,11 @@ def _overdue_ns(policy: Policy, memory: Memory) -> int | None:
     return None if memory.asked_mode is None else memory.asked_until_ns
 
 
+def _force_late_ns(_policy: Policy, memory: Memory) -> int | None:
+    asked_ns = memory.force_asked_ns
+    return None if asked_ns is None else asked_ns + FORCE_REPEAT_NS + 1
+
+
 def _deadline_ns(policy: Policy, memory: Memory) -> int | None:
     return None if memory.task is None else memory.task.deadline_ns
 
@@ -290,6 +296,7 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "wait: mode overdue": _until(_overdue_ns),
         "wait: control due": _until(lambda _, memory: memory.ask_control_ns),
         "wait: hold due": _until(lambda _, memory: memory.hold_again_ns),
+        "wait: forced disarm too late": _until(_force_late_ns),
         "wait: vehicle lost": _lost,
     }
 )

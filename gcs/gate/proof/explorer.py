@@ -24,7 +24,7 @@ from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.alphabet import ABOVE, ALPHABET, EDGE, GOAL, TOP, YARD
 from gcs.gate.proof.edge import Edge, Objection
-from gcs.gate.proof.invariants import objections
+from gcs.gate.proof.invariants import FORCE_REPEAT_NS, objections
 from gcs.gate.states import Control, FlightMode, State
 
 HOME = (0.0, 0.0, 0.0)
@@ -163,6 +163,16 @@ def _combinations(gate: Gate) -> set[Combination]:
     return {(gate.state, gate.severity, gate.control, condition) for condition in conditions}
 
 
+def _force_disarm_may_repeat(memory: Memory, now_ns: int) -> bool:
+    """A first forced disarm was asked for, and the time for the second one runs.
+
+    In HOVERING only, which stands for every state of flight: the table treats all alike.
+    """
+    asked_ns = memory.force_asked_ns
+    in_time = asked_ns is not None and now_ns - asked_ns <= FORCE_REPEAT_NS
+    return in_time and memory.state is State.HOVERING
+
+
 def _start(policy: Policy, table: Table, verifier: Verifier, return_up_m: float) -> _Node:
     gate = Gate(policy, verifier.autopilot, SECOND_NS, table)
     for given in (
@@ -221,5 +231,5 @@ def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         memory.lifted if flies in (State.TAKING_OFF, State.FLYING_MISSION) else None,
         memory.back_to,
         memory.grace_until_ns is not None,
-        state is State.HOVERING and memory.force_asked_ns is not None,
+        _force_disarm_may_repeat(memory, now_ns),
     )

@@ -22,7 +22,15 @@ from gcs.gate.effects import (
     Transition,
     Verdict,
 )
-from gcs.gate.inputs import CommandEnded, HomeSeen, PositionSeen, Requested, Tick, VerifierChanged
+from gcs.gate.inputs import (
+    CommandEnded,
+    HeartbeatSeen,
+    HomeSeen,
+    PositionSeen,
+    Requested,
+    Tick,
+    VerifierChanged,
+)
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.proof.edge import Edge, Objection
 from gcs.gate.refusal import Code, Refusal
@@ -40,7 +48,7 @@ from gcs.gate.requests import (
     TakeOff,
     TakePhoto,
 )
-from gcs.gate.states import Control, LandedState, State
+from gcs.gate.states import Control, FlightMode, LandedState, State
 
 STREAMING_STATES: Final = frozenset(
     {
@@ -72,12 +80,14 @@ NEEDS_POSITION: Final = GUARDED - {State.RETURNING}
 
 HOME_MOVED_M: Final = 1.0
 OVERSHOOT_M: Final = 1.0
+FORCE_REPEAT_NS: Final = 5 * SECOND_NS
+"""How soon a forced disarm in the air has to be asked for again."""
 SLACK_NS: Final = SECOND_NS // 5
 
 
 def objections(edge: Edge) -> Iterator[Objection]:
     """Every invariant that the step breaks."""
-    demanding = Requested | Tick | PositionSeen | VerifierChanged
+    demanding = Requested | Tick | PositionSeen | VerifierChanged | CommandEnded
     if not edge.effects and not isinstance(edge.given, demanding):
         return  # nothing came of something that demands nothing
     for number, check in CHECKS:
@@ -311,6 +321,35 @@ def _attended(edge: Edge) -> Iterator[str]:
             yield f"{edge.request} is heard though the operator is lost"
 
 
+def _force_disarms(edge: Edge) -> Iterator[str]:
+    """Motors are cut in the air on a second, explicit request only, soon after the first."""
+    if CommandKind.FORCE_DISARM not in edge.commands:
+        return
+    asked_ns = edge.before.force_asked_ns
+    if not edge.policy.allow_force_disarm:
+        yield "a forced disarm leaves though the policy forbids it"
+    if not (isinstance(edge.request, Disarm) and edge.request.force):
+        yield "a forced disarm leaves though nobody asks for it"
+    if asked_ns is None or edge.now_ns - asked_ns > FORCE_REPEAT_NS:
+        yield "the first request for a forced disarm cuts the motors"
+
+
+def _holds_until_shown(edge: Edge) -> Iterator[str]:
+    """HOLD is commanded once a second until it is shown, or not wanted any more."""
+    before, after, commands = edge.before, edge.after, set(edge.commands)
+    if before.hold_again_ns is not None and after.hold_again_ns is None:
+        shown = after.mode is FlightMode.HOLD
+        replaced = edge.accepted or commands & {CommandKind.LAND, CommandKind.RETURN}
+        taken_over = isinstance(edge.given, HeartbeatSeen) and after.control is Control.NONE
+        lost = after.state is State.NO_VEHICLE
+        down = not after.armed or after.on_ground
+        if not (shown or replaced or taken_over or lost or down):
+            yield "a hold that is not shown has no next try"
+    due = before.hold_again_ns is not None and before.hold_again_ns <= edge.now_ns
+    if due and isinstance(edge.given, Tick) and after.hold_again_ns == before.hold_again_ns:
+        yield "a hold that is due is not commanded"
+
+
 def _never_refused(edge: Edge) -> Iterator[str]:
     """10: hold, landing in place and disarming on the ground are never refused."""
     if edge.before.state is State.NO_VEHICLE or edge.after.state is State.NO_VEHICLE:
@@ -344,6 +383,8 @@ CHECKS: Final[tuple[tuple[int, Callable[[Edge], Iterator[str]]], ...]] = (
     (6, _brakes),
     (7, _permits),
     (7, _attended),
+    (4, _force_disarms),
+    (4, _holds_until_shown),
     (9, _dangerous),
     (10, _never_refused),
 )
