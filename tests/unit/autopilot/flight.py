@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
+from functools import cache
 from math import nan, sqrt
+from typing import Self
 
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import (
@@ -67,6 +70,13 @@ class Flight:
         self.fly(3.0)
         return self
 
+    @classmethod
+    def hovering(cls, personality: Personality, up_m: float = 5.0, seed: int = 1) -> Self:
+        """As `airborne`, for a vehicle as it is delivered: flown once, and a copy for each test."""
+        flight = deepcopy(_airborne(cls, personality, up_m, seed))
+        assert isinstance(flight, cls)
+        return flight
+
     def texts(self) -> list[str]:
         return [event.text for event in self.seen if isinstance(event, StatusText)]
 
@@ -106,6 +116,11 @@ class Flight:
     def __str__(self) -> str:
         v = self.vehicle
         return f"{v.mode_name} {v.landed.name} armed={v.armed} at {self.pos} {self.texts()[-3:]}"
+
+
+@cache
+def _airborne(kind: type[Flight], personality: Personality, up_m: float, seed: int) -> Flight:
+    return kind(personality, seed).airborne(up_m)
 
 
 def item(

@@ -25,7 +25,7 @@ def test_a_hovering_vehicle_feels_the_wind(wind_ne: tuple[float, float]) -> None
 
 @either
 def test_the_vehicles_own_speed_is_no_wind(personality: Personality) -> None:
-    flight = Flight(personality).airborne(8.0)
+    flight = Flight.hovering(personality, 8.0)
     flight.vehicle.reposition((80.0, 0.0, -8.0), None, 5.0)
     flight.fly(12.0)
     felt = flight.vehicle.wind_ned
@@ -45,7 +45,7 @@ def test_nothing_is_said_of_the_wind_before_it_was_flown_in(personality: Persona
 def test_vibration_is_the_noise_of_the_accelerometer_and_grows_with_it(
     personality: Personality,
 ) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.fly(5.0)
     quiet = flight.vehicle.vibration_m_s2
     assert all(0.001 < axis < 0.3 for axis in quiet)

@@ -17,7 +17,7 @@ HERE = Setpoint(pos_ned=(0.0, 0.0, -5.0))
 
 def guided(personality: Personality) -> Flight:
     """Hovering at 5 m, flown by a stream of setpoints."""
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.stream(HERE, 1.5)
     assert flight.vehicle.set_mode_kind("guided") is Result.ACCEPTED
     flight.stream(HERE, 0.1)
@@ -25,13 +25,13 @@ def guided(personality: Personality) -> Flight:
 
 
 def test_offboard_is_refused_without_a_stream() -> None:
-    flight = Flight("px4").airborne()
+    flight = Flight.hovering("px4")
     assert flight.vehicle.set_mode_kind("guided") is Result.TEMPORARILY_REJECTED
     assert flight.vehicle.mode_name == "AUTO.LOITER"
 
 
 def test_offboard_asked_for_with_the_first_setpoint_begins_after_a_second_of_stream() -> None:
-    flight = Flight("px4").airborne()
+    flight = Flight.hovering("px4")
     flight.vehicle.set_setpoint(HERE)
     assert flight.vehicle.set_mode_kind("guided") is Result.ACCEPTED
     flight.stream(HERE, 0.9)
@@ -41,7 +41,7 @@ def test_offboard_asked_for_with_the_first_setpoint_begins_after_a_second_of_str
 
 
 def test_offboard_asked_for_by_a_stream_that_dies_is_never_entered() -> None:
-    flight = Flight("px4").airborne()
+    flight = Flight.hovering("px4")
     flight.vehicle.set_setpoint(HERE)
     flight.vehicle.set_mode_kind("guided")
     flight.fly(3.0)
@@ -219,7 +219,7 @@ def test_an_attitude_setpoint_is_flown(personality: Personality) -> None:
 
 @either
 def test_reposition_flies_there_and_stays(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.reposition((4.0, 4.0, -6.0), 0.5, 3.0) is Result.ACCEPTED
     flight.fly(6.0)
     assert flight.off((4.0, 4.0, -6.0)) < 0.35

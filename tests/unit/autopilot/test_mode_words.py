@@ -22,7 +22,7 @@ def test_no_mode_is_both_flown_and_refused(personality: Personality) -> None:
 
 @either
 def test_every_refused_mode_says_so_and_changes_nothing(personality: Personality) -> None:
-    flight = Flight(personality).airborne(3.0)
+    flight = Flight.hovering(personality, 3.0)
     before = flight.vehicle.mode_name
     for number, name in REFUSED[personality].items():
         flight.seen.clear()
@@ -38,7 +38,7 @@ def test_every_refused_mode_says_so_and_changes_nothing(personality: Personality
 
 @either
 def test_every_mode_that_needs_no_more_than_a_flight_is_entered(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     special = {"OFFBOARD", "AUTO.MISSION", "AUTO", "FOLLOW"}
     for mode in MODES[personality].values():
         if mode.name in special:
@@ -58,14 +58,14 @@ def test_every_mode_that_needs_no_more_than_a_flight_is_entered(personality: Per
 def test_a_mission_mode_without_a_mission_is_refused_in_its_words(
     personality: Personality, kind: str, text: str
 ) -> None:
-    flight = Flight(personality).airborne(3.0)
+    flight = Flight.hovering(personality, 3.0)
     assert flight.vehicle.set_mode_kind(kind) is REFUSAL[personality]
     flight.fly(0.1)
     assert text in flight.texts()
 
 
 def test_a_number_that_is_no_mode_of_ardupilots() -> None:
-    flight = Flight("ardupilot").airborne(3.0)
+    flight = Flight.hovering("ardupilot", 3.0)
     assert flight.vehicle.set_mode(1, 99) is Result.FAILED
     flight.fly(0.1)
     assert "No such mode 99" in flight.texts()

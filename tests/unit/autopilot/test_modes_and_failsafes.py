@@ -65,7 +65,7 @@ def test_a_mode_that_does_not_exist_is_refused(personality: Personality) -> None
 
 @either
 def test_a_mission_mode_without_a_mission_is_refused(personality: Personality) -> None:
-    flight = Flight(personality).airborne(3.0)
+    flight = Flight.hovering(personality, 3.0)
     refused = {"px4": Result.TEMPORARILY_REJECTED, "ardupilot": Result.FAILED}
     assert flight.vehicle.set_mode_kind("mission") is refused[personality]
     assert flight.vehicle.mission_start(0, 0) is Result.DENIED
@@ -74,7 +74,7 @@ def test_a_mission_mode_without_a_mission_is_refused(personality: Personality) -
 @either
 @pytest.mark.parametrize("kind", ["manual", "altitude", "position"])
 def test_manual_modes_without_sticks_keep_the_height(personality: Personality, kind: str) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.set_mode_kind(kind) is Result.ACCEPTED
     flight.fly(10.0)
     assert flight.up_m == pytest.approx(5.0, abs=0.4)
@@ -83,7 +83,7 @@ def test_manual_modes_without_sticks_keep_the_height(personality: Personality, k
 
 @either
 def test_return_climbs_goes_home_and_lands(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.vehicle.reposition((25.0, -10.0, -5.0), None, None)
     flight.fly(12.0)
     assert flight.off((25.0, -10.0, -5.0)) < 0.5
@@ -107,7 +107,7 @@ def test_return_climbs_goes_home_and_lands(personality: Personality) -> None:
 
 @either
 def test_the_last_metres_of_a_return_are_a_landing(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     name = "RTL_RETURN_ALT" if personality == "px4" else "RTL_ALT"
     flight.vehicle.parameters.set(name, 6.0 if personality == "px4" else 600.0)
     if personality == "px4":
@@ -121,7 +121,7 @@ def test_the_last_metres_of_a_return_are_a_landing(personality: Personality) -> 
 
 @either
 def test_asked_to_hold_on_the_way_to_a_reposition_goal_it_stops(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.vehicle.reposition((60.0, 0.0, -5.0), None, None)
     flight.fly(4.0)
     north = flight.pos[0]
@@ -133,7 +133,7 @@ def test_asked_to_hold_on_the_way_to_a_reposition_goal_it_stops(personality: Per
 
 @either
 def test_pause_and_resume(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.resume() is Result.DENIED
     assert flight.vehicle.pause() is Result.ACCEPTED
     flight.fly(2.0)
@@ -144,7 +144,7 @@ def test_pause_and_resume(personality: Personality) -> None:
 
 @either
 def test_speed_changes_and_goes_back(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.change_speed(-3.0) is Result.DENIED
     assert flight.vehicle.change_speed(1.5) is Result.ACCEPTED
     flight.vehicle.reposition((60.0, 0.0, -5.0), None, None)
@@ -157,7 +157,7 @@ def test_speed_changes_and_goes_back(personality: Personality) -> None:
 
 @either
 def test_altitude_changes_above_home(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.change_altitude(8.0) is Result.ACCEPTED
     flight.fly(5.0)
     assert flight.off((0.0, 0.0, -8.0)) < 0.4
@@ -165,7 +165,7 @@ def test_altitude_changes_above_home(personality: Personality) -> None:
 
 @either
 def test_the_nose_turns_the_way_it_was_told(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.condition_yaw(0.5 * pi, False, 1.0, -1) is Result.ACCEPTED
     flight.fly(2.0)
     assert pi < flight.vehicle.estimate.heading_rad < 2.0 * pi  # the long way round
@@ -187,7 +187,7 @@ def test_flights_are_refused_on_the_ground(personality: Personality) -> None:
 
 @either
 def test_a_picture_takes_its_exposure_and_tells_where_it_was(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.capture_image(0.0, 1) is Result.ACCEPTED
     flight.fly(1.9)
     assert flight.capturing()
@@ -213,7 +213,7 @@ def test_a_series_of_pictures_keeps_its_interval_and_can_be_stopped() -> None:
 
 @either
 def test_a_silent_station_is_nobodys_business_by_default(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.vehicle.gcs_heard(flight.vehicle.time_ns)
     mode = flight.vehicle.mode_name
     flight.fly(30.0)
@@ -233,7 +233,7 @@ def test_a_silent_station_is_nobodys_business_by_default(personality: Personalit
 def test_a_silent_station_does_what_the_parameter_says_on_wall_time(
     personality: Personality, name: str, value: int, mode: str
 ) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.vehicle.parameters.set(name, value)
     if personality == "px4":
         flight.vehicle.parameters.set("COM_FAIL_ACT_T", 0.0)
@@ -261,7 +261,7 @@ def test_a_silent_station_does_what_the_parameter_says_on_wall_time(
 def test_an_empty_battery_does_what_the_parameter_says(
     personality: Personality, name: str, value: int, left: float, mode: str
 ) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.vehicle.parameters.set("COM_FAIL_ACT_T", 0.0)
     flight.vehicle.parameters.set(name, value)
     flight.vehicle.blocks.body.consumed_mah = 5000.0 * (1.0 - left)
@@ -271,7 +271,7 @@ def test_an_empty_battery_does_what_the_parameter_says(
 
 
 def test_flying_empties_the_battery_at_a_believable_rate() -> None:
-    flight = Flight("px4").airborne(5.0)
+    flight = Flight.hovering("px4", 5.0)
     before = flight.vehicle.power.consumed_mah
     flight.fly(30.0)
     drain_a = (flight.vehicle.power.consumed_mah - before) * 3.6 / 30.0
@@ -306,3 +306,17 @@ def test_the_same_seed_and_inputs_fly_the_same_bytes() -> None:
 
     assert fly(1, False) == fly(1, True)
     assert fly(1, False) != fly(2, False)
+
+
+@either
+def test_a_copy_of_a_hover_flies_on_as_a_vehicle_that_flew_there(personality: Personality) -> None:
+    """What `Flight.hovering` rests on; no copy is seen by the next one either."""
+    flights = [Flight.hovering(personality), Flight.hovering(personality)]
+    flights.append(Flight(personality).airborne())
+    ends = []
+    for flight in flights:
+        flight.stream(Setpoint(pos_ned=(2.0, 1.0, -4.0)), 1.2)
+        assert flight.vehicle.set_mode_kind("land") is Result.ACCEPTED
+        flight.fly(4.0)
+        ends.append((flight.vehicle.state_bytes(), flight.seen))
+    assert ends[0] == ends[1] == ends[2]

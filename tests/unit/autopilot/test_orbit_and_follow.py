@@ -32,7 +32,7 @@ def off_nose(flight: HandFlight, wanted_rad: float) -> float:
 @pytest.mark.parametrize("radius_m", [10.0, -10.0])
 def test_px4_orbits_round_a_centre_at_radius_speed_and_height(radius_m: float) -> None:
     """A positive radius is clockwise seen from above; the nose points at the centre."""
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     assert flight.vehicle.orbit(asked(radius_m)) is Result.ACCEPTED
     assert flight.vehicle.mode_name == "POSCTL.ORBIT"
     flight.fly(12.0)
@@ -53,7 +53,7 @@ def test_px4_orbits_round_a_centre_at_radius_speed_and_height(radius_m: float) -
 
 
 def test_px4_keeps_the_nose_as_asked_and_changes_an_orbit_in_flight() -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     heading = flight.vehicle.estimate.heading_rad
     assert flight.vehicle.orbit(asked(nose=1)) is Result.ACCEPTED
     flight.fly(25.0)
@@ -67,7 +67,7 @@ def test_px4_keeps_the_nose_as_asked_and_changes_an_orbit_in_flight() -> None:
 
 
 def test_px4_orbits_where_it_is_when_no_centre_is_given() -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     north, east, _ = flight.pos
     assert flight.vehicle.orbit(asked(5.0, 2.0, 0, None, None)) is Result.ACCEPTED
     flight.fly(15.0)
@@ -75,7 +75,7 @@ def test_px4_orbits_where_it_is_when_no_centre_is_given() -> None:
 
 
 def test_px4_limits_the_speed_by_what_bends_into_the_circle_and_refuses_wide_circles() -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     assert flight.vehicle.orbit(asked(2000.0)) is Result.DENIED
     assert flight.vehicle.orbit(asked(0.5)) is Result.DENIED
     assert flight.vehicle.mode_name == "AUTO.LOITER"
@@ -87,7 +87,7 @@ def test_px4_limits_the_speed_by_what_bends_into_the_circle_and_refuses_wide_cir
 
 def test_the_sticks_change_an_orbit() -> None:
     """Pitch forward draws it in, roll right slows it down and turns it round."""
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     assert flight.vehicle.orbit(asked()) is Result.ACCEPTED
     flight.fly(15.0)
     flight.hold(1.0, forward=800)
@@ -108,12 +108,12 @@ def test_an_orbit_wants_a_flying_px4() -> None:
     flight = HandFlight("px4")
     flight.fly(20.0)
     assert flight.vehicle.orbit(asked()) is Result.TEMPORARILY_REJECTED
-    copter = HandFlight("ardupilot").airborne(5.0)
+    copter = HandFlight.hovering("ardupilot", 5.0)
     assert copter.vehicle.orbit(asked()) is Result.UNSUPPORTED
 
 
 def test_ardupilot_circles_round_a_point_ahead() -> None:
-    flight = HandFlight("ardupilot").airborne(5.0)
+    flight = HandFlight.hovering("ardupilot", 5.0)
     heading = flight.vehicle.estimate.heading_rad
     flight.vehicle.parameters.set("CIRCLE_RADIUS", 800)
     centre = (flight.pos[0] + 8.0 * cos(heading), flight.pos[1] + 8.0 * sin(heading))
@@ -155,7 +155,7 @@ class Lead:
 
 
 def test_px4_follows_behind_at_its_distance_and_height_and_stops_with_the_leader_gone() -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     lead = Lead(flight, (10.0, 10.0))
     lead.walk(1.0)
     assert flight.vehicle.set_mode_kind("follow") is Result.ACCEPTED
@@ -174,7 +174,7 @@ def test_px4_follows_behind_at_its_distance_and_height_and_stops_with_the_leader
 
 
 def test_px4_takes_the_side_that_the_parameter_says() -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     flight.vehicle.parameters.set("FLW_TGT_FA", 90.0)
     flight.vehicle.parameters.set("FLW_TGT_DST", 5.0)
     lead = Lead(flight, (10.0, 10.0))
@@ -186,7 +186,7 @@ def test_px4_takes_the_side_that_the_parameter_says() -> None:
 
 
 def test_ardupilot_follows_only_when_enabled_and_only_its_leader() -> None:
-    flight = HandFlight("ardupilot").airborne(5.0)
+    flight = HandFlight.hovering("ardupilot", 5.0)
     assert flight.mode("FOLLOW") is Result.FAILED
     flight.fly(0.1)
     assert "Set FOLL_ENABLE = 1" in flight.texts()
@@ -214,7 +214,7 @@ def test_ardupilot_follows_only_when_enabled_and_only_its_leader() -> None:
 def test_the_nose_points_at_a_region_of_interest_until_told_otherwise(
     personality: Personality,
 ) -> None:
-    flight = HandFlight(personality).airborne(5.0)
+    flight = HandFlight.hovering(personality, 5.0)
     assert flight.vehicle.look_at((flight.pos[0], flight.pos[1] - 30.0, 0.0)) is Result.ACCEPTED
     flight.fly(8.0)
     assert off_nose(flight, -0.5 * pi) < 0.15
@@ -226,5 +226,5 @@ def test_the_nose_points_at_a_region_of_interest_until_told_otherwise(
 
 @pytest.mark.parametrize("bad", [nan, inf])
 def test_a_region_of_interest_that_is_nowhere_is_denied(bad: float) -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     assert flight.vehicle.look_at((bad, 0.0, 0.0)) is Result.DENIED

@@ -70,7 +70,7 @@ def test_a_value_that_it_does_not_take_is_refused_and_the_old_one_stays(
 
 
 def test_a_changed_speed_acts_at_once() -> None:
-    flight = Flight("px4").airborne(5.0)
+    flight = Flight.hovering("px4", 5.0)
     flight.vehicle.reposition((80.0, 0.0, -5.0), None, None)
     flight.fly(4.0)
     flight.vehicle.parameters.set("MPC_XY_CRUISE", 2.0)

@@ -21,7 +21,7 @@ BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 def test_a_manual_mode_does_not_begin_with_sticks_that_fell_silent_long_ago(
     personality: Personality, mode: str
 ) -> None:
-    flight = HandFlight(personality).airborne(20.0)
+    flight = HandFlight.hovering(personality, 20.0)
     flight.hold(0.3, right=1000, up=0)
     flight.fly(10.0)  # a failsafe has taken the vehicle
     flight.vehicle.set_mode_kind("hold")
@@ -73,7 +73,7 @@ def test_a_leader_of_absurd_speed_does_not_take_the_follower_along(
 
 def test_an_empty_battery_carries_nobody() -> None:
     """PX4 only warns of a low battery by default (COM_LOW_BAT_ACT 0): it flies on till it falls."""
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     body = flight.vehicle.blocks.body
     body.consumed_mah = flight.vehicle.engine.frame.capacity_mah
     flight.fly(300.0, lambda: flight.up_m < 0.1)
@@ -84,7 +84,7 @@ def test_an_empty_battery_carries_nobody() -> None:
 @pytest.mark.parametrize("personality", BOTH)
 def test_a_heading_of_many_turns_is_that_heading(personality: Personality) -> None:
     """Within a step's time: such numbers come from clients that mix up units."""
-    flight = HandFlight(personality).airborne(5.0)
+    flight = HandFlight.hovering(personality, 5.0)
     wanted_rad = math.remainder(1e300, 2.0 * math.pi)
     assert flight.vehicle.reposition(flight.pos, 1e300, None) is Result.ACCEPTED
     flight.fly(8.0)

@@ -112,7 +112,7 @@ def test_acro_turns_at_a_rate_and_does_not_level_itself(
 
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
 def test_without_any_stick_a_manual_mode_holds_its_height(personality: Personality) -> None:
-    flight = HandFlight(personality).airborne(5.0)
+    flight = HandFlight.hovering(personality, 5.0)
     assert flight.vehicle.set_mode_kind("manual") is Result.ACCEPTED
     flight.fly(5.0)
     assert flight.up_m == pytest.approx(5.0, abs=1.0)
@@ -130,7 +130,7 @@ def test_sticks_that_fall_silent_count_as_centred(personality: Personality, mode
 
 
 def test_px4_gives_an_automatic_flight_to_a_pilot_who_moves_a_stick() -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     flight.hold(0.5)
     assert flight.vehicle.mode_name == "AUTO.LOITER"
     flight.hold(0.3, forward=400)
@@ -139,7 +139,7 @@ def test_px4_gives_an_automatic_flight_to_a_pilot_who_moves_a_stick() -> None:
 
 
 def test_px4_keeps_an_automatic_flight_where_sticks_may_not_take_over() -> None:
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     flight.vehicle.parameters.set("COM_RC_OVERRIDE", 0)
     flight.hold(0.5, forward=1000)
     assert flight.vehicle.mode_name == "AUTO.LOITER"
@@ -160,7 +160,7 @@ def test_arming_and_disarming_with_the_stick_in_the_corner(
 
 
 def test_ardupilots_mode_channel_changes_the_mode() -> None:
-    flight = HandFlight("ardupilot").airborne(5.0)
+    flight = HandFlight.hovering("ardupilot", 5.0)
     ignore = 65535
     for _ in range(6):
         flight.vehicle.override_channels(
@@ -175,7 +175,7 @@ def test_ardupilots_mode_channel_changes_the_mode() -> None:
 def test_px4_flies_a_velocity_over_ground_at_a_height(height_m: float) -> None:
     """Position of one axis and velocity of the others, in one setpoint."""
     nan = float("nan")
-    flight = HandFlight("px4").airborne(5.0)
+    flight = HandFlight.hovering("px4", 5.0)
     setpoint = Setpoint(pos_ned=(nan, nan, -height_m), v_ned=(1.0, 0.5, nan))
     flight.stream(setpoint, 1.5)
     assert flight.vehicle.set_mode_kind("guided") is Result.ACCEPTED

@@ -106,7 +106,7 @@ def test_ardupilot_takes_off_armed_and_in_guided_only() -> None:
 
 @either
 def test_a_repeated_take_off_is_accepted_without_a_second_effect(personality: Personality) -> None:
-    flight = Flight(personality).airborne(3.0)
+    flight = Flight.hovering(personality, 3.0)
     mode = flight.vehicle.mode_name
     assert flight.vehicle.take_off(20.0) is Result.ACCEPTED
     flight.fly(3.0)
@@ -116,7 +116,7 @@ def test_a_repeated_take_off_is_accepted_without_a_second_effect(personality: Pe
 
 @either
 def test_it_does_not_disarm_in_the_air_unless_forced(personality: Personality) -> None:
-    flight = Flight(personality).airborne(3.0)
+    flight = Flight.hovering(personality, 3.0)
     assert flight.vehicle.disarm(False) in (Result.DENIED, Result.FAILED)
     assert flight.vehicle.armed
     assert flight.vehicle.disarm(True) is Result.ACCEPTED
@@ -128,7 +128,7 @@ def test_it_does_not_disarm_in_the_air_unless_forced(personality: Personality) -
 
 @either
 def test_landing_touches_down_softly_and_disarms(personality: Personality) -> None:
-    flight = Flight(personality).airborne(4.0)
+    flight = Flight.hovering(personality, 4.0)
     assert flight.vehicle.land() is Result.ACCEPTED
     flight.fly(1.0)
     assert flight.landed() is Landed.LANDING
@@ -147,7 +147,7 @@ def test_landing_touches_down_softly_and_disarms(personality: Personality) -> No
 def test_px4_is_ready_to_arm_after_a_landing_and_ardupilot_wants_a_mode_first(
     personality: Personality,
 ) -> None:
-    flight = Flight(personality).airborne(2.0)
+    flight = Flight.hovering(personality, 2.0)
     flight.vehicle.land()
     flight.fly(20.0, lambda: not flight.vehicle.armed)
     assert flight.armable() is (personality == "px4")
@@ -157,7 +157,7 @@ def test_px4_is_ready_to_arm_after_a_landing_and_ardupilot_wants_a_mode_first(
 
 @either
 def test_hover_is_steady_and_the_heading_stays(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     flight.fly(2.0)
     for _ in range(20):
         flight.fly(0.5)
@@ -168,7 +168,7 @@ def test_hover_is_steady_and_the_heading_stays(personality: Personality) -> None
 
 
 def test_termination_stops_the_motors_for_good() -> None:
-    flight = Flight("px4").airborne(5.0)
+    flight = Flight.hovering("px4", 5.0)
     assert flight.vehicle.terminate() is Result.ACCEPTED
     flight.fly(5.0)
     assert not flight.vehicle.armed
@@ -186,7 +186,7 @@ def test_it_does_not_reboot_while_armed() -> None:
 
 
 def test_a_reboot_on_the_ground_starts_anew_at_home() -> None:
-    flight = Flight("px4").airborne(3.0)
+    flight = Flight.hovering("px4", 3.0)
     flight.vehicle.reposition((6.0, 0.0, -3.0), None, None)
     flight.fly(8.0)
     flight.vehicle.land()
@@ -204,7 +204,7 @@ def test_a_reboot_on_the_ground_starts_anew_at_home() -> None:
 
 
 def test_a_reboot_in_the_air_ends_in_a_fall() -> None:
-    flight = Flight("px4").airborne(8.0)
+    flight = Flight.hovering("px4", 8.0)
     flight.vehicle.terminate()
     assert flight.vehicle.reboot() is Result.ACCEPTED
     flight.fly(0.5)

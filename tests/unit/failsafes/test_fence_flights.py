@@ -36,7 +36,7 @@ def steer(flight: Flight, seconds: float) -> None:
     [(1, "OFFBOARD"), (2, "AUTO.LOITER"), (3, "AUTO.RTL"), (5, "AUTO.LAND")],
 )
 def test_px4_does_what_gf_action_says(action: int, mode: str) -> None:
-    flight = fenced(Flight("px4").airborne(5.0), box("px4", 20.0))
+    flight = fenced(Flight.hovering("px4", 5.0), box("px4", 20.0))
     flight.vehicle.parameters.set("GF_ACTION", action)
     flight.vehicle.parameters.set("COM_FAIL_ACT_T", 0.0)
     flight.vehicle.parameters.set("COM_OF_LOSS_T", 60.0)
@@ -49,7 +49,7 @@ def test_px4_does_what_gf_action_says(action: int, mode: str) -> None:
 
 
 def test_px4_without_an_action_flies_on_and_by_default_holds() -> None:
-    flight = fenced(Flight("px4").airborne(5.0), box("px4", 15.0))
+    flight = fenced(Flight.hovering("px4", 5.0), box("px4", 15.0))
     assert flight.vehicle.parameters.get("GF_ACTION") == 2
     flight.vehicle.parameters.set("GF_ACTION", 0)
     steer(flight, 6.0)
@@ -59,7 +59,7 @@ def test_px4_without_an_action_flies_on_and_by_default_holds() -> None:
 
 
 def test_px4_terminates_where_it_is_told_to() -> None:
-    flight = fenced(Flight("px4").airborne(5.0), box("px4", 10.0))
+    flight = fenced(Flight.hovering("px4", 5.0), box("px4", 10.0))
     flight.vehicle.parameters.set("GF_ACTION", 4)
     steer(flight, 5.0)
     assert said(flight, "triggering Terminate")
@@ -68,7 +68,7 @@ def test_px4_terminates_where_it_is_told_to() -> None:
 
 
 def test_px4_holds_before_it_returns_so_that_somebody_can_take_over() -> None:
-    flight = fenced(Flight("px4").airborne(5.0), box("px4", 12.0))
+    flight = fenced(Flight.hovering("px4", 5.0), box("px4", 12.0))
     flight.vehicle.parameters.set("GF_ACTION", 3)
     steer(flight, 5.0)
     assert said(flight, "Failsafe activated, triggering RTL in 5 seconds")
@@ -79,7 +79,7 @@ def test_px4_holds_before_it_returns_so_that_somebody_can_take_over() -> None:
 
 
 def test_who_takes_over_while_px4_holds_keeps_the_vehicle() -> None:
-    flight = fenced(Flight("px4").airborne(5.0), box("px4", 12.0))
+    flight = fenced(Flight.hovering("px4", 5.0), box("px4", 12.0))
     flight.vehicle.parameters.set("GF_ACTION", 3)
     steer(flight, 5.0)
     flight.vehicle.set_mode_kind("position")
@@ -96,7 +96,7 @@ def test_who_takes_over_while_px4_holds_keeps_the_vehicle() -> None:
     ],
 )
 def test_px4_minds_its_distances_from_home(name: str, text: str) -> None:
-    flight = Flight("px4").airborne(5.0)
+    flight = Flight.hovering("px4", 5.0)
     flight.fly(1.0)
     assert not said(flight, "Geofence")
     flight.vehicle.parameters.set(name, 4.0)
@@ -111,7 +111,7 @@ def test_px4_minds_its_distances_from_home(name: str, text: str) -> None:
 def test_px4_looks_ahead_where_gf_predict_says_so() -> None:
     crossed: list[float] = []
     for ahead in (0, 1):
-        flight = fenced(Flight("px4").airborne(5.0), box("px4", 20.0))
+        flight = fenced(Flight.hovering("px4", 5.0), box("px4", 20.0))
         flight.vehicle.parameters.set("GF_PREDICT", ahead)
         flight.stream(Setpoint(v_ned=(4.0, 0.0, 0.0)), 1.2)
         flight.vehicle.set_mode_kind("guided")
@@ -129,7 +129,7 @@ def test_px4_looks_ahead_where_gf_predict_says_so() -> None:
     [(0, "GUIDED"), (1, "RTL"), (2, "LAND"), (3, "RTL"), (4, "BRAKE"), (5, "LAND")],
 )
 def test_ardupilot_does_what_fence_action_says(action: int, mode: str) -> None:
-    flight = fenced(Flight("ardupilot").airborne(5.0), box("ardupilot", 15.0))
+    flight = fenced(Flight.hovering("ardupilot", 5.0), box("ardupilot", 15.0))
     flight.vehicle.parameters.set("FENCE_ACTION", action)
     outwards(flight, 6.0)
     assert said(flight, "Polygon fence breached")
@@ -140,7 +140,7 @@ def test_ardupilot_does_what_fence_action_says(action: int, mode: str) -> None:
 
 
 def test_ardupilot_fences_nothing_until_it_is_on() -> None:
-    flight = Flight("ardupilot").airborne(5.0)
+    flight = Flight.hovering("ardupilot", 5.0)
     flight.vehicle.load_fence(box("ardupilot", 10.0))
     outwards(flight, 4.0)
     assert flight.vehicle.mode_name == "GUIDED"
@@ -160,7 +160,7 @@ def test_ardupilot_fences_nothing_until_it_is_on() -> None:
 def test_ardupilot_minds_height_and_distance(
     kinds: int, name: str, value: float, text: str
 ) -> None:
-    flight = Flight("ardupilot").airborne(11.0)
+    flight = Flight.hovering("ardupilot", 11.0)
     flight.vehicle.parameters.set("FENCE_ENABLE", 1)
     flight.vehicle.parameters.set("FENCE_TYPE", kinds)
     flight.vehicle.parameters.set(name, value)
@@ -189,7 +189,7 @@ def test_ardupilots_floor_counts_once_it_was_above_and_not_for_a_landing() -> No
         again.fly(0.1)
     assert said(again, "Min Alt fence breached")
     assert again.vehicle.mode_name == "RTL"
-    barred = Flight("ardupilot").airborne(8.0)
+    barred = Flight.hovering("ardupilot", 8.0)
     for name, value in (("FENCE_ENABLE", 1), ("FENCE_TYPE", 8), ("FENCE_ALT_MIN", 3.0)):
         barred.vehicle.parameters.set(name, value)
     barred.vehicle.enable_fence(2)
@@ -200,7 +200,7 @@ def test_ardupilots_floor_counts_once_it_was_above_and_not_for_a_landing() -> No
 
 
 def test_ardupilot_lets_nobody_leave_the_recovery_unless_fence_options_do() -> None:
-    flight = fenced(Flight("ardupilot").airborne(5.0), box("ardupilot", 10.0))
+    flight = fenced(Flight.hovering("ardupilot", 5.0), box("ardupilot", 10.0))
     outwards(flight, 4.5)
     assert flight.vehicle.mode_name == "RTL"
     assert flight.vehicle.fence_state.breached
@@ -215,7 +215,7 @@ def test_ardupilot_lets_nobody_leave_the_recovery_unless_fence_options_do() -> N
 
 
 def test_ardupilot_back_inside_says_so() -> None:
-    flight = fenced(Flight("ardupilot").airborne(5.0), box("ardupilot", 10.0))
+    flight = fenced(Flight.hovering("ardupilot", 5.0), box("ardupilot", 10.0))
     flight.vehicle.parameters.set("RTL_ALT", 500)
     outwards(flight, 4.5)
     flight.fly(8.0)
@@ -224,7 +224,7 @@ def test_ardupilot_back_inside_says_so() -> None:
 
 
 def test_ardupilot_lands_where_it_is_far_outside() -> None:
-    flight = Flight("ardupilot").airborne(5.0)
+    flight = Flight.hovering("ardupilot", 5.0)
     flight.vehicle.reposition((140.0, 0.0, -5.0), None, None)
     flight.fly(35.0)
     for name, value in (("FENCE_RADIUS", 30.0), ("FENCE_TYPE", 2), ("FENCE_ENABLE", 1)):
@@ -239,7 +239,7 @@ def test_one_of_two_inclusion_zones_is_enough_only_where_fence_options_say_so() 
         point("ardupilot", 1, 5003, (20.0, 0.0), 15.0),
     )
     for options, mode in ((1, "RTL"), (3, "GUIDED")):
-        flight = Flight("ardupilot").airborne(5.0)
+        flight = Flight.hovering("ardupilot", 5.0)
         flight.vehicle.parameters.set("FENCE_OPTIONS", options)
         fenced(flight, two)
         flight.fly(0.3)
@@ -248,7 +248,7 @@ def test_one_of_two_inclusion_zones_is_enough_only_where_fence_options_say_so() 
 
 @either
 def test_a_goal_outside_the_fence_is_refused(personality: Personality) -> None:
-    flight = fenced(Flight(personality).airborne(5.0), box(personality, 20.0))
+    flight = fenced(Flight.hovering(personality, 5.0), box(personality, 20.0))
     there = (30.0, 0.0, -5.0)
     expected = Result.DENIED if personality == "px4" else Result.FAILED
     assert flight.vehicle.reposition(there, None, None) is expected
@@ -257,7 +257,7 @@ def test_a_goal_outside_the_fence_is_refused(personality: Personality) -> None:
 
 @either
 def test_an_exclusion_zone_is_a_breach_from_inside(personality: Personality) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     fenced(flight, (point(personality, 0, 5004, (3.0, 0.0), 8.0),))
     flight.fly(0.4)
     assert flight.vehicle.mode_name == ("AUTO.LOITER" if personality == "px4" else "RTL")
@@ -281,7 +281,7 @@ def test_outside_the_fence_it_does_not_arm(personality: Personality) -> None:
 
 
 def test_px4_keeps_a_mission_out_of_bounds_and_does_not_fly_it() -> None:
-    flight = fenced(Flight("px4").airborne(5.0), box("px4", 20.0))
+    flight = fenced(Flight.hovering("px4", 5.0), box("px4", 20.0))
     plan = (item(0, 16, 10.0, 0.0, 5.0), item(1, 16, 40.0, 0.0, 5.0))
     assert flight.vehicle.check_plan(plan) is None
     flight.vehicle.load_plan(plan)
@@ -293,7 +293,7 @@ def test_px4_keeps_a_mission_out_of_bounds_and_does_not_fly_it() -> None:
 
 
 def test_ardupilots_mission_turns_the_fence_on_and_off() -> None:
-    flight = Flight("ardupilot").airborne(5.0)
+    flight = Flight.hovering("ardupilot", 5.0)
     plan = (
         item(0, 16),
         PlanItem(1, 2, 207, 1.0, 0.0, 0.0, 0.0, 0, 0, 0.0, 1),
@@ -331,9 +331,9 @@ def near_the_point(flight: Flight) -> Flight:
 
 @either
 def test_a_return_goes_to_the_nearest_of_home_and_rally_points(personality: Personality) -> None:
-    north, east = returned(near_the_point(Flight(personality).airborne(5.0)))
+    north, east = returned(near_the_point(Flight.hovering(personality, 5.0)))
     assert hypot(north - 40.0, east) < 1.0
-    home = near_the_point(Flight(personality).airborne(5.0))
+    home = near_the_point(Flight.hovering(personality, 5.0))
     home.vehicle.reposition((15.0, 0.0, -5.0), None, None)
     home.fly(8.0)
     north, east = returned(home)
@@ -351,7 +351,7 @@ def test_a_return_goes_to_the_nearest_of_home_and_rally_points(personality: Pers
 def test_the_parameters_choose_between_them(
     personality: Personality, name: str, value: float, there: bool
 ) -> None:
-    flight = near_the_point(Flight(personality).airborne(5.0))
+    flight = near_the_point(Flight.hovering(personality, 5.0))
     flight.vehicle.parameters.set(name, value)
     flight.vehicle.reposition((15.0 if there else 25.0, 0.0, -5.0), None, None)
     flight.fly(8.0)
@@ -362,11 +362,11 @@ def test_the_parameters_choose_between_them(
 def test_ardupilot_flies_to_a_rally_point_at_its_height_and_never_to_one_outside_the_fence() -> (
     None
 ):
-    flight = near_the_point(Flight("ardupilot").airborne(5.0))
+    flight = near_the_point(Flight.hovering("ardupilot", 5.0))
     flight.vehicle.load_rally((point("ardupilot", 0, 5100, (40.0, 0.0), up_m=14.0),))
     flight.vehicle.return_home()
     flight.fly(8.0)
     assert flight.up_m == pytest.approx(14.0, abs=1.0)
-    fenced_in = fenced(near_the_point(Flight("ardupilot").airborne(5.0)), box("ardupilot", 35.0))
+    fenced_in = fenced(near_the_point(Flight.hovering("ardupilot", 5.0)), box("ardupilot", 35.0))
     north, east = returned(fenced_in)
     assert hypot(north, east) < 1.0

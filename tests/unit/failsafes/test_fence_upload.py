@@ -41,7 +41,7 @@ def outside(flight: Flight) -> bool:
 def test_an_uploaded_fence_acts_and_a_refused_one_leaves_it_in_force(
     personality: Personality,
 ) -> None:
-    flight = Flight(personality).airborne(5.0)
+    flight = Flight.hovering(personality, 5.0)
     if personality == "ardupilot":
         flight.vehicle.parameters.set("FENCE_ENABLE", 1)
     server = MissionServer(flight.vehicle, PROFILES[personality])

@@ -1,12 +1,16 @@
 """A vehicle in a world with a schedule of faults, flown over MAVLink, seen by truth and telemetry.
 
-A script says `stage.aloft()`, lets time pass and looks: `truth` is what is, `last(kind)` what is
-told.  Faults strike by their times, which count from the start; `STRIKES_S` lies in a hover.
+A script says `aloft("px4", faults)`, lets time pass and looks: `truth` is what is, `last(kind)`
+what is told.  Faults strike by their times, which count from the start; `STRIKES_S` is in a hover.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import copyreg
+import hashlib
+from collections.abc import Callable
+from copy import deepcopy
+from functools import cache
 from math import cos, hypot, nan, radians
 from typing import TypeVar
 
@@ -15,7 +19,7 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.faults import parse
+from vehicle_sim.faults import Schedule, parse
 from vehicle_sim.fleet import Few, Seat, Spec
 from vehicle_sim.model.airframe import load
 from vehicle_sim.services.profile import PROFILES
@@ -23,7 +27,7 @@ from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import Frame, encode
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
+from vehicle_sim.world import NEVER_NS, Datagram, LinkSpec, Log, Transmit, Wake, World
 
 S = 1_000_000_000
 MS = 1_000_000
@@ -42,6 +46,9 @@ GUIDED = 4
 NUMBERS: dict[object, int] = {kind: number for kind, number in m.IDS.items()}  # noqa: C416
 
 M = TypeVar("M", bound=m.Message)
+
+# A stage can be copied in flight; hashlib's objects are copied by a method of their own.
+copyreg.pickle(type(hashlib.sha256()), lambda digest: (digest.copy, ()))
 
 
 class Stage:
@@ -76,12 +83,6 @@ class Stage:
         self._beat_ns = 0
         self._stick_ns = 0
         self._sequence = 0
-
-    def given(self, parameters: Mapping[str, float]) -> Stage:
-        """With other parameters than the defaults."""
-        for name, value in parameters.items():
-            self.vehicle.parameters.set(name, value)
-        return self
 
     # ------------------------------------------------------------------------------- time
 
@@ -141,8 +142,8 @@ class Stage:
             assert self.command(SET_MODE, 1, GUIDED) == 0
         return self
 
-    def aloft(self, up_m: float = 10.0) -> Stage:
-        """In a hover, just before the faults strike."""
+    def take_off(self, up_m: float) -> Stage:
+        """Ready, armed and up, in a hover just before the faults strike."""
         self.ready()
         home_m = HOMES[self.personality].alt_amsl_m if self.personality == "px4" else 0.0
         assert self.command(ARM, 1) == 0
@@ -152,6 +153,16 @@ class Stage:
         assert abs(self.up_m - up_m) < 1.5
         assert self.speed_m_s < 0.4
         return self
+
+    def copy(self, faults: str) -> Stage:
+        """One that goes on from here by itself, with faults that have yet to strike."""
+        timed = parse(faults, "faults.toml")
+        assert all(each.at_ns > self.now_ns for each in timed), "that should have struck before"
+        # What was heard so far changes no more: the copy has the same frames in a list of its own.
+        copy = deepcopy(self, {id(self.heard): list(self.heard)})
+        copy.world._schedule = Schedule(timed)
+        copy.world._fault_ns = copy.world._schedule.due_ns(NEVER_NS)
+        return copy
 
     # ------------------------------------------------------------------------------ sight
 
@@ -226,6 +237,35 @@ class Stage:
 
     def __str__(self) -> str:
         return f"{self.truth} {self.texts[-4:]}"
+
+
+@cache
+def _hovering(
+    personality: Personality,
+    up_m: float,
+    airframe: str,
+    seed: int,
+    parameters: tuple[tuple[str, float], ...],
+) -> Stage:
+    return Stage(personality, airframe=airframe, seed=seed, **dict(parameters)).take_off(up_m)
+
+
+def aloft(
+    personality: Personality,
+    faults: str = "",
+    up_m: float = 10.0,
+    *,
+    airframe: str = "s500",
+    seed: int = 1,
+    **parameters: float,
+) -> Stage:
+    """In a hover, just before the faults strike.
+
+    The way there is the same for all faults: it is flown once, and each test goes on from a copy.
+    `test_fault_determinism` compares such a copy with a stage that flew all the way.
+    """
+    given = tuple(sorted(parameters.items()))
+    return _hovering(personality, up_m, airframe, seed, given).copy(faults)
 
 
 def far(truth: Truth, from_ned: tuple[float, float, float]) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import nan
 
-from tests.unit.faults.stage import BEAT, HOMES, MS, S
+from tests.unit.faults.stage import BEAT, HOMES, MS, S, Stage, aloft
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters import Parameters
@@ -118,3 +118,24 @@ def test_another_seed_is_another_flight() -> None:
     other_said, other_states = fly(Few(specs(2, 4), load()), 2, 700 * MS, seed=4)
     assert said != other_said
     assert set(states).isdisjoint(other_states)
+
+
+def test_a_copy_of_a_hover_suffers_as_a_vehicle_that_flew_there() -> None:
+    """What `aloft` rests on: the same bytes and logs, and no copy is seen by the next one."""
+    faults = """
+    fault = [
+      { at_s = 20.0, for_s = 2.0, kind = "gps_glitch", offset_ned_m = [20, 5, 0] },
+      { at_s = 20.5, kind = "wind", wind_ned_m_s = [3, -4, 0], gust_m_s = 1.5 },
+      { at_s = 21.0, for_s = 3.0, kind = "link", loss = 0.1, duplicate = 0.1, delay_s = 0.05 },
+      { at_s = 24.0, kind = "motor", motor = 3, health = 0.0 },
+    ]
+    """
+    flown = Stage("px4", faults).take_off(10.0)
+    before = len(flown.heard)
+    flown.run(6.0)
+    assert len(flown.heard) > before + 1000
+    for _ in range(2):
+        copy = aloft("px4", faults)
+        copy.run(6.0)
+        assert copy.vehicle.state_bytes() == flown.vehicle.state_bytes()
+        assert (copy.heard, copy.logs) == (flown.heard, flown.logs)

@@ -7,7 +7,7 @@ from math import hypot
 import pytest
 
 from tests.unit.autopilot.flight import item
-from tests.unit.faults.stage import HOVERS, S, Stage, far
+from tests.unit.faults.stage import HOVERS, S, Stage, aloft, far
 from vehicle_sim.autopilot.interface import Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
@@ -46,7 +46,7 @@ class Wanderer:
 
 
 def test_px4_without_gps_for_10_s_descends_meanwhile_and_goes_on_where_it_is() -> None:
-    stage = Stage("px4", FOR_10_S).aloft(10.0)
+    stage = aloft("px4", FOR_10_S)
     away = Wanderer(stage)
     stage.run(4.5, away)
     assert stage.last(m.GpsRawInt).fix_type == NO_FIX
@@ -70,7 +70,7 @@ def test_px4_without_gps_for_10_s_descends_meanwhile_and_goes_on_where_it_is() -
 
 
 def test_ardupilot_without_gps_for_10_s_lands_and_goes_on_landing() -> None:
-    stage = Stage("ardupilot", FOR_10_S).aloft(10.0)
+    stage = aloft("ardupilot", FOR_10_S)
     away = Wanderer(stage)
     stage.run(5.5, away)
     assert stage.mode == "GUIDED"
@@ -89,7 +89,7 @@ def test_ardupilot_without_gps_for_10_s_lands_and_goes_on_landing() -> None:
 def test_without_gps_for_good_it_comes_down_near_by_and_does_not_arm_again(
     personality: Personality,
 ) -> None:
-    stage = Stage(personality, FOR_GOOD).aloft(10.0)
+    stage = aloft(personality, FOR_GOOD)
     away = Wanderer(stage)
     fell: list[float] = []
     stage.run(8.0, away)
@@ -111,7 +111,7 @@ def test_without_gps_for_good_it_comes_down_near_by_and_does_not_arm_again(
 @either
 def test_a_small_glitch_is_believed_and_flown_after(personality: Personality) -> None:
     """Two metres are within the gate: who trusts its receiver goes where that puts it."""
-    stage = Stage(personality, glitch(2.0)).aloft(10.0)
+    stage = aloft(personality, glitch(2.0))
     at = stage.truth.pos_ned
     stage.run(15.0)
     assert stage.mode == HOVERS[personality]
@@ -121,7 +121,7 @@ def test_a_small_glitch_is_believed_and_flown_after(personality: Personality) ->
 
 @either
 def test_a_large_glitch_that_ends_in_time_is_not_flown_after(personality: Personality) -> None:
-    stage = Stage(personality, glitch(60.0, for_s=3.0)).aloft(10.0)
+    stage = aloft(personality, glitch(60.0, for_s=3.0))
     away, told_before = Wanderer(stage), stage.texts
     stage.run(1.0, away)
     raw, told = stage.last(m.GpsRawInt), stage.last(m.GlobalPositionInt)
@@ -135,7 +135,7 @@ def test_a_large_glitch_that_ends_in_time_is_not_flown_after(personality: Person
 
 def test_px4_takes_a_glitch_that_stays_for_its_place_and_holds_there() -> None:
     """Refused for five seconds, then the estimate is set on it: the map moves, not the vehicle."""
-    stage = Stage("px4", glitch(60.0)).aloft(10.0)
+    stage = aloft("px4", glitch(60.0))
     away = Wanderer(stage)
     stage.run(4.5, away)
     assert stage.astray_m < 1.0
@@ -148,7 +148,7 @@ def test_px4_takes_a_glitch_that_stays_for_its_place_and_holds_there() -> None:
 
 
 def test_ardupilot_flies_to_its_goal_on_the_map_that_a_glitch_has_moved() -> None:
-    stage = Stage("ardupilot", glitch(60.0)).aloft(10.0)
+    stage = aloft("ardupilot", glitch(60.0))
     away = Wanderer(stage)
     at = stage.truth.pos_ned
     stage.run(30.0, away)
@@ -160,7 +160,7 @@ def test_ardupilot_flies_to_its_goal_on_the_map_that_a_glitch_has_moved() -> Non
 
 @either
 def test_a_mission_without_gps_is_left_and_ends_near_the_line(personality: Personality) -> None:
-    stage = Stage(personality, FOR_GOOD).aloft(10.0)
+    stage = aloft(personality, FOR_GOOD)
     vehicle = stage.vehicle
     north = tuple(item(seq, 16, 20.0 * seq, 0.0, 10.0) for seq in range(6))
     assert vehicle.check_plan(north) is None
@@ -177,7 +177,7 @@ def test_a_mission_without_gps_is_left_and_ends_near_the_line(personality: Perso
 
 
 def test_px4_goes_on_with_its_mission_when_gps_is_back() -> None:
-    stage = Stage("px4", FOR_10_S).aloft(10.0)
+    stage = aloft("px4", FOR_10_S)
     vehicle = stage.vehicle
     plan = tuple(item(seq, 16, 15.0 * seq, 0.0, 10.0) for seq in range(4))
     vehicle.load_plan(plan)
@@ -194,14 +194,14 @@ def test_px4_goes_on_with_its_mission_when_gps_is_back() -> None:
 
 def test_px4_that_trusts_longer_descends_later() -> None:
     """COM_POS_FS_EPH limits the trust in dead reckoning; the estimator's own five seconds too."""
-    early = Stage("px4", FOR_GOOD, COM_POS_FS_EPH=1.0).aloft(10.0)
+    early = aloft("px4", FOR_GOOD, COM_POS_FS_EPH=1.0)
     assert early.until(lambda: early.mode == "AUTO.LAND") < 3.5
-    late = Stage("px4", FOR_GOOD).aloft(10.0)
+    late = aloft("px4", FOR_GOOD)
     assert 4.5 < late.until(lambda: late.mode == "AUTO.LAND") < 5.8
 
 
 def test_ekf_status_report_tells_of_the_lost_position() -> None:
-    stage = Stage("ardupilot", FOR_GOOD).aloft(10.0)
+    stage = aloft("ardupilot", FOR_GOOD)
     assert stage.last(m.EkfStatusReport).flags & PRED_POS_HORIZ_ABS
     stage.run(8.0)
     assert not stage.last(m.EkfStatusReport).flags & PRED_POS_HORIZ_ABS

@@ -6,7 +6,7 @@ from math import nan
 
 import pytest
 
-from tests.unit.faults.stage import INJECT, Stage, far
+from tests.unit.faults.stage import INJECT, Stage, aloft, far
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.services.failures import FAILURES, Type, Unit
@@ -19,8 +19,14 @@ UNITS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 100, 101, 102, 103, 104, 105, 999)  # FAILUR
 TYPES = (0, 1, 2, 3, 4, 5, 6, 7, 99)  # FAILURE_TYPE, and no type
 
 
+TAKES_FAILURES: dict[Personality, dict[str, float]] = {
+    "px4": {"SYS_FAILURE_EN": 1.0},
+    "ardupilot": {},
+}
+
+
 def ready(personality: Personality) -> Stage:
-    return Stage(personality).given({"SYS_FAILURE_EN": 1.0} if personality == "px4" else {})
+    return Stage(personality, **TAKES_FAILURES[personality])
 
 
 @either
@@ -109,7 +115,7 @@ def test_one_motor_or_all_of_them() -> None:
 
 @either
 def test_a_motor_off_is_a_crash(personality: Personality) -> None:
-    stage = ready(personality).aloft(10.0)
+    stage = aloft(personality, **TAKES_FAILURES[personality])
     assert stage.command(INJECT, Unit.MOTOR, Type.OFF, 2) == Result.ACCEPTED
     assert stage.until(lambda: stage.up_m < 0.2, 8.0) < 6.0
 
@@ -132,7 +138,7 @@ def test_a_motor_off_is_a_crash(personality: Personality) -> None:
 def test_it_flies_through_the_others_and_home_when_they_end(
     personality: Personality, unit: Unit, kind: Type
 ) -> None:
-    stage = ready(personality).aloft(10.0)
+    stage = aloft(personality, **TAKES_FAILURES[personality])
     at = stage.truth.pos_ned
     assert stage.command(INJECT, unit, kind) == Result.ACCEPTED
     stage.run(12.0)
@@ -148,6 +154,6 @@ def test_it_flies_through_the_others_and_home_when_they_end(
 
 @either
 def test_a_battery_that_is_gone_is_a_fall(personality: Personality) -> None:
-    stage = ready(personality).aloft(10.0)
+    stage = aloft(personality, **TAKES_FAILURES[personality])
     assert stage.command(INJECT, Unit.BATTERY, Type.OFF) == Result.ACCEPTED
     assert 1.2 < stage.until(lambda: stage.up_m < 0.2, 8.0) < 3.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.faults.stage import HOVERS, Stage, far
+from tests.unit.faults.stage import HOVERS, Stage, aloft, far
 from vehicle_sim.autopilot.interface import Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
@@ -31,7 +31,7 @@ def motor(number: int, health: float = 0.0, for_s: float | None = None) -> str:
 def test_without_a_motor_a_quadrotor_falls(
     personality: Personality, airframe: str, number: int
 ) -> None:
-    stage = Stage(personality, motor(number), airframe=airframe).aloft(10.0)
+    stage = aloft(personality, motor(number), airframe=airframe)
     at = stage.truth.pos_ned
     took_s = stage.until(lambda: stage.up_m < 0.2, 10.0)
     assert 1.2 < took_s < 6.0, "not faster than a stone falls ten metres, and no glide"
@@ -44,7 +44,7 @@ def test_without_a_motor_a_quadrotor_falls(
 
 @airframes
 def test_px4_tells_of_a_dead_motor_at_once_and_of_the_upset(airframe: str) -> None:
-    stage = Stage("px4", motor(2), airframe=airframe).aloft(10.0)
+    stage = aloft("px4", motor(2), airframe=airframe)
     stage.run(0.5)
     assert stage.said("Motor 2 failure detected")
     stage.until(lambda: stage.said("Attitude failure"), 4.0)
@@ -54,13 +54,13 @@ def test_px4_tells_of_a_dead_motor_at_once_and_of_the_upset(airframe: str) -> No
 
 @pytest.mark.parametrize(("action", "mode"), [(2, "AUTO.LAND"), (3, "AUTO.RTL")])
 def test_px4_does_about_a_dead_motor_what_com_act_fail_act_says(action: int, mode: str) -> None:
-    stage = Stage("px4", motor(2), COM_ACT_FAIL_ACT=action, COM_FAIL_ACT_T=0).aloft(10.0)
+    stage = aloft("px4", motor(2), COM_ACT_FAIL_ACT=action, COM_FAIL_ACT_T=0)
     stage.run(0.6)
     assert stage.mode == mode
 
 
 def test_px4_without_the_circuit_breaker_ends_the_flight() -> None:
-    stage = Stage("px4", motor(2), CBRK_FLIGHTTERM=0).aloft(10.0)
+    stage = aloft("px4", motor(2), CBRK_FLIGHTTERM=0)
     assert stage.until(lambda: not stage.armed, 3.0) < 1.5
     assert stage.said("Flight terminated")
     stage.run(4.0)
@@ -69,7 +69,7 @@ def test_px4_without_the_circuit_breaker_ends_the_flight() -> None:
 
 @airframes
 def test_ardupilot_disarms_after_the_crash_and_says_so(airframe: str) -> None:
-    stage = Stage("ardupilot", motor(2), airframe=airframe).aloft(10.0)
+    stage = aloft("ardupilot", motor(2), airframe=airframe)
     down_s = stage.until(lambda: stage.up_m < 0.2, 10.0)
     stage.until(lambda: not stage.armed, 6.0)
     assert down_s < 6.0
@@ -103,7 +103,7 @@ class Sag:
 def test_with_a_weak_motor_it_flies_on(
     personality: Personality, airframe: str, health: float
 ) -> None:
-    stage = Stage(personality, motor(1, health), airframe=airframe).aloft(10.0)
+    stage = aloft(personality, motor(1, health), airframe=airframe)
     sag, told_before = Sag(stage), stage.texts
     stage.run(15.0, sag)
     assert stage.mode == HOVERS[personality]
@@ -118,7 +118,7 @@ def test_an_s500_without_the_thrust_to_hover_sinks_level_where_it_is(
     personality: Personality,
 ) -> None:
     """At 0.4 of 8.5 N that motor lifts less than the quarter of the weight that is its own."""
-    stage = Stage(personality, motor(1, 0.4)).aloft(10.0)
+    stage = aloft(personality, motor(1, 0.4))
     sag = Sag(stage)
     took_s = stage.until(lambda: stage.up_m < 0.1, 30.0)
     stage.run(1.0, sag)
@@ -130,7 +130,7 @@ def test_an_s500_without_the_thrust_to_hover_sinks_level_where_it_is(
 
 @either
 def test_a_motor_that_recovers_at_once_costs_height_only(personality: Personality) -> None:
-    stage = Stage(personality, motor(3, 0.4, for_s=1.0)).aloft(10.0)
+    stage = aloft(personality, motor(3, 0.4, for_s=1.0))
     sag = Sag(stage)
     stage.run(12.0, sag)
     assert stage.mode == HOVERS[personality]
@@ -140,7 +140,7 @@ def test_a_motor_that_recovers_at_once_costs_height_only(personality: Personalit
 
 
 def test_servo_output_tells_that_the_weak_motor_works_harder() -> None:
-    stage = Stage("px4", motor(1, 0.6)).aloft(10.0)
+    stage = aloft("px4", motor(1, 0.6))
     stage.run(8.0)
     told = stage.last(m.ServoOutputRaw)
     assert told.servo1_raw > max(told.servo2_raw, told.servo3_raw, told.servo4_raw) + 50
@@ -148,7 +148,7 @@ def test_servo_output_tells_that_the_weak_motor_works_harder() -> None:
 
 @either
 def test_who_lies_on_its_back_does_not_arm(personality: Personality) -> None:
-    stage = Stage(personality, motor(2)).aloft(10.0)
+    stage = aloft(personality, motor(2))
     stage.until(lambda: stage.up_m < 0.2, 8.0)
     stage.run(4.0)
     assert stage.command(400, 0, 21196) == 0

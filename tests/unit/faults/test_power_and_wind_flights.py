@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.faults.stage import HOVERS, Stage, far
+from tests.unit.faults.stage import HOVERS, Stage, aloft, far
 from vehicle_sim.autopilot.interface import Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
@@ -43,7 +43,7 @@ class Drift:
 def test_a_lost_cell_is_seen_in_the_voltage_and_made_up_for(
     personality: Personality, airframe: str
 ) -> None:
-    stage = Stage(personality, cells(1.0), airframe=airframe).aloft(10.0)
+    stage = aloft(personality, cells(1.0), airframe=airframe)
     drift, before = Drift(stage), stage.last(m.SysStatus)
     stage.run(10.0, drift)
     after = stage.last(m.SysStatus)
@@ -63,7 +63,7 @@ def test_a_lost_cell_is_seen_in_the_voltage_and_made_up_for(
     ],
 )
 def test_px4_takes_the_lost_voltage_for_lost_charge(lost: float, told: str | None) -> None:
-    stage = Stage("px4", cells(lost)).aloft(10.0)
+    stage = aloft("px4", cells(lost))
     assert stage.last(m.SysStatus).battery_remaining > 95
     said_before = stage.texts
     stage.run(2.0)
@@ -73,7 +73,7 @@ def test_px4_takes_the_lost_voltage_for_lost_charge(lost: float, told: str | Non
 
 
 def test_px4_lands_at_once_for_a_lost_cell_where_com_low_bat_act_says_so() -> None:
-    stage = Stage("px4", cells(1.0), COM_LOW_BAT_ACT=3, COM_FAIL_ACT_T=0).aloft(10.0)
+    stage = aloft("px4", cells(1.0), COM_LOW_BAT_ACT=3, COM_FAIL_ACT_T=0)
     stage.run(0.5)
     assert stage.mode == "AUTO.LAND"
     stage.until(lambda: not stage.armed, 40.0)
@@ -81,15 +81,13 @@ def test_px4_lands_at_once_for_a_lost_cell_where_com_low_bat_act_says_so() -> No
 
 
 def test_px4_whose_cell_recovers_says_no_more_and_tells_the_charge_again() -> None:
-    stage = Stage("px4", cells(0.5, for_s=3.0)).aloft(10.0)
+    stage = aloft("px4", cells(0.5, for_s=3.0))
     stage.run(6.0)
     assert stage.last(m.SysStatus).battery_remaining > 90
 
 
 def test_ardupilots_voltage_failsafe_waits_its_ten_seconds() -> None:
-    stage = Stage(
-        "ardupilot", cells(1.0), BATT_LOW_VOLT=12.6, BATT_FS_LOW_ACT=2, RTL_ALT=1000
-    ).aloft(10.0)
+    stage = aloft("ardupilot", cells(1.0), BATT_LOW_VOLT=12.6, BATT_FS_LOW_ACT=2, RTL_ALT=1000)
     stage.run(9.5)
     assert stage.mode == "GUIDED"
     stage.run(1.5)
@@ -104,7 +102,7 @@ def test_ardupilots_voltage_failsafe_waits_its_ten_seconds() -> None:
 def test_a_voltage_that_is_too_low_to_hover_on_brings_it_down_on_its_feet(
     personality: Personality,
 ) -> None:
-    stage = Stage(personality, cells(1.5)).aloft(10.0)
+    stage = aloft(personality, cells(1.5))
     took_s = stage.until(lambda: stage.up_m < 0.1, 30.0)
     assert took_s > 2.5
     stage.run(1.0)
@@ -117,7 +115,7 @@ def test_a_voltage_that_is_too_low_to_hover_on_brings_it_down_on_its_feet(
 def test_a_step_of_wind_is_held_within_a_metre_and_a_half(
     personality: Personality, airframe: str
 ) -> None:
-    stage = Stage(personality, wind(0.0, 10.0), airframe=airframe, seed=2).aloft(10.0)
+    stage = aloft(personality, wind(0.0, 10.0), airframe=airframe, seed=2)
     drift, told_before = Drift(stage), stage.texts
     stage.run(10.0, drift)
     assert 0.3 < drift.flat_m < 1.5, "the blow is felt, and held"
@@ -134,7 +132,7 @@ def test_a_step_of_wind_is_held_within_a_metre_and_a_half(
 @either
 @airframes
 def test_gusts_are_held(personality: Personality, airframe: str) -> None:
-    stage = Stage(personality, wind(4.0, 4.0, 2.0), airframe=airframe).aloft(10.0)
+    stage = aloft(personality, wind(4.0, 4.0, 2.0), airframe=airframe)
     drift = Drift(stage)
     stage.run(30.0, drift)
     assert 0.2 < drift.flat_m < 2.0
@@ -144,7 +142,7 @@ def test_gusts_are_held(personality: Personality, airframe: str) -> None:
 
 def test_wind_that_it_cannot_hold_carries_it_away_and_the_telemetry_says_so() -> None:
     """30 m/s is more than a lean of 35 degrees can stand against."""
-    stage = Stage("px4", wind(0.0, 30.0)).aloft(10.0)
+    stage = aloft("px4", wind(0.0, 30.0))
     at = stage.truth.pos_ned
     stage.run(20.0)
     assert stage.truth.pos_ned[1] - at[1] > 20.0, "downwind"

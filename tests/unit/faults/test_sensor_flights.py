@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.faults.stage import HOVERS, Stage, far
+from tests.unit.faults.stage import HOVERS, Stage, aloft, far
 from vehicle_sim.autopilot.interface import Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
@@ -98,7 +98,7 @@ def test_a_hover_stays_within_bounds(
     kind: str, keys: str, flat_m: float, up_m: float, down_m: float
 ) -> None:
     """Sensors and estimator are the same in both personalities."""
-    stage = Stage("px4", fault(kind, keys)).aloft(10.0)
+    stage = aloft("px4", fault(kind, keys))
     strayed, told_before = Strayed(stage), stage.texts
     stage.run(25.0, strayed)
     assert strayed.flat_m < flat_m
@@ -114,7 +114,7 @@ def test_a_believed_jump_of_the_pressure_is_flown_after_and_forgotten_with_gps(
     personality: Personality, jump_m: float
 ) -> None:
     """Three metres are within the gate: down at once, then GPS draws it back in a minute."""
-    stage = Stage(personality, fault("baro", f"offset_m = {jump_m}")).aloft(12.0)
+    stage = aloft(personality, fault("baro", f"offset_m = {jump_m}"), up_m=12.0)
     at_m = stage.up_m
     stage.run(6.0)
     assert abs(stage.up_m - at_m) > 2.0
@@ -128,7 +128,7 @@ def test_a_believed_jump_of_the_pressure_is_flown_after_and_forgotten_with_gps(
 def test_a_refused_jump_of_the_pressure_is_seen_in_the_telemetry_only(
     personality: Personality,
 ) -> None:
-    stage = Stage(personality, fault("baro", "offset_m = 20")).aloft(10.0)
+    stage = aloft(personality, fault("baro", "offset_m = 20"))
     before = stage.last(m.ScaledPressure).press_abs
     stage.run(3.0)
     # 12 Pa for a metre near the sea.
@@ -144,7 +144,7 @@ def test_a_refused_jump_of_the_pressure_is_seen_in_the_telemetry_only(
 
 @either
 def test_a_wrong_compass_turns_the_nose_and_no_more(personality: Personality) -> None:
-    stage = Stage(personality, fault("mag", "offset_gauss = [0, 0.05, 0]")).aloft(10.0)
+    stage = aloft(personality, fault("mag", "offset_gauss = [0, 0.05, 0]"))
     w, x, y, z = stage.truth.q_ned_from_frd
     before = 2.0 * (w * z + x * y)
     stage.run(20.0)
@@ -155,7 +155,7 @@ def test_a_wrong_compass_turns_the_nose_and_no_more(personality: Personality) ->
 @either
 def test_an_accelerometer_far_off_ends_when_it_ends(personality: Personality) -> None:
     text = fault("accel_bias", "offset_m_s2 = [0, 0, 1.5]", for_s=5.0)
-    stage = Stage(personality, text).aloft(10.0)
+    stage = aloft(personality, text)
     stage.run(30.0)
     assert stage.up_m == pytest.approx(10.0, abs=0.8)
     assert stage.mode == HOVERS[personality]

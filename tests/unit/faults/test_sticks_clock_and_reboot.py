@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from tests.unit.faults.stage import HOVERS, S, Stage, far
+from tests.unit.faults.stage import HOVERS, S, Stage, aloft, far
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
 
@@ -24,7 +24,7 @@ def fault(kind: str, keys: str = "", at_s: float = 20.0, for_s: float | None = N
 
 def by_hand(personality: Personality, text: str, **parameters: float) -> Stage:
     """In position mode, with sticks that come all the time."""
-    stage = Stage(personality, text).given(parameters).aloft(10.0)
+    stage = aloft(personality, text, **parameters)
     stage.sticks = CENTRED
     stage.run(0.05)
     main_mode = 3 if personality == "px4" else 5
@@ -58,7 +58,7 @@ def test_ardupilot_without_sticks_returns() -> None:
 def test_who_flies_by_itself_does_not_miss_sticks_that_it_never_had(
     personality: Personality,
 ) -> None:
-    stage = Stage(personality, fault("rc_lost")).aloft(10.0)
+    stage = aloft(personality, fault("rc_lost"))
     stage.run(10.0)
     assert stage.mode == HOVERS[personality]
 
@@ -75,7 +75,7 @@ def stamps(stage: Stage, since_s: float) -> list[int]:
 def test_a_clock_that_jumps_is_seen_in_every_stamp_and_nowhere_else(
     personality: Personality, by_s: float
 ) -> None:
-    stage = Stage(personality, fault("clock_jump", f"by_s = {by_s}", for_s=5.0)).aloft(10.0)
+    stage = aloft(personality, fault("clock_jump", f"by_s = {by_s}", for_s=5.0))
     at = stage.truth.pos_ned
     stage.run(10.0)
     steps_ms = [after - before for before, after in pairwise(stamps(stage, 19.0))]
@@ -93,7 +93,7 @@ def test_a_clock_that_jumps_is_seen_in_every_stamp_and_nowhere_else(
 def test_a_reboot_in_flight_is_a_fall_and_a_new_start_where_it_lies(
     personality: Personality,
 ) -> None:
-    stage = Stage(personality, fault("reboot")).aloft(10.0)
+    stage = aloft(personality, fault("reboot"))
     at = stage.truth.pos_ned
     stage.run_to(20.1)
     assert not stage.armed
@@ -145,7 +145,7 @@ def test_a_link_that_is_out_too_long_brings_it_home_and_telemetry_comes_back(
     personality: Personality, parameters: dict[str, float], after_s: float, mode: str
 ) -> None:
     text = fault("link", "out = true", for_s=after_s + 3.0)
-    stage = Stage(personality, text).given(parameters).aloft(10.0)
+    stage = aloft(personality, text, **parameters)
     stage.run_to(20.1)
     heard = len(stage.heard)
     stage.run_to(20.0 + after_s - 1.5)
@@ -165,7 +165,7 @@ def test_a_link_that_is_out_too_long_brings_it_home_and_telemetry_comes_back(
 @either
 def test_a_link_out_in_one_direction_only(personality: Personality) -> None:
     """It is heard and does not hear, or the other way round."""
-    deaf = Stage(personality, fault("link", "out = true\ndirection = 'in'", for_s=5.0)).aloft()
+    deaf = aloft(personality, fault("link", "out = true\ndirection = 'in'", for_s=5.0))
     deaf.run(3.0)
     assert deaf.all(ATTITUDE, 21 * S)
     heard = len(deaf.all(m.CommandAck))
@@ -173,7 +173,7 @@ def test_a_link_out_in_one_direction_only(personality: Personality) -> None:
     deaf.run(0.5)
     assert len(deaf.all(m.CommandAck)) == heard
     assert deaf.mode == HOVERS[personality]
-    mute = Stage(personality, fault("link", "out = true\ndirection = 'out'", for_s=5.0)).aloft()
+    mute = aloft(personality, fault("link", "out = true\ndirection = 'out'", for_s=5.0))
     mute.run_to(20.2)
     heard = len(mute.heard)
     mute.send(m.CommandLong(0, 0, 0, 0, 0, 0, 0, 21, 1, 1, 0))

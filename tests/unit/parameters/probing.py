@@ -29,11 +29,6 @@ def _booted(personality: Personality) -> HandFlight:
     return flight
 
 
-@cache
-def _airborne(personality: Personality) -> HandFlight:
-    return HandFlight(personality).airborne(UP_M)
-
-
 @dataclass(frozen=True, slots=True)
 class Setting:
     """Values of parameters, for whatever the script flies or asks."""
@@ -54,19 +49,18 @@ class Setting:
 
     def at_home(self) -> HandFlight:
         """Booted, on the ground."""
-        return self._with_values(_booted(self.personality))
+        return self._with_values(deepcopy(_booted(self.personality)))
 
     def aloft(self) -> HandFlight:
         """Hovering at `UP_M`: px4 in AUTO.LOITER, ardupilot in GUIDED."""
-        flight = self._with_values(_airborne(self.personality))
+        flight = self._with_values(HandFlight.hovering(self.personality, UP_M))
         flight.fly(0.2)
         return flight
 
     def _with_values(self, flight: HandFlight) -> HandFlight:
-        copy = deepcopy(flight)
-        copy.seen.clear()
-        self._set(copy.vehicle.parameters)
-        return copy
+        flight.seen.clear()
+        self._set(flight.vehicle.parameters)
+        return flight
 
     def _set(self, parameters: Parameters) -> None:
         for name, value in self.values.items():
