@@ -154,6 +154,18 @@ def test_a_silent_peer_is_forgotten_when_room_is_needed_and_a_lasting_one_is_not
     assert world.counters(0, "station") is not None
 
 
+def test_one_peer_too_many_is_spoken_to_when_the_others_have_been_silent_for_a_minute() -> None:
+    bench = Bench("ardupilot")
+    for number in range(32):
+        bench.send(GROUND, peer=f"peer {number}")
+    assert bench.send(m.Timesync(0, 77), peer="one more") == []
+    bench.now_ns = 59 * S
+    assert bench.send(m.Timesync(0, 77), peer="one more") == []
+    bench.now_ns = 61 * S
+    assert m.Timesync in {type(each) for each in bench.send(m.Timesync(0, 77), peer="one more")}
+    assert bench.world.counters(0, "peer 0") is None
+
+
 def test_a_value_that_no_field_holds_is_said_once_and_costs_its_message_only() -> None:
     bench = Bench()
     bench.send(GROUND)
