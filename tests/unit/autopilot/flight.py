@@ -73,7 +73,8 @@ class Flight:
     @classmethod
     def hovering(cls, personality: Personality, up_m: float = 5.0, seed: int = 1) -> Self:
         """As `airborne`, for a vehicle as it is delivered: flown once, and a copy for each test."""
-        flight = deepcopy(_airborne(cls, personality, up_m, seed))
+        made: Callable[[Personality, int], Flight] = cls
+        flight = deepcopy(_airborne(made, personality, up_m, seed))
         assert isinstance(flight, cls)
         return flight
 
@@ -119,8 +120,10 @@ class Flight:
 
 
 @cache
-def _airborne(kind: type[Flight], personality: Personality, up_m: float, seed: int) -> Flight:
-    return kind(personality, seed).airborne(up_m)
+def _airborne(
+    made: Callable[[Personality, int], Flight], personality: Personality, up_m: float, seed: int
+) -> Flight:
+    return made(personality, seed).airborne(up_m)
 
 
 def item(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copyreg
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from copy import deepcopy
 from functools import cache
 from math import cos, hypot, nan, radians
@@ -21,13 +21,14 @@ from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters import Parameters
 from vehicle_sim.faults import Schedule, parse
 from vehicle_sim.fleet import Few, Seat, Spec
+from vehicle_sim.impairment import NEVER_NS
 from vehicle_sim.model.airframe import load
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import Frame, encode
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import NEVER_NS, Datagram, LinkSpec, Log, Transmit, Wake, World
+from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 
 S = 1_000_000_000
 MS = 1_000_000
@@ -38,6 +39,7 @@ HOMES: dict[Personality, Geodetic] = {
 }
 HOVERS: dict[Personality, str] = {"px4": "AUTO.LOITER", "ardupilot": "GUIDED"}
 METRES_PER_DEGREE = 111_319.49
+AS_DELIVERED: Mapping[str, float] = {}
 PEER = "ground"
 BEAT = m.Heartbeat(0, 6, 8, 0, 4, 3)
 ARM, TAKE_OFF, SET_MODE, INJECT = 400, 22, 176, 420
@@ -61,9 +63,9 @@ class Stage:
         *,
         airframe: str = "s500",
         seed: int = 1,
-        **parameters: float,
+        parameters: Mapping[str, float] = AS_DELIVERED,
     ) -> None:
-        """`faults` is the text of a fault file."""
+        """`faults` is the text of a fault file; `parameters` are set before it boots."""
         given = Parameters(personality)
         for name, value in parameters.items():
             given.set(name, value)
@@ -247,7 +249,8 @@ def _hovering(
     seed: int,
     parameters: tuple[tuple[str, float], ...],
 ) -> Stage:
-    return Stage(personality, airframe=airframe, seed=seed, **dict(parameters)).take_off(up_m)
+    stage = Stage(personality, airframe=airframe, seed=seed, parameters=dict(parameters))
+    return stage.take_off(up_m)
 
 
 def aloft(
@@ -257,7 +260,7 @@ def aloft(
     *,
     airframe: str = "s500",
     seed: int = 1,
-    **parameters: float,
+    parameters: Mapping[str, float] = AS_DELIVERED,
 ) -> Stage:
     """In a hover, just before the faults strike.
 

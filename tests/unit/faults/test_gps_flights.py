@@ -194,7 +194,7 @@ def test_px4_goes_on_with_its_mission_when_gps_is_back() -> None:
 
 def test_px4_that_trusts_longer_descends_later() -> None:
     """COM_POS_FS_EPH limits the trust in dead reckoning; the estimator's own five seconds too."""
-    early = aloft("px4", FOR_GOOD, COM_POS_FS_EPH=1.0)
+    early = aloft("px4", FOR_GOOD, parameters={"COM_POS_FS_EPH": 1.0})
     assert early.until(lambda: early.mode == "AUTO.LAND") < 3.5
     late = aloft("px4", FOR_GOOD)
     assert 4.5 < late.until(lambda: late.mode == "AUTO.LAND") < 5.8

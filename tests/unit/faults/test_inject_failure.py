@@ -26,7 +26,7 @@ TAKES_FAILURES: dict[Personality, dict[str, float]] = {
 
 
 def ready(personality: Personality) -> Stage:
-    return Stage(personality, **TAKES_FAILURES[personality])
+    return Stage(personality, parameters=TAKES_FAILURES[personality])
 
 
 @either
@@ -115,7 +115,7 @@ def test_one_motor_or_all_of_them() -> None:
 
 @either
 def test_a_motor_off_is_a_crash(personality: Personality) -> None:
-    stage = aloft(personality, **TAKES_FAILURES[personality])
+    stage = aloft(personality, parameters=TAKES_FAILURES[personality])
     assert stage.command(INJECT, Unit.MOTOR, Type.OFF, 2) == Result.ACCEPTED
     assert stage.until(lambda: stage.up_m < 0.2, 8.0) < 6.0
 
@@ -138,7 +138,7 @@ def test_a_motor_off_is_a_crash(personality: Personality) -> None:
 def test_it_flies_through_the_others_and_home_when_they_end(
     personality: Personality, unit: Unit, kind: Type
 ) -> None:
-    stage = aloft(personality, **TAKES_FAILURES[personality])
+    stage = aloft(personality, parameters=TAKES_FAILURES[personality])
     at = stage.truth.pos_ned
     assert stage.command(INJECT, unit, kind) == Result.ACCEPTED
     stage.run(12.0)
@@ -154,6 +154,6 @@ def test_it_flies_through_the_others_and_home_when_they_end(
 
 @either
 def test_a_battery_that_is_gone_is_a_fall(personality: Personality) -> None:
-    stage = aloft(personality, **TAKES_FAILURES[personality])
+    stage = aloft(personality, parameters=TAKES_FAILURES[personality])
     assert stage.command(INJECT, Unit.BATTERY, Type.OFF) == Result.ACCEPTED
     assert 1.2 < stage.until(lambda: stage.up_m < 0.2, 8.0) < 3.0

@@ -54,13 +54,13 @@ def test_px4_tells_of_a_dead_motor_at_once_and_of_the_upset(airframe: str) -> No
 
 @pytest.mark.parametrize(("action", "mode"), [(2, "AUTO.LAND"), (3, "AUTO.RTL")])
 def test_px4_does_about_a_dead_motor_what_com_act_fail_act_says(action: int, mode: str) -> None:
-    stage = aloft("px4", motor(2), COM_ACT_FAIL_ACT=action, COM_FAIL_ACT_T=0)
+    stage = aloft("px4", motor(2), parameters={"COM_ACT_FAIL_ACT": action, "COM_FAIL_ACT_T": 0})
     stage.run(0.6)
     assert stage.mode == mode
 
 
 def test_px4_without_the_circuit_breaker_ends_the_flight() -> None:
-    stage = aloft("px4", motor(2), CBRK_FLIGHTTERM=0)
+    stage = aloft("px4", motor(2), parameters={"CBRK_FLIGHTTERM": 0})
     assert stage.until(lambda: not stage.armed, 3.0) < 1.5
     assert stage.said("Flight terminated")
     stage.run(4.0)

@@ -73,7 +73,7 @@ def test_px4_takes_the_lost_voltage_for_lost_charge(lost: float, told: str | Non
 
 
 def test_px4_lands_at_once_for_a_lost_cell_where_com_low_bat_act_says_so() -> None:
-    stage = aloft("px4", cells(1.0), COM_LOW_BAT_ACT=3, COM_FAIL_ACT_T=0)
+    stage = aloft("px4", cells(1.0), parameters={"COM_LOW_BAT_ACT": 3, "COM_FAIL_ACT_T": 0})
     stage.run(0.5)
     assert stage.mode == "AUTO.LAND"
     stage.until(lambda: not stage.armed, 40.0)
@@ -87,7 +87,11 @@ def test_px4_whose_cell_recovers_says_no_more_and_tells_the_charge_again() -> No
 
 
 def test_ardupilots_voltage_failsafe_waits_its_ten_seconds() -> None:
-    stage = aloft("ardupilot", cells(1.0), BATT_LOW_VOLT=12.6, BATT_FS_LOW_ACT=2, RTL_ALT=1000)
+    stage = aloft(
+        "ardupilot",
+        cells(1.0),
+        parameters={"BATT_LOW_VOLT": 12.6, "BATT_FS_LOW_ACT": 2, "RTL_ALT": 1000},
+    )
     stage.run(9.5)
     assert stage.mode == "GUIDED"
     stage.run(1.5)

@@ -24,7 +24,7 @@ def fault(kind: str, keys: str = "", at_s: float = 20.0, for_s: float | None = N
 
 def by_hand(personality: Personality, text: str, **parameters: float) -> Stage:
     """In position mode, with sticks that come all the time."""
-    stage = aloft(personality, text, **parameters)
+    stage = aloft(personality, text, parameters=parameters)
     stage.sticks = CENTRED
     stage.run(0.05)
     main_mode = 3 if personality == "px4" else 5
@@ -145,7 +145,7 @@ def test_a_link_that_is_out_too_long_brings_it_home_and_telemetry_comes_back(
     personality: Personality, parameters: dict[str, float], after_s: float, mode: str
 ) -> None:
     text = fault("link", "out = true", for_s=after_s + 3.0)
-    stage = aloft(personality, text, **parameters)
+    stage = aloft(personality, text, parameters=parameters)
     stage.run_to(20.1)
     heard = len(stage.heard)
     stage.run_to(20.0 + after_s - 1.5)
