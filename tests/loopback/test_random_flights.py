@@ -7,10 +7,16 @@ import pytest
 from tests.loopback.chance import flown
 
 CHUNKS = 10
+CHUNKS_IN_EACH_RUN = 2
 FLIGHTS_A_CHUNK = 20
 
+chunks = [
+    pytest.param(chunk, marks=[pytest.mark.soak] if chunk >= CHUNKS_IN_EACH_RUN else [])
+    for chunk in range(CHUNKS)
+]
 
-@pytest.mark.parametrize("chunk", range(CHUNKS))
+
+@pytest.mark.parametrize("chunk", chunks)
 def test_L17_random_flights_break_no_promise(chunk: int) -> None:
     """Each promise is asserted by `WatchedFlight` in the moment in which it is put to the test."""
     setpoints = goals = answered = 0

@@ -25,6 +25,7 @@ def run_python(code: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_help_imports_nothing_heavy() -> None:
     code = (
         "import sys\nfrom gcs.cli.main import run\nassert run(['--help']) == 0\n"
@@ -38,6 +39,7 @@ def test_help_imports_nothing_heavy() -> None:
             assert f"  {name} " in result.stdout
 
 
+@pytest.mark.slow
 def test_mavutil_is_never_loaded_by_a_command_line() -> None:
     code = (
         "import sys, gcs.cli.fly, gcs.cli.demo, gcs.cli.oneshot_session, gcs.tui.app\n"
@@ -160,6 +162,7 @@ def test_what_is_not_utf8_is_refused_before_any_station_is_started(
     assert (ended.exit_code, ended.output.count("is not UTF-8")) == (ExitCode.USAGE, 1)
 
 
+@pytest.mark.slow
 def test_a_keyboard_station_needs_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
     result = subprocess.run(
         [sys.executable, "-c", "from gcs.cli.main import main; main()", "fly", "--sim"],
@@ -172,6 +175,7 @@ def test_a_keyboard_station_needs_a_terminal(capsys: pytest.CaptureFixture[str])
     assert "use --plain on a pipe" in result.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
 def test_output_that_cannot_be_written_is_told_and_is_no_bug() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:
@@ -186,6 +190,7 @@ def test_output_that_cannot_be_written_is_told_and_is_no_bug() -> None:
     assert result.stderr == "gcs: cannot write the output: No space left on device\n"
 
 
+@pytest.mark.slow
 def test_a_reader_that_has_gone_ends_it_quietly() -> None:
     reader, writer = os.pipe()
     os.close(reader)

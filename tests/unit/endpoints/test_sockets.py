@@ -17,6 +17,8 @@ from gcs.shell.sockets.base import grow_buffer
 from gcs.shell.sockets.tcp import MAX_QUEUED, RECONNECT_NS
 from gcs.shell.sockets.udp import MAX_PEERS
 
+pytestmark = pytest.mark.slow
+
 FRAME = b"\xfd\x01\x00\x00 a frame"
 PATIENCE_S = 5.0
 

@@ -14,6 +14,8 @@ from gcs import ipc
 from gcs.config import StationConfig
 from gcs.operator.client import StationClient, StationEnded, StationEvent
 
+pytestmark = pytest.mark.slow  # a station's process
+
 FAKE = (sys.executable, "-m", "tests.unit.operator.fake_station")
 PATIENCE = 200
 

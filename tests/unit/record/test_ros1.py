@@ -64,6 +64,7 @@ def same(ours: Any, theirs: Any) -> bool:
     return bool(ours == theirs)
 
 
+@pytest.mark.slow
 def test_every_message_of_the_dialect_decodes_from_a_written_file(tmp_path: Path) -> None:
     payloads = {msgid: some_payload(known, seed=msgid) for msgid, known in MESSAGES.items()}
     frames = {msgid: frame_v2(msgid, payload) for msgid, payload in payloads.items()}

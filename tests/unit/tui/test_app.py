@@ -18,6 +18,8 @@ from gcs.tui.result import print_result, until_hello
 from tests.unit.operator.fake_station import FakeConnection, FakeStation
 from tests.unit.tui.listening_station import ListeningStation
 
+pytestmark = pytest.mark.slow  # the screen's own timers
+
 Script = Callable[[FlyApp, ListeningStation, Pilot[None]], Awaitable[None]]
 
 

@@ -22,6 +22,8 @@ from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
 from vehicle_sim.world import Datagram, LinkSpec, Transmit, Wake, World
 
+pytestmark = pytest.mark.slow
+
 MS = 1_000_000
 S = 1000 * MS
 SEED = 5

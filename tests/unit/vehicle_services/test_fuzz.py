@@ -29,6 +29,8 @@ from vehicle_sim.wire.split import Counters, split
 from vehicle_sim.wire.supplement import Field
 from vehicle_sim.world import DATAGRAM_BYTES, Datagram, Input, LinkSpec, Transmit, Wake, World
 
+pytestmark = pytest.mark.slow
+
 FUZZ = 20_000
 SOAK = 1_000_000
 SOAKING = "MAVGATE_SOAK" in os.environ

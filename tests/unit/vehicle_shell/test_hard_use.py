@@ -35,6 +35,7 @@ def test_the_control_line_answers_whatever_is_written(line: bytes) -> None:
     assert "error" in json.loads(answer(line, EmptyStage()))
 
 
+@pytest.mark.slow
 def test_without_a_descriptor_to_spare_the_listener_rests_and_comes_back(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -27,6 +27,7 @@ def test_message_ids_are_pymavlinks() -> None:
         assert pymavlink_dialect.mavlink_map[member.value].msgname == member.name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("modules", "absent"),
     [

@@ -1,0 +1,27 @@
+"""Which tests wait for real time, and which take long: what the sharing out of a run goes by."""
+
+from __future__ import annotations
+
+LANES = ("tests/system/", "tests/clients/")
+"""Separate processes over real sockets, which mostly wait."""
+LONG = ("tests/unit/gate/test_explore", "tests/loopback/test_random_flights.py")
+"""Files of which a single test takes as long as others as a whole."""
+
+
+def in_real_time(nodeid: str) -> bool:
+    return nodeid.startswith(LANES)
+
+
+def share(nodeid: str) -> str:
+    """What one worker does in a row: a whole lane, one long test, or a file."""
+    if nodeid.startswith(LONG):
+        return nodeid
+    lane = next((lane for lane in LANES if nodeid.startswith(lane)), None)
+    return lane or nodeid.partition("::")[0]
+
+
+def turn(nodeid: str) -> int:
+    """What begins first is what ends last."""
+    if in_real_time(nodeid):
+        return 0
+    return 1 if nodeid.startswith(LONG) else 2
