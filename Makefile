@@ -21,8 +21,11 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-test: $(TEST) $(TESTED) ## run every test (about 10 minutes on 2 cores)
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(SLOWER:%=--ignore=%)
+quick: lint ## ruff, mypy and the tests without a process, a socket or a long flight (XX s)
+	@sh .ci/beside '$(BIN)/mypy' '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2'
+
+test: $(TEST) $(TESTED) ## run every test (about 6 minutes on 2 cores)
+	$(BIN)/python -m pytest -n $(WORKERS) $(SLOWER:%=--ignore=%)
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests
 
@@ -39,8 +42,8 @@ contracts: $(TEST) ## import contracts
 clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVSDK 4 and 3, pymavlink, MAVProxy, DroneKit
 	$(BIN)/python -m pytest tests/clients -v
 
-soak: $(TEST) ## the properties on new random examples, and more of them than `test` has time for
-	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback -n $(WORKERS)
+soak: $(TEST) ## the properties on new random examples, and what `test` has a share of as a whole
+	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/contract -n $(WORKERS)
 
 bench: $(TEST) ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench
@@ -59,11 +62,9 @@ clean: ## remove the environment and what tools left behind
 	rm -rf $(VENV) $(CLIENTS) dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 
 $(RUN): pyproject.toml
-	@sh .ci/make-venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	@sh .ci/install $(VENV) . 60
 	@touch $@
 
 $(TEST): pyproject.toml
-	@sh .ci/make-venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@sh .ci/install $(VENV) '.[test]' 110
 	@touch $@ $(RUN)

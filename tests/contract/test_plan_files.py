@@ -1,4 +1,4 @@
-"""Plan files of real ground stations, as those upload them."""
+"""Plan files, our own and those of real ground stations, as stations upload them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,40 @@ from typing import Any
 import pytest
 
 from tests.contract.client import BOTH
+from tests.sample_files import SAMPLES, elsewhere
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.plan import check
 
-SHARED = Path(__file__).parents[3] / "shared" / "data"
-FILES = sorted([*SHARED.glob("plans/*.plan"), *SHARED.glob("wpl/*.txt")])
+OURS = (
+    "plans/around_a_zone.plan",
+    "plans/box.plan",
+    "plans/corridor.plan",
+    "plans/photos_and_a_jump.plan",
+    "plans/survey.plan",
+    "plans/without_a_mission.plan",
+    "tables/above_sea_level.txt",
+    "tables/jump.waypoints",
+    "tables/without_home.txt",
+)
+THEIRS = (
+    "plans/MC_mission_box.plan",
+    "plans/ce_geofence_outfield.plan",
+    "plans/example-mission.plan",
+    "plans/multicopter_mission_geofence_avoid.plan",
+    "plans/qgroundcontrol_sample.plan",
+    "plans/qgroundcontrol_sample_with_digicam_control.plan",
+    "plans/qgroundcontrol_sample_with_structured_scan.plan",
+    "plans/qgroundcontrol_sample_with_survey.plan",
+    "plans/qgroundcontrol_sample_with_survey_missing_items.plan",
+    "plans/qgroundcontrol_sample_with_survey_wrong_version.plan",
+    "plans/qgroundcontrol_sample_without_mission.plan",
+    "plans/qgroundcontrol_sample_wrong_mission_version.plan",
+    "plans/qgroundcontrol_sample_wrong_overall_version.plan",
+    "wpl/cmac-foamy-mission-cw.txt",
+    "wpl/mission_planner_sample.txt",
+    "wpl/mpmission.txt",
+)
 HOME = PlanItem(0, 0, 16, 0.0, 0.0, 0.0, 0.0, 0, 0, 0.0, 1)
 NAV_WAYPOINT = 16
 MISSION_FRAME = 2
@@ -51,10 +79,19 @@ def items_of(path: Path) -> list[PlanItem]:
     return items
 
 
-@pytest.mark.skipif(not FILES, reason="the shared plans are not here")
 @pytest.mark.parametrize("personality", BOTH)
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_plan_files_of_real_ground_stations_are_taken(personality: Personality, path: Path) -> None:
+@pytest.mark.parametrize("name", OURS)
+def test_our_plan_files_are_taken(personality: Personality, name: str) -> None:
+    taken(personality, SAMPLES / name)
+
+
+@pytest.mark.parametrize("personality", BOTH)
+@pytest.mark.parametrize("name", THEIRS)
+def test_plan_files_of_real_ground_stations_are_taken(personality: Personality, name: str) -> None:
+    taken(personality, elsewhere(name))
+
+
+def taken(personality: Personality, path: Path) -> None:
     rows = items_of(path)
     if personality == "ardupilot" and (not rows or rows[0].command != NAV_WAYPOINT):
         rows = [HOME, *rows]

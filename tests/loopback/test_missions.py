@@ -17,9 +17,14 @@ from gcs.gate.effects import Level
 from gcs.gate.states import State
 from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
+from tests.sample_files import SAMPLES, elsewhere
 
 Enu = tuple[float, float, float]
-SHARED_PLANS = Path(__file__).parents[3] / "shared" / "data" / "plans"
+WRONG_ELSEWHERE = (
+    "qgroundcontrol_sample_with_survey_wrong_version.plan",
+    "qgroundcontrol_sample_wrong_mission_version.plan",
+    "qgroundcontrol_sample_wrong_overall_version.plan",
+)
 WAYPOINT = 16
 MISS_M = 1.5
 
@@ -203,9 +208,8 @@ def test_a_cleared_mission_is_not_started() -> None:
     assert flight.done(flight.say("mission_start")) == "refused NO_MISSION"
 
 
-@pytest.mark.skipif(not SHARED_PLANS.is_dir(), reason="the shared plans are not here")
-def test_the_mission_box_goes_up_and_comes_down_equal_in_meaning() -> None:
-    path = SHARED_PLANS / "MC_mission_box.plan"
+def up_and_down(path: Path) -> None:
+    """Uploads the file, downloads it, and compares the places."""
     flight = Flight().connected()
     flight.do("mission_upload", path=str(path))
     flight.do("mission_download", path="down.plan")
@@ -216,20 +220,32 @@ def test_the_mission_box_goes_up_and_comes_down_equal_in_meaning() -> None:
         assert b == pytest.approx(a, abs=1e-6)
 
 
-def wrong_plans() -> list[Path]:
-    return sorted(SHARED_PLANS.glob("*wrong*")) if SHARED_PLANS.is_dir() else []
+def test_a_box_goes_up_and_comes_down_equal_in_meaning() -> None:
+    up_and_down(SAMPLES / "plans" / "box.plan")
 
 
-@pytest.mark.skipif(not SHARED_PLANS.is_dir(), reason="the shared plans are not here")
-def test_a_wrong_plan_is_refused_with_its_place_in_the_file() -> None:
+def test_px4s_mission_box_goes_up_and_comes_down_equal_in_meaning() -> None:
+    up_and_down(elsewhere("plans", "MC_mission_box.plan"))
+
+
+def refused_in_place(paths: list[Path]) -> None:
     flight = Flight().connected()
-    assert wrong_plans()
-    for path in wrong_plans():
+    for path in paths:
         ask = flight.say("mission_upload", path=str(path))
         flight.run(0.5)
         assert flight.outcome(ask) == "refused BAD_MISSION", path.name
         assert str(path) in flight.verdicts(ask)[0].sentence
     assert not [name for name in flight.sent_types() if name.startswith("MISSION")]
+
+
+def test_a_wrong_plan_is_refused_with_its_place_in_the_file() -> None:
+    wrong = sorted(SAMPLES.rglob("bad_*"))
+    assert len(wrong) > 10
+    refused_in_place(wrong)
+
+
+def test_a_wrong_plan_of_qgroundcontrol_is_refused_with_its_place_in_the_file() -> None:
+    refused_in_place([elsewhere("plans", name) for name in WRONG_ELSEWHERE])
 
 
 def test_a_file_that_is_not_there_is_refused() -> None:

@@ -1,9 +1,8 @@
-"""Small plan files, and the folder of real ones where it is present."""
+"""Small plan files, made in memory."""
 
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,18 +11,8 @@ from gcs.plan.errors import PlanError
 from gcs.plan.model import AutopilotName, Plan
 from gcs.plan.reader import read
 
-ROOT = Path(__file__).resolve().parents[3]
-SHARED = ROOT.parent / "shared" / "data"
 WHO: tuple[AutopilotName, ...] = ("px4", "ardupilot")
 HOME = (47.397742, 8.545594, 488.0)
-
-
-def shared(*parts: str) -> Path:
-    """A real file from a public project; skips where the folder is not there."""
-    path = SHARED.joinpath(*parts)
-    if not path.exists():
-        pytest.skip(f"the folder of sample files is not present: no {path}")
-    return path
 
 
 def simple(number: int, command: int, frame: int, params: list[float | None]) -> dict[str, Any]:

@@ -10,13 +10,13 @@ from gcs.plan.errors import Finding, Level
 from gcs.plan.lint import lint
 from gcs.plan.model import AutopilotName, Geodetic
 from gcs.plan.reader import read
+from tests.sample_files import elsewhere
 from tests.unit.plan.samples import (
     LOCAL,
     box,
     plan_document,
     read_json,
     read_text,
-    shared,
     simple,
     survey,
     waypoint,
@@ -157,7 +157,7 @@ def test_a_fence_that_is_no_polygon(corners: list[list[float]], words: str) -> N
 
 
 def test_the_real_file_that_is_underground_is_called_so() -> None:
-    path = shared("wpl", "mission_planner_sample.txt")
+    path = elsewhere("wpl", "mission_planner_sample.txt")
 
     found = lint(read(path.name, path.read_bytes()), "px4", Geodetic(47.3977, 8.5456, 488.0))
 

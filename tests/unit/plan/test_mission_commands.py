@@ -10,7 +10,8 @@ import pytest
 
 from gcs.cli.main import run
 from gcs.exit_codes import ExitCode
-from tests.unit.plan.samples import LOCAL, box, plan_document, shared, simple, waypoint
+from tests.sample_files import elsewhere
+from tests.unit.plan.samples import LOCAL, box, plan_document, simple, waypoint
 
 
 @pytest.fixture
@@ -157,8 +158,8 @@ def test_show_prints_json_without_nan(file: Path, capsys: pytest.CaptureFixture[
 
 
 def test_a_real_mission_keeps_to_a_real_fence(capsys: pytest.CaptureFixture[str]) -> None:
-    box_file = shared("plans", "MC_mission_box.plan")
-    avoid = shared("plans", "multicopter_mission_geofence_avoid.plan")
+    box_file = elsewhere("plans", "MC_mission_box.plan")
+    avoid = elsewhere("plans", "multicopter_mission_geofence_avoid.plan")
 
     assert run(["mission", "check", str(box_file)]) == ExitCode.DONE
     assert run(["mission", "check", str(avoid)]) == ExitCode.REFUSED_BY_GATE

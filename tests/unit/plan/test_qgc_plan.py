@@ -12,7 +12,8 @@ import pytest
 from gcs.plan.errors import PlanError
 from gcs.plan.model import Circle, Frame, Geodetic, Geographic, LatLon, Plain, Polygon
 from gcs.plan.reader import read
-from tests.unit.plan.samples import box, plan_document, read_json, refused, shared, simple, survey
+from tests.sample_files import elsewhere
+from tests.unit.plan.samples import box, plan_document, read_json, refused, simple, survey
 
 Change = Callable[[dict[str, Any]], object]
 
@@ -213,7 +214,7 @@ def test_a_byte_order_mark_does_not_matter() -> None:
     ],
 )
 def test_real_files_that_cannot_be_flown_are_refused(name: str, where: str, what: str) -> None:
-    path = shared("plans", f"qgroundcontrol_sample_{name}.plan")
+    path = elsewhere("plans", f"qgroundcontrol_sample_{name}.plan")
 
     with pytest.raises(PlanError) as caught:
         read(path.name, path.read_bytes())
@@ -236,7 +237,7 @@ def test_real_files_that_cannot_be_flown_are_refused(name: str, where: str, what
     ],
 )
 def test_real_files_are_read(name: str, items: int, zones: int, rally: int) -> None:
-    path = shared("plans", f"{name}.plan")
+    path = elsewhere("plans", f"{name}.plan")
 
     plan = read(path.name, path.read_bytes())
 

@@ -16,7 +16,8 @@ from gcs.plan.reader import read
 from gcs.plan.wire import from_wire, to_wire
 from gcs.plan.wpl_writer import write_wpl
 from gcs.plan.writer import write
-from tests.unit.plan.samples import LOCAL, WHO, shared
+from tests.sample_files import elsewhere
+from tests.unit.plan.samples import LOCAL, WHO
 from tests.unit.plan.strategies import plans
 
 
@@ -89,7 +90,7 @@ def test_an_unknown_suffix_is_not_written() -> None:
 
 
 def test_a_real_plan_survives_every_format() -> None:
-    path = shared("plans", "MC_mission_box.plan")
+    path = elsewhere("plans", "MC_mission_box.plan")
     plan = read(path.name, path.read_bytes())
 
     assert read(path.name, write("x.plan", plan, "px4").data) == plan

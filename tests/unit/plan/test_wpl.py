@@ -10,7 +10,8 @@ from gcs.plan.errors import Level, PlanError
 from gcs.plan.model import AutopilotName, Circle, Frame, Geodetic, Geographic, LatLon, Polygon
 from gcs.plan.reader import read
 from gcs.plan.wpl_writer import write_wpl
-from tests.unit.plan.samples import read_text, shared, wpl
+from tests.sample_files import elsewhere
+from tests.unit.plan.samples import read_text, wpl
 
 HOME = "0 1 0 16 0 0 0 0 -35.363262 149.165237 584 1"
 TAKEOFF = "1 0 3 22 0 0 0 0 -35.363 149.165 20 1"
@@ -187,7 +188,7 @@ def test_an_ardupilot_file_is_not_written_without_home() -> None:
     ],
 )
 def test_real_files_are_read(folder: str, name: str, items: int, has_home: bool) -> None:
-    path = shared(folder, name)
+    path = elsewhere(folder, name)
 
     plan = read(path.name, path.read_bytes(), "ardupilot")
 
@@ -195,7 +196,7 @@ def test_real_files_are_read(folder: str, name: str, items: int, has_home: bool)
 
 
 def test_a_real_jump_keeps_its_target() -> None:
-    path = shared("wpl", "cmac-foamy-mission-cw.txt")
+    path = elsewhere("wpl", "cmac-foamy-mission-cw.txt")
 
     plan = read(path.name, path.read_bytes(), "ardupilot")
 

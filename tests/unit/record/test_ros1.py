@@ -19,9 +19,8 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs.record import ros1
 from gcs.report import Direction, FrameItem
 from gcs.wire.dialect import MESSAGES, TYPE_CODES, MessageDef
+from tests.sample_files import elsewhere
 from tests.unit.record.flights import frame_v1, frame_v2, record
-
-SAMPLE_LOGS = Path(__file__).parents[4] / "shared" / "data" / "logs"
 
 
 def some_payload(definition: MessageDef, seed: int) -> bytes:
@@ -205,12 +204,25 @@ def test_both_versions_of_a_message_share_its_topic(tmp_path: Path) -> None:
     assert [ros1.rebuild(message.data) for _, _, message in found] == raws
 
 
+def test_a_log_of_every_message_in_both_versions_is_rebuilt_byte_for_byte() -> None:
+    payloads = {msgid: some_payload(known, seed=msgid) for msgid, known in MESSAGES.items()}
+    raws = [
+        *(frame_v2(msgid, payload) for msgid, payload in payloads.items()),
+        *(frame_v2(msgid, payload, signed=True) for msgid, payload in payloads.items()),
+        *(
+            frame_v1(msgid, payload[: MESSAGES[msgid].min_len])
+            for msgid, payload in payloads.items()
+            if msgid <= 255
+        ),
+    ]
+    log = b"".join(number.to_bytes(8, "big") + raw for number, raw in enumerate(raws))
+    assert frames_of_tlog(log) == raws
+    assert all(ros1.rebuild(encoded(raw, 0, 0)) == raw for raw in raws)
+
+
 @pytest.mark.parametrize("name", ["quad_2015.tlog", "arducopter_sitl.tlog"])
 def test_real_flights_are_rebuilt_byte_for_byte(name: str) -> None:
-    log = SAMPLE_LOGS / name
-    if not log.exists():
-        pytest.skip("the sample flights are not here")
-    frames = list(frames_of_tlog(log.read_bytes()))
+    frames = frames_of_tlog(elsewhere("logs", name).read_bytes())
     assert len(frames) > 3000
     assert all(ros1.rebuild(encoded(raw, 0, 0)) == raw for raw in frames)
 
