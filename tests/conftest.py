@@ -12,16 +12,13 @@ import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.lanes import in_real_time, turn
+from tests.lanes import in_real_time, share, turn
 from tests.sample_files import ELSEWHERE, NOT_HERE
-
-if TYPE_CHECKING:
-    from tests.sharing import ByLane
 
 SOAKING = "MAVGATE_SOAK" in os.environ
 UNIT = Path(__file__).parent / "unit"
@@ -62,13 +59,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config) -> ByLane | None:
-    """With `-n` alone; whoever gives `--dist` gets what it says."""
+def pytest_xdist_make_scheduler(config: pytest.Config) -> Any:
+    """With `-n`, shares the tests out as `tests/lanes.py` says; `--dist` chooses another way."""
     if config.getvalue("dist") != "load":
         return None
-    from tests.sharing import ByLane
+    from xdist.scheduler import LoadScopeScheduling
 
-    return ByLane(config)
+    config.option.loadscopereorder = False
+    scheduler = LoadScopeScheduling(config)
+    scheduler._split_scope = share
+    return scheduler
 
 
 @cache
@@ -84,24 +84,23 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         _give_way()
 
 
+_quick: list[str] = []
+"""The test under way, if it is none of the slow ones."""
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
     """Holds a test to what it says of itself: without `slow`, no process and no socket."""
-    _inside.clear()
-    if item.get_closest_marker("slow") is None:
-        _inside.append(item.nodeid)
+    _quick[:] = [] if item.get_closest_marker("slow") else [item.nodeid]
     try:
         yield
     finally:
-        _inside.clear()
-
-
-_inside: list[str] = []
+        _quick.clear()
 
 
 def _watch(event: str, _details: tuple[object, ...]) -> None:
-    if _inside and event in OUTSIDE:
-        raise RuntimeError(f"{event} in a test that is not marked slow: {_inside[0]}")
+    if _quick and event in OUTSIDE:
+        raise RuntimeError(f"{event} in a test that is not marked slow: {_quick[0]}")
 
 
 sys.addaudithook(_watch)

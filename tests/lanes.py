@@ -1,4 +1,9 @@
-"""Which tests wait for real time, and which take long: what the sharing out of a run goes by."""
+"""How the tests of a run are shared out among its workers, so that all of them end together.
+
+Two workers begin with a lane each, in which programs wait for real time, and the others compute
+meanwhile.  All else goes out by file, so that what a file prepares is prepared once, but for the
+files of which single tests are long.
+"""
 
 from __future__ import annotations
 
