@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.cli.exits import Exit
 from gcs.cli.main import run
+from gcs.exit_codes import ExitCode
 from gcs.plan.errors import PlanError
 from gcs.plan.lint import lint
 from gcs.plan.model import AutopilotName, Geodetic, Geographic, Plan
@@ -108,7 +108,7 @@ def test_a_sample_survives_every_format(name: str, suffix: str) -> None:
 def test_the_gate_clears_the_way_around_a_zone_and_refuses_the_one_through_it(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    assert run(["mission", "check", str(SAMPLES / "plans" / "around_a_zone.plan")]) == Exit.DONE
+    assert run(["mission", "check", str(SAMPLES / "plans" / "around_a_zone.plan")]) == ExitCode.DONE
     through = str(SAMPLES / "plans" / "through_a_zone.plan")
-    assert run(["mission", "check", through]) == Exit.REFUSED_BY_GATE
+    assert run(["mission", "check", through]) == ExitCode.REFUSED_BY_GATE
     assert "goes inside exclusion polygon 'geoFence.polygons[1]'" in capsys.readouterr().out
