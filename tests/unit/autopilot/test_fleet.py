@@ -130,7 +130,10 @@ def fly(engine: Engine, count: int, nap_ns: int, end_ns: int) -> tuple[list[byte
     return [vehicle.state_bytes() for vehicle in vehicles], b"".join(sent)
 
 
-@pytest.mark.parametrize(("count", "end_ns"), [(1, 12 * S), (8, 12 * S), (40, 9 * S)])
+@pytest.mark.parametrize(
+    ("count", "end_ns"),
+    [(1, 12 * S), (8, 12 * S), pytest.param(40, 9 * S, marks=pytest.mark.soak)],
+)
 def test_few_and_many_fly_and_say_the_same_bytes(count: int, end_ns: int) -> None:
     few, said_few = fly(Few(specs(count), load()), count, 20 * MS, end_ns)
     many, said_many = fly(Many(specs(count), load()), count, 333 * MS, end_ns)
