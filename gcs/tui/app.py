@@ -29,6 +29,9 @@ from gcs.tui.scene import Answer, Scene
 
 REDRAW_S = 0.1
 LEAVE_WAIT_S = 8.0
+RESTORE_WAIT_S = 5.0
+"""For the screen to be given back.  A terminal that has closed, or that nobody reads, blocks every
+write to it, and with it the loop: then the process ends by SIGALRM."""
 SMALL_ROWS = 34
 LOG_LINES = 2000
 
@@ -95,6 +98,7 @@ class FlyApp(App[None]):
     @property
     def result(self) -> SessionResult:
         """How it ended, once `run` has returned; waits for the station process to end."""
+        self._end_within(0.0)
         ended = self._ended or self._connection.close()
         return SessionResult(ended, self._leaving, self._trouble)
 
@@ -129,6 +133,8 @@ class FlyApp(App[None]):
         if not self.is_headless and sys.platform != "win32":
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 loop.add_signal_handler(number, self._leave, number.name)
+                # The loop hears of it through a pipe; this runs even while it hangs in a write.
+                signal.signal(number, lambda *_: self._end_within(LEAVE_WAIT_S + RESTORE_WAIT_S))
 
     def on_resize(self, event: Resize) -> None:
         self.screen.set_class(event.size.height < SMALL_ROWS, "-small")
@@ -162,7 +168,7 @@ class FlyApp(App[None]):
     def _handle_end(self, ended: StationEnded) -> None:
         self._ended = ended
         if self._leaving:
-            self.exit()
+            self._give_back()
             return
         sentence = f"the link process has ended (exit code {ended.exit_code}); q leaves"
         self.scene.answer = Answer(sentence.upper(), "refused")
@@ -261,12 +267,22 @@ class FlyApp(App[None]):
     def _leave(self, reason: str) -> None:
         """Once: say good-bye, show it, and exit when the station has ended, or after 8 s."""
         if self._ended is not None:
-            self.exit()
+            self._give_back()
         elif not self._leaving:
             self._leaving = True
             self._connection.send(ipc.Leave(reason))
             self.query_one("#farewell").display = True
-            self.set_timer(LEAVE_WAIT_S, self.exit)
+            self.set_timer(LEAVE_WAIT_S, self._give_back)
+
+    def _give_back(self) -> None:
+        """Give the screen back, and end."""
+        self._end_within(RESTORE_WAIT_S)
+        self.exit()
+
+    def _end_within(self, seconds: float) -> None:
+        """End the process by SIGALRM then, unless another time (0: none) is set before."""
+        if not self.is_headless and sys.platform != "win32":
+            signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
 def _call_in_loop(

@@ -9,6 +9,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import NamedTuple
 
 from tests.system.vehicle_program import until
 
@@ -58,7 +59,7 @@ class Running:
 
     def close(self) -> None:
         """The end of its input, then of itself, then of whatever it started."""
-        family = descendants(self.pid)
+        started = family(self.pid)
         assert self.process.stdin is not None
         with suppress(BrokenPipeError):
             self.process.stdin.close()
@@ -68,9 +69,9 @@ class Running:
             self.process.kill()
             self.process.wait()
         try:
-            until(lambda: not any(map(alive, family)), "the end of its processes", 10.0)
+            until(lambda: all_gone(started), "the end of its processes", 10.0)
         finally:
-            for pid in filter(alive, family):
+            for pid in filter(alive, started):
                 os.kill(pid, 9)
             for reader in self._readers:
                 reader.join()
@@ -89,28 +90,46 @@ def running(*command: str) -> Iterator[Running]:
         program.close()
 
 
-def _processes() -> dict[int, tuple[int, str]]:
-    """Parent and state of every process."""
+class _Process(NamedTuple):
+    parent: int
+    group: int
+    state: str
+
+
+def _processes() -> dict[int, _Process]:
     table = subprocess.run(
-        ["ps", "-A", "-o", "pid=,ppid=,state="], capture_output=True, text=True, check=True
+        ["ps", "-A", "-o", "pid=,ppid=,pgid=,state="], capture_output=True, text=True, check=True
     ).stdout
     rows = (line.split() for line in table.splitlines())
-    return {int(pid): (int(parent), state) for pid, parent, state in rows}
+    return {
+        int(pid): _Process(int(parent), int(group), state) for pid, parent, group, state in rows
+    }
 
 
 def alive(pid: int) -> bool:
     """Whether it still runs; a zombie that nobody has looked after yet does not."""
-    _, state = _processes().get(pid, (0, "Z"))
-    return not state.startswith("Z")
+    return not all_gone([pid])
 
 
 def children(pid: int) -> list[int]:
-    return sorted(child for child, (parent, _) in _processes().items() if parent == pid)
+    return sorted(child for child, process in _processes().items() if process.parent == pid)
 
 
 def descendants(pid: int) -> list[int]:
-    return [each for child in children(pid) for each in (child, *descendants(child))]
+    """Children before their own."""
+    processes = _processes()
+    found = [pid]
+    for each in found:
+        found += sorted(child for child, process in processes.items() if process.parent == each)
+    return found[1:]
+
+
+def family(leader: int) -> list[int]:
+    """What a program in a group of its own has started, also once it has ended itself."""
+    group = [pid for pid, process in _processes().items() if process.group == leader]
+    return sorted({*group, *descendants(leader)} - {leader})
 
 
 def all_gone(pids: Sequence[int]) -> bool:
-    return not any(map(alive, pids))
+    processes = _processes()
+    return all(pid not in processes or processes[pid].state.startswith("Z") for pid in pids)

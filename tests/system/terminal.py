@@ -14,7 +14,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 
-from tests.system.programs import alive, descendants
+from tests.system.programs import alive, all_gone, family
 from tests.system.vehicle_program import until
 
 ROWS, COLUMNS = 50, 160
@@ -57,13 +57,14 @@ class Terminal:
         self.seen = bytearray()
         self.text = ""
         self._since = 0
+        self._hung_up = False
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
 
     def _read(self) -> None:
         rest = b""
         with suppress(OSError):  # what a pty answers once its other side is closed
-            while data := os.read(self._screen, 65_536):
+            while not self._hung_up and (data := os.read(self._screen, 65_536)):
                 self.seen += data
                 ready = rest + data
                 # A sequence may come in two pieces: what could be its beginning waits.
@@ -93,21 +94,28 @@ class Terminal:
         until(lambda: any(map(self.shows, texts)), f"one of {texts} on screen", timeout_s)
         return next(filter(self.shows, texts))
 
+    def hang_up(self) -> None:
+        """Closes the terminal, as its window does; the program's next drawing is the last."""
+        self._hung_up = True
+        self._reader.join()
+        os.close(self._screen)
+
     def close(self) -> None:
-        family = descendants(self.process.pid)
+        started = family(self.process.pid)
         try:
             until(lambda: self.process.poll() is not None, "the end of the program", 0.1)
         except AssertionError:
             self.process.kill()
         self.process.wait()
         try:
-            until(lambda: not any(map(alive, family)), "the end of its processes", 10.0)
+            until(lambda: all_gone(started), "the end of its processes", 10.0)
         finally:
-            for pid in filter(alive, family):
+            for pid in filter(alive, started):
                 os.kill(pid, 9)
             os.close(self._slave)
-            self._reader.join()
-            os.close(self._screen)
+            if not self._hung_up:
+                self._reader.join()
+                os.close(self._screen)
 
 
 @contextmanager

@@ -69,6 +69,20 @@ def test_when_the_station_goes_the_link_holds_the_vehicle_and_closes_the_log(
     assert_held(only_log(tmp_path))
 
 
+def test_a_terminal_that_closes_in_mid_flight_leaves_a_held_vehicle_and_no_process(
+    tmp_path: Path,
+) -> None:
+    """Whatever is written to it then fails or waits for ever, at the end of the screen too."""
+    with terminal(GCS, "fly", "--sim", "--log-dir", str(tmp_path)) as screen:
+        take_off_and_go(screen)
+        family = [screen.process.pid, *descendants(screen.process.pid)]
+        screen.hang_up()
+        screen.process.wait(20.0)
+        until(lambda: all_gone(family), "the end of screen, link and vehicle", 10.0)
+
+    assert_held(only_log(tmp_path))
+
+
 class Tmux:
     """A tmux server of our own with one window, in which a shell runs."""
 
@@ -120,7 +134,10 @@ def tmux() -> Iterator[Tmux]:
     try:
         yield server
     finally:
+        shell = int(server("display-message", "-p", "#{pane_pid}"))
+        started = [shell, *descendants(shell)]
         server("kill-server")
+        until(lambda: all_gone(started), "the end of what ran in tmux", 20.0)
 
 
 def test_a_flight_typed_in_tmux_looks_right_and_ends_with_a_prompt(
