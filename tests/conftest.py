@@ -7,6 +7,7 @@ draws more of them, and flies the tests that are marked `soak` as well.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -56,6 +57,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         config.hook.pytest_deselected(items=left)
     flown = [item for item in items if item not in left]
     items[:] = sorted(flown, key=lambda item: turn(item.nodeid))
+
+
+def pytest_collection_finish() -> None:
+    """Thousands of tests stay to the end: no use in looking through them for garbage each time."""
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

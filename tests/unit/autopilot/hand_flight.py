@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
+from functools import cache
 from math import hypot
 
 from tests.unit.autopilot.flight import Flight
 from vehicle_sim.autopilot.interface import Result
-from vehicle_sim.autopilot.modes import MODES
+from vehicle_sim.autopilot.modes import MODES, Personality
 
 
 class HandFlight(Flight):
@@ -36,6 +38,16 @@ class HandFlight(Flight):
         self.hold(3.0)
         return self
 
+    @classmethod
+    def by_hand(cls, personality: Personality, name: str) -> HandFlight:
+        """As `up_by_hand`, flown once, and a copy for each test."""
+        return deepcopy(_up_by_hand(personality, name))
+
     @property
     def flat_m_s(self) -> float:
         return hypot(*self.vehicle.truth.v_ned[:2])
+
+
+@cache
+def _up_by_hand(personality: Personality, name: str) -> HandFlight:
+    return HandFlight(personality).up_by_hand(name)

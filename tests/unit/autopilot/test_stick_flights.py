@@ -19,7 +19,7 @@ THRUST = [("px4", "STABILIZED"), ("px4", "MANUAL"), ("ardupilot", "STABILIZE")]
 def test_position_modes_take_off_move_brake_stay_and_land(
     personality: Personality, mode: str
 ) -> None:
-    flight = HandFlight(personality).up_by_hand(mode)
+    flight = HandFlight.by_hand(personality, mode)
     assert flight.landed() is Landed.IN_AIR
     height_m = flight.up_m
     assert height_m > 2.0
@@ -39,7 +39,7 @@ def test_position_modes_take_off_move_brake_stay_and_land(
 
 @pytest.mark.parametrize(("personality", "mode"), ALTITUDE)
 def test_altitude_modes_hold_the_height_and_drift_on(personality: Personality, mode: str) -> None:
-    flight = HandFlight(personality).up_by_hand(mode)
+    flight = HandFlight.by_hand(personality, mode)
     height_m = flight.up_m
     assert height_m > 2.0
     flight.hold(3.0, right=500)
@@ -74,7 +74,7 @@ def test_thrust_modes_climb_and_sink_with_the_throttle(personality: Personality,
 def test_the_yaw_stick_turns_clockwise_and_the_heading_stays_afterwards(
     personality: Personality, mode: str
 ) -> None:
-    flight = HandFlight(personality).up_by_hand(mode)
+    flight = HandFlight.by_hand(personality, mode)
     before = flight.vehicle.estimate.heading_rad
     flight.hold(1.5, clockwise=500)
     flight.hold(1.0)
@@ -88,7 +88,7 @@ def test_the_yaw_stick_turns_clockwise_and_the_heading_stays_afterwards(
 
 @pytest.mark.parametrize(("personality", "mode"), POSITION[:2])
 def test_the_sticks_are_in_the_frame_of_the_heading(personality: Personality, mode: str) -> None:
-    flight = HandFlight(personality).up_by_hand(mode)
+    flight = HandFlight.by_hand(personality, mode)
     flight.vehicle.condition_yaw(0.5 * pi, False, 1.0, 1)
     flight.hold(6.0)
     flight.hold(2.5, forward=700)
@@ -101,7 +101,7 @@ def test_the_sticks_are_in_the_frame_of_the_heading(personality: Personality, mo
 def test_acro_turns_at_a_rate_and_does_not_level_itself(
     personality: Personality, mode: str
 ) -> None:
-    flight = HandFlight(personality).up_by_hand(mode)
+    flight = HandFlight.by_hand(personality, mode)
     right = 150 if personality == "ardupilot" else 500
     flight.hold(0.5, right=right, up=600)
     leaning = flight.vehicle.truth.q_ned_from_frd[1]
@@ -120,7 +120,7 @@ def test_without_any_stick_a_manual_mode_holds_its_height(personality: Personali
 
 @pytest.mark.parametrize(("personality", "mode"), POSITION[:2])
 def test_sticks_that_fall_silent_count_as_centred(personality: Personality, mode: str) -> None:
-    flight = HandFlight(personality).up_by_hand(mode)
+    flight = HandFlight.by_hand(personality, mode)
     failsafe = {"px4": ("NAV_RCL_ACT", 1), "ardupilot": ("FS_THR_ENABLE", 0)}
     flight.vehicle.parameters.set(*failsafe[personality])
     flight.hold(2.0, forward=1000)
