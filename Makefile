@@ -10,10 +10,14 @@ CLIENTS := .clients
 TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
 SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
 OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
-WORKERS ?= 2
+# Two of them begin with the tests that wait for real time: see tests/lanes.py.
+WORKERS ?= 4
+
+# Without its bytecode files every worker and every program under test compiles the same again.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check lint types contracts clients soak bench messages wheel clean
+.PHONY: help demo quick test check lint types contracts clients soak bench messages wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -21,8 +25,8 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-quick: lint ## ruff, mypy and the tests without a process, a socket or a long flight (XX s)
-	@sh .ci/beside '$(BIN)/mypy' '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2'
+quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (XX s)
+	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2'
 
 test: $(TEST) $(TESTED) ## run every test (about 6 minutes on 2 cores)
 	$(BIN)/python -m pytest -n $(WORKERS) $(SLOWER:%=--ignore=%)
