@@ -84,6 +84,7 @@ def test_a_glance_at_the_vehicle_keeps_no_record(monkeypatch: pytest.MonkeyPatch
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_python_m_gcs_is_the_gcs_command() -> None:
     ended = [
         subprocess.run([sys.executable, *start, *args], capture_output=True, text=True, check=False)
@@ -222,6 +223,7 @@ def test_a_broken_pipe_has_another_name_on_windows(
     assert main._reader_has_gone(error, os_name) is gone
 
 
+@pytest.mark.slow
 def test_what_the_terminal_cannot_show_is_escaped(tmp_path: Path) -> None:
     mission = tmp_path / "go\u2192.toml"
     mission.write_bytes(resources.find("demo").read_bytes())
