@@ -47,7 +47,7 @@ clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVS
 	$(BIN)/python -m pytest tests/clients -v
 
 soak: $(TEST) ## the properties on new random examples, and what `test` has a share of as a whole
-	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/contract -n $(WORKERS)
+	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback -n $(WORKERS)
 
 bench: $(TEST) ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench
