@@ -17,7 +17,7 @@ WORKERS ?= 4
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo quick test check lint types contracts clients soak bench messages wheel clean
+.PHONY: help demo quick test check lint types contracts clients soak mutants bench messages wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -25,7 +25,7 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (XX s)
+quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about a minute)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2'
 
 test: $(TEST) $(TESTED) ## run every test (about 6 minutes on 2 cores)
@@ -48,6 +48,9 @@ clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVS
 
 soak: $(TEST) ## the properties on new random examples, and what `test` has a share of as a whole
 	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback -n $(WORKERS)
+
+mutants: $(TEST) ## alter the gate in one place at a time: does a test notice?
+	$(BIN)/python -m tests.mutants
 
 bench: $(TEST) ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench

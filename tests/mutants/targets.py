@@ -1,0 +1,79 @@
+"""What is altered, and which tests have to notice: one entry for each part of the project.
+
+To put another package under the runner, add a `Target` here.  A package whose decisions stand in
+a table of values (as the gate's do) names a `ValueTable` as well: its entries are altered as
+values, whatever the source text looks like.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+ROOT: Final = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True, slots=True)
+class ValueTable:
+    """A mapping `attribute` of the module `module`; `alterations` names the module that alters it.
+
+    That module has `alterations(table)`, an iterator over `TableAlteration`s, and `name_of(entry)`.
+    """
+
+    module: str
+    attribute: str
+    alterations: str
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Paths are relative to the project's root.
+
+    `skip` are files whose source text is not altered, each with the reason.  `deselect` are parts
+    of test ids that are left out; `slow` are such as run only when they are asked for.  `settings`
+    are TOML files whose values are altered, where the package reads them with `Path.read_text`.
+    """
+
+    name: str
+    packages: tuple[str, ...]
+    tests: tuple[str, ...]
+    skip: tuple[tuple[str, str], ...] = ()
+    deselect: tuple[str, ...] = ()
+    slow: tuple[str, ...] = ()
+    settings: tuple[str, ...] = ()
+    tables: tuple[ValueTable, ...] = ()
+    root: Path = ROOT
+
+    def sources(self) -> list[Path]:
+        """Every file whose text is altered, in the order of their names."""
+        skipped = [pattern for pattern, _ in self.skip]
+        return sorted(
+            path
+            for package in self.packages
+            for path in (self.root / package).rglob("*.py")
+            if not any(path.relative_to(self.root).match(pattern) for pattern in skipped)
+        )
+
+
+TARGETS: Final = {
+    target.name: target
+    for target in (
+        Target(
+            name="gate",
+            packages=("gcs/gate",),
+            tests=("tests/unit/gate", "tests/unit/session"),
+            skip=(
+                ("gcs/gate/proof/*.py", "a tool of the tests"),
+                ("gcs/gate/machine/rows_*.py", "its values are altered in the table"),
+                ("gcs/gate/machine/cells.py", "its values are altered in the table"),
+                ("gcs/gate/machine/render.py", "prints the table; its test is the golden copy"),
+                ("gcs/gate/machine/sentences.py", "sentences only"),
+            ),
+            deselect=("test_the_printed_copy_is_the_table",),
+            slow=("tests/unit/gate/test_explore.py",),
+            settings=("gcs/gate/policy/default.toml", "gcs/gate/policy/lab.toml"),
+            tables=(ValueTable("gcs.gate.machine.table", "TABLE", "tests.mutants.gate_table"),),
+        ),
+    )
+}
