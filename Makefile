@@ -12,6 +12,7 @@ SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
 OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
 # Two of them begin with the tests that wait for real time: see tests/lanes.py.
 WORKERS ?= 4
+FEWER   := --hypothesis-profile quick
 
 # Without its bytecode files every worker and every program under test compiles the same again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -26,7 +27,7 @@ demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated v
 	@$(BIN)/gcs demo
 
 quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about a minute)
-	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2'
+	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 $(FEWER)'
 
 test: $(TEST) $(TESTED) ## run every test (about 6 minutes on 2 cores)
 	$(BIN)/python -m pytest -n $(WORKERS) $(SLOWER:%=--ignore=%)

@@ -1,8 +1,9 @@
 """What all tests share: how many examples, which are for `make soak`, and what is said of skips.
 
 `make test` looks at the same examples each time: a run that must pass before a change lands must
-not fail for another change's sake.  New examples are for `make soak`, which draws them at random,
-draws more of them, and flies the tests that are marked `soak` as well.
+not fail for another change's sake.  `make quick` looks at a quarter as many.  New examples are for
+`make soak`, which draws them at random, draws more of them, and flies the tests that are marked
+`soak` as well.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ GIVES_WAY_BY = 5
 # How quickly this machine draws examples is nothing that a test is about.
 ON_ANY_MACHINE = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("steady", ON_ANY_MACHINE, derandomize=True)
+settings.register_profile("quick", ON_ANY_MACHINE, derandomize=True, max_examples=25)
 settings.register_profile("soak", ON_ANY_MACHINE, max_examples=2_000)
 settings.load_profile("soak" if SOAKING else "steady")
 

@@ -6,10 +6,9 @@
     python -m tests.mutants --sample 200         so many, spread evenly
     python -m tests.mutants --package src/p --tests tests/p   any other package
 
-A *mutant* is the code with one alteration (`source.py`, `settings.py` and `gate_table.py` say
-which there are).
-It is *killed* if a test fails on it, and *survives* if none does: then either no test looks at
-that place, or the alteration changes nothing that can be seen.  The latter are listed in
+A *mutant* is the code with one alteration: `source.py`, `settings.py` and `gate_table.py` say which
+there are.  It is *killed* if a test fails on it, and *survives* if none does: then either no test
+looks at that place, or the alteration changes nothing that can be seen.  The latter are listed in
 `equivalent.py` with the reason; an entry there that names no mutant, or one that is killed, is an
 error.  A mutant that used ten times the time of its tests and five seconds is *timed out*, and
 counts as killed.

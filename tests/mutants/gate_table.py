@@ -26,6 +26,8 @@ from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from tests.mutants.mutant import Kind
 
+Item = TypeVar("Item")
+
 Entry: TypeAlias = tuple[State, Event]
 Table: TypeAlias = Mapping[Entry, Cell]
 
@@ -44,8 +46,6 @@ OTHER_REPLY: Final = {
     Reply.DONE: Reply.ACCEPTED,
     Reply.PENDING: Reply.DONE,
 }
-
-Part = TypeVar("Part")
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,8 +166,8 @@ def _next(code: Code, codes: tuple[Code, ...]) -> Code:
     return codes[(codes.index(code) + 1) % len(codes)] if code in codes else codes[0]
 
 
-def _drop(parts: tuple[Part, ...], i: int) -> tuple[Part, ...]:
-    return (*parts[:i], *parts[i + 1 :])
+def _drop(items: tuple[Item, ...], i: int) -> tuple[Item, ...]:
+    return (*items[:i], *items[i + 1 :])
 
 
 def _end_text(end: End) -> str:

@@ -6,7 +6,6 @@ import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import pytest
 from hypothesis import Phase, settings
@@ -90,11 +89,11 @@ def run_tests(
 
 def _fewer_examples(item: pytest.Item) -> None:
     """A property keeps its own settings but for how many examples, which ones, and no shrinking."""
-    test: Any = getattr(item, "obj", None)
+    test = getattr(item, "obj", item)
     test = getattr(test, "__func__", test)
     if getattr(test, "is_hypothesis_test", False):
-        own: Any = getattr(test, "_hypothesis_internal_use_settings", None) or settings.default
-        test._hypothesis_internal_use_settings = settings(
+        own: settings = getattr(test, "_hypothesis_internal_use_settings", None) or settings()
+        fewer = settings(
             own,
             max_examples=min(EXAMPLES, own.max_examples),
             phases=STEADY,
@@ -102,3 +101,4 @@ def _fewer_examples(item: pytest.Item) -> None:
             database=None,
             deadline=None,
         )
+        vars(test)["_hypothesis_internal_use_settings"] = fewer

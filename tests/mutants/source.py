@@ -25,7 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, MutableSequence, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final, TypeVar, cast
 
 from tests.mutants.mutant import Kind, Mutant
 
@@ -53,6 +53,8 @@ SILENT_KEYWORDS: Final = frozenset({"strict", "reverse"})
 SILENT_FUNCTIONS: Final = frozenset({"__str__", "__repr__"})
 TEXT_MAX: Final = 60
 """The expression around an alteration is shown up to this length."""
+
+Node = TypeVar("Node", bound=ast.AST)
 
 Enums = Mapping[str, tuple[str, ...]]
 """The members of each enumeration, in order."""
@@ -249,8 +251,8 @@ class _Walk:
                     ops[i] = COMPARISONS[type(op)]()
                     yield Kind.COMPARISON, ast.Compare(node.left, ops, node.comparators)
             case ast.BoolOp(op=op, values=values):
-                other = ast.Or() if isinstance(op, ast.And) else ast.And()
-                yield Kind.LOGIC, ast.BoolOp(other, values)
+                joint = ast.Or() if isinstance(op, ast.And) else ast.And()
+                yield Kind.LOGIC, ast.BoolOp(joint, values)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 yield Kind.LOGIC, operand
             case ast.UnaryOp(op=ast.USub(), operand=operand) if not _is_number(operand):
@@ -261,10 +263,8 @@ class _Walk:
             case ast.Name(id=name) if name in CHOICES and _is_called(node, place):
                 yield Kind.CHOICE, ast.Name(CHOICES[name], ast.Load())
             case ast.Constant(value=value) if isinstance(value, bool | int | float):
-                yield (
-                    Kind.CONSTANT,
-                    ast.Constant(other_constant(value, index=_is_index(node, place))),
-                )
+                other = other_constant(value, index=_is_index(node, place))
+                yield Kind.CONSTANT, ast.Constant(other)
             case ast.Attribute(value=ast.Name(id=enum), attr=name) if name in self._members(enum):
                 members = self.enums[enum]
                 after = members[(members.index(name) + 1) % len(members)]
@@ -413,8 +413,10 @@ def _setter(node: ast.AST, name: str) -> Callable[[ast.AST], None]:
     return lambda new: setattr(node, name, new)
 
 
-def _list_setter(items: MutableSequence[Any], i: int) -> Callable[[ast.AST], None]:
+def _list_setter(items: MutableSequence[Node], i: int) -> Callable[[ast.AST], None]:
+    """Puts in what the grammar allows there: an expression for an expression."""
+
     def put(new: ast.AST) -> None:
-        items[i] = new
+        items[i] = cast(Node, new)
 
     return put

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, assert_never
+from dataclasses import replace as replace_zones
+from typing import NamedTuple, assert_never
 
 from msgspec.structs import replace
 
+from gcs.frames import Vec3, ned_from_enu
+from gcs.gate.airspace.verifier import Verifier, verifier_for
+from gcs.gate.airspace.zones import Zone
 from gcs.gate.effects import CommandKind, Effect, Outcome, SendSetpoint
-from gcs.gate.inputs import MissionLoaded
+from gcs.gate.geometry import Circle
+from gcs.gate.inputs import MissionLoaded, PositionSeen
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
 from gcs.gate.requests import (
@@ -39,6 +44,24 @@ MODE_STATES = (State.FLYING_MISSION, State.RETURNING, State.LANDING)
 FLIGHT = (State.TAKING_OFF, *GUIDED_STATES, *MODE_STATES)
 """Where it flies, and a request can be under way."""
 
+AIRBORNE = (*FLIGHT, State.HOLDING, State.EXTERNAL)
+"""Reported in the air."""
+
+HEARD = (State.GROUNDED, *AIRBORNE)
+"""Heard, with a fresh position."""
+
+VERIFIED = (State.TAKING_OFF, *GUIDED_STATES, State.FLYING_MISSION)
+"""Where it flies to, or is held at, what was verified."""
+
+HELD = (State.HOLDING, Control.OURS, [CommandKind.HOLD])
+"""The beginning of a reaction: what we fly is told to hold."""
+
+STATES = (State.NO_VEHICLE, State.STALE, State.GROUNDED, *AIRBORNE)
+"""All that can be asked of the gate between two ticks."""
+
+
+STILL: Vec3 = (0.0, 0.0, 0.0)
+
 
 class Reaction(NamedTuple):
     """`ended` is how the request ended that was under way, "" where it goes on."""
@@ -49,18 +72,34 @@ class Reaction(NamedTuple):
     ended: str
 
 
-def default_policy(**changes: Any) -> Policy:
+def default_policy(**changes: object) -> Policy:
     return replace(policy("default"), **changes)
 
 
-def flight(state: State, /, *, autopilot: str = "px4", **changes: Any) -> tuple[Script, int]:
+def flight(state: State, **changes: object) -> tuple[Script, int]:
     """A script in `state` with a request under way, and that request's id; every mode that was
-    commanded is shown."""
-    script = Script(default_policy(**changes), autopilot)
+    commanded is shown.  `changes` are to the default policy."""
+    if state is State.EXTERNAL:
+        changes["allow_force_disarm"] = True
+    script = Script(default_policy(**changes))
     request_id = under_way(state, script)
-    assert script.gate.state is state
+    assert state_of(script) is state
     script.forget()
     return script, request_id
+
+
+def stale(state: State) -> tuple[Script, int]:
+    """As `flight`, with a position that has just become too old."""
+    script, request_id = flight(state)
+    script.reports_position = False
+    script.wait(1.1)
+    assert state_of(script) is State.STALE
+    return script, request_id
+
+
+def state_of(script: Script) -> State:
+    """The gate's state, anew each time it is asked."""
+    return script.gate.state
 
 
 def under_way(state: State, script: Script) -> int:
@@ -108,7 +147,6 @@ def under_way(state: State, script: Script) -> int:
             script.take_control(UP)
             return script.ask(Hold())
         case State.EXTERNAL:
-            assert script.policy.allow_force_disarm
             script.fly(UP)
             script.ask(Disarm(force=True))
             return script.ask(Disarm(force=True))
@@ -157,6 +195,19 @@ def remember(script: Script, **facts: object) -> None:
         assert hasattr(memory, name)
         setattr(memory, name, value)
     script.gate = Gate.resumed(script.policy, memory, script.now_ns)
+
+
+def sample(script: Script, east: float, *, reset: bool = False) -> PositionSeen:
+    """The vehicle stands so far east, this instant."""
+    boot_ms = script.now_ns // 1_000_000
+    return PositionSeen(ned_from_enu((east, 0.0, UP)), STILL, boot_ms, reset)
+
+
+def elsewhere(script: Script) -> Verifier:
+    """A fence that holds no place where the vehicle is."""
+    verifier = verifier_for(script.policy, script.autopilot, (0.0, 0.0, 0.0), None)
+    yard = Zone("elsewhere", True, Circle((900.0, 0.0), 20.0), 0.0, 30.0)
+    return replace_zones(verifier, zones=(*verifier.zones, yard))
 
 
 def streams(script: Script) -> bool:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
@@ -50,6 +51,7 @@ TICK = 50 * MS
 E = TypeVar("E")
 
 
+@cache
 def policy(name: str) -> Policy:
     """One of the shipped policies."""
     path = Path(gcs.gate.__file__).parent / "policy" / f"{name}.toml"

@@ -10,13 +10,19 @@ from gcs.gate.effects import CommandKind, Say
 from gcs.gate.inputs import CommandEnded, MissionLoaded, MissionSeen, PhotoSeen
 from gcs.gate.requests import Abort, Arm, Disarm, Hold, StartMission, TakeOff
 from gcs.gate.states import Control, FlightMode, State
-from tests.unit.gate.reactions import Reaction, flight, reaction, streams
-from tests.unit.gate.reactions import take_off as take_off_on_the_ground
+from tests.unit.gate.reactions import (
+    HELD,
+    Reaction,
+    flight,
+    reaction,
+    state_of,
+    streams,
+    take_off,
+)
 from tests.unit.gate.script import Script, policy
 from tests.unit.gate.situations import UP, lead_to
 
 REFUSED, SILENT = 2, None
-HELD = (State.HOLDING, Control.OURS, [CommandKind.HOLD])
 GIVEN_UP = (State.EXTERNAL, Control.NONE, [CommandKind.HOLD])
 
 COMMAND = {
@@ -48,7 +54,7 @@ whose control we asked for, is held; with a picture missing, hovering goes on.""
 
 def asked(state: State) -> tuple[Script, int]:
     """The command has left, and is not answered."""
-    script, request_id = flight(state, allow_force_disarm=True)
+    script, request_id = flight(state)
     if state is State.HOVERING:
         script.wait(1.2)
     return script, request_id
@@ -83,7 +89,7 @@ def test_what_did_not_leave_the_ground_stays_there(
 ) -> None:
     script = Script(policy("default"))
     if kind is CommandKind.TAKE_OFF:
-        request_id = take_off_on_the_ground(script)
+        request_id = take_off(script)
     else:
         lead_to(State.GROUNDED, script)
         script.feed(MissionLoaded("square", 4))
@@ -104,7 +110,7 @@ def test_with_a_position_too_old_the_stream_ends_and_the_vehicle_is_held(
     script, request_id = asked(state)
     script.reports_position = False
     script.wait(1.2)
-    assert script.gate.state.name == "STALE"
+    assert state_of(script) is State.STALE
     told = CommandEnded(request_id, COMMAND[state], result)
     assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
         State.STALE, Control.OURS, [CommandKind.HOLD], how
@@ -112,7 +118,7 @@ def test_with_a_position_too_old_the_stream_ends_and_the_vehicle_is_held(
     assert not streams(script)
     script.reports_position = True
     script.tick()
-    assert script.gate.state is State.HOLDING
+    assert state_of(script) is State.HOLDING
 
 
 @pytest.mark.parametrize(
@@ -132,7 +138,7 @@ def test_an_arming_that_fails_while_the_position_is_too_old_just_ends(
 
 @pytest.mark.parametrize("state", [*COMMAND, State.MOVING, State.STALE, State.NO_VEHICLE])
 def test_an_answer_that_nobody_waits_for_is_told_and_not_acted_on(state: State) -> None:
-    script, _ = flight(state, allow_force_disarm=True)
+    script, _ = flight(state)
     before = script.gate.memory
     for result in (0, REFUSED, SILENT):
         effects = script.feed(CommandEnded(-1, CommandKind.LAND, result))
@@ -145,22 +151,22 @@ class TestHold:
     def test_no_answer_is_asked_again_at_the_next_second(self, state: State) -> None:
         script, _ = flight(state)
         hold = script.ask(Abort()) if state is not State.HOLDING else script._next_id
-        after = script.gate.state
+        after = state_of(script)
         told = CommandEnded(hold, CommandKind.HOLD, SILENT)
         assert reaction(script, hold, lambda s: s.feed(told)).ended == ""
         assert reaction(script, hold, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
-        assert script.gate.state is after
+        assert state_of(script) is after
 
     def test_a_refusal_of_the_gates_own_hold_ends_no_request_and_it_is_asked_again(self) -> None:
         script, request_id = flight(State.TAKING_OFF)
         script.feed(CommandEnded(request_id, CommandKind.TAKE_OFF, SILENT))
-        assert script.gate.state is State.HOLDING
+        assert state_of(script) is State.HOLDING
         for _ in range(3):
             script.forget()
             script.feed(CommandEnded(0, CommandKind.HOLD, REFUSED))
             script.wait(1.1)
             assert script.commands() == [CommandKind.HOLD]
-        assert script.gate.state is State.HOLDING
+        assert state_of(script) is State.HOLDING
 
     @pytest.mark.parametrize("wanted", [Hold(), Abort()])
     def test_a_refused_hold_ends_the_request_for_it(self, wanted: Hold | Abort) -> None:
@@ -168,7 +174,7 @@ class TestHold:
         request_id = script.ask(wanted)
         script.feed(CommandEnded(request_id, CommandKind.HOLD, REFUSED))
         assert script.outcome(request_id).code == "VEHICLE_REFUSED"
-        assert script.gate.state is State.HOLDING
+        assert state_of(script) is State.HOLDING
 
 
 class TestDisarm:
@@ -186,9 +192,9 @@ class TestDisarm:
 
     def test_refused_where_a_take_off_may_come_yet_it_is_held(self) -> None:
         script = Script(policy("default"))
-        take_off_on_the_ground(script)
+        take_off(script)
         request_id = script.ask(Disarm())
-        assert script.gate.state is State.GROUNDED
+        assert state_of(script) is State.GROUNDED
         told = CommandEnded(request_id, CommandKind.DISARM, REFUSED)
         assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
             State.GROUNDED, Control.NONE, [CommandKind.HOLD], "aborted VEHICLE_REFUSED"
@@ -210,7 +216,7 @@ class TestDisarm:
         script, request_id = self.standing()
         script.reports_position = False
         script.wait(1.2)
-        assert script.gate.state is State.STALE
+        assert state_of(script) is State.STALE
         told = CommandEnded(request_id, CommandKind.DISARM, REFUSED)
         assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
             State.STALE, Control.NONE, [], "aborted VEHICLE_REFUSED"
@@ -218,7 +224,7 @@ class TestDisarm:
 
     def test_or_is_held_where_a_take_off_may_come_yet(self) -> None:
         script = Script(policy("default"))
-        take_off_on_the_ground(script)
+        take_off(script)
         script.reports_position = False
         script.wait(1.2)
         request_id = script.ask(Disarm())
@@ -242,7 +248,7 @@ class TestPictures:
     )
     @pytest.mark.parametrize("ok", [True, False])
     def test_one_that_nobody_asked_for_changes_nothing(self, state: State, ok: bool) -> None:
-        script, request_id = flight(state, allow_force_disarm=True)
+        script, request_id = flight(state)
         control = script.gate.control
         assert reaction(script, request_id, lambda s: s.feed(PhotoSeen(4, ok))) == Reaction(
             state, control, [], ""
@@ -279,7 +285,7 @@ class TestMissions:
     def test_items_of_a_mission_that_does_not_fly_change_nothing(
         self, state: State, finished: bool
     ) -> None:
-        script, request_id = flight(state, allow_force_disarm=True)
+        script, request_id = flight(state)
         control = script.gate.control
         seen = MissionSeen(3, 4, finished)
         assert reaction(script, request_id, lambda s: s.feed(seen)) == Reaction(
@@ -307,7 +313,7 @@ class TestMissions:
             script, request_id = flight(State.FLYING_MISSION, max_up_m=10.0)
             script.feed(MissionSeen(4, 5, finished=False))
             script.at(0.0, 0.0, 12.0)
-            assert script.gate.state is State.FLYING_MISSION
+            assert state_of(script) is State.FLYING_MISSION
             assert reaction(script, request_id, ends_with(end)) == Reaction(*HELD, "complete")
 
     def test_on_the_ground_the_landing_completes_it(self) -> None:

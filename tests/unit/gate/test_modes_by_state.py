@@ -21,7 +21,15 @@ from gcs.gate.requests import (
     TakeOff,
 )
 from gcs.gate.states import Control, FlightMode, LandedState, State
-from tests.unit.gate.reactions import FLIGHT, Reaction, flight, reaction, streams, take_off
+from tests.unit.gate.reactions import (
+    FLIGHT,
+    Reaction,
+    flight,
+    reaction,
+    state_of,
+    streams,
+    take_off,
+)
 from tests.unit.gate.script import Script, policy
 from tests.unit.gate.situations import UP, lead_to
 
@@ -129,7 +137,7 @@ def test_on_the_ground_no_mode_moves_anything(mode: FlightMode) -> None:
 def test_of_a_vehicle_that_somebody_else_flies_a_return_and_a_landing_are_seen(
     mode: FlightMode,
 ) -> None:
-    script, request_id = flight(State.EXTERNAL, allow_force_disarm=True)
+    script, request_id = flight(State.EXTERNAL)
     if mode is FlightMode.HOLD:
         script.heartbeat(FlightMode.OTHER)
     after = SAFE_MODES.get(mode, State.EXTERNAL)
@@ -174,7 +182,7 @@ class TestWhileAModeIsWaitedFor:
             after = SAFE_MODES[mode]
         other = FlightMode.OTHER if mode is FlightMode.GUIDED else FlightMode.GUIDED
         script.heartbeat(other)
-        assert script.gate.state is state
+        assert state_of(script) is state
         assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
             after, Control.OURS, [], ""
         )
@@ -286,7 +294,7 @@ class TestAModeThatNeverComes:
         script.v_ned = (0.0, 0.0, -1.0)
         script.at(0.0, 0.0, UP, (0.0, 0.0, 1.0))
         script.tick()
-        assert script.gate.state is State.HOVERING  # hold mode says that the climb is over
+        assert state_of(script) is State.HOVERING  # hold mode says that the climb is over
 
     def test_a_take_off_in_a_pilots_mode_stays_on_the_ground(self) -> None:
         script, request_id = self.climb()
@@ -299,7 +307,7 @@ class TestAModeThatNeverComes:
         script, request_id = self.climb()
         script.heartbeat(FlightMode.OTHER)
         script.land_state(LandedState.IN_AIR)
-        assert script.gate.state is State.TAKING_OFF
+        assert state_of(script) is State.TAKING_OFF
         assert reaction(script, request_id, lambda s: s.wait(5.2)) == Reaction(
             State.EXTERNAL, Control.NONE, [], "timed out NO_ANSWER"
         )
@@ -319,7 +327,7 @@ class TestGuidedThatComesLate:
         script = Script(policy("default")).fly(UP)
         script.ask(TakeControl())
         script.wait(6.2)
-        assert script.gate.state is State.EXTERNAL
+        assert state_of(script) is State.EXTERNAL
         return script
 
     def test_somebody_elses_vehicle_that_goes_guided_for_us_is_held_once(self) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
 from gcs.gate.condition import Condition, Severity
@@ -14,18 +12,19 @@ from gcs.gate.states import Control, FlightMode, State
 from tests.unit.gate.reactions import (
     FLIGHT,
     GUIDED_STATES,
+    HELD,
     Reaction,
     default_policy,
     ended,
     flight,
     reaction,
+    state_of,
     streams,
     take_off,
 )
 from tests.unit.gate.script import Script, policy
 from tests.unit.gate.situations import UP, lead_to
 
-HELD = (State.HOLDING, Control.OURS, [CommandKind.HOLD])
 RETURNS = (State.RETURNING, Control.OURS, [CommandKind.RETURN])
 LANDS = (State.LANDING, Control.OURS, [CommandKind.LAND])
 UNSAFE = [Severity.HOLD, Severity.RETURN, Severity.LAND, Severity.TERMINATE]
@@ -34,7 +33,7 @@ EVERYWHERE = [*FLIGHT, State.GROUNDED, State.STALE, State.HOLDING, State.EXTERNA
 
 
 def at_severity(
-    state: State, severity: Severity, **changes: Any
+    state: State, severity: Severity, **changes: object
 ) -> tuple[Script, int, ConditionChanged]:
     """`state`, its request, and what raises the severity."""
     severities = {**policy("default").severities, Condition.BATTERY_LOW: severity}
@@ -181,7 +180,7 @@ class TestWithAnOldPosition:
         script.feed(ConditionChanged(Condition.BATTERY_LOW, False))
         script.reports_position = True
         script.tick()
-        assert script.gate.state is State.HOLDING
+        assert state_of(script) is State.HOLDING
 
     @pytest.mark.parametrize("severity", [Severity.LAND, Severity.TERMINATE])
     def test_it_lands_where_that_is_demanded(self, severity: Severity) -> None:
@@ -330,7 +329,7 @@ class TestOperatorLost:
         assert not streams(script)
         script.reports_position = True
         script.tick()
-        assert script.gate.state is State.HOLDING
+        assert state_of(script) is State.HOLDING
 
     def test_what_stands_with_an_old_position_is_left_alone(self) -> None:
         script, request_id = flight(State.GROUNDED)
@@ -350,7 +349,7 @@ class TestOperatorLost:
         assert reaction(script, request_id, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
 
     def test_what_somebody_else_flies_is_left_alone(self) -> None:
-        script, request_id = flight(State.EXTERNAL, allow_force_disarm=True)
+        script, request_id = flight(State.EXTERNAL)
         assert reaction(script, request_id, lambda s: s.feed(self.QUIT)) == Reaction(
             State.EXTERNAL, Control.NONE, [], ""
         )
@@ -359,7 +358,7 @@ class TestOperatorLost:
     def test_so_is_a_return_or_a_landing_of_the_vehicles_own(self, mode: FlightMode) -> None:
         script = Script(policy("default")).fly(UP)
         script.heartbeat(mode)
-        state = script.gate.state
+        state = state_of(script)
         assert reaction(script, 0, lambda s: s.feed(self.QUIT)) == Reaction(
             state, Control.NONE, [], ""
         )
@@ -386,5 +385,5 @@ class TestOperatorLost:
         script, _ = flight(State.MOVING)
         script.feed(self.QUIT)
         land = script.ask(Land())
-        assert script.gate.state is State.LANDING
+        assert state_of(script) is State.LANDING
         assert ended(script, land) == ""

@@ -11,19 +11,19 @@ from gcs.gate.requests import Arm, Disarm, GoTo, Hold, Land, ReturnHome, TakeCon
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
     FLIGHT,
+    HELD,
     Reaction,
     default_policy,
     ended,
     flight,
     reaction,
     remember,
+    state_of,
     streams,
     take_off,
 )
 from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP, lead_to
-
-HELD = (State.HOLDING, Control.OURS, [CommandKind.HOLD])
 
 
 def just_before(script: Script, seconds: float) -> None:
@@ -141,7 +141,7 @@ class TestDeadlines:
         )
 
     def test_a_forced_disarm_has_five_seconds(self) -> None:
-        script, request_id = flight(State.EXTERNAL, allow_force_disarm=True)
+        script, request_id = flight(State.EXTERNAL)
         just_before(script, 5.0)
         assert not script.ended(request_id)
         assert reaction(script, request_id, lambda s: s.wait(0.1)) == Reaction(
@@ -182,7 +182,7 @@ class TestDeadlines:
         assert not script.ended(request_id)
         script.wait(0.1)
         assert ended(script, request_id) == "timed out NO_ANSWER"
-        assert (script.gate.state, script.gate.control) == (State.EXTERNAL, Control.NONE)
+        assert (state_of(script), script.gate.control) == (State.EXTERNAL, Control.NONE)
 
     @pytest.mark.parametrize("wanted", [Land(), ReturnHome()])
     def test_what_came_down_while_its_position_was_too_old_is_complete(
@@ -193,7 +193,7 @@ class TestDeadlines:
         script.land_state(LandedState.ON_GROUND)
         script.reports_position = False
         script.wait(1.2)
-        assert script.gate.state is State.STALE
+        assert state_of(script) is State.STALE
         assert reaction(script, request_id, lambda s: s.wait(2.0)) == Reaction(
             State.STALE, Control.NONE, [], "complete"
         )
@@ -211,7 +211,7 @@ class TestDeadlines:
         script.wait(8.8)
         script.reports_position = False
         script.wait(1.15)
-        assert script.gate.state.name == "STALE"
+        assert state_of(script) is State.STALE
         assert not script.ended(request_id)
         found = reaction(script, request_id, lambda s: s.wait(0.1))
         assert found == Reaction(
@@ -220,7 +220,7 @@ class TestDeadlines:
         assert not streams(script)
         script.reports_position = True
         script.tick()
-        assert script.gate.state is State.HOLDING
+        assert state_of(script) is State.HOLDING
 
 
 class TestArrival:
@@ -236,7 +236,7 @@ class TestArrival:
         script, request_id = self.moving()
         script.at(3.0, 0.0, UP)
         script.wait(0.45)
-        assert script.gate.state is State.MOVING
+        assert state_of(script) is State.MOVING
         assert reaction(script, request_id, lambda s: s.wait(0.1)) == Reaction(
             State.HOVERING, Control.OURS, [], "complete"
         )
@@ -327,16 +327,16 @@ class TestTheEndOfAClimb:
         script, request_id = self.climbed(up, v_up)
         script.tick()
         after = (State.HOVERING, Control.TAKING) if there else (State.TAKING_OFF, Control.OURS)
-        assert (script.gate.state, script.gate.control) == after
+        assert (state_of(script), script.gate.control) == after
         assert not script.ended(request_id)
 
     def test_px4_says_by_its_hold_mode_that_it_is_up(self) -> None:
         script, _ = self.climbed(5.0, 1.0)
         script.tick()
-        assert script.gate.state.name == "TAKING_OFF"
+        assert state_of(script) is State.TAKING_OFF
         script.heartbeat(FlightMode.HOLD)
         script.tick()
-        assert script.gate.state is State.HOVERING
+        assert state_of(script) is State.HOVERING
 
     def test_far_below_and_slow_the_climb_ended_there(self) -> None:
         script, request_id = self.climbed(3.0)
@@ -379,7 +379,7 @@ class TestTheEndOfAClimb:
     def test_ardupilot_ends_slow_and_in_guided(self) -> None:
         script, request_id = self.climbed(5.0, autopilot="ardupilot")
         script.tick()
-        assert (script.gate.state, script.gate.control) == (State.HOVERING, Control.TAKING)
+        assert (state_of(script), script.gate.control) == (State.HOVERING, Control.TAKING)
         assert not script.ended(request_id)
 
     def test_what_is_not_known_to_fly_has_not_climbed(self) -> None:
