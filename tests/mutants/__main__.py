@@ -72,7 +72,7 @@ def _run(target: Target, options: argparse.Namespace) -> int:
     for result in judge(target, enums, chosen, chooser, options.workers):
         results.append(result)
         _progress(results, len(chosen), began)
-    equivalent, unreached = EQUIVALENT.get(target.name, {}), UNREACHED.get(target.name, ())
+    equivalent, unreached = EQUIVALENT.get(target.name, {}), UNREACHED.get(target.name, {})
     report = Report.of(mutants, results, equivalent, unreached, time.monotonic() - began)
     print(report.text())
     if options.json:

@@ -7,25 +7,16 @@ the run.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
-
-@dataclass(frozen=True, slots=True)
-class Unreached:
-    """Entries of a table that are never read: the event does not happen in these states."""
-
-    event: str
-    states: str
-    why: str
-
-    @property
-    def cells(self) -> list[str]:
-        """The names that the table's alterations give to the entries."""
-        return [f"{state} / {self.event}" for state in self.states.split()]
-
+from tests.unit.gate import unreached as gate_table
 
 EQUIVALENT: Final[Mapping[str, Mapping[str, str]]] = {"gate": {}}
 """Reasons by the mutant's key."""
 
-UNREACHED: Final[Mapping[str, tuple[Unreached, ...]]] = {"gate": ()}
+UNREACHED: Final[Mapping[str, Mapping[str, str]]] = {
+    "gate": {
+        entry: unreached.why for unreached in gate_table.UNREACHED for entry in unreached.entries
+    }
+}
+"""Reasons by the name that the table's alterations give to an entry."""

@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tests.mutants.equivalent import Unreached
 from tests.mutants.mutant import Fate, Mutant, Result
 
 KILLED_LEAST = 0.95
@@ -30,18 +29,17 @@ class Report:
         mutants: Sequence[Mutant],
         results: Sequence[Result],
         equivalent: Mapping[str, str],
-        unreached: Sequence[Unreached],
+        unreached: Mapping[str, str],
         wall_s: float,
     ) -> Report:
         place = {mutant.key: i for i, mutant in enumerate(mutants)}
         ordered = sorted(results, key=lambda result: place[result.mutant.key])
-        why = {cell: entry.why for entry in unreached for cell in entry.cells}
-        never = [m for m in mutants if m.cells and all(cell in why for cell in m.cells)]
-        judged = {mutant.key: why[mutant.cells[0]] for mutant in never} | dict(equivalent)
+        never = [m for m in mutants if m.cells and all(cell in unreached for cell in m.cells)]
+        judged = {mutant.key: unreached[mutant.cells[0]] for mutant in never} | dict(equivalent)
         known = {cell for mutant in mutants for cell in mutant.cells}
         dead = {result.mutant.key: result.by for result in results if result.dead}
         wrong = [f"names no mutant: {key}" for key in equivalent if key not in place]
-        wrong += [f"names no entry of a table: {cell}" for cell in why if cell not in known]
+        wrong += [f"names no entry of a table: {cell}" for cell in unreached if cell not in known]
         wrong += [f"is killed by {dead[key]}: {key}" for key in judged if key in dead]
         return cls(len(mutants), ordered, judged, wrong, wall_s)
 

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutants.equivalent import Unreached
 from tests.mutants.mutant import Fate, Kind, Mutant, Result
 from tests.mutants.report import Report
 from tests.mutants.source import enums_of, sites
@@ -181,9 +180,11 @@ def result(key: str, fate: Fate, *cells: str) -> Result:
     return Result(mutant, fate, "a test", 1, 0.1)
 
 
-def judged(results: list[Result], equivalent: dict[str, str], *unreached: Unreached) -> Report:
+def judged(
+    results: list[Result], equivalent: dict[str, str], unreached: dict[str, str] | None = None
+) -> Report:
     mutants = [r.mutant for r in results]
-    return Report.of(mutants, results, equivalent, unreached, 1.0)
+    return Report.of(mutants, results, equivalent, unreached or {}, 1.0)
 
 
 def test_an_equivalent_mutant_does_not_count() -> None:
@@ -199,7 +200,7 @@ def test_an_entry_that_names_no_mutant_or_one_that_is_killed_fails() -> None:
 
 
 def test_an_entry_of_a_table_that_is_never_read_does_not_count() -> None:
-    never = Unreached("tick", "HERE THERE", "it does not happen")
+    never = dict.fromkeys(["HERE / tick", "THERE / tick"], "it does not happen")
     results = [
         result("a", Fate.SURVIVED, "HERE / tick"),
         result("b", Fate.SURVIVED, "HERE / tick", "THERE / tick"),

@@ -25,7 +25,7 @@ from gcs.gate.effects import (
     SendSetpoint,
     Transition,
 )
-from gcs.gate.inputs import Input, OperatorLost, Requested, Tick
+from gcs.gate.inputs import ConditionChanged, Input, OperatorLost, Requested, Tick
 from gcs.gate.machine.actions import ACTIONS
 from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.events import Event
@@ -164,11 +164,12 @@ class Gate:
             self._check_ages()
         if isinstance(given, Requested):
             turn.requested = given
-        severity = turn.severity
+        severity = turn.severity if isinstance(given, ConditionChanged) else None
         for event, why, breach in events_from(turn, given):
             turn.why, turn.breach = why, breach
             self._fire(event)
-        self._demand(severity)
+        if severity is not None:
+            self._demand(severity)
         if isinstance(given, Tick):
             self._tick()
         return [self._permitted(draft) for draft in turn.out]
@@ -185,8 +186,8 @@ class Gate:
                 self._fire(Event.POSITION_AGED)
         if memory.task is not None and _due(memory.task.deadline_ns, now_ns):
             self._fire(Event.DEADLINE)
-        overdue = memory.asked_mode is not None and now_ns >= memory.asked_until_ns
-        if overdue and memory.hold_again_ns is None:
+        awaited = memory.hold_again_ns is None and memory.asked_mode is not None
+        if awaited and now_ns >= memory.asked_until_ns:
             self._fire(Event.MODE_OVERDUE)
 
     def _tick(self) -> None:

@@ -13,13 +13,8 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
-from msgspec import structs
-
-from gcs.frames import Vec3
-from gcs.gate.airspace.zones import Zone
-from gcs.gate.condition import Condition, Severity
+from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
-from gcs.gate.geometry import Circle
 from gcs.gate.inputs import (
     CommandEnded,
     ConditionChanged,
@@ -37,10 +32,22 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.policy.parse import DEFAULT
-from gcs.gate.policy.policy import Arrival, Policy
-from gcs.gate.policy.zonespec import CircleSpec
-from gcs.gate.proof.invariants import FORCE_REPEAT_NS
+from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
+from gcs.gate.proof.world import (
+    ABOVE,
+    CONDITIONS,
+    DASH,
+    EDGE,
+    ELSEWHERE,
+    GOAL,
+    HOME,
+    NOWHERE,
+    OUTSIDE,
+    SPOT,
+    STILL,
+    TOP,
+    World,
+)
 from gcs.gate.requests import (
     Abort,
     Arm,
@@ -58,60 +65,28 @@ from gcs.gate.requests import (
     TakeOff,
     TakePhoto,
 )
-from gcs.gate.states import FlightMode, LandedState
+from gcs.gate.states import FlightMode, LandedState, State
 
 TICK_NS: Final = SECOND_NS // 20
-STILL: Final[Vec3] = (0.0, 0.0, 0.0)
-SPOT: Final[Vec3] = (0.0, 0.0, -5.0)
-GOAL: Final[Vec3] = (3.0, 0.0, -5.0)
-EDGE: Final[Vec3] = (18.0, 0.0, -5.0)
-DASH: Final[Vec3] = (8.0, 0.0, 0.0)
-TOP: Final[Vec3] = (0.0, 0.0, -10.0)
-ABOVE: Final[Vec3] = (0.0, 0.0, -14.0)
-OUTSIDE: Final[Vec3] = (50.0, 0.0, -5.0)
-NOWHERE: Final[Vec3] = (float("nan"), 0.0, -5.0)
+TASK_ID: Final = 1
+PENDING_ID: Final = 2
+NEW_ID: Final = 3
+LATE_ID: Final = -1
+"""The id of the request under way, of the one that waits, of a new one, and of one that the gate
+does not know any more."""
 
-CONDITIONS: Final[Mapping[Condition, Severity]] = MappingProxyType(
-    {
-        Condition.TICK_LATE: Severity.CAUTION,
-        Condition.BATTERY_LOW: Severity.HOLD,
-        Condition.BATTERY_CRITICAL: Severity.RETURN,
-        Condition.VEHICLE_FAILSAFE_ACTIVE: Severity.LAND,
-        Condition.ORIGIN_MISMATCH: Severity.TERMINATE,
-    }
-)
-"""One condition of each severity is enough: the gate knows conditions by severity alone."""
-
-YARD: Final = structs.replace(
-    DEFAULT,
-    name="yard",
-    fence=(
-        CircleSpec(
-            20.0,
-            name="yard",
-            frame="local",
-            floor_up_m=0.0,
-            ceiling_up_m=30.0,
-        ),
-    ),
-    fence_switchable=True,
-    arrival=Arrival(radius_m=0.5, speed_m_s=None, dwell_s=0.0),
-    jump_speed_m_s=1e12,
-    takeoff=structs.replace(DEFAULT.takeoff, max_up_m=20.0),
-    severities={condition: CONDITIONS.get(condition, Severity.CAUTION) for condition in Condition},
-    allow_force_disarm=True,
-)
-"""Every permission that opens a branch of the table is given; the rest is the default."""
-
-ELSEWHERE: Final = Zone("elsewhere", True, Circle((200.0, 0.0), 20.0), 0.0, 30.0)
+OWNER: Final = "owner"
+OTHER: Final = "other"
+"""Who asks: whoever asked for what is under way, or somebody else.  `taking.py` keeps ids and
+sources so between letters."""
 
 Step: TypeAlias = tuple[int, Input]
 """Nanoseconds that pass, then the input."""
 
-Letter: TypeAlias = Callable[[Policy, Memory, int], Iterator[Step]]
-"""From the policy, what the gate remembers, and now; no steps where it makes no sense."""
+Letter: TypeAlias = Callable[[World, Memory, int], Iterator[Step]]
+"""From the world, what the gate remembers, and now; no steps where it makes no sense."""
 
-WISHES: Final[Mapping[str, Request]] = MappingProxyType(
+REQUESTS: Final[Mapping[str, Request]] = MappingProxyType(
     {
         "goto inside": GoTo(GOAL),
         "goto outside": GoTo(OUTSIDE),
@@ -136,43 +111,81 @@ WISHES: Final[Mapping[str, Request]] = MappingProxyType(
 
 
 def _request(request: Request) -> Letter:
-    def letter(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
-        yield 1, Requested(now_ns + 1, "explorer", request)
+    def letter(_world: World, _memory: Memory, now_ns: int) -> Iterator[Step]:
+        yield 1, Requested(NEW_ID, OWNER, request)
+
+    return letter
+
+
+def _other_request(request: Request) -> Letter:
+    """From another source, while there is a request that it can collide with."""
+
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+        if memory.task is not None or memory.pending is not None:
+            yield 1, Requested(NEW_ID, OTHER, request)
 
     return letter
 
 
 def _input(given: Input) -> Letter:
-    def letter(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
         yield 1, given
 
     return letter
 
 
 def _mode(mode: FlightMode) -> Letter:
-    def letter(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
         yield 1, HeartbeatSeen(memory.armed, mode, mode.value)
 
     return letter
 
 
-def _toggle_armed(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+def _toggle_armed(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
     if memory.mode is not None:
         yield 1, HeartbeatSeen(not memory.armed, memory.mode, memory.mode.value)
 
 
 def _answer(result: int | None) -> Letter:
-    def letter(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+    """To the last command that is not answered yet."""
+
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
         for request_id, kind in memory.outstanding[-1:]:
             yield 1, CommandEnded(request_id, kind, result)
 
     return letter
 
 
+def _first_answer(result: int | None) -> Letter:
+    """To the first of several."""
+
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+        for request_id, kind in memory.outstanding[:-1][:1]:
+            yield 1, CommandEnded(request_id, kind, result)
+
+    return letter
+
+
+def _late_answer(result: int | None) -> Letter:
+    """To a command like the last one, but of a request that has ended or was displaced."""
+
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+        kinds = [kind for _, kind in memory.outstanding]
+        yield 1, CommandEnded(LATE_ID, (kinds or [CommandKind.ARM])[-1], result)
+
+    return letter
+
+
+def _odd_answer(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    """To a command that the request under way never sent."""
+    for request_id, _ in memory.outstanding[-1:]:
+        yield 1, CommandEnded(request_id, CommandKind.SET_MODE, 2)
+
+
 def _condition(condition: Condition) -> Letter:
     """On where nothing is wrong, off where this is."""
 
-    def letter(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
         active = [name for name, _ in memory.conditions]
         if active in ([], [condition]):
             yield 1, ConditionChanged(condition, not active)
@@ -180,49 +193,61 @@ def _condition(condition: Condition) -> Letter:
     return letter
 
 
-def _tick(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+def _caution(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    """Comes and goes: it makes no other situation, so it would never be seen to go."""
+    if not memory.conditions:
+        yield 1, ConditionChanged(Condition.TICK_LATE, True)
+        yield 1, ConditionChanged(Condition.TICK_LATE, False)
+
+
+def _tick(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
     yield TICK_NS, Tick(0)
 
 
-def _picture(after: int, *, ok: bool) -> Letter:
-    """So many pictures after the last one."""
+def _picture(*, new: bool, ok: bool) -> Letter:
+    """The last picture told again, or another one: indices alternate."""
 
-    def letter(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
-        if after or memory.photo_index is not None:
-            yield 1, PhotoSeen((memory.photo_index or 0) + after, ok)
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+        if new:
+            yield 1, PhotoSeen(1 - (memory.photo_index or 0), ok)
+        elif memory.photo_index is not None:
+            yield 1, PhotoSeen(memory.photo_index, ok)
 
     return letter
 
 
-def _home_moves(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+def _home_moves(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
     if memory.home_ned is not None:
         yield 1, HomeSeen(OUTSIDE)
         yield 1, HomeSeen(memory.home_ned)
 
 
-def _fence_moves(_policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+def _fence_moves(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
     if memory.verifier is not None:
         yield 1, VerifierChanged(replace(memory.verifier, zones=(ELSEWHERE,)))
         yield 1, VerifierChanged(memory.verifier)
 
 
 def _until(
-    due: Callable[[Policy, Memory], int | None], *, told: bool = True, landed: bool = True
+    due: Callable[[World, Memory], int | None], *, told: bool = True, landed: bool = True
 ) -> Letter:
-    """Just until something is due; the vehicle goes on reporting its position (`told`) and
-    whether it has `landed` meanwhile."""
+    """Just until something is due; a vehicle that is heard goes on reporting its position
+    (`told`) and whether it has `landed` meanwhile."""
 
-    def letter(policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
-        due_ns = due(policy, memory)
-        if due_ns is None or memory.mode is None:
+    def letter(world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+        due_ns = due(world, memory)
+        if due_ns is None:
             return
         passes_ns = max(1, due_ns - now_ns)
+        if memory.state is State.NO_VEHICLE or memory.mode is None:
+            yield passes_ns, Tick(0)
+            return
         if landed and memory.landed_ns is not None:
             yield passes_ns, LandedSeen(memory.landed)
             passes_ns = 0
         yield passes_ns, HeartbeatSeen(memory.armed, memory.mode, memory.mode.value)
         age_ns = memory.position_age_ns(now_ns)
-        if told and age_ns is not None and age_ns <= policy.position_age_s * SECOND_NS:
+        if told and age_ns is not None and age_ns <= world.policy.position_age_s * SECOND_NS:
             assert memory.pos_ned is not None
             assert memory.v_ned is not None
             yield 1, PositionSeen(memory.pos_ned, memory.v_ned, 0)
@@ -231,34 +256,64 @@ def _until(
     return letter
 
 
-def _lost(policy: Policy, memory: Memory, now_ns: int) -> Iterator[Step]:
+def becomes_known(world: World) -> tuple[Input, ...]:
+    """Home and the fence about it are known, and a mission is on board."""
+    return HomeSeen(HOME), VerifierChanged(world.verifier), MissionLoaded("square", 4)
+
+
+def _become_known(world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    if memory.verifier is None:
+        for given in becomes_known(world):
+            yield 1, given
+
+
+def _mission_without_one(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    if memory.mission_items > 0:
+        yield 1, MissionLoaded("", 0)
+        yield 1, Requested(NEW_ID, OWNER, StartMission())
+        yield 1, MissionLoaded("square", 4)
+
+
+def _mission_without_fence(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    if memory.verifier is None:
+        yield 1, MissionLoaded("square", 4)
+        yield 1, Requested(NEW_ID, OWNER, StartMission())
+        yield 1, MissionLoaded("", 0)
+
+
+def _force_disarm_too_late(world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    yield from _until(_window_over_ns)(world, memory, now_ns)
+    if memory.force_asked_ns is not None:
+        yield 1, Requested(NEW_ID, OWNER, Disarm(force=True))
+
+
+def _lost(world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
     if memory.heard_ns is not None:
-        yield round(policy.heartbeat_age_s * SECOND_NS) + 1, Tick(0)
+        yield round(world.policy.heartbeat_age_s * SECOND_NS) + 1, Tick(0)
 
 
-def _stale_ns(policy: Policy, memory: Memory) -> int | None:
+def _stale_ns(world: World, memory: Memory) -> int | None:
     if memory.pos_ns is None:
         return None
-    return memory.pos_ns + round(policy.position_age_s * SECOND_NS) + 1
+    return memory.pos_ns + round(world.policy.position_age_s * SECOND_NS) + 1
 
 
-def _landed_old_ns(policy: Policy, memory: Memory) -> int | None:
+def _landed_old_ns(world: World, memory: Memory) -> int | None:
     if memory.landed_ns is None:
         return None
-    return memory.landed_ns + round(policy.heartbeat_age_s * SECOND_NS)
+    return memory.landed_ns + round(world.policy.heartbeat_age_s * SECOND_NS)
 
 
-def _overdue_ns(policy: Policy, memory: Memory) -> int | None:
+def _overdue_ns(world: World, memory: Memory) -> int | None:
     return None if memory.asked_mode is None else memory.asked_until_ns
 
 
-def _force_late_ns(_policy: Policy, memory: Memory) -> int | None:
-    asked_ns = memory.force_asked_ns
-    return None if asked_ns is None else asked_ns + FORCE_REPEAT_NS + 1
-
-
-def _deadline_ns(policy: Policy, memory: Memory) -> int | None:
+def _deadline_ns(world: World, memory: Memory) -> int | None:
     return None if memory.task is None else memory.task.deadline_ns
+
+
+def _window_over_ns(_world: World, memory: Memory) -> int | None:
+    return None if memory.force_asked_ns is None else memory.force_asked_ns + FORCE_WINDOW_NS + 1
 
 
 ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
@@ -274,18 +329,30 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "armed or disarmed": _toggle_armed,
         "on the ground": _input(LandedSeen(LandedState.ON_GROUND)),
         "in the air": _input(LandedSeen(LandedState.IN_AIR)),
-        **{f"ask: {name}": _request(request) for name, request in WISHES.items()},
+        **{f"ask: {name}": _request(request) for name, request in REQUESTS.items()},
+        **{f"another asks: {name}": _other_request(wish) for name, wish in REQUESTS.items()},
+        "ask: mission with none on board": _mission_without_one,
+        "ask: mission without a fence": _mission_without_fence,
+        "ask: force disarm too late": _force_disarm_too_late,
         "answer: accepted": _answer(0),
         "answer: refused": _answer(2),
         "answer: none": _answer(None),
-        "answer: late": _input(CommandEnded(-1, CommandKind.ARM, 0)),
-        "picture": _picture(1, ok=True),
-        "no picture": _picture(1, ok=False),
-        "a picture told again": _picture(0, ok=True),
+        "first answer: accepted": _first_answer(0),
+        "first answer: refused": _first_answer(2),
+        "first answer: none": _first_answer(None),
+        "late answer: accepted": _late_answer(0),
+        "late answer: refused": _late_answer(2),
+        "late answer: none": _late_answer(None),
+        "answer: to another command": _odd_answer,
+        "picture": _picture(new=True, ok=True),
+        "no picture": _picture(new=True, ok=False),
+        "a picture told again": _picture(new=False, ok=True),
         "mission loaded": _input(MissionLoaded("square", 4)),
         "mission at its last item": _input(MissionSeen(3, 4, finished=False)),
         "mission finished": _input(MissionSeen(3, 4, finished=True)),
         **{f"condition: {severity.name}": _condition(c) for c, severity in CONDITIONS.items()},
+        "condition: CAUTION, and it is over": _caution,
+        "home and fence become known": _become_known,
         "home moves, and back": _home_moves,
         "fence moves, and back": _fence_moves,
         "operator lost": _input(OperatorLost("explorer")),
@@ -296,7 +363,6 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "wait: mode overdue": _until(_overdue_ns),
         "wait: control due": _until(lambda _, memory: memory.ask_control_ns),
         "wait: hold due": _until(lambda _, memory: memory.hold_again_ns),
-        "wait: forced disarm too late": _until(_force_late_ns),
         "wait: vehicle lost": _lost,
     }
 )

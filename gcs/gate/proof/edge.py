@@ -10,6 +10,7 @@ from gcs.gate.effects import CommandKind, Effect, Ruling, SendCommand, SendSetpo
 from gcs.gate.inputs import Input, Requested
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
+from gcs.gate.proof.questions import WatchedMemory
 from gcs.gate.requests import Request
 from gcs.gate.states import LandedState, State
 
@@ -23,6 +24,14 @@ class Objection:
 
     def __str__(self) -> str:
         return f"invariant {self.invariant}: {self.sentence}"
+
+
+def same(before: Memory, after: Memory, name: str) -> bool:
+    """Whether the field `name` was left as it was.  A watched memory is not asked for it."""
+    if isinstance(before, WatchedMemory) and isinstance(after, WatchedMemory):
+        read = before.questions.values.get(name)
+        return before.__dict__.get(name, read) is after.__dict__.get(name, read)
+    return getattr(before, name) is getattr(after, name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +94,10 @@ class Edge:
     @property
     def severity(self) -> Severity:
         """As it is after the step."""
-        severities = self.policy.severities
-        return max(
-            (severities[name] for name, _ in self.after.conditions), default=Severity.NOMINAL
-        )
+        return severity_of(self.policy, self.after)
+
+
+def severity_of(policy: Policy, memory: Memory) -> Severity:
+    """Of all conditions the worst."""
+    severities = policy.severities
+    return max((severities[name] for name, _ in memory.conditions), default=Severity.NOMINAL)

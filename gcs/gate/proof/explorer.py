@@ -1,59 +1,51 @@
-"""Walk every combination that the gate can reach, and check its invariants on every edge.
+"""Walk every combination that the gate can reach, and check its invariants on every step.
 
-Breadth first over the real machine and the real table: a node is what the gate remembers, with
-every age reduced to what can still make a difference (`situation`); an edge is a letter of
-`alphabet.py`.  Because the walk is breadth first, the trace to the first broken invariant is
-the shortest one there is.
+The words, as of automata:
+
+- A *letter* is one thing that can happen next: a request, a report of the vehicle, an answer, or
+  a wait.  It is a short run of inputs, each with the time that passes before it.  All letters
+  together are the *alphabet* (`alphabet.py`).
+- A *situation* is what the gate remembers, reduced to what can still make a difference
+  (`situation.py`).
+- An *edge* is one letter taken in one situation: it leads to another one, or to the same.
+
+The walk is breadth first from a gate that has heard nobody, and knows the fence or does not.
+Every letter is taken in every situation that is reached, by the real machine and the real table,
+and every step is checked (`invariants.py`).  As the walk is breadth first, the trace to the first
+broken invariant is the shortest one there is.
+
+Most edges differ from another one only in what the gate does not look at.  So each letter is a
+decision tree (`decision_tree.py`) over what the gate remembers: the machine runs once for each
+distinct set of answers, and every edge with those answers has that outcome.  No edge is left out.
 """
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from functools import partial
+from itertools import chain
+from typing import TypeAlias, TypeVar, cast
 
-from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.condition import Condition, Severity
-from gcs.gate.effects import CommandKind, SwitchedFence
-from gcs.gate.inputs import HomeSeen, MissionLoaded, ReturnHeightSeen, VerifierChanged
+from gcs.gate.inputs import ReturnHeightSeen
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.gate import Gate, ImpossibleError
-from gcs.gate.machine.memory import SECOND_NS, Memory
+from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.table import TABLE, Table
-from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.alphabet import ABOVE, ALPHABET, EDGE, GOAL, TOP, YARD
-from gcs.gate.proof.edge import Edge, Objection
-from gcs.gate.proof.invariants import FORCE_REPEAT_NS, objections
-from gcs.gate.states import Control, FlightMode, State
+from gcs.gate.proof.alphabet import ALPHABET, Letter, becomes_known
+from gcs.gate.proof.decision_tree import DecisionTree, Leaf
+from gcs.gate.proof.edge import Objection, severity_of
+from gcs.gate.proof.invariants import objections_to_memory
+from gcs.gate.proof.outcome import Outcome
+from gcs.gate.proof.questions import Instant, Questions, WatchedMemory
+from gcs.gate.proof.situation import PARTS, Part
+from gcs.gate.proof.taking import take
+from gcs.gate.proof.vector import NOW, PLACE, Codes, Vector
+from gcs.gate.proof.world import World
+from gcs.gate.states import Control, State
 
-HOME = (0.0, 0.0, 0.0)
-
-MODES_THAT_MATTER: Final = {
-    State.GROUNDED: frozenset({FlightMode.RETURN, FlightMode.LAND}),
-    State.STALE: frozenset({FlightMode.RETURN, FlightMode.LAND}),
-    State.TAKING_OFF: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),
-    State.HOVERING: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),
-    State.HOLDING: frozenset({FlightMode.HOLD}),
-    State.FLYING_MISSION: frozenset({FlightMode.MISSION}),
-    State.RETURNING: frozenset({FlightMode.RETURN}),
-    State.LANDING: frozenset({FlightMode.LAND}),
-}
-"""The modes that are told apart in a state; in any other state none is."""
-
-PLACES_THAT_MATTER: Final = frozenset(
-    {State.TAKING_OFF, State.HOVERING, State.FLYING_MISSION, State.HOLDING, State.EXTERNAL}
-)
-"""Where a dash for the fence matters beyond the sample that shows it: staying is judged there."""
-
-ALIKE: Final = {
-    Event.RESUME: Event.CONTROL,
-    Event.RETURN: Event.LAND,
-    Event.FORCE_DISARM: Event.DISARM,
-}
-"""Requests that are treated alike once they are under way."""
-
-LATE_GUIDED: Final = (State.HOLDING, State.EXTERNAL)
+T = TypeVar("T")
 
 Combination: TypeAlias = tuple[State, Severity, Control, Condition | None]
 
@@ -81,155 +73,166 @@ class Explored:
     fault: Fault | None
 
 
-@dataclass(frozen=True, slots=True)
+class Explorer:
+    """Explores one world, and keeps what it learnt: of a table in which few cells are altered,
+    only that is run anew which meets those cells.
+
+    `entered` are the cells that had a part in anything so far."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self.codes = Codes()
+        self._questions = Questions(self.codes)
+        self._memory = WatchedMemory(self._questions)
+        self._now_ns = cast(int, Instant(self._questions, NOW))
+        self.entered: set[tuple[State, Event]] = set()
+        self._outcomes = self._outcomes_by(TABLE)
+        self.parts = [self._tree(partial(self._number, part, {})) for part in PARTS]
+        self.objections = self._tree(self._objections_to_memory)
+
+    def explore(self, table: Table = TABLE) -> Explored:
+        """Breadth first until nothing new is met; stops at the first broken invariant."""
+        return _Walk(self, table).run()
+
+    def starts(self, table: Table) -> tuple[Vector, Vector]:
+        """A gate that has heard nobody, with home, fence and mission known and without."""
+        gate = Gate(self._world.policy, self._world.verifier.autopilot, SECOND_NS, table)
+        gate.handle(ReturnHeightSeen(self._world.return_up_m), SECOND_NS)
+        unknown = self.codes.vector_of(gate.memory, SECOND_NS)
+        for given in becomes_known(self._world):
+            gate.handle(given, SECOND_NS)
+        return self.codes.vector_of(gate.memory, SECOND_NS), unknown
+
+    def letters(self, table: Table) -> Callable[[Vector], Iterator[tuple[str, Outcome]]]:
+        """The outcome of every letter that makes sense, by what the gate remembers."""
+        altered = {cell for cell in TABLE if table[cell] != TABLE[cell]}
+        anew = self._outcomes_by(table)
+
+        def outcomes(vector: Vector) -> Iterator[tuple[str, Outcome]]:
+            for letter, tree in self._outcomes.items():
+                outcome = tree(vector).result
+                if altered and not altered.isdisjoint(outcome.cells):
+                    outcome = anew[letter](vector).result
+                if outcome.sensible:
+                    yield letter, outcome
+
+        return outcomes
+
+    def combination(self, vector: Vector) -> Iterator[Combination]:
+        memory = self.codes.memory_of(vector)
+        severity = severity_of(self._world.policy, memory)
+        conditions: list[Condition | None] = [name for name, _ in memory.conditions]
+        for condition in conditions or [None]:
+            yield memory.state, severity, memory.control, condition
+
+    # ------------------------------------------------------------------------------- learning
+
+    def _outcomes_by(self, table: Table) -> dict[str, DecisionTree[Outcome]]:
+        return {
+            name: self._tree(partial(self._outcome, letter, table))
+            for name, letter in ALPHABET.items()
+        }
+
+    def _tree(self, function: Callable[[], T]) -> DecisionTree[T]:
+        return DecisionTree(self._questions, function)
+
+    def _outcome(self, letter: Letter, table: Table) -> Outcome:
+        taken = take(letter, self._world, table, self._memory.copy(), self._now_ns)
+        outcome = Outcome(self._questions, taken)
+        self.entered |= outcome.cells
+        return outcome
+
+    def _number(self, part: Part, numbers: dict[Hashable, int]) -> int:
+        """The number of what `part` of the situation is, in the order they were met."""
+        met = part(self._world.policy, self._memory.copy(), self._now_ns)
+        return numbers.setdefault(met, len(numbers))
+
+    def _objections_to_memory(self) -> list[Objection]:
+        return list(objections_to_memory(self._world.policy, self._memory.copy()))
+
+
+@dataclass(slots=True)
 class _Node:
-    memory: Memory
-    now_ns: int
+    """A situation, by the memory that it was first met with, and how that was reached.
+
+    `parts` are the parts of the situation, `objections` what the invariants have against the
+    memory; each knows what it looked at.
+    """
+
+    vector: Vector
+    parts: list[Leaf[int]]
+    objections: Leaf[list[Objection]]
     parent: _Node | None
     letter: str
 
-    def trace(self) -> tuple[tuple[str, State], ...]:
+
+class _Walk:
+    """One exploration.  `nodes` are the situations in the order in which they were met."""
+
+    def __init__(self, explorer: Explorer, table: Table) -> None:
+        self._explorer = explorer
+        self._letters = explorer.letters(table)
+        self._nodes: list[_Node] = []
+        self._edges = 0
+        self._situations: set[tuple[int, ...]] = set()
+        self._met: dict[tuple[int | None, ...], Vector] = {}
+        for start in explorer.starts(table):
+            parts = [part(start) for part in explorer.parts]
+            self._enter(_Node(start, parts, explorer.objections(start), None, ""))
+
+    def run(self) -> Explored:
+        for node in self._nodes:
+            before, steady_ns = node.vector, self._steady_ns(node)
+            for letter, outcome in self._letters(before):
+                self._edges += 1
+                if outcome.doubtful:
+                    for objection in outcome.objections(before):
+                        return self._explored(objection, self._reached(node, letter, outcome))
+                if outcome.idle_ns <= steady_ns:
+                    continue  # only time passed, and not enough to make a difference
+                reached = self._reached(node, letter, outcome)
+                for objection in reached.objections.result:
+                    return self._explored(objection, reached)
+                self._enter(reached)
+        return self._explored(None, None)
+
+    def _steady_ns(self, node: _Node) -> int:
+        """For how long a situation stays what it is if nothing happens."""
+        steady_ns = min(part.steady_ns(node.vector) for part in self._explorer.parts)
+        return min(steady_ns, self._explorer.objections.steady_ns(node.vector))
+
+    def _reached(self, node: _Node, letter: str, outcome: Outcome) -> _Node:
+        """Where `letter` leads.  What does not look at anything that changed is what it was."""
+        vector, places = outcome.applied_to(node.vector), outcome.places
+        parts = [
+            tree(vector) if part.places & places else part
+            for part, tree in zip(node.parts, self._explorer.parts, strict=True)
+        ]
+        objections = node.objections
+        if objections.places & places:
+            objections = self._explorer.objections(vector)
+        return _Node(vector, parts, objections, node, letter)
+
+    def _enter(self, node: _Node) -> None:
+        """Go on from `node` too, if its situation is new."""
+        vector = node.vector
+        self._met.setdefault((vector[_STATE], vector[_CONTROL], vector[_CONDITIONS]), vector)
+        situation = tuple([part.result for part in node.parts])
+        if situation not in self._situations:
+            self._situations.add(situation)
+            self._nodes.append(node)
+
+    def _explored(self, objection: Objection | None, last: _Node | None) -> Explored:
+        met = (self._explorer.combination(vector) for vector in self._met.values())
+        fault = None if objection is None else Fault(objection, self._trace(last))
+        return Explored(len(self._nodes), self._edges, frozenset(chain.from_iterable(met)), fault)
+
+    def _trace(self, node: _Node | None) -> tuple[tuple[str, State], ...]:
         steps: list[tuple[str, State]] = []
-        node: _Node | None = self
         while node is not None and node.parent is not None:
-            steps.append((node.letter, node.memory.state))
+            steps.append((node.letter, self._explorer.codes.memory_of(node.vector).state))
             node = node.parent
         return tuple(reversed(steps))
 
 
-def explore(
-    table: Table = TABLE,
-    policy: Policy = YARD,
-    autopilot: str = "px4",
-    *,
-    return_up_m: float = 10.0,
-) -> Explored:
-    """Breadth first from a gate that has heard nobody; stops at the first broken invariant."""
-    verifier = verifier_for(policy, autopilot, HOME, None)
-    start = _start(policy, table, verifier, return_up_m)
-    seen: set[Hashable] = {situation(policy, start.memory, start.now_ns)}
-    combinations: set[Combination] = set()
-    queue = deque([start])
-    edges = 0
-    while queue:
-        node = queue.popleft()
-        for name, letter in ALPHABET.items():
-            steps = tuple(letter(policy, node.memory, node.now_ns))
-            if not steps:
-                continue
-            edges += 1
-            memory, before = node.memory.copy(), node.memory
-            gate = Gate.resumed(policy, memory, node.now_ns, table)
-            now_ns = node.now_ns
-            for passes_ns, given in steps:
-                now_ns += passes_ns
-                try:
-                    effects = gate.handle(given, now_ns)
-                except ImpossibleError as bug:
-                    objection = Objection(0, f"a cell that cannot be entered: {bug}")
-                    return _found(objection, node, name, gate, now_ns, seen, edges, combinations)
-                edge = Edge(policy, before, given, now_ns, effects, memory)
-                for objection in objections(edge):
-                    return _found(objection, node, name, gate, now_ns, seen, edges, combinations)
-                if any(isinstance(effect, SwitchedFence) for effect in effects):
-                    gate.handle(VerifierChanged(verifier), now_ns)
-                if len(steps) > 1:
-                    before = memory.copy()
-            combinations |= _combinations(gate)
-            key = situation(policy, memory, now_ns)
-            if key not in seen:
-                seen.add(key)
-                queue.append(_Node(memory, now_ns, node, name))
-    return Explored(len(seen), edges, frozenset(combinations), None)
-
-
-def _found(
-    objection: Objection,
-    node: _Node,
-    letter: str,
-    gate: Gate,
-    now_ns: int,
-    seen: set[Hashable],
-    edges: int,
-    combinations: set[Combination],
-) -> Explored:
-    last = _Node(gate.memory, now_ns, node, letter)
-    fault = Fault(objection, last.trace())
-    return Explored(len(seen), edges, frozenset(combinations), fault)
-
-
-def _combinations(gate: Gate) -> set[Combination]:
-    conditions = gate.conditions or (None,)
-    return {(gate.state, gate.severity, gate.control, condition) for condition in conditions}
-
-
-def _force_disarm_may_repeat(memory: Memory, now_ns: int) -> bool:
-    """A first forced disarm was asked for, and the time for the second one runs.
-
-    In HOVERING only, which stands for every state of flight: the table treats all alike.
-    """
-    asked_ns = memory.force_asked_ns
-    in_time = asked_ns is not None and now_ns - asked_ns <= FORCE_REPEAT_NS
-    return in_time and memory.state is State.HOVERING
-
-
-def _start(policy: Policy, table: Table, verifier: Verifier, return_up_m: float) -> _Node:
-    gate = Gate(policy, verifier.autopilot, SECOND_NS, table)
-    for given in (
-        HomeSeen(HOME),
-        ReturnHeightSeen(return_up_m),
-        VerifierChanged(verifier),
-        MissionLoaded("square", 4),
-    ):
-        gate.handle(given, SECOND_NS)
-    return _Node(gate.memory, SECOND_NS, None, "")
-
-
-def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
-    """What can still make a difference: memory without ids and sentences, ages as yes or no.
-
-    What the present state does not look at is left out, so that two memories which differ only
-    there are one situation; what they were met with is counted all the same.
-    """
-    age_ns = memory.position_age_ns(now_ns)
-    stale = age_ns is None or age_ns > policy.position_age_s * SECOND_NS
-    task, state, flies = memory.task, memory.state, memory.flown_state
-    told_ns = memory.landed_ns
-    aged = told_ns is not None and now_ns - told_ns >= policy.heartbeat_age_s * SECOND_NS
-    climbs = state in (State.GROUNDED, State.STALE) and now_ns < memory.takeoff_until_ns
-    severities = [policy.severities[name] for name, _ in memory.conditions]
-    worst = Severity.LAND if state is State.STALE else Severity.RETURN
-    unanswered = [kind for _, kind in memory.outstanding if kind is not CommandKind.HOLD]
-    awaited = memory.asked_mode is not None and memory.hold_again_ns is None
-    return (
-        state,
-        memory.control,
-        min(max(severities, default=Severity.CAUTION), worst),
-        memory.heard_before if state is State.NO_VEHICLE else None,
-        memory.armed,
-        memory.mode if memory.mode in MODES_THAT_MATTER.get(flies, ()) else None,
-        (memory.airborne, memory.on_ground) if not aged else not memory.armed,
-        memory.climbed if flies is State.TAKING_OFF else None,
-        memory.pos_ned in (TOP, ABOVE) and memory.pos_ned if flies is State.TAKING_OFF else None,
-        memory.operator_lost,
-        stale,
-        memory.pos_ned == EDGE and state in PLACES_THAT_MATTER,
-        memory.pos_ned == GOAL and memory.goal is not None,
-        memory.mission_over if flies is State.FLYING_MISSION else None,
-        None if task is None else (ALIKE.get(task.kind, task.kind), task.waiting),
-        None if memory.pending is None else memory.pending.request,
-        memory.hold is not None,
-        memory.goal is not None,
-        memory.goal is not None and memory.within_since_ns is not None,
-        tuple(unanswered[-1:]),
-        memory.asked_mode if awaited else None,
-        awaited and now_ns < memory.asked_until_ns,
-        state in LATE_GUIDED and now_ns < memory.guided_until_ns,
-        climbs,
-        memory.ask_control_ns is not None,
-        memory.hold_again_ns is not None,
-        memory.lifted if flies in (State.TAKING_OFF, State.FLYING_MISSION) else None,
-        memory.back_to,
-        memory.grace_until_ns is not None,
-        _force_disarm_may_repeat(memory, now_ns),
-    )
+_STATE, _CONTROL, _CONDITIONS = PLACE["state"], PLACE["control"], PLACE["conditions"]

@@ -32,9 +32,10 @@ from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.rules import Branch, Reply
 from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.alphabet import ALPHABET, TICK_NS, YARD
+from gcs.gate.proof.alphabet import ALPHABET, TICK_NS
 from gcs.gate.proof.edge import Edge
 from gcs.gate.proof.invariants import objections
+from gcs.gate.proof.world import YARD, World
 from gcs.gate.requests import GoTo, TakeControl
 from gcs.gate.states import FlightMode, LandedState, State
 
@@ -61,6 +62,7 @@ class Run:
     def __post_init__(self) -> None:
         self.gate = Gate(self.policy, self.autopilot, self.now_ns, self.table)
         self.verifier = verifier_for(self.policy, self.autopilot, HOME, None)
+        self.world = World(self.policy, self.verifier, 10.0)
         for told in (
             HomeSeen(HOME),
             ReturnHeightSeen(10.0),
@@ -87,7 +89,7 @@ class Run:
         self.feed(Requested(self.last_id, "test", request))
 
     def letter(self, name: str) -> None:
-        for passes_ns, told in ALPHABET[name](self.policy, self.gate.memory, self.now_ns):
+        for passes_ns, told in ALPHABET[name](self.world, self.gate.memory, self.now_ns):
             if isinstance(told, Requested):
                 self.last_id += 1
                 told = replace(told, request_id=self.last_id)

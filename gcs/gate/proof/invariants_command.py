@@ -1,0 +1,114 @@
+"""What the vehicle is commanded, for how long, and by whom (invariant 9, forced disarm, hold)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from gcs.gate.effects import CommandKind, Say, SendCommand
+from gcs.gate.inputs import CommandEnded, HeartbeatSeen, LandedSeen, Tick
+from gcs.gate.machine.memory import SECOND_NS, Memory
+from gcs.gate.policy.policy import Policy
+from gcs.gate.proof.edge import Edge, same
+from gcs.gate.requests import Abort, Disarm, Hold
+from gcs.gate.states import FlightMode, LandedState, State
+
+RISKY: Final = frozenset({CommandKind.ARM, CommandKind.TAKE_OFF})
+"""Commands whose late effect is dangerous."""
+
+LONGEST_NS: Final = 60 * SECOND_NS
+FORCE_WINDOW_NS: Final = 5 * SECOND_NS
+HOLD_EVERY_NS: Final = SECOND_NS
+
+INSTEAD: Final = frozenset(
+    {CommandKind.LAND, CommandKind.RETURN, CommandKind.DISARM, CommandKind.FORCE_DISARM}
+)
+"""What may be commanded in place of a hold, by whomever."""
+
+
+def ends_what_it_commands(edge: Edge) -> Iterator[str]:
+    """9: every command has a deadline, and one whose late effect is dangerous has a request."""
+    for sent in edge.effects:
+        if not isinstance(sent, SendCommand):
+            continue
+        if not edge.now_ns < sent.deadline_ns <= edge.now_ns + LONGEST_NS:
+            yield f"{sent.kind.value} has no deadline that holds"
+        if sent.kind in RISKY and edge.after.task is None and not edge.accepted:
+            yield f"{sent.kind.value} is sent though nobody asks for it"
+
+
+def acts_on_no_late_answer(edge: Edge) -> Iterator[str]:
+    """9: an answer that comes when nobody waits for it is reported, and not acted on."""
+    assert isinstance(edge.given, CommandEnded)
+    if all(isinstance(effect, Say) for effect in edge.effects):
+        return
+    if (edge.given.request_id, edge.given.kind) not in edge.before.outstanding:
+        yield "a late answer is acted on"
+
+
+def abandons_with_the_request(_policy: Policy, after: Memory) -> Iterator[str]:
+    """9: arm and take-off are not tried on once their request has ended."""
+    if after.task is None and any(kind in RISKY for _, kind in after.outstanding):
+        yield "arm or take-off goes on being tried though its request has ended"
+
+
+def cuts_motors_on_a_second_request(edge: Edge) -> Iterator[str]:
+    """A forced disarm leaves only on a second explicit request for it, soon after a first one
+    which was refused, and where the policy allows it."""
+    asked = isinstance(edge.request, Disarm) and edge.request.force
+    if CommandKind.FORCE_DISARM in edge.commands:
+        first_ns = edge.before.force_asked_ns
+        if not asked or not edge.accepted:
+            yield "a forced disarm leaves, and nobody asked for it"
+        if not edge.policy.allow_force_disarm:
+            yield "a forced disarm leaves, and the policy forbids it"
+        if first_ns is None or edge.now_ns - first_ns > FORCE_WINDOW_NS:
+            yield "a forced disarm leaves at the first request for it"
+    if same(edge.before, edge.after, "force_asked_ns"):
+        return
+    if not asked or edge.accepted or edge.after.force_asked_ns != edge.now_ns:
+        yield "a first request for a forced disarm is noted, and there was none"
+
+
+def holds_until_it_is_shown(edge: Edge) -> Iterator[str]:
+    """A hold that is commanded and not shown always has a next try, at 1 Hz."""
+    before, after = edge.before, edge.after
+    again_ns = after.hold_again_ns
+    if CommandKind.HOLD in edge.commands and again_ns is None and not _held_once(edge):
+        yield f"hold is commanded in {after.state.name} and has no next try"
+    if before.hold_again_ns is None:
+        return
+    if again_ns is None:
+        if not _hold_is_over(edge):
+            yield f"hold is not shown and has no next try in {after.state.name}"
+    elif isinstance(edge.given, Tick) and again_ns <= edge.now_ns:
+        yield f"hold is due in {after.state.name} and not commanded"
+    elif again_ns > edge.now_ns + HOLD_EVERY_NS:
+        yield "the next try of hold is too far off"
+
+
+def _held_once(edge: Edge) -> bool:
+    """Something else is commanded after it; or it is the mode that arming needs; or control could
+    not be taken, and nobody asked for a hold."""
+    if not INSTEAD.isdisjoint(edge.commands):
+        return True
+    task = edge.after.task
+    prepares = task is not None and task.waiting is CommandKind.ARM
+    return prepares or (edge.after.state is State.EXTERNAL and edge.request is None)
+
+
+def _hold_is_over(edge: Edge) -> bool:
+    """The heartbeat shows it; or it flies no more, or nobody hears it; or something else was
+    commanded in its place."""
+    given, after = edge.given, edge.after
+    if isinstance(given, HeartbeatSeen) and (given.mode is FlightMode.HOLD or not given.armed):
+        return True
+    if isinstance(given, LandedSeen) and given.landed is LandedState.ON_GROUND:
+        return True
+    if after.state is State.NO_VEHICLE and edge.before.state is not State.NO_VEHICLE:
+        return True
+    if not INSTEAD.isdisjoint(edge.commands):
+        return True
+    if edge.accepted and not isinstance(edge.request, Hold | Abort):
+        return True
+    return edge.stands and edge.before.state is not State.NO_VEHICLE

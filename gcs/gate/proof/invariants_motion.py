@@ -1,0 +1,222 @@
+"""What moves the vehicle: setpoints, the fence, the brake, severity (invariants 1, 2, 6, 7)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from gcs.gate.airspace.limits import STANDING
+from gcs.gate.condition import Severity
+from gcs.gate.effects import CommandKind, Outcome, OutcomeKind, Transition
+from gcs.gate.inputs import HomeSeen, PositionSeen, Tick, VerifierChanged
+from gcs.gate.machine.memory import SECOND_NS, Memory
+from gcs.gate.policy.policy import Policy
+from gcs.gate.proof.edge import Edge, severity_of
+from gcs.gate.refusal import Refusal
+from gcs.gate.requests import GoTo
+from gcs.gate.states import Control, LandedState, State
+
+STREAMING_STATES: Final = frozenset(
+    {
+        State.HOVERING,
+        State.VERIFYING,
+        State.MOVING,
+        State.STREAMING,
+        State.TAKING_PICTURE,
+        State.HOLDING,
+        State.STALE,  # for the grace only
+    }
+)
+FLOWN_BY_US: Final = frozenset(
+    {
+        State.TAKING_OFF,
+        State.HOVERING,
+        State.MOVING,
+        State.STREAMING,
+        State.TAKING_PICTURE,
+        State.FLYING_MISSION,
+    }
+)
+"""Flown by us, so not without a position and not at a severity of HOLD; a return and a landing
+are the vehicle's own."""
+
+BRAKED: Final = FLOWN_BY_US | {State.RETURNING}
+"""Where a predicted breach is braked: a landing ends by itself, a held vehicle brakes already."""
+
+HOME_MOVED_M: Final = 1.0
+OVERSHOOT_M: Final = 1.0
+SLACK_NS: Final = SECOND_NS // 5
+
+
+def is_sound(_policy: Policy, after: Memory) -> Iterator[str]:
+    """The state, control and the request under way fit together."""
+    state, control = after.state, after.control
+    if state is State.VERIFYING:
+        yield "VERIFYING outlasts its tick"
+    idle = (State.NO_VEHICLE, State.GROUNDED, State.EXTERNAL)
+    if state in idle and control is not Control.NONE:
+        yield f"control is {control.name} in {state.name}"
+    if state in (State.MOVING, State.HOVERING) and control is Control.NONE:
+        yield f"{state.name} without control"
+    if state is State.HOVERING and control is Control.OURS and after.task is not None:
+        yield "HOVERING under control, and a request has no outcome"
+    if state is State.MOVING and (after.goal is None or after.task is None):
+        yield "MOVING without a goal and its request"
+
+
+def stands_still_at_severity(policy: Policy, after: Memory) -> Iterator[str]:
+    """7: what must not begin at a severity of HOLD does not go on either."""
+    if after.state in FLOWN_BY_US and severity_of(policy, after) >= Severity.HOLD:
+        yield f"{after.state.name} at severity {severity_of(policy, after).name}"
+
+
+def streams_what_was_verified(edge: Edge) -> Iterator[str]:
+    """1: no setpoint but for a verified goal, in a state that streams."""
+    known = [
+        goal.pos_ned
+        for memory in (edge.before, edge.after)
+        for goal in (memory.hold, memory.goal)
+        if goal is not None and goal.evidence
+    ]
+    for sent in edge.setpoints:
+        pos_ned = sent.permit.pos_ned
+        if edge.after.state not in STREAMING_STATES:
+            yield f"a setpoint leaves in {edge.after.state.name}"
+        if edge.after.control is Control.NONE:
+            yield "a setpoint leaves without control"
+        if pos_ned is None or not all(map(math.isfinite, pos_ned)):
+            yield "a setpoint that is no number leaves"
+        elif pos_ned not in known:
+            yield f"a setpoint to {pos_ned} leaves, which nobody verified"
+        if not isinstance(edge.given, Tick | PositionSeen):
+            yield "a setpoint leaves between the ticks"
+
+
+def flies_what_clears(edge: Edge) -> Iterator[str]:
+    """2: what is flown was verified, and still clears in the fence that is now."""
+    before, after, verifier = edge.before, edge.after, edge.after.verifier
+    assert isinstance(edge.given, VerifierChanged)
+    if before.verifier == verifier or after.control is Control.NONE:
+        return
+    pos_ned, v_ned, flown = after.pos_ned, after.v_ned, after.flown_state
+    if verifier is None or pos_ned is None or v_ned is None or flown not in STREAMING_STATES:
+        return
+    if after.state is State.STALE and after.grace_until_ns is None:
+        return
+    judged: object = None
+    if flown is State.MOVING and after.goal is not None:
+        judged = verifier.goal(after.goal.pos_ned, None, pos_ned, v_ned)
+    elif after.hold is not None:
+        judged = verifier.hold_point(after.hold.pos_ned, STANDING, floor_applies=True)
+    if isinstance(judged, Refusal):
+        yield f"{after.state.name} goes on in a fence that refuses it: {judged.code}"
+
+
+def holds_when_home_moves(edge: Edge) -> Iterator[str]:
+    """2: distances were measured from another home."""
+    before, after = edge.before, edge.after
+    assert isinstance(edge.given, HomeSeen)
+    if before.home_ned is None or before.on_ground:
+        return
+    far = math.dist(before.home_ned, edge.given.pos_ned) > HOME_MOVED_M
+    if far and after.control is not Control.NONE and after.state in BRAKED:
+        yield f"home moves and {after.state.name} goes on"
+
+
+def climbs_to_its_top(edge: Edge) -> Iterator[str]:
+    """2: the climb that was verified ends at its top."""
+    before, after = edge.before, edge.after
+    climbs = before.state is State.TAKING_OFF and isinstance(edge.given, Tick)
+    if not climbs or before.pos_ned is None or edge.stale:
+        return
+    above_m = before.top_down_m - before.pos_ned[2]
+    radius_m = edge.policy.arrival.radius_m
+    if after.state is State.HOVERING and abs(above_m) >= radius_m:
+        yield f"a climb is over {above_m:.1f} m above its top"
+    if after.state is State.TAKING_OFF and above_m > radius_m + OVERSHOOT_M:
+        yield f"a climb goes on {above_m:.1f} m above its top"
+
+
+def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
+    """6: a predicted breach is braked in the instant of the sample that predicts it."""
+    before, given = edge.before, edge.given
+    assert isinstance(given, PositionSeen)
+    if before.control is Control.NONE or before.flown_state not in BRAKED:
+        return
+    if before.verifier is None:
+        return
+    floor = before.landed is LandedState.IN_AIR and before.flown_state not in (
+        State.TAKING_OFF,
+        State.RETURNING,
+    )
+    breach = before.verifier.predicted_stop(given.pos_ned, given.v_ned, floor_applies=floor)
+    if breach is None:
+        return
+    if CommandKind.HOLD not in edge.commands:
+        yield f"a breach is predicted in {before.state.name} and not held"
+    if edge.after.state is not State.HOLDING:
+        yield f"a breach is predicted and {edge.after.state.name} goes on"
+    if breach.brake_pos_ned is not None and not edge.setpoints and not given.reset:
+        yield f"a breach is predicted in {before.state.name} and not braked"
+
+
+def moves_on_fresh_positions(edge: Edge) -> Iterator[str]:
+    """7: a position too old, or a severity of HOLD, never permits more."""
+    back = edge.before.state is State.STALE and isinstance(edge.given, PositionSeen)
+    for effect in edge.effects:
+        moved = isinstance(effect, Transition) and effect.after is State.MOVING
+        if moved and not back and (edge.stale or edge.severity >= Severity.HOLD):
+            yield f"MOVING begins, stale or at severity {edge.severity.name}"
+    for effect in edge.effects:
+        if isinstance(effect, Outcome) and effect.kind is OutcomeKind.COMPLETE:
+            task = edge.before.task
+            if task is None or task.requested.request_id != effect.request_id:
+                continue
+            if isinstance(task.requested.request, GoTo) and edge.stale:
+                yield "a goal is complete on a position too old"
+    if not isinstance(edge.given, Tick):
+        return
+    if edge.after.state in FLOWN_BY_US and edge.stale:
+        yield f"{edge.after.state.name} goes on with a position too old"
+    if not edge.setpoints:
+        return
+    age_ns = edge.after.position_age_ns(edge.now_ns)
+    grace_ns = (edge.policy.position_age_s + edge.policy.stale_grace_s) * SECOND_NS + SLACK_NS
+    if age_ns is None or age_ns > grace_ns:
+        until_ns = edge.after.grace_until_ns
+        if until_ns is None or edge.now_ns >= until_ns:
+            yield "setpoints leave though the position is too old for longer than the grace"
+
+
+def does_what_severity_demands(edge: Edge) -> Iterator[str]:
+    """A severity of RETURN or LAND is obeyed when it comes, and when a position comes back."""
+    before, after = edge.before, edge.after
+    severity = edge.severity
+    if severity < Severity.RETURN or before.control is Control.NONE:
+        return
+    stale = before.state is State.STALE
+    comes = severity > severity_of(edge.policy, before) and not stale
+    comes_back = stale and isinstance(edge.given, PositionSeen)
+    flown = before.flown_state in FLOWN_BY_US or before.flown_state is State.HOLDING
+    if not (comes or comes_back) or not flown or before.on_ground:
+        return
+    obeyed = {CommandKind.LAND} & set(edge.commands)
+    if severity is Severity.RETURN and not _return_is_blocked(edge):
+        obeyed = {CommandKind.RETURN} & set(edge.commands)
+    elif severity is Severity.RETURN:
+        return  # the policy says what then
+    if not obeyed:
+        yield f"severity is {severity.name} and {after.state.name} goes on"
+
+
+def _return_is_blocked(edge: Edge) -> bool:
+    """Whether the verifier refuses the way home, or cannot be asked."""
+    after = edge.after
+    verifier, pos_ned, home_ned = after.verifier, after.pos_ned, after.home_ned
+    age_ns = after.position_age_ns(edge.now_ns)
+    if age_ns is None or age_ns > edge.policy.position_age_s * SECOND_NS:
+        return True
+    if verifier is None or pos_ned is None or home_ned is None or after.return_up_m is None:
+        return True
+    return isinstance(verifier.return_path(pos_ned, home_ned, after.return_up_m), Refusal)

@@ -1,0 +1,142 @@
+"""Which memories of the gate are one situation: what can still make a difference, no more.
+
+Request ids and sentences are left out, times are reduced to what is due and what is not, and
+what the present state does not look at is left out altogether.  Two memories that differ only
+there are one situation, and the explorer goes on from the first of them that it met.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Final, TypeAlias
+
+from gcs.gate.condition import Severity
+from gcs.gate.effects import CommandKind
+from gcs.gate.machine.events import Event
+from gcs.gate.machine.memory import SECOND_NS, Memory
+from gcs.gate.policy.policy import Policy
+from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
+from gcs.gate.proof.world import ABOVE, EDGE, GOAL, TOP
+from gcs.gate.states import FlightMode, State
+
+MODES_THAT_MATTER: Final = {
+    State.GROUNDED: frozenset({FlightMode.RETURN, FlightMode.LAND}),
+    State.STALE: frozenset({FlightMode.RETURN, FlightMode.LAND}),
+    State.TAKING_OFF: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),
+    State.HOVERING: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),
+    State.HOLDING: frozenset({FlightMode.HOLD}),
+    State.FLYING_MISSION: frozenset({FlightMode.MISSION}),
+    State.RETURNING: frozenset({FlightMode.RETURN}),
+    State.LANDING: frozenset({FlightMode.LAND}),
+}
+"""The modes that are told apart in a state; in any other state none is."""
+
+PLACES_THAT_MATTER: Final = frozenset(
+    {State.TAKING_OFF, State.HOVERING, State.FLYING_MISSION, State.HOLDING, State.EXTERNAL}
+)
+"""Where a dash for the fence matters beyond the sample that shows it: staying is judged there."""
+
+ALIKE: Final = {
+    Event.RESUME: Event.CONTROL,
+    Event.RETURN: Event.LAND,
+    Event.FORCE_DISARM: Event.DISARM,
+}
+"""Requests that are treated alike once they are under way."""
+
+LATE_GUIDED: Final = (State.HOLDING, State.EXTERNAL)
+
+
+def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    """Equal for memories that the explorer need not tell apart."""
+    return tuple(part(policy, memory, now_ns) for part in PARTS)
+
+
+def _machine(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    state = memory.state
+    severities = [policy.severities[name] for name, _ in memory.conditions]
+    worst = Severity.LAND if state is State.STALE else Severity.RETURN
+    return (
+        state,
+        memory.control,
+        min(max(severities, default=Severity.CAUTION), worst),
+        memory.operator_lost,
+        memory.back_to,
+        memory.verifier is not None,
+        memory.grace_until_ns is not None,
+    )
+
+
+def _reported(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    state, flies = memory.state, memory.flown_state
+    return (
+        memory.heard_before if state is State.NO_VEHICLE else None,
+        memory.armed,
+        memory.mode if memory.mode in MODES_THAT_MATTER.get(flies, ()) else None,
+        memory.climbed if flies is State.TAKING_OFF else None,
+        memory.lifted if flies in (State.TAKING_OFF, State.FLYING_MISSION) else None,
+        memory.mission_over if flies is State.FLYING_MISSION else None,
+    )
+
+
+def _position(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    climbs = memory.flown_state is State.TAKING_OFF
+    flown = memory.goal is not None
+    return (
+        memory.pos_ned in (TOP, ABOVE) and memory.pos_ned if climbs else None,
+        memory.state in PLACES_THAT_MATTER and memory.pos_ned == EDGE,
+        flown and memory.pos_ned == GOAL,
+        flown and memory.within_since_ns is not None,
+    )
+
+
+def _requests(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    task = memory.task
+    return (
+        None if task is None else (ALIKE.get(task.kind, task.kind), task.waiting),
+        None if memory.pending is None else (memory.pending.request, memory.pending.source),
+        memory.hold is not None,
+        memory.goal is not None,
+    )
+
+
+def _commands(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    unanswered = [kind for _, kind in memory.outstanding if kind is not CommandKind.HOLD]
+    hold_again = memory.hold_again_ns is not None
+    awaited = not hold_again and memory.asked_mode is not None
+    return (
+        tuple(unanswered),
+        memory.asked_mode if awaited else None,
+        memory.ask_control_ns is not None,
+        hold_again,
+    )
+
+
+def clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    """All that changes by time alone; no other part looks at the time."""
+    state = memory.state
+    age_ns = memory.position_age_ns(now_ns)
+    told_ns = memory.landed_ns
+    aged = told_ns is not None and now_ns - told_ns >= policy.heartbeat_age_s * SECOND_NS
+    force_ns = memory.force_asked_ns
+    awaited = memory.hold_again_ns is None and memory.asked_mode is not None
+    return (
+        age_ns is None or age_ns > policy.position_age_s * SECOND_NS,
+        (memory.airborne, memory.on_ground) if not aged else memory.armed,
+        awaited and now_ns < memory.asked_until_ns,
+        state in LATE_GUIDED and now_ns < memory.guided_until_ns,
+        state in (State.GROUNDED, State.STALE) and now_ns < memory.takeoff_until_ns,
+        force_ns is not None and now_ns - force_ns <= FORCE_WINDOW_NS,
+    )
+
+
+Part: TypeAlias = Callable[[Policy, Memory, int], Hashable]
+
+PARTS: Final[tuple[Part, ...]] = (
+    _machine,
+    _reported,
+    _position,
+    _requests,
+    _commands,
+    clocks,
+)
+"""Apart, as each looks at a few fields only: the explorer asks anew for those that may differ."""

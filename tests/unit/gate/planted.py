@@ -1,0 +1,411 @@
+"""Faults of the table, one after another, and how the explorer is to find each.
+
+Every invariant has at least one: an invariant that nothing can break protects nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from gcs.gate.effects import OutcomeKind
+from gcs.gate.machine.events import Event
+from gcs.gate.machine.rules import Action, Branch, Cell, Check, End, Guard, Reply
+from gcs.gate.machine.table import TABLE
+from gcs.gate.refusal import Code
+from gcs.gate.states import State
+
+NOTHING: Cell = (Branch(),)
+FORCE_REFUSED_FIRST = Guard.FORCE_DISARM_UNCONFIRMED
+
+
+@dataclass(frozen=True)
+class Planted:
+    """`cells` stand in place of the table's; `letter` is the last one of the shortest trace."""
+
+    what: str
+    cells: Mapping[tuple[State, Event], Cell]
+    invariant: int
+    letter: str
+    world: str = "px4"
+
+
+def planted(
+    what: str,
+    state: State,
+    event: Event,
+    cell: Cell,
+    invariant: int,
+    letter: str,
+    world: str = "px4",
+) -> Planted:
+    return Planted(what, {(state, event): cell}, invariant, letter, world)
+
+
+def without(state: State, event: Event, guard: Guard) -> Cell:
+    """The cell without the branches that have this guard."""
+    return tuple(branch for branch in TABLE[state, event] if guard not in branch.when)
+
+
+def unguarded(state: State, event: Event, guard: Guard) -> Cell:
+    """The cell whose branches no longer ask this guard."""
+    return tuple(
+        replace(branch, when=tuple(g for g in branch.when if g is not guard))
+        for branch in TABLE[state, event]
+    )
+
+
+def unchecked(state: State, event: Event, check: Check) -> Cell:
+    """The cell whose branches no longer ask this check."""
+    return tuple(
+        replace(branch, needs=tuple(c for c in branch.needs if c is not check))
+        for branch in TABLE[state, event]
+    )
+
+
+def undone(state: State, event: Event, action: Action) -> Cell:
+    """The cell whose branches no longer do this."""
+    return tuple(
+        replace(branch, do=tuple(a for a in branch.do if a is not action))
+        for branch in TABLE[state, event]
+    )
+
+
+def forgetting_the_hold(state: State, event: Event) -> Cell:
+    """The cell whose branches drop a hold that is not shown yet."""
+    return tuple(
+        replace(
+            branch,
+            when=tuple(g for g in branch.when if g is not Guard.HOLD_AWAITED),
+            do=(Action.CONFIRM_HOLD,),
+        )
+        for branch in TABLE[state, event]
+    )
+
+
+FAULTS = [
+    planted(
+        "moving while stale",
+        State.MOVING,
+        Event.POSITION_AGED,
+        NOTHING,
+        7,
+        "wait: position too old",
+    ),
+    planted(
+        "hovering while stale",
+        State.HOVERING,
+        Event.POSITION_AGED,
+        NOTHING,
+        7,
+        "wait: position too old",
+    ),
+    planted(
+        "a busy goal is taken",
+        State.MOVING,
+        Event.GOTO,
+        (Branch(reply=Reply.PENDING),),
+        4,
+        "ask: goto inside",
+    ),
+    planted(
+        "anybody may replace a goal",
+        State.MOVING,
+        Event.GOTO,
+        unguarded(State.MOVING, Event.GOTO, Guard.RETARGET_ALLOWED),
+        4,
+        "another asks: goto inside",
+        "ardupilot",
+    ),
+    planted(
+        "a goal is taken while severity forbids it",
+        State.EXTERNAL,
+        Event.CONTROL,
+        unchecked(State.EXTERNAL, Event.CONTROL, Check.SEVERITY),
+        7,
+        "ask: control",
+    ),
+    planted(
+        "abort is refused while a picture is taken",
+        State.TAKING_PICTURE,
+        Event.ABORT,
+        (Branch(refuse=Code.BUSY),),
+        5,
+        "ask: abort",
+    ),
+    planted(
+        "hold is refused while somebody else flies",
+        State.EXTERNAL,
+        Event.HOLD,
+        (Branch(refuse=Code.NOT_IN_CONTROL),),
+        10,
+        "ask: hold",
+    ),
+    planted(
+        "a breach is not braked",
+        State.MOVING,
+        Event.BREACH,
+        NOTHING,
+        6,
+        "position dashing for the fence",
+    ),
+    planted(
+        "a breach is not braked while control is being taken",
+        State.HOVERING,
+        Event.BREACH,
+        (Branch(when=(Guard.TAKING_CONTROL,)), *TABLE[State.HOVERING, Event.BREACH]),
+        6,
+        "position dashing for the fence",
+    ),
+    planted(
+        "a breach is held but not braked",
+        State.TAKING_OFF,
+        Event.BREACH,
+        undone(State.TAKING_OFF, Event.BREACH, Action.BRAKE),
+        6,
+        "position dashing for the fence",
+    ),
+    planted(
+        "a breach predicted by a late sample is swallowed",
+        State.STALE,
+        Event.BREACH,
+        NOTHING,
+        6,
+        "position dashing for the fence",
+    ),
+    planted(
+        "holding is left without resume",
+        State.HOLDING,
+        Event.MODE_CONFIRMED,
+        (Branch(ends=End(OutcomeKind.COMPLETE), do=(Action.CONFIRM_HOLD,), to=State.HOVERING),),
+        5,
+        "hold mode",
+    ),
+    planted(
+        "the end of a request is forgotten",
+        State.TAKING_PICTURE,
+        Event.PHOTO_SEEN,
+        (Branch(to=State.HOVERING),),
+        0,
+        "picture",
+    ),
+    planted(
+        "a refused goal is flown",
+        State.VERIFYING,
+        Event.GOAL_REFUSED,
+        (Branch(do=(Action.FLY_GOAL,), to=State.MOVING),),
+        1,
+        "tick",
+    ),
+    planted(
+        "a goal is flown on in a fence that refuses it",
+        State.MOVING,
+        Event.CLEARS_NO_MORE,
+        NOTHING,
+        2,
+        "fence moves, and back",
+    ),
+    planted(
+        "home moves and nobody holds",
+        State.HOVERING,
+        Event.HOME_MOVED,
+        NOTHING,
+        2,
+        "home moves, and back",
+    ),
+    planted(
+        "a hold is over at once though the vehicle may fly",
+        State.GROUNDED,
+        Event.HOLD,
+        (Branch(reply=Reply.DONE),),
+        10,
+        "ask: hold",
+    ),
+    planted(
+        "a hold is withdrawn after the operator is lost",
+        State.HOLDING,
+        Event.RESUME,
+        without(State.HOLDING, Event.RESUME, Guard.OPERATOR_LOST),
+        7,
+        "ask: resume",
+    ),
+    planted(
+        "a climb is over wherever the vehicle holds",
+        State.TAKING_OFF,
+        Event.TICK,
+        (
+            Branch(when=(Guard.LIFTED_OFF,), do=(Action.TAKE_CONTROL,), to=State.HOVERING),
+            Branch(),
+        ),
+        2,
+        "tick",
+    ),
+    planted(
+        "a cell that cannot be entered",
+        State.GROUNDED,
+        Event.ARMED,
+        (),
+        0,
+        "armed or disarmed",
+    ),
+    # ---------------------------------------------------------------------- forced disarm
+    planted(
+        "the first forced disarm cuts the motors in the air",
+        State.HOVERING,
+        Event.FORCE_DISARM,
+        without(State.HOVERING, Event.FORCE_DISARM, FORCE_REFUSED_FIRST),
+        0,
+        "ask: force disarm",
+    ),
+    planted(
+        "the first forced disarm cuts the motors of what somebody else flies",
+        State.EXTERNAL,
+        Event.FORCE_DISARM,
+        without(State.EXTERNAL, Event.FORCE_DISARM, FORCE_REFUSED_FIRST),
+        0,
+        "ask: force disarm",
+    ),
+    planted(
+        "a disarm in the air is a first request for a forced one",
+        State.EXTERNAL,
+        Event.DISARM,
+        tuple(
+            branch if branch.refuse is None else replace(branch, do=(Action.NOTE_FORCE_REQUEST,))
+            for branch in TABLE[State.EXTERNAL, Event.DISARM]
+        ),
+        0,
+        "ask: disarm",
+    ),
+    planted(
+        "motors are cut though the policy forbids it",
+        State.EXTERNAL,
+        Event.FORCE_DISARM,
+        without(State.EXTERNAL, Event.FORCE_DISARM, Guard.FORCE_DISARM_FORBIDDEN),
+        0,
+        "ask: force disarm",
+        "ardupilot",
+    ),
+    # ------------------------------------------------------------------------------- hold
+    planted(
+        "a refused hold is not commanded again",
+        State.HOLDING,
+        Event.HOLD_REFUSED,
+        (Branch(do=(Action.CONFIRM_HOLD,)),),
+        0,
+        "answer: refused",
+    ),
+    planted(
+        "a refused hold is not commanded again in STALE",
+        State.STALE,
+        Event.HOLD_REFUSED,
+        (Branch(do=(Action.CONFIRM_HOLD,)),),
+        0,
+        "answer: refused",
+    ),
+    planted(
+        "a hold that is due in HOLDING is not commanded",
+        State.HOLDING,
+        Event.HOLD_DUE,
+        NOTHING,
+        0,
+        "wait: mode overdue",
+    ),
+    planted(
+        "a hold that is due in STALE is not commanded",
+        State.STALE,
+        Event.HOLD_DUE,
+        NOTHING,
+        0,
+        "wait: mode overdue",
+    ),
+    planted(
+        "a hold ends with the deadline of its request",
+        State.HOLDING,
+        Event.DEADLINE,
+        forgetting_the_hold(State.HOLDING, Event.DEADLINE),
+        0,
+        "wait: deadline",
+    ),
+    planted(
+        "a hold ends with its deadline where the vehicle is not heard",
+        State.NO_VEHICLE,
+        Event.DEADLINE,
+        forgetting_the_hold(State.NO_VEHICLE, Event.DEADLINE),
+        0,
+        "wait: deadline",
+    ),
+    planted(
+        "a hold ends with an unanswered disarm",
+        State.GROUNDED,
+        Event.COMMAND_UNANSWERED,
+        forgetting_the_hold(State.GROUNDED, Event.COMMAND_UNANSWERED),
+        0,
+        "answer: none",
+    ),
+    planted(
+        "a hold ends with the lift-off that it should prevent",
+        State.GROUNDED,
+        Event.AIRBORNE,
+        forgetting_the_hold(State.GROUNDED, Event.AIRBORNE),
+        0,
+        "in the air",
+    ),
+    planted(
+        "a hold on the ground ends with the operator",
+        State.GROUNDED,
+        Event.OPERATOR_LOST,
+        forgetting_the_hold(State.GROUNDED, Event.OPERATOR_LOST),
+        0,
+        "operator lost",
+    ),
+    # --------------------------------------------------------------------------- severity
+    planted(
+        "severity is HOLD and nobody holds",
+        State.HOVERING,
+        Event.MUST_HOLD,
+        NOTHING,
+        7,
+        "condition: HOLD",
+    ),
+    planted(
+        "severity is RETURN and the vehicle is held",
+        State.HOVERING,
+        Event.MUST_RETURN,
+        TABLE[State.HOVERING, Event.MUST_HOLD],
+        0,
+        "condition: RETURN",
+    ),
+    planted(
+        "severity is LAND and HOLDING goes on",
+        State.HOLDING,
+        Event.MUST_LAND,
+        NOTHING,
+        0,
+        "condition: LAND",
+    ),
+    # ---------------------------------------------------------------------------- unknown
+    planted(
+        "a mission starts in a fence that is not known",
+        State.GROUNDED,
+        Event.MISSION,
+        unchecked(State.GROUNDED, Event.MISSION, Check.HOME_AND_FENCE),
+        7,
+        "ask: mission without a fence",
+    ),
+    planted(
+        "a mission starts that was not verified",
+        State.HOVERING,
+        Event.MISSION,
+        unchecked(State.HOVERING, Event.MISSION, Check.MISSION),
+        7,
+        "ask: mission with none on board",
+    ),
+    planted(
+        "control is taken in a fence that is not known",
+        State.EXTERNAL,
+        Event.CONTROL,
+        unchecked(State.EXTERNAL, Event.CONTROL, Check.POSITION),
+        7,
+        "ask: control",
+    ),
+]
