@@ -1,7 +1,7 @@
 """Mutants that change nothing that can be seen from outside, each with the reason.
 
-Both lists are by target.  An entry that names no mutant, or one that a test kills, is an error of
-the run.
+Both lists are by target.  An entry that names no mutant is an error of the run, and so is an
+equivalent mutant that a test kills.
 """
 
 from __future__ import annotations

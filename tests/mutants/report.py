@@ -40,7 +40,7 @@ class Report:
         dead = {result.mutant.key: result.by for result in results if result.dead}
         wrong = [f"names no mutant: {key}" for key in equivalent if key not in place]
         wrong += [f"names no entry of a table: {cell}" for cell in unreached if cell not in known]
-        wrong += [f"is killed by {dead[key]}: {key}" for key in judged if key in dead]
+        wrong += [f"is killed by {dead[key]}: {key}" for key in equivalent if key in dead]
         return cls(len(mutants), ordered, judged, wrong, wall_s)
 
     @property
