@@ -76,6 +76,26 @@ def test_it_stays_where_it_is_allowed_to_hover_and_no_step_clears() -> None:
     assert found == at(39, 30, 10)
 
 
+@pytest.mark.parametrize(
+    ("here", "v_ned"),
+    [
+        (at(149, 0, 5), (0.0, DASH, 0.0)),
+        (at(-149, 0, 5), (0.0, -DASH, 0.0)),
+        (at(0, 149, 5), (DASH, 0.0, 0.0)),
+        (at(0, -149, 5), (-DASH, 0.0, 0.0)),
+        (at(0, 0, 0.25), (0.0, 0.0, 5.0)),
+        (at(0, 0, 49.75), (0.0, 0.0, -5.0)),
+    ],
+    ids=["east", "west", "north", "south", "down", "up"],
+)
+def test_nearer_than_the_margin_it_is_where_the_vehicle_is_and_never_behind(
+    here: Vec3, v_ned: Vec3
+) -> None:
+    """A step back would keep the margin; but to stop takes less than to fly back.  The hold is
+    judged as of a vehicle that stands."""
+    assert brake(flying(), here, v_ned) == here
+
+
 def test_outside_there_is_nowhere_to_brake() -> None:
     assert brake(flying(), at(160, 0, 5), (0.0, 0.0, 0.0)) is None
 

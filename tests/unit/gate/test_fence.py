@@ -10,7 +10,7 @@ from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import Circle, Polygon
 from gcs.gate.policy.parse import DEFAULT
-from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec
+from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, Frame, PolygonSpec
 from gcs.gate.refusal import Code, Refusal
 
 HOME_NED = (10.0, 20.0, -3.0)
@@ -50,6 +50,13 @@ def test_a_box_of_home_moves_with_home() -> None:
     spec = BoxSpec((-1.0, 1.0), (-2.0, 2.0), name="yard", frame="home")
     shape = only(build_zones([spec], HOME_NED, None)).shape
     assert shape == Polygon(((19.0, 8.0), (21.0, 8.0), (21.0, 12.0), (19.0, 12.0)))
+
+
+@pytest.mark.parametrize(("frame", "floor_up_m"), [("home", 8.0), ("local", 5.0)])
+def test_a_floor_counts_from_where_its_zone_does(frame: Frame, floor_up_m: float) -> None:
+    """5 m above home, which is 3 m above the origin; or 5 m above the origin."""
+    spec = CircleSpec(50.0, name="loft", frame=frame, floor_up_m=5.0)
+    assert only(build_zones([spec], HOME_NED, None)).floor_up_m == floor_up_m
 
 
 def test_a_geographic_zone_is_projected_as_the_vehicle_does() -> None:

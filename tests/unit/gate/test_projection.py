@@ -90,3 +90,29 @@ def test_the_origin_is_nothing_away_from_itself() -> None:
         projection = Projection(ZURICH, autopilot)
         assert projection.ned_from_geodetic(47.397742, 8.545594, 490.0) == (0.0, 0.0, -2.0)
         assert projection.geodetic_from_ned((0.0, 0.0, 0.0)) == (47.397742, 8.545594, 488.0)
+
+
+@pytest.mark.parametrize("pole", [90.0, -90.0])
+def test_px4_reaches_a_pole_whatever_the_rounding(pole: float) -> None:
+    """There the sine of the latitude is 1, and a rounding error may put it above."""
+    for hundredths in range(1, 500):
+        origin = Origin(math.copysign(90.0 - hundredths / 100.0, pole), 8.0, 0.0)
+        north_m = math.radians(pole - origin.lat_deg) * SPHERE_RADIUS_M
+        lat_deg, _ = Projection(origin, "px4").lat_lon(north_m, 0.0)
+        assert lat_deg == pytest.approx(pole, abs=1e-5)
+
+
+@pytest.mark.parametrize("lat_deg", [90.0, 89.9, -89.9])
+def test_ardupilots_longitudes_are_no_shorter_than_a_hundredth(lat_deg: float) -> None:
+    """The cosine of 89.9 degrees is 0.0017; the vehicle takes 0.01 there."""
+    projection = Projection(Origin(lat_deg, 8.0, 0.0), "ardupilot")
+    north_m, east_m = projection.north_east(lat_deg, 9.0)
+    assert north_m == 0.0
+    assert east_m == pytest.approx(0.01 * METRES_PER_DEGREE)
+    assert projection.lat_lon(0.0, east_m) == pytest.approx((lat_deg, 9.0))
+
+
+def test_ardupilots_longitudes_are_the_cosine_where_it_is_more_than_a_hundredth() -> None:
+    """The cosine of 89.3 degrees is 0.0122."""
+    _, east_m = Projection(Origin(89.3, 8.0, 0.0), "ardupilot").north_east(89.3, 9.0)
+    assert east_m == pytest.approx(math.cos(math.radians(89.3)) * METRES_PER_DEGREE)
