@@ -197,8 +197,7 @@ class Verifier:
 
         The floor does not apply to legs that leave or reach the ground.
         """
-        judge = self._judge
-        subject = f"waypoint {place(b_ned)}" if all(map(math.isfinite, b_ned)) else "a waypoint"
+        judge, subject = self._judge, f"waypoint {place(b_ned)}"
         return (
             self._unusable(waypoint=(*a_ned, *b_ned))
             or self._limits(subject, b_ned, floor_applies=floor_applies)
