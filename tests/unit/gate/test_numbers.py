@@ -11,6 +11,7 @@ import pytest
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import Level, Say
 from gcs.gate.inputs import ConditionChanged, LandedSeen, PositionSeen
+from gcs.gate.machine import render
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.requests import Arm
 from gcs.gate.states import LandedState, State
@@ -46,6 +47,13 @@ def test_a_state_is_recorded_with_its_number(name: str, number: int) -> None:
 
 def test_every_state_has_a_number_of_its_own() -> None:
     assert STATES | {"VERIFYING": 2, "STREAMING": 8} == {s.name: int(s) for s in State}
+
+
+def test_the_printed_machine_shows_the_numbers() -> None:
+    """As `gcs fsa` prints it."""
+    printed = render.text()
+    for name, number in STATES.items():
+        assert f"\n{name} = {number} " in printed
 
 
 @pytest.mark.parametrize(

@@ -116,9 +116,7 @@ class TestInUse:
             ("position_error_v_m", 0.0, MOST, -0.01, MOST + 1),
         ],
     )
-    def test_braking(
-        self, key: str, least: float, most: float, below: float, above: float
-    ) -> None:
+    def test_braking(self, key: str, least: float, most: float, below: float, above: float) -> None:
         """At 1 m/s, beside and above: v react + v^2 / (2 a_brake) + position error."""
         for limit in (least, most):
             policy = parse_policy(f"[braking.px4]\n{key} = {limit}", "my.toml")
@@ -175,16 +173,13 @@ def test_a_circle_is_about_home_where_it_says_nothing_else() -> None:
 
 
 class TestZones:
-    @pytest.mark.parametrize("radius_m", [0.01, 100_000.0])
-    def test_the_radius_of_a_circle(self, radius_m: float) -> None:
-        spec = circle(radius_m)
+    @pytest.mark.parametrize(("limit", "beyond"), [(0.01, 0.009), (100_000.0, 100_001.0)])
+    def test_the_radius_of_a_circle(self, limit: float, beyond: float) -> None:
+        spec = circle(limit)
         assert isinstance(spec, CircleSpec)
-        assert spec.radius_m == radius_m
-
-    @pytest.mark.parametrize("radius_m", [0.009, 100_001.0])
-    def test_and_no_other(self, radius_m: float) -> None:
+        assert spec.radius_m == limit
         with pytest.raises(TomlError, match="radius_m"):
-            circle(radius_m)
+            circle(beyond)
 
     @pytest.mark.parametrize("key", ["floor_up_m", "ceiling_up_m"])
     @pytest.mark.parametrize(("limit", "beyond"), [(-10_000, -10_001), (100_000, 100_001)])

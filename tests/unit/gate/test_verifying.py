@@ -5,6 +5,7 @@ Each function is asked by itself: a fact that is missing, or too old, is a refus
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -47,7 +48,7 @@ def code(refusal: Refusal | None) -> Code | None:
     return None if refusal is None else refusal.code
 
 
-QUESTIONS = {
+QUESTIONS: dict[str, Callable[[Turn], Refusal | None]] = {
     "position": verifying.position,
     "climb": verifying.climb,
     "goal": lambda asked: verifying.goal(asked, GOAL),
