@@ -46,7 +46,7 @@ def test_a_state_is_recorded_with_its_number(name: str, number: int) -> None:
 
 
 def test_every_state_has_a_number_of_its_own() -> None:
-    assert STATES | {"VERIFYING": 2, "STREAMING": 8} == {s.name: int(s) for s in State}
+    assert {s.name: int(s) for s in State} == STATES | {"VERIFYING": 2, "STREAMING": 8}
 
 
 def test_the_printed_machine_shows_the_numbers() -> None:

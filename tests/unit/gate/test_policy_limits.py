@@ -267,7 +267,7 @@ class TestNamesOfFenceFiles:
         assert [spec.name for spec in policy.fence] == ["yard.plan", "field.plan"]
 
     def test_the_same_file_twice_is_a_mistake(self) -> None:
-        with pytest.raises(TomlError, match='two zones are called "yard.plan"'):
+        with pytest.raises(TomlError, match=r'two zones are called "yard\.plan"'):
             self.parse('path = "yard.plan"', 'path = "yard.plan"')
 
     def test_the_same_name_twice_is_a_mistake(self) -> None:

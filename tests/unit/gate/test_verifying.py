@@ -5,7 +5,7 @@ Each function is asked by itself: a fact that is missing, or too old, is a refus
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import pytest
@@ -31,12 +31,12 @@ FENCE = verifier_for(DEFAULT, "px4", HOME, None)
 GOAL = GoTo(at(10, 0, 5))
 
 
-def turn(age_s: float = 0.2, **facts: object) -> Turn:
+def turn(facts: Mapping[str, object] | None = None, *, age_s: float = 0.2) -> Turn:
     """All is known and the vehicle stands at `HERE`, but for the memory's fields in `facts`."""
     memory = Memory("px4", pos_ned=HERE, v_ned=HOME, home_ned=HOME, return_up_m=20.0)
     memory.verifier = FENCE
     memory.pos_ns = NOW_NS - round(age_s * SECOND_NS)
-    for name, value in facts.items():
+    for name, value in (facts or {}).items():
         assert hasattr(memory, name)
         setattr(memory, name, value)
     made = Turn(DEFAULT, memory, NOW_NS)
@@ -84,7 +84,7 @@ class TestEveryQuestion:
     def test_each_fact_that_is_missing_refuses_it(
         self, question: str, missing: str, expected: Code
     ) -> None:
-        asked = turn(**{missing: None})
+        asked = turn({missing: None})
         assert code(QUESTIONS[question](asked)) is expected
         assert code(asked.why) is expected
 
@@ -99,7 +99,7 @@ class TestEveryQuestion:
 
     def test_no_return_says_which_fact_is_missing(self) -> None:
         for missing, word in (("home_ned", "home or fence"), ("return_up_m", "return height")):
-            refusal = verifying.return_path(turn(**{missing: None}))
+            refusal = verifying.return_path(turn({missing: None}))
             assert refusal is not None
             assert word in refusal.sentence
             assert refusal.sentence.endswith("land instead")
@@ -114,7 +114,7 @@ class TestWhatIsFlown:
     def refusal(
         self, state: State, verifier: Verifier, was: Verifier | None = FENCE, **facts: object
     ) -> Code | None:
-        memory = turn(**{"pos_ned": self.HIGH, "state": state, **facts}).memory
+        memory = turn({"pos_ned": self.HIGH, "state": state, **facts}).memory
         return code(verifying.refusal_of_what_is_flown(memory, verifier, was))
 
     @pytest.mark.parametrize(("up_m", "expected"), [(8.0, None), (4.5, Code.OUTSIDE_FENCE)])
