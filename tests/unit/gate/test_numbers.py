@@ -9,12 +9,11 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.condition import Condition, Severity
-from gcs.gate.effects import Level, Say
+from gcs.gate.effects import Level, Say, Transition
 from gcs.gate.inputs import ConditionChanged, LandedSeen, PositionSeen
-from gcs.gate.machine import render
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.requests import Arm
-from gcs.gate.states import LandedState, State
+from gcs.gate.states import FlightMode, LandedState, State
 from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP, lead_to
 
@@ -49,11 +48,11 @@ def test_every_state_has_a_number_of_its_own() -> None:
     assert {s.name: int(s) for s in State} == STATES | {"VERIFYING": 2, "STREAMING": 8}
 
 
-def test_the_printed_machine_shows_the_numbers() -> None:
-    """As `gcs fsa` prints it."""
-    printed = render.text()
-    for name, number in STATES.items():
-        assert f"\n{name} = {number} " in printed
+def test_so_is_the_flight_of_somebody_who_takes_over() -> None:
+    """A mode that we did not command, while we stream."""
+    script = Script(policy("default")).take_control(UP)
+    script.heartbeat(FlightMode.OTHER)
+    assert (script.all(Transition)[-1].after.name, int(script.gate.state)) == ("EXTERNAL", 14)
 
 
 @pytest.mark.parametrize(
