@@ -51,7 +51,7 @@ class CommandDraft:
     kind: CommandKind
     deadline_ns: int
     reason: str
-    up_m: float = 0.0
+    up_m: float
     mode_name: str = ""
 
 
@@ -152,8 +152,7 @@ class Turn:
         `kind` is the request's event, `ends` the outcome of the request that it displaces.
         """
         memory = self.memory
-        if reply is Reply.NONE or self.requested is None:
-            return
+        assert self.requested is not None
         if reply is Reply.PENDING:
             self.supersede_pending()
             memory.pending = self.requested
