@@ -11,92 +11,209 @@ from typing import Final
 
 from tests.unit.gate import unreached as gate_table
 
-EQUIVALENT: Final[Mapping[str, Mapping[str, str]]] = {
-    "gate": {
+_AIRSPACE: Final[Mapping[str, tuple[str, ...]]] = {
+    "the start of a point's measure is not read": (
         (
             "gcs/gate/airspace/judge.py FenceJudge._point_measures: m.start_m - wide_m -> "
             "m.start_m + wide_m"
-        ): "the start of a point's measure is not read",
+        ),
+    ),
+    "sin c is zero only where north and east are, which the scale multiplies": (
         (
-            "gcs/gate/airspace/projection.py _azimuthal_forward: math.atan2(sin_c, up) / sin_c if "
-            "sin_c > 0.0 else 1.0 -> math.atan2(sin_c, up) / sin_c if sin_c > 0.0 else 1.5"
-        ): "sin c is zero only where north and east are, which the scale multiplies",
+            "gcs/gate/airspace/projection.py _azimuthal_forward: math.atan2(sin_c, up) / "
+            "sin_c if sin_c > 0.0 else 1.0 -> math.atan2(sin_c, up) / sin_c if sin_c > 0.0 "
+            "else 1.5"
+        ),
+    ),
+    "a speed of zero has no north and no east to multiply": (
         (
-            "gcs/gate/airspace/stopping.py stop_point: run_h / speed_h if speed_h > 0.0 else 0.0 "
-            "-> run_h / speed_h if speed_h > 0.0 else 1.0"
-        ): "a speed of zero has no north and no east to multiply",
+            "gcs/gate/airspace/stopping.py stop_point: run_h / speed_h if speed_h > 0.0 else "
+            "0.0 -> run_h / speed_h if speed_h > 0.0 else 1.0"
+        ),
+    ),
+    "without home, only zones that do not count from it get so far": (
         (
-            "gcs/gate/airspace/zones.py _place: _east_north_up(home_ned or (0.0, 0.0, 0.0)) -> "
-            "_east_north_up(home_ned or (1.0, 0.0, 0.0))"
-        ): "without home, only zones that do not count from it get so far",
-        (
-            "gcs/gate/airspace/zones.py _place: _east_north_up(home_ned or (0.0, 0.0, 0.0)) -> "
-            "_east_north_up(home_ned or (0.0, 1.0, 0.0))"
-        ): "without home, only zones that do not count from it get so far",
-        (
-            "gcs/gate/airspace/zones.py _place: _east_north_up(home_ned or (0.0, 0.0, 0.0)) -> "
-            "_east_north_up(home_ned or (0.0, 0.0, 1.0))"
-        ): "without home, only zones that do not count from it get so far",
-        "gcs/gate/effects.py SendCommand: 0.0 -> 1.0": (
-            "read of a TAKE_OFF alone, which always gives it"
+            "gcs/gate/airspace/zones.py _place: _east_north_up(home_ned or (0.0, 0.0, 0.0)) "
+            "-> _east_north_up(home_ned or (1.0, 0.0, 0.0))"
         ),
         (
-            "gcs/gate/geometry.py side: clearance_m >= margin_m + TOLERANCE_M -> clearance_m > "
-            "margin_m + TOLERANCE_M"
-        ): "at exactly the tolerance either answer is allowed",
-        "gcs/gate/geometry.py side: clearance_m < -TOLERANCE_M -> clearance_m <= -TOLERANCE_M": (
-            "at exactly the tolerance either answer is allowed"
+            "gcs/gate/airspace/zones.py _place: _east_north_up(home_ned or (0.0, 0.0, 0.0)) "
+            "-> _east_north_up(home_ned or (0.0, 1.0, 0.0))"
         ),
         (
-            "gcs/gate/geometry.py Polygon.contains: (_turn(a, b, p) > 0.0) == (b[1] > a[1]) -> "
-            "(_turn(a, b, p) > 0.0) != (b[1] > a[1])"
-        ): "crossings of the ray to the west: as odd or even as those to the east",
-        (
-            "gcs/gate/geometry.py Polygon.contains: (_turn(a, b, p) > 0.0) == (b[1] > a[1]) -> "
-            "(_turn(a, b, p) >= 0.0) == (b[1] > a[1])"
-        ): "differs on the boundary only, where the answer means nothing",
-        (
-            "gcs/gate/geometry.py Polygon.contains: (_turn(a, b, p) > 0.0) == (b[1] > a[1]) -> "
-            "(_turn(a, b, p) > 0.0) == (b[1] >= a[1])"
-        ): "the heights of the ends differ: one is above p and one is not",
-        "gcs/gate/geometry.py Polygon._middles: gap > TOLERANCE_M -> gap >= TOLERANCE_M": (
-            "at exactly the tolerance either answer is allowed"
+            "gcs/gate/airspace/zones.py _place: _east_north_up(home_ned or (0.0, 0.0, 0.0)) "
+            "-> _east_north_up(home_ned or (0.0, 0.0, 1.0))"
         ),
+    ),
+    "read of a TAKE_OFF alone, which always gives it": (
+        "gcs/gate/effects.py SendCommand: 0.0 -> 1.0",
+    ),
+    "at exactly the tolerance either answer is allowed": (
+        (
+            "gcs/gate/geometry.py side: clearance_m >= margin_m + TOLERANCE_M -> clearance_m "
+            "> margin_m + TOLERANCE_M"
+        ),
+        "gcs/gate/geometry.py side: clearance_m < -TOLERANCE_M -> clearance_m <= -TOLERANCE_M",
+        "gcs/gate/geometry.py Polygon._middles: gap > TOLERANCE_M -> gap >= TOLERANCE_M",
         (
             "gcs/gate/geometry.py Polygon._meetings: point_segment_distance(c, a, b) <= "
             "TOLERANCE_M -> point_segment_distance(c, a, b) < TOLERANCE_M"
-        ): "at exactly the tolerance either answer is allowed",
+        ),
         (
-            "gcs/gate/geometry.py crossing: (a_side > 0.0) == (b_side > 0.0) -> (a_side >= 0.0) == "
-            "(b_side > 0.0)"
-        ): "a side of zero is no crossing, as the next condition says",
-        (
-            "gcs/gate/geometry.py crossing: (a_side > 0.0) == (b_side > 0.0) -> (a_side > 0.0) == "
-            "(b_side >= 0.0)"
-        ): "a side of zero is no crossing, as the next condition says",
-        (
-            "gcs/gate/geometry.py crossing: (c_side > 0.0) == (d_side > 0.0) -> (c_side >= 0.0) == "
-            "(d_side > 0.0)"
-        ): "a side of zero is no crossing, as the next condition says",
-        (
-            "gcs/gate/geometry.py crossing: (c_side > 0.0) == (d_side > 0.0) -> (c_side > 0.0) == "
-            "(d_side >= 0.0)"
-        ): "a side of zero is no crossing, as the next condition says",
-        (
-            "gcs/gate/geometry.py polygon_fault: _distance(a, b) <= TOLERANCE_M -> _distance(a, b) "
-            "< TOLERANCE_M"
-        ): "at exactly the tolerance either answer is allowed",
+            "gcs/gate/geometry.py polygon_fault: _distance(a, b) <= TOLERANCE_M -> "
+            "_distance(a, b) < TOLERANCE_M"
+        ),
         (
             "gcs/gate/geometry.py polygon_fault: min(point_segment_distance(c, a, b), "
-            "point_segment_distance(a, b, c)) <= TOLERANCE_M -> min(point_segment_distance(c, a, "
-            "b), point_segment_distance(a, b, c)) < TOLERANCE_M"
-        ): "at exactly the tolerance either answer is allowed",
+            "point_segment_distance(a, b, c)) <= TOLERANCE_M -> min(point_segment_distance(c, "
+            "a, b), point_segment_distance(a, b, c)) < TOLERANCE_M"
+        ),
         (
-            "gcs/gate/geometry.py polygon_fault: segment_distance(a, b, *edges[j]) <= TOLERANCE_M "
-            "-> segment_distance(a, b, *edges[j]) < TOLERANCE_M"
-        ): "at exactly the tolerance either answer is allowed",
-        "gcs/gate/geometry.py _projection: 0.0 -> 1.0": "the ends are the same place",
-        "gcs/gate/states.py Control: 2 -> 3": "only compared for identity, and recorded by name",
+            "gcs/gate/geometry.py polygon_fault: segment_distance(a, b, *edges[j]) <= "
+            "TOLERANCE_M -> segment_distance(a, b, *edges[j]) < TOLERANCE_M"
+        ),
+    ),
+    "crossings of the ray to the west: as odd or even as those to the east": (
+        (
+            "gcs/gate/geometry.py Polygon.contains: (_turn(a, b, p) > 0.0) == (b[1] > a[1]) "
+            "-> (_turn(a, b, p) > 0.0) != (b[1] > a[1])"
+        ),
+    ),
+    "differs on the boundary only, where the answer means nothing": (
+        (
+            "gcs/gate/geometry.py Polygon.contains: (_turn(a, b, p) > 0.0) == (b[1] > a[1]) "
+            "-> (_turn(a, b, p) >= 0.0) == (b[1] > a[1])"
+        ),
+    ),
+    "the heights of the ends differ: one is above p and one is not": (
+        (
+            "gcs/gate/geometry.py Polygon.contains: (_turn(a, b, p) > 0.0) == (b[1] > a[1]) "
+            "-> (_turn(a, b, p) > 0.0) == (b[1] >= a[1])"
+        ),
+    ),
+    "a side of zero is no crossing, as the next condition says": (
+        (
+            "gcs/gate/geometry.py crossing: (a_side > 0.0) == (b_side > 0.0) -> (a_side >= "
+            "0.0) == (b_side > 0.0)"
+        ),
+        (
+            "gcs/gate/geometry.py crossing: (a_side > 0.0) == (b_side > 0.0) -> (a_side > "
+            "0.0) == (b_side >= 0.0)"
+        ),
+        (
+            "gcs/gate/geometry.py crossing: (c_side > 0.0) == (d_side > 0.0) -> (c_side >= "
+            "0.0) == (d_side > 0.0)"
+        ),
+        (
+            "gcs/gate/geometry.py crossing: (c_side > 0.0) == (d_side > 0.0) -> (c_side > "
+            "0.0) == (d_side >= 0.0)"
+        ),
+    ),
+    "the ends are the same place": ("gcs/gate/geometry.py _projection: 0.0 -> 1.0",),
+    "only compared for identity, and recorded by name": ("gcs/gate/states.py Control: 2 -> 3",),
+}
+"""Keys of the mutants by the reason: of geometry, airspace, policies and the closed words."""
+
+_STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
+    "nothing to climb takes no time at either speed": (
+        (
+            "gcs/gate/machine/actions.py _flight_s: speeds.descend_m_s if down_m > 0.0 else "
+            "speeds.climb_m_s -> speeds.descend_m_s if down_m >= 0.0 else speeds.climb_m_s"
+        ),
+    ),
+    "an unknown autopilot arms in every mode, so no mode is commanded first": (
+        (
+            "gcs/gate/machine/commanding.py arm: (frozenset(FlightMode), CommandKind.HOLD) -> "
+            "(frozenset(FlightMode), CommandKind.GUIDED)"
+        ),
+    ),
+    "a stop is predicted with control, and there is none in GROUNDED": (
+        "gcs/gate/machine/facts.py module: with State.GROUNDED -> without",
+    ),
+    "in LANDING a predicted breach changes nothing": (
+        "gcs/gate/machine/facts.py module: with State.LANDING -> without",
+    ),
+    "the outcome has the branch's code; of this reason only the sentence is read": (
+        (
+            "gcs/gate/machine/facts.py _photo: Refusal(Code.VEHICLE_REFUSED, 'the camera took no "
+            "picture') -> Refusal(Code.NO_ANSWER, 'the camera took no picture')"
+        ),
+        "gcs/gate/machine/facts.py _position: Code.FENCE_BREACH -> Code.ESTIMATOR_RESET",
+        "gcs/gate/machine/facts.py _command_answer: Code.VEHICLE_REFUSED -> Code.NO_ANSWER",
+        (
+            "gcs/gate/machine/progress.py climb_ended_elsewhere: Code.VEHICLE_REFUSED -> "
+            "Code.NO_ANSWER"
+        ),
+    ),
+    "position, velocity and their time are stored together and forgotten together": (
+        (
+            "gcs/gate/machine/facts.py _faster_than_allowed: memory.pos_ned is None or "
+            "memory.pos_ns is None -> memory.pos_ned is None and memory.pos_ns is None"
+        ),
+        (
+            "gcs/gate/machine/progress.py within_arrival: memory.pos_ned is None or memory.v_ned "
+            "is None -> memory.pos_ned is None and memory.v_ned is None"
+        ),
+    ),
+    "both events change nothing in any state": (
+        ("gcs/gate/machine/facts.py _command_answer: Event.HOLD_UNANSWERED -> Event.LATE_ANSWER"),
+    ),
+    "the event that follows, SEVERITY_EASED, changes nothing in any state": (
+        "gcs/gate/machine/gate.py Gate._demand: after < before -> after <= before",
+    ),
+    "asked in STALE of a breach, which needs control, and so a state to return to": (
+        "gcs/gate/machine/guards.py _guards_of_memory: with None -> without",
+    ),
+    "it is read in FLYING_MISSION only, and the start of a mission sets it": (
+        "gcs/gate/machine/memory.py Memory: False -> True #3",
+    ),
+    "every picture sets it before it is read": (
+        "gcs/gate/machine/memory.py Memory: False -> True #4",
+    ),
+    "it is read while a mode is awaited, and set with that mode": (
+        "gcs/gate/machine/memory.py Memory: 0 -> 1 #3",
+    ),
+    "it is read during a take-off, which sets it": (
+        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0",
+    ),
+    "exactly at the height `at_height` holds, and its branches come first": (
+        (
+            "gcs/gate/machine/progress.py climb_ended_elsewhere: 'below' if above_m < 0.0 else "
+            "'above' -> 'below' if above_m <= 0.0 else 'above'"
+        ),
+    ),
+    (
+        "the guard before it left the verifier's refusal, which has this code, and that one is "
+        "given"
+    ): (
+        "TABLE GROUNDED / return, branch 5: refused RTL_BLOCKED -> refused BUSY",
+        "TABLE GROUNDED / return, branch 6: refused RTL_BLOCKED -> refused BUSY",
+        "TABLE TAKING_OFF / return and 7 more, branch 4: refused RTL_BLOCKED -> refused BUSY",
+        "TABLE TAKING_OFF / return and 7 more, branch 5: refused RTL_BLOCKED -> refused BUSY",
+        "TABLE LANDING / return, branch 4: refused RTL_BLOCKED -> refused BUSY",
+    ),
+    "in GROUNDED there is no control to let go, and its commands end with the request": (
+        "TABLE GROUNDED / abort, branch 3: do let control go -> do nothing",
+        "TABLE GROUNDED / airborne, branch 6: do let control go -> do nothing",
+    ),
+    "it is in GROUNDED already": ("TABLE GROUNDED / abort, branch 3: -> GROUNDED -> -> stay",),
+    "a grace that is over is a grace": (
+        ("TABLE STALE / position aged, branch 1: if a verified stream is in its grace -> always"),
+    ),
+    "the next action, to forget what was interrupted, lets control go as well": (
+        "TABLE STALE / guided mode and 4 more, branch 4: do let control go -> do nothing",
+    ),
+    "`at_height` asks itself whether it flies": (
+        "TABLE TAKING_OFF / tick, branch 1: if it flies -> always",
+    ),
+}
+"""Keys of the mutants by the reason: of the gate's state machine and its table."""
+
+EQUIVALENT: Final[Mapping[str, Mapping[str, str]]] = {
+    "gate": {
+        key: reason
+        for reason, keys in (*_AIRSPACE.items(), *_STATE_MACHINE.items())
+        for key in keys
     }
 }
 """Reasons by the mutant's key."""

@@ -15,6 +15,7 @@ from gcs.gate.effects import CommandKind, Effect, Outcome, SendSetpoint
 from gcs.gate.geometry import Circle
 from gcs.gate.inputs import MissionLoaded, PositionSeen
 from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.memory import Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.requests import (
     Abort,
@@ -190,11 +191,17 @@ def ended(script: Script, request_id: int) -> str:
 
 def remember(script: Script, **facts: object) -> None:
     """The gate goes on as if it had been told these facts (fields of its memory) before."""
-    memory = script.gate.memory
-    for name, value in facts.items():
-        assert hasattr(memory, name)
-        setattr(memory, name, value)
+    memory = with_facts(script.gate.memory, **facts)
     script.gate = Gate.resumed(script.policy, memory, script.now_ns)
+
+
+def with_facts(memory: Memory, **facts: object) -> Memory:
+    """A copy of `memory` with these fields instead."""
+    copied = memory.copy()
+    for name, value in facts.items():
+        assert hasattr(copied, name)
+        setattr(copied, name, value)
+    return copied
 
 
 def sample(script: Script, east: float, *, reset: bool = False) -> PositionSeen:

@@ -7,48 +7,22 @@ import pytest
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import CommandKind
 from gcs.gate.inputs import ConditionChanged, VerifierChanged
-from gcs.gate.requests import Disarm, GoTo, Hold, Land, ReturnHome
+from gcs.gate.requests import Disarm, Hold, Land, ReturnHome
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
-    HELD,
     Reaction,
     default_policy,
     elsewhere,
     ended,
     reaction,
-    remember,
     stale,
     state_of,
-    take_off,
 )
 from tests.unit.gate.script import Script, policy
 from tests.unit.gate.situations import UP
 
 
 class TestStanding:
-    def test_a_climb_that_is_still_reported_to_stand_is_not_disarmed(self) -> None:
-        """Its landed state lags for longer than our take-off may come late."""
-        script = Script(policy("default"))
-        request_id = take_off(script, 5.0)
-        script.at(0.0, 0.0, 3.0, (0.0, 0.0, 1.0))
-        script.wait(11.0)
-        assert state_of(script) is State.TAKING_OFF
-        assert reaction(script, request_id, lambda s: s.ask(Hold())) == Reaction(
-            *HELD, "aborted OPERATOR"
-        )
-
-    def test_a_take_off_comes_late_until_its_time_and_not_at_it(self) -> None:
-        """From then on what is reported to stand is believed to, wherever it is."""
-        script = Script(policy("default")).connect()
-        script.heartbeat(armed=True)
-        script.land_state(LandedState.ON_GROUND)
-        script.pos_ned = (0.0, 0.0, -1.0)
-        script.tick()
-        remember(script, takeoff_until_ns=script.now_ns)
-        script.land_state(LandedState.ON_GROUND)
-        assert ended(script, script.ask(Land())) == "complete"
-        assert script.commands() == []
-
     def test_what_flew_again_after_an_outage_and_landed_stands(self) -> None:
         script, _ = stale(State.MOVING)
         script.reports_position = True
@@ -117,33 +91,3 @@ def test_a_forced_disarm_asked_for_again_within_five_seconds_is_granted(
     script.tick(ticks)
     script.ask(Disarm(force=True))
     assert (CommandKind.FORCE_DISARM in script.commands()) is granted
-
-
-class TestTimeOfAGoal:
-    """Twice the slowest healthy flight: 2 m/s level, 0.7 m/s up, 0.5 m/s down."""
-
-    @pytest.mark.parametrize(
-        ("start", "goal", "seconds"),
-        [
-            ((20.0, -10.0, UP), (50.0, 30.0, UP), 2.0 * 50.0 / 2.0),
-            ((-10.0, 30.0, UP), (-10.0, 70.0, UP), 2.0 * 40.0 / 2.0),
-            ((0.0, 0.0, 3.0), (20.0, 0.0, 2.0625), 2.0 * (20.0 / 2.0 + 0.9375 / 0.5)),
-        ],
-        ids=["both ways", "north", "a little down"],
-    )
-    def test_it_counts_from_where_the_vehicle_is(
-        self,
-        start: tuple[float, float, float],
-        goal: tuple[float, float, float],
-        seconds: float,
-    ) -> None:
-        script = Script(policy("default")).take_control(start[2])
-        script.at(*start)
-        script.tick()
-        east, north, up = goal
-        request_id = script.ask(GoTo((north, east, -up)))
-        script.tick()
-        script.wait(seconds - 0.05)
-        assert not script.ended(request_id)
-        script.wait(0.1)
-        assert ended(script, request_id) == "timed out DEADLINE"

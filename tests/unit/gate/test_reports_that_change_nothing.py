@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from gcs.gate.effects import CommandKind, Say
@@ -27,6 +25,7 @@ from tests.unit.gate.reactions import (
     remember,
     sample,
     state_of,
+    with_facts,
 )
 from tests.unit.gate.script import Script, policy
 from tests.unit.gate.situations import UP
@@ -39,7 +38,7 @@ def changes_only(script: Script, given: Input, **facts: object) -> None:
     """`given` stores these facts; nothing else changes, and nothing is sent."""
     before = script.gate.memory
     effects = script.feed(given)
-    assert script.gate.memory == replace(before, **facts)
+    assert script.gate.memory == with_facts(before, **facts)
     assert [effect for effect in effects if not isinstance(effect, Say)] == []
 
 

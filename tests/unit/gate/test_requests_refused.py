@@ -257,3 +257,30 @@ class TestChecks:
         script.ask(GOAL)
         assert script.refusal(script.ask(wanted)) is Code.BUSY
         assert state_of(script) is State.HOVERING
+
+
+class TestRecorder:
+    FAILED = ConditionChanged(Condition.RECORDER_FAILED, True, "disk full")
+    LOW = ConditionChanged(Condition.BATTERY_LOW, True, "low")
+
+    @pytest.mark.parametrize("wanted", [True, False])
+    @pytest.mark.parametrize("failed", [True, False])
+    def test_arming_needs_it_where_the_policy_does_whatever_else_is_wrong(
+        self, wanted: bool, failed: bool
+    ) -> None:
+        mild = {
+            Condition.RECORDER_FAILED: Severity.CAUTION,
+            Condition.BATTERY_LOW: Severity.CAUTION,
+        }
+        severities = {**policy("default").severities, **mild}
+        rules = default_policy(arm_requires_recording=wanted, severities=severities)
+        script = Script(rules).connect()
+        script.feed(self.LOW)
+        if failed:
+            script.feed(self.FAILED)
+        verdict = script.verdict(script.ask(Arm()))
+        if wanted and failed:
+            assert verdict.refusal is not None
+            assert verdict.refusal.code is Code.RECORDER_DOWN
+        else:
+            assert verdict.ruling is Ruling.ACCEPTED

@@ -151,3 +151,20 @@ def test_permits_are_issued_in_one_module_only() -> None:
             if isinstance(node.value, ast.Name) and node.value.id == "permit":
                 users.add(path.relative_to(package).as_posix())
     assert users == {"gate/machine/gate.py"}
+
+
+ASKED = {
+    FlightMode.GUIDED: Event.CONTROL,
+    FlightMode.HOLD: Event.HOLD,
+    FlightMode.TAKEOFF: Event.OTHER_MODE,
+    FlightMode.MISSION: Event.MISSION,
+    FlightMode.RETURN: Event.RETURN,
+    FlightMode.LAND: Event.LAND,
+    FlightMode.OTHER: Event.OTHER_MODE,
+}
+
+
+@pytest.mark.parametrize("mode", FlightMode)
+def test_a_mode_by_its_name_is_the_request_that_means_the_same(mode: FlightMode) -> None:
+    """A take-off has a height, which a mode has not: it is no way to take off."""
+    assert event_of(SetMode("its name", mode)) is ASKED[mode]
