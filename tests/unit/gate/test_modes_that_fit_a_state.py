@@ -100,7 +100,8 @@ ON_ITS_WAY = {
 
 
 @pytest.mark.parametrize(
-    ("state", "mode"), [(state, mode) for state, modes in ON_ITS_WAY.items() for mode in modes]
+    ("state", "mode"),
+    [(state, mode) for state, modes in ON_ITS_WAY.items() for mode in sorted(modes)],
 )
 def test_an_awaited_mode_that_is_overdue_is_no_loss_in_a_mode_that_fits(
     state: State, mode: FlightMode
