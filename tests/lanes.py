@@ -9,7 +9,9 @@ from __future__ import annotations
 
 LANES = ("tests/system/", "tests/clients/")
 """Separate processes over real sockets, which mostly wait."""
-LONG = ("tests/unit/gate/test_explore", "tests/loopback/test_random_flights.py")
+EARLY = ("tests/unit/gate/test_explore",)
+"""Files that take as long as many others together; what their first test prepares, all share."""
+LONG = ("tests/loopback/test_random_flights.py",)
 """Files of which a single test takes as long as others as a whole."""
 
 
@@ -29,4 +31,4 @@ def turn(nodeid: str) -> int:
     """What begins first is what ends last."""
     if in_real_time(nodeid):
         return 0
-    return 1 if nodeid.startswith(LONG) else 2
+    return 1 if nodeid.startswith((*EARLY, *LONG)) else 2

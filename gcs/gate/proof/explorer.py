@@ -21,10 +21,11 @@ distinct set of answers, and every edge with those answers has that outcome.  No
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from itertools import chain
+from itertools import chain, islice
 from typing import TypeAlias, TypeVar, cast
 
 from gcs.gate.condition import Condition, Severity
@@ -75,7 +76,7 @@ class Explored:
 
 class Explorer:
     """Explores one world, and keeps what it learnt: of a table in which few cells are altered,
-    only that is run anew which meets those cells.
+    only that is run anew which meets those cells, and the walk begins where it first meets one.
 
     `entered` are the cells that had a part in anything so far."""
 
@@ -89,10 +90,17 @@ class Explorer:
         self._outcomes = self._outcomes_by(TABLE)
         self.parts = [self._tree(partial(self._number, part, {})) for part in PARTS]
         self.objections = self._tree(self._objections_to_memory)
+        self._whole = _Walk(self, TABLE)
 
     def explore(self, table: Table = TABLE) -> Explored:
         """Breadth first until nothing new is met; stops at the first broken invariant."""
-        return _Walk(self, table).run()
+        explored = self._whole.run()
+        altered = {cell for cell in TABLE if table[cell] != TABLE[cell]}
+        if not altered:
+            return explored
+        if self.starts(table) != self.starts(TABLE):
+            return _Walk(self, table).run()
+        return _Walk(self, table, self._whole.before(altered)).run()
 
     def starts(self, table: Table) -> tuple[Vector, Vector]:
         """A gate that has heard nobody, with home, fence and mission known and without."""
@@ -156,7 +164,7 @@ class _Node:
     """A situation, by the memory that it was first met with, and how that was reached.
 
     `parts` are the parts of the situation, `objections` what the invariants have against the
-    memory; each knows what it looked at.
+    memory; each knows what it looked at.  `number` is its place among the nodes.
     """
 
     vector: Vector
@@ -164,27 +172,61 @@ class _Node:
     objections: Leaf[list[Objection]]
     parent: _Node | None
     letter: str
+    number: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class _Begun:
+    """A walk as it was when the node `at` had its turn: `nodes` are those that were met by then."""
+
+    nodes: list[_Node]
+    at: int
 
 
 class _Walk:
     """One exploration.  `nodes` are the situations in the order in which they were met."""
 
-    def __init__(self, explorer: Explorer, table: Table) -> None:
+    def __init__(self, explorer: Explorer, table: Table, begun: _Begun | None = None) -> None:
         self._explorer = explorer
         self._letters = explorer.letters(table)
         self._nodes: list[_Node] = []
+        self._at = 0
+        self._over: Explored | None = None
         self._edges = 0
+        self._first_met: dict[tuple[State, Event], int] = {}
         self._situations: set[tuple[int, ...]] = set()
         self._met: dict[tuple[int | None, ...], Vector] = {}
+        if begun is not None:
+            self._nodes, self._at = list(begun.nodes), begun.at
+            self._situations = {_situation(node) for node in begun.nodes}
+            return
         for start in explorer.starts(table):
             parts = [part(start) for part in explorer.parts]
             self._enter(_Node(start, parts, explorer.objections(start), None, ""))
 
+    def before(self, cells: set[tuple[State, Event]]) -> _Begun:
+        """This walk, which is over, up to the first node of which a letter meets one of `cells`.
+
+        Until then a walk through a table that differs in those cells is the same.
+        """
+        at = min((self._first_met.get(cell, len(self._nodes)) for cell in cells), default=0)
+        met = bisect_left(self._nodes, at, key=lambda n: n.parent.number if n.parent else -1)
+        return _Begun(self._nodes[:met], at)
+
     def run(self) -> Explored:
-        for node in self._nodes:
+        """To the end, once."""
+        self._over = self._over or self._run()
+        return self._over
+
+    def _run(self) -> Explored:
+        for node in islice(self._nodes, self._at, None):
             before, steady_ns = node.vector, self._steady_ns(node)
             for letter, outcome in self._letters(before):
                 self._edges += 1
+                if outcome.unmet:
+                    outcome.unmet = False
+                    for cell in outcome.cells:
+                        self._first_met.setdefault(cell, node.number)
                 if outcome.doubtful:
                     for objection in outcome.objections(before):
                         return self._explored(objection, self._reached(node, letter, outcome))
@@ -217,9 +259,10 @@ class _Walk:
         """Go on from `node` too, if its situation is new."""
         vector = node.vector
         self._met.setdefault((vector[_STATE], vector[_CONTROL], vector[_CONDITIONS]), vector)
-        situation = tuple([part.result for part in node.parts])
+        situation = _situation(node)
         if situation not in self._situations:
             self._situations.add(situation)
+            node.number = len(self._nodes)
             self._nodes.append(node)
 
     def _explored(self, objection: Objection | None, last: _Node | None) -> Explored:
@@ -233,6 +276,10 @@ class _Walk:
             steps.append((node.letter, self._explorer.codes.memory_of(node.vector).state))
             node = node.parent
         return tuple(reversed(steps))
+
+
+def _situation(node: _Node) -> tuple[int, ...]:
+    return tuple([part.result for part in node.parts])
 
 
 _STATE, _CONTROL, _CONDITIONS = PLACE["state"], PLACE["control"], PLACE["conditions"]

@@ -28,7 +28,7 @@ class Outcome:
     `sensible` is False where the letter makes no sense.  `places` are those of the vector that
     change, one bit each.  `idle_ns` is the time that passes where nothing else changes, else
     `CHANGES`.  `doubtful`: there may be objections.
-    `cells` are those of the table that had a part in it.
+    `cells` are those of the table that had a part in it.  `unmet`: no walk came upon it yet.
     """
 
     __slots__ = (
@@ -42,6 +42,7 @@ class Outcome:
         "idle_ns",
         "places",
         "sensible",
+        "unmet",
     )
 
     def __init__(self, questions: Questions, taken: Taken | None) -> None:
@@ -49,7 +50,7 @@ class Outcome:
         self._moves: list[Move] = []
         self._checks: list[DecisionTree[list[Objection]]] = []
         self._bug = None if taken is None else taken.bug
-        self._unchecked = True
+        self._unchecked = self.unmet = True
         self.cells = frozenset(() if taken is None else taken.cells)
         self.sensible = self.doubtful = taken is not None
         if taken is not None:
