@@ -69,9 +69,11 @@ def main(url: str, personality: str, factor: float, wall_s: float) -> None:
                 each.seq, each.current = seq, int(seq == 0)
         plugin.upload_mission(items)
         # An armed vehicle that does not take off disarms after 10 s of its own time: 0.2 s at 50.
+        # MAVSDK holds a PX4 that it has seen in mission mode before it arms it: armed first.
         if personality == "px4":
-            plugin.start_mission()
+            Param(station.system).set_param_float("COM_DISARM_PRFLT", -1.0)
             action.arm()
+            plugin.start_mission()
         else:
             Param(station.system).set_param_int("DISARM_DELAY", 0)
             action.arm()
