@@ -13,9 +13,9 @@ import click
 from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
 
 if TYPE_CHECKING:
-    from vehicle_sim.faults import Timed
-    from vehicle_sim.outlets import Launch, Outlet
+    from vehicle_sim.reporting import Launch, Reporter
     from vehicle_sim.shell.runtime import Opened, Plan
+    from vehicle_sim.simulation.fault_script import Timed
 
 EXIT_USAGE: Final = 2
 EXIT_FILE: Final = 4
@@ -217,10 +217,10 @@ def plan_of(options: Options) -> Plan:
     from pathlib import Path
 
     from vehicle_sim.autopilot.interface import Geodetic
-    from vehicle_sim.faults import parse as parse_faults
-    from vehicle_sim.model.faults import WindChange
-    from vehicle_sim.shell.runtime import Berth, Plan
+    from vehicle_sim.plant.faults import WindChange
+    from vehicle_sim.shell.runtime import Plan, VehicleSetup
     from vehicle_sim.shell.urls import parse
+    from vehicle_sim.simulation.fault_script import parse as parse_faults
     from vehicle_sim.wire.signing import parse_key
 
     count = options.count
@@ -231,8 +231,8 @@ def plan_of(options: Options) -> Plan:
             "Without --port and --link each has a link of its own."
         )
     together = (STATION,) if count <= SYSTEMS_MAX else ()
-    berths = tuple(
-        Berth(
+    vehicles = tuple(
+        VehicleSetup(
             system=1 + (options.sysid - 1 + index) % SYSTEMS_MAX,
             home=Geodetic(*place(options.home, index, count)),
             urls=(parse(own_link(options.autopilot, index)),) if usual else (),
@@ -247,7 +247,7 @@ def plan_of(options: Options) -> Plan:
     return Plan(
         personality=options.autopilot,
         airframe=options.airframe,
-        berths=berths,
+        vehicles=vehicles,
         shared=tuple(map(parse, together if usual else options.links)),
         seed=options.seed,
         speedup=options.speedup,
@@ -270,11 +270,11 @@ def _read(path: str) -> bytes:
 
 def run(options: Options) -> int:
     """The exit code."""
-    from vehicle_sim.autopilot.parameters import ParameterError
-    from vehicle_sim.faults import FaultFileError
+    from vehicle_sim.autopilot.parameters.parameters import ParameterError
     from vehicle_sim.shell.endpoints import EndpointError
     from vehicle_sim.shell.runtime import launch
     from vehicle_sim.shell.urls import UrlError
+    from vehicle_sim.simulation.fault_script import FaultFileError
     from vehicle_sim.wire.signing import SigningKeyError
 
     try:
@@ -292,11 +292,11 @@ def run(options: Options) -> int:
         outlet.close()
 
 
-def _fly(options: Options, opened: Opened, launch: Launch, outlet: Outlet) -> int:
-    from vehicle_sim.control import Lines, answer
-    from vehicle_sim.face import Rhythm, statuses
+def _fly(options: Options, opened: Opened, launch: Launch, outlet: Reporter) -> int:
+    from vehicle_sim.live_page import Rhythm, statuses
     from vehicle_sim.shell.pacer import Pace, Redraw
     from vehicle_sim.shell.runtime import run as run_world
+    from vehicle_sim.simulation.control_line import Lines, answer
 
     lines = Lines()
 
@@ -316,8 +316,8 @@ def _fly(options: Options, opened: Opened, launch: Launch, outlet: Outlet) -> in
     )
 
 
-def _outlet(options: Options) -> Outlet:
-    from vehicle_sim.outlets import Json, Live, Plain
+def _outlet(options: Options) -> Reporter:
+    from vehicle_sim.reporting import Json, Live, Plain
 
     threshold = "debug" if options.verbose else "info"
     if options.control:
@@ -328,7 +328,7 @@ def _outlet(options: Options) -> Outlet:
 
 
 def _launched(options: Options, plan: Plan, opened: Opened) -> Launch:
-    from vehicle_sim.outlets import Contact, Launch
+    from vehicle_sim.reporting import Contact, Launch
 
     lat_deg, lon_deg, alt_m = options.home
     many = f"{options.count} " if options.count > 1 else ""
@@ -338,7 +338,8 @@ def _launched(options: Options, plan: Plan, opened: Opened) -> Launch:
         f"{alt_m:g} m, seed {options.seed}, speed {float(options.speedup):g}"
     )
     contacts = [
-        Contact(berth.system, urls) for berth, urls in zip(plan.berths, opened.urls, strict=True)
+        Contact(vehicle.system, urls)
+        for vehicle, urls in zip(plan.vehicles, opened.urls, strict=True)
     ]
     return Launch(what, tuple(contacts))
 

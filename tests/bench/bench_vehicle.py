@@ -20,12 +20,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields
 from typing import NamedTuple
 
-from vehicle_sim.fleet import DT_S, Few, Spec
-from vehicle_sim.fleet_many import Many
-from vehicle_sim.model.airframe import load
-from vehicle_sim.model.body import Body
-from vehicle_sim.model.frame import frame_of
-from vehicle_sim.model.quad import advance, begin
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.step import DT_S, VehicleSpec
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.frame import frame_of
+from vehicle_sim.plant.quad import advance, begin
 
 PEERS = ("F450", "c172x")
 SIZES = (1, 10, 100, 1_000, 10_000)
@@ -62,8 +63,8 @@ def hovering(count: int, kind: type[Few] | type[Many]) -> Few | Many:
     return engine
 
 
-def specs(count: int) -> list[Spec]:
-    return [Spec(seed=1, index=index, lat_deg=47.4) for index in range(count)]
+def specs(count: int) -> list[VehicleSpec]:
+    return [VehicleSpec(seed=1, index=index, lat_deg=47.4) for index in range(count)]
 
 
 def ours() -> Timed:

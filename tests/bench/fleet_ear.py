@@ -24,8 +24,8 @@ from typing import Final
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.cli import HOMES, place
-from vehicle_sim.model.faults import WindChange
-from vehicle_sim.shell.runtime import Berth, Opened, Plan, launch, run
+from vehicle_sim.plant.faults import WindChange
+from vehicle_sim.shell.runtime import Opened, Plan, VehicleSetup, launch, run
 from vehicle_sim.shell.urls import parse
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
@@ -172,8 +172,8 @@ def plan(personality: Personality, count: int, own: Sequence[int], shared: Seque
     return Plan(
         personality=personality,
         airframe="s500",
-        berths=tuple(
-            Berth(
+        vehicles=tuple(
+            VehicleSetup(
                 index % SYSTEMS + 1,
                 Geodetic(*place(home, index, count)),
                 tuple(parse(f"udpout://127.0.0.1:{port}") for port in own[index : index + 1]),

@@ -13,11 +13,11 @@ from pymavlink.dialects.v20 import all as mavlink
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire.signing import SigningKey
-from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 
 MS: Final = 1_000_000
 S: Final = 1_000_000_000

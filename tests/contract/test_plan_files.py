@@ -13,8 +13,8 @@ import pytest
 from tests.contract.client import BOTH
 from tests.sample_files import SAMPLES, elsewhere
 from vehicle_sim.autopilot.interface import PlanItem
+from vehicle_sim.autopilot.mission.plan import check
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.plan import check
 
 OURS = (
     "plans/around_a_zone.plan",

@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from tests.contract.client import ACCEPTED, BOTH, MS, NAN, Client, Message, connected
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.impairment import Impairment
+from vehicle_sim.simulation.impairment import Impairment
 
 either = pytest.mark.parametrize("personality", BOTH)
 OK, UNSUPPORTED, NO_SPACE, INVALID_SEQUENCE, DENIED, CANCELLED = 0, 3, 4, 13, 14, 15

@@ -20,7 +20,7 @@ from tests.contract.client import (
     connected,
 )
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.model.faults import WindChange
+from vehicle_sim.plant.faults import WindChange
 
 either = pytest.mark.parametrize("personality", BOTH)
 

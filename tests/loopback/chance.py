@@ -15,7 +15,7 @@ from gcs.session import inputs
 from tests.loopback.air import Weather
 from tests.loopback.flight import MISSIONS, PERSONALITIES, POLICIES
 from tests.loopback.watched import WatchedFlight
-from vehicle_sim.world import Datagram
+from vehicle_sim.simulation.world import Datagram
 
 NONSENSE = (math.nan, math.inf, -math.inf, 1e39, -1e308)
 FILES = ("lab3/square.toml", "lab3/first_step.toml", "square.toml", "survey.plan", "no/such.plan")

@@ -28,12 +28,12 @@ from tests.loopback.air import CLEAR, Air, Weather
 from tests.loopback.looks import START_NS, Looks, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.world import Datagram as Inbound
-from vehicle_sim.world import LinkSpec, Transmit, World
-from vehicle_sim.world import Wake as WorldWake
+from vehicle_sim.simulation.world import Datagram as Inbound
+from vehicle_sim.simulation.world import LinkSpec, Transmit, World
+from vehicle_sim.simulation.world import Wake as WorldWake
 
 Personality = Literal["px4", "ardupilot"]
 PERSONALITIES: tuple[Personality, ...] = ("px4", "ardupilot")

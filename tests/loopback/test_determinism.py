@@ -10,10 +10,10 @@ from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, PEER, PERSONALITIES, Flight, Personality
 from tests.loopback.looks import START_NS, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.world import Datagram, LinkSpec, Transmit, Wake, World
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Transmit, Wake, World
 
 ROUGH = Weather(loss=0.1, duplicate=0.1, corrupt=0.05, delay_s=(0.001, 0.08))
 MS = 1_000_000

@@ -13,7 +13,7 @@ from gcs.session import inputs
 from tests.loopback import eyes
 from tests.loopback.air import Weather
 from tests.loopback.flight import PEER, PERSONALITIES, POLICIES, Flight, Personality
-from vehicle_sim.world import Datagram
+from vehicle_sim.simulation.world import Datagram
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 HOLDS = {"px4": "AUTO.LOITER", "ardupilot": "BRAKE"}

@@ -16,7 +16,7 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.states import Control, State
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.watched import WatchedFlight
-from vehicle_sim.faults import AnyFault, ended, fault_of
+from vehicle_sim.simulation.fault_script import AnyFault, ended, fault_of
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 ORIGIN = 49  # GPS_GLOBAL_ORIGIN
@@ -38,14 +38,14 @@ def under_way(personality: Personality) -> Iterator[tuple[WatchedFlight, int]]:
 
 def strike(flight: WatchedFlight, kind: str, **keys: object) -> AnyFault:
     fault = fault_of(kind, keys, "script")
-    assert flight.world.befall(fault, 1)
+    assert flight.world.inject(fault, 1)
     return fault
 
 
 def mend(flight: WatchedFlight, fault: AnyFault) -> None:
     end = ended(fault)
     assert end is not None
-    assert flight.world.befall(end, 1)
+    assert flight.world.inject(end, 1)
 
 
 def severities(flight: WatchedFlight, since_ns: int) -> set[str]:

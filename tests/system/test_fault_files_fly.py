@@ -9,7 +9,7 @@ import pytest
 from pymavlink import mavutil
 
 from tests.system.vehicle_program import free_port, until, vehicle_sim
-from vehicle_sim.faults import parse
+from vehicle_sim.simulation.fault_script import parse
 from vehicle_sim.testing import SimVehicle
 
 pytestmark = pytest.mark.system

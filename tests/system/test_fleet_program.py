@@ -14,7 +14,7 @@ from tests.system.vehicle_program import free_port, vehicle_sim
 from vehicle_sim.cli import Options, own_link, plan_of
 from vehicle_sim.options import SpeedType
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.codec import Frame
+from vehicle_sim.wire.codec import MavlinkFrame
 from vehicle_sim.wire.split import Counters, split
 
 
@@ -52,8 +52,8 @@ def test_250_vehicles_share_the_stations_link_and_more_have_links_of_their_own_o
     assert [str(url) for url in plan_of(options(250)).shared] == ["udpout://127.0.0.1:14550"]
     many = plan_of(options(600))
     assert many.shared == ()
-    assert len({url for berth in many.berths for url in berth.urls}) == 600
-    assert [berth.system for berth in many.berths[248:252]] == [249, 250, 1, 2]
+    assert len({url for vehicle in many.vehicles for url in vehicle.urls}) == 600
+    assert [vehicle.system for vehicle in many.vehicles[248:252]] == [249, 250, 1, 2]
 
 
 def test_more_than_250_on_one_link_are_refused() -> None:
@@ -77,7 +77,7 @@ def test_a_fleet_that_streams_positions_sends_nothing_else(count: int) -> None:
         ear.settimeout(5.0)
         words = ("--count", str(count), "--streams", "position")
         with vehicle_sim(*words, "--link", f"udpout://127.0.0.1:{port}"):
-            frames: list[Frame] = []
+            frames: list[MavlinkFrame] = []
             while len({frame.system for frame in frames}) < count:
                 frames += split(ear.recv(65536), Counters())
             end = time.monotonic() + 3.0

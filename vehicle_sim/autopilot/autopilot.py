@@ -7,29 +7,29 @@ from __future__ import annotations
 
 from math import isfinite
 
-from vehicle_sim.autopilot import plan as plans
-from vehicle_sim.autopilot.guided import AnySetpoint, Guided, is_sound
-from vehicle_sim.autopilot.hands import Hands
 from vehicle_sim.autopilot.interface import (
     AttitudeSetpoint,
     Geodetic,
     PlanItem,
     Result,
     Setpoint,
-    Vec3,
     Vehicle,
 )
+from vehicle_sim.autopilot.manual_input import ManualInput
+from vehicle_sim.autopilot.mission import plan as plans
 from vehicle_sim.autopilot.modes import MODES, Behaviour, Personality
-from vehicle_sim.autopilot.parameters import Parameters, Quantity
-from vehicle_sim.autopilot.simulated import Simulated
-from vehicle_sim.autopilot.tasks import Hold
-from vehicle_sim.fleet import Seat, put_home, restart
-from vehicle_sim.model.faults import ClockJump, Fault, RcLost, Reboot, befall
+from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.parameters.simulated import Simulated
+from vehicle_sim.autopilot.tasks.guided import AnySetpoint, Guided, is_sound
+from vehicle_sim.autopilot.tasks.tasks import Hold
+from vehicle_sim.engine.step import Seat, put_home, restart
+from vehicle_sim.numerics.vectors import Vec3
+from vehicle_sim.plant.faults import ClockJump, Fault, RcLost, Reboot, inject
 
 _LOWEST_GOAL_UP_M = 0.5
 
 
-class Autopilot(Hands):
+class Autopilot(ManualInput):
     """`Autopilot(personality, home, seed, index, params)`; `home` is where it stands at boot.
 
     Local NED has its origin there; `index` tells vehicles of one seed apart; `seat` is its place
@@ -273,7 +273,7 @@ class Autopilot(Hands):
             case Reboot():
                 self._power_up()
             case _:
-                befall(fault, self._body, self.blocks.sensed)
+                inject(fault, self._body, self.blocks.sensed)
 
 
 def _on_earth(where: Geodetic) -> bool:

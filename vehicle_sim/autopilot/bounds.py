@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from math import hypot
 
-from vehicle_sim.autopilot import fence as fences
-from vehicle_sim.autopilot import rally
+from vehicle_sim.autopilot.control.demands import Situation, Task
 from vehicle_sim.autopilot.core import Core
-from vehicle_sim.autopilot.demands import Situation, Task
-from vehicle_sim.autopilot.geofence import Crossing
-from vehicle_sim.autopilot.interface import FenceState, PlanItem, Refusal, Vec3
+from vehicle_sim.autopilot.fence import rally
+from vehicle_sim.autopilot.fence import zones as fences
+from vehicle_sim.autopilot.fence.geofence import Crossing
+from vehicle_sim.autopilot.interface import FenceState, PlanItem, Refusal
+from vehicle_sim.autopilot.mission.plan import KINDS, ItemKind, first_of, has_place, place_of
 from vehicle_sim.autopilot.modes import Behaviour, Mode
-from vehicle_sim.autopilot.plan import KINDS, Kind, first_of, has_place, place_of
-from vehicle_sim.autopilot.tasks import Return
+from vehicle_sim.autopilot.tasks.tasks import Return
+from vehicle_sim.numerics.vectors import Vec3
 
 _PLACELESS = frozenset({0, 0x7FFFFFFF})
 
@@ -51,10 +52,10 @@ class Bounds(Core):
             self._say(2, "Reposition is outside geofence")
         return True
 
-    def _haven(self, pos_ned: Vec3) -> rally.Haven:
+    def _landing_site(self, pos_ned: Vec3) -> rally.LandingSite:
         """Where a return from here would end."""
         home_ned = self._home_ned or (0.0, 0.0, 0.0)
-        return rally.haven(
+        return rally.landing_site(
             self._rally,
             pos_ned,
             home_ned,
@@ -65,7 +66,7 @@ class Bounds(Core):
 
     def _task_of(self, mode: Mode) -> Task:
         if mode.behaviour is Behaviour.RETURN:
-            return Return(self.parameters, self._haven)
+            return Return(self.parameters, self._landing_site)
         return super()._task_of(mode)
 
     # ------------------------------------------------------------------- the mission in it
@@ -93,7 +94,7 @@ class Bounds(Core):
             return None
         home_ned = self._home_ned or (0.0, 0.0, 0.0)
         for item in self._mission.items:
-            if KINDS[item.command] is Kind.FLOWN and has_place(item):
+            if KINDS[item.command] is ItemKind.FLOWN and has_place(item):
                 where = place_of(item, self.datum(), home_ned)
                 away_m = hypot(where[0] - home_ned[0], where[1] - home_ned[1])
                 return away_m if away_m > self.parameters.get("MIS_DIST_1WP") else None
@@ -105,7 +106,7 @@ class Bounds(Core):
             return None
         home_ned = self._home_ned or (0.0, 0.0, 0.0)
         for item in self._mission.items[first_of(self.personality) :]:
-            if KINDS[item.command] is not Kind.FLOWN or item.x in _PLACELESS:
+            if KINDS[item.command] is not ItemKind.FLOWN or item.x in _PLACELESS:
                 continue
             if not self._geofence.allows(place_of(item, self.datum(), home_ned), home_ned):
                 return item.seq

@@ -9,49 +9,52 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import assert_never
 
-from vehicle_sim.autopilot.airflow import Airflow
-from vehicle_sim.autopilot.arming import AutoDisarm
 from vehicle_sim.autopilot.camera import Camera
-from vehicle_sim.autopilot.demands import Situation, Task
-from vehicle_sim.autopilot.estimator import Health, health, position_ok
-from vehicle_sim.autopilot.follow import Follow, Leader
-from vehicle_sim.autopilot.gains import write_gains
+from vehicle_sim.autopilot.control.airflow import Airflow
+from vehicle_sim.autopilot.control.demands import Situation, Task
+from vehicle_sim.autopilot.control.flight_control import FlightControl, heading_of
+from vehicle_sim.autopilot.control.gains import write_gains
+from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
+from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
+from vehicle_sim.autopilot.failsafes.failsafe_checks import FailsafeChecks
+from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector
+from vehicle_sim.autopilot.failsafes.px4_failsafes import Px4Failsafes
+from vehicle_sim.autopilot.fence.geofence import Geofence
+from vehicle_sim.autopilot.fence.rally import Point
 from vehicle_sim.autopilot.geo import Projection, projection
-from vehicle_sim.autopilot.geofence import Geofence
-from vehicle_sim.autopilot.gestures import Gestures
-from vehicle_sim.autopilot.guided import Guided, Stream
 from vehicle_sim.autopilot.interface import (
     Geodetic,
     HomeChanged,
     Power,
-    Quat,
     Result,
     StatusText,
-    Vec3,
     VehicleEvent,
 )
-from vehicle_sim.autopilot.mission import Mission
+from vehicle_sim.autopilot.manual.stick_gestures import Gestures
+from vehicle_sim.autopilot.manual.stick_tasks import StickFlight
+from vehicle_sim.autopilot.manual.sticks import Radio
+from vehicle_sim.autopilot.mission.mission import Mission
+from vehicle_sim.autopilot.mission.plan import Datum
 from vehicle_sim.autopilot.modes import BOOT_MODE, KINDS, MODES, Behaviour, Mode, Personality
-from vehicle_sim.autopilot.orbit import Orbit, ardupilot_circle, px4_default
-from vehicle_sim.autopilot.parameters import Parameters, Quantity
-from vehicle_sim.autopilot.pilot import Pilot, heading_of
-from vehicle_sim.autopilot.plan import Datum
-from vehicle_sim.autopilot.rally import Point
-from vehicle_sim.autopilot.stick_tasks import StickFlight
-from vehicle_sim.autopilot.sticks import Radio
-from vehicle_sim.autopilot.tasks import Hold, Land, Level, Return, TakeOff
-from vehicle_sim.autopilot.trajectory import Limits, stopping_point
-from vehicle_sim.autopilot.troubles import Troubles
-from vehicle_sim.autopilot.troubles_copter import CopterTroubles
-from vehicle_sim.autopilot.troubles_px4 import Px4Troubles
-from vehicle_sim.autopilot.upset import Upsets
-from vehicle_sim.fleet import DT_NS, Blocks, Few, Seat, Spec
-from vehicle_sim.model.airframe import load
-from vehicle_sim.model.battery import charge_by_voltage
+from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.tasks.follow import Follow, Leader
+from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
+from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
+from vehicle_sim.autopilot.tasks.tasks import Hold, Land, Level, Return, TakeOff
+from vehicle_sim.control_loops.trajectory import MotionLimits, stopping_point
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.step import DT_NS, Blocks, Seat, VehicleSpec
+from vehicle_sim.estimation.estimator import Health, health, position_ok
+from vehicle_sim.numerics.vectors import Quat, Vec3
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.battery import charge_by_voltage
 
 UNMEASURED = Power(0.0, -0.01, 0.0, -1)
 """As MAVLink says it: current and remaining charge of -1."""
-_TROUBLES: dict[Personality, type[Troubles]] = {"px4": Px4Troubles, "ardupilot": CopterTroubles}
+_FAILSAFE_CHECKS: dict[Personality, type[FailsafeChecks]] = {
+    "px4": Px4Failsafes,
+    "ardupilot": CopterFailsafes,
+}
 
 
 class Core:
@@ -69,11 +72,11 @@ class Core:
         """Without a `seat` in a fleet's engine the vehicle has an engine of its own."""
         self.parameters = params if params is not None else Parameters(personality)
         self.personality = personality
-        self._seat = seat or Seat(Few([Spec(seed, index, home.lat_deg)], load()), 0)
+        self._seat = seat or Seat(Few([VehicleSpec(seed, index, home.lat_deg)], load()), 0)
         self.engine = self._seat.engine
         self.blocks: Blocks = self.engine.blocks(self._seat.lane)
         self._body, self._est = self.blocks.body, self.blocks.est
-        self._pilot = Pilot(self.blocks.flight, self.engine.frame.idle)
+        self._pilot = FlightControl(self.blocks.flight, self.engine.frame.idle)
         self._events: list[VehicleEvent] = []
         self._index = index
         self._poked = False
@@ -91,9 +94,9 @@ class Core:
         self._gestures = Gestures(self.parameters)
         self._leader = Leader(self.parameters)
         self._auto_disarm = AutoDisarm()
-        self._stream = Stream()
-        self._troubles: Troubles = _TROUBLES[personality](self.parameters)
-        self._upsets = Upsets(self.parameters)
+        self._stream = SetpointStream()
+        self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](self.parameters)
+        self._failure_detector = FailureDetector(self.parameters)
         self._geofence = Geofence(self.parameters)
         self._rally: tuple[Point, ...] = ()
         self._mission = Mission(self.parameters, self)
@@ -242,11 +245,11 @@ class Core:
         home_d = self._home_ned[2] if self._home_ned is not None else 0.0
         return TakeOff(home_d - up_m, self.parameters.si(Quantity.TAKEOFF_CLIMB_M_S))
 
-    def _limits(self) -> Limits:
+    def _limits(self) -> MotionLimits:
         self._limits_version = self.parameters.version
         si = self.parameters.si
         self._pilot.heading.max_rad_s = si(Quantity.TURN_RAD_S)
-        limits = Limits(
+        limits = MotionLimits(
             si(Quantity.CRUISE_M_S),
             si(Quantity.CLIMB_M_S),
             si(Quantity.DESCEND_M_S),

@@ -9,7 +9,8 @@ from __future__ import annotations
 from math import acos, asin, atan2, cos, degrees, radians, sin, sqrt
 from typing import Protocol
 
-from vehicle_sim.autopilot.interface import Geodetic, Vec3
+from vehicle_sim.autopilot.interface import Geodetic
+from vehicle_sim.numerics.vectors import Vec3
 
 _PX4_EARTH_M = 6_371_000.0
 _ARDUPILOT_M_PER_E7 = 0.011131884502145034

@@ -1,7 +1,7 @@
 """The line between the services (MAVLink without I/O) and the vehicle that they serve.
 
-`services/` and `world.py` know a vehicle only through `Vehicle`; `autopilot/autopilot.py`
-implements it over `model/`.  Everything is SI, the local frame is NED with its origin at the
+`services/` and `simulation/` know a vehicle only through `Vehicle`; `autopilot/autopilot.py`
+implements it over `engine/`.  Everything is SI, the local frame is NED with its origin at the
 EKF origin, body axes are forward-right-down, quaternions are w, x, y, z and rotate body to NED.
 """
 
@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum, IntEnum
-from typing import Protocol, TypeAlias
+from typing import Final, Protocol, TypeAlias
 
-from vehicle_sim.autopilot.estimator import Health
-from vehicle_sim.model.faults import Fault
+from vehicle_sim.estimation.estimator import Health
+from vehicle_sim.numerics.vectors import Quat, Vec3
+from vehicle_sim.plant.faults import Fault
 
-Vec3 = tuple[float, float, float]
-Quat = tuple[float, float, float, float]
+GPS_HDOP: Final = 0.8
+"""What the receiver says of its satellites' geometry, once it has a fix."""
 
 
 class Result(IntEnum):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
-from vehicle_sim.autopilot.estimator import booted
+from vehicle_sim.autopilot.control.flight_control import heading_of
+from vehicle_sim.autopilot.decisions import Decisions
 from vehicle_sim.autopilot.interface import (
     Estimate,
     Geodetic,
@@ -14,18 +15,17 @@ from vehicle_sim.autopilot.interface import (
     Readings,
     Target,
     Truth,
-    Vec3,
 )
-from vehicle_sim.autopilot.life import Life
 from vehicle_sim.autopilot.modes import Flag
-from vehicle_sim.autopilot.pilot import heading_of
-from vehicle_sim.fleet import state_bytes
+from vehicle_sim.engine.step import state_bytes
+from vehicle_sim.estimation.estimator import booted
+from vehicle_sim.numerics.vectors import Vec3
 
 _FALLING_M_S = 1.0
 _QUADROTOR = 2  # MAV_TYPE
 
 
-class View(Life):
+class View(Decisions):
     """The read-only half of `Vehicle`."""
 
     _shown: Estimate | None = None

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from vehicle_sim.effects import Client, Send
 from vehicle_sim.wire import messages as m
-
-from .effects import Client, Send
 
 
 def timesync(client: Client, asked: m.Timesync, time_ns: int) -> list[Send]:

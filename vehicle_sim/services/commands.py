@@ -13,15 +13,14 @@ from dataclasses import dataclass
 from typing import Final
 
 from vehicle_sim.autopilot.interface import CommandDone, Result
+from vehicle_sim.effects import Client, Effect, Note, Send
+from vehicle_sim.services.failures import FAILURE
+from vehicle_sim.services.flight_commands import FLIGHT
+from vehicle_sim.services.info_commands import INFO
+from vehicle_sim.services.orders import Answer, Order, from_int, from_long
+from vehicle_sim.services.ports import CommandContext, CommandEntry, RefusedError
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
-
-from .effects import Client, Effect, Note, Send
-from .failures import FAILURE
-from .flight_commands import FLIGHT
-from .info_commands import INFO
-from .orders import Answer, Order, from_int, from_long
-from .ports import Desk, Entry, RefusedError
 
 RETRY_NS: Final = 3_500_000_000
 """MAVSDK repeats after 0.5 s, QGroundControl after 3 s."""
@@ -29,7 +28,7 @@ RETRY_NS: Final = 3_500_000_000
 REMEMBERED_MAX: Final = 256
 """Senders and commands, the oldest forgotten first."""
 
-TABLE: Final[dict[Cmd, Entry]] = {**FLIGHT, **INFO, **FAILURE}
+TABLE: Final[dict[Cmd, CommandEntry]] = {**FLIGHT, **INFO, **FAILURE}
 """Every command that this vehicle understands; all others are UNSUPPORTED."""
 
 
@@ -47,8 +46,8 @@ class _Memory:
 class Commands:
     """Wall time goes in; acks, and what follows them, come out."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, context: CommandContext) -> None:
+        self._context = context
         self._memory: dict[tuple[Client, int], _Memory] = {}
 
     def handle(
@@ -99,13 +98,13 @@ class Commands:
         """`told`: it was said before that the command is not supported; MAVSDK asks for ever."""
         known = order.command in Cmd.__members__.values()
         entry = TABLE.get(Cmd(order.command)) if known else None
-        if entry is None or entry.only not in (None, self._desk.profile.name):
+        if entry is None or entry.only not in (None, self._context.profile.name):
             note = Note("debug" if told else "warning", f"command {order.command} is not supported")
             return Answer(Result.UNSUPPORTED, (note,))
         if entry.place and not order.global_frame:
             return Answer(Result.UNSUPPORTED_MAV_FRAME)
         try:
-            return entry.handler(self._desk, order.located if entry.place else order)
+            return entry.handler(self._context, order.located if entry.place else order)
         except RefusedError as refusal:
             level = "debug" if order.command in INFO else "warning"
             note = Note(level, f"{Cmd(order.command).name} refused: {refusal}")

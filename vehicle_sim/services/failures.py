@@ -12,7 +12,7 @@ from enum import IntEnum
 from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.interface import Result
-from vehicle_sim.model.faults import (
+from vehicle_sim.plant.faults import (
     AccelBias,
     BaroFault,
     CellsLost,
@@ -24,10 +24,9 @@ from vehicle_sim.model.faults import (
     MotorFault,
     RcLost,
 )
+from vehicle_sim.services.orders import Answer, Order
+from vehicle_sim.services.ports import CommandContext, CommandEntry, RefusedError
 from vehicle_sim.wire.ids import Cmd
-
-from .orders import Answer, Order
-from .ports import Desk, Entry, RefusedError
 
 
 class Unit(IntEnum):
@@ -94,8 +93,8 @@ FAILURES: Final[dict[tuple[Unit, Type], Maker]] = {
 _MOTORS: Final = 4
 
 
-def _inject(desk: Desk, order: Order) -> Answer:
-    if not desk.vehicle.takes_failures:
+def _inject(context: CommandContext, order: Order) -> Answer:
+    if not context.vehicle.takes_failures:
         raise RefusedError(Result.DENIED, "failures are not enabled (SYS_FAILURE_EN)")
     unit, kind, instance = (order.whole(value) for value in (order.p1, order.p2, order.p3))
     if unit is None or kind is None:
@@ -110,8 +109,8 @@ def _inject(desk: Desk, order: Order) -> Answer:
     every = range(1, _MOTORS + 1) if unit == Unit.MOTOR and number == 0 else (number,)
     for each in every:
         for fault in maker(each):
-            desk.vehicle.inject(fault)
+            context.vehicle.inject(fault)
     return Answer(Result.ACCEPTED)
 
 
-FAILURE: Final[dict[Cmd, Entry]] = {Cmd.INJECT_FAILURE: Entry(_inject)}
+FAILURE: Final[dict[Cmd, CommandEntry]] = {Cmd.INJECT_FAILURE: CommandEntry(_inject)}

@@ -6,12 +6,12 @@ import math
 from typing import Final
 
 from vehicle_sim.autopilot.geo import projection
-from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result, Vec3
+from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result
+from vehicle_sim.numerics.vectors import Vec3
+from vehicle_sim.services.orders import Answer, Order
+from vehicle_sim.services.ports import CommandContext, CommandEntry, RefusedError
+from vehicle_sim.services.setpoints import FARTHEST
 from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, Cmd
-
-from .orders import Answer, Order
-from .ports import Desk, Entry, RefusedError
-from .setpoints import FARTHEST
 
 FORCE: Final = 21196.0
 ROI_NONE: Final = 0.0  # MAV_ROI
@@ -24,57 +24,57 @@ def _finite(value: float, what: str) -> float:
     return value
 
 
-def _home(desk: Desk) -> Geodetic:
-    if desk.vehicle.home is None:
+def _home(context: CommandContext) -> Geodetic:
+    if context.vehicle.home is None:
         raise RefusedError(Result.DENIED, "there is no home yet")
-    return desk.vehicle.home
+    return context.vehicle.home
 
 
-def _arm_disarm(desk: Desk, order: Order) -> Answer:
+def _arm_disarm(context: CommandContext, order: Order) -> Answer:
     force = order.p2 == FORCE
     if order.p1 == 1.0:
-        return Answer(desk.vehicle.arm(force))
+        return Answer(context.vehicle.arm(force))
     if order.p1 == 0.0:
-        return Answer(desk.vehicle.disarm(force))
+        return Answer(context.vehicle.disarm(force))
     raise RefusedError(Result.DENIED, f"{order.p1} is neither arm (1) nor disarm (0)")
 
 
-def _take_off(desk: Desk, order: Order) -> Answer:
+def _take_off(context: CommandContext, order: Order) -> Answer:
     """px4: AMSL, anything at or below home or NaN = the default; ardupilot: above home."""
-    if not desk.profile.takeoff_amsl or order.relative:
-        return Answer(desk.vehicle.take_off(_finite(order.p7, "the height")))
+    if not context.profile.takeoff_amsl or order.relative:
+        return Answer(context.vehicle.take_off(_finite(order.p7, "the height")))
     if math.isnan(order.p7):
-        return Answer(desk.vehicle.take_off(None))
-    up_m = _finite(order.p7, "the height") - _home(desk).alt_amsl_m
-    return Answer(desk.vehicle.take_off(up_m if up_m > 0.0 else None))
+        return Answer(context.vehicle.take_off(None))
+    up_m = _finite(order.p7, "the height") - _home(context).alt_amsl_m
+    return Answer(context.vehicle.take_off(up_m if up_m > 0.0 else None))
 
 
-def _land(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.land())
+def _land(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.land())
 
 
-def _return(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.return_home())
+def _return(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.return_home())
 
 
-def _set_mode(desk: Desk, order: Order) -> Answer:
+def _set_mode(context: CommandContext, order: Order) -> Answer:
     base, main, sub = (order.whole(value) for value in (order.p1, order.p2, order.p3))
     if base is None or main is None or not 0 <= base <= 0xFF or not 0 <= main <= 0xFFFF:
         raise RefusedError(Result.DENIED, "the mode is not a number")
-    if desk.profile.name == "px4":
+    if context.profile.name == "px4":
         # HEARTBEAT.custom_mode holds PX4's main mode in its third byte, the sub mode in its fourth.
         main = (main & 0xFF) << 16 | ((sub or 0) & 0xFF) << 24
-    return Answer(desk.vehicle.set_mode(base, main))
+    return Answer(context.vehicle.set_mode(base, main))
 
 
-def _reposition(desk: Desk, order: Order) -> Answer:
+def _reposition(context: CommandContext, order: Order) -> Answer:
     """NaN in a coordinate = keep it.  p4 is a heading in radians."""
-    estimate = desk.vehicle.estimate
+    estimate = context.vehicle.estimate
     target: Vec3 | None = None
     if not (math.isnan(order.p5) and math.isnan(order.p6) and math.isnan(order.p7)):
-        target = _place(desk, order)
+        target = _place(context, order)
     return Answer(
-        desk.vehicle.reposition(
+        context.vehicle.reposition(
             target if target is not None else estimate.pos_ned,
             order.p4 if abs(order.p4) <= FARTHEST else None,
             order.p1 if 0.0 < order.p1 <= FARTHEST else None,
@@ -82,21 +82,21 @@ def _reposition(desk: Desk, order: Order) -> Answer:
     )
 
 
-def _place(desk: Desk, order: Order) -> Vec3:
-    origin = desk.vehicle.origin
+def _place(context: CommandContext, order: Order) -> Vec3:
+    origin = context.vehicle.origin
     if origin is None:
         raise RefusedError(Result.DENIED, "there is no origin yet")
-    here_n, here_e, here_d = desk.vehicle.estimate.pos_ned
+    here_n, here_e, here_d = context.vehicle.estimate.pos_ned
     north, east = here_n, here_e
     if not (math.isnan(order.p5) and math.isnan(order.p6)):
         lat_deg, lon_deg = latitude(order.p5), longitude(order.p6)
         there = Geodetic(lat_deg, lon_deg, 0.0)
-        north, east, _ = projection(desk.profile.name, origin).to_local(there)
+        north, east, _ = projection(context.profile.name, origin).to_local(there)
     if math.isnan(order.p7):
         return (north, east, here_d)
     alt_amsl_m = _finite(order.p7, "the height")
     if order.relative:
-        alt_amsl_m += _home(desk).alt_amsl_m
+        alt_amsl_m += _home(context).alt_amsl_m
     return (north, east, origin.alt_amsl_m - alt_amsl_m)
 
 
@@ -112,32 +112,32 @@ def longitude(value: float) -> float:
     return value
 
 
-def _pause_continue(desk: Desk, order: Order) -> Answer:
+def _pause_continue(context: CommandContext, order: Order) -> Answer:
     if order.p1 == 0.0:
-        return Answer(desk.vehicle.pause())
+        return Answer(context.vehicle.pause())
     if order.p1 == 1.0:
-        return Answer(desk.vehicle.resume())
+        return Answer(context.vehicle.resume())
     raise RefusedError(Result.DENIED, f"{order.p1} is neither pause (0) nor continue (1)")
 
 
-def _change_speed(desk: Desk, order: Order) -> Answer:
+def _change_speed(context: CommandContext, order: Order) -> Answer:
     if not 0.0 < order.p2 <= FARTHEST:
         raise RefusedError(Result.DENIED, f"{order.p2} m/s is no speed")
-    return Answer(desk.vehicle.change_speed(order.p2))
+    return Answer(context.vehicle.change_speed(order.p2))
 
 
-def _change_altitude(desk: Desk, order: Order) -> Answer:
+def _change_altitude(context: CommandContext, order: Order) -> Answer:
     height_m = _finite(order.p1, "the height")
     if order.p2 in RELATIVE:
-        return Answer(desk.vehicle.change_altitude(height_m))
+        return Answer(context.vehicle.change_altitude(height_m))
     if order.p2 in ABSOLUTE:
-        return Answer(desk.vehicle.change_altitude(height_m - _home(desk).alt_amsl_m))
+        return Answer(context.vehicle.change_altitude(height_m - _home(context).alt_amsl_m))
     raise RefusedError(Result.UNSUPPORTED_MAV_FRAME, f"frame {order.p2} is not supported")
 
 
-def _condition_yaw(desk: Desk, order: Order) -> Answer:
+def _condition_yaw(context: CommandContext, order: Order) -> Answer:
     return Answer(
-        desk.vehicle.condition_yaw(
+        context.vehicle.condition_yaw(
             math.radians(_finite(order.p1, "the angle")),
             order.p4 == 1.0,
             math.radians(_finite(order.p2, "the rate")),
@@ -146,77 +146,77 @@ def _condition_yaw(desk: Desk, order: Order) -> Answer:
     )
 
 
-def _set_home(desk: Desk, order: Order) -> Answer:
+def _set_home(context: CommandContext, order: Order) -> Answer:
     if order.p1 == 1.0:
-        return Answer(desk.vehicle.set_home(None))
+        return Answer(context.vehicle.set_home(None))
     where = Geodetic(latitude(order.p5), longitude(order.p6), _finite(order.p7, "the height"))
-    return Answer(desk.vehicle.set_home(where))
+    return Answer(context.vehicle.set_home(where))
 
 
-def _mission_start(desk: Desk, order: Order) -> Answer:
+def _mission_start(context: CommandContext, order: Order) -> Answer:
     first, last = order.whole(order.p1), order.whole(order.p2)
-    return Answer(desk.vehicle.mission_start(first or 0, last or 0))
+    return Answer(context.vehicle.mission_start(first or 0, last or 0))
 
 
-def _set_mission_current(desk: Desk, order: Order) -> Answer:
+def _set_mission_current(context: CommandContext, order: Order) -> Answer:
     seq = order.whole(order.p1)
     if seq is None or seq < 0:
         raise RefusedError(Result.DENIED, f"{order.p1} is no mission item")
-    return Answer(desk.vehicle.mission_set_current(seq))
+    return Answer(context.vehicle.mission_set_current(seq))
 
 
-def _image_start(desk: Desk, order: Order) -> Answer:
+def _image_start(context: CommandContext, order: Order) -> Answer:
     count = order.whole(order.p3)
     if count is None or count < 0 or not 0.0 <= order.p2 <= FARTHEST:
         raise RefusedError(Result.DENIED, "interval or number of images makes no sense")
-    return Answer(desk.vehicle.capture_image(order.p2, count))
+    return Answer(context.vehicle.capture_image(order.p2, count))
 
 
-def _image_stop(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.stop_capture())
+def _image_stop(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.stop_capture())
 
 
-def _camera_mode(desk: Desk, order: Order) -> Answer:
+def _camera_mode(context: CommandContext, order: Order) -> Answer:
     """Still images are all that it takes."""
     return Answer(Result.ACCEPTED if order.p2 == 0.0 else Result.DENIED)
 
 
-def _prearm_checks(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.check_arming())
+def _prearm_checks(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.check_arming())
 
 
-def _fence_enable(desk: Desk, order: Order) -> Answer:
+def _fence_enable(context: CommandContext, order: Order) -> Answer:
     choice = order.whole(order.p1)
     if choice is None:
         raise RefusedError(Result.DENIED, f"{order.p1} is neither off, on nor floor off")
-    return Answer(desk.vehicle.enable_fence(choice))
+    return Answer(context.vehicle.enable_fence(choice))
 
 
-def _terminate(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.terminate() if order.p1 > 0.5 else Result.ACCEPTED)
+def _terminate(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.terminate() if order.p1 > 0.5 else Result.ACCEPTED)
 
 
-def _reboot(desk: Desk, order: Order) -> Answer:
+def _reboot(context: CommandContext, order: Order) -> Answer:
     if order.p1 == 0.0:
         return Answer(Result.ACCEPTED)
     if order.p1 != 1.0:
         raise RefusedError(Result.DENIED, "it can only be rebooted (1)")
-    return Answer(desk.vehicle.reboot())
+    return Answer(context.vehicle.reboot())
 
 
-def _orbit(desk: Desk, order: Order) -> Answer:
+def _orbit(context: CommandContext, order: Order) -> Answer:
     """The height is AMSL whatever the frame says, as PX4 takes it; NaN = as it is."""
-    origin = desk.vehicle.origin
+    origin = context.vehicle.origin
     if origin is None:
         raise RefusedError(Result.TEMPORARILY_REJECTED, "there is no origin yet")
     centre_ne = None
     if not (math.isnan(order.p5) or math.isnan(order.p6)):
         there = Geodetic(latitude(order.p5), longitude(order.p6), 0.0)
-        north, east, _ = projection(desk.profile.name, origin).to_local(there)
+        north, east, _ = projection(context.profile.name, origin).to_local(there)
         centre_ne = (north, east)
     height_m = _given(order.p7, "the height")
     return Answer(
-        desk.vehicle.orbit(
+        context.vehicle.orbit(
             OrbitRequest(
                 radius_m=_given(order.p1, "the radius"),
                 speed_m_s=_given(order.p2, "the speed"),
@@ -233,65 +233,65 @@ def _given(value: float, what: str) -> float | None:
     return None if math.isnan(value) else _finite(value, what)
 
 
-def _look_at(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.look_at(_place(desk, order)))
+def _look_at(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.look_at(_place(context, order)))
 
 
-def _look_away(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.look_at(None))
+def _look_away(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.look_at(None))
 
 
-def _old_roi(desk: Desk, order: Order) -> Answer:
+def _old_roi(context: CommandContext, order: Order) -> Answer:
     """DO_SET_ROI: MAV_ROI 0 none, 3 a location; ArduCopter always takes it for a location."""
-    if order.p1 == ROI_LOCATION or desk.profile.name == "ardupilot":
+    if order.p1 == ROI_LOCATION or context.profile.name == "ardupilot":
         if order.p5 == order.p6 == order.p7 == 0.0:
-            return _look_away(desk, order)
-        return _look_at(desk, order)
+            return _look_away(context, order)
+        return _look_at(context, order)
     if order.p1 == ROI_NONE:
-        return _look_away(desk, order)
+        return _look_away(context, order)
     raise RefusedError(Result.UNSUPPORTED, f"a region of interest of kind {order.p1}")
 
 
-def _loiter(desk: Desk, order: Order) -> Answer:
-    return Answer(desk.vehicle.set_mode_kind("hold"))
+def _loiter(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.set_mode_kind("hold"))
 
 
-def _storage(desk: Desk, order: Order) -> Answer:
+def _storage(context: CommandContext, order: Order) -> Answer:
     """What is set is kept, so that there is nothing to load or to save; 2 resets it all."""
-    if desk.vehicle.armed:
+    if context.vehicle.armed:
         raise RefusedError(Result.TEMPORARILY_REJECTED, "not while armed")
     if order.p1 not in (0.0, 1.0, 2.0):
         raise RefusedError(Result.DENIED, "parameters can be read (0), written (1) or reset (2)")
     if order.p1 == 2.0:
-        desk.vehicle.reset_parameters()
+        context.vehicle.reset_parameters()
     return Answer(Result.ACCEPTED)
 
 
-FLIGHT: Final[dict[Cmd, Entry]] = {
-    Cmd.COMPONENT_ARM_DISARM: Entry(_arm_disarm),
-    Cmd.NAV_LOITER_UNLIM: Entry(_loiter, place=True, only="ardupilot"),
-    Cmd.DO_ORBIT: Entry(_orbit, place=True, only="px4"),
-    Cmd.DO_SET_ROI_LOCATION: Entry(_look_at, place=True),
-    Cmd.DO_SET_ROI_NONE: Entry(_look_away),
-    Cmd.DO_SET_ROI: Entry(_old_roi, place=True),
-    Cmd.PREFLIGHT_STORAGE: Entry(_storage),
-    Cmd.NAV_TAKEOFF: Entry(_take_off, place=True),
-    Cmd.NAV_LAND: Entry(_land, place=True),
-    Cmd.NAV_RETURN_TO_LAUNCH: Entry(_return),
-    Cmd.DO_SET_MODE: Entry(_set_mode),
-    Cmd.DO_REPOSITION: Entry(_reposition, place=True),
-    Cmd.DO_PAUSE_CONTINUE: Entry(_pause_continue),
-    Cmd.DO_CHANGE_SPEED: Entry(_change_speed),
-    Cmd.DO_CHANGE_ALTITUDE: Entry(_change_altitude),
-    Cmd.CONDITION_YAW: Entry(_condition_yaw),
-    Cmd.DO_SET_HOME: Entry(_set_home, place=True),
-    Cmd.MISSION_START: Entry(_mission_start),
-    Cmd.DO_SET_MISSION_CURRENT: Entry(_set_mission_current),
-    Cmd.IMAGE_START_CAPTURE: Entry(_image_start),
-    Cmd.IMAGE_STOP_CAPTURE: Entry(_image_stop),
-    Cmd.SET_CAMERA_MODE: Entry(_camera_mode),
-    Cmd.RUN_PREARM_CHECKS: Entry(_prearm_checks),
-    Cmd.DO_FENCE_ENABLE: Entry(_fence_enable),
-    Cmd.DO_FLIGHTTERMINATION: Entry(_terminate),
-    Cmd.PREFLIGHT_REBOOT_SHUTDOWN: Entry(_reboot),
+FLIGHT: Final[dict[Cmd, CommandEntry]] = {
+    Cmd.COMPONENT_ARM_DISARM: CommandEntry(_arm_disarm),
+    Cmd.NAV_LOITER_UNLIM: CommandEntry(_loiter, place=True, only="ardupilot"),
+    Cmd.DO_ORBIT: CommandEntry(_orbit, place=True, only="px4"),
+    Cmd.DO_SET_ROI_LOCATION: CommandEntry(_look_at, place=True),
+    Cmd.DO_SET_ROI_NONE: CommandEntry(_look_away),
+    Cmd.DO_SET_ROI: CommandEntry(_old_roi, place=True),
+    Cmd.PREFLIGHT_STORAGE: CommandEntry(_storage),
+    Cmd.NAV_TAKEOFF: CommandEntry(_take_off, place=True),
+    Cmd.NAV_LAND: CommandEntry(_land, place=True),
+    Cmd.NAV_RETURN_TO_LAUNCH: CommandEntry(_return),
+    Cmd.DO_SET_MODE: CommandEntry(_set_mode),
+    Cmd.DO_REPOSITION: CommandEntry(_reposition, place=True),
+    Cmd.DO_PAUSE_CONTINUE: CommandEntry(_pause_continue),
+    Cmd.DO_CHANGE_SPEED: CommandEntry(_change_speed),
+    Cmd.DO_CHANGE_ALTITUDE: CommandEntry(_change_altitude),
+    Cmd.CONDITION_YAW: CommandEntry(_condition_yaw),
+    Cmd.DO_SET_HOME: CommandEntry(_set_home, place=True),
+    Cmd.MISSION_START: CommandEntry(_mission_start),
+    Cmd.DO_SET_MISSION_CURRENT: CommandEntry(_set_mission_current),
+    Cmd.IMAGE_START_CAPTURE: CommandEntry(_image_start),
+    Cmd.IMAGE_STOP_CAPTURE: CommandEntry(_image_stop),
+    Cmd.SET_CAMERA_MODE: CommandEntry(_camera_mode),
+    Cmd.RUN_PREARM_CHECKS: CommandEntry(_prearm_checks),
+    Cmd.DO_FENCE_ENABLE: CommandEntry(_fence_enable),
+    Cmd.DO_FLIGHTTERMINATION: CommandEntry(_terminate),
+    Cmd.PREFLIGHT_REBOOT_SHUTDOWN: CommandEntry(_reboot),
 }

@@ -8,16 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final, TypeAlias
 
+from vehicle_sim.effects import Client, Effect, Note, Send
+from vehicle_sim.services.ftp_burst import Bursts
+from vehicle_sim.services.ftp_refusals import FtpRefusedError, reason
+from vehicle_sim.services.ftp_replies import Replies
+from vehicle_sim.services.ftp_sessions import Sessions
+from vehicle_sim.services.ftp_wire import DATA_MAX, Nak, Opcode, Reply, Request, pack, parse
+from vehicle_sim.storage.store import Store, StoreError, StoreFault, crc32, crc32_of
+from vehicle_sim.storage.virtual_files import Tree, VirtualFiles
 from vehicle_sim.wire import messages as m
-
-from .effects import Client, Effect, Note, Send
-from .ftp_burst import Bursts
-from .ftp_refusals import FtpRefusedError, reason
-from .ftp_replies import Replies
-from .ftp_sessions import Sessions
-from .ftp_wire import DATA_MAX, Nak, Opcode, Reply, Request, pack, parse
-from .store import Store, StoreError, StoreFault, crc32, crc32_of
-from .virtual import Tree, VirtualFiles
 
 
 class FtpServer:

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from .effects import Client
-from .ftp_refusals import FtpRefusedError, reason
-from .ftp_sessions import Key, Sessions
-from .ftp_wire import DATA_MAX, Nak, Opcode, Reply, Request
-from .store import StoreError
-from .streams import NEVER
+from vehicle_sim.effects import Client
+from vehicle_sim.services.ftp_refusals import FtpRefusedError, reason
+from vehicle_sim.services.ftp_sessions import Key, Sessions
+from vehicle_sim.services.ftp_wire import DATA_MAX, Nak, Opcode, Reply, Request
+from vehicle_sim.services.streams import NEVER
+from vehicle_sim.storage.store import StoreError
 
 PACE_NS_PER_BYTE: Final = 2_000
 """Half a megabyte per second and burst: slow readers lose nothing, and telemetry has its way."""

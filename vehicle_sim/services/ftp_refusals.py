@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from .ftp_wire import Nak
-from .store import StoreError, StoreFault
+from vehicle_sim.services.ftp_wire import Nak
+from vehicle_sim.storage.store import StoreError, StoreFault
 
 NAKS: Final = {
     StoreFault.NOT_FOUND: bytes((Nak.FILE_NOT_FOUND,)),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-from .effects import Client
-from .ftp_wire import Opcode, Reply, Request
+from vehicle_sim.effects import Client
+from vehicle_sim.services.ftp_wire import Opcode, Reply, Request
 
 RETRY_NS: Final = 1_500_000_000
 """Clients repeat within 1 s (QGroundControl; MAVSDK and mavftp 0.5 s).  Not much longer: MAVSDK

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from .effects import Client
-from .ftp_refusals import FtpRefusedError
-from .ftp_wire import Nak
-from .store import StoreError, StoreFault
-from .streams import NEVER
-from .virtual import Tree, Virtual
+from vehicle_sim.effects import Client
+from vehicle_sim.services.ftp_refusals import FtpRefusedError
+from vehicle_sim.services.ftp_wire import Nak
+from vehicle_sim.services.streams import NEVER
+from vehicle_sim.storage.store import StoreError, StoreFault
+from vehicle_sim.storage.virtual_files import Tree, Virtual
 
 SESSIONS_MAX: Final = 32
 SESSIONS_OF_A_CLIENT_MAX: Final = 8

@@ -7,13 +7,12 @@ from typing import Final
 
 from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
 from vehicle_sim.autopilot.modes import MODES, by_number
+from vehicle_sim.services.metadata import Metadata
+from vehicle_sim.services.profile import STANDARD_MODES, Profile
+from vehicle_sim.services.status_telemetry import STATUS
+from vehicle_sim.services.telemetry import STATE
+from vehicle_sim.services.units import boot_ms, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
-
-from .metadata import Metadata
-from .profile import STANDARD_MODES, Profile
-from .status_telemetry import STATUS
-from .telemetry import STATE
-from .units import boot_ms, degrees_e7, millimetres, usec
 
 BUILDERS: Final = {**STATE, **STATUS}
 MISSION_ACTIVE: Final = 1  # MISSION_MODE

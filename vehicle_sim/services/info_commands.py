@@ -6,20 +6,19 @@ import math
 from typing import Final
 
 from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.effects import Send
+from vehicle_sim.services.orders import Answer, Order
+from vehicle_sim.services.ports import CommandContext, CommandEntry, Handler, RefusedError
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
-
-from .effects import Send
-from .orders import Answer, Order
-from .ports import Desk, Entry, Handler, RefusedError
 
 CURRENT_MODE_US: Final = 2_000_000
 
 
-def _send(desk: Desk, order: Order, number: int, index: float = 0) -> Answer:
-    if not desk.info.answers(number):
+def _send(context: CommandContext, order: Order, number: int, index: float = 0) -> Answer:
+    if not context.info.answers(number):
         raise RefusedError(Result.UNSUPPORTED, f"there is no message {number} to be had")
-    built = desk.info.requested(number, index)
+    built = context.info.requested(number, index)
     if not built:
         raise RefusedError(Result.DENIED, f"message {number} has nothing to say yet")
     return Answer(Result.ACCEPTED, tuple(Send(order.client.channel, message) for message in built))
@@ -32,56 +31,56 @@ def _number(order: Order) -> int:
     return number
 
 
-def _request_message(desk: Desk, order: Order) -> Answer:
+def _request_message(context: CommandContext, order: Order) -> Answer:
     number = _number(order)
     if number == m.IDS[m.MessageInterval]:
         wanted = order.whole(order.p2)
-        return _interval(desk, order, wanted if wanted is not None else -1)
+        return _interval(context, order, wanted if wanted is not None else -1)
     if number == m.IDS[m.AvailableModes]:
         # Who asks for the modes wants to be told which one it is, from then on.
-        streams = desk.streams[order.client.channel]
-        streams.begin(m.IDS[m.CurrentMode], CURRENT_MODE_US, desk.vehicle.time_ns)
-    return _send(desk, order, number, order.p2)
+        streams = context.streams[order.client.channel]
+        streams.begin(m.IDS[m.CurrentMode], CURRENT_MODE_US, context.vehicle.time_ns)
+    return _send(context, order, number, order.p2)
 
 
-def _interval(desk: Desk, order: Order, number: int) -> Answer:
+def _interval(context: CommandContext, order: Order, number: int) -> Answer:
     """MESSAGE_INTERVAL: 0 stands for a message that there is not."""
-    interval_us = desk.streams[order.client.channel].interval_us(number)
+    interval_us = context.streams[order.client.channel].interval_us(number)
     told = m.MessageInterval(
         interval_us=interval_us if interval_us is not None else 0, message_id=number & 0xFFFF
     )
     return Answer(Result.ACCEPTED, (Send(order.client.channel, told),))
 
 
-def _get_interval(desk: Desk, order: Order) -> Answer:
-    return _interval(desk, order, _number(order))
+def _get_interval(context: CommandContext, order: Order) -> Answer:
+    return _interval(context, order, _number(order))
 
 
-def _set_interval(desk: Desk, order: Order) -> Answer:
+def _set_interval(context: CommandContext, order: Order) -> Answer:
     number = _number(order)
     if not (math.isfinite(order.p2) and order.p2 >= -1):
         raise RefusedError(Result.DENIED, f"{order.p2} us is no interval")
-    streams = desk.streams[order.client.channel]
-    if not streams.set_interval(number, order.p2, desk.vehicle.time_ns):
+    streams = context.streams[order.client.channel]
+    if not streams.set_interval(number, order.p2, context.vehicle.time_ns):
         raise RefusedError(Result.FAILED, f"message {number} cannot be had at a rate")
     return Answer(Result.ACCEPTED)
 
 
 def _sends(kind: type[m.Message]) -> Handler:
-    def handler(desk: Desk, order: Order) -> Answer:
-        return _send(desk, order, m.IDS[kind])
+    def handler(context: CommandContext, order: Order) -> Answer:
+        return _send(context, order, m.IDS[kind])
 
     return handler
 
 
-INFO: Final[dict[Cmd, Entry]] = {
-    Cmd.REQUEST_MESSAGE: Entry(_request_message),
-    Cmd.SET_MESSAGE_INTERVAL: Entry(_set_interval),
-    Cmd.GET_MESSAGE_INTERVAL: Entry(_get_interval),
-    Cmd.GET_HOME_POSITION: Entry(_sends(m.HomePosition)),
-    Cmd.REQUEST_PROTOCOL_VERSION: Entry(_sends(m.ProtocolVersion)),
-    Cmd.REQUEST_AUTOPILOT_CAPABILITIES: Entry(_sends(m.AutopilotVersion)),
-    Cmd.REQUEST_CAMERA_INFORMATION: Entry(_sends(m.CameraInformation)),
-    Cmd.REQUEST_STORAGE_INFORMATION: Entry(_sends(m.StorageInformation)),
-    Cmd.REQUEST_CAMERA_CAPTURE_STATUS: Entry(_sends(m.CameraCaptureStatus)),
+INFO: Final[dict[Cmd, CommandEntry]] = {
+    Cmd.REQUEST_MESSAGE: CommandEntry(_request_message),
+    Cmd.SET_MESSAGE_INTERVAL: CommandEntry(_set_interval),
+    Cmd.GET_MESSAGE_INTERVAL: CommandEntry(_get_interval),
+    Cmd.GET_HOME_POSITION: CommandEntry(_sends(m.HomePosition)),
+    Cmd.REQUEST_PROTOCOL_VERSION: CommandEntry(_sends(m.ProtocolVersion)),
+    Cmd.REQUEST_AUTOPILOT_CAPABILITIES: CommandEntry(_sends(m.AutopilotVersion)),
+    Cmd.REQUEST_CAMERA_INFORMATION: CommandEntry(_sends(m.CameraInformation)),
+    Cmd.REQUEST_STORAGE_INFORMATION: CommandEntry(_sends(m.StorageInformation)),
+    Cmd.REQUEST_CAMERA_CAPTURE_STATUS: CommandEntry(_sends(m.CameraCaptureStatus)),
 }

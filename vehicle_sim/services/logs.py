@@ -16,14 +16,13 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias, assert_never
 
 from vehicle_sim.autopilot.interface import Vehicle
-from vehicle_sim.logbook.recorder import Recorder
-from vehicle_sim.logbook.shelf import LogFile
+from vehicle_sim.effects import Client, Effect, Note, Send
+from vehicle_sim.flight_log.log_directory import LogFile
+from vehicle_sim.flight_log.recorder import Recorder
+from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.streams import NEVER
+from vehicle_sim.storage.store import StoreError
 from vehicle_sim.wire import messages as m
-
-from .effects import Client, Effect, Note, Send
-from .profile import Profile
-from .store import StoreError
-from .streams import NEVER
 
 DATA_BYTES: Final = 90
 FRAME_NS: Final = 250_000

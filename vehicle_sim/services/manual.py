@@ -1,4 +1,4 @@
-"""What comes from hands and from leaders: MANUAL_CONTROL, RC_CHANNELS_OVERRIDE, FOLLOW_TARGET.
+"""Manual input (MANUAL_CONTROL, RC_CHANNELS_OVERRIDE) and the leader of FOLLOW_TARGET.
 
 None of these has an ack; RC_CHANNELS, MANUAL_CONTROL and the flight tell what was heard.
 """
@@ -8,13 +8,15 @@ from __future__ import annotations
 import math
 from typing import Final, TypeAlias
 
-from vehicle_sim.autopilot.interface import Geodetic, Vec3, Vehicle
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.interface import Geodetic, Vehicle
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.effects import Client
+from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.wire import messages as m
 
-from .effects import Client
-
-Hands: TypeAlias = m.ManualControl | m.RcChannelsOverride | m.FollowTarget | m.GlobalPositionInt
+ManualInput: TypeAlias = (
+    m.ManualControl | m.RcChannelsOverride | m.FollowTarget | m.GlobalPositionInt
+)
 
 _POSITION_KNOWN: Final = 0x1  # FOLLOW_TARGET.est_capabilities
 _VELOCITY_KNOWN: Final = 0x2
@@ -22,12 +24,12 @@ _NO_HEADING: Final = 65535
 _FASTEST_M_S: Final = 1e3
 
 
-def hands(
+def manual_input(
     vehicle: Vehicle,
     parameters: Parameters,
     system: int,
     client: Client,
-    heard: Hands,
+    heard: ManualInput,
     wall_ns: int,
 ) -> None:
     """One such message.  ArduCopter lets only the station SYSID_MYGCS touch the sticks."""

@@ -15,11 +15,10 @@ from functools import cache
 from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameter_tables import Spec
-from vehicle_sim.autopilot.parameters import TABLES
-
-from .store import crc32_of
-from .virtual import Virtual, VirtualFiles
+from vehicle_sim.autopilot.parameters.parameters import TABLES
+from vehicle_sim.autopilot.parameters.tables import ParameterSpec
+from vehicle_sim.storage.store import crc32_of
+from vehicle_sim.storage.virtual_files import Virtual, VirtualFiles
 
 GENERAL_PATH: Final = "etc/extras/component_general.json"
 PARAMETERS_PATH: Final = "etc/extras/parameters.json"
@@ -75,7 +74,7 @@ def _json(value: Json) -> bytes:
     return json.dumps(value, separators=(",", ":")).encode("ascii")
 
 
-def _described(spec: Spec) -> Json:
+def _described(spec: ParameterSpec) -> Json:
     """One parameter by parameter.schema.json."""
     unit = _UNIT.search(spec.what)
     text = _UNIT.sub("", spec.what)

@@ -8,11 +8,8 @@ from __future__ import annotations
 from typing import Final
 
 from vehicle_sim.autopilot.interface import PlanItem, Result, Vehicle
-from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import RELATIVE, MissionResult, MissionType
-
-from .effects import Client, Effect, Send
-from .plan_items import (
+from vehicle_sim.effects import Client, Effect, Send
+from vehicle_sim.services.plan_items import (
     as_ardupilot_gives_back,
     as_px4_gives_back,
     from_float,
@@ -20,10 +17,12 @@ from .plan_items import (
     to_float,
     to_int,
 )
-from .plans import Plans
-from .profile import PLAN_TYPES, Profile
-from .setpoints import BadSetpointError, place_ned
-from .upload import Opening, Uploads, ack
+from vehicle_sim.services.plans import Plans
+from vehicle_sim.services.profile import PLAN_TYPES, Profile
+from vehicle_sim.services.setpoints import BadSetpointError, place_ned
+from vehicle_sim.services.upload import Opening, Uploads, ack
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import RELATIVE, MissionResult, MissionType
 
 NOTHING: Final = PlanItem(0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0.0, 1)
 """Where home stands at the head of a mission that is empty."""

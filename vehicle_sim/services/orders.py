@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.effects import Client, Effect
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE
-
-from .effects import Client, Effect
 
 INT32_MAX: Final = 0x7FFFFFFF
 

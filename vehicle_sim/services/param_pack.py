@@ -12,10 +12,9 @@ import struct
 from itertools import takewhile
 from typing import Final
 
-from vehicle_sim.autopilot.parameters import ParameterError, Parameters
-
-from .store import StoreError, StoreFault
-from .virtual import Virtual
+from vehicle_sim.autopilot.parameters.parameters import ParameterError, Parameters
+from vehicle_sim.storage.store import StoreError, StoreFault
+from vehicle_sim.storage.virtual_files import Virtual
 
 PATH: Final = "@PARAM/param.pck"
 UPLOAD_BYTES_MAX: Final = 0xFFFF

@@ -11,14 +11,13 @@ import struct
 from dataclasses import dataclass
 from typing import Final
 
-from vehicle_sim.autopilot.parameters import ParameterError, Parameters
+from vehicle_sim.autopilot.parameters.parameters import ParameterError, Parameters
+from vehicle_sim.effects import Client, Effect, Note, Send
+from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.streams import NEVER
+from vehicle_sim.storage.store import crc32_of
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import ParamType
-
-from .effects import Client, Effect, Note, Send
-from .profile import Profile
-from .store import crc32_of
-from .streams import NEVER
 
 NO_INDEX: Final = 0xFFFF
 PACE_NS: Final = 1_000_000

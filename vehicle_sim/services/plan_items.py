@@ -8,11 +8,10 @@ from math import isfinite
 from typing import Final
 
 from vehicle_sim.autopilot.interface import Geodetic, PlanItem
+from vehicle_sim.effects import Client
+from vehicle_sim.services.units import degrees_e7
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, Cmd, Frame
-
-from .effects import Client
-from .units import degrees_e7
+from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, Cmd, MavFrame
 
 _GLOBAL: Final = ABSOLUTE | RELATIVE
 _LOCAL_SCALE: Final = 1e4
@@ -41,17 +40,17 @@ _KEPT: Final[dict[int, tuple[bool, bool, bool, bool]]] = {
 """The parameters that ArduCopter stores, where it does not store all four."""
 
 _PLAIN: Final = {
-    Frame.GLOBAL_INT: Frame.GLOBAL,
-    Frame.GLOBAL_RELATIVE_ALT_INT: Frame.GLOBAL_RELATIVE_ALT,
+    MavFrame.GLOBAL_INT: MavFrame.GLOBAL,
+    MavFrame.GLOBAL_RELATIVE_ALT_INT: MavFrame.GLOBAL_RELATIVE_ALT,
 }
 _INT: Final = {plain: whole for whole, plain in _PLAIN.items()}
 
 
 def _scale(command: int, frame: int) -> float:
     """How x and y of MISSION_ITEM become those of MISSION_ITEM_INT; not everything is a place."""
-    if frame == Frame.MISSION or command in _DIGICAM:
+    if frame == MavFrame.MISSION or command in _DIGICAM:
         return 1.0
-    return _LOCAL_SCALE if frame == Frame.LOCAL_NED else _GLOBAL_SCALE
+    return _LOCAL_SCALE if frame == MavFrame.LOCAL_NED else _GLOBAL_SCALE
 
 
 def from_int(item: m.MissionItemInt) -> PlanItem:
@@ -98,7 +97,7 @@ def to_float(item: PlanItem, client: Client, kind: int) -> m.MissionItem:
 
 def as_px4_gives_back(item: PlanItem) -> PlanItem:
     """Global frames in their integer form."""
-    return replace(item, frame=_INT.get(Frame(item.frame), item.frame)) if _known(item) else item
+    return replace(item, frame=_INT.get(MavFrame(item.frame), item.frame)) if _known(item) else item
 
 
 def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
@@ -106,7 +105,7 @@ def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
     if item.seq == 0 and home is not None:
         return PlanItem(
             seq=0,
-            frame=Frame.GLOBAL,
+            frame=MavFrame.GLOBAL,
             command=Cmd.NAV_WAYPOINT,
             p1=0.0,
             p2=0.0,
@@ -127,8 +126,10 @@ def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
     )
     goes_somewhere = item.command <= _LAST_NAV and item.command not in _PLACELESS_NAVS
     if not (goes_somewhere or item.command in _PLACED_DOS):
-        return replace(item, frame=Frame.GLOBAL)
-    return replace(item, frame=_PLAIN.get(Frame(item.frame), item.frame)) if _known(item) else item
+        return replace(item, frame=MavFrame.GLOBAL)
+    return (
+        replace(item, frame=_PLAIN.get(MavFrame(item.frame), item.frame)) if _known(item) else item
+    )
 
 
 def _kept(value: float, kept: bool) -> float:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 from vehicle_sim.autopilot.interface import Flaw, PlanItem, Vehicle
+from vehicle_sim.services.plan_items import opaque_id
+from vehicle_sim.services.profile import PLAN_TYPES, Profile
 from vehicle_sim.wire.ids import MissionResult, MissionType
-
-from .plan_items import opaque_id
-from .profile import PLAN_TYPES, Profile
 
 FLAWS: Final = {
     Flaw.COMMAND: MissionResult.UNSUPPORTED,

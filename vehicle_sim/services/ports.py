@@ -8,11 +8,10 @@ from typing import TypeAlias
 
 from vehicle_sim.autopilot.interface import Result, Vehicle
 from vehicle_sim.autopilot.modes import Personality
-
-from .info import Info
-from .orders import Answer, Order
-from .profile import Profile
-from .streams import Streams
+from vehicle_sim.services.info import Info
+from vehicle_sim.services.orders import Answer, Order
+from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.streams import Streams
 
 
 class RefusedError(Exception):
@@ -24,7 +23,7 @@ class RefusedError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Desk:
+class CommandContext:
     """One vehicle, as its command handlers see it."""
 
     vehicle: Vehicle
@@ -33,11 +32,11 @@ class Desk:
     streams: dict[int, Streams]  # by channel
 
 
-Handler: TypeAlias = Callable[[Desk, Order], Answer]
+Handler: TypeAlias = Callable[[CommandContext, Order], Answer]
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class CommandEntry:
     handler: Handler
     place: bool = False  # p5..p7 are a place: COMMAND_INT's frame must be a global one
     only: Personality | None = None  # the other one does not know the command

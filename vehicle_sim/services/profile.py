@@ -7,7 +7,7 @@ from typing import Final
 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Capability, MissionType, Stream
+from vehicle_sim.wire.ids import Capability, DataStream, MissionType
 
 MESSAGE_INTERVAL_MIN_NS: Final = 5_000_000
 
@@ -24,7 +24,7 @@ class Profile:
     flight_sw_version: int
     capabilities: Capability
     intervals_ns: dict[int, int]  # message number -> what is sent unasked
-    rate_parameters: dict[str, Stream]  # which parameters say what more is sent unasked
+    rate_parameters: dict[str, DataStream]  # which parameters say what more is sent unasked
     fixed: frozenset[int]  # streams whose interval cannot be set
     bytewise_parameters: bool
     hash_check: bool  # a parameter list begins with _HASH_CHECK
@@ -133,13 +133,13 @@ ARDUPILOT: Final = Profile(
     capabilities=_COMMON | Capability.PARAM_ENCODE_C_CAST,
     intervals_ns=_hz({m.Heartbeat: 1, m.HomePosition: 0.5}),
     rate_parameters={
-        "SR0_RAW_SENS": Stream.RAW_SENSORS,
-        "SR0_EXT_STAT": Stream.EXTENDED_STATUS,
-        "SR0_RC_CHAN": Stream.RC_CHANNELS,
-        "SR0_POSITION": Stream.POSITION,
-        "SR0_EXTRA1": Stream.EXTRA1,
-        "SR0_EXTRA2": Stream.EXTRA2,
-        "SR0_EXTRA3": Stream.EXTRA3,
+        "SR0_RAW_SENS": DataStream.RAW_SENSORS,
+        "SR0_EXT_STAT": DataStream.EXTENDED_STATUS,
+        "SR0_RC_CHAN": DataStream.RC_CHANNELS,
+        "SR0_POSITION": DataStream.POSITION,
+        "SR0_EXTRA1": DataStream.EXTRA1,
+        "SR0_EXTRA2": DataStream.EXTRA2,
+        "SR0_EXTRA3": DataStream.EXTRA3,
     },
     fixed=frozenset(),
     bytewise_parameters=False,
@@ -183,9 +183,9 @@ STANDARD_MODES: Final[dict[str, int]] = {
 }
 """MAV_STANDARD_MODE of the modes that have one."""
 
-DATA_STREAMS: Final[dict[Stream, tuple[type[m.Message], ...]]] = {
-    Stream.RAW_SENSORS: (m.RawImu, m.ScaledPressure),
-    Stream.EXTENDED_STATUS: (
+DATA_STREAMS: Final[dict[DataStream, tuple[type[m.Message], ...]]] = {
+    DataStream.RAW_SENSORS: (m.RawImu, m.ScaledPressure),
+    DataStream.EXTENDED_STATUS: (
         m.SysStatus,
         m.PowerStatus,
         m.Meminfo,
@@ -196,12 +196,12 @@ DATA_STREAMS: Final[dict[Stream, tuple[type[m.Message], ...]]] = {
         m.PositionTargetGlobalInt,
         m.ExtendedSysState,
     ),
-    Stream.RC_CHANNELS: (m.ServoOutputRaw, m.RcChannels, m.RcChannelsRaw),
-    Stream.RAW_CONTROLLER: (),
-    Stream.POSITION: (m.GlobalPositionInt, m.LocalPositionNed, m.PositionTargetLocalNed),
-    Stream.EXTRA1: (m.Attitude, m.AttitudeQuaternion),
-    Stream.EXTRA2: (m.VfrHud,),
-    Stream.EXTRA3: (
+    DataStream.RC_CHANNELS: (m.ServoOutputRaw, m.RcChannels, m.RcChannelsRaw),
+    DataStream.RAW_CONTROLLER: (),
+    DataStream.POSITION: (m.GlobalPositionInt, m.LocalPositionNed, m.PositionTargetLocalNed),
+    DataStream.EXTRA1: (m.Attitude, m.AttitudeQuaternion),
+    DataStream.EXTRA2: (m.VfrHud,),
+    DataStream.EXTRA3: (
         m.SystemTime,
         m.Hwstatus,
         m.Wind,

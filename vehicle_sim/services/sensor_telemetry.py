@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from vehicle_sim.autopilot.interface import Readings, Vehicle
-from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import EkfFlag, EstimatorFlag, Sensor
-
-from .profile import Profile
-from .units import (
+from vehicle_sim.autopilot.interface import GPS_HDOP, Readings, Vehicle
+from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.units import (
     INT16_MAX,
     UINT16_MAX,
     boot_ms,
@@ -20,9 +17,10 @@ from .units import (
     millimetres,
     usec,
 )
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import EkfFlag, EstimatorFlag, Sensor
 
 FIX_3D: Final = 3
-GPS_HDOP: Final = 0.8
 GPS_VDOP: Final = 1.1
 GPS_VEL_ACC_MM_S: Final = 100
 HEIGHT_ACCURACY_M: Final = 0.3

@@ -18,27 +18,31 @@ from vehicle_sim.autopilot.interface import (
     Vehicle,
     VehicleEvent,
 )
-from vehicle_sim.autopilot.parameters import Parameters, Quantity
-from vehicle_sim.logbook.recorder import Recorder
-from vehicle_sim.logbook.shelf import Shelf
+from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.effects import Client, Effect, Note, Report, Send
+from vehicle_sim.flight_log.log_directory import LogDirectory
+from vehicle_sim.flight_log.recorder import Recorder
+from vehicle_sim.services import param_pack
+from vehicle_sim.services.clocks import ping, timesync
+from vehicle_sim.services.commands import Commands
+from vehicle_sim.services.ftp import FtpServer
+from vehicle_sim.services.info import Info
+from vehicle_sim.services.logs import LogServer
+from vehicle_sim.services.manual import manual_input
+from vehicle_sim.services.metadata import metadata_of
+from vehicle_sim.services.mission import MissionServer
+from vehicle_sim.services.parameters import ParameterServer
+from vehicle_sim.services.ports import CommandContext
+from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.setpoints import (
+    BadSetpointError,
+    attitude_setpoint,
+    global_setpoint,
+    local_setpoint,
+)
+from vehicle_sim.services.streams import NEVER, Streams
+from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
-
-from . import param_pack
-from .clocks import ping, timesync
-from .commands import Commands
-from .effects import Client, Effect, Note, Report, Send
-from .ftp import FtpServer
-from .info import Info
-from .logs import LogServer
-from .manual import hands
-from .metadata import metadata_of
-from .mission import MissionServer
-from .parameters import ParameterServer
-from .ports import Desk
-from .profile import Profile
-from .setpoints import BadSetpointError, attitude_setpoint, global_setpoint, local_setpoint
-from .store import MemoryStore, Store
-from .streams import NEVER, Streams
 
 COMPONENT: Final = 1
 GROUND_STATION: Final = 6  # MAV_TYPE_GCS
@@ -86,14 +90,14 @@ class VehicleServer:
         self._recorder = Recorder(
             vehicle,
             parameters,
-            Shelf(self.store, profile.name),
+            LogDirectory(self.store, profile.name),
             (system, profile.flight_sw_version),
             unix_start_ns,
             logging,
         )
         self._logs = LogServer(vehicle, profile, self._recorder)
         self._streams: dict[int, Streams] = {}
-        self._commands = Commands(Desk(vehicle, profile, self._info, self._streams))
+        self._commands = Commands(CommandContext(vehicle, profile, self._info, self._streams))
         self._clock_ns = vehicle.clock_ns
         self._due_ns = NEVER
         self.deadline_ns = NEVER
@@ -189,7 +193,7 @@ class VehicleServer:
                 | m.FollowTarget()
                 | m.GlobalPositionInt()
             ):
-                hands(self.vehicle, self._given, self.system, client, message, wall_ns)
+                manual_input(self.vehicle, self._given, self.system, client, message, wall_ns)
                 return []
             case m.SetMode():
                 return self._set_mode(client, message)

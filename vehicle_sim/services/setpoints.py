@@ -10,22 +10,21 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from vehicle_sim.autopilot.axes import every_axis_is_given, is_partial
+from vehicle_sim.autopilot.control.axes import every_axis_is_given, is_partial
 from vehicle_sim.autopilot.geo import projection
-from vehicle_sim.autopilot.interface import AttitudeSetpoint, Geodetic, Setpoint, Vec3, Vehicle
+from vehicle_sim.autopilot.interface import AttitudeSetpoint, Geodetic, Setpoint, Vehicle
+from vehicle_sim.numerics.vectors import Vec3, euler_rad
+from vehicle_sim.services.profile import Profile
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, AttitudeIgnore, Frame, PositionIgnore
-
-from .profile import Profile
-from .units import euler_rad
+from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, AttitudeIgnore, MavFrame, PositionIgnore
 
 FARTHEST: Final = 1e6
 """Metres, m/s or m/s^2 beyond which no setpoint means anything."""
 
-_BODY: Final = frozenset({Frame.BODY_NED, Frame.BODY_OFFSET_NED})
-_OFFSET: Final = frozenset({Frame.LOCAL_OFFSET_NED, Frame.BODY_NED, Frame.BODY_OFFSET_NED})
-_FRAMES_PX4: Final = frozenset({Frame.LOCAL_NED, Frame.BODY_NED})
-_FRAMES_ARDUPILOT: Final = _OFFSET | {Frame.LOCAL_NED}
+_BODY: Final = frozenset({MavFrame.BODY_NED, MavFrame.BODY_OFFSET_NED})
+_OFFSET: Final = frozenset({MavFrame.LOCAL_OFFSET_NED, MavFrame.BODY_NED, MavFrame.BODY_OFFSET_NED})
+_FRAMES_PX4: Final = frozenset({MavFrame.LOCAL_NED, MavFrame.BODY_NED})
+_FRAMES_ARDUPILOT: Final = _OFFSET | {MavFrame.LOCAL_NED}
 _PLACES: Final = ABSOLUTE | RELATIVE
 
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.interface import Vehicle
+from vehicle_sim.numerics.vectors import euler_rad
+from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.units import UINT16_MAX, clip_uint16, usec
 from vehicle_sim.wire import messages as m
-
-from .profile import Profile
-from .units import UINT16_MAX, clip_uint16, euler_rad, usec
 
 Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
 

@@ -11,10 +11,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Final
 
+from vehicle_sim.services.profile import DATA_STREAMS, MESSAGE_INTERVAL_MIN_NS, Profile
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Stream
-
-from .profile import DATA_STREAMS, MESSAGE_INTERVAL_MIN_NS, Profile
+from vehicle_sim.wire.ids import DataStream
 
 NEVER: Final = 1 << 62
 S_NS: Final = 1_000_000_000
@@ -127,7 +126,7 @@ class Streams:
 
     def request(self, asked: m.RequestDataStream, now_ns: int) -> None:
         """The old REQUEST_DATA_STREAM, still what MAVProxy and DroneKit use."""
-        if asked.req_stream_id == Stream.ALL:
+        if asked.req_stream_id == DataStream.ALL:
             kinds = [kind for group in DATA_STREAMS.values() for kind in group]
         else:
             kinds = [

@@ -11,12 +11,12 @@ from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Geodetic, Vehicle
+from vehicle_sim.numerics.vectors import euler_rad
+from vehicle_sim.services import sensor_telemetry as sensors
+from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.units import boot_ms, clip_int16, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Frame, PositionIgnore
-
-from . import sensor_telemetry as sensors
-from .profile import Profile
-from .units import boot_ms, clip_int16, degrees_e7, euler_rad, millimetres, usec
+from vehicle_sim.wire.ids import MavFrame, PositionIgnore
 
 Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
 
@@ -165,7 +165,7 @@ def position_target_global_int(
         yaw=local.yaw,
         yaw_rate=local.yaw_rate,
         type_mask=local.type_mask,
-        coordinate_frame=Frame.GLOBAL_INT,
+        coordinate_frame=MavFrame.GLOBAL_INT,
     )
 
 
@@ -189,7 +189,7 @@ def orbit_execution_status(vehicle: Vehicle, profile: Profile) -> m.OrbitExecuti
         x=degrees_e7(where.lat_deg),
         y=degrees_e7(where.lon_deg),
         z=where.alt_amsl_m,
-        frame=Frame.GLOBAL,
+        frame=MavFrame.GLOBAL,
     )
 
 

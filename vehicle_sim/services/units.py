@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 from vehicle_sim.autopilot.interface import Vehicle
@@ -34,12 +33,3 @@ def clip_int16(value: float) -> int:
 
 def clip_uint16(value: float) -> int:
     return max(0, min(UINT16_MAX - 1, round(value)))
-
-
-def euler_rad(q: tuple[float, float, float, float]) -> tuple[float, float, float]:
-    """Roll, pitch, yaw of a w, x, y, z quaternion (body to NED, z-y-x order)."""
-    w, x, y, z = q
-    roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    pitch = math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))
-    yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    return (roll, pitch, yaw)

@@ -18,14 +18,13 @@ from dataclasses import dataclass, field
 from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.interface import PlanItem
+from vehicle_sim.effects import Client, Effect, Note, Send
+from vehicle_sim.services.plan_items import from_float, from_int, opaque_id
+from vehicle_sim.services.plans import Plans
+from vehicle_sim.services.profile import PLAN_TYPES, Profile
+from vehicle_sim.services.streams import NEVER
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MissionResult, MissionType
-
-from .effects import Client, Effect, Note, Send
-from .plan_items import from_float, from_int, opaque_id
-from .plans import Plans
-from .profile import PLAN_TYPES, Profile
-from .streams import NEVER
 
 ACK_REPEATED_NS: Final = 15_000_000_000
 """How long a repeated last item is answered with the ack again (the first may have been lost)."""

@@ -7,11 +7,10 @@ import errno
 import socket
 from typing import Final, Protocol, TypeAlias
 
+from vehicle_sim.shell.readable import Readable, ReadableSockets
+from vehicle_sim.shell.urls import Url, UrlKind
+from vehicle_sim.simulation.world import Datagram, Input, Joined, Left, Peer
 from vehicle_sim.wire.split import Reassembler
-from vehicle_sim.world import Datagram, Input, Joined, Left, Peer
-
-from .urls import Kind, Url
-from .watch import Readable, Watch
 
 Address: TypeAlias = tuple[str, int]
 
@@ -56,7 +55,7 @@ class Endpoint(Protocol):
         """Whether it wants `idle`."""
         ...
 
-    def attach(self, watch: Watch) -> None:
+    def attach(self, watch: ReadableSockets) -> None:
         """Have its sockets watched, now and later, under the number of the link."""
         ...
 
@@ -81,7 +80,7 @@ class Udp:
 
     def __init__(self, link: int, url: Url) -> None:
         self.link: Final = link
-        self._connected = url.kind is Kind.UDP_OUT
+        self._connected = url.kind is UrlKind.UDP_OUT
         self._remote: Address = (url.host, url.port)
         self.peers: Final[tuple[Peer, ...]] = (self._remote,) if self._connected else ()
         self._socket = socket.socket(_family(url.host), socket.SOCK_DGRAM)
@@ -104,7 +103,7 @@ class Udp:
         """The receive buffer that the kernel gave."""
         return self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
 
-    def attach(self, watch: Watch) -> None:
+    def attach(self, watch: ReadableSockets) -> None:
         watch.add(self._socket, self.link)
 
     def read(self, ready: Readable) -> list[Input]:
@@ -178,9 +177,9 @@ class _Streams:
         self.peers: Final[tuple[Peer, ...]] = ()
         self._connections: dict[Peer, _Connection] = {}
         self._lost: list[Peer] = []
-        self._watch: Watch | None = None
+        self._watch: ReadableSockets | None = None
 
-    def attach(self, watch: Watch) -> None:
+    def attach(self, watch: ReadableSockets) -> None:
         self._watch = watch
 
     def _join(self, stream: socket.socket, peer: Address) -> Joined:
@@ -237,7 +236,7 @@ class TcpServer(_Streams):
         self._again_ns: int | None = None
         self.url: Final = url.at(self._listener.getsockname()[1])
 
-    def attach(self, watch: Watch) -> None:
+    def attach(self, watch: ReadableSockets) -> None:
         super().attach(watch)
         watch.add(self._listener, self.link)
 
@@ -304,9 +303,9 @@ class TcpClient(_Streams):
 def open_endpoint(link: int, url: Url) -> Udp | TcpServer | TcpClient:
     """Raises EndpointError."""
     match url.kind:
-        case Kind.UDP_IN | Kind.UDP_OUT:
+        case UrlKind.UDP_IN | UrlKind.UDP_OUT:
             return Udp(link, url)
-        case Kind.TCP_IN:
+        case UrlKind.TCP_IN:
             return TcpServer(link, url)
-        case Kind.TCP_OUT:
+        case UrlKind.TCP_OUT:
             return TcpClient(link, url)

@@ -14,10 +14,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Final
 
-from vehicle_sim.services.store import (
+from vehicle_sim.storage.store import (
     BYTES_MAX,
     ENTRIES_MAX,
-    Entry,
+    DirectoryEntry,
     StoreError,
     StoreFault,
     parts_of,
@@ -50,17 +50,17 @@ class DiskStore:
             raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(root))
         self._room = bytes_max
 
-    def entries(self, path: str) -> list[Entry]:
+    def entries(self, path: str) -> list[DirectoryEntry]:
         with _faults(path):
             found = self._directory(path)
-            entries: list[Entry] = []
+            entries: list[DirectoryEntry] = []
             with os.scandir(found) as scan:
                 for each in scan:
                     status = each.stat(follow_symlinks=False)
                     if stat.S_ISDIR(status.st_mode):
-                        entries.append(Entry(each.name, 0, True))
+                        entries.append(DirectoryEntry(each.name, 0, True))
                     elif stat.S_ISREG(status.st_mode):
-                        entries.append(Entry(each.name, status.st_size, False))
+                        entries.append(DirectoryEntry(each.name, status.st_size, False))
             return sorted(entries)[:ENTRIES_MAX]
 
     def size(self, path: str) -> int:

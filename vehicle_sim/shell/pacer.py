@@ -14,11 +14,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from vehicle_sim.world import Input, Log, Transmit, Wake, World
-
-from .endpoints import Endpoint
-from .lifeline import Lifeline
-from .watch import Watch
+from vehicle_sim.shell.endpoints import Endpoint
+from vehicle_sim.shell.parent import ParentPipe
+from vehicle_sim.shell.readable import ReadableSockets
+from vehicle_sim.simulation.world import Input, Log, Transmit, Wake, World
 
 SLIP_NS: Final = 100_000_000
 SAID_EVERY_NS: Final = 5_000_000_000
@@ -91,7 +90,7 @@ class Pacer:
         start_ns: int,
         log: Callable[[Log], None],
         stop: Stop,
-        lifeline: Lifeline | None = None,
+        lifeline: ParentPipe | None = None,
         hear: Callable[[bytes], None] | None = None,
         redraw: Redraw | None = None,
     ) -> None:
@@ -113,7 +112,7 @@ class Pacer:
         self._said_ns = start_ns
         self._said_slip_ns = 0
         self.pace: Final = Pace(start_ns)
-        self._watch: Final = Watch()
+        self._watch: Final = ReadableSockets()
         self._watch.add(stop.sleeper, _STOP)
         if lifeline is not None:
             self._watch.add(lifeline, _LIFELINE)
@@ -185,7 +184,7 @@ class Pacer:
         if self._redraw is not None:
             self._redraw.show(self.pace)
 
-    def _feel(self, lifeline: Lifeline, now_ns: int) -> None:
+    def _feel(self, lifeline: ParentPipe, now_ns: int) -> None:
         said = lifeline.read()
         if said:
             if self._hear is not None:

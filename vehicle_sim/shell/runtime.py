@@ -11,26 +11,27 @@ from pathlib import Path
 from typing import Final
 
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.decisions import phase_ns
 from vehicle_sim.autopilot.interface import Geodetic
-from vehicle_sim.autopilot.life import phase_ns
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.faults import Timed
-from vehicle_sim.fleet import Seat, Spec, engine_for
-from vehicle_sim.model.airframe import load
-from vehicle_sim.model.faults import WindChange
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.engine.engines import engine_for
+from vehicle_sim.engine.step import Seat, VehicleSpec
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.faults import WindChange
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.services.store import MemoryStore, Store
 from vehicle_sim.services.streams import POSITION_ONLY
 from vehicle_sim.shell.endpoints import Endpoint, EndpointError, Udp, open_endpoint
 from vehicle_sim.shell.files import DiskStore
-from vehicle_sim.shell.lifeline import standard_input
 from vehicle_sim.shell.limits import allow_sockets
 from vehicle_sim.shell.pacer import Pacer, Redraw, Stop, monotonic_ns
+from vehicle_sim.shell.parent import standard_input
 from vehicle_sim.shell.urls import Url
+from vehicle_sim.simulation.fault_script import Timed
+from vehicle_sim.simulation.world import LinkSpec, Log, World
+from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire.signing import SigningKey
-from vehicle_sim.world import LinkSpec, Log, World
 
 EXIT_INTERRUPTED: Final = 130
 EXIT_TERMINATED: Final = 0
@@ -41,7 +42,7 @@ LOGGED_MOST: Final = 50
 
 
 @dataclass(frozen=True, slots=True)
-class Berth:
+class VehicleSetup:
     """One vehicle's place: its system id, where it stands, and the links of its own."""
 
     system: int
@@ -55,7 +56,7 @@ class Plan:
 
     personality: Personality
     airframe: str
-    berths: tuple[Berth, ...]
+    vehicles: tuple[VehicleSetup, ...]
     shared: tuple[Url, ...]  # links on which all vehicles speak
     seed: int
     speedup: Fraction
@@ -79,19 +80,22 @@ class Opened:
 
 def launch(plan: Plan) -> Opened:
     """Raises ParameterError, EndpointError and OSError, with nothing left open."""
-    parameters = [_parameters(plan, berth) for berth in plan.berths]
-    stores = [_store(plan, berth) for berth in plan.berths]
+    parameters = [_parameters(plan, setup) for setup in plan.vehicles]
+    stores = [_store(plan, setup) for setup in plan.vehicles]
     endpoints, links, urls = _open_links(plan)
-    specs = [Spec(plan.seed, index, berth.home.lat_deg) for index, berth in enumerate(plan.berths)]
+    specs = [
+        VehicleSpec(plan.seed, index, setup.home.lat_deg)
+        for index, setup in enumerate(plan.vehicles)
+    ]
     engine = engine_for(specs, load(plan.airframe))
     unix_ns = time.time_ns()
     profile = PROFILES[plan.personality]
     if plan.sparse:
         profile = replace(profile, intervals_ns=POSITION_ONLY)
     servers: list[VehicleServer] = []
-    for lane, berth in enumerate(plan.berths):
+    for lane, setup in enumerate(plan.vehicles):
         vehicle = Autopilot(
-            plan.personality, berth.home, plan.seed, lane, parameters[lane], Seat(engine, lane)
+            plan.personality, setup.home, plan.seed, lane, parameters[lane], Seat(engine, lane)
         )
         vehicle.inject(plan.wind)
         servers.append(
@@ -99,11 +103,11 @@ def launch(plan: Plan) -> Opened:
                 vehicle,
                 profile,
                 parameters[lane],
-                berth.system,
+                setup.system,
                 plan.speedup,
                 unix_ns,
                 store=stores[lane],
-                logging=len(plan.berths) <= LOGGED_MOST,
+                logging=len(plan.vehicles) <= LOGGED_MOST,
                 phase_ns=phase_ns(lane),
             )
         )
@@ -121,29 +125,29 @@ def launch(plan: Plan) -> Opened:
     return Opened(world, tuple(endpoints), tuple(map(tuple, urls)), start_ns)
 
 
-def _parameters(plan: Plan, berth: Berth) -> Parameters:
+def _parameters(plan: Plan, setup: VehicleSetup) -> Parameters:
     parameters = Parameters(plan.personality)
-    parameters.set(SYSTEM_ID[plan.personality], berth.system)
+    parameters.set(SYSTEM_ID[plan.personality], setup.system)
     for name, value in plan.params:
         parameters.set(name, value)
     return parameters
 
 
-def _store(plan: Plan, berth: Berth) -> Store:
+def _store(plan: Plan, setup: VehicleSetup) -> Store:
     if plan.files is None:
         return MemoryStore()
-    alone = len(plan.berths) == 1
-    return DiskStore(plan.files if alone else plan.files / str(berth.system))
+    alone = len(plan.vehicles) == 1
+    return DiskStore(plan.files if alone else plan.files / str(setup.system))
 
 
 def _open_links(plan: Plan) -> tuple[list[Endpoint], list[LinkSpec], list[list[Url]]]:
     """The vehicles' own links first, then the shared ones."""
-    own = [(index, url) for index, berth in enumerate(plan.berths) for url in berth.urls]
+    own = [(index, url) for index, vehicle in enumerate(plan.vehicles) for url in vehicle.urls]
     wanted: list[tuple[int | None, Url]] = [*own, *((None, url) for url in plan.shared)]
     allow_sockets(len(wanted))
     endpoints: list[Endpoint] = []
     links: list[LinkSpec] = []
-    urls: list[list[Url]] = [[] for _ in plan.berths]
+    urls: list[list[Url]] = [[] for _ in plan.vehicles]
     try:
         for vehicle, url in wanted:
             endpoint: Endpoint = open_endpoint(len(endpoints), url)

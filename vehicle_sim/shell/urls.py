@@ -10,35 +10,35 @@ from enum import Enum
 from typing import Final
 
 
-class Kind(Enum):
+class UrlKind(Enum):
     UDP_IN = "udpin"
     UDP_OUT = "udpout"
     TCP_IN = "tcpin"
     TCP_OUT = "tcpout"
 
 
-KINDS: Final[dict[str, Kind]] = {
-    "udpin://": Kind.UDP_IN,
-    "udpout://": Kind.UDP_OUT,
-    "tcpin://": Kind.TCP_IN,
-    "tcpout://": Kind.TCP_OUT,
-    "udpin:": Kind.UDP_IN,
-    "udpout:": Kind.UDP_OUT,
-    "udp:": Kind.UDP_IN,
-    "tcpin:": Kind.TCP_IN,
-    "tcp:": Kind.TCP_OUT,
+KINDS: Final[dict[str, UrlKind]] = {
+    "udpin://": UrlKind.UDP_IN,
+    "udpout://": UrlKind.UDP_OUT,
+    "tcpin://": UrlKind.TCP_IN,
+    "tcpout://": UrlKind.TCP_OUT,
+    "udpin:": UrlKind.UDP_IN,
+    "udpout:": UrlKind.UDP_OUT,
+    "udp:": UrlKind.UDP_IN,
+    "tcpin:": UrlKind.TCP_IN,
+    "tcp:": UrlKind.TCP_OUT,
 }
 """By prefix, longest first."""
 
 FORMS: Final = "udpin://HOST:PORT, udpout://HOST:PORT, tcpin://HOST:PORT or tcpout://HOST:PORT"
 
 
-_WAITING: Final = frozenset({Kind.UDP_IN, Kind.TCP_IN})
+_WAITING: Final = frozenset({UrlKind.UDP_IN, UrlKind.TCP_IN})
 _OTHER_END: Final = {
-    Kind.UDP_IN: Kind.UDP_OUT,
-    Kind.UDP_OUT: Kind.UDP_IN,
-    Kind.TCP_IN: Kind.TCP_OUT,
-    Kind.TCP_OUT: Kind.TCP_IN,
+    UrlKind.UDP_IN: UrlKind.UDP_OUT,
+    UrlKind.UDP_OUT: UrlKind.UDP_IN,
+    UrlKind.TCP_IN: UrlKind.TCP_OUT,
+    UrlKind.TCP_OUT: UrlKind.TCP_IN,
 }
 
 
@@ -48,7 +48,7 @@ class UrlError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Url:
-    kind: Kind
+    kind: UrlKind
     host: str
     port: int
 

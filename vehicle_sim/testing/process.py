@@ -1,4 +1,4 @@
-"""Vehicles for other people's tests: a child process, its URL, its troubles and its truth."""
+"""Vehicles for other people's tests: a child process, its URL, its faults and its truth."""
 
 from __future__ import annotations
 

@@ -12,9 +12,9 @@ from typing import Final, NamedTuple, cast
 
 from fastcrc.crc16 import mcrf4xx
 
-from .dialect import CRC_EXTRAS, LAYOUTS
-from .messages import IDS, TYPES, Message
-from .supplement import Field
+from vehicle_sim.wire.dialect import CRC_EXTRAS, LAYOUTS
+from vehicle_sim.wire.messages import IDS, TYPES, Message
+from vehicle_sim.wire.supplement import MessageField
 
 STX1: Final = 0xFE
 STX2: Final = 0xFD
@@ -41,7 +41,7 @@ _HEADER2: Final = struct.Struct("<BBBBBB3s")
 _CHECKSUM: Final = struct.Struct("<H")
 
 
-def _format(field: Field) -> str:
+def _format(field: MessageField) -> str:
     if not field.length:
         return _LETTERS[field.kind]
     if field.kind in _BYTES:
@@ -151,7 +151,7 @@ def encode(message: Message, sequence: int, system: int, component: int) -> byte
     return codec.frame(codec.payload(message), sequence, system, component)
 
 
-class Frame(NamedTuple):
+class MavlinkFrame(NamedTuple):
     """One frame whose checksum was right."""
 
     version: int  # 1 or 2

@@ -12,8 +12,8 @@ from typing import Final, Protocol
 
 from pymavlink.dialects.v20 import all as upstream
 
-from .messages import TYPES
-from .supplement import GROWN, NEW, Field, Layout
+from vehicle_sim.wire.messages import TYPES
+from vehicle_sim.wire.supplement import GROWN, NEW, Layout, MessageField
 
 
 class _Upstream(Protocol):
@@ -36,7 +36,7 @@ def _layout(kind: type[_Upstream]) -> Layout:
     signature = inspect.signature(kind.__init__).parameters
     fields = tuple(
         # The dialect's pseudo type for the protocol's own version is a plain byte on the wire.
-        Field(
+        MessageField(
             name,
             kinds[name].removesuffix("_mavlink_version"),
             length,

@@ -50,7 +50,7 @@ class Cmd(IntEnum):
     IMAGE_STOP_CAPTURE = 2001
 
 
-class Frame(IntEnum):
+class MavFrame(IntEnum):
     """MAV_FRAME."""
 
     GLOBAL = 0
@@ -66,8 +66,8 @@ class Frame(IntEnum):
     GLOBAL_TERRAIN_ALT_INT = 11
 
 
-ABSOLUTE = frozenset({Frame.GLOBAL, Frame.GLOBAL_INT})
-RELATIVE = frozenset({Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL_RELATIVE_ALT_INT})
+ABSOLUTE = frozenset({MavFrame.GLOBAL, MavFrame.GLOBAL_INT})
+RELATIVE = frozenset({MavFrame.GLOBAL_RELATIVE_ALT, MavFrame.GLOBAL_RELATIVE_ALT_INT})
 
 
 class Sensor(IntFlag):
@@ -181,7 +181,7 @@ class ParamType(IntEnum):
     REAL32 = 9
 
 
-class Stream(IntEnum):
+class DataStream(IntEnum):
     """MAV_DATA_STREAM."""
 
     ALL = 0

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Final
 
-from .codec import Frame
-from .messages import SetupSigning
+from vehicle_sim.wire.codec import MavlinkFrame
+from vehicle_sim.wire.messages import SetupSigning
 
 KEY_BYTES: Final = 32
 EPOCH_UNIX_NS: Final = 1_420_070_400 * 1_000_000_000
@@ -113,7 +113,7 @@ class Signing:
         off = not any(asked.secret_key) and asked.initial_timestamp == 0
         self.setup(None if off else SigningKey(asked.secret_key), asked.initial_timestamp)
 
-    def judge(self, frame: Frame, unix_ns: int) -> Verdict:
+    def judge(self, frame: MavlinkFrame, unix_ns: int) -> Verdict:
         """Whether a frame is to be taken; one that is taken moves its stream on."""
         if self._key is None or (frame.number in UNSIGNED_ALLOWED and not frame.signed):
             return Verdict.GOOD

@@ -7,8 +7,8 @@ from typing import Final
 
 from fastcrc.crc16 import mcrf4xx
 
-from .codec import SIGNED, STX1, STX2, Frame
-from .dialect import CRC_EXTRAS
+from vehicle_sim.wire.codec import SIGNED, STX1, STX2, MavlinkFrame
+from vehicle_sim.wire.dialect import CRC_EXTRAS
 
 _STARTS: Final = (STX1, STX2)
 _KNOWN_FLAGS: Final = SIGNED
@@ -64,13 +64,13 @@ def _start(data: bytes, at: int) -> int:
     return min(found, default=len(data))
 
 
-def split(data: bytes, counters: Counters) -> list[Frame]:
+def split(data: bytes, counters: Counters) -> list[MavlinkFrame]:
     """The good frames of one datagram, in order; all else is counted, nothing raises.
 
     After a bad frame the search goes on one byte behind its start, so that a stray start byte
     cannot swallow the good frame behind it.
     """
-    frames: list[Frame] = []
+    frames: list[MavlinkFrame] = []
     at = 0
     end = len(data)
     while at < end:
@@ -96,7 +96,7 @@ def split(data: bytes, counters: Counters) -> list[Frame]:
     return frames
 
 
-def _frame2(data: bytes, at: int, size: int, counters: Counters) -> Frame | None:
+def _frame2(data: bytes, at: int, size: int, counters: Counters) -> MavlinkFrame | None:
     length, flags, _, sequence, system, component = data[at + 1 : at + 7]
     if flags & ~_KNOWN_FLAGS:
         counters.incompatible += 1
@@ -111,10 +111,10 @@ def _frame2(data: bytes, at: int, size: int, counters: Counters) -> Frame | None
         counters.bad_crc += 1
         return None
     payload, raw = data[at + 10 : tail], data[at : at + size]
-    return Frame(2, sequence, system, component, number, payload, bool(flags & SIGNED), raw)
+    return MavlinkFrame(2, sequence, system, component, number, payload, bool(flags & SIGNED), raw)
 
 
-def _frame1(data: bytes, at: int, size: int, counters: Counters) -> Frame | None:
+def _frame1(data: bytes, at: int, size: int, counters: Counters) -> MavlinkFrame | None:
     length, sequence, system, component, number = data[at + 1 : at + 6]
     extra = _EXTRA.get(number)
     if extra is None:
@@ -125,7 +125,7 @@ def _frame1(data: bytes, at: int, size: int, counters: Counters) -> Frame | None
         counters.bad_crc += 1
         return None
     payload, raw = data[at + 6 : tail], data[at : at + size]
-    return Frame(1, sequence, system, component, number, payload, False, raw)
+    return MavlinkFrame(1, sequence, system, component, number, payload, False, raw)
 
 
 class Reassembler:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 
-class Field(NamedTuple):
+class MessageField(NamedTuple):
     name: str
     kind: str  # MAVLink's C type
     length: int  # array length, 0 for a scalar
@@ -22,7 +22,7 @@ class Layout(NamedTuple):
     number: int
     name: str
     crc_extra: int
-    fields: tuple[Field, ...]
+    fields: tuple[MessageField, ...]
 
 
 NEW: Final = (
@@ -31,11 +31,11 @@ NEW: Final = (
         "PROTOCOL_VERSION",
         217,
         (
-            Field("version", "uint16_t", 0),
-            Field("min_version", "uint16_t", 0),
-            Field("max_version", "uint16_t", 0),
-            Field("spec_version_hash", "uint8_t", 8),
-            Field("library_version_hash", "uint8_t", 8),
+            MessageField("version", "uint16_t", 0),
+            MessageField("min_version", "uint16_t", 0),
+            MessageField("max_version", "uint16_t", 0),
+            MessageField("spec_version_hash", "uint8_t", 8),
+            MessageField("library_version_hash", "uint8_t", 8),
         ),
     ),
     Layout(
@@ -43,25 +43,25 @@ NEW: Final = (
         "COMPONENT_METADATA",
         182,
         (
-            Field("time_boot_ms", "uint32_t", 0),
-            Field("file_crc", "uint32_t", 0),
-            Field("uri", "char", 100),
+            MessageField("time_boot_ms", "uint32_t", 0),
+            MessageField("file_crc", "uint32_t", 0),
+            MessageField("uri", "char", 100),
         ),
     ),
 )
 
-GROWN: Final[dict[str, tuple[Field, ...]]] = {
+GROWN: Final[dict[str, tuple[MessageField, ...]]] = {
     "MISSION_CURRENT": (
-        Field("mission_id", "uint32_t", 0, True),
-        Field("fence_id", "uint32_t", 0, True),
-        Field("rally_points_id", "uint32_t", 0, True),
+        MessageField("mission_id", "uint32_t", 0, True),
+        MessageField("fence_id", "uint32_t", 0, True),
+        MessageField("rally_points_id", "uint32_t", 0, True),
     ),
-    "MISSION_COUNT": (Field("opaque_id", "uint32_t", 0, True),),
-    "MISSION_ACK": (Field("opaque_id", "uint32_t", 0, True),),
+    "MISSION_COUNT": (MessageField("opaque_id", "uint32_t", 0, True),),
+    "MISSION_ACK": (MessageField("opaque_id", "uint32_t", 0, True),),
     "TIMESYNC": (
-        Field("target_system", "uint8_t", 0, True),
-        Field("target_component", "uint8_t", 0, True),
+        MessageField("target_system", "uint8_t", 0, True),
+        MessageField("target_component", "uint8_t", 0, True),
     ),
-    "SET_ATTITUDE_TARGET": (Field("thrust_body", "float", 3, True),),
-    "AVAILABLE_MODES": (Field("seq", "uint8_t", 0, True),),
+    "SET_ATTITUDE_TARGET": (MessageField("thrust_body", "float", 3, True),),
+    "AVAILABLE_MODES": (MessageField("seq", "uint8_t", 0, True),),
 }

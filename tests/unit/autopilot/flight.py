@@ -16,10 +16,10 @@ from vehicle_sim.autopilot.interface import (
     Result,
     Setpoint,
     StatusText,
-    Vec3,
     VehicleEvent,
 )
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.numerics.vectors import Vec3
 
 HOMES: dict[Personality, Geodetic] = {
     "px4": Geodetic(47.397742, 8.545594, 488.0),

@@ -6,7 +6,7 @@ import pytest
 
 from tests.unit.autopilot.flight import Flight
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.model.faults import WindChange
+from vehicle_sim.plant.faults import WindChange
 
 either = pytest.mark.parametrize("personality", ["px4", "ardupilot"])
 

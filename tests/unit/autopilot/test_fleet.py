@@ -12,15 +12,17 @@ import pytest
 from tests.unit.autopilot.flight import HOMES
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.fleet import MANY_FROM, Engine, Few, Seat, Spec, engine_for, state_bytes
-from vehicle_sim.fleet_many import Many
-from vehicle_sim.model.airframe import load
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.engine.engines import MANY_FROM, engine_for
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.step import Engine, Seat, VehicleSpec, state_bytes
+from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
-from vehicle_sim.world import Datagram, LinkSpec, Transmit, Wake, World
 
 MS = 1_000_000
 S = 1000 * MS
@@ -30,11 +32,11 @@ def personality(index: int) -> Personality:
     return "ardupilot" if index % 3 == 2 else "px4"
 
 
-def specs(count: int) -> list[Spec]:
-    return [Spec(7 + i // 4, i, HOMES[personality(i)].lat_deg) for i in range(count)]
+def specs(count: int) -> list[VehicleSpec]:
+    return [VehicleSpec(7 + i // 4, i, HOMES[personality(i)].lat_deg) for i in range(count)]
 
 
-def crew(engine: Engine, count: int) -> list[Autopilot]:
+def vehicle(engine: Engine, count: int) -> list[Autopilot]:
     vehicles = []
     for lane, spec in enumerate(specs(count)):
         kind = personality(lane)
@@ -100,7 +102,7 @@ def trouble(vehicles: Sequence[Autopilot]) -> None:
 
 def fly(engine: Engine, count: int, nap_ns: int, end_ns: int) -> tuple[list[bytes], bytes]:
     """All states at the end, and all that was sent."""
-    vehicles = crew(engine, count)
+    vehicles = vehicle(engine, count)
     servers = [
         VehicleServer(vehicle, PROFILES[vehicle.personality], vehicle.parameters, system)
         for system, vehicle in enumerate(vehicles, start=1)

@@ -12,7 +12,7 @@ from math import asin, cos, isfinite, pi, sin, sqrt
 
 import pytest
 
-from vehicle_sim.autopilot.demands import (
+from vehicle_sim.autopilot.control.demands import (
     Demand,
     FlyAtHeight,
     FlyAttitude,
@@ -21,16 +21,18 @@ from vehicle_sim.autopilot.demands import (
     FlyVelocity,
     Situation,
 )
-from vehicle_sim.autopilot.estimated import Estimated
-from vehicle_sim.autopilot.flight import Flight
-from vehicle_sim.autopilot.interface import AttitudeSetpoint, Vec3
-from vehicle_sim.autopilot.pilot import Pilot
-from vehicle_sim.autopilot.trajectory import Limits
-from vehicle_sim.fleet import DT_S, Few, Spec
-from vehicle_sim.model.airframe import load
-from vehicle_sim.model.body import Body
+from vehicle_sim.autopilot.control.flight_control import FlightControl
+from vehicle_sim.autopilot.interface import AttitudeSetpoint
+from vehicle_sim.control_loops.flight import Flight
+from vehicle_sim.control_loops.trajectory import MotionLimits
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.step import DT_S, VehicleSpec
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.numerics.vectors import Vec3
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.body import Body
 
-LIMITS = Limits(5.0, 3.0, 1.5, 3.0, 3.0)
+LIMITS = MotionLimits(5.0, 3.0, 1.5, 3.0, 3.0)
 UP_M = 10.0
 
 both = pytest.mark.parametrize("airframe", ["s500", "racer250"])
@@ -40,10 +42,10 @@ class Hand:
     """One engine of one vehicle, and a pilot without decisions."""
 
     def __init__(self, airframe: str, seed: int = 1) -> None:
-        self.engine = Few([Spec(seed, 0, 47.4)], load(airframe))
+        self.engine = Few([VehicleSpec(seed, 0, 47.4)], load(airframe))
         blocks = self.engine.blocks(0)
         self.body, self.est, self.flight = blocks.body, blocks.est, blocks.flight
-        self.pilot = Pilot(self.flight, self.engine.frame.idle)
+        self.pilot = FlightControl(self.flight, self.engine.frame.idle)
 
     def situation(self) -> Situation:
         s = Situation(LIMITS)

@@ -7,8 +7,9 @@ from math import cos, inf, nan, pi, sin
 import pytest
 
 from tests.unit.autopilot.flight import Flight
-from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Result, Setpoint, Vec3
+from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Result, Setpoint
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.numerics.vectors import Vec3
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 either = pytest.mark.parametrize("personality", BOTH)

@@ -9,9 +9,9 @@ import pytest
 from tests.unit.autopilot.flight import Flight, item
 from tests.unit.autopilot.test_mission import either, numbered, reached, reached_now, started
 from vehicle_sim.autopilot.interface import Landed, PlanItem, Result
+from vehicle_sim.autopilot.mission.plan import check
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.plan import check
-from vehicle_sim.autopilot.spline import curve
+from vehicle_sim.autopilot.tasks.spline import curve
 
 TAKE_OFF = item(0, 22, up_m=5.0)
 

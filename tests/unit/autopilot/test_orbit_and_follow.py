@@ -7,8 +7,9 @@ from math import atan2, cos, hypot, inf, nan, pi, remainder, sin
 import pytest
 
 from tests.unit.autopilot.hand_flight import HandFlight
-from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result, Vec3
+from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.numerics.vectors import Vec3
 
 
 def asked(

@@ -12,7 +12,7 @@ from tests.unit.autopilot.flight import HOMES, Flight
 from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import TABLES, ParameterError, Parameters, Quantity
+from vehicle_sim.autopilot.parameters.parameters import TABLES, ParameterError, Parameters, Quantity
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 either = pytest.mark.parametrize("personality", BOTH)

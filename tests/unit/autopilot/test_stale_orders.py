@@ -7,12 +7,12 @@ import math
 import pytest
 
 from tests.unit.autopilot.hand_flight import HandFlight
-from vehicle_sim.autopilot import flight as flight_block
-from vehicle_sim.autopilot.estimated import Estimated
-from vehicle_sim.autopilot.flight import TO
 from vehicle_sim.autopilot.interface import Geodetic, Result
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.trajectory import move_reference
+from vehicle_sim.control_loops import flight as flight_block
+from vehicle_sim.control_loops.flight import TO
+from vehicle_sim.control_loops.trajectory import move_reference
+from vehicle_sim.estimation.estimated import Estimated
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 

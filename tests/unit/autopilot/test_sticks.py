@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from vehicle_sim.autopilot.gestures import Gesture, Gestures
+from vehicle_sim.autopilot.manual.stick_feel import feel_of, hover_of, shaped, thrust_of
+from vehicle_sim.autopilot.manual.stick_gestures import Gesture, Gestures
+from vehicle_sim.autopilot.manual.sticks import CENTRED, Radio, Sticks
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.autopilot.stick_feel import feel_of, hover_of, shaped, thrust_of
-from vehicle_sim.autopilot.sticks import CENTRED, Radio, Sticks
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 
 S = 1_000_000_000
 IGNORE = 65535

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import degrees, hypot
 
-from vehicle_sim.autopilot.flight import AT_VELOCITY, TO
-from vehicle_sim.fleet import Blocks, Few, Spec
-from vehicle_sim.model.airframe import load
-from vehicle_sim.model.sensors import MEMS, SensorGrade
+from vehicle_sim.control_loops.flight import AT_VELOCITY, TO
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.step import Blocks, VehicleSpec
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.sensors import MEMS, SensorGrade
 
 STEPS_A_SECOND = 250
 
@@ -56,7 +57,7 @@ class Flown:
     """A vehicle of airframe `airframe`, on the ground until `lift_off`."""
 
     def __init__(self, seed: int = 1, airframe: str = "s500", grade: SensorGrade = MEMS) -> None:
-        self.engine = Few([Spec(seed, 0, 47.4)], load(airframe), grade)
+        self.engine = Few([VehicleSpec(seed, 0, 47.4)], load(airframe), grade)
         self.blocks = self.engine.blocks(0)
         self.body = self.blocks.body
         self.sensed = self.blocks.sensed

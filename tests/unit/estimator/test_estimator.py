@@ -8,11 +8,12 @@ from statistics import fmean
 import pytest
 
 from tests.unit.estimator.flown import STEPS_A_SECOND, Flown, attitude_error_deg
-from vehicle_sim.autopilot.estimated import Estimated
-from vehicle_sim.autopilot.estimator import align, estimate, health
-from vehicle_sim.model.body import GRAVITY_M_S2, Body
-from vehicle_sim.model.sensed import Sensed
-from vehicle_sim.model.sensors import IDEAL, MEMS, sense, switch_on
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.estimation.estimator import align, estimate, health
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.sensed import Sensed
+from vehicle_sim.plant.sensors import IDEAL, MEMS, sense, switch_on
 
 SEEDS = range(4)
 AIRFRAMES = ("s500", "racer250")

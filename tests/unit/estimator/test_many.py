@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_sim.autopilot.estimated import Estimated
-from vehicle_sim.autopilot.estimator import align, estimate, health
-from vehicle_sim.model.body import Body
-from vehicle_sim.model.lanes import Lanes, batched
-from vehicle_sim.model.sensed import Sensed
-from vehicle_sim.model.sensors import MEMS, sense, switch_on
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.estimation.estimator import align, estimate, health
+from vehicle_sim.numerics.lanes import Lanes, batched
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.sensed import Sensed
+from vehicle_sim.plant.sensors import MEMS, sense, switch_on
 
 _LETTERS = {"float": "d", "int": "Q", "bool": "?"}
 
@@ -42,7 +42,7 @@ def swing(body: Body, vehicle: int, k: int) -> None:
     body.sf_n = 0.6 * cos(0.2 * t) + (200.0 if vehicle == 3 and k % 400 == 0 else 0.0)
 
 
-def befall(sensed: Sensed, est: Estimated, vehicle: int, k: int) -> None:
+def inject(sensed: Sensed, est: Estimated, vehicle: int, k: int) -> None:
     """Trouble, other for every vehicle, so that all branches are gone through."""
     if k == 400:
         sensed.gps_lost = vehicle % 4 == 0
@@ -73,12 +73,12 @@ def test_a_batch_senses_and_estimates_the_same_bytes_as_each_vehicle_by_itself(c
     for k in range(1, steps + 1):
         for vehicle, (body, sensed, est) in enumerate(alone):
             swing(body, vehicle, k)
-            befall(sensed, est, vehicle, k)
+            inject(sensed, est, vehicle, k)
             sense(sensed, body, MEMS, k)
             estimate(est, sensed, k)
             lane = bodies.lane(vehicle)
             swing(lane, vehicle, k)
-            befall(sensors.lane(vehicle), estimates.lane(vehicle), vehicle, k)
+            inject(sensors.lane(vehicle), estimates.lane(vehicle), vehicle, k)
         sense_all(sensors.all, bodies.all, MEMS, k)
         estimate_all(estimates.all, sensors.all, k)
     for vehicle, (_, sensed, est) in enumerate(alone):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.unit.autopilot.flight import HOMES, Flight
-from vehicle_sim.autopilot.fence import Vec2
+from vehicle_sim.autopilot.fence.zones import Vec2
 from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.autopilot.modes import Personality

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from shapely.geometry import Point
 from shapely.geometry import Polygon as Shape
 
-from vehicle_sim.autopilot import fence
-from vehicle_sim.autopilot.fence import Circle, Fence, Polygon, Vec2, polygon
+from vehicle_sim.autopilot.fence import zones as fence
+from vehicle_sim.autopilot.fence.zones import CircleZone, Fence, Polygon, Vec2, polygon
 from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Flaw, Geodetic, PlanItem
 from vehicle_sim.autopilot.modes import Personality
@@ -56,7 +56,7 @@ def test_the_bounding_box_never_says_nearer_than_it_is_nor_inside(
 
 zones = st.lists(
     st.one_of(
-        st.builds(Circle, st.booleans(), places, st.floats(1.0, 90.0)),
+        st.builds(CircleZone, st.booleans(), places, st.floats(1.0, 90.0)),
         st.builds(
             lambda inclusion, corners, seed: polygon(inclusion, star(corners, seed)),
             st.booleans(),
@@ -68,13 +68,13 @@ zones = st.lists(
 )
 
 
-def depth(zone: Circle | Polygon, place: Vec2) -> float:
+def depth(zone: CircleZone | Polygon, place: Vec2) -> float:
     return zone.depth_m(*place, inf)
 
 
 @given(given_zones=zones, place=places, union=st.booleans())
 def test_inside_every_inclusion_zone_and_outside_every_exclusion_zone(
-    given_zones: list[Circle | Polygon], place: Vec2, union: bool
+    given_zones: list[CircleZone | Polygon], place: Vec2, union: bool
 ) -> None:
     whole = Fence(tuple(given_zones))
     inclusions = [depth(zone, place) >= 0.0 for zone in given_zones if zone.inclusion]
@@ -91,7 +91,7 @@ def test_inside_every_inclusion_zone_and_outside_every_exclusion_zone(
     angle=st.floats(0.0, 2 * pi),
 )
 def test_within_the_room_nothing_changes(
-    given_zones: list[Circle | Polygon], place: Vec2, union: bool, part: float, angle: float
+    given_zones: list[CircleZone | Polygon], place: Vec2, union: bool, part: float, angle: float
 ) -> None:
     whole = Fence(tuple(given_zones))
     room = whole.room_m(*place, union)
@@ -172,7 +172,7 @@ def test_a_fence_lies_where_the_vehicles_own_projection_puts_it(personality: str
     x, y = round(where.lat_deg * 1e7), round(where.lon_deg * 1e7)
     built = fence.build((replace(item(0, 5003, 25.0), x=x, y=y), item(1, 5000)), own)
     (zone,) = built.zones
-    assert isinstance(zone, Circle)
+    assert isinstance(zone, CircleZone)
     assert zone.centre_ne == pytest.approx((40.0, -30.0), abs=0.02)
     assert built.room_m(40.0, -30.0) == pytest.approx(25.0, abs=0.05)
     assert built.return_ne is not None

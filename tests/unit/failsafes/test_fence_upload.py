@@ -8,7 +8,7 @@ from tests.unit.autopilot.flight import Flight
 from tests.unit.failsafes.ground import box, point, said
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.services.effects import Client, Send
+from vehicle_sim.effects import Client, Send
 from vehicle_sim.services.mission import MissionServer
 from vehicle_sim.services.plan_items import to_int
 from vehicle_sim.services.profile import PROFILES

@@ -8,8 +8,8 @@ import pytest
 
 from tests.unit.autopilot.flight import Flight
 from tests.unit.failsafes.ground import box, fenced
-from vehicle_sim.autopilot.geofence import Crossing
-from vehicle_sim.autopilot.lookout import Lookout
+from vehicle_sim.autopilot.fence.geofence import Crossing
+from vehicle_sim.autopilot.health_checks import HealthChecks
 from vehicle_sim.autopilot.modes import Personality
 
 S = 1_000_000_000
@@ -93,15 +93,15 @@ def test_the_quick_look_misses_no_trouble(
     personality: Personality, trouble: Trouble, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     quiet: list[bool] = []
-    look = Lookout._quiet
+    look = HealthChecks._quiet
 
-    def noted(self: Lookout, s: object, crossing: Crossing) -> bool:
+    def noted(self: HealthChecks, s: object, crossing: Crossing) -> bool:
         quiet.append(look(self, s, crossing))  # type: ignore[arg-type]  # as it was given
         return quiet[-1]
 
-    monkeypatch.setattr(Lookout, "_quiet", noted)
+    monkeypatch.setattr(HealthChecks, "_quiet", noted)
     quick = flown(personality, trouble)
     assert any(quiet)
     assert not all(quiet)
-    monkeypatch.setattr(Lookout, "_quiet", lambda self, s, crossing: False)
+    monkeypatch.setattr(HealthChecks, "_quiet", lambda self, s, crossing: False)
     assert flown(personality, trouble) == quick

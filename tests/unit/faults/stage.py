@@ -18,17 +18,18 @@ from tests.unit.vehicle_services.fake_vehicle import long
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.faults import Schedule, parse
-from vehicle_sim.fleet import Few, Seat, Spec
-from vehicle_sim.impairment import NEVER_NS
-from vehicle_sim.model.airframe import load
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.step import Seat, VehicleSpec
+from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.fault_script import Schedule, parse
+from vehicle_sim.simulation.impairment import NEVER_NS
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.codec import Frame, encode
+from vehicle_sim.wire.codec import MavlinkFrame, encode
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 
 S = 1_000_000_000
 MS = 1_000_000
@@ -70,7 +71,7 @@ class Stage:
         for name, value in parameters.items():
             given.set(name, value)
         home = HOMES[personality]
-        engine = Few([Spec(seed, 0, home.lat_deg)], load(airframe))
+        engine = Few([VehicleSpec(seed, 0, home.lat_deg)], load(airframe))
         self.personality: Personality = personality
         self.vehicle = Autopilot(personality, home, seed, 0, given, Seat(engine, 0))
         server = VehicleServer(self.vehicle, PROFILES[personality], given, 1)
@@ -80,7 +81,7 @@ class Stage:
         self.now_ns = 0
         self.beats = True
         self.sticks: m.ManualControl | None = None  # repeated at 20 Hz, once set
-        self.heard: list[tuple[int, Frame]] = []
+        self.heard: list[tuple[int, MavlinkFrame]] = []
         self.logs: list[Log] = []
         self._beat_ns = 0
         self._stick_ns = 0

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from tests.unit.faults.stage import Stage
-from vehicle_sim.control import LINE_MAX, Lines, answer
+from vehicle_sim.simulation.control_line import LINE_MAX, Lines, answer
 
 
 def ask(stage: Stage, **words: object) -> dict[str, object]:

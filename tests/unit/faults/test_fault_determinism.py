@@ -8,16 +8,17 @@ from math import nan
 from tests.unit.faults.stage import BEAT, HOMES, MS, S, Stage, aloft
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.faults import parse
-from vehicle_sim.fleet import Engine, Few, Seat, Spec
-from vehicle_sim.fleet_many import Many
-from vehicle_sim.model.airframe import load
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.step import Engine, Seat, VehicleSpec
+from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.fault_script import parse
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
-from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 
 END_NS = 16 * S
 
@@ -96,8 +97,8 @@ def fly(engine: Engine, count: int, nap_ns: int, seed: int = 3) -> tuple[list[by
     return said, [vehicle.state_bytes() for vehicle in vehicles]
 
 
-def specs(count: int, seed: int = 3) -> list[Spec]:
-    return [Spec(seed, i, HOMES[personality(i)].lat_deg) for i in range(count)]
+def specs(count: int, seed: int = 3) -> list[VehicleSpec]:
+    return [VehicleSpec(seed, i, HOMES[personality(i)].lat_deg) for i in range(count)]
 
 
 def test_batches_do_not_matter() -> None:

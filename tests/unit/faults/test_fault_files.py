@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from vehicle_sim.faults import FaultFileError, LinkFault, Schedule, Timed, ended, parse
-from vehicle_sim.model.body import Body
-from vehicle_sim.model.faults import (
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.faults import (
     AccelBias,
     BaroFault,
     CellsLost,
@@ -20,10 +19,18 @@ from vehicle_sim.model.faults import (
     RcLost,
     Reboot,
     WindChange,
-    befall,
+    inject,
     sound,
 )
-from vehicle_sim.model.sensed import Sensed
+from vehicle_sim.plant.sensed import Sensed
+from vehicle_sim.simulation.fault_script import (
+    FaultFileError,
+    LinkFault,
+    Schedule,
+    Timed,
+    ended,
+    parse,
+)
 
 S = 1_000_000_000
 
@@ -128,17 +135,17 @@ FAULTS: tuple[ModelFault, ...] = (
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_changes_the_blocks_and_its_end_puts_them_right(fault: ModelFault) -> None:
     body, sensed = Body(), Sensed()
-    befall(fault, body, sensed)
+    inject(fault, body, sensed)
     assert (body, sensed) != (Body(), Sensed())
     end = sound(fault)
     assert end == ended(fault)
     assert not isinstance(end, RcLost)
-    befall(end, body, sensed)
+    inject(end, body, sensed)
     assert (body, sensed) == (Body(), Sensed())
 
 
 def test_each_motor_has_its_own_health() -> None:
     body = Body()
     for motor in (1, 2, 3, 4):
-        befall(MotorFault(motor, motor / 10), body, Sensed())
+        inject(MotorFault(motor, motor / 10), body, Sensed())
     assert (body.health_1, body.health_2, body.health_3, body.health_4) == (0.1, 0.2, 0.3, 0.4)

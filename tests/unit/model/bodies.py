@@ -7,10 +7,11 @@ from dataclasses import fields, replace
 from math import sqrt
 from typing import TypeAlias
 
-from vehicle_sim.model.airframe import load, shipped
-from vehicle_sim.model.body import GRAVITY_M_S2, Body
-from vehicle_sim.model.frame import Frame, frame_of
-from vehicle_sim.model.quad import advance, begin
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.plant.airframe import load, shipped
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.frame import AirframeConstants, frame_of
+from vehicle_sim.plant.quad import advance, begin
 
 DT_S = 0.004
 FRAMES = {name: frame_of(load(name), DT_S) for name in shipped()}
@@ -25,41 +26,41 @@ def state_bytes(body: Body) -> bytes:
     return struct.pack(layout, *(getattr(body, field.name) for field in fields(Body)))
 
 
-def standing(frame: Frame, gust_key: int = 1) -> Body:
+def standing(frame: AirframeConstants, gust_key: int = 1) -> Body:
     body = Body()
     begin(body, gust_key, frame)
     return body
 
 
-def airborne(frame: Frame, up_m: float = 1000.0) -> Body:
+def airborne(frame: AirframeConstants, up_m: float = 1000.0) -> Body:
     body = standing(frame)
     body.pos_d = -up_m
     return body
 
 
-def airless(frame: Frame) -> Frame:
+def airless(frame: AirframeConstants) -> AirframeConstants:
     return replace(frame, drag_n_per_m2_s2=0.0, rotor_drag_n_s_per_m=0.0, inflow_n_s_per_m=0.0)
 
 
-def run(body: Body, frame: Frame, seconds: float, motors: Motors = OFF) -> None:
+def run(body: Body, frame: AirframeConstants, seconds: float, motors: Motors = OFF) -> None:
     """From step 1 on; the commands stay the same."""
     for k in range(1, round(seconds / frame.dt_s) + 1):
         advance(body, *motors, frame, k)
 
 
-def hover_speed(frame: Frame) -> float:
+def hover_speed(frame: AirframeConstants) -> float:
     """Of each motor, as a part of full speed."""
     return sqrt(frame.mass_kg * GRAVITY_M_S2 / 4.0 / frame.thrust_max_n)
 
 
-def hovering(frame: Frame) -> Body:
+def hovering(frame: AirframeConstants) -> Body:
     """In the air with the motors at hover speed already."""
     body = airborne(frame)
     body.s1 = body.s2 = body.s3 = body.s4 = hover_speed(frame)
     return body
 
 
-def hover_motors(body: Body, frame: Frame) -> Motors:
+def hover_motors(body: Body, frame: AirframeConstants) -> Motors:
     u = hover_speed(frame) / body.strength
     return (u, u, u, u)
 
@@ -82,7 +83,7 @@ def turned(body: Body, vector: tuple[float, float, float]) -> tuple[float, float
     )
 
 
-def energy_of(body: Body, frame: Frame) -> float:
+def energy_of(body: Body, frame: AirframeConstants) -> float:
     """Kinetic and potential [J], over the level of rest."""
     v2 = body.vel_n**2 + body.vel_e**2 + body.vel_d**2
     return (
@@ -92,7 +93,7 @@ def energy_of(body: Body, frame: Frame) -> float:
     )
 
 
-def turning_energy_of(body: Body, frame: Frame) -> float:
+def turning_energy_of(body: Body, frame: AirframeConstants) -> float:
     return 0.5 * (
         frame.inertia_xx_kg_m2 * body.rate_x**2
         + frame.inertia_yy_kg_m2 * body.rate_y**2

@@ -6,11 +6,11 @@ from importlib import resources
 
 import pytest
 
-from vehicle_sim.model.airframe import AirframeError, load, parse, shipped
-from vehicle_sim.model.body import GRAVITY_M_S2
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.plant.airframe import AirframeError, load, parse, shipped
 
 GOOD = (
-    resources.files("vehicle_sim.model")
+    resources.files("vehicle_sim.plant")
     .joinpath("airframes", "s500.toml")
     .read_text(encoding="utf-8")
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from vehicle_sim.model.angles import sincos
+from vehicle_sim.numerics.angles import sincos
 
 
 def test_it_is_right_to_a_millionth_of_a_millionth_all_round() -> None:

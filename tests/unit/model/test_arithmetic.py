@@ -10,9 +10,10 @@ from types import ModuleType
 import pytest
 
 from tests.unit.model.bodies import FRAMES, standing, state_bytes
-from vehicle_sim.model import battery, ground, motors, noise, quad, rigid_body, wind
-from vehicle_sim.model.kernel import KERNELS
-from vehicle_sim.model.quad import advance
+from vehicle_sim.numerics import noise
+from vehicle_sim.numerics.kernel import KERNELS
+from vehicle_sim.plant import battery, ground, motors, quad, rigid_body, wind
+from vehicle_sim.plant.quad import advance
 
 GOLDEN = {
     "racer250": "f7a58447676cf207231b0897d2c48031a05182971beaaa92aeadea923c1eeb63",

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from tests.unit.model.bodies import FRAMES, Motors, standing, state_bytes
-from vehicle_sim.model.body import Body
-from vehicle_sim.model.frame import Frame
-from vehicle_sim.model.lanes import Lanes, batched
-from vehicle_sim.model.noise import key_of
-from vehicle_sim.model.quad import advance, begin
+from vehicle_sim.numerics.lanes import Lanes, batched
+from vehicle_sim.numerics.noise import key_of
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.quad import advance, begin
 
 STEPS = 2000
 
@@ -40,7 +40,7 @@ def commands(k: int) -> Motors:
 
 @pytest.mark.parametrize("count", [1, 7, 100])
 @pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
-def test_a_batch_flies_as_each_by_itself(frame: Frame, count: int) -> None:
+def test_a_batch_flies_as_each_by_itself(frame: AirframeConstants, count: int) -> None:
     alone = [standing(frame) for _ in range(count)]
     together = Lanes(Body, count)
     batched(begin)(together.all, 1, frame)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.unit.model.bodies import FRAMES, hover_speed, standing
-from vehicle_sim.model.battery import BATTERY_EVERY, FULL_CELL_V, cell_v, drain, settle
-from vehicle_sim.model.body import Body
-from vehicle_sim.model.frame import Frame
+from vehicle_sim.plant.battery import BATTERY_EVERY, FULL_CELL_V, cell_v, drain, settle
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.frame import AirframeConstants
 
 EVERY = pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 UPDATE_S = 0.1
@@ -17,14 +17,14 @@ CURVE = (
 )
 
 
-def turning(frame: Frame, speed: float) -> Body:
+def turning(frame: AirframeConstants, speed: float) -> Body:
     body = standing(frame)
     body.s1 = body.s2 = body.s3 = body.s4 = speed
     return body
 
 
 @EVERY
-def test_a_fresh_battery_is_full(frame: Frame) -> None:
+def test_a_fresh_battery_is_full(frame: AirframeConstants) -> None:
     body = standing(frame)
     idle_sag_v = frame.idle_current_a * frame.resistance_ohm
     assert body.remaining == 1.0
@@ -33,7 +33,7 @@ def test_a_fresh_battery_is_full(frame: Frame) -> None:
 
 
 @EVERY
-def test_current_over_time_is_charge(frame: Frame) -> None:
+def test_current_over_time_is_charge(frame: AirframeConstants) -> None:
     body, flown_mah = turning(frame, 0.5), 0.0
     assert frame.dt_s * BATTERY_EVERY == pytest.approx(UPDATE_S)
     for _ in range(600):
@@ -44,7 +44,7 @@ def test_current_over_time_is_charge(frame: Frame) -> None:
 
 
 @EVERY
-def test_power_goes_with_the_cube_of_the_speed(frame: Frame) -> None:
+def test_power_goes_with_the_cube_of_the_speed(frame: AirframeConstants) -> None:
     def motor_w(speed: float) -> float:
         body = turning(frame, speed)
         for _ in range(20):
@@ -56,7 +56,7 @@ def test_power_goes_with_the_cube_of_the_speed(frame: Frame) -> None:
 
 
 @EVERY
-def test_the_voltage_sags_by_current_times_resistance(frame: Frame) -> None:
+def test_the_voltage_sags_by_current_times_resistance(frame: AirframeConstants) -> None:
     body = turning(frame, 0.9)
     drain(body, frame)
     open_v = frame.cells * cell_v(body.remaining)
@@ -65,7 +65,7 @@ def test_the_voltage_sags_by_current_times_resistance(frame: Frame) -> None:
 
 
 @EVERY
-def test_a_sagging_battery_turns_the_motors_less(frame: Frame) -> None:
+def test_a_sagging_battery_turns_the_motors_less(frame: AirframeConstants) -> None:
     body = turning(frame, 1.0)
     drain(body, frame)
     assert body.strength == pytest.approx(body.voltage_v / (frame.cells * FULL_CELL_V))
@@ -92,7 +92,9 @@ def test_it_hovers_as_long_as_its_class_does(name: str, low_min: float, high_min
 
 
 @EVERY
-def test_drained_to_the_end_it_is_empty_and_its_voltage_never_rose(frame: Frame) -> None:
+def test_drained_to_the_end_it_is_empty_and_its_voltage_never_rose(
+    frame: AirframeConstants,
+) -> None:
     body, volts = turning(frame, hover_speed(frame)), []
     while body.remaining > 0.0:
         drain(body, frame)
@@ -107,7 +109,7 @@ def test_drained_to_the_end_it_is_empty_and_its_voltage_never_rose(frame: Frame)
 
 
 @EVERY
-def test_a_lost_cell_takes_its_voltage_and_leaves_the_charge(frame: Frame) -> None:
+def test_a_lost_cell_takes_its_voltage_and_leaves_the_charge(frame: AirframeConstants) -> None:
     body = turning(frame, 0.0)
     drain(body, frame)
     before_v, left = body.voltage_v, body.remaining
@@ -119,7 +121,7 @@ def test_a_lost_cell_takes_its_voltage_and_leaves_the_charge(frame: Frame) -> No
 
 
 @EVERY
-def test_without_cells_there_is_no_voltage_and_no_thrust(frame: Frame) -> None:
+def test_without_cells_there_is_no_voltage_and_no_thrust(frame: AirframeConstants) -> None:
     body = turning(frame, 0.5)
     body.cells_lost = frame.cells
     drain(body, frame)

@@ -8,22 +8,22 @@ from math import sqrt
 import pytest
 
 from tests.unit.model.bodies import DT_S, FRAMES, OFF, airborne, energy_of, run, standing
-from vehicle_sim.model.airframe import AirframeError, load
-from vehicle_sim.model.body import GRAVITY_M_S2
-from vehicle_sim.model.frame import Frame, frame_of
-from vehicle_sim.model.quad import advance
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.plant.airframe import AirframeError, load
+from vehicle_sim.plant.frame import AirframeConstants, frame_of
+from vehicle_sim.plant.quad import advance
 
 EVERY = pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 
 
-def wind_it_bears(frame: Frame) -> float:
+def wind_it_bears(frame: AirframeConstants) -> float:
     """The wind whose drag is mu m g."""
     hold_n = frame.friction * frame.mass_kg * GRAVITY_M_S2
     return sqrt(hold_n / frame.drag_n_per_m2_s2)
 
 
 @EVERY
-def test_a_fresh_vehicle_rests_at_height_zero(frame: Frame) -> None:
+def test_a_fresh_vehicle_rests_at_height_zero(frame: AirframeConstants) -> None:
     body = standing(frame)
     run(body, frame, 10.0)
     assert body.touching
@@ -33,7 +33,7 @@ def test_a_fresh_vehicle_rests_at_height_zero(frame: Frame) -> None:
 
 
 @EVERY
-def test_idling_in_a_gusty_wind_it_does_not_creep(frame: Frame) -> None:
+def test_idling_in_a_gusty_wind_it_does_not_creep(frame: AirframeConstants) -> None:
     body = standing(frame)
     body.wind_n, body.wind_e, body.gust_m_s = 6.0, -5.0, 1.0
     run(body, frame, 10.0, (frame.idle,) * 4)
@@ -44,7 +44,7 @@ def test_idling_in_a_gusty_wind_it_does_not_creep(frame: Frame) -> None:
 
 
 @EVERY
-def test_friction_holds_up_to_coulombs_limit_and_not_beyond(frame: Frame) -> None:
+def test_friction_holds_up_to_coulombs_limit_and_not_beyond(frame: AirframeConstants) -> None:
     held, blown = standing(frame), standing(frame)
     held.wind_n = held.flow_n = 0.9 * wind_it_bears(frame)
     blown.wind_n = blown.flow_n = 1.1 * wind_it_bears(frame)
@@ -55,7 +55,7 @@ def test_friction_holds_up_to_coulombs_limit_and_not_beyond(frame: Frame) -> Non
 
 
 @EVERY
-def test_it_slides_as_far_as_coulomb_says(frame: Frame) -> None:
+def test_it_slides_as_far_as_coulomb_says(frame: AirframeConstants) -> None:
     """Without air: v^2 / (2 mu g)."""
     frame = replace(frame, drag_n_per_m2_s2=0.0)
     body = standing(frame)
@@ -68,7 +68,7 @@ def test_it_slides_as_far_as_coulomb_says(frame: Frame) -> None:
 
 
 @EVERY
-def test_friction_stops_a_spin(frame: Frame) -> None:
+def test_friction_stops_a_spin(frame: AirframeConstants) -> None:
     body = standing(frame)
     body.rate_z = 4.0
     run(body, frame, 3.0)
@@ -80,7 +80,9 @@ def test_friction_stops_a_spin(frame: Frame) -> None:
 @EVERY
 @pytest.mark.parametrize("up_m", [0.3, 1.0, 3.0])
 @pytest.mark.parametrize("lean", [0.0, 0.1, 0.3])
-def test_a_drop_gains_no_energy_and_ends_at_rest(frame: Frame, up_m: float, lean: float) -> None:
+def test_a_drop_gains_no_energy_and_ends_at_rest(
+    frame: AirframeConstants, up_m: float, lean: float
+) -> None:
     body = airborne(frame, up_m)
     body.vel_n = 0.5
     body.qx, body.qy = lean, -0.5 * lean
@@ -104,7 +106,7 @@ def test_a_drop_gains_no_energy_and_ends_at_rest(frame: Frame, up_m: float, lean
 
 
 @EVERY
-def test_a_level_landing_does_not_bounce(frame: Frame) -> None:
+def test_a_level_landing_does_not_bounce(frame: AirframeConstants) -> None:
     body = standing(frame)
     body.pos_d, body.vel_d = -0.2, 0.7
     touched, highest = False, 0.0
@@ -118,7 +120,7 @@ def test_a_level_landing_does_not_bounce(frame: Frame) -> None:
 
 
 @EVERY
-def test_turned_over_it_lies_on_its_propellers(frame: Frame) -> None:
+def test_turned_over_it_lies_on_its_propellers(frame: AirframeConstants) -> None:
     body = airborne(frame, 1.0)
     body.qw, body.qx = 0.05, sqrt(1.0 - 0.05 * 0.05)
     run(body, frame, 10.0)
@@ -128,7 +130,7 @@ def test_turned_over_it_lies_on_its_propellers(frame: Frame) -> None:
 
 
 @EVERY
-def test_a_leap_forgets_where_friction_held(frame: Frame) -> None:
+def test_a_leap_forgets_where_friction_held(frame: AirframeConstants) -> None:
     body = standing(frame)
     body.wind_n = body.flow_n = 0.5 * wind_it_bears(frame)
     run(body, frame, 2.0)

@@ -8,8 +8,8 @@ from math import sqrt
 
 import pytest
 
-from vehicle_sim.model.kernel import anywhere, kernel
-from vehicle_sim.model.lanes import Lanes, batched
+from vehicle_sim.numerics.kernel import anywhere, kernel
+from vehicle_sim.numerics.lanes import Lanes, batched
 
 _MASK = 0xFFFFFFFFFFFFFFFF
 

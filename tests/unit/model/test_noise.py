@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from vehicle_sim.model.noise import bits, key_of, mix64, normal, uniform
+from vehicle_sim.numerics.noise import bits, key_of, mix64, normal, uniform
 
 DRAWS = 20_000
 

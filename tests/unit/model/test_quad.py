@@ -23,17 +23,18 @@ from tests.unit.model.bodies import (
     hovering,
     run,
 )
-from vehicle_sim.model.airframe import load
-from vehicle_sim.model.body import GRAVITY_M_S2, Body
-from vehicle_sim.model.frame import Frame, frame_of
-from vehicle_sim.model.quad import advance
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.frame import AirframeConstants, frame_of
+from vehicle_sim.plant.quad import advance
 
 EVERY = pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 UNIT = st.floats(0.0, 1.0)
 
 
 @EVERY
-def test_thrust_equal_to_weight_hovers(frame: Frame) -> None:
+def test_thrust_equal_to_weight_hovers(frame: AirframeConstants) -> None:
     body = hovering(frame)
     for k in range(1, 251):
         advance(body, *hover_motors(body, frame), frame, k)
@@ -43,7 +44,7 @@ def test_thrust_equal_to_weight_hovers(frame: Frame) -> None:
 
 
 @EVERY
-def test_full_throttle_climbs_with_its_thrust_to_weight(frame: Frame) -> None:
+def test_full_throttle_climbs_with_its_thrust_to_weight(frame: AirframeConstants) -> None:
     frame = airless(frame)
     body = airborne(frame)
     run(body, frame, 0.4, (1.0, 1.0, 1.0, 1.0))
@@ -52,7 +53,7 @@ def test_full_throttle_climbs_with_its_thrust_to_weight(frame: Frame) -> None:
 
 
 @EVERY
-def test_a_fall_through_air_is_the_textbooks_tanh(frame: Frame) -> None:
+def test_a_fall_through_air_is_the_textbooks_tanh(frame: AirframeConstants) -> None:
     """m v' = m g - k v^2 from rest: v = v_end tanh(g t / v_end), v_end = sqrt(m g / k)."""
     body = airborne(frame)
     end_m_s = sqrt(frame.mass_kg * GRAVITY_M_S2 / frame.drag_n_per_m2_s2)
@@ -64,7 +65,9 @@ def test_a_fall_through_air_is_the_textbooks_tanh(frame: Frame) -> None:
 
 
 @EVERY
-def test_level_flight_ends_at_the_speed_where_drag_is_the_thrusts_lean(frame: Frame) -> None:
+def test_level_flight_ends_at_the_speed_where_drag_is_the_thrusts_lean(
+    frame: AirframeConstants,
+) -> None:
     """Along the track: quadratic drag, the drag in the rotors' plane, and lost thrust."""
     cos_pitch = 0.8
     body = hovering(frame)
@@ -84,7 +87,7 @@ def test_level_flight_ends_at_the_speed_where_drag_is_the_thrusts_lean(frame: Fr
 
 
 @EVERY
-def test_wind_takes_a_hovering_vehicle_along(frame: Frame) -> None:
+def test_wind_takes_a_hovering_vehicle_along(frame: AirframeConstants) -> None:
     """The airspeed u falls by m u' = -c u - k u^2, so c / u + k grows by exp(c t / m)."""
     body = hovering(frame)
     body.wind_e = body.flow_e = body.air_e = 6.0
@@ -96,13 +99,13 @@ def test_wind_takes_a_hovering_vehicle_along(frame: Frame) -> None:
     assert body.vel_n == 0.0
 
 
-def run_hovering(body: Body, frame: Frame, seconds: float) -> None:
+def run_hovering(body: Body, frame: AirframeConstants, seconds: float) -> None:
     for k in range(1, round(seconds / DT_S) + 1):
         advance(body, *hover_motors(body, frame), frame, k)
 
 
 @EVERY
-def test_the_work_of_the_forces_is_the_energy_gained(frame: Frame) -> None:
+def test_the_work_of_the_forces_is_the_energy_gained(frame: AirframeConstants) -> None:
     """Exact for the path: mean velocity times force is the change of m v^2 / 2."""
     body = hovering(frame)
     motors = hover_motors(body, frame)
@@ -116,7 +119,7 @@ def test_the_work_of_the_forces_is_the_energy_gained(frame: Frame) -> None:
 
 
 @EVERY
-def test_drag_takes_energy_and_never_gives_any(frame: Frame) -> None:
+def test_drag_takes_energy_and_never_gives_any(frame: AirframeConstants) -> None:
     body = airborne(frame)
     body.vel_n, body.vel_e, body.rate_x, body.rate_z = 15.0, -7.0, 5.0, -9.0
     energy = energy_of(body, frame)
@@ -127,7 +130,7 @@ def test_drag_takes_energy_and_never_gives_any(frame: Frame) -> None:
 
 
 @EVERY
-def test_motors_follow_their_command_with_a_first_order_lag(frame: Frame) -> None:
+def test_motors_follow_their_command_with_a_first_order_lag(frame: AirframeConstants) -> None:
     body = airborne(frame)
     full = body.strength
     for k in range(1, 25):
@@ -138,7 +141,9 @@ def test_motors_follow_their_command_with_a_first_order_lag(frame: Frame) -> Non
 
 
 @EVERY
-def test_more_thrust_on_the_left_rolls_right_and_on_the_front_pitches_up(frame: Frame) -> None:
+def test_more_thrust_on_the_left_rolls_right_and_on_the_front_pitches_up(
+    frame: AirframeConstants,
+) -> None:
     rolling, pitching, yawing = airborne(frame), airborne(frame), airborne(frame)
     run(rolling, frame, 0.04, (0.5, 0.6, 0.6, 0.5))
     run(pitching, frame, 0.04, (0.6, 0.5, 0.6, 0.5))
@@ -149,7 +154,7 @@ def test_more_thrust_on_the_left_rolls_right_and_on_the_front_pitches_up(frame: 
 
 
 @EVERY
-def test_climbing_costs_thrust_until_none_is_left(frame: Frame) -> None:
+def test_climbing_costs_thrust_until_none_is_left(frame: AirframeConstants) -> None:
     body = hovering(frame)
     body.vel_d = -body.s1 * frame.thrust_max_n / frame.inflow_n_s_per_m
     advance(body, *hover_motors(body, frame), replace(frame, drag_n_per_m2_s2=0.0), 1)
@@ -157,7 +162,7 @@ def test_climbing_costs_thrust_until_none_is_left(frame: Frame) -> None:
 
 
 @EVERY
-def test_rotors_damp_each_axis_of_turning(frame: Frame) -> None:
+def test_rotors_damp_each_axis_of_turning(frame: AirframeConstants) -> None:
     """-4 s inflow arm^2 w about x and y, -4 s drag arm^2 w about z, whatever the height."""
     s, x, y = hover_speed(frame), frame.arm_forward_m, frame.arm_right_m
     for axis, inertia, per_rate in (
@@ -173,7 +178,7 @@ def test_rotors_damp_each_axis_of_turning(frame: Frame) -> None:
 
 
 @EVERY
-def test_a_spin_out_of_control_stays_finite(frame: Frame) -> None:
+def test_a_spin_out_of_control_stays_finite(frame: AirframeConstants) -> None:
     body = airborne(frame, 100_000.0)
     body.health_3 = 0.0
     fastest = 0.0
@@ -185,7 +190,7 @@ def test_a_spin_out_of_control_stays_finite(frame: Frame) -> None:
 
 
 @EVERY
-def test_a_roll_torque_is_the_lever_times_the_difference(frame: Frame) -> None:
+def test_a_roll_torque_is_the_lever_times_the_difference(frame: AirframeConstants) -> None:
     frame = airless(frame)
     body = hovering(frame)
     body.s2 = body.s3 = 1.1 * body.s1
@@ -196,7 +201,7 @@ def test_a_roll_torque_is_the_lever_times_the_difference(frame: Frame) -> None:
 
 
 @EVERY
-def test_a_dead_motor_stops_and_lifts_no_more(frame: Frame) -> None:
+def test_a_dead_motor_stops_and_lifts_no_more(frame: AirframeConstants) -> None:
     body = hovering(frame)
     body.health_3 = 0.0
     run(body, frame, 0.1, hover_motors(body, frame))
@@ -208,7 +213,7 @@ def test_a_dead_motor_stops_and_lifts_no_more(frame: Frame) -> None:
 
 
 @EVERY
-def test_a_weak_motor_turns_as_it_is_told_and_lifts_its_share(frame: Frame) -> None:
+def test_a_weak_motor_turns_as_it_is_told_and_lifts_its_share(frame: AirframeConstants) -> None:
     frame = airless(frame)
     body = hovering(frame)
     body.health_1 = body.health_2 = body.health_3 = body.health_4 = 0.7
@@ -220,7 +225,9 @@ def test_a_weak_motor_turns_as_it_is_told_and_lifts_its_share(frame: Frame) -> N
 @EVERY
 @settings(max_examples=15, deadline=None)
 @given(u=st.tuples(UNIT, UNIT, UNIT, UNIT), up_m=st.sampled_from([0.0, 0.2, 500.0]))
-def test_mirror_images_fly_mirrored_to_the_bit(frame: Frame, u: Motors, up_m: float) -> None:
+def test_mirror_images_fly_mirrored_to_the_bit(
+    frame: AirframeConstants, u: Motors, up_m: float
+) -> None:
     """Left and right swap motors 1 with 3 and 2 with 4; front and back 1 with 4 and 2 with 3."""
     one, swapped, reverse = (airborne(frame, up_m) for _ in range(3))
     for k in range(1, 301):
@@ -262,7 +269,7 @@ def test_the_whole_is_integrated_to_the_first_order_at_least(name: str) -> None:
 
 
 @EVERY
-def test_free_of_air_a_tumbling_vehicle_keeps_its_energy(frame: Frame) -> None:
+def test_free_of_air_a_tumbling_vehicle_keeps_its_energy(frame: AirframeConstants) -> None:
     """Bounded by the integrator's order, as the falling is exact and the tumbling of second."""
     frame = airless(frame)
     body = replace(airborne(frame, 10_000.0), rate_x=5.0, rate_y=3.0, rate_z=7.0)

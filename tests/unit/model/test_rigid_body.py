@@ -8,9 +8,10 @@ from math import log2, pi, sqrt
 import pytest
 
 from tests.unit.model.bodies import DT_S, FRAMES, energy_of, turned, turning_energy_of
-from vehicle_sim.model.body import GRAVITY_M_S2, Body
-from vehicle_sim.model.frame import Frame
-from vehicle_sim.model.rigid_body import move
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.rigid_body import move
 
 S500 = FRAMES["s500"]
 ASYMMETRIC = replace(
@@ -24,12 +25,12 @@ ASYMMETRIC = replace(
 )
 
 
-def coast(body: Body, frame: Frame, steps: int) -> None:
+def coast(body: Body, frame: AirframeConstants, steps: int) -> None:
     for _ in range(steps):
         move(body, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, frame)
 
 
-def angular_momentum_ned(body: Body, frame: Frame) -> tuple[float, float, float]:
+def angular_momentum_ned(body: Body, frame: AirframeConstants) -> tuple[float, float, float]:
     return turned(
         body,
         (

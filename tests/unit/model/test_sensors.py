@@ -8,9 +8,10 @@ from statistics import fmean, pstdev
 
 import pytest
 
-from vehicle_sim.model.body import GRAVITY_M_S2, Body
-from vehicle_sim.model.sensed import Sensed
-from vehicle_sim.model.sensors import (
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.sensed import Sensed
+from vehicle_sim.plant.sensors import (
     BARO_AT,
     BARO_EVERY,
     GPS_EVERY,

@@ -7,10 +7,10 @@ from math import exp, sqrt
 import pytest
 
 from tests.unit.model.bodies import FRAMES, airborne, hover_motors, hovering, standing, state_bytes
-from vehicle_sim.model.body import Body
-from vehicle_sim.model.noise import key_of
-from vehicle_sim.model.quad import advance, begin
-from vehicle_sim.model.wind import LENGTH_D_M, LENGTH_M, RATIO_D, WIND_EVERY, blow
+from vehicle_sim.numerics.noise import key_of
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.quad import advance, begin
+from vehicle_sim.plant.wind import LENGTH_D_M, LENGTH_M, RATIO_D, WIND_EVERY, blow
 
 S500 = FRAMES["s500"]
 UPDATE_S = S500.dt_s * WIND_EVERY

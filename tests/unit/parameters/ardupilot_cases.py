@@ -16,7 +16,7 @@ from tests.unit.parameters.probing import (
     hand,
 )
 from vehicle_sim.autopilot.interface import Result
-from vehicle_sim.model.faults import AccelBias
+from vehicle_sim.plant.faults import AccelBias
 from vehicle_sim.wire import messages as m
 
 S = 1_000_000_000

@@ -17,13 +17,13 @@ from tests.unit.parameters.probing import (
     where,
 )
 from tests.unit.vehicle_services.fake_vehicle import acks, long
-from vehicle_sim.autopilot.failsafe import charge_of
-from vehicle_sim.autopilot.geofence import Geofence
+from vehicle_sim.autopilot.failsafes.failsafe import charge_of
+from vehicle_sim.autopilot.fence.geofence import Geofence
+from vehicle_sim.autopilot.fence.rally import Point, landing_site
 from vehicle_sim.autopilot.interface import Power, Result, Setpoint
-from vehicle_sim.autopilot.rally import Point, haven
-from vehicle_sim.autopilot.return_height import return_up_m
-from vehicle_sim.autopilot.sticks import Radio
-from vehicle_sim.model.faults import BaroFault, GpsGlitch, GpsLost
+from vehicle_sim.autopilot.manual.sticks import Radio
+from vehicle_sim.autopilot.tasks.return_height import return_up_m
+from vehicle_sim.plant.faults import BaroFault, GpsGlitch, GpsLost
 from vehicle_sim.wire import messages as m
 
 S = 1_000_000_000
@@ -176,7 +176,7 @@ def returns_to(pos_n: float, point_n: float) -> Script:
 
     def script(setting: Setting) -> object:
         points = (Point(point_n, 0.0, 20.0, True),)
-        found = haven(
+        found = landing_site(
             points, (pos_n, 0.0, -9.0), HOME, 584.0, setting.parameters(), lambda n, e: True
         )
         return found.ground_ned[0]

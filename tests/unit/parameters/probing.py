@@ -13,10 +13,10 @@ from functools import cache
 from math import hypot
 
 from tests.unit.autopilot.hand_flight import HandFlight
-from vehicle_sim.autopilot.interface import Vec3
+from vehicle_sim.autopilot.manual.sticks import Sticks
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.autopilot.sticks import Sticks
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.numerics.vectors import Vec3
 
 UP_M = 12.0
 S = 1_000_000_000

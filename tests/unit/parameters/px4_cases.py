@@ -15,8 +15,8 @@ from tests.unit.parameters.probing import (
     hand,
 )
 from vehicle_sim.autopilot.interface import Result, Setpoint
-from vehicle_sim.autopilot.return_height import return_up_m
-from vehicle_sim.model.faults import AccelBias, GpsLost
+from vehicle_sim.autopilot.tasks.return_height import return_up_m
+from vehicle_sim.plant.faults import AccelBias, GpsLost
 from vehicle_sim.wire import messages as m
 
 S = 1_000_000_000

@@ -15,13 +15,13 @@ from tests.unit.parameters.probing import (
     Setting,
     where,
 )
-from vehicle_sim.autopilot.failsafe import RANK, charge_of
-from vehicle_sim.autopilot.geofence import Geofence
+from vehicle_sim.autopilot.failsafes.failsafe import RANK, charge_of
+from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector, Posture
+from vehicle_sim.autopilot.fence.geofence import Geofence
+from vehicle_sim.autopilot.fence.rally import Point, landing_site
 from vehicle_sim.autopilot.interface import OrbitRequest, Power, Result, Setpoint
-from vehicle_sim.autopilot.rally import Point, haven
-from vehicle_sim.autopilot.sticks import Radio
-from vehicle_sim.autopilot.upset import Posture, Upsets
-from vehicle_sim.model.faults import GpsLost
+from vehicle_sim.autopilot.manual.sticks import Radio
+from vehicle_sim.plant.faults import GpsLost
 from vehicle_sim.wire import messages as m
 
 S = 1_000_000_000
@@ -54,7 +54,7 @@ def upset_after_s(posture: Posture) -> Script:
     """How long after the start of an upset something is said; infinite = nothing."""
 
     def script(setting: Setting) -> object:
-        upsets = Upsets(setting.parameters())
+        upsets = FailureDetector(setting.parameters())
         upsets.check(_LEVEL, True, False, 0)
         start = 10 * S
         for tick in range(150):
@@ -67,7 +67,7 @@ def upset_after_s(posture: Posture) -> Script:
 
 def upset_action(posture: Posture) -> Script:
     def script(setting: Setting) -> object:
-        upsets = Upsets(setting.parameters())
+        upsets = FailureDetector(setting.parameters())
         upsets.check(_LEVEL, True, False, 0)
         struck = [*upsets.check(posture, True, False, 10 * S)]
         struck += upsets.check(posture, True, False, 12 * S)
@@ -167,7 +167,7 @@ def leaves_fence(flight: HandFlight) -> None:
 def returns_to(setting: Setting) -> float:
     """How far north of home a return from between home and a rally point ends."""
     points = (Point(30.0, 0.0, 0.0, True),)
-    found = haven(
+    found = landing_site(
         points, (5.0, 0.0, -9.0), (0.0, 0.0, 0.0), 488.0, setting.parameters(), lambda n, e: True
     )
     return found.ground_ned[0]

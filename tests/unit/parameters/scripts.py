@@ -20,20 +20,15 @@ from tests.unit.parameters.probing import (
 )
 from tests.unit.vehicle_logbook.flights import Flight as LoggedFlight
 from tests.unit.vehicle_services.fake_vehicle import Bench, S, long
-from vehicle_sim.autopilot.interface import (
-    AttitudeSetpoint,
-    Landed,
-    MissionReached,
-    Quat,
-    Setpoint,
-)
-from vehicle_sim.autopilot.stick_feel import Feel, feel_of, thrust_of
-from vehicle_sim.autopilot.sticks import Sticks
-from vehicle_sim.model.faults import Fault
+from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, MissionReached, Setpoint
+from vehicle_sim.autopilot.manual.stick_feel import Feel, feel_of, thrust_of
+from vehicle_sim.autopilot.manual.sticks import Sticks
+from vehicle_sim.numerics.vectors import Quat
+from vehicle_sim.plant.faults import Fault
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.world import LinkSpec, Log, World
 from vehicle_sim.wire import messages as m
-from vehicle_sim.world import LinkSpec, Log, World
 
 GO, LAND, TAKEOFF, REBOOT, REQUEST_MESSAGE = 16, 21, 22, 246, 512
 

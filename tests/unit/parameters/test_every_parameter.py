@@ -7,7 +7,7 @@ import pytest
 from tests.unit.parameters import ardupilot_cases, px4_cases
 from tests.unit.parameters.probing import Case
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import TABLES
+from vehicle_sim.autopilot.parameters.parameters import TABLES
 
 CASES: dict[Personality, tuple[Case, ...]] = {
     "px4": px4_cases.CASES,

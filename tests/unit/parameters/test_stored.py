@@ -11,11 +11,12 @@ from tests.unit.vehicle_services.fake_vehicle import S, acks, long
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.fleet import Few, Seat, Spec
-from vehicle_sim.fleet_many import Many
-from vehicle_sim.model.airframe import load
-from vehicle_sim.model.faults import WindChange
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.step import Seat, VehicleSpec
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.faults import WindChange
 from vehicle_sim.wire.ids import Cmd
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
@@ -77,7 +78,7 @@ def test_a_reboot_does_not_end_what_the_simulation_was_told() -> None:
 def test_gains_reach_a_vehicle_in_a_fleet_as_they_reach_one_alone() -> None:
     def flown(kind: type[Few] | type[Many]) -> bytes:
         home = HOMES["px4"]
-        specs = [Spec(1, index, home.lat_deg) for index in range(2)]
+        specs = [VehicleSpec(1, index, home.lat_deg) for index in range(2)]
         engine = kind(specs, load())
         vehicles = []
         for lane, roll_p in enumerate((6.5, 4.0)):

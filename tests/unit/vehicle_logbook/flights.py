@@ -10,15 +10,16 @@ from typing import Any
 from pymavlink.DFReader import DFReader_binary
 
 from tests.unit.vehicle_services.fake_vehicle import MS, FakeVehicle, S
-from vehicle_sim.autopilot.interface import Estimate, Vec3, VehicleEvent
+from vehicle_sim.autopilot.interface import Estimate, VehicleEvent
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.logbook.recorder import Recorder
-from vehicle_sim.logbook.shelf import Shelf
-from vehicle_sim.services.effects import Effect
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.effects import Effect
+from vehicle_sim.flight_log.log_directory import LogDirectory
+from vehicle_sim.flight_log.recorder import Recorder
+from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.services.profile import PROFILES
-from vehicle_sim.services.store import MemoryStore, Store
 from vehicle_sim.services.telemetry import STATE
+from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
 
 START_S = 1_714_555_000
@@ -49,7 +50,7 @@ class Flight:
         self.vehicle = Moving()
         self.parameters = Parameters(personality)
         self.store: Store = store if store is not None else MemoryStore()
-        self.shelf = Shelf(self.store, personality)
+        self.shelf = LogDirectory(self.store, personality)
         self.notes: list[Effect] = []
         profile = PROFILES[personality]
         self.recorder = Recorder(

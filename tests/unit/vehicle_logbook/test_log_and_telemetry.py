@@ -13,11 +13,11 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.services.store import MemoryStore
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Transmit, Wake, World
+from vehicle_sim.storage.store import MemoryStore
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import Datagram, LinkSpec, Transmit, Wake, World
 
 NAN = float("nan")
 SCRIPTS: dict[Personality, list[tuple[int, m.Message]]] = {

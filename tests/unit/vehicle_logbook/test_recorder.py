@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from tests.unit.vehicle_logbook.flights import MS, Flight, S
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.logbook import recorder as recorder_module
-from vehicle_sim.logbook.recorder import NEVER
-from vehicle_sim.logbook.shelf import LOGS_MAX, Shelf, civil_date, unix_days
-from vehicle_sim.services.effects import Note
-from vehicle_sim.services.store import MemoryStore, put
+from vehicle_sim.effects import Note
+from vehicle_sim.flight_log import recorder as recorder_module
+from vehicle_sim.flight_log.log_directory import LOGS_MAX, LogDirectory, civil_date, unix_days
+from vehicle_sim.flight_log.recorder import NEVER
+from vehicle_sim.storage.store import MemoryStore, put
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 
@@ -163,7 +163,7 @@ def test_the_oldest_logs_make_room_for_new_ones(personality: Personality) -> Non
 
 def test_all_logs_together_stay_within_their_bound() -> None:
     store = MemoryStore()
-    shelf = Shelf(store, "ardupilot")
+    shelf = LogDirectory(store, "ardupilot")
     for _ in range(8):
         path = shelf.begin(0)
         shelf.append(path, bytes(8 * 1024 * 1024), 0)
@@ -210,7 +210,7 @@ def test_dates_are_the_calendars(days: int) -> None:
 def test_a_log_of_an_earlier_run_has_the_time_of_its_name() -> None:
     flight = Flight("px4")
     flight.fly()
-    again = Shelf(flight.store, "px4")
+    again = LogDirectory(flight.store, "px4")
     assert [log.time_utc_s for log in again.logs()] == [1_714_555_000 + 1]
 
 
@@ -221,6 +221,6 @@ def test_the_place_of_the_logs_is_there_before_the_first(
     personality: Personality, root: str
 ) -> None:
     store = MemoryStore()
-    Shelf(store, personality)
+    LogDirectory(store, personality)
     assert store.entries(root) == []
-    Shelf(store, personality)  # over a store that has it already
+    LogDirectory(store, personality)  # over a store that has it already

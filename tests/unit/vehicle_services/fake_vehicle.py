@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from vehicle_sim.autopilot import fence, rally
-from vehicle_sim.autopilot.estimator import Health
+from vehicle_sim.autopilot.fence import rally
+from vehicle_sim.autopilot.fence import zones as fence
 from vehicle_sim.autopilot.interface import (
     AttitudeGoal,
     AttitudeSetpoint,
@@ -24,18 +24,19 @@ from vehicle_sim.autopilot.interface import (
     Setpoint,
     Target,
     Truth,
-    Vec3,
     VehicleEvent,
 )
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.model.faults import Fault
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.estimation.estimator import Health
+from vehicle_sim.numerics.vectors import Vec3
+from vehicle_sim.plant.faults import Fault
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 
 HOME = Geodetic(47.397742, 8.545594, 488.0)
 HEALTHY = Health(

@@ -7,10 +7,10 @@ from typing import TypeAlias
 
 from tests.unit.vehicle_services.fake_vehicle import FakeVehicle
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.impairment import Air, Direction, Impairment
-from vehicle_sim.services.effects import Client, Send
+from vehicle_sim.effects import Client, Send
 from vehicle_sim.services.mission import MissionServer
 from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.simulation.impairment import Air, Direction, Impairment
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MissionResult
 

@@ -10,7 +10,7 @@ from tests.unit.vehicle_services.fake_vehicle import HOME, MS, Bench, S, acks, l
 from vehicle_sim.autopilot.interface import CommandDone, Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Cmd, Frame
+from vehicle_sim.wire.ids import Cmd, MavFrame
 
 NAN = math.nan
 
@@ -115,7 +115,7 @@ def test_a_broadcast_command_is_for_us_too() -> None:
     assert acks(bench.send(asked)) == [(Cmd.NAV_LAND, Result.ACCEPTED)]
 
 
-@pytest.mark.parametrize("frame", [Frame.LOCAL_NED, Frame.GLOBAL_TERRAIN_ALT_INT, 200])
+@pytest.mark.parametrize("frame", [MavFrame.LOCAL_NED, MavFrame.GLOBAL_TERRAIN_ALT_INT, 200])
 def test_a_place_in_a_frame_that_is_not_global_is_an_unsupported_frame(frame: int) -> None:
     heard = Bench().send(command_int(Cmd.DO_REPOSITION, frame))
     assert acks(heard) == [(Cmd.DO_REPOSITION, Result.UNSUPPORTED_MAV_FRAME)]
@@ -145,7 +145,9 @@ def test_ardupilot_is_not_told_how_high_to_take_off() -> None:
 
 def test_reposition_by_command_int_is_exact_and_by_home() -> None:
     bench = Bench()
-    asked = command_int(Cmd.DO_REPOSITION, Frame.GLOBAL_RELATIVE_ALT_INT, 473977420, 85455940, 12.5)
+    asked = command_int(
+        Cmd.DO_REPOSITION, MavFrame.GLOBAL_RELATIVE_ALT_INT, 473977420, 85455940, 12.5
+    )
     assert acks(bench.send(asked)) == [(Cmd.DO_REPOSITION, Result.ACCEPTED)]
     ((pos_ned, yaw, speed),) = bench.vehicle.named("reposition")
     assert pos_ned == pytest.approx((0.0, 0.0, -12.5), abs=1e-3)

@@ -10,17 +10,18 @@ import pytest
 
 from tests.unit.autopilot.flight import HOMES
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.life import phase_ns
+from vehicle_sim.autopilot.decisions import phase_ns
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.fleet import Engine, Few, Seat, Spec
-from vehicle_sim.fleet_many import Many
-from vehicle_sim.model.airframe import load
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.step import Engine, Seat, VehicleSpec
+from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
-from vehicle_sim.world import Datagram, LinkSpec, Transmit, Wake, World
 
 pytestmark = pytest.mark.slow
 
@@ -57,12 +58,12 @@ def orders(index: int, personality: Personality) -> list[tuple[int, m.Message]]:
 def spoken(
     personality: Personality,
     indices: Sequence[int],
-    engine_of: Callable[[Sequence[Spec]], Engine],
+    engine_of: Callable[[Sequence[VehicleSpec]], Engine],
     nap_ns: int,
 ) -> dict[int, bytes]:
     """By index, all that the vehicle sent on its own link."""
     home = HOMES[personality]
-    engine = engine_of([Spec(SEED, index, home.lat_deg) for index in indices])
+    engine = engine_of([VehicleSpec(SEED, index, home.lat_deg) for index in indices])
     servers = []
     for lane, index in enumerate(indices):
         parameters = Parameters(personality)
@@ -105,11 +106,11 @@ def framed_orders(index: int, personality: Personality) -> list[tuple[int, bytes
     ]
 
 
-def few(specs: Sequence[Spec]) -> Engine:
+def few(specs: Sequence[VehicleSpec]) -> Engine:
     return Few(specs, load())
 
 
-def many(specs: Sequence[Spec]) -> Engine:
+def many(specs: Sequence[VehicleSpec]) -> Engine:
     return Many(specs, load())
 
 
@@ -128,7 +129,7 @@ def test_alone_it_says_what_it_says_in_a_fleet_of_30(personality: Personality, i
 
 @pytest.mark.parametrize("engine_of", [few, many])
 def test_the_size_of_the_fleet_changes_no_byte(
-    engine_of: Callable[[Sequence[Spec]], Engine],
+    engine_of: Callable[[Sequence[VehicleSpec]], Engine],
 ) -> None:
     whole = fleet_of_30("px4")
     assert len(set(whole.values())) == 30

@@ -12,10 +12,10 @@ from tests.unit.vehicle_services.ftp_client import (
     frame,
     refused,
 )
-from vehicle_sim.services.effects import Client
+from vehicle_sim.effects import Client
 from vehicle_sim.services.ftp_wire import Nak, Opcode
-from vehicle_sim.services.store import StoreError, StoreFault, put
-from vehicle_sim.services.virtual import Virtual
+from vehicle_sim.storage.store import StoreError, StoreFault, put
+from vehicle_sim.storage.virtual_files import Virtual
 
 BIG = bytes(range(251)) * 400  # 100,400 bytes
 

@@ -8,13 +8,13 @@ from random import Random
 import pytest
 
 from tests.unit.vehicle_services.ftp_client import MS, frame
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.services.effects import Client, Send
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.effects import Client, Send
 from vehicle_sim.services.ftp import FtpServer
 from vehicle_sim.services.ftp_wire import Opcode
 from vehicle_sim.services.param_pack import PATH, param_pack
-from vehicle_sim.services.store import MemoryStore, Store, put
 from vehicle_sim.shell.files import DiskStore
+from vehicle_sim.storage.store import MemoryStore, Store, put
 from vehicle_sim.wire import messages as m
 
 LIMIT = 50_000

@@ -17,17 +17,25 @@ from tests.unit.vehicle_services.fake_vehicle import MS, S, long
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.world import (
+    DATAGRAM_BYTES,
+    Datagram,
+    Input,
+    LinkSpec,
+    Transmit,
+    Wake,
+    World,
+)
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import BY_TYPE, encode
 from vehicle_sim.wire.dialect import LAYOUTS
 from vehicle_sim.wire.ids import Cmd
 from vehicle_sim.wire.messages import IDS, TYPES, Message
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.wire.supplement import Field
-from vehicle_sim.world import DATAGRAM_BYTES, Datagram, Input, LinkSpec, Transmit, Wake, World
+from vehicle_sim.wire.supplement import MessageField
 
 pytestmark = pytest.mark.slow
 
@@ -75,7 +83,7 @@ MOVING = (
 """What may rightly move a vehicle, or change how it flies."""
 
 
-def number(field: Field, draw: random.Random) -> float:
+def number(field: MessageField, draw: random.Random) -> float:
     """A value of that type: an extreme, a small one, or any."""
     if field.kind in ("float", "double"):
         return draw.choice((*FLOATS, draw.uniform(-1000.0, 1000.0)))
@@ -87,7 +95,7 @@ def number(field: Field, draw: random.Random) -> float:
     return draw.choice((low, high, small, small, small, draw.randint(low, high)))
 
 
-def value(field: Field, draw: random.Random) -> float | bytes | tuple[float, ...]:
+def value(field: MessageField, draw: random.Random) -> float | bytes | tuple[float, ...]:
     if field.name in TARGETS:
         return draw.choice((1, 1, 1, 0, 2, 255))
     if field.name == "command":
@@ -97,7 +105,7 @@ def value(field: Field, draw: random.Random) -> float | bytes | tuple[float, ...
     if field.kind == "char" or (field.length and field.kind == "uint8_t"):
         return draw.randbytes(draw.randrange(max(field.length, 1) + 1))
     if field.length:
-        one = Field(field.name, field.kind, 0)
+        one = MessageField(field.name, field.kind, 0)
         return tuple(number(one, draw) for _ in range(field.length))
     return number(field, draw)
 

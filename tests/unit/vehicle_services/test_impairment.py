@@ -7,14 +7,23 @@ from itertools import pairwise
 import pytest
 
 from tests.unit.vehicle_services.fake_vehicle import MS, FakeVehicle, S, long
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.impairment import CLEAR, REORDER_HOLD_NS, Direction, Impairment, Path
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.impairment import CLEAR, REORDER_HOLD_NS, Direction, Impairment, Path
+from vehicle_sim.simulation.world import (
+    Datagram,
+    Input,
+    Joined,
+    Left,
+    LinkSpec,
+    Transmit,
+    Wake,
+    World,
+)
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import Datagram, Input, Joined, Left, LinkSpec, Transmit, Wake, World
 
 UP, DOWN = Direction.TO_VEHICLE, Direction.FROM_VEHICLE
 

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from tests.unit.vehicle_services.fake_vehicle import MS, Bench, FakeVehicle, S
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters import Parameters
-from vehicle_sim.logbook.recorder import Recorder
-from vehicle_sim.logbook.shelf import Shelf
-from vehicle_sim.services.effects import Client, Effect, Send
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.effects import Client, Effect, Send
+from vehicle_sim.flight_log.log_directory import LogDirectory
+from vehicle_sim.flight_log.recorder import Recorder
 from vehicle_sim.services.logs import DATA_BYTES, LogServer
 from vehicle_sim.services.profile import PROFILES
-from vehicle_sim.services.store import MemoryStore, put
 from vehicle_sim.services.streams import NEVER
+from vehicle_sim.storage.store import MemoryStore, put
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import CODECS
 
@@ -39,7 +39,7 @@ class Aboard:
         for path, log in zip(self.paths, logs, strict=True):
             put(self.store, path, log)
         profile = PROFILES[personality]
-        shelf = Shelf(self.store, personality)
+        shelf = LogDirectory(self.store, personality)
         parameters = Parameters(personality)
         recorder = Recorder(self.vehicle, parameters, shelf, (1, 0))
         self.server = LogServer(self.vehicle, profile, recorder)

@@ -10,7 +10,7 @@ from tests.unit.vehicle_services.fake_vehicle import HOME, Bench, S, acks, long
 from vehicle_sim.autopilot.interface import AttitudeGoal, Geodetic, Orbiting, OrbitRequest, Result
 from vehicle_sim.autopilot.modes import MODES, Personality, Property
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Cmd, Frame
+from vehicle_sim.wire.ids import Cmd, MavFrame
 
 NAN = math.nan
 either = pytest.mark.parametrize("personality", ["px4", "ardupilot"])
@@ -92,7 +92,7 @@ def test_another_vehicles_position_is_a_leader_and_our_own_is_not(
     assert heading_rad == pytest.approx(0.5 * math.pi)
 
 
-@pytest.mark.parametrize("frame", [Frame.GLOBAL, Frame.GLOBAL_RELATIVE_ALT])
+@pytest.mark.parametrize("frame", [MavFrame.GLOBAL, MavFrame.GLOBAL_RELATIVE_ALT])
 def test_an_orbit_by_command_int_has_its_height_above_sea_whatever_the_frame(frame: int) -> None:
     """Clients leave the frame at its default, relative, and send AMSL: PX4 takes it so."""
     bench = Bench()

@@ -8,9 +8,9 @@ from pymavlink.dialects.v20 import all as new
 from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, SigningKey, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import Datagram, LinkSpec, Log, SigningKey, Transmit, Wake, World
 
 OLD = old.MAVLink(None, srcSystem=255, srcComponent=190)
 NEW = new.MAVLink(None, srcSystem=255, srcComponent=190)

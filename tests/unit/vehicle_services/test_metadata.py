@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.metadata import GENERAL_PATH, metadata_of
-from vehicle_sim.services.store import crc32_of
+from vehicle_sim.storage.store import crc32_of
 
 METADATA = metadata_of("px4")
 KEYS = {

@@ -18,14 +18,10 @@ from tests.unit.vehicle_services.lossy_upload import (
 from tests.unit.vehicle_services.test_missions import asked_for, count, item, results
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.impairment import Impairment
-from vehicle_sim.services.effects import Client
-from vehicle_sim.services.plan_items import (
-    as_ardupilot_gives_back,
-    from_float,
-    to_float,
-)
+from vehicle_sim.effects import Client
+from vehicle_sim.services.plan_items import as_ardupilot_gives_back, from_float, to_float
 from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.simulation.impairment import Impairment
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MissionResult, MissionType
 

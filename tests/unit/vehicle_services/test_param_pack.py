@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.mavftp import MAVFTP
 
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.param_pack import param_pack, unpack
-from vehicle_sim.services.store import StoreError
+from vehicle_sim.storage.store import StoreError
 
 
 def read(parameters: Parameters, query: str = "") -> dict[str, tuple[float, int]]:

@@ -7,14 +7,10 @@ from itertools import count, pairwise
 from pymavlink.dialects.v20 import all as upstream
 
 from tests.unit.vehicle_services.fake_vehicle import MS, FakeVehicle, S
-from vehicle_sim.autopilot.parameters import Parameters
+from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.codec import encode
-from vehicle_sim.wire.signing import EPOCH_UNIX_NS
-from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import (
+from vehicle_sim.simulation.world import (
     Datagram,
     Input,
     Left,
@@ -25,6 +21,10 @@ from vehicle_sim.world import (
     Wake,
     World,
 )
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.codec import encode
+from vehicle_sim.wire.signing import EPOCH_UNIX_NS
+from vehicle_sim.wire.split import Counters, split
 
 KEY = SigningKey(b"k" * 32)
 OTHER = SigningKey(b"o" * 32)

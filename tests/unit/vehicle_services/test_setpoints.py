@@ -10,7 +10,7 @@ from tests.unit.vehicle_services.fake_vehicle import Bench, S
 from vehicle_sim.autopilot.interface import AttitudeSetpoint, Setpoint
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Frame
+from vehicle_sim.wire.ids import MavFrame
 
 POSITION = 3576
 POSITION_AND_YAW = 2552
@@ -27,7 +27,7 @@ def local(
     vy: float = 0.0,
     vz: float = 0.0,
     yaw: float = 0.0,
-    frame: int = Frame.LOCAL_NED,
+    frame: int = MavFrame.LOCAL_NED,
 ) -> m.SetPositionTargetLocalNed:
     return m.SetPositionTargetLocalNed(0, x, y, z, vx, vy, vz, 0, 0, 0, yaw, 0, mask, 1, 1, frame)
 
@@ -51,7 +51,7 @@ def test_a_position_with_a_heading() -> None:
 def test_a_velocity_in_the_body_frame_turns_with_the_vehicle() -> None:
     bench = Bench()
     bench.vehicle.q_ned_from_frd = YAW_EAST
-    bench.send(local(VELOCITY, vx=2.0, frame=Frame.BODY_NED))
+    bench.send(local(VELOCITY, vx=2.0, frame=MavFrame.BODY_NED))
     (setpoint,) = flown(bench)
     assert isinstance(setpoint, Setpoint)
     assert setpoint.v_ned == pytest.approx((0.0, 2.0, 0.0), abs=1e-6)
@@ -60,8 +60,8 @@ def test_a_velocity_in_the_body_frame_turns_with_the_vehicle() -> None:
 def test_offsets_count_from_where_the_vehicle_is_on_ardupilot() -> None:
     bench = Bench("ardupilot")
     bench.vehicle.q_ned_from_frd = YAW_EAST
-    bench.send(local(POSITION, 1.0, 0.0, -1.0, frame=Frame.LOCAL_OFFSET_NED))
-    bench.send(local(POSITION, 1.0, 0.0, -1.0, frame=Frame.BODY_OFFSET_NED))
+    bench.send(local(POSITION, 1.0, 0.0, -1.0, frame=MavFrame.LOCAL_OFFSET_NED))
+    bench.send(local(POSITION, 1.0, 0.0, -1.0, frame=MavFrame.BODY_OFFSET_NED))
     first, second = flown(bench)
     assert isinstance(first, Setpoint)
     assert isinstance(second, Setpoint)
@@ -72,10 +72,10 @@ def test_offsets_count_from_where_the_vehicle_is_on_ardupilot() -> None:
 @pytest.mark.parametrize(
     ("personality", "frame"),
     [
-        ("px4", Frame.LOCAL_OFFSET_NED),
-        ("px4", Frame.BODY_OFFSET_NED),
-        ("px4", Frame.GLOBAL_INT),
-        ("ardupilot", Frame.GLOBAL_TERRAIN_ALT_INT),
+        ("px4", MavFrame.LOCAL_OFFSET_NED),
+        ("px4", MavFrame.BODY_OFFSET_NED),
+        ("px4", MavFrame.GLOBAL_INT),
+        ("ardupilot", MavFrame.GLOBAL_TERRAIN_ALT_INT),
         ("ardupilot", 99),
     ],
 )
@@ -133,7 +133,7 @@ def global_int(frame: int, lat: int, lon: int, alt: float) -> m.SetPositionTarge
 
 
 @pytest.mark.parametrize(
-    ("frame", "alt"), [(Frame.GLOBAL_INT, 500.0), (Frame.GLOBAL_RELATIVE_ALT_INT, 12.0)]
+    ("frame", "alt"), [(MavFrame.GLOBAL_INT, 500.0), (MavFrame.GLOBAL_RELATIVE_ALT_INT, 12.0)]
 )
 def test_a_global_place_knows_its_datum(frame: int, alt: float) -> None:
     bench = Bench()
@@ -145,9 +145,9 @@ def test_a_global_place_knows_its_datum(frame: int, alt: float) -> None:
 
 def test_a_global_place_needs_an_origin_and_must_be_on_earth() -> None:
     bench = Bench()
-    bench.send(global_int(Frame.GLOBAL_INT, 1_900_000_000, 0, 0.0))
+    bench.send(global_int(MavFrame.GLOBAL_INT, 1_900_000_000, 0, 0.0))
     bench.vehicle.origin = None
-    bench.send(global_int(Frame.GLOBAL_INT, 473977420, 85455940, 500.0))
+    bench.send(global_int(MavFrame.GLOBAL_INT, 473977420, 85455940, 500.0))
     assert flown(bench) == []
 
 

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_sim.services.store import (
-    Entry,
+from vehicle_sim.shell.files import DiskStore
+from vehicle_sim.storage.store import (
+    DirectoryEntry,
     MemoryStore,
     Store,
     StoreError,
@@ -20,7 +21,6 @@ from vehicle_sim.services.store import (
     parts_of,
     put,
 )
-from vehicle_sim.shell.files import DiskStore
 
 
 @pytest.fixture(params=["memory", "disk"])
@@ -50,8 +50,12 @@ def test_a_directory_is_listed_by_name(store: Store) -> None:
     put(store, "b.txt", b"two")
     put(store, "a/x.txt", b"")
     store.make_directory("c")
-    assert store.entries("") == [Entry("a", 0, True), Entry("b.txt", 3, False), Entry("c", 0, True)]
-    assert store.entries("/a/") == [Entry("x.txt", 0, False)]
+    assert store.entries("") == [
+        DirectoryEntry("a", 0, True),
+        DirectoryEntry("b.txt", 3, False),
+        DirectoryEntry("c", 0, True),
+    ]
+    assert store.entries("/a/") == [DirectoryEntry("x.txt", 0, False)]
 
 
 def test_writing_past_the_end_fills_with_zeros_and_truncating_cuts(store: Store) -> None:
@@ -169,7 +173,7 @@ def test_the_disk_store_follows_no_link(tmp_path: Path) -> None:
     (root / "up").symlink_to(tmp_path)
     (root / "inside").symlink_to(root / "d")
     store = DiskStore(root)
-    assert store.entries("") == [Entry("d", 0, True)]
+    assert store.entries("") == [DirectoryEntry("d", 0, True)]
     for path in ("file", "up/secret", "inside", "up"):
         for request in (
             lambda path=path: store.size(path),

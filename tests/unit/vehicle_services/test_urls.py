@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import pytest
 
-from vehicle_sim.shell.urls import Kind, Url, UrlError, parse
+from vehicle_sim.shell.urls import Url, UrlError, UrlKind, parse
 
 
 @pytest.mark.parametrize(
     ("text", "url"),
     [
-        ("udpin://0.0.0.0:14550", Url(Kind.UDP_IN, "0.0.0.0", 14550)),
-        ("udpout://127.0.0.1:14540", Url(Kind.UDP_OUT, "127.0.0.1", 14540)),
-        ("tcpin://127.0.0.1:5760", Url(Kind.TCP_IN, "127.0.0.1", 5760)),
-        ("tcpout://localhost:5760", Url(Kind.TCP_OUT, "localhost", 5760)),
-        ("udpin://:14550", Url(Kind.UDP_IN, "127.0.0.1", 14550)),
-        ("udpin://[::1]:14550", Url(Kind.UDP_IN, "::1", 14550)),
-        ("udp:127.0.0.1:14550", Url(Kind.UDP_IN, "127.0.0.1", 14550)),
-        ("udpin:127.0.0.1:14550", Url(Kind.UDP_IN, "127.0.0.1", 14550)),
-        ("udpout:127.0.0.1:14550", Url(Kind.UDP_OUT, "127.0.0.1", 14550)),
-        ("tcp:127.0.0.1:5760", Url(Kind.TCP_OUT, "127.0.0.1", 5760)),
-        ("tcpin:127.0.0.1:5760", Url(Kind.TCP_IN, "127.0.0.1", 5760)),
+        ("udpin://0.0.0.0:14550", Url(UrlKind.UDP_IN, "0.0.0.0", 14550)),
+        ("udpout://127.0.0.1:14540", Url(UrlKind.UDP_OUT, "127.0.0.1", 14540)),
+        ("tcpin://127.0.0.1:5760", Url(UrlKind.TCP_IN, "127.0.0.1", 5760)),
+        ("tcpout://localhost:5760", Url(UrlKind.TCP_OUT, "localhost", 5760)),
+        ("udpin://:14550", Url(UrlKind.UDP_IN, "127.0.0.1", 14550)),
+        ("udpin://[::1]:14550", Url(UrlKind.UDP_IN, "::1", 14550)),
+        ("udp:127.0.0.1:14550", Url(UrlKind.UDP_IN, "127.0.0.1", 14550)),
+        ("udpin:127.0.0.1:14550", Url(UrlKind.UDP_IN, "127.0.0.1", 14550)),
+        ("udpout:127.0.0.1:14550", Url(UrlKind.UDP_OUT, "127.0.0.1", 14550)),
+        ("tcp:127.0.0.1:5760", Url(UrlKind.TCP_OUT, "127.0.0.1", 5760)),
+        ("tcpin:127.0.0.1:5760", Url(UrlKind.TCP_IN, "127.0.0.1", 5760)),
     ],
 )
 def test_both_forms_are_understood(text: str, url: Url) -> None:

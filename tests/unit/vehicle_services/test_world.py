@@ -13,11 +13,7 @@ from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.codec import encode
-from vehicle_sim.wire.messages import Message
-from vehicle_sim.wire.split import Counters, split
-from vehicle_sim.world import (
+from vehicle_sim.simulation.world import (
     DATAGRAM_BYTES,
     Datagram,
     Input,
@@ -28,6 +24,10 @@ from vehicle_sim.world import (
     Wake,
     World,
 )
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.codec import encode
+from vehicle_sim.wire.messages import Message
+from vehicle_sim.wire.split import Counters, split
 
 HOME = Geodetic(47.397742, 8.545594, 488.0)
 GROUND = m.Heartbeat(0, 6, 8, 0, 4, 3)

@@ -13,20 +13,20 @@ import sys
 import pytest
 
 from vehicle_sim.autopilot.interface import Truth
-from vehicle_sim.control import LINE_MAX, answer
-from vehicle_sim.faults import AnyFault
-from vehicle_sim.outlets import Plain
+from vehicle_sim.reporting import Plain
 from vehicle_sim.shell.endpoints import ACCEPT_AGAIN_NS, TcpServer
-from vehicle_sim.shell.urls import Kind, Url
-from vehicle_sim.shell.watch import Watch
-from vehicle_sim.world import Joined, Log
+from vehicle_sim.shell.readable import ReadableSockets
+from vehicle_sim.shell.urls import Url, UrlKind
+from vehicle_sim.simulation.control_line import LINE_MAX, answer
+from vehicle_sim.simulation.fault_script import AnyFault
+from vehicle_sim.simulation.world import Joined, Log
 
 
 class EmptyStage:
     def truth(self, system: int) -> Truth | None:
         return None
 
-    def befall(self, fault: AnyFault, system: int | None) -> bool:
+    def inject(self, fault: AnyFault, system: int | None) -> bool:
         return False
 
 
@@ -39,8 +39,8 @@ def test_the_control_line_answers_whatever_is_written(line: bytes) -> None:
 def test_without_a_descriptor_to_spare_the_listener_rests_and_comes_back(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    server = TcpServer(0, Url(Kind.TCP_IN, "127.0.0.1", 0))
-    watch = Watch()
+    server = TcpServer(0, Url(UrlKind.TCP_IN, "127.0.0.1", 0))
+    watch = ReadableSockets()
     server.attach(watch)
     client = socket.create_connection(("127.0.0.1", server.url.port))
     ((listener, _),) = watch.ready(1.0)

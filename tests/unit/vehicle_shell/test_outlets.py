@@ -7,12 +7,12 @@ import json
 import pytest
 
 from vehicle_sim.autopilot.interface import Truth
-from vehicle_sim.control import Lines, answer
-from vehicle_sim.face import Rhythm, Status, cells, footer, table
-from vehicle_sim.faults import AnyFault, LinkFault
-from vehicle_sim.model.faults import GpsLost, MotorFault
-from vehicle_sim.outlets import Contact, Json, Launch, announcement, spelled
+from vehicle_sim.live_page import Rhythm, VehicleLine, cells, footer, table
+from vehicle_sim.plant.faults import GpsLost, MotorFault
+from vehicle_sim.reporting import Contact, Json, Launch, announcement, spelled
 from vehicle_sim.shell.urls import parse
+from vehicle_sim.simulation.control_line import Lines, answer
+from vehicle_sim.simulation.fault_script import AnyFault, LinkFault
 
 OWN = [parse(f"udpout://127.0.0.1:{port}") for port in range(14540, 14560)]
 STATION = parse("udpout://127.0.0.1:14550")
@@ -54,8 +54,8 @@ def test_the_json_outlet_says_one_object_a_line(capsys: pytest.CaptureFixture[st
 # ------------------------------------------------------------------------------- the face
 
 
-def status(system: int, flying: bool = False, clients: int = 0) -> Status:
-    return Status(system, "AUTO.LOITER", flying, flying, False, 12.34, 4.56, 0.873, clients)
+def status(system: int, flying: bool = False, clients: int = 0) -> VehicleLine:
+    return VehicleLine(system, "AUTO.LOITER", flying, flying, False, 12.34, 4.56, 0.873, clients)
 
 
 RHYTHM = Rhythm(75.0, 10.0, 9.98)
@@ -73,7 +73,7 @@ def test_a_line_has_all_that_one_wants_to_know() -> None:
     )
     assert cells(status(3))[2] == "disarmed"
     assert cells(status(3))[6] == "nobody"
-    failing = Status(1, "AUTO.RTL", True, True, True, 0.0, 0.0, 0.1, 1)
+    failing = VehicleLine(1, "AUTO.RTL", True, True, True, 0.0, 0.0, 0.1, 1)
     assert cells(failing)[2] == "flying, FAILSAFE"
 
 
@@ -104,7 +104,7 @@ class Stage:
         return Truth(1.5, zero, zero, (1.0, 0.0, 0.0, 0.0), zero, 47.0, 8.0, 488.0, False, "X",
                      True, 1.0)  # fmt: skip
 
-    def befall(self, fault: AnyFault, system: int | None) -> bool:
+    def inject(self, fault: AnyFault, system: int | None) -> bool:
         self.befell.append((fault, system))
         return system in (None, 1)
 

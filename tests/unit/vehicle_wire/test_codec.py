@@ -15,7 +15,7 @@ from vehicle_sim.wire.codec import BY_TYPE, encode
 from vehicle_sim.wire.dialect import LAYOUTS, NAMES
 from vehicle_sim.wire.messages import IDS, TYPES, Heartbeat, LocalPositionNed, Message, Timesync
 from vehicle_sim.wire.split import Counters, Reassembler, split
-from vehicle_sim.wire.supplement import GROWN, Field
+from vehicle_sim.wire.supplement import GROWN, MessageField
 
 RANGES = {
     "uint8_t": (0, 2**8 - 1),
@@ -29,17 +29,17 @@ RANGES = {
 }
 
 
-def value(field: Field, draw: random.Random) -> float | bytes | tuple[float, ...]:
+def value(field: MessageField, draw: random.Random) -> float | bytes | tuple[float, ...]:
     if field.length and field.kind in ("char", "uint8_t"):
         text = bytes(draw.randrange(1, 127) for _ in range(draw.randrange(field.length + 1)))
         return text.ljust(field.length, b"\0")
     if field.length:
-        one = Field(field.name, field.kind, 0)
+        one = MessageField(field.name, field.kind, 0)
         return tuple(number(one, draw) for _ in range(field.length))
     return number(field, draw)
 
 
-def number(field: Field, draw: random.Random) -> float:
+def number(field: MessageField, draw: random.Random) -> float:
     if field.kind == "float":
         return draw.randrange(-1000, 1000) / 8
     return draw.randint(*RANGES[field.kind])
@@ -191,7 +191,7 @@ def test_a_stream_cut_anywhere_gives_the_same_frames(sizes: list[int]) -> None:
     ("ours", "prefix"),
     [
         (ids.Cmd, "MAV_CMD_"),
-        (ids.Frame, "MAV_FRAME_"),
+        (ids.MavFrame, "MAV_FRAME_"),
         (ids.Sensor, "MAV_SYS_STATUS_"),
         (ids.Capability, "MAV_PROTOCOL_CAPABILITY_"),
         (ids.EstimatorFlag, "ESTIMATOR_"),
@@ -199,7 +199,7 @@ def test_a_stream_cut_anywhere_gives_the_same_frames(sizes: list[int]) -> None:
         (ids.MissionResult, "MAV_MISSION_"),
         (ids.MissionType, "MAV_MISSION_TYPE_"),
         (ids.ParamType, "MAV_PARAM_TYPE_"),
-        (ids.Stream, "MAV_DATA_STREAM_"),
+        (ids.DataStream, "MAV_DATA_STREAM_"),
     ],
     ids=lambda each: getattr(each, "__name__", each),
 )

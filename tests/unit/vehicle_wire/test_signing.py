@@ -7,7 +7,7 @@ import hashlib
 import pytest
 from pymavlink.dialects.v20 import all as upstream
 
-from vehicle_sim.wire.codec import BY_TYPE, SIGNED, Frame, encode
+from vehicle_sim.wire.codec import BY_TYPE, SIGNED, MavlinkFrame, encode
 from vehicle_sim.wire.messages import Heartbeat, SetupSigning, Timesync
 from vehicle_sim.wire.signing import (
     EPOCH_UNIX_NS,
@@ -45,7 +45,7 @@ class Ground:
         return bytes(beat.pack(self.mav))
 
 
-def frame(data: bytes) -> Frame:
+def frame(data: bytes) -> MavlinkFrame:
     (only,) = split(data, Counters())
     return only
 
@@ -83,7 +83,7 @@ def test_any_changed_byte_makes_the_signature_bad() -> None:
     for at in range(1, len(good)):
         changed = bytearray(good)
         changed[at] ^= 0x20
-        taken = Frame(2, 0, 255, 190, 0, b"", True, bytes(changed))
+        taken = MavlinkFrame(2, 0, 255, 190, 0, b"", True, bytes(changed))
         assert Signing(KEY).judge(taken, NOW_NS) is Verdict.BAD_SIGNATURE, at
     assert Signing(KEY).judge(frame(good), NOW_NS) is Verdict.GOOD
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-from .camera import (
+from vehicle_sim.wire.messages.camera import (
     CameraCaptureStatus,
     CameraFeedback,
     CameraImageCaptured,
@@ -15,9 +15,9 @@ from .camera import (
     CameraSettings,
     StorageInformation,
 )
-from .fence import FenceStatus
-from .files import ComponentMetadata, FileTransferProtocol
-from .logs import (
+from vehicle_sim.wire.messages.fence import FenceStatus
+from vehicle_sim.wire.messages.files import ComponentMetadata, FileTransferProtocol
+from vehicle_sim.wire.messages.logs import (
     LogData,
     LogEntry,
     LogErase,
@@ -25,8 +25,13 @@ from .logs import (
     LogRequestEnd,
     LogRequestList,
 )
-from .manual import ManualControl, RcChannels, RcChannelsOverride, RcChannelsRaw
-from .motion import (
+from vehicle_sim.wire.messages.manual import (
+    ManualControl,
+    RcChannels,
+    RcChannelsOverride,
+    RcChannelsRaw,
+)
+from vehicle_sim.wire.messages.motion import (
     Attitude,
     AttitudeQuaternion,
     AttitudeTarget,
@@ -43,8 +48,8 @@ from .motion import (
     SetPositionTargetLocalNed,
     VfrHud,
 )
-from .security import SetupSigning
-from .sensors import (
+from vehicle_sim.wire.messages.security import SetupSigning
+from vehicle_sim.wire.messages.sensors import (
     BatteryStatus,
     EkfStatusReport,
     EstimatorStatus,
@@ -55,7 +60,7 @@ from .sensors import (
     ScaledPressure,
     ServoOutputRaw,
 )
-from .status import (
+from vehicle_sim.wire.messages.status import (
     Altitude,
     AvailableModesMonitor,
     Hwstatus,
@@ -66,7 +71,7 @@ from .status import (
     Wind,
     WindCov,
 )
-from .system import (
+from vehicle_sim.wire.messages.system import (
     AutopilotVersion,
     AvailableModes,
     CurrentMode,
@@ -82,7 +87,7 @@ from .system import (
     SystemTime,
     Timesync,
 )
-from .tasks import (
+from vehicle_sim.wire.messages.tasks import (
     CommandAck,
     CommandInt,
     CommandLong,

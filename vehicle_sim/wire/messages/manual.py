@@ -1,4 +1,4 @@
-"""What a pilot's hands do: joystick and radio channels.
+"""Manual input: joystick and radio channels.
 
 One named tuple a message, fields in wire order, values as MAVLink has them (units and frames are
 the dialect's).

@@ -1,0 +1,85 @@
+"""How parameters reach the control loops and the estimator: as fields of their blocks.
+
+Kernels see numbers only; these are written anew whenever a parameter has changed.
+"""
+
+from __future__ import annotations
+
+from math import radians, tan
+
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.control_loops.cascade import tune
+from vehicle_sim.control_loops.flight import Flight
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.plant.frame import AirframeConstants
+
+_GAINS: dict[Personality, dict[str, str]] = {
+    "px4": {
+        "MPC_XY_P": "kp_pos_xy",
+        "MPC_Z_P": "kp_pos_z",
+        "MPC_XY_VEL_P_ACC": "kp_vel_xy",
+        "MPC_XY_VEL_I_ACC": "ki_vel_xy",
+        "MPC_Z_VEL_P_ACC": "kp_vel_z",
+        "MPC_Z_VEL_I_ACC": "ki_vel_z",
+        "MC_ROLL_P": "kp_roll",
+        "MC_PITCH_P": "kp_pitch",
+        "MC_YAW_P": "kp_yaw",
+        "MC_ROLLRATE_P": "kp_rate_roll",
+        "MC_PITCHRATE_P": "kp_rate_pitch",
+        "MC_YAWRATE_P": "kp_rate_yaw",
+    },
+    "ardupilot": {
+        "PSC_POSXY_P": "kp_pos_xy",
+        "PSC_POSZ_P": "kp_pos_z",
+        "PSC_VELXY_P": "kp_vel_xy",
+        "PSC_VELXY_I": "ki_vel_xy",
+        "PSC_VELZ_P": "kp_vel_z",
+        # ArduCopter learns the hover thrust in its acceleration loop.
+        "PSC_ACCZ_I": "ki_vel_z",
+        "ATC_ANG_RLL_P": "kp_roll",
+        "ATC_ANG_PIT_P": "kp_pitch",
+        "ATC_ANG_YAW_P": "kp_yaw",
+        "ATC_RAT_RLL_P": "kp_rate_roll",
+        "ATC_RAT_PIT_P": "kp_rate_pitch",
+        "ATC_RAT_YAW_P": "kp_rate_yaw",
+    },
+}
+"""Which designed gain each parameter scales: by value over default."""
+
+_RATES: dict[Personality, dict[str, str]] = {
+    "px4": {
+        "MC_ROLLRATE_MAX": "roll_rate_max_rad_s",
+        "MC_PITCHRATE_MAX": "pitch_rate_max_rad_s",
+        "MC_YAWRATE_MAX": "yaw_rate_max_rad_s",
+    },
+    "ardupilot": {
+        "ATC_RATE_R_MAX": "roll_rate_max_rad_s",
+        "ATC_RATE_P_MAX": "pitch_rate_max_rad_s",
+        "ATC_RATE_Y_MAX": "yaw_rate_max_rad_s",
+    },
+}
+_TILT_MOST_DEG = 80.0  # beyond it no collective carries any vehicle
+
+
+def write_gains(
+    parameters: Parameters, flight: Flight, est: Estimated, frame: AirframeConstants
+) -> None:
+    """Gains and bounds of one vehicle, from its airframe and its parameters."""
+    get = parameters.get
+    designed = Flight()
+    tune(designed, frame)
+    for name, field in _GAINS[parameters.personality].items():
+        ratio = get(name) / parameters.default(name)
+        setattr(flight, field, ratio * getattr(designed, field))
+    px4 = parameters.personality == "px4"
+    for name, field in _RATES[parameters.personality].items():
+        # ArduCopter's 0 is no limit of its own.
+        own = px4 or get(name) > 0.0
+        setattr(flight, field, radians(get(name)) if own else getattr(designed, field))
+    lean_deg = get("MPC_TILTMAX_AIR") if px4 else 0.01 * get("ANGLE_MAX")
+    flight.tilt_max = tan(radians(min(lean_deg, _TILT_MOST_DEG)))
+    if px4:
+        flight.jerk_m_s3 = get("MPC_JERK_AUTO")
+        flight.lead_max_m = get("MPC_XY_ERR_MAX")
+        est.no_aid_s = 1e-6 * get("EKF2_NOAID_TOUT")

@@ -1,0 +1,172 @@
+"""What strikes an ArduCopter: battery, silence of the station or the sticks, fence, lost position.
+
+By ArduCopter's events.cpp, fence.cpp and ekf_check.cpp, and by AP_BattMonitor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from vehicle_sim.autopilot.failsafes.failsafe import (
+    BATTERY,
+    BREACH,
+    STATION_LOSS,
+    STICKS_LOSS,
+    Action,
+    Cause,
+    Failsafe,
+    by_capacity,
+    by_voltage,
+)
+from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
+from vehicle_sim.autopilot.fence.geofence import names
+from vehicle_sim.autopilot.modes import Behaviour
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.estimation.estimator import position_ok
+from vehicle_sim.plant.body import Body
+
+_GIVE_UP_M = 100.0  # it lands at once when it is further outside than this
+_EKF_CHECKS = 10  # of ekf_check: a second of bad ones in a row
+
+_GOES_ON = {
+    Behaviour.MISSION: "Continuing Auto Mode",
+    Behaviour.GUIDED: "Continuing Guided Mode",
+}
+
+
+class CopterFailsafes(FailsafeChecks):
+    """ArduCopter's."""
+
+    __slots__ = ("_bad_checks", "_low_since_ns", "_ratio_most", "_used_most_mah", "_volt_least")
+
+    back_again = Cleared(Cause.STATION, "GCS Failsafe Cleared", 4)
+
+    def reset(self) -> None:
+        super().reset()
+        self._low_since_ns: int | None = None
+        self._bad_checks = 0
+
+    def _learn(self) -> None:
+        get = self._parameters.get
+        self._volt_least = max(get("BATT_LOW_VOLT"), get("BATT_CRT_VOLT"))
+        self._used_most_mah = get("BATT_CAPACITY") - max(get("BATT_LOW_MAH"), get("BATT_CRT_MAH"))
+        self._ratio_most = get("FS_EKF_THRESH")
+
+    def _well(self, body: Body, est: Estimated) -> bool:
+        if self._low_since_ns is not None or body.voltage_v < self._volt_least:
+            return False
+        if body.consumed_mah > self._used_most_mah:
+            return False
+        most = self._ratio_most
+        return most <= 0.0 or (
+            self._bad_checks == 0
+            and est.vel_ratio < most
+            and est.pos_ratio < most
+            and est.mag_ratio < most
+            and position_ok(est)
+        )
+
+    def _begin(self, seen: Seen) -> None:
+        """Its own checks before arming have let it pass; forced, it acts at once."""
+
+    def _battery(self, seen: Seen) -> Iterator[Strike]:
+        get = self._parameters.get
+        charge = by_capacity(self._parameters, seen.power)
+        if by_voltage(self._parameters, seen.power) > self._charge:
+            since_ns = self._low_since_ns
+            self._low_since_ns = since_ns = seen.time_ns if since_ns is None else since_ns
+            if seen.time_ns - since_ns >= int(get("BATT_LOW_TIMER") * 1e9):
+                charge = max(charge, by_voltage(self._parameters, seen.power))
+        else:
+            self._low_since_ns = None
+        if charge <= self._charge:
+            return
+        self._charge = charge
+        self._low_since_ns = None
+        name, actions = BATTERY["ardupilot"][charge]
+        action = actions.get(int(get(name)), Action.WARN)
+        power = seen.power
+        text = f"Battery 1 is {charge.name.lower()} {power.voltage_v:.2f}V used "
+        text += f"{power.consumed_mah:.0f} mAh"
+        yield Failsafe(Cause.BATTERY, Action.WARN, text, 4)
+        if action is not Action.WARN:
+            yield self._copter("Battery", Cause.BATTERY, action, seen)
+
+    def _station(self, seen: Seen) -> Iterator[Strike]:
+        name, actions = STATION_LOSS["ardupilot"]
+        action = actions.get(int(self._parameters.get(name)))
+        if action is not None and self._station_gone(seen):
+            yield self._copter("GCS", Cause.STATION, action, seen)
+
+    def _sticks(self, seen: Seen) -> Iterator[Strike]:
+        name, actions = STICKS_LOSS["ardupilot"]
+        action = actions.get(int(self._parameters.get(name)))
+        was_lost, self.sticks_lost = self.sticks_lost, seen.sticks_lost
+        if action is None:
+            return
+        if self.sticks_lost and not was_lost:
+            yield self._copter("Radio", Cause.STICKS, action, seen)
+        elif was_lost and not self.sticks_lost:
+            yield Cleared(Cause.STICKS, "Radio Failsafe Cleared", 4)
+
+    def _copter(self, who: str, cause: Cause, action: Action, seen: Seen) -> Failsafe:
+        """ArduCopter goes on as it does where FS_OPTIONS says so, and disarms on the ground."""
+        options = int(self._parameters.get("FS_OPTIONS"))
+        behaviour = seen.mode.behaviour
+        by_hand = behaviour in (Behaviour.LEVEL, Behaviour.HOLD)
+        goes_on = {
+            (Behaviour.MISSION, Cause.STICKS): 1,
+            (Behaviour.MISSION, Cause.STATION): 2,
+            (Behaviour.GUIDED, Cause.STICKS): 4,
+        }.get((behaviour, cause), 0)
+        if not seen.flying:
+            return Failsafe(cause, Action.DISARM, f"{who} Failsafe - Disarming", 4)
+        if options & goes_on:
+            return Failsafe(cause, Action.WARN, f"{who} Failsafe - {_GOES_ON[behaviour]}", 4)
+        if behaviour is Behaviour.LAND and options & 8:
+            return Failsafe(cause, Action.WARN, f"{who} Failsafe - Continuing Landing", 4)
+        if by_hand and cause is Cause.STATION and options & 16:
+            return Failsafe(cause, Action.WARN, f"{who} Failsafe - Continuing Pilot Control", 4)
+        return Failsafe(cause, action, f"{who} Failsafe", 4)
+
+    def _fence(self, seen: Seen) -> Iterator[Strike]:
+        crossing = seen.crossing
+        if crossing.cleared:
+            yield Cleared(Cause.FENCE, f"{names(crossing.cleared)} cleared", 5)
+        if not crossing.struck:
+            return
+        name, actions = BREACH["ardupilot"]
+        action = actions[int(self._parameters.get(name))]
+        if action is not Action.WARN:
+            if not seen.flying:
+                action = Action.DISARM
+            elif crossing.beyond_m > _GIVE_UP_M:
+                action = Action.LAND
+        yield Failsafe(Cause.FENCE, action, f"{names(crossing.struck)} breached", 4)
+
+    def _position(self, seen: Seen) -> Iterator[Strike]:
+        threshold = self._parameters.get("FS_EKF_THRESH")
+        if threshold <= 0.0:
+            return
+        health = seen.health
+        over = sum(
+            ratio >= threshold for ratio in (health.mag_ratio, health.vel_ratio, health.pos_ratio)
+        )
+        step = 1 if over >= 2 or not health.position_ok else -1
+        self._bad_checks = min(_EKF_CHECKS, max(0, self._bad_checks + step))
+        if self.position_lost:
+            if self._bad_checks == 0:
+                self.position_lost = False
+                yield Cleared(Cause.POSITION, "EKF Failsafe Cleared", 2)
+            return
+        if self._bad_checks < _EKF_CHECKS:
+            return
+        self.position_lost = True
+        yield Failsafe(Cause.POSITION, Action.WARN, "EKF variance: position lost", 2)
+        choice = int(self._parameters.get("FS_EKF_ACTION"))
+        if choice == 0 or (not seen.needs_position and choice != 3):
+            return
+        action, word = (
+            (Action.ALTITUDE, "Altitude Hold") if choice == 2 else (Action.DESCEND, "Land")
+        )
+        yield Failsafe(Cause.POSITION, action, f"EKF Failsafe: changed to {word} Mode", 2)

@@ -1,0 +1,242 @@
+"""The vehicle's own failsafes, as tables: which parameter value means which action.
+
+What triggers them is found by `failsafe_checks.py` and `failure_detector.py`; what they do is
+carried out by `autopilot/failsafe_actions.py`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, IntEnum, auto
+
+from vehicle_sim.autopilot.interface import Power
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+
+
+class Action(Enum):
+    """What to do, worse downwards: of two that strike the worse wins (PX4's own order).
+
+    The values from POSITION to LAND are modes by meaning.  DESCEND is a landing without a
+    position: level, wherever the wind takes it.
+    """
+
+    WARN = "warn"
+    POSITION = "position"
+    ALTITUDE = "altitude"
+    MANUAL = "manual"
+    HOLD = "hold"
+    BRAKE = "brake"
+    RETURN = "return"
+    LAND = "land"
+    DESCEND = "descend"
+    DISARM = "disarm"
+    TERMINATE = "terminate"
+
+
+RANK = {action: rank for rank, action in enumerate(Action)}
+
+
+class Cause(Enum):
+    """Why; each strikes by itself, and is told and acted on once until it has gone."""
+
+    BATTERY = auto()
+    STATION = auto()
+    STICKS = auto()
+    FENCE = auto()
+    POSITION = auto()
+    SETPOINTS = auto()
+    ATTITUDE = auto()
+    MOTOR = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Failsafe:
+    """One that has just struck: what to do, the sentence for it, and its MAV_SEVERITY.
+
+    `delayed`: PX4 holds for COM_FAIL_ACT_T first, so that the operator can take over.
+    """
+
+    cause: Cause
+    action: Action
+    text: str
+    severity: int
+    delayed: bool = False
+
+
+_PX4_ACTION_WORDS = {
+    Action.POSITION: "Position mode",
+    Action.ALTITUDE: "Altitude mode",
+    Action.MANUAL: "Stabilized mode",
+    Action.HOLD: "Hold",
+    Action.RETURN: "RTL",
+    Action.LAND: "Land",
+    Action.DESCEND: "Descend",
+    Action.DISARM: "Disarm",
+    Action.TERMINATE: "Terminate",
+}
+
+
+def activated(action: Action, cause: str = "") -> str:
+    """What PX4 says when a failsafe acts (events of commander's failsafe framework)."""
+    due = f" due to {cause}" if cause else ""
+    return f"Failsafe activated{due}, triggering {_PX4_ACTION_WORDS[action]}"
+
+
+# --------------------------------------------------------------------------- actions by parameter
+
+_PX4_LOSS = {
+    1: Action.HOLD,
+    2: Action.RETURN,
+    3: Action.LAND,
+    5: Action.TERMINATE,
+    6: Action.DISARM,
+}
+# Without a SmartRTL, and without a landing item in the mission, ArduCopter falls back so.
+_COPTER_LOSS = {
+    1: Action.RETURN,
+    3: Action.RETURN,
+    4: Action.LAND,
+    5: Action.LAND,
+    6: Action.RETURN,
+    7: Action.BRAKE,
+}
+_COPTER_BATTERY = {
+    1: Action.LAND,
+    2: Action.RETURN,
+    3: Action.RETURN,
+    4: Action.LAND,
+    5: Action.TERMINATE,
+    6: Action.RETURN,
+    7: Action.BRAKE,
+}
+
+OFFBOARD_LOSS: dict[int, Action] = {
+    0: Action.POSITION,
+    1: Action.ALTITUDE,
+    2: Action.MANUAL,
+    3: Action.RETURN,
+    4: Action.LAND,
+    5: Action.HOLD,
+    6: Action.TERMINATE,
+    7: Action.DISARM,
+}
+"""COM_OBL_RC_ACT."""
+
+STATION_LOSS: dict[Personality, tuple[str, dict[int, Action]]] = {
+    "px4": ("NAV_DLL_ACT", _PX4_LOSS),
+    "ardupilot": ("FS_GCS_ENABLE", _COPTER_LOSS),
+}
+
+STICKS_LOSS: dict[Personality, tuple[str, dict[int, Action]]] = {
+    "px4": ("NAV_RCL_ACT", _PX4_LOSS),
+    "ardupilot": (
+        "FS_THR_ENABLE",
+        {
+            1: Action.RETURN,
+            2: Action.RETURN,
+            3: Action.LAND,
+            4: Action.RETURN,
+            5: Action.LAND,
+            6: Action.RETURN,
+            7: Action.BRAKE,
+        },
+    ),
+}
+
+BREACH: dict[Personality, tuple[str, dict[int, Action]]] = {
+    "px4": (
+        "GF_ACTION",
+        {
+            1: Action.WARN,
+            2: Action.HOLD,
+            3: Action.RETURN,
+            4: Action.TERMINATE,
+            5: Action.LAND,
+        },
+    ),
+    "ardupilot": (
+        "FENCE_ACTION",
+        {
+            0: Action.WARN,
+            1: Action.RETURN,
+            2: Action.LAND,
+            3: Action.RETURN,
+            4: Action.BRAKE,
+            5: Action.LAND,
+        },
+    ),
+}
+
+MOTOR_FAILURE: dict[int, Action] = {
+    0: Action.WARN,
+    1: Action.HOLD,
+    2: Action.LAND,
+    3: Action.RETURN,
+    4: Action.TERMINATE,
+}
+"""COM_ACT_FAIL_ACT."""
+
+
+class Charge(IntEnum):
+    """How full the battery is, worse upwards."""
+
+    FINE = 0
+    LOW = 1
+    CRITICAL = 2
+    EMERGENCY = 3
+
+
+BATTERY: dict[Personality, dict[Charge, tuple[str, dict[int, Action]]]] = {
+    "px4": {
+        Charge.LOW: ("COM_LOW_BAT_ACT", {}),
+        Charge.CRITICAL: (
+            "COM_LOW_BAT_ACT",
+            {1: Action.RETURN, 2: Action.LAND, 3: Action.RETURN},
+        ),
+        Charge.EMERGENCY: (
+            "COM_LOW_BAT_ACT",
+            {1: Action.RETURN, 2: Action.LAND, 3: Action.LAND},
+        ),
+    },
+    "ardupilot": {
+        Charge.LOW: ("BATT_FS_LOW_ACT", _COPTER_BATTERY),
+        Charge.CRITICAL: ("BATT_FS_CRT_ACT", _COPTER_BATTERY),
+        Charge.EMERGENCY: ("BATT_FS_CRT_ACT", _COPTER_BATTERY),
+    },
+}
+
+
+def charge_of(parameters: Parameters, power: Power, remaining: float) -> Charge:
+    """Where the battery stands by the personality's thresholds; `remaining` is 0..1."""
+    get = parameters.get
+    if parameters.personality == "px4":
+        if remaining < get("BAT_EMERGEN_THR"):
+            return Charge.EMERGENCY
+        if remaining < get("BAT_CRIT_THR"):
+            return Charge.CRITICAL
+        return Charge.LOW if remaining < get("BAT_LOW_THR") else Charge.FINE
+    return max(by_voltage(parameters, power), by_capacity(parameters, power))
+
+
+def _measured(parameters: Parameters) -> bool:
+    return parameters.get("BATT_MONITOR") != 0
+
+
+def by_voltage(parameters: Parameters, power: Power) -> Charge:
+    """ArduPilot's thresholds of the voltage, 0 = off."""
+    if not _measured(parameters):
+        return Charge.FINE
+    if power.voltage_v < parameters.get("BATT_CRT_VOLT"):
+        return Charge.CRITICAL
+    return Charge.LOW if power.voltage_v < parameters.get("BATT_LOW_VOLT") else Charge.FINE
+
+
+def by_capacity(parameters: Parameters, power: Power) -> Charge:
+    """ArduPilot's thresholds of the charge left, 0 = off."""
+    if not _measured(parameters):
+        return Charge.FINE
+    left_mah = parameters.get("BATT_CAPACITY") - power.consumed_mah
+    if left_mah < parameters.get("BATT_CRT_MAH"):
+        return Charge.CRITICAL
+    return Charge.LOW if left_mah < parameters.get("BATT_LOW_MAH") else Charge.FINE

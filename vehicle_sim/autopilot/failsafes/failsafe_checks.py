@@ -1,0 +1,149 @@
+"""What triggers a failsafe, in either autopilot: the common part.
+
+Each is reported once, when it begins; `failsafe_actions.py` decides which of several wins.
+Silence of the other side is measured in wall time, everything else in simulated time.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from vehicle_sim.autopilot.failsafes.failsafe import Cause, Charge, Failsafe
+from vehicle_sim.autopilot.fence.geofence import Crossing
+from vehicle_sim.autopilot.interface import Power
+from vehicle_sim.autopilot.modes import Mode
+from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.estimation.estimator import Health
+from vehicle_sim.plant.body import Body
+
+
+@dataclass(slots=True)
+class Seen:
+    """All that the failsafes look at, at 10 Hz while armed.
+
+    `needs_position`: what the mode flies now cannot be flown without one.  `sticks`: there are
+    some now; `sticks_lost`: there were some, and are none now.
+    """
+
+    time_ns: int
+    wall_ns: int
+    mode: Mode
+    flying: bool
+    needs_position: bool
+    power: Power
+    remaining: float
+    health: Health
+    sticks: bool
+    sticks_lost: bool
+    crossing: Crossing
+
+
+@dataclass(frozen=True, slots=True)
+class Cleared:
+    """What triggered a failsafe has gone; what the autopilot says about it, if anything."""
+
+    cause: Cause
+    text: str = ""
+    severity: int = 6
+
+
+Strike: TypeAlias = Failsafe | Cleared
+
+
+class FailsafeChecks(ABC):
+    """Remembers what has struck, so that each is told and acted on once."""
+
+    __slots__ = ("_charge", "_first", "_parameters", "_station_limit_ns", "_station_ns",
+                 "_version", "position_lost", "station_lost", "sticks_lost")  # fmt: skip
+
+    back_again: Cleared
+    """What is said when the ground station is heard again."""
+
+    def __init__(self, parameters: Parameters) -> None:
+        self._parameters = parameters
+        self._version = -1
+        self._station_ns: int | None = None
+        self.station_lost = False
+        self.reset()
+
+    def reset(self) -> None:
+        """Disarmed: what strikes from the next arming on is new."""
+        self._charge = Charge.FINE
+        self._first = True
+        self.position_lost = False
+        self.sticks_lost = False
+
+    def station_heard(self, wall_ns: int) -> Cleared | None:
+        """A heartbeat came."""
+        back = self.station_lost
+        self._station_ns = wall_ns
+        self.station_lost = False
+        return self.back_again if back else None
+
+    def quiet(self, wall_ns: int, body: Body, est: Estimated, sticks_lost: bool) -> bool:
+        """Whether `check` would find nothing, the fence aside, and change nothing.
+
+        Nearly always so, and much cheaper than to check.
+        """
+        if self._first or sticks_lost or self.sticks_lost or self.position_lost:
+            return False
+        if self._version != self._parameters.version:
+            self._version = self._parameters.version
+            self._station_limit_ns = int(self._parameters.si(Quantity.STATION_LOSS_S) * 1e9)
+            self._learn()
+        heard_ns = None if self.station_lost else self._station_ns
+        if heard_ns is not None and wall_ns - heard_ns >= self._station_limit_ns:
+            return False
+        return self._well(body, est)
+
+    @abstractmethod
+    def _learn(self) -> None:
+        """Parameters have changed."""
+
+    @abstractmethod
+    def _well(self, body: Body, est: Estimated) -> bool:
+        """Battery and position are far from any failsafe."""
+
+    def check(self, seen: Seen) -> list[Strike]:
+        """What strikes and what clears now, in no order of weight."""
+        if self._first:
+            self._first = False
+            self._begin(seen)
+        return [
+            *self._battery(seen),
+            *self._station(seen),
+            *self._sticks(seen),
+            *self._fence(seen),
+            *self._position(seen),
+        ]
+
+    @abstractmethod
+    def _begin(self, seen: Seen) -> None:
+        """Just armed: what is wrong already was accepted with it."""
+
+    @abstractmethod
+    def _battery(self, seen: Seen) -> Iterator[Strike]: ...
+
+    @abstractmethod
+    def _station(self, seen: Seen) -> Iterator[Strike]: ...
+
+    @abstractmethod
+    def _sticks(self, seen: Seen) -> Iterator[Strike]: ...
+
+    @abstractmethod
+    def _fence(self, seen: Seen) -> Iterator[Strike]: ...
+
+    @abstractmethod
+    def _position(self, seen: Seen) -> Iterator[Strike]: ...
+
+    def _station_gone(self, seen: Seen) -> bool:
+        """Whether the silence has just become too long."""
+        if self._station_ns is None or self.station_lost:
+            return False
+        limit_ns = int(self._parameters.si(Quantity.STATION_LOSS_S) * 1e9)
+        self.station_lost = seen.wall_ns - self._station_ns >= limit_ns
+        return self.station_lost

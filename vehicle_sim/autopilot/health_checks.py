@@ -1,0 +1,145 @@
+"""What the vehicle makes of its own state: for the failsafes in flight, and before arming."""
+
+from __future__ import annotations
+
+from math import acos, asin, atan2, sqrt
+
+from vehicle_sim.autopilot.bounds import Bounds
+from vehicle_sim.autopilot.control.demands import Situation
+from vehicle_sim.autopilot.failsafes.arming import Readiness, reasons
+from vehicle_sim.autopilot.failsafes.failsafe_checks import Seen
+from vehicle_sim.autopilot.failsafes.failure_detector import Posture
+from vehicle_sim.autopilot.fence.geofence import NOTHING, Crossing
+from vehicle_sim.autopilot.interface import AttitudeSetpoint, Power, Result
+from vehicle_sim.autopilot.modes import Behaviour
+from vehicle_sim.autopilot.tasks.descend import Descend
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+
+
+class HealthChecks(Bounds):
+    """Looks, and decides nothing."""
+
+    # --------------------------------------------------------------------------- arming
+
+    def _against_arming(self) -> tuple[str, ...]:
+        """All that speaks against arming now, in the autopilot's words."""
+        s = self._sense()
+        est, sensed = self._est, self.blocks.sensed
+        posture = self._posture()
+        return reasons(
+            self.parameters,
+            Readiness(
+                mode=self._mode,
+                health=self.health,
+                power=self.power,
+                remaining=self._charge_seen,
+                gyro_bias_rad_s=max(
+                    abs(est.gyro_bias_x), abs(est.gyro_bias_y), abs(est.gyro_bias_z)
+                ),
+                accel_off_m_s2=abs(
+                    _size(sensed.accel_x, sensed.accel_y, sensed.accel_z) - GRAVITY_M_S2
+                ),
+                roll_rad=posture.roll_rad,
+                pitch_rad=posture.pitch_rad,
+                geofence=self._geofence,
+                has_mission=self._mission_ok,
+                mission_ok=self._mode.behaviour is not Behaviour.MISSION or self._mission_ok,
+                setpoints=self._stream.alive(s.wall_ns),
+                sticks_lost=self._radio.lost(s.wall_ns),
+                station_lost=self._failsafe_checks.station_lost,
+            ),
+        )
+
+    def _say_against_arming(self) -> bool:
+        """Whether there is something, after telling it."""
+        against = self._against_arming()
+        for reason in against:
+            self._say(2, reason)
+        return bool(against)
+
+    def check_arming(self) -> Result:
+        if self._armed:
+            return Result.TEMPORARILY_REJECTED
+        self._say_against_arming()
+        return Result.ACCEPTED
+
+    # -------------------------------------------------------------------------- in flight
+
+    def _quiet(self, s: Situation, crossing: Crossing) -> bool:
+        """Whether no failsafe's trigger can have come or gone."""
+        lost = self._radio.lost(s.wall_ns)
+        return crossing is NOTHING and self._failsafe_checks.quiet(
+            s.wall_ns, self._body, self._est, lost
+        )
+
+    def _see(self, s: Situation, crossing: Crossing) -> Seen:
+        body = self._body
+        power = Power(body.voltage_v, body.current_a, body.consumed_mah, 0)
+        return Seen(
+            time_ns=s.time_ns,
+            wall_ns=s.wall_ns,
+            mode=self._mode,
+            flying=s.flying,
+            needs_position=self._needs_position,
+            power=power,
+            remaining=self._charge_seen,
+            health=self.health,
+            sticks=self._radio.sticks(s.wall_ns) is not None,
+            sticks_lost=self._radio.lost(s.wall_ns),
+            crossing=crossing,
+        )
+
+    @property
+    def _needs_position(self) -> bool:
+        if isinstance(self._task, Descend):
+            return False
+        if isinstance(self._stream.setpoint, AttitudeSetpoint):
+            return self._mode.behaviour is not Behaviour.GUIDED
+        return self._mode.needs_position or self._mode.behaviour is Behaviour.LAND
+
+    @property
+    def _calm(self) -> bool:
+        est, f, body = self._est, self.blocks.flight, self._body
+        least = min(
+            body.s1 * body.health_1,
+            body.s2 * body.health_2,
+            body.s3 * body.health_3,
+            body.s4 * body.health_4,
+        )
+        return self._failure_detector.calm(
+            1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy),
+            1.0 - 2.0 * (f.sp_x * f.sp_x + f.sp_y * f.sp_y),
+            max(f.u1, f.u2, f.u3, f.u4),
+            least,
+        )
+
+    def _posture(self) -> Posture:
+        est, f, body = self._est, self.blocks.flight, self._body
+        w, x, y, z = est.qw, est.qx, est.qy, est.qz
+        a, b, c, d = f.sp_w, f.sp_x, f.sp_y, f.sp_z
+        up_is = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
+        up_wanted = (2.0 * (b * d + a * c), 2.0 * (c * d - a * b), 1.0 - 2.0 * (b * b + c * c))
+        aligned = sum(i * j for i, j in zip(up_is, up_wanted, strict=True))
+        return Posture(
+            roll_rad=atan2(2.0 * (w * x + y * z), up_is[2]),
+            pitch_rad=asin(_cosine(2.0 * (w * y - z * x))),
+            off_rad=acos(_cosine(aligned)),
+            lean_rad=acos(_cosine(up_wanted[2])),
+            accel_m_s2=_size(est.acc_n, est.acc_e, est.acc_d),
+            climb_m_s=-est.vel_d,
+            asked=(f.u1, f.u2, f.u3, f.u4),
+            thrust=(
+                body.s1 * body.health_1,
+                body.s2 * body.health_2,
+                body.s3 * body.health_3,
+                body.s4 * body.health_4,
+            ),
+        )
+
+
+def _size(x: float, y: float, z: float) -> float:
+    return sqrt(x * x + y * y + z * z)
+
+
+def _cosine(value: float) -> float:
+    return min(1.0, max(-1.0, value))

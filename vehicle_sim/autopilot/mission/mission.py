@@ -1,0 +1,331 @@
+"""The mission runner: one flown item after another, over the plan that was loaded.
+
+One `Mission` lives as long as its vehicle; leaving the mission mode and coming back goes on at
+the current item.  Flown items are legs; what lies between them goes on the list of `Errands`
+and is done while the next leg is flown.  A plan that only jumps cannot hang: the search for the
+next leg is cut off, and goes on with the next update.
+"""
+
+from __future__ import annotations
+
+from math import inf, isfinite, radians
+
+from vehicle_sim.autopilot.control.demands import Demand, FlyTo, Situation, Turner
+from vehicle_sim.autopilot.interface import Landed, MissionReached, PlanItem, Target
+from vehicle_sim.autopilot.mission.mission_commands import MissionCommands, MissionVehicle
+from vehicle_sim.autopilot.mission.plan import KINDS, Cmd, ItemKind, first_of, has_place, place_of
+from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.tasks.circle import CircleTask
+from vehicle_sim.autopilot.tasks.legs import Go, GoAndLand, GoToHeight, Leg, Rise, Whole
+from vehicle_sim.autopilot.tasks.spline import Spline, curve
+from vehicle_sim.autopilot.tasks.tasks import Return, TakeOff, face
+from vehicle_sim.numerics.vectors import Vec3
+
+_SEARCHED_MAX = 64  # items in one update
+_BY_HOME = {1: 1.0, 2: -1.0}  # MPC_YAW_MODE: towards it, away from it
+_RADIUS_M = 10.0  # of LOITER_TURNS without one
+_THROUGH = frozenset({Cmd.WAYPOINT, Cmd.SPLINE, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME})
+
+
+class Mission:
+    """The plan, where it stands, and the task of the mission mode."""
+
+    __slots__ = (
+        "_before_ned",
+        "_by_home",
+        "_errands",
+        "_first_task",
+        "_goal",
+        "_last",
+        "_leg",
+        "_next",
+        "_parameters",
+        "_repeats",
+        "_vehicle",
+        "current",
+        "finished",
+        "items",
+        "started",
+    )
+
+    def __init__(self, parameters: Parameters, vehicle: MissionVehicle) -> None:
+        self._parameters = parameters
+        self._vehicle = vehicle
+        self._errands = MissionCommands(vehicle, reports=parameters.personality == "px4")
+        self.load(())
+
+    # ------------------------------------------------------------------------- the plan
+
+    def load(self, items: tuple[PlanItem, ...]) -> None:
+        self.items: tuple[PlanItem, ...] = items
+        self.rewind()
+
+    def rewind(self) -> None:
+        """Back to the start, as if never flown."""
+        self.current = self._next = 0
+        self.finished = False
+        self.started = False
+        self._last = len(self.items) - 1
+        self._repeats: dict[int, int] = {}
+        self._errands.forget()
+        self._by_home = False
+        self._goal: Vec3 | None = None
+        self._before_ned: Vec3 | None = None
+        self._first_task: TakeOff | None = None
+        self._leg: Leg | None = None
+
+    @property
+    def empty(self) -> bool:
+        return len(self.items) <= first_of(self._parameters.personality)
+
+    def jump_to(self, seq: int) -> bool:
+        """Make `seq` the current item; False where there is none."""
+        if not 0 <= seq < len(self.items):
+            return False
+        self.current = self._next = max(seq, first_of(self._parameters.personality))
+        self.finished = False
+        self._leg = None
+        self._errands.drop()
+        return True
+
+    def limit(self, last: int) -> None:
+        """Finish after item `last`; 0 = after the plan's own last."""
+        self._last = last if 0 < last < len(self.items) else len(self.items) - 1
+
+    @property
+    def takes_off(self) -> bool:
+        """Whether the next flown item is a take-off."""
+        item = self._flown_from(self.current)
+        return item is not None and item.command == Cmd.TAKEOFF
+
+    def _flown_from(self, index: int) -> PlanItem | None:
+        first = max(index, first_of(self._parameters.personality))
+        for item in self.items[first : self._last + 1]:
+            if KINDS[item.command] is ItemKind.FLOWN:
+                return item
+        return None
+
+    # ------------------------------------------------------------------------- the task
+
+    @property
+    def landed_word(self) -> Landed:
+        if self._first_task is not None:
+            return self._first_task.landed_word
+        return Landed.IN_AIR if self._leg is None else self._leg.landed_word
+
+    @property
+    def done(self) -> bool:
+        return self.finished
+
+    @property
+    def target(self) -> Target:
+        if self._first_task is not None:
+            return self._first_task.target
+        return Target(self._goal, None, None) if self._leg is None else self._leg.target
+
+    def lifts_off(self, s: Situation) -> bool:
+        if self.finished:
+            return False
+        item = self._flown_from(self.current)
+        return item is not None and item.command not in (Cmd.LAND, Cmd.RETURN)
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        starts_anew = self._parameters.personality == "ardupilot" and self._parameters.get(
+            "MIS_RESTART"
+        )
+        if self.finished or starts_anew:
+            self.rewind()
+        self.started = True
+        # The item that was left begins anew; what was to be done on the way is not done twice.
+        if self._leg is not None:
+            self._next = self.current
+        self._next = max(self._next, first_of(self._parameters.personality))
+        self.current = max(self.current, first_of(self._parameters.personality))
+        self._leg = None
+        self._goal = s.stop_ned
+        self._before_ned = None
+        if not s.flying and not self.takes_off:
+            goal_d = s.home_ned[2] - self._parameters.si(Quantity.TAKEOFF_UP_M)
+            self._first_task = self._take_off(goal_d)
+            self._first_task.begin(s, turner)
+
+    def update(self, s: Situation, turner: Turner) -> Demand:
+        if self._first_task is not None:
+            demand = self._first_task.update(s, turner)
+            if self._first_task.done:
+                self._first_task = None
+            return demand
+        if not self.finished:
+            self._go_on(s, turner)
+        if not self.finished:
+            self._errands.work(s, self._goal)
+        if self._by_home:
+            self._mind_home(s, turner)
+        demand = self._fly(s, turner)
+        if not self.finished:
+            self._errands.attend(s, turner)
+        return demand
+
+    def touched_down(self) -> None:
+        """The land detector struck: the item that landed is over."""
+        if not self.finished and self._leg is not None:
+            if self.items[self.current].command == Cmd.RETURN:
+                self.current = self._last
+                self._next = self._last + 1
+            self._reached()
+            self.finished = self._next > self._last
+
+    # ------------------------------------------------------------------------ the items
+
+    def _go_on(self, s: Situation, turner: Turner) -> None:
+        """To the next leg, if this one is over."""
+        entry_m_s = 0.0
+        if self._leg is not None:
+            if not self._leg.done(s):
+                return
+            if isinstance(self._leg, Spline) and not self._leg.stops:
+                entry_m_s = self._leg.speed
+            self._reached()
+        for _ in range(_SEARCHED_MAX):
+            if self._next > self._last:
+                self.finished = self._errands.idle
+                return
+            item = self.items[self._next]
+            self.current = self._next
+            if KINDS[item.command] is ItemKind.FLOWN:
+                self._next += 1
+                self._start(item, s, turner, entry_m_s)
+                return
+            if item.command == Cmd.JUMP:
+                self._jump(item)
+            else:
+                self._errands.put(item)
+                self._next += 1
+
+    def _reached(self) -> None:
+        self._vehicle.emit(MissionReached(self.items[self.current].seq))
+        self._leg = None
+        self._errands.drop()
+
+    def _jump(self, item: PlanItem) -> None:
+        done = self._repeats.get(item.seq, 0)
+        if item.p2 < 0 or done < item.p2:
+            self._repeats[item.seq] = done + 1
+            self._next = int(item.p1)
+        else:
+            self._next += 1
+
+    def _start(self, item: PlanItem, s: Situation, turner: Turner, entry_m_s: float) -> None:
+        if item.command == Cmd.RETURN:
+            self._errands.work(s, self._goal)
+            if self._vehicle.leave_for_return():
+                # As in PX4 since 1.16: the return mode takes over, the mission is complete.
+                self.current = self._last
+                self._next = self._last + 1
+                self._reached()
+                self.finished = True
+                return
+            home = Return(self._parameters)
+            home.begin(s, turner)
+            self._leg = Whole(home)
+            return
+        here = self._goal if entry_m_s > 0.0 and self._goal is not None else s.stop_ned
+        place = place_of(item, self._vehicle.datum(), here)
+        self._leg = self._leg_of(item, place, here, s, turner, entry_m_s)
+        self._before_ned, self._goal = here, self._leg.target.pos_ned
+        if item.command not in (Cmd.TAKEOFF, Cmd.DELAY):
+            self._set_heading(item, place, s, turner)
+
+    def _leg_of(
+        self,
+        item: PlanItem,
+        place: Vec3,
+        here: Vec3,
+        s: Situation,
+        turner: Turner,
+        entry_m_s: float,
+    ) -> Leg:
+        accept_m = self._accept_m(item)
+        match item.command:
+            case Cmd.TAKEOFF:
+                take_off = self._take_off(place[2])
+                take_off.begin(s, turner)
+                # PX4 climbs where it stands, then flies to the item; ArduCopter has no second part.
+                goes = self._parameters.personality == "px4" and has_place(item)
+                return Rise(take_off, Go(place, accept_m, 0.0) if goes else None)
+            case Cmd.LOITER_TURNS:
+                circle = CircleTask(place, _radius(item), item.p1, not item.p3 < 0.0)
+                circle.begin(s, turner)
+                return Whole(circle)
+            case Cmd.LOITER_TO_ALT:
+                return GoToHeight(place, here[2])
+            case Cmd.LAND:
+                return GoAndLand(self._parameters, (place[0], place[1], s.stop_ned[2]))
+            case Cmd.SPLINE:
+                after = self._after(item, place)
+                before = self._before_ned if entry_m_s > 0.0 else None
+                along = curve(here, place, before, after)
+                return Spline(along, entry_m_s, after is None, accept_m, _seconds(item))
+            case Cmd.DELAY:
+                return Go(self._goal or s.stop_ned, inf, item.p1)
+            case Cmd.LOITER_UNLIM:
+                return Go(place, accept_m, inf)
+            case _:
+                return Go(place, accept_m, _seconds(item))
+
+    def _after(self, item: PlanItem, place: Vec3) -> Vec3 | None:
+        """Where a spline goes on to without a stop; None = it ends at rest."""
+        if _seconds(item) > 0.0 or self._next > self._last:
+            return None
+        follower = self._flown_from(self._next)
+        if follower is None or follower.command not in _THROUGH:
+            return None
+        if any(each.command == Cmd.JUMP for each in self.items[self._next : follower.seq]):
+            return None
+        return place_of(follower, self._vehicle.datum(), place)
+
+    def _take_off(self, goal_d: float) -> TakeOff:
+        return TakeOff(goal_d, self._parameters.si(Quantity.TAKEOFF_CLIMB_M_S))
+
+    def _set_heading(self, item: PlanItem, place: Vec3, s: Situation, turner: Turner) -> None:
+        self._by_home = False
+        if self._parameters.personality == "px4":
+            if isfinite(item.p4):
+                turner.turn_to(radians(item.p4))
+                return
+            if self._parameters.get("MPC_YAW_MODE") in _BY_HOME:
+                self._by_home = True
+                return
+        elif self._parameters.get("WP_YAW_BEHAVIOR") == 0:
+            return
+        face(place, s, turner)
+
+    def _mind_home(self, s: Situation, turner: Turner) -> None:
+        """MPC_YAW_MODE 1 and 2: the nose to home, or the tail."""
+        there = _BY_HOME.get(int(self._parameters.get("MPC_YAW_MODE")), 0.0)
+        (n, e, d), (home_n, home_e, _) = s.pos_ned, s.home_ned
+        face((n + there * (home_n - n), e + there * (home_e - e), d), s, turner)
+
+    def _accept_m(self, item: PlanItem) -> float:
+        px4_waypoint = self._parameters.personality == "px4" and item.command == Cmd.WAYPOINT
+        if px4_waypoint and isfinite(item.p2) and item.p2 > 0.0:
+            return item.p2
+        return self._parameters.si(Quantity.ACCEPT_M)
+
+    # ----------------------------------------------------------------------- the flying
+
+    def _fly(self, s: Situation, turner: Turner) -> Demand:
+        if self._leg is not None:
+            return self._leg.update(s, turner)
+        return FlyTo(self._goal or s.stop_ned, s.limits)
+
+
+def _seconds(item: PlanItem) -> float:
+    """How long to stay: param 1."""
+    return item.p1 if isfinite(item.p1) else 0.0
+
+
+def _radius(item: PlanItem) -> float:
+    """Metres; of LOITER_TURNS' param 3, whose sign is the direction."""
+    radius = abs(item.p3) if isfinite(item.p3) else 0.0
+    return radius if radius >= 1.0 else _RADIUS_M

@@ -1,0 +1,109 @@
+"""The parameters of the autopilots' own simulations, as faults of the model.
+
+ArduPilot's SIM_* (SITL.cpp) and those of PX4's sensor_*_sim modules.  A group of them acts when
+one of it changes, so that faults from elsewhere are left alone by what nobody has touched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import cos, radians, sin
+
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.plant.battery import FULL_CELL_V
+from vehicle_sim.plant.faults import (
+    AccelBias,
+    BaroFault,
+    CellsLost,
+    Fault,
+    GpsGlitch,
+    GpsLost,
+    GyroBias,
+    MagFault,
+    MotorFault,
+    RcLost,
+    WindChange,
+)
+
+FIX_SATELLITES = 4
+_PA_PER_M = 12.01  # of air at sea level: density times gravity
+_M_PER_DEG = 111_318.84502145034  # as ArduPilot reckons places
+_MOTORS = (1, 2, 3, 4)
+_FULL_V = 4.0 * FULL_CELL_V
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Parameters that make faults together; `make` is given where it is and what they say."""
+
+    names: tuple[str, ...]
+    make: Callable[[float, tuple[float, ...]], tuple[Fault, ...]]
+
+
+def _wind(from_deg: float, speed_m_s: float, gust_m_s: float) -> WindChange:
+    towards = radians(from_deg + 180.0)
+    return WindChange((speed_m_s * cos(towards), speed_m_s * sin(towards), 0.0), gust_m_s)
+
+
+def _engines(failed: float, left: float) -> tuple[Fault, ...]:
+    mask = int(failed)
+    return tuple(MotorFault(motor, left if mask >> motor - 1 & 1 else 1.0) for motor in _MOTORS)
+
+
+def _xyz(prefix: str) -> tuple[str, str, str]:
+    return (prefix + "X", prefix + "Y", prefix + "Z")
+
+
+_GROUPS: dict[Personality, tuple[_Group, ...]] = {
+    "px4": (
+        _Group(("SIM_BARO_OFF_P",), lambda _, v: (BaroFault(-v[0] / _PA_PER_M),)),
+        _Group(("SIM_GPS_USED",), lambda _, v: (GpsLost(v[0] < FIX_SATELLITES),)),
+        _Group(_xyz("SIM_MAG_OFFSET_"), lambda _, v: (MagFault((v[0], v[1], v[2])),)),
+    ),
+    "ardupilot": (
+        _Group(_xyz("SIM_ACC1_BIAS_"), lambda _, v: (AccelBias((v[0], v[1], v[2])),)),
+        _Group(_xyz("SIM_GYR1_BIAS_"), lambda _, v: (GyroBias((v[0], v[1], v[2])),)),
+        _Group(
+            ("SIM_BARO_GLITCH", "SIM_BARO_DISABLE"), lambda _, v: (BaroFault(v[0], v[1] != 0.0),)
+        ),
+        _Group(("SIM_BATT_VOLTAGE",), lambda _, v: (CellsLost((_FULL_V - v[0]) / FULL_CELL_V),)),
+        _Group(("SIM_ENGINE_FAIL", "SIM_ENGINE_MUL"), lambda _, v: _engines(v[0], v[1])),
+        _Group(("SIM_GPS_DISABLE",), lambda _, v: (GpsLost(v[0] != 0.0),)),
+        _Group(
+            _xyz("SIM_GPS_GLITCH_"),
+            lambda lat_deg, v: (
+                GpsGlitch((v[0] * _M_PER_DEG, v[1] * _M_PER_DEG * cos(radians(lat_deg)), -v[2])),
+            ),
+        ),
+        _Group(("SIM_MAG1_FAIL",), lambda _, v: (MagFault(lost=v[0] != 0.0),)),
+        _Group(("SIM_RC_FAIL",), lambda _, v: (RcLost(v[0] != 0.0),)),
+        _Group(("SIM_WIND_DIR", "SIM_WIND_SPD", "SIM_WIND_TURB"), lambda _, v: (_wind(*v),)),
+    ),
+}
+
+
+class Simulated:
+    """Remembers what the parameters said, and makes faults of what they newly say."""
+
+    __slots__ = ("_lat_deg", "_parameters", "_said", "_version")
+
+    def __init__(self, parameters: Parameters, lat_deg: float) -> None:
+        """`lat_deg` is the latitude of the vehicle's start."""
+        self._parameters = parameters
+        self._lat_deg = lat_deg
+        self._version = -1
+        groups = _GROUPS[parameters.personality]
+        self._said = [tuple(map(parameters.default, group.names)) for group in groups]
+
+    def news(self) -> Iterator[Fault]:
+        """What has changed since it was asked last; at first, since the defaults."""
+        if self._version == self._parameters.version:
+            return
+        self._version = self._parameters.version
+        for number, group in enumerate(_GROUPS[self._parameters.personality]):
+            says = tuple(self._parameters.get(name) for name in group.names)
+            if says != self._said[number]:
+                self._said[number] = says
+                yield from group.make(self._lat_deg, says)

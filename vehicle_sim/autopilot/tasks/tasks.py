@@ -1,0 +1,280 @@
+"""The flights of single modes: hold, level, take off, return, land."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from enum import Enum, auto
+from math import atan2, sqrt
+
+from vehicle_sim.autopilot.control.demands import Demand, FlyLevel, FlyTo, Situation, Turner
+from vehicle_sim.autopilot.fence.rally import LandingSite
+from vehicle_sim.autopilot.interface import Landed, Target
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.tasks.descent_rate import descent_m_s
+from vehicle_sim.autopilot.tasks.return_height import return_up_m
+from vehicle_sim.numerics.vectors import Vec3
+
+_BELOW_GROUND_M = 1000.0
+_REACHED_M = 0.3
+_FACE_BEYOND_M = 2.0  # nearer than this the bearing of a goal means nothing
+
+
+def distance(a: Vec3, b: Vec3) -> float:
+    n, e, d = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    return sqrt(n * n + e * e + d * d)
+
+
+def face(goal_ned: Vec3, s: Situation, turner: Turner) -> None:
+    """Turn towards a goal that is far enough away to have a bearing."""
+    north = goal_ned[0] - s.pos_ned[0]
+    east = goal_ned[1] - s.pos_ned[1]
+    if north * north + east * east > _FACE_BEYOND_M * _FACE_BEYOND_M:
+        turner.turn_to(atan2(east, north))
+
+
+class Hold:
+    """Brake and stay; or fly to `goal_ned` and stay there."""
+
+    landed_word = Landed.IN_AIR
+    done = True
+
+    __slots__ = ("_speed_m_s", "_yaw_rad", "goal_ned")
+
+    def __init__(
+        self,
+        goal_ned: Vec3 | None = None,
+        yaw_rad: float | None = None,
+        speed_m_s: float | None = None,
+    ) -> None:
+        self.goal_ned = goal_ned
+        self._yaw_rad = yaw_rad
+        self._speed_m_s = speed_m_s
+
+    @property
+    def target(self) -> Target:
+        return Target(self.goal_ned, None, self._yaw_rad)
+
+    def lifts_off(self, s: Situation) -> bool:
+        return False
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        if self.goal_ned is None:
+            self.goal_ned = s.stop_ned
+        if self._yaw_rad is not None:
+            turner.turn_to(self._yaw_rad)
+
+    def update(self, s: Situation, turner: Turner) -> Demand:
+        limits = s.limits
+        if self._speed_m_s is not None:
+            limits = replace(limits, speed_m_s=self._speed_m_s)
+        return FlyTo(self.goal_ned or s.stop_ned, limits)
+
+
+class Level:
+    """A manual mode without sticks: level, at the height where it began."""
+
+    landed_word = Landed.IN_AIR
+    done = True
+
+    __slots__ = ("_down_m",)
+
+    def __init__(self) -> None:
+        self._down_m = 0.0
+
+    @property
+    def target(self) -> Target:
+        return Target(None, None, None)
+
+    def lifts_off(self, s: Situation) -> bool:
+        return False
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        self._down_m = s.stop_ned[2]
+
+    def update(self, s: Situation, turner: Turner) -> Demand:
+        return FlyLevel(self._down_m, s.limits)
+
+
+class TakeOff:
+    """Straight up to `goal_d` [m, NED]."""
+
+    __slots__ = ("_climb_m_s", "_done", "_goal_d", "_ned")
+
+    def __init__(self, goal_d: float, climb_m_s: float) -> None:
+        self._goal_d = goal_d
+        self._climb_m_s = climb_m_s
+        self._ned: Vec3 = (0.0, 0.0, goal_d)
+        self._done = False
+
+    @property
+    def landed_word(self) -> Landed:
+        return Landed.IN_AIR if self._done else Landed.TAKEOFF
+
+    @property
+    def done(self) -> bool:
+        return self._done
+
+    @property
+    def target(self) -> Target:
+        return Target(self._ned, None, None)
+
+    def lifts_off(self, s: Situation) -> bool:
+        return True
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        where = s.stop_ned if s.flying else s.pos_ned
+        self._ned = (where[0], where[1], self._goal_d)
+
+    def update(self, s: Situation, turner: Turner) -> Demand:
+        if not self._done and abs(s.pos_ned[2] - self._goal_d) < _REACHED_M:
+            self._done = True
+        limits = s.limits
+        climb = min(limits.climb_m_s, self._climb_m_s)
+        return FlyTo(self._ned, replace(limits, climb_m_s=climb))
+
+
+class Land:
+    """Down, where the vehicle comes to rest (or at `where_ned`), slow near the ground."""
+
+    landed_word = Landed.LANDING
+    done = False
+
+    __slots__ = ("_parameters", "_where_ned")
+
+    def __init__(self, parameters: Parameters, where_ned: Vec3 | None = None) -> None:
+        self._parameters = parameters
+        self._where_ned = where_ned
+
+    @property
+    def target(self) -> Target:
+        return Target(self._where_ned, None, None)
+
+    def lifts_off(self, s: Situation) -> bool:
+        return False
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        if self._where_ned is None:
+            self._where_ned = s.stop_ned
+
+    def update(self, s: Situation, turner: Turner) -> Demand:
+        where = self._where_ned or s.stop_ned
+        up_m = s.home_ned[2] - s.pos_ned[2]
+        descend_m_s = descent_m_s(self._parameters, up_m, s.limits.descend_m_s)
+        limits = replace(s.limits, descend_m_s=descend_m_s)
+        below = (where[0], where[1], s.pos_ned[2] + _BELOW_GROUND_M)
+        return FlyTo(below, limits, straight=False)
+
+
+class _Leg(Enum):
+    CLIMB = auto()
+    HOME = auto()
+    DESCEND = auto()
+    WAIT = auto()
+    LAND = auto()
+    STAY = auto()
+
+
+class Return:
+    """Climb to the return height, home in a straight line, down, wait, land.
+
+    `haven` finds another place than home, from where the return begins.
+    """
+
+    done = False
+
+    __slots__ = (
+        "_find_landing_site",
+        "_goal",
+        "_land",
+        "_landing_site",
+        "_leg",
+        "_parameters",
+        "_until_ns",
+    )
+
+    def __init__(
+        self, parameters: Parameters, haven: Callable[[Vec3], LandingSite] | None = None
+    ) -> None:
+        self._parameters = parameters
+        self._find_landing_site = haven
+        self._landing_site: LandingSite | None = None
+        self._leg = _Leg.CLIMB
+        self._goal: Vec3 | None = None
+        self._land: Land | None = None
+        self._until_ns = 0
+
+    @property
+    def landed_word(self) -> Landed:
+        return Landed.LANDING if self._leg is _Leg.LAND else Landed.IN_AIR
+
+    @property
+    def target(self) -> Target:
+        return Target(self._goal, None, None)
+
+    def lifts_off(self, s: Situation) -> bool:
+        return False
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        haven = (
+            LandingSite(s.home_ned)
+            if self._find_landing_site is None
+            else self._find_landing_site(s.pos_ned)
+        )
+        down = haven.ground_ned[2] - return_up_m(self._parameters, haven.ground_ned, s.stop_ned)
+        top = min(s.stop_ned[2], down, down if haven.over_d is None else haven.over_d)
+        self._landing_site = haven
+        self._leg = _Leg.CLIMB
+        self._goal = (s.stop_ned[0], s.stop_ned[1], top)
+
+    def update(self, s: Situation, turner: Turner) -> Demand:
+        goal = self._goal or s.stop_ned
+        home = s.home_ned if self._landing_site is None else self._landing_site.ground_ned
+        arrived = distance(s.pos_ned, goal) < _REACHED_M
+        match self._leg:
+            case _Leg.CLIMB:
+                if s.pos_ned[2] < goal[2] + _REACHED_M:
+                    self._leg = _Leg.HOME
+                    goal = (home[0], home[1], goal[2])
+                    if self._faces_home:
+                        face(goal, s, turner)
+            case _Leg.HOME:
+                if arrived:
+                    self._leg = _Leg.DESCEND
+                    wait_d = home[2] - self._parameters.si(Quantity.RETURN_WAIT_UP_M)
+                    goal = (home[0], home[1], max(goal[2], wait_d))
+            case _Leg.DESCEND:
+                if arrived:
+                    self._leg = _Leg.WAIT
+                    wait_s = self._parameters.si(Quantity.RETURN_WAIT_S)
+                    self._until_ns = s.time_ns + int(wait_s * 1e9)
+            case _Leg.WAIT:
+                if s.time_ns >= self._until_ns:
+                    goal = self._finish(goal, home)
+            case _Leg.LAND | _Leg.STAY:
+                pass
+        self._goal = goal
+        if self._land is not None:
+            return self._land.update(s, turner)
+        limits = s.limits
+        if self._leg is _Leg.HOME and "RTL_SPEED" in self._parameters:
+            speed_m_s = 0.01 * self._parameters.get("RTL_SPEED")
+            limits = replace(limits, speed_m_s=speed_m_s or limits.speed_m_s)
+        return FlyTo(goal, limits)
+
+    def _finish(self, goal: Vec3, home: Vec3) -> Vec3:
+        final_up_m = 0.0
+        if "RTL_ALT_FINAL" in self._parameters:
+            final_up_m = 0.01 * self._parameters.get("RTL_ALT_FINAL")
+        if final_up_m > 0.0:
+            self._leg = _Leg.STAY
+            return (home[0], home[1], home[2] - final_up_m)
+        self._leg = _Leg.LAND
+        self._land = Land(self._parameters, goal)
+        return goal
+
+    @property
+    def _faces_home(self) -> bool:
+        personality: Personality = self._parameters.personality
+        return personality == "px4" or self._parameters.get("WP_YAW_BEHAVIOR") in (1, 3)

@@ -1,0 +1,101 @@
+"""The inner control loops: attitude -> rate -> motors, with every step of the physics.
+
+Gains are a factor of two to three apart from loop to loop, so that each sees the next as
+immediate.  The rate gain follows from the lag of the motors: with a lag of tau the rate loop is
+of second order, and a gain of 0.55 / tau damps it at 0.67.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from vehicle_sim.control_loops.flight import BY_RATES, Flight
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.numerics.kernel import kernel
+from vehicle_sim.plant.frame import AirframeConstants
+
+_RATE_SHARE = 0.55  # of 1 / motor lag
+_ATTITUDE_SHARE = 0.41  # of the rate gain
+_ATTITUDE_P_MAX = 12.0
+_YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
+
+
+def tune(flight: Flight, frame: AirframeConstants) -> None:
+    """The gains of the attitude and rate loops that fit these motors."""
+    rate = _RATE_SHARE / frame.motor_time_constant_s
+    attitude = _ATTITUDE_SHARE * rate
+    attitude = attitude if attitude < _ATTITUDE_P_MAX else _ATTITUDE_P_MAX
+    flight.kp_rate_roll = flight.kp_rate_pitch = rate
+    flight.kp_roll = flight.kp_pitch = attitude
+
+
+@kernel
+def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
+    """Attitude and rate loops and the mixer, by the estimate: leaves `u1 .. u4`."""
+    # q_error = conj(q) q_setpoint; its vector part is half the turn that is missing.
+    w = est.qw
+    x = -est.qx
+    y = -est.qy
+    z = -est.qz
+    a = f.sp_w
+    b = f.sp_x
+    c = f.sp_y
+    d = f.sp_z
+    # Of the two quaternions of one attitude the nearer: the turn is the shorter way.
+    turn = 2.0 if w * a - x * b - y * c - z * d >= 0.0 else -2.0
+    most = f.roll_rate_max_rad_s
+    rate_x = turn * f.kp_roll * (w * b + x * a + y * d - z * c)
+    rate_x = most if rate_x > most else -most if rate_x < -most else rate_x
+    most = f.pitch_rate_max_rad_s
+    rate_y = turn * f.kp_pitch * (w * c + y * a + z * b - x * d)
+    rate_y = most if rate_y > most else -most if rate_y < -most else rate_y
+    most = f.yaw_rate_max_rad_s
+    rate_z = f.yaw_rate_rad_s + turn * f.kp_yaw * (w * d + z * a + x * c - y * b)
+    rate_z = most if rate_z > most else -most if rate_z < -most else rate_z
+    by_rates = f.attitude == BY_RATES
+    rate_x = f.rate_sp_x if by_rates else rate_x
+    rate_y = f.rate_sp_y if by_rates else rate_y
+    rate_z = f.rate_sp_z if by_rates else rate_z
+
+    # The torque that it takes, as each motor's share of thrust over its lever.
+    gain = 0.25 * f.kp_rate_roll
+    roll = gain * frame.inertia_xx_kg_m2 / frame.arm_right_m * (rate_x - est.rate_x)
+    gain = 0.25 * f.kp_rate_pitch
+    pitch = gain * frame.inertia_yy_kg_m2 / frame.arm_forward_m * (rate_y - est.rate_y)
+    gain = 0.25 * f.kp_rate_yaw * frame.inertia_zz_kg_m2 / frame.torque_per_thrust_m
+    yaw = gain * (rate_z - est.rate_z)
+    most = 0.25 * _YAW_SHARE * GRAVITY_M_S2 * frame.mass_kg
+    yaw = most if yaw > most else -most if yaw < -most else yaw
+
+    t1 = pitch - roll + yaw
+    t2 = roll - pitch + yaw
+    t3 = pitch + roll - yaw
+    t4 = -pitch - roll - yaw
+    # Tilt has priority over height: where a motor would saturate, the collective gives way.
+    top = t1 if t1 > t2 else t2
+    top = t3 if t3 > top else top
+    top = t4 if t4 > top else top
+    low = t1 if t1 < t2 else t2
+    low = t3 if t3 < low else low
+    low = t4 if t4 < low else low
+    full = frame.thrust_max_n
+    each = 0.25 * f.collective_n
+    each = full - top if each + top > full else each
+    each = -low if each + low < 0.0 else each
+    # Thrust goes with the square of the speed; the battery's sag is made up for.
+    scale = f.strength_inv
+    t1 = (each + t1) / full
+    t2 = (each + t2) / full
+    t3 = (each + t3) / full
+    t4 = (each + t4) / full
+    u1 = sqrt(t1 if t1 > 0.0 else 0.0) * scale
+    u2 = sqrt(t2 if t2 > 0.0 else 0.0) * scale
+    u3 = sqrt(t3 if t3 > 0.0 else 0.0) * scale
+    u4 = sqrt(t4 if t4 > 0.0 else 0.0) * scale
+    flying = f.flying
+    idle = f.idle
+    f.u1 = (1.0 if u1 > 1.0 else u1) if flying else idle
+    f.u2 = (1.0 if u2 > 1.0 else u2) if flying else idle
+    f.u3 = (1.0 if u3 > 1.0 else u3) if flying else idle
+    f.u4 = (1.0 if u4 > 1.0 else u4) if flying else idle

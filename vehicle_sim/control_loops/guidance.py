@@ -1,0 +1,136 @@
+"""Guidance at 50 Hz: goal, reference, heading, position and velocity loops, land detector.
+
+It flies by the estimate, and leaves an attitude and a collective for the inner loops.  Velocity
+2.5 /s, position 1 /s: slow enough to see the attitude loop as immediate.
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+from vehicle_sim.control_loops.flight import ACCELERATE, BY_MOTION, THRUST, Flight
+from vehicle_sim.control_loops.trajectory import move_goal, move_reference
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.numerics.angles import sincos
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
+from vehicle_sim.numerics.kernel import kernel
+from vehicle_sim.plant.frame import AirframeConstants
+
+_INTEGRAL_MAX_M_S2 = 3.0
+_LIFT_MIN_M_S2 = 0.3 * GRAVITY_M_S2
+_THRUST_LOW = 0.23  # of hover: below it the motors lose their authority over the attitude
+_THRUST_HIGH = 0.95  # of full: the rest is for the attitude
+_UPRIGHT_MIN = 0.5  # cosine of the tilt up to which the collective makes up for it
+_EASE_P = 1.5  # 1/s: a turn slows down before its goal, at last to _EASE_RAD_S
+_EASE_RAD_S = 0.1
+_LAND_SPEED_M_S = 0.3
+_LAND_THRUST = 0.7  # of hover: the reference has gone on below the ground
+_LAND_LAG_M = 0.2
+
+
+@kernel
+def guide(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> None:
+    """All of it, once."""
+    move_goal(f, dt_s)
+    move_reference(f, est, dt_s)
+    turn(f, dt_s)
+    follow(f, est, frame, dt_s)
+    feel_ground(f, est, frame, dt_s)
+
+
+@kernel
+def turn(f: Flight, dt_s: float) -> None:
+    """The heading setpoint goes on: to its goal, slower towards the end, or for ever."""
+    left = f.yaw_left_rad
+    size = left if left >= 0.0 else -left
+    most = _EASE_P * size + _EASE_RAD_S
+    most = f.yaw_most_rad_s if most > f.yaw_most_rad_s else most
+    there = size <= most * dt_s
+    rate = left / dt_s if there else most if left > 0.0 else -most
+    spin = f.yaw_spin_rad_s
+    rate = spin if spin != 0.0 else rate
+    yaw = f.yaw_rad + rate * dt_s
+    f.yaw_left_rad = 0.0 if there or spin != 0.0 else left - rate * dt_s
+    f.yaw_rad = yaw - 2.0 * pi if yaw > pi else yaw + 2.0 * pi if yaw < -pi else yaw
+    f.yaw_rate_rad_s = rate
+
+
+@kernel
+def follow(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> None:
+    """Position and velocity loops, then the attitude and the collective that they need."""
+    err_n = f.ref_vel_n + f.kp_pos_xy * (f.ref_n - est.pos_n) - est.vel_n
+    err_e = f.ref_vel_e + f.kp_pos_xy * (f.ref_e - est.pos_e) - est.vel_e
+    err_d = f.ref_vel_d + f.kp_pos_z * (f.ref_d - est.pos_d) - est.vel_d
+    # Where the motion is not controlled the reference is the estimate, and nothing is learnt.
+    gain = f.ki_vel_xy * dt_s
+    int_n = f.int_n + gain * err_n
+    int_e = f.int_e + gain * err_e
+    int_d = f.int_d + f.ki_vel_z * dt_s * err_d
+    most = _INTEGRAL_MAX_M_S2
+    int_n = most if int_n > most else -most if int_n < -most else int_n
+    int_e = most if int_e > most else -most if int_e < -most else int_e
+    int_d = most if int_d > most else -most if int_d < -most else int_d
+    f.int_n = int_n
+    f.int_e = int_e
+    f.int_d = int_d
+    # What drag will take in still air is fed forward (Faessler et al., IEEE RA-L 3(2), 2018): else
+    # the integrators learn it in a long flight, and give it back as an overshoot at its end.
+    n = f.ref_vel_n
+    e = f.ref_vel_e
+    hover = sqrt(0.25 * GRAVITY_M_S2 * frame.mass_kg / frame.thrust_max_n)
+    drag = 4.0 * hover * frame.rotor_drag_n_s_per_m
+    drag = (drag + frame.drag_n_per_m2_s2 * sqrt(n * n + e * e)) / frame.mass_kg
+    as_asked = f.horizontal >= ACCELERATE
+    a_n = f.acc_n if as_asked else f.ref_acc_n + f.kp_vel_xy * err_n + int_n + drag * n
+    a_e = f.acc_e if as_asked else f.ref_acc_e + f.kp_vel_xy * err_e + int_e + drag * e
+    a_d = f.ref_acc_d + f.kp_vel_z * err_d + int_d
+    a_d = f.acc_d if f.vertical >= ACCELERATE else a_d
+
+    lift = GRAVITY_M_S2 - a_d
+    lift = _LIFT_MIN_M_S2 if lift < _LIFT_MIN_M_S2 else lift
+    flat = sqrt(a_n * a_n + a_e * a_e)
+    most = f.tilt_max * lift
+    scale = most / flat if flat > most else 1.0
+    a_n = a_n * scale
+    a_e = a_e * scale
+    size = sqrt(a_n * a_n + a_e * a_e + lift * lift)
+    # Shortest turn from (0, 0, -1) to the thrust direction, after the turn by the heading.
+    w = 1.0 + lift / size
+    x = a_e / size
+    y = -a_n / size
+    scale = 1.0 / sqrt(w * w + x * x + y * y)
+    w = w * scale
+    x = x * scale
+    y = y * scale
+    s, c = sincos(0.5 * f.yaw_rad)
+    by_motion = f.attitude == BY_MOTION
+    f.sp_w = w * c if by_motion else f.sp_w
+    f.sp_x = x * c + y * s if by_motion else f.sp_x
+    f.sp_y = y * c - x * s if by_motion else f.sp_y
+    f.sp_z = w * s if by_motion else f.sp_z
+
+    # An attitude from outside costs height unless the collective makes up for its tilt.
+    upright = 1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy)
+    upright = _UPRIGHT_MIN if upright < _UPRIGHT_MIN else upright
+    wanted = frame.mass_kg * (size if by_motion else lift / upright)
+    full = 4.0 * frame.thrust_max_n
+    wanted = f.thrust * full if f.vertical == THRUST else wanted
+    low = _THRUST_LOW * GRAVITY_M_S2 * frame.mass_kg
+    high = _THRUST_HIGH * full
+    f.collective_n = low if wanted < low else high if wanted > high else wanted
+
+
+@kernel
+def feel_ground(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> None:
+    """Land detector: how long the vehicle wants to descend, does not, and hardly carries itself.
+
+    A horizontal velocity that no fix holds any more is no evidence against the ground.
+    """
+    slow = _LAND_SPEED_M_S
+    still_d = est.vel_d < slow and est.vel_d > -slow
+    still_n = est.vel_n < slow and est.vel_n > -slow
+    still_e = est.vel_e < slow and est.vel_e > -slow
+    still = still_d and ((still_n and still_e) or not est.gps_used)
+    sinking = f.ref_d - est.pos_d > _LAND_LAG_M
+    light = f.collective_n < _LAND_THRUST * GRAVITY_M_S2 * frame.mass_kg
+    f.still_s = f.still_s + dt_s if sinking and still and light and f.flying else 0.0

@@ -1,0 +1,149 @@
+"""One step of a vehicle: body, sensors, estimator and controllers, and the blocks they run on.
+
+An engine owns the blocks of vehicles that share an airframe, and gives each vehicle a `Seat`
+at its own.  `Few` (`few.py`) runs the kernels in plain floats, vehicle by vehicle; `Many`
+(`many.py`, as it needs numpy) over all of them at once, to the same bytes.
+
+Vehicles do not meet: each has a local frame of its own, with its own start as the origin.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, fields
+from typing import Final, Protocol
+
+from vehicle_sim.control_loops.cascade import stabilise, tune
+from vehicle_sim.control_loops.flight import Flight
+from vehicle_sim.control_loops.guidance import guide
+from vehicle_sim.estimation.estimated import Estimated
+from vehicle_sim.estimation.estimator import align, estimate
+from vehicle_sim.numerics.kernel import kernel
+from vehicle_sim.numerics.noise import key_of
+from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.quad import advance
+from vehicle_sim.plant.quad import begin as begin_body
+from vehicle_sim.plant.sensed import Sensed
+from vehicle_sim.plant.sensors import SensorGrade, sense, switch_on
+
+DT_NS: Final = 4_000_000
+DT_S: Final = DT_NS / 1e9
+GUIDE_EVERY: Final = 5  # 50 Hz
+MANY_FROM: Final = 20  # vehicles from which numpy is the faster
+_GUIDE_S: Final = DT_S * GUIDE_EVERY
+_GUST_SOURCE: Final = 0  # of noise; the sensors' begin further up
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleSpec:
+    """One vehicle of an engine; `index` tells vehicles of one seed apart.
+
+    The latitude is that of its start: it has a part in the magnetic field.
+    """
+
+    seed: int
+    index: int
+    lat_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """The numeric state of one vehicle."""
+
+    body: Body
+    sensed: Sensed
+    est: Estimated
+    flight: Flight
+
+
+class Engine(Protocol):
+    """Steps all its vehicles together."""
+
+    @property
+    def k(self) -> int:
+        """The number of the last step; 0 before the first."""
+        ...
+
+    @property
+    def frame(self) -> AirframeConstants: ...
+    def blocks(self, lane: int) -> Blocks: ...
+    def step(self) -> None:
+        """One step of `DT_S`."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Seat:
+    """A vehicle's place in an engine."""
+
+    engine: Engine
+    lane: int
+
+
+@kernel
+def live(
+    body: Body,
+    sensed: Sensed,
+    est: Estimated,
+    flight: Flight,
+    frame: AirframeConstants,
+    grade: SensorGrade,
+    k: int,
+) -> None:
+    """Step number `k` of one vehicle."""
+    if k % GUIDE_EVERY == 0:
+        guide(flight, est, frame, _GUIDE_S)
+    stabilise(flight, est, frame)
+    advance(body, flight.u1, flight.u2, flight.u3, flight.u4, frame, k)
+    sense(sensed, body, grade, k)
+    estimate(est, sensed, k)
+
+
+def begin(blocks: Blocks, spec: VehicleSpec, frame: AirframeConstants, grade: SensorGrade) -> None:
+    """Make fresh blocks a vehicle on its home ground, seen from power-up."""
+    begin_body(blocks.body, key_of(spec.seed, spec.index, _GUST_SOURCE), frame)
+    switch_on(blocks.sensed, spec.seed, spec.index, spec.lat_deg, grade)
+    tune(blocks.flight, frame)
+
+
+def restart(blocks: Blocks, frame: AirframeConstants) -> None:
+    """The autopilot's computer starts anew: it knows nothing, and its motors stop."""
+    align(blocks.est)
+    fresh = Flight()
+    for name in Flight.__slots__:
+        setattr(blocks.flight, name, getattr(fresh, name))
+    tune(blocks.flight, frame)
+
+
+def put_home(body: Body) -> None:
+    """Set it down on its home ground, at rest; its battery, its faults and the wind stay."""
+    fresh = Body()
+    for name in _AT_REST:
+        setattr(body, name, getattr(fresh, name))
+
+
+_AT_REST: Final = tuple(
+    field.name
+    for field in fields(Body)
+    if field.name.startswith(("pos_", "vel_", "q", "rate_", "sf_", "grip_"))
+    or field.name in ("s1", "s2", "s3", "s4", "touching")
+)
+
+
+_LETTERS: Final = {"float": "d", "int": "Q", "bool": "?"}
+
+
+def state_bytes(blocks: Blocks) -> bytes:
+    """The whole numeric state of a vehicle, little-endian: equal bytes are an equal flight."""
+    parts = (
+        (Body, blocks.body),
+        (Sensed, blocks.sensed),
+        (Estimated, blocks.est),
+        (Flight, blocks.flight),
+    )
+    return b"".join(
+        struct.pack("<" + _LETTERS[str(field.type)], getattr(block, field.name))
+        for kind, block in parts
+        for field in fields(kind)
+    )
