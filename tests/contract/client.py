@@ -53,14 +53,17 @@ class Sky:
         speedup: Fraction = Fraction(1),
         signing: SigningKey | None = None,
         parameters: dict[str, float] | None = None,
+        home: Geodetic | None = None,
     ) -> None:
         self.personality: Personality = personality
-        self.home = HOMES[personality]
+        self.home = home or HOMES[personality]
+        self.parameters: list[Parameters] = []
         servers = []
         for index in range(count):
             own = Parameters(personality)
             for name, value in (parameters or {}).items():
                 own.set(name, value)
+            self.parameters.append(own)
             vehicle = Autopilot(personality, self.home, 1, index, own)
             profile = PROFILES[personality]
             servers.append(VehicleServer(vehicle, profile, own, index + 1, speedup, UNIX_START_NS))

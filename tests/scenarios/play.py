@@ -1,0 +1,253 @@
+"""Play a real autopilot's scenario to our vehicle: the same messages at the same times."""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from tests.contract.client import Sky
+from tests.scenarios.facts import Item, Scenario, Step
+from vehicle_sim.autopilot.interface import Geodetic
+from vehicle_sim.autopilot.modes import Personality
+
+HOMES: Final[dict[Personality, Geodetic]] = {
+    "px4": Geodetic(47.397742, 8.545594, 32.5),
+    "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
+}
+"""Where the real ones stood."""
+
+PLAYED: Final = (
+    *("COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "mission upload", "MISSION_CLEAR_ALL", "###"),
+    *("silent", "all silent", "255 ", "beats"),
+)
+"""What steps begin with that can be played; "###" is a remark."""
+
+STREAMED: Final = (
+    *("velocity setpoints", "velocity 3 m/s", "20 Hz", "stream stops", "override released"),
+)
+"""How a recording says that it streamed something, which its steps do not tell."""
+
+TOOK_OFF: Final = {"H1_change_speed": 10.0}
+"""Where the recorder took off, to so many metres, before the first step."""
+
+READY_S: Final = 3.0
+ANSWER_S: Final = 1.5
+"""How long the recorder waited for an answer."""
+
+ARMED: Final = 128
+LANDED: Final = {1: "ON_GROUND", 2: "IN_AIR", 3: "TAKEOFF", 4: "LANDING"}
+PX4_MODES: Final = {
+    (1, 0): "MANUAL",
+    (2, 0): "ALTCTL",
+    (3, 0): "POSCTL",
+    (4, 2): "AUTO.TAKEOFF",
+    (4, 3): "AUTO.LOITER",
+    (4, 4): "AUTO.MISSION",
+    (4, 5): "AUTO.RTL",
+    (4, 6): "AUTO.LAND",
+    (5, 0): "ACRO",
+    (6, 0): "OFFBOARD",
+    (7, 0): "STABILIZED",
+}
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What the vehicle said of itself, at `t` seconds."""
+
+    t: float
+    mode: str
+    armed: bool
+    landed: str
+
+
+@dataclass
+class Played:
+    """`acks` has, for each step, the answer's name, or None; `seen` begins with the start."""
+
+    acks: list[str | None] = field(default_factory=list)
+    seen: list[Seen] = field(default_factory=list)
+    texts: list[str] = field(default_factory=list)
+
+
+def play(personality: Personality, scenario: Scenario) -> Played:
+    """The scenario from its first step to its end, on a vehicle that is ready."""
+    return _Player(personality, scenario).play()
+
+
+def playable(scenario: Scenario) -> bool:
+    """The recording tells every message that was sent: no sticks, and no stream of setpoints."""
+    streams = any(word in scenario.what for word in STREAMED)
+    told = all(step.sent.startswith(PLAYED) for step in scenario.steps)
+    return bool(scenario.steps) and told and not streams
+
+
+class _Player:
+    def __init__(self, personality: Personality, scenario: Scenario) -> None:
+        self._personality, self._scenario = personality, scenario
+        self._sky = Sky(personality, home=HOMES[personality])
+        self._client = self._sky.client()
+        self._played = Played()
+        self._zero_s = 0.0
+        self._counted = 0
+
+    def play(self) -> Played:
+        self._client.beat_if_due()
+        self._sky.run(READY_S)
+        start = next((e for e in self._scenario.events if e.kind == "STATE_AT_START"), None)
+        if start is not None and start.armed:
+            self._client.take_off(max(1.0, start.up or 0.0))
+        if start is not None and start.mode not in (None, self._now().mode):
+            self._set_mode(str(start.mode))
+            self._sky.run(1.0)
+        if self._scenario.scenario in TOOK_OFF:
+            self._client.take_off(TOOK_OFF[self._scenario.scenario])
+        self._client.forget()
+        self._zero_s = self._sky.now_ns / 1e9
+        self._played.seen.append(self._now())
+        for step in self._scenario.steps:
+            self._until(step.t)
+            self._played.acks.append(self._take(step))
+            self._note()
+        self._until(self._scenario.end_s)
+        self._played.texts = self._client.texts()
+        return self._played
+
+    # ------------------------------------------------------------------------------ seeing
+
+    def _until(self, t: float) -> None:
+        while (left_s := self._zero_s + t - self._sky.now_ns / 1e9) > 1e-9:
+            self._sky.run(min(0.1, left_s))
+            self._note()
+
+    def _now(self) -> Seen:
+        vehicle = self._sky.vehicles[0]
+        return Seen(
+            self._sky.now_ns / 1e9 - self._zero_s,
+            _mode_name(self._personality, vehicle.custom_mode),
+            vehicle.armed,
+            LANDED.get(int(vehicle.landed), "UNDEFINED"),
+        )
+
+    def _note(self) -> None:
+        now = self._now()
+        last = self._played.seen[-1]
+        if (now.mode, now.armed, now.landed) != (last.mode, last.armed, last.landed):
+            self._played.seen.append(now)
+
+    # ----------------------------------------------------------------------------- sending
+
+    def _take(self, step: Step) -> str | None:
+        words = step.words
+        if words[0] in ("COMMAND_LONG", "COMMAND_INT"):
+            return self._command(step)
+        if words[0] == "PARAM_SET":
+            name, _, value = words[1].partition("=")
+            return "ok" if self._set_parameter(name, float(value)) else "no"
+        if words[0] == "MISSION_CLEAR_ALL":
+            return self._clear(int(words[-1]))
+        if words[0] == "mission":
+            return self._upload(step.items, int(words[-1]))
+        if "silent" in step.sent:
+            self._client.beats = False
+            if "77 beats" in step.sent:
+                self._sky.client("other", system=77)
+        elif "beats" in step.sent or "again" in step.sent:
+            self._client.beats = True
+        return None
+
+    def _command(self, step: Step) -> str | None:
+        number = mavlink.enums["MAV_CMD"]
+        command = next(key for key, entry in number.items() if entry.name == step.words[1])
+        values = step.values
+        before = len(self._client.heard)
+        if step.words[0] == "COMMAND_LONG":
+            message: Any = mavlink.MAVLink_command_long_message(1, 1, command, 0, *values)
+        else:
+            x, y = (0 if math.isnan(value) else int(value) for value in values[4:6])
+            message = mavlink.MAVLink_command_int_message(
+                1, 1, step.frame or 0, command, 0, 0, *values[:4], x, y, values[6]
+            )
+        self._client.send(message)
+        self._wait("COMMAND_ACK", before)
+        for heard in self._client.heard[before:]:
+            if heard.message.get_type() == "COMMAND_ACK" and heard.message.command == command:
+                name: str = mavlink.enums["MAV_RESULT"][heard.message.result].name
+                return name.removeprefix("MAV_RESULT_")
+        return None
+
+    def _wait(self, kind: str, before: int) -> list[Any]:
+        """Until a message of that kind came, or the recorder's patience is over."""
+        end_s = self._sky.now_ns / 1e9 + ANSWER_S
+        while self._sky.now_ns / 1e9 < end_s:
+            found = [h.message for h in self._client.heard[before:] if h.message.get_type() == kind]
+            if found:
+                return found
+            self._sky.run(0.05)
+            self._note()
+        return []
+
+    def _set_parameter(self, name: str, value: float) -> bool:
+        own = self._sky.parameters[0]
+        before = len(self._client.heard)
+        whole = name in own and own.spec(name).integer
+        if whole and self._personality == "px4":  # an integer's bytes stand for it
+            (value,) = struct.unpack("<f", struct.pack("<i", round(value)))
+        kind = mavlink.MAV_PARAM_TYPE_INT32 if whole else mavlink.MAV_PARAM_TYPE_REAL32
+        self._client.send(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind))
+        return any(m.param_id == name for m in self._wait("PARAM_VALUE", before))
+
+    def _clear(self, kind: int) -> str | None:
+        before = len(self._client.heard)
+        self._client.send(mavlink.MAVLink_mission_clear_all_message(1, 1, kind))
+        return _mission_ack(self._wait("MISSION_ACK", before))
+
+    def _upload(self, items: tuple[Item, ...], kind: int) -> str | None:
+        before = len(self._client.heard)
+        self._client.send(mavlink.MAVLink_mission_count_message(1, 1, len(items), kind))
+        for _ in range(3 * len(items) + 3):
+            asked = [
+                h.message
+                for h in self._client.heard[before:]
+                if h.message.get_type() in ("MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK")
+            ]
+            if not asked:
+                return None
+            if asked[-1].get_type() == "MISSION_ACK":
+                return _mission_ack(asked[-1:])
+            before = len(self._client.heard)
+            self._client.send(_item(items[asked[-1].seq], asked[-1].seq, kind))
+        return None
+
+    def _set_mode(self, name: str) -> None:
+        if self._personality == "px4":
+            numbers = next(pair for pair, mode in PX4_MODES.items() if mode == name)
+        else:
+            modes = mavlink.enums["COPTER_MODE"].items()
+            numbers = (next(n for n, mode in modes if mode.name == f"COPTER_MODE_{name}"), 0)
+        self._client.long(mavlink.MAV_CMD_DO_SET_MODE, 1, *numbers)
+
+
+def _mode_name(personality: Personality, custom_mode: int) -> str:
+    if personality == "px4":
+        return PX4_MODES.get((custom_mode >> 16 & 0xFF, custom_mode >> 24), str(custom_mode))
+    name: str = mavlink.enums["COPTER_MODE"][custom_mode].name
+    return name.removeprefix("COPTER_MODE_")
+
+
+def _mission_ack(acks: list[Any]) -> str | None:
+    return mavlink.enums["MAV_MISSION_RESULT"][acks[-1].type].name if acks else None
+
+
+def _item(item: Item, seq: int, kind: int) -> Any:
+    frame, name, *rest = item
+    values = [math.nan if value is None else value for value in rest]
+    number = next(k for k, entry in mavlink.enums["MAV_CMD"].items() if entry.name == name)
+    x, y = (0 if math.isnan(value) else int(value) for value in values[4:6])
+    return mavlink.MAVLink_mission_item_int_message(
+        1, 1, seq, frame, number, 0, 1, *values[:4], x, y, values[6], kind
+    )

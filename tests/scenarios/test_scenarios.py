@@ -1,0 +1,39 @@
+"""Our vehicle beside the real ones, step by step: no difference but those that are listed.
+
+A sample in `make test`, all of them in `make soak`.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import get_args
+
+import pytest
+
+from tests.scenarios.agree import compare
+from tests.scenarios.facts import recorded
+from tests.scenarios.known import known
+from tests.scenarios.play import play, playable
+from vehicle_sim.autopilot.modes import Personality
+
+SHORT_S = 40.0
+SOAKING = "MAVGATE_SOAK" in os.environ
+
+SCENARIOS = [
+    pytest.param(personality, name, id=f"{personality}-{name}")
+    for personality in get_args(Personality)
+    for name, scenario in recorded(personality).items()
+    if playable(scenario) and (SOAKING or scenario.end_s <= SHORT_S)
+]
+
+
+def test_the_sample_is_large_enough() -> None:
+    assert len(SCENARIOS) >= 30
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("personality", "name"), SCENARIOS)
+def test_no_new_difference_and_none_that_is_gone(personality: Personality, name: str) -> None:
+    scenario = recorded(personality)[name]
+    agreement = compare(scenario, play(personality, scenario))
+    assert agreement.differences == known(personality).get(name, [])
