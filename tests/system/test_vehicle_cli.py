@@ -87,7 +87,8 @@ def test_it_tells_what_to_connect_to_and_ends_with_its_lifeline() -> None:
 def test_pymavlinks_mavutil_is_not_loaded() -> None:
     code = (
         "import sys, vehicle_sim.cli\n"
-        "import vehicle_sim.world, vehicle_sim.shell.pacer, vehicle_sim.autopilot.autopilot\n"
+        "import vehicle_sim.simulation.world, vehicle_sim.shell.pacer\n"
+        "import vehicle_sim.autopilot.autopilot\n"
         "assert 'pymavlink.mavutil' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=20)
