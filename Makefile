@@ -26,10 +26,10 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about a minute)
+quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (under a minute)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 $(FEWER)'
 
-test: $(TEST) $(TESTED) ## run every test (about 6 minutes on 2 cores)
+test: $(TEST) $(TESTED) ## run every test (about 8 minutes on 2 cores)
 	$(BIN)/python -m pytest -n $(WORKERS) $(SLOWER:%=--ignore=%)
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from tests.scenarios.facts import Event, Scenario
-from tests.scenarios.play import Played, Seen
+from tests.scenarios.play import Played
 
 DATES: Final = re.compile(r"\d{4}-\d\d-\d\d/\d\d_\d\d_\d\d")
+KINDS: Final = ("acks", "modes", "armed", "landed", "texts")
 TOLD_S: Final = 1.2
 """The real ones' modes were seen in heartbeats, which are up to a second late."""
 
@@ -29,14 +30,13 @@ class Agreement:
 
     def __add__(self, other: Agreement) -> Agreement:
         both = Agreement(differences=[*self.differences, *other.differences])
-        for name in ("acks", "modes", "armed", "landed", "texts"):
+        for name in KINDS:
             mine, theirs = getattr(self, name), getattr(other, name)
             setattr(both, name, Counter({k: mine[k] + theirs[k] for k in (True, False)}))
         return both
 
     def __str__(self) -> str:
-        kinds = ("acks", "modes", "armed", "landed", "texts")
-        return ", ".join(f"{kind} {self._share(getattr(self, kind))}" for kind in kinds)
+        return ", ".join(f"{kind} {self._share(getattr(self, kind))}" for kind in KINDS)
 
     @staticmethod
     def _share(counted: Counter[bool]) -> str:
@@ -92,25 +92,9 @@ def _states(scenario: Scenario, played: Played, at_s: float, found: Agreement) -
         soon = [value for t, value in told if at_s < t <= at_s + TOLD_S]
         return {*before, *soon}
 
-    modes, armed, landed = known(_mode), known(_armed), known(_landed)
-    if modes:
+    if modes := known(lambda event: event.mode):
         yield "mode", found.modes, modes, ours.mode
-    if armed:
+    if armed := known(lambda event: event.armed):
         yield "armed", found.armed, armed, ours.armed
-    if landed:
+    if landed := known(lambda event: event.state):
         yield "landed", found.landed, landed, ours.landed
-
-
-def _mode(event: Event) -> object:
-    return event.mode
-
-
-def _armed(event: Event) -> object:
-    return event.armed
-
-
-def _landed(event: Event) -> object:
-    return event.state
-
-
-__all__ = ["Agreement", "Seen", "compare"]

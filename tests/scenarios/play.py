@@ -38,8 +38,6 @@ READY_S: Final = 3.0
 ANSWER_S: Final = 1.5
 """How long the recorder waited for an answer."""
 
-ARMED: Final = 128
-LANDED: Final = {1: "ON_GROUND", 2: "IN_AIR", 3: "TAKEOFF", 4: "LANDING"}
 PX4_MODES: Final = {
     (1, 0): "MANUAL",
     (2, 0): "ALTCTL",
@@ -93,7 +91,6 @@ class _Player:
         self._client = self._sky.client()
         self._played = Played()
         self._zero_s = 0.0
-        self._counted = 0
 
     def play(self) -> Played:
         self._client.beat_if_due()
@@ -130,7 +127,7 @@ class _Player:
             self._sky.now_ns / 1e9 - self._zero_s,
             _mode_name(self._personality, vehicle.custom_mode),
             vehicle.armed,
-            LANDED.get(int(vehicle.landed), "UNDEFINED"),
+            vehicle.landed.name,
         )
 
     def _note(self) -> None:

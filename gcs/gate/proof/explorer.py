@@ -76,9 +76,7 @@ class Explored:
 
 class Explorer:
     """Explores one world, and keeps what it learnt: of a table in which few cells are altered,
-    only that is run anew which meets those cells, and the walk begins where it first meets one.
-
-    `entered` are the cells that had a part in anything so far."""
+    only that is run anew which meets those cells, and the walk begins where it first meets one."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -86,7 +84,6 @@ class Explorer:
         self._questions = Questions(self.codes)
         self._memory = WatchedMemory(self._questions)
         self._now_ns = cast(int, Instant(self._questions, NOW))
-        self.entered: set[tuple[State, Event]] = set()
         self._outcomes = self._outcomes_by(TABLE)
         self.parts = [self._tree(partial(self._number, part, {})) for part in PARTS]
         self.objections = self._tree(self._objections_to_memory)
@@ -101,6 +98,12 @@ class Explorer:
         if self.starts(table) != self.starts(TABLE):
             return _Walk(self, table).run()
         return _Walk(self, table, self._whole.before(altered)).run()
+
+    @property
+    def entered(self) -> frozenset[tuple[State, Event]]:
+        """The cells of the real table that have a part in its exploration."""
+        self._whole.run()
+        return frozenset(self._whole.first_met)
 
     def starts(self, table: Table) -> tuple[Vector, Vector]:
         """A gate that has heard nobody, with home, fence and mission known and without."""
@@ -146,9 +149,7 @@ class Explorer:
 
     def _outcome(self, letter: Letter, table: Table) -> Outcome:
         taken = take(letter, self._world, table, self._memory.copy(), self._now_ns)
-        outcome = Outcome(self._questions, taken)
-        self.entered |= outcome.cells
-        return outcome
+        return Outcome(self._questions, taken)
 
     def _number(self, part: Part, numbers: dict[Hashable, int]) -> int:
         """The number of what `part` of the situation is, in the order they were met."""
@@ -184,7 +185,7 @@ class _Begun:
 
 
 class _Walk:
-    """One exploration.  `nodes` are the situations in the order in which they were met."""
+    """One exploration.  `first_met` has, for each cell, the node of which a letter first met it."""
 
     def __init__(self, explorer: Explorer, table: Table, begun: _Begun | None = None) -> None:
         self._explorer = explorer
@@ -193,7 +194,7 @@ class _Walk:
         self._at = 0
         self._over: Explored | None = None
         self._edges = 0
-        self._first_met: dict[tuple[State, Event], int] = {}
+        self.first_met: dict[tuple[State, Event], int] = {}
         self._situations: set[tuple[int, ...]] = set()
         self._met: dict[tuple[int | None, ...], Vector] = {}
         if begun is not None:
@@ -209,7 +210,7 @@ class _Walk:
 
         Until then a walk through a table that differs in those cells is the same.
         """
-        at = min((self._first_met.get(cell, len(self._nodes)) for cell in cells), default=0)
+        at = min((self.first_met.get(cell, len(self._nodes)) for cell in cells), default=0)
         met = bisect_left(self._nodes, at, key=lambda n: n.parent.number if n.parent else -1)
         return _Begun(self._nodes[:met], at)
 
@@ -226,7 +227,7 @@ class _Walk:
                 if outcome.unmet:
                     outcome.unmet = False
                     for cell in outcome.cells:
-                        self._first_met.setdefault(cell, node.number)
+                        self.first_met.setdefault(cell, node.number)
                 if outcome.doubtful:
                     for objection in outcome.objections(before):
                         return self._explored(objection, self._reached(node, letter, outcome))
