@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import click
 
+from vehicle_sim.autopilot.firmware import FIRMWARES, Firmware, FirmwareError, firmware_of
 from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ AIRFRAMES: Final = ("s500", "racer250")
 @dataclass(frozen=True, slots=True)
 class Options:
     autopilot: Literal["px4", "ardupilot"]
+    firmware: Firmware
     count: int
     airframe: str
     home: tuple[float, float, float]
@@ -75,6 +77,12 @@ class _BadFileError(Exception):
     default="px4",
     show_default=True,
     help="Whose MAVLink it speaks, and how it flies.",
+)
+@click.option(
+    "--firmware",
+    type=click.Choice([each for firmwares in FIRMWARES.values() for each in firmwares]),
+    help="Which generation of it: its version and the names of its parameters.  px4 has 1.14 (the "
+    "default) and 1.15, ardupilot 4.5 (the default) and 4.7.",
 )
 @click.option(
     "--count",
@@ -137,6 +145,7 @@ class _BadFileError(Exception):
 @click.option("-v", "--verbose", is_flag=True, help="Debug lines as well.")
 def main(
     autopilot: Literal["px4", "ardupilot"],
+    firmware: str | None,
     count: int,
     airframe: str,
     home: tuple[float, float, float] | None,
@@ -161,12 +170,17 @@ def main(
     On a terminal it shows a live line per vehicle; on a pipe it prints what to connect to, then a
     line for everything that happens.
     """
+    try:
+        played = firmware_of(autopilot, firmware)
+    except FirmwareError as wrong:
+        raise click.BadParameter(str(wrong), param_hint="--firmware") from None
     if port is not None:
         links = (*links, f"udpin://127.0.0.1:{port}")
     sys.exit(
         run(
             Options(
                 autopilot=autopilot,
+                firmware=played,
                 count=count,
                 airframe=airframe,
                 home=home or HOMES[autopilot],
@@ -246,6 +260,7 @@ def plan_of(options: Options) -> Plan:
     north, east, gust = options.wind
     return Plan(
         personality=options.autopilot,
+        firmware=options.firmware,
         airframe=options.airframe,
         vehicles=vehicles,
         shared=tuple(map(parse, together if usual else options.links)),

@@ -21,6 +21,7 @@ from fractions import Fraction
 from math import nan
 from typing import Final
 
+from vehicle_sim.autopilot.firmware import FIRMWARES
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.cli import HOMES, place
@@ -171,6 +172,7 @@ def plan(personality: Personality, count: int, own: Sequence[int], shared: Seque
     home = HOMES[personality]
     return Plan(
         personality=personality,
+        firmware=FIRMWARES[personality][0],
         airframe="s500",
         vehicles=tuple(
             VehicleSetup(

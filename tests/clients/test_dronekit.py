@@ -17,7 +17,7 @@ def test_an_arducopter_flies_as_in_the_examples(tmp_path: Path) -> None:
     in_order(
         lines,
         r"connected: \d+ parameters",
-        "version APM:Copter-4.6.0, stable True",
+        "version APM:Copter-4.5.7, stable True",
         "attributes, home at 584 m",
         "WPNAV_SPEED set and heard",
         "mission of 4 commands up and down",
@@ -38,7 +38,7 @@ def test_the_same_over_mavlink_1(tmp_path: Path) -> None:
         lines = run_script("dronekit", "dronekit_flight.py", "ardupilot", url, folder=tmp_path)
     in_order(
         lines,
-        "version APM:Copter-4.6.0",
+        "version APM:Copter-4.5.7",
         "mission of 4 commands up and down",
         "went there at 4 m/s",
         "channels are told",
@@ -52,7 +52,7 @@ def test_a_px4_flies_as_far_as_dronekit_knows_it(tmp_path: Path) -> None:
         lines = run_script("dronekit", "dronekit_flight.py", "px4", url, folder=tmp_path)
     in_order(
         lines,
-        "version PX4Copter-1.14.0, stable True",
+        "version PX4Copter-1.14.3, stable True",
         "attributes, home at 488 m",
         "MPC_XY_CRUISE set and heard",
         "^armed",

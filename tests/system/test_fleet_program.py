@@ -21,6 +21,7 @@ from vehicle_sim.wire.split import Counters, split
 def options(count: int, links: tuple[str, ...] = ()) -> Options:
     return Options(
         autopilot="px4",
+        firmware="1.14",
         count=count,
         airframe="s500",
         home=(47.0, 8.0, 400.0),

@@ -193,7 +193,10 @@ class Recorder:
         parameters = self._parameters
         return {
             spec.name: Parameter(
-                spec.name, parameters.get(spec.name), _float32(spec.default), spec.integer
+                spec.name,
+                parameters.value(spec.name),
+                _float32(parameters.default(spec.name)),
+                spec.integer,
             )
             for spec in parameters.specs
         }

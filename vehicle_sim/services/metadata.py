@@ -3,7 +3,7 @@
 Two JSON files by the schemas of the protocol: the general one says where the others are, the
 other one describes the parameters.  Their texts come from the parameter tables, which write a
 unit as `[m/s]`, choices as `0 warn 2 land when critical`, and bits as `bit 0 this, bit 1 that` or
-as `1 this 2 that; added up`.
+as `1 this 2 that; added up`.  Of a parameter that does nothing here they say so, without bounds.
 """
 
 from __future__ import annotations
@@ -15,8 +15,7 @@ from functools import cache
 from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters.parameters import TABLES
-from vehicle_sim.autopilot.parameters.tables import ParameterSpec
+from vehicle_sim.autopilot.parameters.tables import TABLES, ParameterSpec
 from vehicle_sim.storage.store import crc32_of
 from vehicle_sim.storage.virtual_files import Virtual, VirtualFiles
 
@@ -84,11 +83,12 @@ def _described(spec: ParameterSpec) -> Json:
         "shortDesc": text[:1].upper() + text[1:],
         "units": unit[1] if unit else "",
         "default": spec.default,
-        "min": spec.low,
-        "max": spec.high,
         "group": spec.name.partition("_")[0],
         "rebootRequired": spec.reboot,
     }
+    if spec.inert:
+        return described
+    described |= {"min": spec.low, "max": spec.high}
     if not spec.integer:
         described["decimalPlaces"] = 2
         return described

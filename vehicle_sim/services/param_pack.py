@@ -13,6 +13,7 @@ from itertools import takewhile
 from typing import Final
 
 from vehicle_sim.autopilot.parameters.parameters import ParameterError, Parameters
+from vehicle_sim.autopilot.parameters.tables import StoredAs
 from vehicle_sim.storage.store import StoreError, StoreFault
 from vehicle_sim.storage.virtual_files import Virtual
 
@@ -24,15 +25,15 @@ _MAGIC: Final = 0x671B
 _MAGIC_DEFAULTS: Final = 0x671C
 _HEADER: Final = struct.Struct("<HHH")
 _HAS_DEFAULT: Final = 0x10
-_INT32: Final = 3
 _FLOAT: Final = 4
+_TYPES: Final = {StoredAs.INT8: 1, StoredAs.INT16: 2, StoredAs.INT32: 3, StoredAs.REAL32: _FLOAT}
+"""AP_Param's types."""
 _FORMATS: Final = {
     1: struct.Struct("<b"),
     2: struct.Struct("<h"),
-    _INT32: struct.Struct("<i"),
+    3: struct.Struct("<i"),
     _FLOAT: struct.Struct("<f"),
 }
-"""By AP_Param's types."""
 
 
 def param_pack(parameters: Parameters) -> Virtual:
@@ -62,9 +63,9 @@ def pack(parameters: Parameters, part: slice, with_defaults: bool) -> bytes:
     packed = bytearray(_HEADER.pack(magic, len(specs), len(parameters)))
     last = ""
     for spec in specs:
-        kind = _INT32 if spec.integer else _FLOAT
-        value = _packed(kind, parameters.get(spec.name))
-        default = _packed(kind, spec.default)
+        kind = _TYPES[spec.stored_as]
+        value = _packed(kind, parameters.value(spec.name))
+        default = _packed(kind, parameters.default(spec.name))
         differs = with_defaults and value != default
         # At least one byte of the name is always given.
         shared = min(_shared(last, spec.name), len(spec.name) - 1)
@@ -81,7 +82,7 @@ def _shared(one: str, other: str) -> int:
 
 
 def _packed(kind: int, value: float) -> bytes:
-    return _FORMATS[kind].pack(int(value) if kind == _INT32 else value)
+    return _FORMATS[kind].pack(value if kind == _FLOAT else int(value))
 
 
 def unpack(data: bytes) -> list[tuple[str, float]]:

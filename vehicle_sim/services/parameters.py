@@ -1,12 +1,12 @@
 """The parameter protocol: list, read, set.
 
-Integers travel as their bytes (px4) or as a float of the same value (ardupilot).  Every PARAM_SET
-is answered with the value that now holds, the old one if the new one was refused.
+Integers travel as their bytes (px4) or as a float of the same value (ardupilot).  PARAM_SET is
+answered with the value that then holds.  PX4 tells a change twice, and is silent if the type or
+the name is wrong; ArduPilot since 4.7 answers with PARAM_ERROR what it does not take.
 """
 
 from __future__ import annotations
 
-import math
 import struct
 from dataclasses import dataclass
 from typing import Final
@@ -25,6 +25,9 @@ PACE_NS: Final = 1_000_000
 BURST: Final = 8
 HASH_CHECK: Final = "_HASH_CHECK"
 DOES_NOT_EXIST: Final = 1  # MAV_PARAM_ERROR
+VALUE_OUT_OF_RANGE: Final = 2
+TOLD_AGAIN_NS: Final = 15_000_000
+"""PX4 tells a change once more, 10 to 20 ms later."""
 
 _FORMATS: Final = {ParamType.UINT32: "<I", ParamType.INT32: "<i", ParamType.REAL32: "<f"}
 
@@ -38,12 +41,12 @@ def encode(value: float, kind: ParamType, bytewise: bool) -> float:
 
 
 def decode(carried: float, kind: ParamType, bytewise: bool) -> float:
-    """The value that a PARAM_SET means; NaN where an integer is meant and there is none."""
+    """The value that a PARAM_SET means."""
     if kind is ParamType.REAL32:
         return carried
     if bytewise:
         return float(struct.unpack(_FORMATS[kind], struct.pack("<f", carried))[0])
-    return float(round(carried)) if math.isfinite(carried) else math.nan
+    return carried
 
 
 @dataclass(slots=True)
@@ -62,10 +65,12 @@ class ParameterServer:
         self._names: Final = tuple(spec.name for spec in parameters.specs)
         self._index: Final = {name: index for index, name in enumerate(self._names)}
         self._listings: dict[int, _Listing] = {}
+        self._told_again: dict[str, int] = {}  # when, by name
 
     @property
     def deadline_ns(self) -> int:
-        return min((listing.due_ns for listing in self._listings.values()), default=NEVER)
+        due_ns = [listing.due_ns for listing in self._listings.values()]
+        return min((*due_ns, *self._told_again.values()), default=NEVER)
 
     def request_list(self, client: Client, now_ns: int) -> list[Effect]:
         """PX4 leaves the hash out if it is asked again while a list is on its way."""
@@ -76,6 +81,10 @@ class ParameterServer:
 
     def tick(self, now_ns: int) -> list[Effect]:
         effects: list[Effect] = []
+        for name, due_ns in list(self._told_again.items()):
+            if now_ns >= due_ns:
+                del self._told_again[name]
+                effects.append(Send(None, self._value(name)))
         for channel, listing in list(self._listings.items()):
             burst = max(0, min(BURST, (now_ns - listing.due_ns) // PACE_NS + 1))
             chunk = self._names[listing.next_index : listing.next_index + burst]
@@ -101,7 +110,7 @@ class ParameterServer:
             return self._unknown(client, asked.param_id, asked.param_index)
         return [Send(client.channel, self._value(name))]
 
-    def set(self, client: Client, asked: m.ParamSet) -> list[Effect]:
+    def set(self, client: Client, asked: m.ParamSet, now_ns: int) -> list[Effect]:
         name = _name(asked.param_id)
         if name == HASH_CHECK and self._hashes:
             # QGroundControl knows these values already and needs no list.
@@ -111,13 +120,20 @@ class ParameterServer:
             return self._unknown(client, asked.param_id, -1)
         kind = self._kind(name)
         bytewise = self._profile.bytewise_parameters
-        note = Note("warning", f"{name} refused: its type is {kind.name}, not {asked.param_type}")
-        if not bytewise or asked.param_type == kind:
-            try:
-                stored = self._parameters.set(name, decode(asked.param_value, kind, bytewise))
-                note = Note("info", f"parameter {name} = {stored:g}")
-            except ParameterError as refusal:
-                note = Note("warning", f"parameter {refusal}")
+        if bytewise and asked.param_type != kind:
+            text = f"{name} refused: its type is {kind.name}, not {asked.param_type}"
+            return [Note("warning", text)]
+        before = self._parameters.value(name)
+        try:
+            stored = self._parameters.set(name, decode(asked.param_value, kind, bytewise))
+        except ParameterError as refusal:
+            note = Note("warning", f"parameter {refusal}")
+            if self._profile.parameter_errors:
+                return [self._error(client, asked.param_id, -1, VALUE_OUT_OF_RANGE), note]
+            return [Send(None, self._value(name, echo=True)), note]
+        if bytewise and stored != before:
+            self._told_again[name] = now_ns + TOLD_AGAIN_NS
+        note = Note("info", f"parameter {name} = {stored:g}")
         return [Send(None, self._value(name, echo=True)), note]
 
     @property
@@ -125,13 +141,13 @@ class ParameterServer:
         return self._profile.hash_check and self._parameters.get("MAV_HASH_CHK_EN") != 0
 
     def _kind(self, name: str) -> ParamType:
-        return ParamType.INT32 if self._parameters.spec(name).integer else ParamType.REAL32
+        return ParamType(self._parameters.spec(name).stored_as)
 
     def _value(self, name: str, echo: bool = False) -> m.ParamValue:
         """`echo`: in answer to a PARAM_SET, where ArduPilot leaves the index out."""
         kind = self._kind(name)
         nameless = echo and not self._profile.bytewise_parameters
-        value = self._parameters.get(name)
+        value = self._parameters.value(name)
         return m.ParamValue(
             param_value=encode(value, kind, self._profile.bytewise_parameters),
             param_count=len(self._names),
@@ -149,7 +165,7 @@ class ParameterServer:
         crc = 0
         for name in sorted(self._names):
             stored = _FORMATS[self._kind(name)]
-            value = self._parameters.get(name)
+            value = self._parameters.value(name)
             whole = self._parameters.spec(name).integer
             crc = crc32_of(name.encode("ascii"), crc)
             crc = crc32_of(struct.pack(stored, int(value) if whole else value), crc)
@@ -164,10 +180,13 @@ class ParameterServer:
     def _unknown(self, client: Client, name: bytes, index: int) -> list[Effect]:
         shown = _name(name) or f"number {index}"
         effects: list[Effect] = [Note("warning", f"there is no parameter {shown}")]
-        if self._profile.unknown_parameter_error:
-            told = m.ParamError(index, client.system, client.component, name, DOES_NOT_EXIST)
-            effects.append(Send(client.channel, told))
+        if self._profile.parameter_errors:
+            effects.append(self._error(client, name, index, DOES_NOT_EXIST))
         return effects
+
+    def _error(self, client: Client, name: bytes, index: int, error: int) -> Effect:
+        told = m.ParamError(index, client.system, client.component, name, error)
+        return Send(client.channel, told)
 
 
 def _name(field: bytes) -> str:

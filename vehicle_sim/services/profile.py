@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
+from vehicle_sim.autopilot.firmware import FLIGHT_SW_VERSION, Firmware
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Capability, DataStream, MissionType
@@ -28,7 +29,7 @@ class Profile:
     fixed: frozenset[int]  # streams whose interval cannot be set
     bytewise_parameters: bool
     hash_check: bool  # a parameter list begins with _HASH_CHECK
-    unknown_parameter_error: bool  # PARAM_ERROR instead of silence
+    parameter_errors: bool  # PARAM_ERROR for what is not taken
     item_request: type[m.MissionRequest] | type[m.MissionRequestInt]
     first_item_request: type[m.MissionRequest] | type[m.MissionRequestInt]
     float_items: bool  # MISSION_REQUEST is answered with the float MISSION_ITEM
@@ -67,7 +68,7 @@ PX4: Final = Profile(
     name="px4",
     autopilot=12,
     vendor="PX4",
-    flight_sw_version=0x010E00FF,  # 1.14.0, a release
+    flight_sw_version=FLIGHT_SW_VERSION["1.14"],
     capabilities=_COMMON | Capability.PARAM_ENCODE_BYTEWISE,
     intervals_ns=_hz(
         {
@@ -104,7 +105,7 @@ PX4: Final = Profile(
     fixed=frozenset({m.IDS[m.MissionCurrent]}),
     bytewise_parameters=True,
     hash_check=True,
-    unknown_parameter_error=False,
+    parameter_errors=False,
     item_request=m.MissionRequestInt,
     first_item_request=m.MissionRequest,
     float_items=False,
@@ -129,7 +130,7 @@ ARDUPILOT: Final = Profile(
     name="ardupilot",
     autopilot=3,
     vendor="ArduPilot",
-    flight_sw_version=0x040600FF,  # 4.6.0, a release: 4.7 renames many parameters
+    flight_sw_version=FLIGHT_SW_VERSION["4.5"],
     capabilities=_COMMON | Capability.PARAM_ENCODE_C_CAST,
     intervals_ns=_hz({m.Heartbeat: 1, m.HomePosition: 0.5}),
     rate_parameters={
@@ -144,7 +145,7 @@ ARDUPILOT: Final = Profile(
     fixed=frozenset(),
     bytewise_parameters=False,
     hash_check=False,
-    unknown_parameter_error=True,
+    parameter_errors=False,
     item_request=m.MissionRequest,
     first_item_request=m.MissionRequest,
     float_items=True,
@@ -166,6 +167,17 @@ ARDUPILOT: Final = Profile(
 )
 
 PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILOT}
+"""Of the firmware that is played unless another is asked for."""
+
+
+def profile_of(personality: Personality, firmware: Firmware) -> Profile:
+    """ArduPilot has PARAM_ERROR since 4.7 (of older ones this is from memory)."""
+    return replace(
+        PROFILES[personality],
+        flight_sw_version=FLIGHT_SW_VERSION[firmware],
+        parameter_errors=firmware == "4.7",
+    )
+
 
 STANDARD_MODES: Final[dict[str, int]] = {
     "POSCTL": 1,

@@ -217,7 +217,7 @@ class VehicleServer:
             case m.ParamRequestRead():
                 return self._parameters.read(client, message)
             case m.ParamSet():
-                return self._parameters.set(client, message)
+                return self._parameters.set(client, message, wall_ns)
             case m.FileTransferProtocol():
                 return self._ftp.handle(client, message, wall_ns)
             case m.LogRequestList() | m.LogRequestData() | m.LogErase() | m.LogRequestEnd():

@@ -12,6 +12,7 @@ from typing import Final
 
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.decisions import phase_ns
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
@@ -19,7 +20,7 @@ from vehicle_sim.engine.engines import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
-from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.services.streams import POSITION_ONLY
 from vehicle_sim.shell.endpoints import Endpoint, EndpointError, Udp, open_endpoint
@@ -36,7 +37,6 @@ from vehicle_sim.wire.signing import SigningKey
 EXIT_INTERRUPTED: Final = 130
 EXIT_TERMINATED: Final = 0
 
-SYSTEM_ID: Final[dict[Personality, str]] = {"px4": "MAV_SYS_ID", "ardupilot": "SYSID_THISMAV"}
 LOGGED_MOST: Final = 50
 """Larger fleets keep no flight logs: they would fill the memory."""
 
@@ -55,6 +55,7 @@ class Plan:
     """Everything that is decided before anything is opened."""
 
     personality: Personality
+    firmware: Firmware
     airframe: str
     vehicles: tuple[VehicleSetup, ...]
     shared: tuple[Url, ...]  # links on which all vehicles speak
@@ -89,7 +90,7 @@ def launch(plan: Plan) -> Opened:
     ]
     engine = engine_for(specs, load(plan.airframe))
     unix_ns = time.time_ns()
-    profile = PROFILES[plan.personality]
+    profile = profile_of(plan.personality, plan.firmware)
     if plan.sparse:
         profile = replace(profile, intervals_ns=POSITION_ONLY)
     servers: list[VehicleServer] = []
@@ -126,10 +127,10 @@ def launch(plan: Plan) -> Opened:
 
 
 def _parameters(plan: Plan, setup: VehicleSetup) -> Parameters:
-    parameters = Parameters(plan.personality)
-    parameters.set(SYSTEM_ID[plan.personality], setup.system)
+    parameters = Parameters(plan.personality, plan.firmware)
+    parameters.start_as(setup.system)
     for name, value in plan.params:
-        parameters.set(name, value)
+        parameters.start_with(name, value)
     return parameters
 
 

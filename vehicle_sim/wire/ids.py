@@ -176,6 +176,8 @@ class MissionType(IntEnum):
 class ParamType(IntEnum):
     """MAV_PARAM_TYPE."""
 
+    INT8 = 2
+    INT16 = 4
     UINT32 = 5
     INT32 = 6
     REAL32 = 9

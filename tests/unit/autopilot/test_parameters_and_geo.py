@@ -12,7 +12,8 @@ from tests.unit.autopilot.flight import HOMES, Flight
 from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters.parameters import TABLES, ParameterError, Parameters, Quantity
+from vehicle_sim.autopilot.parameters.parameters import ParameterError, Parameters, Quantity
+from vehicle_sim.autopilot.parameters.tables import TABLES
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 either = pytest.mark.parametrize("personality", BOTH)
@@ -22,7 +23,8 @@ either = pytest.mark.parametrize("personality", BOTH)
 def test_every_default_is_a_value_that_the_parameter_takes(personality: Personality) -> None:
     parameters = Parameters(personality)
     for spec in parameters.specs:
-        assert parameters.set(spec.name, parameters.get(spec.name)) == parameters.get(spec.name)
+        value = parameters.value(spec.name)
+        assert parameters.set(spec.name, value) == value
         assert len(spec.name) <= 16
     assert parameters.version == 0
 
@@ -51,12 +53,8 @@ def test_centimetres_become_metres() -> None:
     [
         ("NO_SUCH", 1.0),
         ("MPC_XY_CRUISE", nan),
-        ("MPC_XY_CRUISE", inf),
-        ("MPC_XY_CRUISE", 1e39),
-        ("MPC_XY_CRUISE", 0.1),
         ("NAV_DLL_ACT", 1.5),
-        ("NAV_DLL_ACT", 99.0),
-        ("GF_ACTION", 6.0),
+        ("NAV_DLL_ACT", 2.0**31),
     ],
 )
 def test_a_value_that_it_does_not_take_is_refused_and_the_old_one_stays(
@@ -67,6 +65,27 @@ def test_a_value_that_it_does_not_take_is_refused_and_the_old_one_stays(
     with pytest.raises(ParameterError, match=name):
         parameters.set(name, value)
     assert [parameters.get(spec.name) for spec in parameters.specs] == before
+
+
+@pytest.mark.parametrize(
+    ("personality", "name", "value", "in_use"),
+    [
+        ("px4", "MPC_XY_CRUISE", inf, 20.0),
+        ("px4", "MPC_XY_CRUISE", 1e39, 20.0),
+        ("px4", "MPC_XY_CRUISE", -5.0, 0.5),
+        ("px4", "GF_ACTION", 99.0, 5.0),
+        ("px4", "COM_DL_LOSS_T", -7.0, 5.0),
+        ("ardupilot", "WPNAV_SPEED", 99999.0, 2000.0),
+        ("ardupilot", "FENCE_ACTION", 99.0, 5.0),
+    ],
+)
+def test_a_value_out_of_bounds_is_told_as_it_was_set_and_the_nearest_one_acts(
+    personality: Personality, name: str, value: float, in_use: float
+) -> None:
+    parameters = Parameters(personality)
+    parameters.set(name, value)
+    assert parameters.value(name) == (inf if value == 1e39 else value)
+    assert parameters.get(name) == in_use
 
 
 def test_a_changed_speed_acts_at_once() -> None:

@@ -138,7 +138,7 @@ def test_ardupilot_and_its_battery(name: str, value: float, words: str) -> None:
     ("name", "value", "words"),
     [
         ("EKF2_ABL_LIM", 0.4, "High Accelerometer Bias"),
-        ("EKF2_ABL_GYRLIM", 0.005, "High Gyro Bias"),
+        ("EKF2_GYR_B_LIM", 0.005, "High Gyro Bias"),
     ],
 )
 def test_px4_and_its_biases(name: str, value: float, words: str) -> None:

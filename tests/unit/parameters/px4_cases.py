@@ -144,7 +144,7 @@ CASES: tuple[Case, ...] = (
     Case("COM_ARM_MIS_REQ", {0: False, 1: True}, fly.against_arming("no valid mission")),
     Case("COM_ARM_WO_GPS", {0: True, 1: False}, fly.against_arming("GPS fix too low", own.no_fix)),
     Case(
-        "EKF2_ABL_GYRLIM",
+        "EKF2_GYR_B_LIM",
         {0.1: True, 0.4: False},
         fly.against_arming("High Gyro Bias", own.gyro_off),
     ),

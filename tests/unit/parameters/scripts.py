@@ -411,7 +411,7 @@ class Served(Bench):
         self.sequence = 0
         self.inbox: list[m.Message] = []
         self.raw = b""
-        self.stored = parameters.get
+        self.stored = parameters.value
 
 
 def system_id(setting: Setting) -> int:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import pytest
 
 from tests.unit.autopilot.flight import HOMES, Flight
+from tests.unit.autopilot.hand_flight import HandFlight
 from tests.unit.parameters.probing import Setting
 from tests.unit.parameters.scripts import Served
 from tests.unit.vehicle_services.fake_vehicle import S, acks, long
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
@@ -17,12 +19,13 @@ from vehicle_sim.engine.many import Many
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
+from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 either = pytest.mark.parametrize("personality", BOTH)
 HEIGHT: dict[Personality, str] = {"px4": "MIS_TAKEOFF_ALT", "ardupilot": "PILOT_TKOFF_ALT"}
-CHANGED, DEFAULT = {"px4": 7.0, "ardupilot": 700.0}, {"px4": 2.5, "ardupilot": 250.0}
+CHANGED, DEFAULT = {"px4": 7.0, "ardupilot": 700.0}, {"px4": 2.5, "ardupilot": 0.0}
 
 
 @either
@@ -48,6 +51,70 @@ def test_ardupilot_resets_its_parameters_with_the_next_reboot() -> None:
     assert served.stored(HEIGHT["ardupilot"]) == CHANGED["ardupilot"]
     served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1))
     assert served.stored(HEIGHT["ardupilot"]) == DEFAULT["ardupilot"]
+
+
+def started(personality: Personality, firmware: Firmware) -> Served:
+    """Vehicle 5, started with two values of its own, as the command line starts it."""
+    parameters = Parameters(personality, firmware)
+    parameters.start_as(5)
+    for name, value in STARTED_WITH[firmware].items():
+        parameters.start_with(name, value)
+    flight = HandFlight(personality)
+    flight.vehicle = Autopilot(personality, HOMES[personality], 1, 0, parameters)
+    return Served(flight)
+
+
+STARTED_WITH: dict[Firmware, dict[str, float]] = {
+    "1.14": {"MIS_TAKEOFF_ALT": 6.0, "MPC_XY_CRUISE": 3.0},
+    "4.5": {"RTL_ALT": 900.0, "WPNAV_SPEED": 300.0},
+    "4.7": {"RTL_ALT_M": 9.0, "WP_SPD": 3.0},
+}
+
+
+@pytest.mark.parametrize(
+    ("personality", "firmware"), [("px4", "1.14"), ("ardupilot", "4.5"), ("ardupilot", "4.7")]
+)
+def test_a_reset_and_a_reboot_leave_system_id_and_what_it_was_started_with(
+    personality: Personality, firmware: Firmware
+) -> None:
+    """vehicle.md, bug 6: vehicle 5 became vehicle 1, and values of --param were lost."""
+    served = started(personality, firmware)
+    served.advance(S)
+    assert served.server.system == 5
+    for name in STARTED_WITH[firmware]:
+        served.server._given.set(name, 1.0)
+    to_5 = {"target": 5}
+    assert acks(served.send(long(Cmd.PREFLIGHT_STORAGE, 2, target=5))) == [(245, Result.ACCEPTED)]
+    assert acks(served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1, target=5))) == [
+        (246, Result.ACCEPTED)
+    ]
+    served.advance(S)
+    assert served.server.system == 5
+    assert {name: served.stored(name) for name in STARTED_WITH[firmware]} == STARTED_WITH[firmware]
+
+
+def test_what_is_set_after_ardupilots_parameters_were_erased_outlives_the_reboot() -> None:
+    """vehicle.md, bug 7."""
+    served = Served(Setting("ardupilot", {"RTL_ALT": 700.0, "GUID_TIMEOUT": 2.0}).fresh())
+    served.advance(S)
+    assert acks(served.send(long(Cmd.PREFLIGHT_STORAGE, 2))) == [(245, Result.ACCEPTED)]
+    served.send(m.ParamSet(4.0, 1, 1, b"GUID_TIMEOUT", 9))
+    assert served.stored("RTL_ALT") == 700.0
+    served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1))
+    served.advance(S)
+    assert (served.stored("RTL_ALT"), served.stored("GUID_TIMEOUT")) == (1500.0, 4.0)
+
+
+def test_a_second_reboot_resets_nothing() -> None:
+    served = Served(Setting("ardupilot", {}).fresh())
+    served.advance(S)
+    served.send(long(Cmd.PREFLIGHT_STORAGE, 2))
+    served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1))
+    served.advance(S)
+    served.send(m.ParamSet(800.0, 1, 1, b"RTL_ALT", 9))
+    served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1))
+    served.advance(S)
+    assert served.stored("RTL_ALT") == 800.0
 
 
 def test_simulated_wind_that_is_set_before_the_start_blows_from_the_start() -> None:

@@ -130,7 +130,7 @@ def test_modes_texts_and_events_are_in_it_when_they_happen(tmp_path: Path) -> No
     assert modes == [(4000, 4), (516_000, 9)]
     assert [mode for mode, _, _ in reader.flightmode_list()][-2:] == ["GUIDED", "LAND"]
     texts = [text.Message for text in of(records, "MSG")]
-    assert texts == ["ArduCopter V4.6.0", "Frame: QUAD/X", "Arming motors"]
+    assert texts == ["ArduCopter V4.5.7", "Frame: QUAD/X", "Arming motors"]
     assert [event.Id for event in of(records, "EV")] == [10, 28, 18, 11]
 
 

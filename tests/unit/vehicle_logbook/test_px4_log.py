@@ -38,7 +38,7 @@ def test_it_is_read_whole_with_no_dropouts(log: Any) -> None:
 def test_it_says_what_wrote_it(log: Any) -> None:
     assert log.msg_info_dict["sys_name"] == "PX4"
     assert log.msg_info_dict["ver_hw"] == "PX4_SITL"
-    assert log.msg_info_dict["ver_sw_release"] == 0x010E00FF
+    assert log.msg_info_dict["ver_sw_release"] == 0x010E03FF
 
 
 def test_positions_are_those_that_the_vehicle_reported_at_their_times(log: Any) -> None:

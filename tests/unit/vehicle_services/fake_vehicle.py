@@ -6,6 +6,7 @@ from fractions import Fraction
 
 from vehicle_sim.autopilot.fence import rally
 from vehicle_sim.autopilot.fence import zones as fence
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import (
     AttitudeGoal,
     AttitudeSetpoint,
@@ -31,7 +32,7 @@ from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.estimation.estimator import Health
 from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.plant.faults import Fault
-from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
@@ -317,12 +318,16 @@ class FakeVehicle:
 class Bench:
     """One vehicle on one link, a clock, and clients that send messages and read the answers."""
 
-    def __init__(self, personality: Personality = "px4", speedup: Fraction = Fraction(1)) -> None:
+    def __init__(
+        self,
+        personality: Personality = "px4",
+        speedup: Fraction = Fraction(1),
+        firmware: Firmware | None = None,
+    ) -> None:
         self.vehicle = FakeVehicle()
-        self.parameters = Parameters(personality)
-        server = VehicleServer(
-            self.vehicle, PROFILES[personality], self.parameters, system=1, speedup=speedup
-        )
+        self.parameters = Parameters(personality, firmware)
+        profile = profile_of(personality, self.parameters.firmware)
+        server = VehicleServer(self.vehicle, profile, self.parameters, system=1, speedup=speedup)
         self.world = World([server], [LinkSpec()], speedup)
         self.now_ns = 0
         self.logs: list[Log] = []

@@ -45,7 +45,9 @@ def test_every_parameter_is_described_with_its_bounds() -> None:
         each = told[spec.name]
         assert set(each) <= KEYS
         assert each["type"] == ("Int32" if spec.integer else "Float")
-        assert (each["min"], each["max"], each["default"]) == (spec.low, spec.high, spec.default)
+        bounds = (None, None) if spec.inert else (spec.low, spec.high)
+        assert (each.get("min"), each.get("max"), each["default"]) == (*bounds, spec.default)
+        assert ("does nothing in this vehicle" in str(each["shortDesc"])) is spec.inert
         assert each["rebootRequired"] is spec.reboot
         assert each["shortDesc"]
 

@@ -121,29 +121,94 @@ def test_ardupilot_leaves_the_index_out_of_the_echo() -> None:
     assert (told.param_index, told.param_value) == (65535, 2.0)
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, 1e30, -1.0])
-def test_a_set_that_is_refused_is_answered_with_the_old_value(value: float) -> None:
+def answers(heard: list[m.Message]) -> list[m.ParamValue | m.ParamError]:
+    return [each for each in heard if isinstance(each, m.ParamValue | m.ParamError)]
+
+
+def set_to(bench: Bench, text: str, value: float, kind: int) -> list[float | int]:
+    """What PARAM_SET is answered with in a second: values, or numbers of errors."""
+    heard = bench.send(m.ParamSet(value, 1, 1, text.encode(), kind)) + bench.advance(S)
+    return [
+        each.param_value if isinstance(each, m.ParamValue) else each.error
+        for each in answers(heard)
+    ]
+
+
+# Rows of the recorded scenario E1_param_set_answers of PX4 1.14.3.
+@pytest.mark.parametrize(
+    ("text", "value", "kind", "told"),
+    [
+        pytest.param("MPC_XY_VEL_MAX", 500.0, 9, [500.0, 500.0], id="over the maximum"),
+        pytest.param("MPC_Z_VEL_MAX_UP", -5.0, 9, [-5.0, -5.0], id="under the minimum"),
+        pytest.param("GF_ACTION", as_float(99), 6, [as_float(99)] * 2, id="no such choice"),
+        pytest.param("MPC_XY_VEL_MAX", 12.0, 9, [12.0], id="the same value"),
+        pytest.param("MPC_XY_VEL_MAX", math.nan, 9, [12.0], id="NaN"),
+        pytest.param("MPC_XY_VEL_MAX", math.inf, 9, [math.inf] * 2, id="infinity"),
+        pytest.param("GF_ACTION", 3.0, 6, [3.0, 3.0], id="an integer that is not bytes"),
+        pytest.param("GF_ACTION", 3.0, 9, [], id="an integer declared a float"),
+        pytest.param("MPC_XY_VEL_MAX", as_float(9), 6, [], id="a float declared an integer"),
+        pytest.param("GF_ACTION", as_float(3), 5, [], id="a signed one declared unsigned"),
+        pytest.param("GF_ACTION", as_float(3), 2, [], id="32 bits declared 8"),
+        pytest.param("NO_SUCH_PARAM", 1.0, 9, [], id="unknown"),
+        pytest.param("mpc_xy_vel_max", 5.0, 9, [], id="lower case"),
+    ],
+)
+def test_px4_answers_param_set_as_recorded(
+    text: str, value: float, kind: int, told: list[float]
+) -> None:
+    assert set_to(Bench("px4"), text, value, kind) == told
+
+
+# Rows of the recorded scenarios E1, E3 and E4 of ArduCopter 4.7.0-dev; whole numbers are errors.
+@pytest.mark.parametrize(
+    ("text", "value", "kind", "told"),
+    [
+        pytest.param("WP_SPD", 500.0, 9, [500.0], id="over the maximum"),
+        pytest.param("WP_SPD", -5.0, 9, [-5.0], id="under the minimum"),
+        pytest.param("FENCE_ACTION", 99.0, 2, [99.0], id="no such choice"),
+        pytest.param("FENCE_ACTION", 300.0, 2, [127.0], id="too much for 8 bits"),
+        pytest.param("FENCE_ACTION", -300.0, 2, [-128.0], id="too little for 8 bits"),
+        pytest.param("PILOT_ACCEL_Z", 70000.0, 4, [32767.0], id="too much for 16 bits"),
+        pytest.param("FENCE_ACTION", 2.7, 2, [2.0], id="a fraction"),
+        pytest.param("WP_SPD", 8.0, 6, [8.0], id="a float declared an integer"),
+        pytest.param("FENCE_ACTION", 2.0, 9, [2.0], id="an integer declared a float"),
+        pytest.param("WP_SPD", 10.0, 9, [10.0], id="the same value"),
+        pytest.param("STAT_BOOTCNT", 1000.0, 6, [1000.0], id="a counter"),
+        pytest.param("WP_SPD", math.nan, 9, [2], id="NaN"),
+        pytest.param("WP_SPD", math.inf, 9, [2], id="infinity"),
+        pytest.param("NO_SUCH_PARAM", 1.0, 9, [1], id="unknown"),
+        pytest.param("WPNAV_SPEED", 500.0, 9, [1], id="a name of 4.5"),
+        pytest.param("wp_spd", 5.0, 9, [1], id="lower case"),
+    ],
+)
+def test_arducopter_4_7_answers_param_set_as_recorded(
+    text: str, value: float, kind: int, told: list[float]
+) -> None:
+    assert set_to(Bench("ardupilot", firmware="4.7"), text, value, kind) == told
+
+
+def test_arducopter_4_7_tells_the_types_and_no_index() -> None:
+    bench = Bench("ardupilot", firmware="4.7")
+    for text, kind in (("FENCE_ACTION", 2), ("PILOT_ACCEL_Z", 4), ("AUTO_OPTIONS", 6)):
+        (told,) = values(bench.send(m.ParamSet(1.0, 1, 1, text.encode(), 9)))
+        assert (told.param_type, told.param_index) == (kind, 65535)
+
+
+def test_px4_tells_a_change_again_after_10_to_20_ms() -> None:
     bench = Bench("px4")
-    old = bench.parameters.get("MIS_TAKEOFF_ALT")
-    asked = m.ParamSet(value, 1, 1, b"MIS_TAKEOFF_ALT", ParamType.REAL32)
-    (told,) = values(bench.send(asked))
-    assert told.param_value == bench.parameters.get("MIS_TAKEOFF_ALT") == old
-    assert [line.level for line in bench.logs if "MIS_TAKEOFF_ALT" in line.text] == ["warning"]
+    bench.send(m.ParamSet(4.0, 1, 1, b"MIS_TAKEOFF_ALT", ParamType.REAL32))
+    assert values(bench.advance(9 * MS)) == []
+    assert len(values(bench.advance(12 * MS))) == 1
 
 
-def test_px4_refuses_a_value_of_the_wrong_type() -> None:
-    bench = Bench("px4")
-    (told,) = values(bench.send(m.ParamSet(5.0, 1, 1, b"MAV_SYS_ID", ParamType.REAL32)))
-    assert told.param_value == as_float(1)
-
-
-def test_a_parameter_that_there_is_not() -> None:
-    """ArduPilot says so, PX4 is silent."""
-    (told,) = Bench("ardupilot").send(read("NO_SUCH"))[-1:]
+@pytest.mark.parametrize(("text", "index"), [("NO_SUCH_PARAM", -1), ("", -1), ("", 30000)])
+def test_a_parameter_that_there_is_not(text: str, index: int) -> None:
+    """ArduCopter 4.7 answers with PARAM_ERROR, PX4 and (from memory) ArduCopter 4.5 do not."""
+    (told,) = answers(Bench("ardupilot", firmware="4.7").send(read(text, index)))
     assert isinstance(told, m.ParamError)
-    assert told.error == 1
-    heard = Bench("px4").send(read("NO_SUCH"))
-    assert not [each for each in heard if isinstance(each, m.ParamError | m.ParamValue)]
+    assert (told.error, told.param_index) == (1, index)
+    assert answers(Bench("ardupilot").send(read(text, index))) == []
+    assert answers(Bench("px4").send(read(text, index))) == []
 
 
 def test_a_change_is_told_to_every_client() -> None:

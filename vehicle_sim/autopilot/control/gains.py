@@ -70,7 +70,7 @@ def write_gains(
     designed = Flight()
     tune(designed, frame)
     for name, field in _GAINS[parameters.personality].items():
-        ratio = get(name) / parameters.default(name)
+        ratio = get(name) / parameters.designed(name)
         setattr(flight, field, ratio * getattr(designed, field))
     px4 = parameters.personality == "px4"
     for name, field in _RATES[parameters.personality].items():

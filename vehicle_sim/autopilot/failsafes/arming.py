@@ -92,7 +92,7 @@ def _px4(parameters: Parameters, ready: Readiness) -> list[str]:
         found.append("Preflight Fail: No valid data from Baro 0")
     if not health.mag_ok:
         found.append("Preflight Fail: No valid data from Compass 0")
-    if ready.gyro_bias_rad_s > _BIAS_SHARE * get("EKF2_ABL_GYRLIM"):
+    if ready.gyro_bias_rad_s > _BIAS_SHARE * get("EKF2_GYR_B_LIM"):
         found.append("Preflight Fail: High Gyro Bias")
     if ready.accel_off_m_s2 > _BIAS_SHARE * get("EKF2_ABL_LIM"):
         found.append("Preflight Fail: High Accelerometer Bias")

@@ -1,15 +1,23 @@
-"""Parameters: checked when set, read live by the autopilot, in SI where it asks by meaning."""
+"""Parameters: taken as the real autopilots take them, read live, in SI where asked by meaning.
+
+A client sees what was set, by the name and in the unit of the firmware that is played.  The
+vehicle reads by *canonical* name and unit, those of the oldest firmware, and reads the nearest
+value with which it can fly: both real autopilots take almost any value.
+"""
 
 from __future__ import annotations
 
 import struct
+from dataclasses import dataclass
 from enum import Enum
-from math import isfinite
+from functools import cache
+from math import inf, isfinite, isnan
+from typing import TypeVar
 
+from vehicle_sim.autopilot.firmware import Firmware, firmware_of
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.parameters.tables import ARDUPILOT, PX4, ParameterSpec
-
-TABLES: dict[Personality, tuple[ParameterSpec, ...]] = {"px4": PX4, "ardupilot": ARDUPILOT}
+from vehicle_sim.autopilot.parameters.tables import RENAMED, TABLES, ParameterSpec, Renamed, listed
+from vehicle_sim.autopilot.parameters.tables.spec import LIMITS, StoredAs
 
 
 class ParameterError(ValueError):
@@ -116,97 +124,198 @@ _CAPS: dict[Personality, dict[Quantity, str]] = {
 }
 
 
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """What all vehicles of a personality and firmware share."""
+
+    specs: dict[str, ParameterSpec]  # by listed name
+    canonical: dict[str, ParameterSpec]  # by canonical name
+    renamed: dict[str, Renamed]  # by canonical name
+    canonical_names: dict[str, str]  # by listed name
+    stored: dict[str, float]  # the defaults by listed name
+    in_use: dict[str, float]  # the same by canonical name
+
+
+@cache
+def _known(personality: Personality, firmware: Firmware) -> _Known:
+    specs = {spec.name: spec for spec in listed(personality, firmware)}
+    canonical = {spec.name: spec for spec in TABLES[personality]}
+    renamed = RENAMED.get(firmware, {})
+    listed_names = {name: renamed[name].new if name in renamed else name for name in canonical}
+    stored = {name: _fitted(personality, spec, spec.default) for name, spec in specs.items()}
+    in_use = {
+        name: _usable(spec, renamed.get(name), stored[listed_names[name]])
+        for name, spec in canonical.items()
+    }
+    names = {new: old for old, new in listed_names.items()}
+    return _Known(specs, canonical, renamed, names, stored, in_use)
+
+
 class Parameters:
     """The values of one vehicle.  `version` grows with every change."""
 
-    __slots__ = ("_caps", "_erased", "_si", "_specs", "_values", "personality", "version")
+    __slots__ = (
+        "_caps",
+        "_defaults",
+        "_in_use",
+        "_kept",
+        "_known",
+        "_si",
+        "_stored",
+        "firmware",
+        "personality",
+        "version",
+    )
 
-    def __init__(self, personality: Personality) -> None:
+    def __init__(self, personality: Personality, firmware: Firmware | None = None) -> None:
+        """Of the usual firmware unless one is given.  Raises FirmwareError for another's."""
         self.personality = personality
-        self._specs = {spec.name: spec for spec in TABLES[personality]}
-        self._values = {spec.name: _stored(spec, spec.default) for spec in TABLES[personality]}
+        self.firmware = firmware_of(personality, firmware)
+        self._known = _known(personality, self.firmware)
+        self._stored = self._known.stored.copy()
+        self._in_use = self._known.in_use.copy()
         self._si = _SI[personality]
         self._caps = _CAPS[personality]
-        self._erased = False
+        self._defaults: dict[str, float] = {}  # this vehicle's own, by listed name
+        self._kept: dict[str, float] | None = None  # what was set since all was erased
         self.version = 0
 
     @property
     def specs(self) -> tuple[ParameterSpec, ...]:
         """In the order of their indices, which is that of their names."""
-        return tuple(self._specs.values())
+        return tuple(self._known.specs.values())
 
     def __contains__(self, name: object) -> bool:
-        return name in self._specs
+        return name in self._known.specs
 
     def __len__(self) -> int:
-        return len(self._specs)
+        return len(self._known.specs)
 
     def spec(self, name: str) -> ParameterSpec:
-        """Raises ParameterError for an unknown name."""
-        try:
-            return self._specs[name]
-        except KeyError:
-            raise ParameterError(f"{name}: no such parameter") from None
+        """By its name in this firmware.  Raises ParameterError for an unknown name."""
+        return _found(self._known.specs, name)
+
+    def value(self, name: str) -> float:
+        """As it was set, by its name in this firmware.  Raises ParameterError."""
+        return _found(self._stored, name)
 
     def get(self, name: str) -> float:
-        """The value in the parameter's own unit (integers are whole).  Raises ParameterError."""
-        try:
-            return self._values[name]
-        except KeyError:
-            raise ParameterError(f"{name}: no such parameter") from None
+        """What the vehicle acts on, by canonical name and in that one's unit.
+
+        The nearest value within the bounds of the parameter's table.  Raises ParameterError.
+        """
+        return _found(self._in_use, name)
+
+    def designed(self, name: str) -> float:
+        """What it acts on where nothing was set, by canonical name.  Raises ParameterError."""
+        return _found(self._known.in_use, name)
 
     def default(self, name: str) -> float:
-        """As it is stored.  Raises ParameterError."""
-        spec = self.spec(name)
-        return _stored(spec, spec.default)
+        """What a reset of this vehicle gives, by its name in this firmware.
+
+        Raises ParameterError.
+        """
+        stored = _found(self._known.stored, name)
+        return self._defaults.get(name, stored)
+
+    def start_with(self, name: str, value: float) -> None:
+        """Sets a value that a reset of this vehicle gives again.  Raises ParameterError."""
+        self._defaults[name] = self.set(name, value)
+
+    def start_as(self, system: int) -> None:
+        """With this MAVLink system id, also after a reset.  Raises ParameterError."""
+        name, _ = self._si[Quantity.SYSTEM_ID]
+        assert name is not None
+        renamed = self._known.renamed.get(name)
+        self.start_with(name if renamed is None else renamed.new, system)
 
     def reset(self) -> None:
         """Every parameter back to its default."""
-        self._erased = False
-        for name in self._specs:
-            self.set(name, self.default(name))
+        self._kept = None
+        for name in self._known.specs:
+            self._store(name, self.default(name))
 
     def erase(self) -> None:
         """The stored ones are gone; those in use go with the next power-up."""
-        self._erased = True
+        self._kept = {}
 
     def power_up(self) -> None:
         """What is stored is read."""
-        if self._erased:
-            self.reset()
+        kept = self._kept
+        if kept is None:
+            return
+        self.reset()
+        for name, value in kept.items():
+            self._store(name, value)
 
     def set(self, name: str, value: float) -> float:
         """Take `value` and return what is stored now (float32, or whole).
 
-        Raises ParameterError, and keeps the old value, for an unknown name and for a value that
-        is not finite, out of range, or not whole where the parameter is an integer.
+        Raises ParameterError, and keeps the old value, for an unknown name and for what the
+        autopilot does not take: NaN; px4 a fraction or more than 32 bits for an integer;
+        ardupilot infinity.  ArduPilot cuts a fraction off an integer, and too large a one to
+        what its type holds.
         """
-        spec = self.spec(name)
-        if not isfinite(value):
-            raise ParameterError(f"{name}: {value} is not a number")
-        if spec.integer and value != int(value):
-            raise ParameterError(f"{name}: {value} is not a whole number")
-        stored = _stored(spec, value)
-        if not _stored(spec, spec.low) <= stored <= _stored(spec, spec.high):
-            raise ParameterError(f"{name}: {value:g} is not in {spec.low:g} .. {spec.high:g}")
-        if stored != self._values[name]:
-            self._values[name] = stored
-            self.version += 1
+        stored = _fitted(self.personality, self.spec(name), value)
+        if self._kept is not None:
+            self._kept[name] = stored
+        self._store(name, stored)
         return stored
+
+    def _store(self, name: str, stored: float) -> None:
+        if stored == self._stored[name]:
+            return
+        self._stored[name] = stored
+        known = self._known
+        canonical = known.canonical_names[name]
+        self._in_use[canonical] = _usable(
+            known.canonical[canonical], known.renamed.get(canonical), stored
+        )
+        self.version += 1
 
     def si(self, quantity: Quantity) -> float:
         """A quantity in SI units, from whatever parameter of the personality holds it."""
         name, factor = self._si[quantity]
         if name is None:
             return factor
-        value, cap = self._values[name] * factor, self._caps.get(quantity)
-        return value if cap is None else min(value, self._values[cap])
+        value, cap = self._in_use[name] * factor, self._caps.get(quantity)
+        return value if cap is None else min(value, self._in_use[cap])
 
 
-def _stored(spec: ParameterSpec, value: float) -> float:
-    """As the wire can carry it: int32 or float32."""
-    if spec.integer:
-        return float(int(value))
-    if abs(value) > 3.4e38:
-        return value
+_Thing = TypeVar("_Thing")
+
+
+def _found(among: dict[str, _Thing], name: str) -> _Thing:
+    try:
+        return among[name]
+    except KeyError:
+        raise ParameterError(f"{name}: no such parameter") from None
+
+
+def _fitted(personality: Personality, spec: ParameterSpec, value: float) -> float:
+    """As the autopilot stores `value`.  Raises ParameterError for what it does not take."""
+    if isnan(value) or (personality == "ardupilot" and not isfinite(value)):
+        raise ParameterError(f"{spec.name}: {value} is not a number")
+    if not spec.integer:
+        return _float32(value)
+    low, high = LIMITS[spec.stored_as]
+    if personality == "ardupilot":
+        return float(int(min(max(value, low), high)))
+    if not low <= value <= high or value != int(value):
+        raise ParameterError(f"{spec.name}: {value:g} is not a whole number of 32 bits")
+    return float(value)
+
+
+def _usable(spec: ParameterSpec, renamed: Renamed | None, stored: float) -> float:
+    """What the vehicle acts on, in the canonical unit."""
+    value = stored if renamed is None else renamed.to_old(stored)
+    low, high = spec.low, spec.high
+    if spec.stored_as is StoredAs.REAL32:
+        value, low, high = _float32(value), _float32(low), _float32(high)
+    return min(max(value, low), high)
+
+
+def _float32(value: float) -> float:
+    if not isfinite(value) or abs(value) > LIMITS[StoredAs.REAL32][1]:
+        return inf if value > 0.0 else -inf
     return float(struct.unpack("<f", struct.pack("<f", value))[0])

@@ -95,7 +95,7 @@ class Simulated:
         self._lat_deg = lat_deg
         self._version = -1
         groups = _GROUPS[parameters.personality]
-        self._said = [tuple(map(parameters.default, group.names)) for group in groups]
+        self._said = [tuple(map(parameters.designed, group.names)) for group in groups]
 
     def news(self) -> Iterator[Fault]:
         """What has changed since it was asked last; at first, since the defaults."""

@@ -19,9 +19,9 @@ PX4 = (
     real("MC_YAWRATE_MAX",   200., 0.0,  1800., "yaw rate of the attitude loop [deg/s]"),
     real("MC_YAWRATE_P",     0.2,  0.0,  0.6,   "gain of the yaw rate loop"),
     real("MC_YAW_P",         2.8,  0.0,  5.0,   "gain of the yaw loop"),
-    real("MPC_JERK_AUTO",    30.0, 3.0,  80.0,  "change of acceleration [m/s^3]"),
+    real("MPC_JERK_AUTO",    4.0,  3.0,  80.0,  "change of acceleration [m/s^3]"),
     real("MPC_TILTMAX_AIR",  45.0, 20.0, 89.0,  "lean angle, also by hand [deg]"),
-    real("MPC_XY_ERR_MAX",   4.0,  1.0,  10.0,  "a flight stands still and waits for a vehicle "
+    real("MPC_XY_ERR_MAX",   2.0,  1.0,  10.0,  "a flight stands still and waits for a vehicle "
                                               "left behind by [m]"),
     real("MPC_XY_P",         0.95, 0.0,  2.0,   "gain of the horizontal position loop"),
     real("MPC_XY_VEL_I_ACC", 0.4,  0.0,  60.0,  "integral gain of the horizontal velocity loop"),
@@ -42,7 +42,7 @@ ARDUPILOT = (
                                               "0 = as designed"),
     real("ATC_RAT_PIT_P",    0.135, 0.01, 0.5,  "gain of the pitch rate loop"),
     real("ATC_RAT_RLL_P",    0.135, 0.01, 0.5,  "gain of the roll rate loop"),
-    real("ATC_RAT_YAW_P",    0.18, 0.1,  2.5,   "gain of the yaw rate loop"),
+    real("ATC_RAT_YAW_P",    0.3,  0.1,  2.5,   "gain of the yaw rate loop"),
     real("ATC_SLEW_YAW",     6000, 500,  18000, "turn rate of its own flights [cdeg/s]"),
     real("PSC_ACCZ_I",       1.0,  0.0,  3.0,   "integral gain of the climb loop"),
     real("PSC_POSXY_P",      1.0,  0.5,  2.0,   "gain of the horizontal position loop"),
