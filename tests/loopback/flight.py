@@ -27,9 +27,10 @@ from tests.loopback import eyes
 from tests.loopback.air import CLEAR, Air, Weather
 from tests.loopback.looks import START_NS, Looks, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram as Inbound
 from vehicle_sim.simulation.world import LinkSpec, Transmit, World
@@ -66,16 +67,18 @@ class Flight(Looks):
         up: Weather = CLEAR,
         down: Weather = CLEAR,
         params: dict[str, float] | None = None,
+        firmware: Firmware | None = None,
     ) -> None:
         """`up` is the weather towards the vehicle, `down` towards the ground station."""
         super().__init__()
         self.personality = personality
         self.policy = policy
-        parameters = Parameters(personality)
+        parameters = Parameters(personality, firmware)
         for name, value in (params or {}).items():
             parameters.set(name, value)
         self.vehicle = Autopilot(personality, HOMES[personality], seed, params=parameters)
-        server = VehicleServer(self.vehicle, PROFILES[personality], parameters, 1)
+        profile = profile_of(personality, parameters.firmware)
+        server = VehicleServer(self.vehicle, profile, parameters, 1)
         self.world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)
         config = StationConfig(endpoints=["test"], name="loopback")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")

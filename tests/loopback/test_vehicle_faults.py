@@ -193,8 +193,9 @@ def test_a_dead_motor_is_held_against_and_ends_on_the_ground(personality: Person
 
 
 def test_a_lost_cell_sends_it_home_by_the_stations_own_severity() -> None:
-    """PX4 only tells (COM_LOW_BAT_ACT is 0); the policy does not leave it at that."""
+    """PX4 is set to tell only (COM_LOW_BAT_ACT 0); the policy does not leave it at that."""
     with under_way("px4") as (flight, goal):
+        flight.vehicle.parameters.set("COM_LOW_BAT_ACT", 0)
         since_ns = flight.now_ns
         strike(flight, "battery", cells=1)
         flight.run(1.0)

@@ -81,7 +81,7 @@ class Opened:
 
 def launch(plan: Plan) -> Opened:
     """Raises ParameterError, EndpointError and OSError, with nothing left open."""
-    parameters = [_parameters(plan, setup) for setup in plan.vehicles]
+    parameters = [parameters_of(plan, setup) for setup in plan.vehicles]
     stores = [_store(plan, setup) for setup in plan.vehicles]
     endpoints, links, urls = _open_links(plan)
     specs = [
@@ -126,7 +126,8 @@ def launch(plan: Plan) -> Opened:
     return Opened(world, tuple(endpoints), tuple(map(tuple, urls)), start_ns)
 
 
-def _parameters(plan: Plan, setup: VehicleSetup) -> Parameters:
+def parameters_of(plan: Plan, setup: VehicleSetup) -> Parameters:
+    """A reset keeps the system id and what was set at the start.  Raises ParameterError."""
     parameters = Parameters(plan.personality, plan.firmware)
     parameters.start_as(setup.system)
     for name, value in plan.params:

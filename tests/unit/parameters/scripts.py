@@ -25,7 +25,7 @@ from vehicle_sim.autopilot.manual.stick_feel import Feel, feel_of, thrust_of
 from vehicle_sim.autopilot.manual.sticks import Sticks
 from vehicle_sim.numerics.vectors import Quat
 from vehicle_sim.plant.faults import Fault
-from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import LinkSpec, Log, World
 from vehicle_sim.wire import messages as m
@@ -401,10 +401,10 @@ def by_hand(mode: str, seconds: float, look: Callable[[HandFlight], float], **ax
 class Served(Bench):
     """A whole vehicle on one link."""
 
-    def __init__(self, flight: HandFlight) -> None:
-        personality = flight.personality
+    def __init__(self, flight: HandFlight, system: int = 1) -> None:
         parameters = flight.vehicle.parameters
-        self.server = VehicleServer(flight.vehicle, PROFILES[personality], parameters, system=1)
+        profile = profile_of(flight.personality, parameters.firmware)
+        self.server = VehicleServer(flight.vehicle, profile, parameters, system)
         self.world = World([self.server], [LinkSpec()])
         self.now_ns = 0
         self.logs: list[Log] = []

@@ -61,7 +61,7 @@ def started(personality: Personality, firmware: Firmware) -> Served:
         parameters.start_with(name, value)
     flight = HandFlight(personality)
     flight.vehicle = Autopilot(personality, HOMES[personality], 1, 0, parameters)
-    return Served(flight)
+    return Served(flight, system=5)
 
 
 STARTED_WITH: dict[Firmware, dict[str, float]] = {
@@ -83,7 +83,6 @@ def test_a_reset_and_a_reboot_leave_system_id_and_what_it_was_started_with(
     assert served.server.system == 5
     for name in STARTED_WITH[firmware]:
         served.server._given.set(name, 1.0)
-    to_5 = {"target": 5}
     assert acks(served.send(long(Cmd.PREFLIGHT_STORAGE, 2, target=5))) == [(245, Result.ACCEPTED)]
     assert acks(served.send(long(Cmd.PREFLIGHT_REBOOT_SHUTDOWN, 1, target=5))) == [
         (246, Result.ACCEPTED)
