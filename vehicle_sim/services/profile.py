@@ -171,7 +171,7 @@ PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILO
 
 
 def profile_of(personality: Personality, firmware: Firmware) -> Profile:
-    """ArduPilot has PARAM_ERROR since 4.7 (of older ones this is from memory)."""
+    """ArduPilot has PARAM_ERROR since 4.7 (MAVLink has it since September 2025)."""
     return replace(
         PROFILES[personality],
         flight_sw_version=FLIGHT_SW_VERSION[firmware],

@@ -203,7 +203,7 @@ def test_px4_tells_a_change_again_after_10_to_20_ms() -> None:
 
 @pytest.mark.parametrize(("text", "index"), [("NO_SUCH_PARAM", -1), ("", -1), ("", 30000)])
 def test_a_parameter_that_there_is_not(text: str, index: int) -> None:
-    """ArduCopter 4.7 answers with PARAM_ERROR, PX4 and (from memory) ArduCopter 4.5 do not."""
+    """ArduCopter 4.7 answers with PARAM_ERROR, PX4 and ArduCopter 4.5 do not."""
     (told,) = answers(Bench("ardupilot", firmware="4.7").send(read(text, index)))
     assert isinstance(told, m.ParamError)
     assert (told.error, told.param_index) == (1, index)
