@@ -11,10 +11,11 @@ from typing import Any, Final, TypeAlias
 from pymavlink.dialects.v20 import all as mavlink
 
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire.signing import SigningKey
@@ -54,18 +55,19 @@ class Sky:
         signing: SigningKey | None = None,
         parameters: dict[str, float] | None = None,
         home: Geodetic | None = None,
+        firmware: Firmware | None = None,
     ) -> None:
         self.personality: Personality = personality
         self.home = home or HOMES[personality]
         self.parameters: list[Parameters] = []
         servers = []
         for index in range(count):
-            own = Parameters(personality)
+            own = Parameters(personality, firmware)
             for name, value in (parameters or {}).items():
                 own.set(name, value)
             self.parameters.append(own)
             vehicle = Autopilot(personality, self.home, 1, index, own)
-            profile = PROFILES[personality]
+            profile = profile_of(personality, own.firmware)
             servers.append(VehicleServer(vehicle, profile, own, index + 1, speedup, UNIX_START_NS))
         self.vehicles = [server.vehicle for server in servers]
         self.world = World(

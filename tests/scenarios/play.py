@@ -11,6 +11,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from tests.contract.client import Sky
 from tests.scenarios.facts import Item, Scenario, Step
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
 
@@ -19,6 +20,9 @@ HOMES: Final[dict[Personality, Geodetic]] = {
     "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
 }
 """Where the real ones stood."""
+
+FIRMWARE: Final[dict[Personality, Firmware]] = {"px4": "1.14", "ardupilot": "4.7"}
+"""What was recorded."""
 
 PLAYED: Final = (
     *("COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "mission upload", "MISSION_CLEAR_ALL", "###"),
@@ -87,7 +91,7 @@ def playable(scenario: Scenario) -> bool:
 class _Player:
     def __init__(self, personality: Personality, scenario: Scenario) -> None:
         self._personality, self._scenario = personality, scenario
-        self._sky = Sky(personality, home=HOMES[personality])
+        self._sky = Sky(personality, home=HOMES[personality], firmware=FIRMWARE[personality])
         self._client = self._sky.client()
         self._played = Played()
         self._zero_s = 0.0
