@@ -178,7 +178,7 @@ def test_leaving_the_mission_and_coming_back_goes_on_at_the_current_item(
     flight.fly(7.0)
     assert reached_now(flight) == [0]
     assert flight.vehicle.pause() is Result.ACCEPTED
-    flight.fly(3.0)
+    flight.fly(6.0)
     assert flight.vehicle.mission_state == 4
     where = flight.pos
     flight.fly(2.0)

@@ -124,11 +124,11 @@ def test_asked_to_hold_on_the_way_to_a_reposition_goal_it_stops(personality: Per
     flight = Flight.hovering(personality, 5.0)
     flight.vehicle.reposition((60.0, 0.0, -5.0), None, None)
     flight.fly(4.0)
-    north = flight.pos[0]
+    north, speed = flight.pos[0], flight.speed_m_s
     assert flight.vehicle.set_mode_kind("hold") is Result.ACCEPTED
-    flight.fly(5.0)
+    flight.fly(1.0 + speed * 0.8)
     assert flight.speed_m_s < 0.25
-    assert flight.pos[0] < north + 15.0
+    assert flight.pos[0] < north + speed * 0.8 + speed * speed / (2.0 * 1.5)
 
 
 @either

@@ -33,8 +33,8 @@ def drain(flight: Flight, left: float) -> None:
 # ---------------------------------------------------------------------------------- battery
 
 
-def test_px4_only_warns_by_default() -> None:
-    flight = aloft("px4")
+def test_px4_only_warns_if_that_is_set() -> None:
+    flight = aloft("px4", COM_LOW_BAT_ACT=0)
     for left, text in (
         (0.12, "Low battery level, return advised"),
         (0.06, "Critical battery level, land now"),

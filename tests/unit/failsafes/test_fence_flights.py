@@ -199,8 +199,9 @@ def test_ardupilots_floor_counts_once_it_was_above_and_not_for_a_landing() -> No
     assert not said(barred, "Min Alt")
 
 
-def test_ardupilot_lets_nobody_leave_the_recovery_unless_fence_options_do() -> None:
+def test_ardupilot_lets_nobody_leave_the_recovery_if_fence_options_say_so() -> None:
     flight = fenced(Flight.hovering("ardupilot", 5.0), box("ardupilot", 10.0))
+    flight.vehicle.parameters.set("FENCE_OPTIONS", 1)
     outwards(flight, 4.5)
     assert flight.vehicle.mode_name == "RTL"
     assert flight.vehicle.fence_state.breached

@@ -98,6 +98,7 @@ CASES: tuple[Case, ...] = (
         "GUID_OPTIONS",
         {0: pytest.approx(1.2, abs=0.4), 8: pytest.approx(4.4, abs=0.8)},
         fly.attitude_climb,
+        {"WPNAV_ACCEL_Z": 250.0},
     ),
     # Position and crashes.
     Case(
@@ -222,6 +223,7 @@ CASES: tuple[Case, ...] = (
         "RTL_SPEED",
         {0: pytest.approx(5.0, abs=0.5), 200: pytest.approx(2.0, abs=0.3)},
         fly.return_m_s,
+        {"WPNAV_SPEED": 500.0},
     ),
     Case("WP_YAW_BEHAVIOR", {0: False, 2: True}, own.nose_on_leg),
     Case(
@@ -418,7 +420,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "ATC_RAT_YAW_P",
-        {0.1: pytest.approx(0.024, rel=0.12), 0.2: pytest.approx(0.043, rel=0.12)},
+        {0.1667: pytest.approx(0.024, rel=0.12), 0.3333: pytest.approx(0.043, rel=0.12)},
         fly.answer("rate_z", fly.spins((0.0, 0.0, 0.1)), 0.1),
     ),
     Case(
@@ -459,7 +461,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "PSC_VELZ_P",
         {2.0: pytest.approx(0.274, rel=0.12), 6.0: pytest.approx(0.705, rel=0.12)},
-        fly.answer("vel_d", fly.reference(ref_d=1.0, goal_d=1.0), 0.5),
+        fly.answer("vel_d", fly.settled(fly.reference(ref_d=1.0, goal_d=1.0)), 0.5),
     ),
     Case(
         "PSC_VELXY_I",

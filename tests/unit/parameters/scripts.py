@@ -283,6 +283,16 @@ def _truth(flight: HandFlight, field: str) -> float:
     return float(getattr(body, field))
 
 
+def settled(ask: Act) -> Act:
+    """The same once the rest of the climb has died away."""
+
+    def later(flight: HandFlight) -> None:
+        flight.fly(1.0)
+        ask(flight)
+
+    return later
+
+
 def reference(**fields: float) -> Act:
     """Set the reference (and the goal) beside the vehicle: the loops see a step."""
 
