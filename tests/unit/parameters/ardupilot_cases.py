@@ -461,7 +461,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "PSC_VELZ_P",
         {2.0: pytest.approx(0.274, rel=0.12), 6.0: pytest.approx(0.705, rel=0.12)},
-        fly.answer("vel_d", fly.settled(fly.reference(ref_d=1.0, goal_d=1.0)), 0.5),
+        fly.answer("vel_d", fly.reference(ref_d=1.0, goal_d=1.0), 0.5, hover_s=2.0),
     ),
     Case(
         "PSC_VELXY_I",

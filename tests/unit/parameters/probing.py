@@ -51,9 +51,14 @@ class Setting:
         """Booted, on the ground."""
         return self._with_values(deepcopy(_booted(self.personality)))
 
-    def aloft(self) -> HandFlight:
-        """Hovering at `UP_M`: px4 in AUTO.LOITER, ardupilot in GUIDED."""
-        flight = self._with_values(HandFlight.hovering(self.personality, UP_M))
+    def aloft(self, hover_s: float = 0.0) -> HandFlight:
+        """Hovering at `UP_M`: px4 in AUTO.LOITER, ardupilot in GUIDED.
+
+        The values apply after `hover_s`, in which the rest of the climb dies away.
+        """
+        hovering = HandFlight.hovering(self.personality, UP_M)
+        hovering.fly(hover_s)
+        flight = self._with_values(hovering)
         flight.fly(0.2)
         return flight
 

@@ -265,11 +265,11 @@ def reached_at_m(setting: Setting) -> float:
     return flight.off((30.0, 0.0, -UP_M))
 
 
-def answer(field: str, ask: Act, after_s: float) -> Script:
+def answer(field: str, ask: Act, after_s: float, hover_s: float = 0.0) -> Script:
     """How much of a step a field of the truth has taken up some time after it was asked for."""
 
     def script(setting: Setting) -> object:
-        flight = setting.aloft()
+        flight = setting.aloft(hover_s)
         ask(flight)
         before = _truth(flight, field)
         flight.fly(after_s)
@@ -281,16 +281,6 @@ def answer(field: str, ask: Act, after_s: float) -> Script:
 def _truth(flight: HandFlight, field: str) -> float:
     body = flight.vehicle.blocks.body
     return float(getattr(body, field))
-
-
-def settled(ask: Act) -> Act:
-    """The same once the rest of the climb has died away."""
-
-    def later(flight: HandFlight) -> None:
-        flight.fly(1.0)
-        ask(flight)
-
-    return later
 
 
 def reference(**fields: float) -> Act:
