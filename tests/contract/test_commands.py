@@ -251,6 +251,7 @@ def test_checks_reboot_and_termination(personality: Personality) -> None:
 def test_failures_are_injected_where_that_is_allowed(personality: Personality) -> None:
     client = connected(personality)
     if personality == "px4":
+        client.sky.vehicles[0].parameters.set("SYS_FAILURE_EN", 0)  # type: ignore[attr-defined]
         assert client.long(420, 4, 1, 0) != [ACCEPTED], "SYS_FAILURE_EN is off"
         client.sky.vehicles[0].parameters.set("SYS_FAILURE_EN", 1)  # type: ignore[attr-defined]
     assert client.long(420, 4, 1, 0, sequence=77) == [ACCEPTED]

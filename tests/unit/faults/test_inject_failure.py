@@ -44,7 +44,7 @@ def test_every_pair_of_unit_and_type_is_answered_as_the_table_says(
 
 
 def test_px4_takes_failures_only_with_sys_failure_en() -> None:
-    stage = Stage("px4")
+    stage = Stage("px4", parameters={"SYS_FAILURE_EN": 0})
     stage.run(2.0)
     assert stage.command(INJECT, Unit.GPS, Type.OFF) == Result.DENIED
     stage.run(0.5)
@@ -138,7 +138,8 @@ def test_a_motor_off_is_a_crash(personality: Personality) -> None:
 def test_it_flies_through_the_others_and_home_when_they_end(
     personality: Personality, unit: Unit, kind: Type
 ) -> None:
-    stage = aloft(personality, parameters=TAKES_FAILURES[personality])
+    told_only = {"COM_LOW_BAT_ACT": 0} if personality == "px4" else {}
+    stage = aloft(personality, parameters={**TAKES_FAILURES[personality], **told_only})
     at = stage.truth.pos_ned
     assert stage.command(INJECT, unit, kind) == Result.ACCEPTED
     stage.run(12.0)
