@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from math import isfinite
 
+from vehicle_sim.autopilot.calibration import copter_procedure, motor_test, px4_procedure
 from vehicle_sim.autopilot.interface import (
     AttitudeSetpoint,
     Geodetic,
     PlanItem,
     Result,
     Setpoint,
+    SpeedType,
     Vehicle,
 )
 from vehicle_sim.autopilot.manual_input import ManualInput
@@ -27,6 +29,7 @@ from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.plant.faults import ClockJump, Fault, RcLost, Reboot, inject
 
 _LOWEST_GOAL_UP_M = 0.5
+_SIMPLE_ACCEL = 4.0  # PREFLIGHT_CALIBRATION's parameter 5
 
 
 class Autopilot(ManualInput):
@@ -54,14 +57,13 @@ class Autopilot(ManualInput):
         if not isfinite(up_m) or up_m < _LOWEST_GOAL_UP_M:
             return Result.DENIED
         if self._armed and self._pilot.flying:
-            return Result.ACCEPTED
+            return Result.FAILED if self.personality == "ardupilot" else Result.ACCEPTED
         if not self._position_ok:
             return self._not_now
         if self.personality == "px4":
             self._enter(MODES["px4"]["AUTO.TAKEOFF"], self._take_off_task(up_m))
             return Result.ACCEPTED
         if not self._armed or not isinstance(self._task, Guided):
-            self._say(4, "Take-off refused: arm in GUIDED first")
             return Result.FAILED
         home_d = self._home_ned[2] if self._home_ned is not None else 0.0
         self._task.take_off(home_d - up_m, self._look_around(), self._pilot.heading)
@@ -75,71 +77,82 @@ class Autopilot(ManualInput):
         return self.set_mode_kind("return")
 
     def reposition(
-        self, pos_ned: Vec3 | None, yaw_rad: float | None, speed_m_s: float | None
+        self,
+        pos_ned: Vec3 | None,
+        yaw_rad: float | None,
+        speed_m_s: float | None,
+        changes_mode: bool = True,
     ) -> Result:
-        if not self._pilot.flying:
-            return Result.DENIED
+        """PX4 takes it on the ground, too, and flies there once it is armed."""
         if pos_ned is not None and not all(map(isfinite, pos_ned)):
             return Result.DENIED
+        if not self._position_ok:
+            return self._not_now
+        ardupilot = self.personality == "ardupilot"
+        guided = self._mode.behaviour is Behaviour.GUIDED
+        if ardupilot and not guided and not changes_mode:
+            return Result.DENIED
         if pos_ned is not None and self._fenced_off(pos_ned):
-            return Result.FAILED if self.personality == "ardupilot" else Result.DENIED
+            return Result.FAILED if ardupilot else Result.ACCEPTED
         if speed_m_s is not None and speed_m_s > 0.0:
             self.cruise_at(speed_m_s)
+        elif not ardupilot:
+            self.cruise_at(None)
         goal = pos_ned if pos_ned is not None else self._look_around().stop_ned
-        if self.personality == "px4":
-            self._enter_kind("hold", Hold(goal, yaw_rad))
+        if not ardupilot:
+            self._enter_kind("hold", Hold(goal, yaw_rad, lifts=not self._pilot.flying))
             return Result.ACCEPTED
-        if not isinstance(self._task, Guided):
-            if self._held_by_fence(MODES["ardupilot"]["GUIDED"]):
-                return Result.FAILED
+        if not guided and self._held_by_fence(MODES["ardupilot"]["GUIDED"]):
+            return Result.FAILED
+        if not guided or not self._pilot.flying or not isinstance(self._task, Guided):
+            # On the ground it drops a take-off that was asked for, and stays there.
             self._enter_kind("guided")
+        if not self._pilot.flying:
+            return Result.ACCEPTED
         goal_setpoint = Setpoint(pos_ned=goal, yaw_rad=yaw_rad)
         self._stream.heard(goal_setpoint, self._sense().wall_ns, self.time_ns)
         self._poke()
         return Result.ACCEPTED
 
     def pause(self) -> Result:
-        """PX4 goes from the mission to AUTO.LOITER; ArduCopter stops within AUTO or GUIDED."""
-        if not self._pilot.flying:
-            return Result.DENIED
+        """ArduCopter stops within AUTO or GUIDED; PX4 1.14 does not know the command."""
+        if self.personality == "px4":
+            return Result.UNSUPPORTED
         if self._paused is not None:
             return Result.ACCEPTED
         task = self._task
-        if self.personality == "px4":
-            self._enter_kind("hold")
-            self._paused = task if task is self._mission else None
-            return Result.ACCEPTED
-        if self._mode.behaviour not in (Behaviour.MISSION, Behaviour.GUIDED):
-            return Result.DENIED
+        stoppable = self._mode.behaviour in (Behaviour.MISSION, Behaviour.GUIDED)
+        if not self._pilot.flying or not stoppable:
+            self._say(4, "Failed to pause")
+            return Result.FAILED
         self._enter(self._mode, Hold())
         self._paused = task
         return Result.ACCEPTED
 
     def resume(self) -> Result:
         task = self._paused
-        if task is None:
-            return Result.DENIED
         if self.personality == "px4":
-            self._enter_kind("mission", task)
-        else:
-            self._enter(self._mode, task)
+            return Result.UNSUPPORTED
+        if task is None:
+            self._say(4, "Failed to resume")
+            return Result.FAILED
+        self._enter(self._mode, task)
         return Result.ACCEPTED
 
-    def change_speed(self, speed_m_s: float) -> Result:
-        """Metres per second over ground; -1 keeps the speed, -2 goes back to the default."""
-        if speed_m_s == -1.0:
-            return Result.ACCEPTED
-        if speed_m_s == -2.0:
-            self.cruise_at(None)
-            return Result.ACCEPTED
-        if not isfinite(speed_m_s) or speed_m_s <= 0.0:
+    def change_speed(self, kind: SpeedType, speed_m_s: float | None) -> Result:
+        """Metres per second; ArduCopter changes it in flight only."""
+        if speed_m_s is not None and (not isfinite(speed_m_s) or speed_m_s <= 0.0):
             return Result.DENIED
-        self.cruise_at(speed_m_s)
+        if self.personality == "ardupilot" and not self._pilot.flying:
+            return Result.FAILED
+        self.cruise_at(speed_m_s, kind)
         return Result.ACCEPTED
 
     def change_altitude(self, up_above_home_m: float) -> Result:
-        if not self._pilot.flying or self._home_ned is None or not isfinite(up_above_home_m):
+        if self._home_ned is None or not isfinite(up_above_home_m):
             return Result.DENIED
+        if not self._pilot.flying:
+            return Result.ACCEPTED  # PX4's, as recorded; it does not take off for it here
         s = self._look_around()
         goal = self._task.target.pos_ned or s.stop_ned
         return self.reposition((goal[0], goal[1], s.home_ned[2] - up_above_home_m), None, None)
@@ -147,8 +160,10 @@ class Autopilot(ManualInput):
     def condition_yaw(
         self, yaw_rad: float, relative: bool, rate_rad_s: float, direction: int
     ) -> Result:
-        if not self._pilot.flying or not isfinite(yaw_rad):
+        if not isfinite(yaw_rad):
             return Result.DENIED
+        if not self._pilot.flying:
+            return Result.ACCEPTED  # and nothing turns
         self._roi_ned = None
         heading = self._pilot.heading
         if relative:
@@ -212,12 +227,14 @@ class Autopilot(ManualInput):
 
     def mission_start(self, first: int, last: int) -> Result:
         mission = self._mission
-        if mission.empty or (first > 0 and not mission.jump_to(first)):
+        if self.personality == "px4" and not self._mission_ok:
+            self._say(2, "Mission start denied! No valid mission")
+            return Result.DENIED
+        if first > 0 and not mission.jump_to(first):
             return Result.DENIED
         mission.limit(last)
-        if self.personality == "ardupilot" and not self._pilot.flying and not mission.takes_off:
-            self._say(4, "Mission refused: missing takeoff item")
-            return Result.FAILED
+        if mission.empty and not self._armed:
+            self._say(2, "PreArm: Mode requires mission")
         result = self.set_mode_kind("mission")
         if result is Result.ACCEPTED:
             self._auto_armed = True
@@ -233,9 +250,51 @@ class Autopilot(ManualInput):
 
     # ------------------------------------------------------------------------ last things
 
-    def terminate(self) -> Result:
-        self._terminate()
+    def terminate(self, on: bool) -> Result:
+        if on:
+            self._terminate()
+        elif self.personality == "ardupilot":
+            return Result.FAILED
+        self._terminated = on and self.personality == "px4"
         return Result.ACCEPTED
+
+    def calibrate(self, parameters: tuple[float, ...]) -> Result | None:
+        if self.personality == "px4":
+            return self._calibrate_px4(parameters)
+        if self._armed:
+            self._say(5, "Disarm to allow calibration")
+            return Result.FAILED
+        if parameters[4] == _SIMPLE_ACCEL:
+            return Result.TEMPORARILY_REJECTED
+        procedure = copter_procedure(parameters)
+        if procedure is None:
+            return Result.UNSUPPORTED
+        return self._calibration.begin(procedure, self.time_ns)
+
+    def _calibrate_px4(self, parameters: tuple[float, ...]) -> Result | None:
+        if not any(parameters):
+            result, events = self._calibration.cancel_px4()
+            for event in events:
+                self.emit(event)
+            return result
+        if self._calibration.busy:
+            self._say(2, "command denied during calibration: 241")
+            return Result.TEMPORARILY_REJECTED
+        if self._armed:
+            return Result.TEMPORARILY_REJECTED
+        procedure = px4_procedure(parameters)
+        return None if procedure is None else self._calibration.begin(procedure, self.time_ns)
+
+    def calibration_position(self, position: float) -> Result:
+        result, events = self._calibration.turned(position)
+        for event in events:
+            self.emit(event)
+        return result
+
+    def test_motor(self, seconds: float) -> Result:
+        if self._armed:
+            return Result.FAILED
+        return self._calibration.begin(motor_test(seconds), self.time_ns)
 
     def reboot(self) -> Result:
         """Starts anew on the ground, disarmed; its clock does, too."""

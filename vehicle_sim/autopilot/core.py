@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import assert_never
 
+from vehicle_sim.autopilot.calibration import Calibration
 from vehicle_sim.autopilot.camera import Camera
 from vehicle_sim.autopilot.control.airflow import Airflow
 from vehicle_sim.autopilot.control.demands import Situation, Task
@@ -27,6 +28,7 @@ from vehicle_sim.autopilot.interface import (
     HomeChanged,
     Power,
     Result,
+    SpeedType,
     StatusText,
     VehicleEvent,
 )
@@ -85,10 +87,13 @@ class Core:
         self._field = home
         self._projection: Projection = projection(personality, home)
         self._cruise_m_s: float | None = None
+        self._climb_m_s: float | None = None
+        self._descend_m_s: float | None = None
         self._limits_version = -1
         self._judged: tuple[int, Health] | None = None
         self._situation = Situation(self._limits())
         self._camera = Camera()
+        self._calibration = Calibration()
         self._airflow = Airflow()
         self._radio = Radio(self.parameters)
         self._gestures = Gestures(self.parameters)
@@ -115,7 +120,8 @@ class Core:
         self._offboard_wanted = False
         self._auto_armed = False
         self._paused: Task | None = None
-        self._cruise_m_s = None
+        self._calibration = Calibration()
+        self._cruise_m_s = self._climb_m_s = self._descend_m_s = None
         self._mode: Mode = MODES[self.personality][BOOT_MODE[self.personality]]
         self._radio.forget()
         self._gestures.forget()
@@ -251,8 +257,8 @@ class Core:
         self._pilot.heading.max_rad_s = si(Quantity.TURN_RAD_S)
         limits = MotionLimits(
             si(Quantity.CRUISE_M_S),
-            si(Quantity.CLIMB_M_S),
-            si(Quantity.DESCEND_M_S),
+            self._climb_m_s if self._climb_m_s is not None else si(Quantity.CLIMB_M_S),
+            self._descend_m_s if self._descend_m_s is not None else si(Quantity.DESCEND_M_S),
             si(Quantity.ACCEL_M_S2),
             si(Quantity.ACCEL_VERTICAL_M_S2),
             si(Quantity.ACCEL_UP_M_S2),
@@ -274,7 +280,7 @@ class Core:
     def _disarm(self, text: str) -> None:
         self._armed = False
         self._pilot.stop()
-        self._cruise_m_s = None
+        self._cruise_m_s = self._climb_m_s = self._descend_m_s = None
         self._limits_version = -1
         self._failsafe_active = False
         self._auto_armed = False
@@ -284,14 +290,21 @@ class Core:
             Behaviour.RETURN,
             Behaviour.TAKEOFF,
             Behaviour.MISSION,
+            Behaviour.HOLD,
         ):
+            # Also from HOLD: what it was to fly to ends with the flight.
             self._enter(MODES["px4"]["AUTO.LOITER"])
 
     def _terminate(self) -> None:
+        """ArduCopter's termination is no more than a disarming: nothing of it stays."""
+        if self.personality == "ardupilot":
+            if self._armed:
+                self._disarm("Disarming motors")
+            return
         self._armed = False
         self._terminated = True
         self._pilot.stop()
-        self._say(0, "Flight terminated: motors off")
+        self._say(2, "Preflight Fail: Flight termination active")
 
     @property
     def power(self) -> Power:
@@ -327,8 +340,15 @@ class Core:
     def stop_pictures(self) -> None:
         self._camera.stop()
 
-    def cruise_at(self, speed_m_s: float | None) -> None:
-        self._cruise_m_s = speed_m_s
+    def cruise_at(self, speed_m_s: float | None, kind: SpeedType = SpeedType.GROUND) -> None:
+        """None = the default again.  A multicopter has no airspeed: that is over ground, too."""
+        match kind:
+            case SpeedType.CLIMB:
+                self._climb_m_s = speed_m_s
+            case SpeedType.DESCENT:
+                self._descend_m_s = speed_m_s
+            case _:
+                self._cruise_m_s = speed_m_s
         self._limits_version = -1
         self._poke()
 
@@ -348,7 +368,6 @@ class Core:
         self._geofence.bar_floor(choice == 2)
         if choice != 2:
             self.parameters.set("FENCE_ENABLE", choice)
-            self._say(5, "Fence enabled" if choice else "Fence disabled")
         return Result.ACCEPTED
 
     def nose_turns(self) -> bool:

@@ -80,6 +80,8 @@ class Decisions(FailsafeActions):
         """`regular`: one of ten a second, not one in between."""
         if regular:
             self._boot()
+            for event in self._calibration.update(self.time_ns):
+                self.emit(event)
             strength = self._body.strength
             least = _STRENGTH_LEAST
             self.blocks.flight.strength_inv = 1.0 / (strength if strength > least else least)
@@ -112,13 +114,15 @@ class Decisions(FailsafeActions):
             if self._may_lift_off(task, s):
                 pilot.lift_off(s.pos_ned, s.heading_rad)
                 s.flying = True
+                if self.personality == "px4":
+                    self._say(6, "Takeoff detected")
                 self._auto_armed = True
             else:
                 pilot.rest()
                 if regular and self._auto_disarm.due(
                     self.parameters, self._lands_itself, s.time_ns
                 ):
-                    self._disarm("Disarmed by auto disarm")
+                    self._disarm(self._auto_disarm.words(self.parameters))
                 return
         demand = task.update(s, pilot.heading)
         if self._task is not task:
@@ -134,12 +138,13 @@ class Decisions(FailsafeActions):
 
     def _may_lift_off(self, task: Task, s: Situation) -> bool:
         spool_up_ns = int(self.parameters.si(Quantity.SPOOL_UP_S) * 1e9)
-        if s.time_ns - self._armed_ns < spool_up_ns or not task.lifts_off(s):
+        if s.time_ns - self._armed_ns < spool_up_ns:
             return False
         # ArduCopter's AUTO leaves the ground only once the mission was started in so many words.
-        if task is not self._mission or self.personality == "px4" or self._auto_armed:
-            return True
-        return bool(int(self.parameters.get("AUTO_OPTIONS")) & _TAKES_OFF_BY_ITSELF)
+        waits = task is self._mission and self.personality == "ardupilot" and not self._auto_armed
+        if waits and not int(self.parameters.get("AUTO_OPTIONS")) & _TAKES_OFF_BY_ITSELF:
+            return False
+        return task.lifts_off(s)
 
     @property
     def _lands_itself(self) -> bool:
@@ -149,7 +154,8 @@ class Decisions(FailsafeActions):
         self._pilot.settle()
         self._auto_armed = False
         self._auto_disarm.on_ground(True, s.time_ns)
-        self._say(6, "Landing detected")
+        if self.personality == "px4":
+            self._say(6, "Landing detected")
         if self._task is self._mission:
             self._mission.touched_down()
 
@@ -183,7 +189,7 @@ class Decisions(FailsafeActions):
             self._enter(MODES["px4"]["OFFBOARD"])
         elif not self._stream.alive(wall_ns):
             self._offboard_wanted = False
-            self._say(4, "Offboard refused: setpoint stream lost")
+            self._say(2, "Switching to OFFBOARD is currently not available")
 
     def _photograph(self) -> None:
         shot = self._camera.update(self.time_ns, self.parameters.si(Quantity.EXPOSURE_S))

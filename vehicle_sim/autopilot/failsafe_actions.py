@@ -22,6 +22,7 @@ from vehicle_sim.autopilot.health_checks import HealthChecks
 from vehicle_sim.autopilot.modes import Mode
 from vehicle_sim.autopilot.parameters.parameters import Quantity
 from vehicle_sim.autopilot.tasks.descend import Descend
+from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
 from vehicle_sim.control_loops.flight import BY_RATES
 
 _WITHOUT = frozenset({Action.POSITION, Action.HOLD, Action.BRAKE, Action.RETURN, Action.LAND})
@@ -128,7 +129,10 @@ class FailsafeActions(HealthChecks):
         if wait_s > 0.0:
             self._due_ns = s.time_ns + int(wait_s * 1e9)
             self._say(struck.severity, f"{struck.text} in {wait_s:.0f} seconds")
+            climbing = self._task if isinstance(self._task, TakeOff) and not s.flying else None
             self._change(Action.HOLD)
+            if climbing is not None:
+                self._task = Hold(climbing.target.pos_ned, lifts=True)
         else:
             self._due_ns = None
             self._say(struck.severity, struck.text)
@@ -140,7 +144,7 @@ class FailsafeActions(HealthChecks):
         if (
             at_once
             or self._acting is not None
-            or not s.flying
+            or not (s.flying or self._task.lifts_off(s))
             or self._failsafe_checks.position_lost
         ):
             return 0.0

@@ -59,9 +59,14 @@ class HealthChecks(Bounds):
 
     def check_arming(self) -> Result:
         if self._armed:
-            return Result.TEMPORARILY_REJECTED
+            return self._while_armed
         self._say_against_arming()
         return Result.ACCEPTED
+
+    @property
+    def _while_armed(self) -> Result:
+        """PX4 takes the command then, too, and has nothing to tell."""
+        return Result.ACCEPTED if self.personality == "px4" else Result.TEMPORARILY_REJECTED
 
     # -------------------------------------------------------------------------- in flight
 

@@ -34,6 +34,15 @@ class Result(IntEnum):
     UNSUPPORTED_MAV_FRAME = 9
 
 
+class SpeedType(IntEnum):
+    """SPEED_TYPE, with its numbers."""
+
+    AIR = 0
+    GROUND = 1
+    CLIMB = 2
+    DESCENT = 3
+
+
 class Landed(IntEnum):
     """MAV_LANDED_STATE, with its numbers."""
 
@@ -246,7 +255,17 @@ class CommandDone:
     result: Result
 
 
-VehicleEvent: TypeAlias = StatusText | ImageCaptured | MissionReached | HomeChanged | CommandDone
+@dataclass(frozen=True, slots=True)
+class CommandSent:
+    """A command that the vehicle itself sends to whoever listens, with its first parameter."""
+
+    command: int
+    p1: float
+
+
+VehicleEvent: TypeAlias = (
+    StatusText | ImageCaptured | MissionReached | HomeChanged | CommandDone | CommandSent
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -412,11 +431,21 @@ class Vehicle(Protocol):
     def land(self) -> Result: ...
     def return_home(self) -> Result: ...
     def reposition(
-        self, pos_ned: Vec3 | None, yaw_rad: float | None, speed_m_s: float | None
-    ) -> Result: ...
+        self,
+        pos_ned: Vec3 | None,
+        yaw_rad: float | None,
+        speed_m_s: float | None,
+        changes_mode: bool = True,
+    ) -> Result:
+        """`changes_mode`: also from another mode than the one that flies there."""
+        ...
+
     def pause(self) -> Result: ...
     def resume(self) -> Result: ...
-    def change_speed(self, speed_m_s: float) -> Result: ...
+    def change_speed(self, kind: SpeedType, speed_m_s: float | None) -> Result:
+        """None: back to the default."""
+        ...
+
     def change_altitude(self, up_above_home_m: float) -> Result: ...
     def condition_yaw(
         self, yaw_rad: float, relative: bool, rate_rad_s: float, direction: int
@@ -483,7 +512,23 @@ class Vehicle(Protocol):
         """RUN_PREARM_CHECKS: says by STATUSTEXT all that is against arming."""
         ...
 
-    def terminate(self) -> Result: ...
+    def terminate(self, on: bool) -> Result:
+        """Motors off, or (px4) that state ended."""
+        ...
+
+    def calibrate(self, parameters: tuple[float, ...]) -> Result | None:
+        """PREFLIGHT_CALIBRATION's seven parameters.  None: PX4 answers nothing; IN_PROGRESS: the
+        answer comes as `CommandDone`."""
+        ...
+
+    def calibration_position(self, position: float) -> Result:
+        """ACCELCAL_VEHICLE_POS: how the vehicle lies, as the station says."""
+        ...
+
+    def test_motor(self, seconds: float) -> Result:
+        """DO_MOTOR_TEST."""
+        ...
+
     def reboot(self) -> Result: ...
     def reset_parameters(self) -> None:
         """All to their defaults: at once (px4), or with the next reboot (ardupilot)."""

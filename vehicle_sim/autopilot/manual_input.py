@@ -10,7 +10,7 @@ from math import isfinite
 from vehicle_sim.autopilot.interface import AttitudeGoal, Geodetic, Orbiting, OrbitRequest, Result
 from vehicle_sim.autopilot.manual.stick_gestures import Gesture
 from vehicle_sim.autopilot.mode_changes import ModeChanges
-from vehicle_sim.autopilot.modes import MODES, Behaviour, Flag, by_number
+from vehicle_sim.autopilot.modes import MODES, Behaviour, by_number
 from vehicle_sim.autopilot.tasks.follow import Sighting
 from vehicle_sim.autopilot.tasks.orbit import Nose, Orbit, Round, px4_round
 from vehicle_sim.numerics.vectors import Vec3
@@ -70,7 +70,7 @@ class ManualInput(ModeChanges):
         guided = self._mode.behaviour is Behaviour.GUIDED
         bit = _OFFBOARD_BIT if guided else _AUTO_BIT
         allowed = int(self.parameters.get("COM_RC_OVERRIDE")) & bit
-        if allowed and self._mode.flags & Flag.AUTO_ENABLED:
+        if allowed and self._mode.behaviour is not Behaviour.ORBIT:
             self._say(6, "Pilot took over using sticks")
             self._enter_kind("position" if self._position_ok else "altitude")
 
@@ -87,7 +87,7 @@ class ManualInput(ModeChanges):
     def orbit(self, asked: OrbitRequest) -> Result:
         if self.personality != "px4":
             return Result.UNSUPPORTED
-        if not self._position_ok or not self._pilot.flying:
+        if not self._position_ok:
             return Result.TEMPORARILY_REJECTED
         s = self._look_around()
         task = self._task

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import (
+    AUTO_MAIN_MODE,
     KINDS,
     MODES,
     Behaviour,
     Flag,
     Mode,
     by_number,
+    main_mode,
     refusal_words,
     unknown_mode_words,
 )
+from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
 from vehicle_sim.autopilot.view import View
 
 
@@ -28,7 +31,11 @@ class ModeChanges(View):
         if self._armed:
             return Result.ACCEPTED
         if self._terminated:
-            return Result.DENIED
+            self._say(2, "Preflight Fail: Flight termination active")
+            return Result.TEMPORARILY_REJECTED
+        if self._calibration.busy and self.personality == "px4":
+            self._say(2, "Transition denied: Init to Armed")
+            return Result.TEMPORARILY_REJECTED
         if not force and self._say_against_arming():
             return self._not_now
         self._armed = True
@@ -39,23 +46,27 @@ class ModeChanges(View):
         self._task.begin(self._look_around(), self._pilot.heading)
         self._pilot.rest()
         self._poke()
-        self._say(6, "Arming motors" if self.personality == "ardupilot" else "Armed by command")
+        ardupilot = self.personality == "ardupilot"
+        self._say(6, "Arming motors" if ardupilot else "Armed by external command")
         return Result.ACCEPTED
 
     def disarm(self, force: bool) -> Result:
         if not self._armed:
             return Result.ACCEPTED
         if self._pilot.flying and not force:
-            self._say(4, "Disarming denied: not landed")
-            return Result.FAILED if self.personality == "ardupilot" else Result.DENIED
-        word = "Disarming motors" if self.personality == "ardupilot" else "Disarmed by command"
-        self._disarm(word)
+            if self.personality == "px4":
+                self._say(2, "Disarming denied! Not landed")
+            return self._not_now
+        ardupilot = self.personality == "ardupilot"
+        self._disarm("Disarming motors" if ardupilot else "Disarmed by external command")
         return Result.ACCEPTED
 
     def set_mode(self, base_mode: int, custom_mode: int) -> Result:
         if not base_mode & Flag.CUSTOM_MODE_ENABLED:
             return Result.UNSUPPORTED
         mode = by_number(self.personality, custom_mode)
+        if mode is None and self.personality == "px4" and main_mode(custom_mode) != AUTO_MAIN_MODE:
+            return Result.ACCEPTED  # as recorded: of main modes it looks at none that it lacks
         if mode is None:
             self._say(*unknown_mode_words(self.personality, custom_mode))
             return self._not_now
@@ -70,21 +81,47 @@ class ModeChanges(View):
     def _change_mode(self, mode: Mode) -> Result:
         # Asked to hold while it holds it stops anew: it may be on its way to a reposition goal.
         same = mode is self._mode and self._paused is None
-        if same and mode.behaviour is not Behaviour.HOLD:
+        if same and (mode.behaviour is not Behaviour.HOLD or self._leaves_the_ground):
             return Result.ACCEPTED
         if self._held_by_fence(mode):
             return self._not_now
         if mode.needs_position and not self._position_ok:
             return self._refuse(mode, "requires position")
-        if mode.behaviour is Behaviour.MISSION and not self._mission_ok:
+        if mode.behaviour is Behaviour.MISSION and not self._may_start(mode):
             return self._refuse(mode, "init failed")
         if mode.name == "FOLLOW" and not self.parameters.get("FOLL_ENABLE"):
             self._say(4, "Set FOLL_ENABLE = 1")
             return self._refuse(mode, "init failed")
-        if mode.name == "OFFBOARD":
+        if mode.name == "OFFBOARD" and self._armed:
             return self._ask_offboard(mode)
-        self._enter(mode)
+        self._enter(mode, self._goes_on_up(mode))
+        if self.personality == "px4" and mode.behaviour is Behaviour.RETURN:
+            self._say(6, "RTL HOME activated")
         return Result.ACCEPTED
+
+    def _may_start(self, mode: Mode) -> bool:
+        """A disarmed vehicle takes the mission mode with any mission, and with none."""
+        if not self._armed:
+            return True
+        if not self._mission_ok:
+            return False
+        if self.personality == "px4" or self._pilot.flying or self._mission.takes_off:
+            return True
+        self._say(2, "Auto: Missing Takeoff Cmd")
+        return False
+
+    def _goes_on_up(self, mode: Mode) -> Hold | None:
+        """PX4's HOLD, asked for before the take-off has left the ground: up to its height."""
+        task = self._task
+        if self.personality != "px4" or self._pilot.flying or not isinstance(task, TakeOff):
+            return None
+        return Hold(task.target.pos_ned, lifts=True) if mode.behaviour is Behaviour.HOLD else None
+
+    @property
+    def _leaves_the_ground(self) -> bool:
+        """It stands, and its HOLD has a place to fly to."""
+        task = self._task
+        return isinstance(task, Hold) and task.lifts and not self._pilot.flying
 
     def _refuse(self, mode: Mode, why: str) -> Result:
         self._say(*refusal_words(self.personality, mode.name, why))
@@ -94,8 +131,7 @@ class ModeChanges(View):
         """A stream of more than 2 Hz is a must; the mode follows when it has lasted a second."""
         wall_ns = self._sense().wall_ns
         if not self._stream.alive(wall_ns):
-            self._say(4, "Offboard refused: no setpoint stream")
-            return Result.TEMPORARILY_REJECTED
+            return self._refuse(mode, "no setpoint stream")
         if self._stream.proven(wall_ns):
             self._enter(mode)
         else:

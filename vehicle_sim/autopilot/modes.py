@@ -75,7 +75,7 @@ def _px4(main: int, sub: int = 0) -> int:
 _C = Flag.CUSTOM_MODE_ENABLED
 _PX4_ACRO = int(_C | Flag.MANUAL_INPUT_ENABLED)
 _PX4_STICKS = int(_C | Flag.MANUAL_INPUT_ENABLED | Flag.STABILIZE_ENABLED)
-_PX4_POSCTL = int(_PX4_STICKS | Flag.GUIDED_ENABLED)
+_PX4_OFFBOARD = int(_C | Flag.STABILIZE_ENABLED)
 _PX4_ORBIT = int(_C | Flag.STABILIZE_ENABLED | Flag.GUIDED_ENABLED)
 _PX4_AUTO = int(_C | Flag.AUTO_ENABLED | Flag.STABILIZE_ENABLED | Flag.GUIDED_ENABLED)
 _AP = int(_C | Flag.MANUAL_INPUT_ENABLED | Flag.STABILIZE_ENABLED)
@@ -90,11 +90,11 @@ PX4_MODES = (
     #     name                 custom_mode  behaviour    flags      may_arm needs_position
     Mode("MANUAL",             _px4(1),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ANGLE, _ADV),
     Mode("ALTCTL",             _px4(2),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ALTITUDE),
-    Mode("POSCTL",             _px4(3),    _B.HOLD,    _PX4_POSCTL, True,  True,  _S.POSITION),
+    Mode("POSCTL",             _px4(3),    _B.HOLD,    _PX4_STICKS, True,  True,  _S.POSITION),
     Mode("POSCTL.ORBIT",       _px4(3, 1), _B.ORBIT,   _PX4_ORBIT,  False, True,  None, _HID),
     Mode("ACRO",               _px4(5),    _B.LEVEL,   _PX4_ACRO,   True,  False, _S.RATES, _ADV),
     Mode("STABILIZED",         _px4(7),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ANGLE, _ADV),
-    Mode("OFFBOARD",           _px4(6),    _B.GUIDED,  _PX4_AUTO,   True,  True,  None, _ADV),
+    Mode("OFFBOARD",           _px4(6),    _B.GUIDED,  _PX4_OFFBOARD, True, True, None, _ADV),
     Mode("AUTO.TAKEOFF",       _px4(4, 2), _B.TAKEOFF, _PX4_AUTO,   True,  True),
     Mode("AUTO.LOITER",        _px4(4, 3), _B.HOLD,    _PX4_AUTO,   True,  True),
     Mode("AUTO.MISSION",       _px4(4, 4), _B.MISSION, _PX4_AUTO,   True,  True),
@@ -111,7 +111,7 @@ ARDUPILOT_MODES = (
     Mode("LOITER",    5,  _B.HOLD,    _AP_GUIDED, True,  True,  _S.POSITION),
     Mode("RTL",       6,  _B.RETURN,  _AP_GUIDED, False, True),
     Mode("CIRCLE",    7,  _B.CIRCLE,  _AP_GUIDED, False, True),
-    Mode("LAND",      9,  _B.LAND,    _AP,        False, False),
+    Mode("LAND",      9,  _B.LAND,    _AP_GUIDED, False, False),
     Mode("POSHOLD",   16, _B.HOLD,    _AP_GUIDED, True,  True,  _S.LEAN_AND_STAY),
     Mode("BRAKE",     17, _B.HOLD,    _AP_GUIDED, False, True),
     Mode("FOLLOW",    23, _B.FOLLOW,  _AP_GUIDED, False, True),
@@ -191,6 +191,30 @@ _WILL_NOT: dict[Personality, tuple[int, str]] = {
 }
 
 
+COPTER_NAMES: dict[str, str] = {
+    "STABILIZE": "Stabilize",
+    "ACRO": "Acro",
+    "ALT_HOLD": "Altitude Hold",
+    "AUTO": "Auto",
+    "GUIDED": "Guided",
+    "LOITER": "Loiter",
+    "CIRCLE": "Circle",
+    "LAND": "Land",
+    "POSHOLD": "Position Hold",
+    "BRAKE": "Brake",
+    "FOLLOW": "Follow",
+}
+"""What ArduCopter's own texts call its modes: "Auto" as recorded, the others from memory."""
+
+
+def main_mode(custom_mode: int) -> int:
+    """PX4's, from HEARTBEAT.custom_mode."""
+    return custom_mode >> 16 & 0xFF
+
+
+AUTO_MAIN_MODE = 4
+
+
 def by_number(personality: Personality, custom_mode: int) -> Mode | None:
     """The mode with this HEARTBEAT.custom_mode; None where there is none."""
     for mode in MODES[personality].values():
@@ -211,4 +235,5 @@ def unknown_mode_words(personality: Personality, custom_mode: int) -> tuple[int,
 def refusal_words(personality: Personality, name: str, why: str) -> tuple[int, str]:
     """MAV_SEVERITY and STATUSTEXT for a mode that cannot be entered now."""
     severity, text = _WILL_NOT[personality]
-    return severity, text.format(mode=name.replace(".", "_"), why=why)
+    mode = name.replace(".", "_") if personality == "px4" else COPTER_NAMES.get(name, name)
+    return severity, text.format(mode=mode, why=why)

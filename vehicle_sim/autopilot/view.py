@@ -157,6 +157,8 @@ class View(Decisions):
             return 6 if self.emergency else 5  # EMERGENCY, CRITICAL
         if not booted(self._est):
             return 1  # BOOT
+        if self._calibration.busy:
+            return 2  # CALIBRATING
         flying = self._armed if self.personality == "px4" else self._pilot.flying
         return 4 if flying else 3  # ACTIVE, STANDBY
 

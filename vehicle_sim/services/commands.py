@@ -14,11 +14,14 @@ from typing import Final
 
 from vehicle_sim.autopilot.interface import CommandDone, Result
 from vehicle_sim.effects import Client, Effect, Note, Send
+from vehicle_sim.services.calibration_commands import CALIBRATION
 from vehicle_sim.services.failures import FAILURE
 from vehicle_sim.services.flight_commands import FLIGHT
 from vehicle_sim.services.info_commands import INFO
 from vehicle_sim.services.orders import Answer, Order, from_int, from_long
+from vehicle_sim.services.payload_commands import PAYLOAD
 from vehicle_sim.services.ports import CommandContext, CommandEntry, RefusedError
+from vehicle_sim.services.texts import status_text
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
@@ -28,7 +31,7 @@ RETRY_NS: Final = 3_500_000_000
 REMEMBERED_MAX: Final = 256
 """Senders and commands, the oldest forgotten first."""
 
-TABLE: Final[dict[Cmd, CommandEntry]] = {**FLIGHT, **INFO, **FAILURE}
+TABLE: Final[dict[Cmd, CommandEntry]] = {**FLIGHT, **INFO, **FAILURE, **PAYLOAD, **CALIBRATION}
 """Every command that this vehicle understands; all others are UNSUPPORTED."""
 
 
@@ -41,6 +44,7 @@ class _Memory:
     heard_ns: int
     result: Result
     owed: int = 0  # frames answered IN_PROGRESS that wait for their final ack
+    acked: bool = True
 
 
 class Commands:
@@ -62,7 +66,7 @@ class Commands:
         if known is not None and _is_retry(known, asked, sequence, confirmation, now_ns):
             known.sequence, known.heard_ns = sequence, now_ns
             known.owed += known.result is Result.IN_PROGRESS
-            return [self._ack(client, asked.command, known.result)]
+            return [self._ack(client, asked.command, known.result)] if known.acked else []
         order = (
             from_long(client, asked)
             if isinstance(asked, m.CommandLong)
@@ -75,8 +79,13 @@ class Commands:
         owed = int(answer.result is Result.IN_PROGRESS)
         if owed and known is not None:
             owed += known.owed
-        self._memory[key] = _Memory(asked, sequence, now_ns, answer.result, owed)
-        return [self._ack(client, asked.command, answer.result), *answer.after]
+        self._memory[key] = _Memory(asked, sequence, now_ns, answer.result, owed, answer.acked)
+        ack = [self._ack(client, asked.command, answer.result)] if answer.acked else []
+        return [*ack, *answer.after]
+
+    def refuse(self, client: Client, command: int) -> list[Effect]:
+        """What was sent to a component that there is not."""
+        return [self._ack(client, command, Result.FAILED)]
 
     def done(self, event: CommandDone) -> list[Effect]:
         """A command that was IN_PROGRESS has ended."""
@@ -85,7 +94,7 @@ class Commands:
             if command == event.command and known.result is Result.IN_PROGRESS:
                 final = self._ack(client, command, event.result)
                 effects += [final] * known.owed
-                known.result, known.owed = event.result, 0
+                known.result, known.owed, known.acked = event.result, 0, True
         return effects
 
     def forget(self, channel: int) -> None:
@@ -97,18 +106,31 @@ class Commands:
     def _answer(self, order: Order, told: bool) -> Answer:
         """`told`: it was said before that the command is not supported; MAVSDK asks for ever."""
         known = order.command in Cmd.__members__.values()
+        profile = self._context.profile
         entry = TABLE.get(Cmd(order.command)) if known else None
-        if entry is None or entry.only not in (None, self._context.profile.name):
+        if order.command in profile.unheard:
+            return Answer(Result.UNSUPPORTED, acked=False)
+        if entry is None or entry.only not in (None, profile.name):
             note = Note("debug" if told else "warning", f"command {order.command} is not supported")
             return Answer(Result.UNSUPPORTED, (note,))
         if entry.place and not order.global_frame:
-            return Answer(Result.UNSUPPORTED_MAV_FRAME)
+            return self._wrong_frame(order)
         try:
             return entry.handler(self._context, order.located if entry.place else order)
         except RefusedError as refusal:
             level = "debug" if order.command in INFO else "warning"
             note = Note(level, f"{Cmd(order.command).name} refused: {refusal}")
             return Answer(refusal.result, (note,))
+
+    def _wrong_frame(self, order: Order) -> Answer:
+        """Of DO_REPOSITION it is recorded how each refuses a frame without coordinates."""
+        profile = self._context.profile
+        if order.command != Cmd.DO_REPOSITION:
+            return Answer(Result.UNSUPPORTED_MAV_FRAME)
+        if profile.name == "px4":
+            return Answer(Result.UNSUPPORTED)
+        text = f"Unknown mavlink coordinate frame {order.frame}"
+        return Answer(Result.DENIED, (Send(None, status_text(profile, 6, text)),))
 
     def _ack(self, client: Client, command: int, result: Result) -> Send:
         ack = m.CommandAck(

@@ -95,7 +95,7 @@ _MOTORS: Final = 4
 
 def _inject(context: CommandContext, order: Order) -> Answer:
     if not context.vehicle.takes_failures:
-        raise RefusedError(Result.DENIED, "failures are not enabled (SYS_FAILURE_EN)")
+        return Answer(Result.UNSUPPORTED, acked=False)  # as in life nobody is there to answer
     unit, kind, instance = (order.whole(value) for value in (order.p1, order.p2, order.p3))
     if unit is None or kind is None:
         raise RefusedError(Result.DENIED, "unit or type of the failure is no number")

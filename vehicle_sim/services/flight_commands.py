@@ -6,16 +6,20 @@ import math
 from typing import Final
 
 from vehicle_sim.autopilot.geo import projection
-from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result
+from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result, SpeedType
+from vehicle_sim.effects import Send
 from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.services.orders import Answer, Order
 from vehicle_sim.services.ports import CommandContext, CommandEntry, RefusedError
 from vehicle_sim.services.setpoints import FARTHEST
+from vehicle_sim.services.texts import status_text
 from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, Cmd
 
 FORCE: Final = 21196.0
 ROI_NONE: Final = 0.0  # MAV_ROI
 ROI_LOCATION: Final = 3.0
+CHANGE_MODE: Final = 1  # MAV_DO_REPOSITION_FLAGS
+RESET_PARAMETERS: Final = 2.0
 
 
 def _finite(value: float, what: str) -> float:
@@ -50,11 +54,18 @@ def _take_off(context: CommandContext, order: Order) -> Answer:
 
 
 def _land(context: CommandContext, order: Order) -> Answer:
-    return Answer(context.vehicle.land())
+    return _with_text(context, context.vehicle.land(), "Landing at current position")
 
 
 def _return(context: CommandContext, order: Order) -> Answer:
-    return Answer(context.vehicle.return_home())
+    return _with_text(context, context.vehicle.return_home(), "Returning to launch")
+
+
+def _with_text(context: CommandContext, result: Result, text: str) -> Answer:
+    """PX4 says so to the command, not to the mode that follows from it."""
+    if context.profile.name != "px4" or result is not Result.ACCEPTED:
+        return Answer(result)
+    return Answer(result, (Send(None, status_text(context.profile, 6, text)),))
 
 
 def _set_mode(context: CommandContext, order: Order) -> Answer:
@@ -68,7 +79,17 @@ def _set_mode(context: CommandContext, order: Order) -> Answer:
 
 
 def _reposition(context: CommandContext, order: Order) -> Answer:
-    """NaN in a coordinate = keep it.  p4 is a heading in radians."""
+    """NaN in a coordinate = keep it.  p4 is a heading in radians.
+
+    Bit 1 of p2 allows the change to the mode that flies there: PX4 takes nothing without it,
+    ArduCopter only where it is in that mode already, and never by COMMAND_LONG.
+    """
+    changes_mode = bool((order.whole(order.p2) or 0) & CHANGE_MODE)
+    if context.profile.name == "px4":
+        if not changes_mode:
+            raise RefusedError(Result.UNSUPPORTED, "without MAV_DO_REPOSITION_FLAGS_CHANGE_MODE")
+    elif order.frame is None:
+        raise RefusedError(Result.UNSUPPORTED, "ArduCopter takes it as COMMAND_INT only")
     estimate = context.vehicle.estimate
     target: Vec3 | None = None
     if not (math.isnan(order.p5) and math.isnan(order.p6) and math.isnan(order.p7)):
@@ -78,6 +99,7 @@ def _reposition(context: CommandContext, order: Order) -> Answer:
             target if target is not None else estimate.pos_ned,
             order.p4 if abs(order.p4) <= FARTHEST else None,
             order.p1 if 0.0 < order.p1 <= FARTHEST else None,
+            changes_mode,
         )
     )
 
@@ -121,9 +143,14 @@ def _pause_continue(context: CommandContext, order: Order) -> Answer:
 
 
 def _change_speed(context: CommandContext, order: Order) -> Answer:
-    if not 0.0 < order.p2 <= FARTHEST:
-        raise RefusedError(Result.DENIED, f"{order.p2} m/s is no speed")
-    return Answer(context.vehicle.change_speed(order.p2))
+    """PX4 1.14 ignores the type, and any value that is no speed restores its default."""
+    if context.profile.name == "px4":
+        speed_m_s = order.p2 if 0.0 < order.p2 <= FARTHEST else None
+        return Answer(context.vehicle.change_speed(SpeedType.GROUND, speed_m_s))
+    if not 0.0 < order.p2 <= FARTHEST or order.p1 not in tuple(SpeedType):
+        result = Result.DENIED if context.vehicle.armed else Result.FAILED
+        raise RefusedError(result, f"{order.p2} m/s of type {order.p1} is no speed")
+    return Answer(context.vehicle.change_speed(SpeedType(order.p1), order.p2))
 
 
 def _change_altitude(context: CommandContext, order: Order) -> Answer:
@@ -159,10 +186,12 @@ def _mission_start(context: CommandContext, order: Order) -> Answer:
 
 
 def _set_mission_current(context: CommandContext, order: Order) -> Answer:
+    """ArduCopter fails what MISSION_SET_CURRENT would refuse."""
     seq = order.whole(order.p1)
     if seq is None or seq < 0:
         raise RefusedError(Result.DENIED, f"{order.p1} is no mission item")
-    return Answer(context.vehicle.mission_set_current(seq))
+    result = context.vehicle.mission_set_current(seq)
+    return Answer(Result.FAILED if result is Result.DENIED else result)
 
 
 def _image_start(context: CommandContext, order: Order) -> Answer:
@@ -193,12 +222,14 @@ def _fence_enable(context: CommandContext, order: Order) -> Answer:
 
 
 def _terminate(context: CommandContext, order: Order) -> Answer:
-    return Answer(context.vehicle.terminate() if order.p1 > 0.5 else Result.ACCEPTED)
+    return Answer(context.vehicle.terminate(order.p1 > 0.5))
 
 
 def _reboot(context: CommandContext, order: Order) -> Answer:
+    """ArduPilot does not know an autopilot that is to be left as it is."""
     if order.p1 == 0.0:
-        return Answer(Result.ACCEPTED)
+        known = context.profile.name == "px4"
+        return Answer(Result.ACCEPTED if known else Result.UNSUPPORTED)
     if order.p1 != 1.0:
         raise RefusedError(Result.DENIED, "it can only be rebooted (1)")
     return Answer(context.vehicle.reboot())
@@ -257,12 +288,17 @@ def _loiter(context: CommandContext, order: Order) -> Answer:
 
 
 def _storage(context: CommandContext, order: Order) -> Answer:
-    """What is set is kept, so that there is nothing to load or to save; 2 resets it all."""
+    """What is set is kept, so that there is nothing to load or to save; 2 resets it all.
+
+    ArduPilot knows the reset alone.
+    """
+    if context.profile.name == "ardupilot" and order.p1 != RESET_PARAMETERS:
+        raise RefusedError(Result.DENIED, "ArduPilot reads and writes no parameters")
     if context.vehicle.armed:
         raise RefusedError(Result.TEMPORARILY_REJECTED, "not while armed")
     if order.p1 not in (0.0, 1.0, 2.0):
         raise RefusedError(Result.DENIED, "parameters can be read (0), written (1) or reset (2)")
-    if order.p1 == 2.0:
+    if order.p1 == RESET_PARAMETERS:
         context.vehicle.reset_parameters()
     return Answer(Result.ACCEPTED)
 
@@ -280,13 +316,13 @@ FLIGHT: Final[dict[Cmd, CommandEntry]] = {
     Cmd.NAV_RETURN_TO_LAUNCH: CommandEntry(_return),
     Cmd.DO_SET_MODE: CommandEntry(_set_mode),
     Cmd.DO_REPOSITION: CommandEntry(_reposition, place=True),
-    Cmd.DO_PAUSE_CONTINUE: CommandEntry(_pause_continue),
+    Cmd.DO_PAUSE_CONTINUE: CommandEntry(_pause_continue, only="ardupilot"),
     Cmd.DO_CHANGE_SPEED: CommandEntry(_change_speed),
-    Cmd.DO_CHANGE_ALTITUDE: CommandEntry(_change_altitude),
-    Cmd.CONDITION_YAW: CommandEntry(_condition_yaw),
+    Cmd.DO_CHANGE_ALTITUDE: CommandEntry(_change_altitude, only="px4"),
+    Cmd.CONDITION_YAW: CommandEntry(_condition_yaw, only="ardupilot"),
     Cmd.DO_SET_HOME: CommandEntry(_set_home, place=True),
     Cmd.MISSION_START: CommandEntry(_mission_start),
-    Cmd.DO_SET_MISSION_CURRENT: CommandEntry(_set_mission_current),
+    Cmd.DO_SET_MISSION_CURRENT: CommandEntry(_set_mission_current, only="ardupilot"),
     Cmd.IMAGE_START_CAPTURE: CommandEntry(_image_start),
     Cmd.IMAGE_STOP_CAPTURE: CommandEntry(_image_stop),
     Cmd.SET_CAMERA_MODE: CommandEntry(_camera_mode),

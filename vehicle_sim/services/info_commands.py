@@ -9,6 +9,7 @@ from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.effects import Send
 from vehicle_sim.services.orders import Answer, Order
 from vehicle_sim.services.ports import CommandContext, CommandEntry, Handler, RefusedError
+from vehicle_sim.services.texts import status_text
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
@@ -16,11 +17,14 @@ CURRENT_MODE_US: Final = 2_000_000
 
 
 def _send(context: CommandContext, order: Order, number: int, index: float = 0) -> Answer:
-    if not context.info.answers(number):
-        raise RefusedError(Result.UNSUPPORTED, f"there is no message {number} to be had")
+    requests = context.profile.requests
+    if number in requests.accepted:
+        return Answer(Result.ACCEPTED)
+    if number in requests.never or not context.info.answers(number):
+        raise RefusedError(requests.unknown, f"there is no message {number} to be had")
     built = context.info.requested(number, index)
-    if not built:
-        raise RefusedError(Result.DENIED, f"message {number} has nothing to say yet")
+    if not built and requests.nothing_yet is not Result.ACCEPTED:
+        raise RefusedError(requests.nothing_yet, f"message {number} has nothing to say yet")
     return Answer(Result.ACCEPTED, tuple(Send(order.client.channel, message) for message in built))
 
 
@@ -33,10 +37,11 @@ def _number(order: Order) -> int:
 
 def _request_message(context: CommandContext, order: Order) -> Answer:
     number = _number(order)
-    if number == m.IDS[m.MessageInterval]:
+    known = number not in context.profile.requests.never
+    if number == m.IDS[m.MessageInterval] and known:
         wanted = order.whole(order.p2)
         return _interval(context, order, wanted if wanted is not None else -1)
-    if number == m.IDS[m.AvailableModes]:
+    if number == m.IDS[m.AvailableModes] and known:
         # Who asks for the modes wants to be told which one it is, from then on.
         streams = context.streams[order.client.channel]
         streams.begin(m.IDS[m.CurrentMode], CURRENT_MODE_US, context.vehicle.time_ns)
@@ -57,20 +62,32 @@ def _get_interval(context: CommandContext, order: Order) -> Answer:
 
 
 def _set_interval(context: CommandContext, order: Order) -> Answer:
+    """PX4's HEARTBEAT cannot be set; ArduPilot names a message that it does not have."""
     number = _number(order)
     if not (math.isfinite(order.p2) and order.p2 >= -1):
         raise RefusedError(Result.DENIED, f"{order.p2} us is no interval")
     streams = context.streams[order.client.channel]
-    if not streams.set_interval(number, order.p2, context.vehicle.time_ns):
+    if streams.set_interval(number, order.p2, context.vehicle.time_ns):
+        return Answer(Result.ACCEPTED)
+    if context.profile.name == "px4":
         raise RefusedError(Result.FAILED, f"message {number} cannot be had at a rate")
-    return Answer(Result.ACCEPTED)
+    text = status_text(context.profile, 6, f"No ap_message for mavlink id ({number})")
+    return Answer(Result.DENIED, (Send(None, text),))
 
 
 def _sends(kind: type[m.Message]) -> Handler:
+    """A command of its own for one message, older than REQUEST_MESSAGE."""
+
     def handler(context: CommandContext, order: Order) -> Answer:
         return _send(context, order, m.IDS[kind])
 
     return handler
+
+
+def _protocol_version(context: CommandContext, order: Order) -> Answer:
+    if context.profile.name == "ardupilot":
+        raise RefusedError(Result.UNSUPPORTED, "ArduPilot does not know the command")
+    return _send(context, order, m.IDS[m.ProtocolVersion])
 
 
 INFO: Final[dict[Cmd, CommandEntry]] = {
@@ -78,7 +95,7 @@ INFO: Final[dict[Cmd, CommandEntry]] = {
     Cmd.SET_MESSAGE_INTERVAL: CommandEntry(_set_interval),
     Cmd.GET_MESSAGE_INTERVAL: CommandEntry(_get_interval),
     Cmd.GET_HOME_POSITION: CommandEntry(_sends(m.HomePosition)),
-    Cmd.REQUEST_PROTOCOL_VERSION: CommandEntry(_sends(m.ProtocolVersion)),
+    Cmd.REQUEST_PROTOCOL_VERSION: CommandEntry(_protocol_version),
     Cmd.REQUEST_AUTOPILOT_CAPABILITIES: CommandEntry(_sends(m.AutopilotVersion)),
     Cmd.REQUEST_CAMERA_INFORMATION: CommandEntry(_sends(m.CameraInformation)),
     Cmd.REQUEST_STORAGE_INFORMATION: CommandEntry(_sends(m.StorageInformation)),

@@ -55,10 +55,14 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The result for the ack, and what follows the ack."""
+    """The result for the ack, and what follows the ack.
+
+    `acked` False: no ack is sent now; one of IN_PROGRESS gets only its final one.
+    """
 
     result: Result
     after: tuple[Effect, ...] = ()
+    acked: bool = True
 
 
 def from_long(client: Client, asked: m.CommandLong) -> Order:

@@ -6,15 +6,77 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from vehicle_sim.autopilot.firmware import FLIGHT_SW_VERSION, Firmware
+from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Capability, DataStream, MissionType
+from vehicle_sim.wire.ids import Capability, Cmd, DataStream, MissionType
 
 MESSAGE_INTERVAL_MIN_NS: Final = 5_000_000
+VIDEO_STREAM_INFORMATION: Final = 269
+GIMBAL_INFORMATION: Final = 280  # GIMBAL_MANAGER_INFORMATION
 
 
 def _hz(rates: dict[type[m.Message], float]) -> dict[int, int]:
     return {m.IDS[kind]: round(1e9 / rate) for kind, rate in rates.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Requests:
+    """REQUEST_MESSAGE: the results for what cannot be had, and for which messages they are.
+
+    `never`: built here for other ends, and not to be had from the real one.  `accepted`: the real
+    one takes the request for these and sends nothing.
+    """
+
+    unknown: Result
+    nothing_yet: Result
+    never: frozenset[int]
+    accepted: frozenset[int]
+
+
+_PX4_REQUESTS: Final = Requests(
+    Result.DENIED,
+    Result.DENIED,
+    never=frozenset(
+        m.IDS[kind]
+        for kind in (
+            m.MissionCurrent,
+            m.NavControllerOutput,
+            m.MessageInterval,
+            m.AvailableModes,
+            m.CurrentMode,
+            m.AvailableModesMonitor,
+            m.EkfStatusReport,
+            m.Hwstatus,
+            m.Meminfo,
+            m.PowerStatus,
+            m.AttitudeTarget,
+            m.PositionTargetLocalNed,
+        )
+    ),
+    accepted=frozenset({m.IDS[m.ProtocolVersion]}),
+)
+_ARDUPILOT_REQUESTS: Final = Requests(
+    Result.FAILED,
+    Result.ACCEPTED,
+    never=frozenset(
+        m.IDS[kind]
+        for kind in (
+            m.Altitude,
+            m.EstimatorStatus,
+            m.WindCov,
+            m.StorageInformation,
+            m.CameraImageCaptured,
+            m.ProtocolVersion,
+            m.OrbitExecutionStatus,
+            m.CurrentMode,
+            m.Hwstatus,
+            m.Timesync,
+            m.Ping,
+        )
+    ),
+    accepted=frozenset({m.IDS[m.ParamValue], VIDEO_STREAM_INFORMATION, GIMBAL_INFORMATION}),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,16 +110,19 @@ class Profile:
     first_log: int  # number of the oldest log in a LOG_ENTRY
     logs_while_armed: bool  # logs are listed and sent in flight too
     component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
+    unheard: frozenset[Cmd]  # commands that nobody on board answers
+    banner: tuple[str, ...]  # DO_SEND_BANNER
+    requests: Requests  # what REQUEST_MESSAGE is answered
 
 
 _COMMON: Final = (
     Capability.MISSION_FLOAT
+    | Capability.PARAM_FLOAT
     | Capability.MISSION_INT
     | Capability.COMMAND_INT
     | Capability.FTP
     | Capability.SET_ATTITUDE_TARGET
     | Capability.SET_POSITION_TARGET_LOCAL_NED
-    | Capability.SET_POSITION_TARGET_GLOBAL_INT
     | Capability.FLIGHT_TERMINATION
     | Capability.MAVLINK2
     | Capability.MISSION_FENCE
@@ -69,7 +134,7 @@ PX4: Final = Profile(
     autopilot=12,
     vendor="PX4",
     flight_sw_version=FLIGHT_SW_VERSION["1.14"],
-    capabilities=_COMMON | Capability.PARAM_ENCODE_BYTEWISE,
+    capabilities=_COMMON | Capability.PARAM_ENCODE_BYTEWISE | Capability.SET_ACTUATOR_TARGET,
     intervals_ns=_hz(
         {
             m.Heartbeat: 1,
@@ -102,7 +167,7 @@ PX4: Final = Profile(
         }
     ),
     rate_parameters={},
-    fixed=frozenset({m.IDS[m.MissionCurrent]}),
+    fixed=frozenset({m.IDS[m.MissionCurrent], m.IDS[m.Heartbeat]}),
     bytewise_parameters=True,
     hash_check=True,
     parameter_errors=False,
@@ -124,6 +189,23 @@ PX4: Final = Profile(
     first_log=0,
     logs_while_armed=True,
     component_metadata=True,
+    unheard=frozenset(
+        {
+            Cmd.NAV_DELAY,
+            Cmd.DO_DIGICAM_CONTROL,
+            Cmd.DO_MOUNT_CONTROL,
+            Cmd.DO_SET_CAM_TRIGG_DIST,
+            Cmd.DO_GRIPPER,
+            Cmd.DO_MOUNT_CONTROL_QUAT,
+            Cmd.PREFLIGHT_SET_SENSOR_OFFSETS,
+            Cmd.PREFLIGHT_UAVCAN,
+            Cmd.DO_GIMBAL_MANAGER_PITCHYAW,
+            Cmd.LOGGING_STOP,
+            Cmd.DO_VTOL_TRANSITION,
+        }
+    ),
+    banner=(),
+    requests=_PX4_REQUESTS,
 )
 
 ARDUPILOT: Final = Profile(
@@ -131,8 +213,11 @@ ARDUPILOT: Final = Profile(
     autopilot=3,
     vendor="ArduPilot",
     flight_sw_version=FLIGHT_SW_VERSION["4.5"],
-    capabilities=_COMMON | Capability.PARAM_ENCODE_C_CAST,
-    intervals_ns=_hz({m.Heartbeat: 1, m.HomePosition: 0.5}),
+    capabilities=_COMMON
+    | Capability.SET_POSITION_TARGET_GLOBAL_INT
+    | Capability.TERRAIN
+    | Capability.COMPASS_CALIBRATION,
+    intervals_ns=_hz({m.Heartbeat: 1}),
     rate_parameters={
         "SR0_RAW_SENS": DataStream.RAW_SENSORS,
         "SR0_EXT_STAT": DataStream.EXTENDED_STATUS,
@@ -164,6 +249,9 @@ ARDUPILOT: Final = Profile(
     first_log=1,
     logs_while_armed=False,
     component_metadata=False,
+    unheard=frozenset(),
+    banner=("ArduCopter V4.6.0", "vehicle-sim", "Frame: QUAD/X"),
+    requests=_ARDUPILOT_REQUESTS,
 )
 
 PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILOT}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from vehicle_sim.autopilot.interface import GPS_HDOP, Readings, Vehicle
+from vehicle_sim.autopilot.interface import GPS_HDOP, FenceState, Readings, Vehicle
 from vehicle_sim.services.profile import Profile
 from vehicle_sim.services.units import (
     INT16_MAX,
@@ -52,14 +52,44 @@ _PRESENT: Final = (
 )
 
 
+_PX4_PRESENT: Final = (
+    Sensor.GYRO_3D
+    | Sensor.MAG_3D
+    | Sensor.ABSOLUTE_PRESSURE
+    | Sensor.GPS
+    | Sensor.AHRS
+    | Sensor.BATTERY
+)
+_PX4_ENABLED: Final = _PX4_PRESENT | Sensor.RC_RECEIVER
+_PX4_HEALTHY: Final = (
+    _PX4_PRESENT
+    | Sensor.ACCEL_3D
+    | Sensor.DIFFERENTIAL_PRESSURE
+    | Sensor.MOTOR_OUTPUTS
+    | Sensor.OBSTACLE_AVOIDANCE
+    | Sensor.PREARM_CHECK
+)
+"""As recorded: PX4 1.14 says of more that it is healthy than that it is there."""
+
+
+def _told(fence: FenceState, profile: Profile) -> tuple[Sensor, Sensor, Sensor]:
+    """Present, enabled and healthy while nothing is wrong but with the fence."""
+    px4 = profile.name == "px4"
+    here, on = (_PX4_PRESENT, _PX4_ENABLED) if px4 else (_PRESENT, _PRESENT)
+    present = here | Sensor.GEOFENCE if fence.present else here
+    enabled = on | Sensor.GEOFENCE if fence.enabled else on
+    if px4:
+        healthy = _PX4_HEALTHY | Sensor.GEOFENCE if fence.present else _PX4_HEALTHY
+    else:
+        # ArduPilot's fence is healthy where there is none: MAVProxy, which does not look whether
+        # it is present, would say "fence breach".
+        healthy = present | Sensor.GEOFENCE
+    return present, enabled, healthy & ~Sensor.GEOFENCE if fence.breached else healthy
+
+
 def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
     power, health = vehicle.power, vehicle.health
-    fence = vehicle.fence_state
-    present = _PRESENT | Sensor.GEOFENCE if fence.present else _PRESENT
-    enabled = _PRESENT | Sensor.GEOFENCE if fence.enabled else _PRESENT
-    # As ArduPilot has it, a fence is healthy where there is none: MAVProxy, which does not look
-    # whether it is present, would say "fence breach".
-    healthy = present & ~Sensor.GEOFENCE if fence.breached else present | Sensor.GEOFENCE
+    present, enabled, healthy = _told(vehicle.fence_state, profile)
     # Clients take the bit of the GPS for "the global position is good".
     if not (health.gps_ok and health.position_ok):
         healthy &= ~Sensor.GPS

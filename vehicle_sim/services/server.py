@@ -11,6 +11,7 @@ from typing import Final
 
 from vehicle_sim.autopilot.interface import (
     CommandDone,
+    CommandSent,
     HomeChanged,
     ImageCaptured,
     MissionReached,
@@ -41,6 +42,7 @@ from vehicle_sim.services.setpoints import (
     local_setpoint,
 )
 from vehicle_sim.services.streams import NEVER, Streams
+from vehicle_sim.services.texts import worded
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
 
@@ -164,11 +166,20 @@ class VehicleServer:
             return True
         return client.system in (self.system, int(self._given.get("SYSID_MYGCS")))
 
+    def _counts(self, client: Client) -> bool:
+        """Whose heartbeats keep the station's failsafe away: ArduPilot's own station's alone."""
+        if self._profile.name == "px4":
+            return True
+        return client.system == int(self._given.get("SYSID_MYGCS"))
+
     def _is_for_us(self, message: m.Message) -> bool:
         system = getattr(message, "target_system", 0)
         component = getattr(message, "target_component", 0)
         if isinstance(message, m.Ping | m.Timesync):
             return system in (0, self.system)
+        if isinstance(message, m.CommandLong | m.CommandInt):
+            # Both answer for components that are not there.
+            return system == self.system or (system == 0 and component in (0, COMPONENT))
         return system in (0, self.system) and component in (0, COMPONENT)
 
     def _dispatch(
@@ -176,10 +187,12 @@ class VehicleServer:
     ) -> list[Effect]:
         match message:
             case m.Heartbeat():
-                if message.type == GROUND_STATION:
+                if message.type == GROUND_STATION and self._counts(client):
                     self.vehicle.gcs_heard(wall_ns)
                 return []
             case m.CommandLong() | m.CommandInt():
+                if message.target_component not in (0, COMPONENT) and self._profile.name == "px4":
+                    return self._commands.refuse(client, message.command)
                 return self._commands.handle(client, sequence, message, wall_ns)
             case (
                 m.SetPositionTargetLocalNed()
@@ -359,10 +372,12 @@ class VehicleServer:
                 return [Send(None, home)] if home is not None else []
             case CommandDone():
                 return self._commands.done(event)
+            case CommandSent(command, p1):
+                return [Send(None, _command(command, p1))]
 
     def _status_text(self, event: StatusText) -> list[Effect]:
         """Longer texts go out in chunks that share an id."""
-        raw = event.text.encode("ascii", "replace")
+        raw = worded(self._profile, event.text).encode("ascii", "replace")
         chunks = [raw[at : at + STATUSTEXT_CHARS] for at in range(0, len(raw), STATUSTEXT_CHARS)]
         text_id = self.vehicle.time_ns // 1_000_000 % 0xFFFF + 1 if len(chunks) > 1 else 0
         return [
@@ -399,3 +414,8 @@ class VehicleServer:
             if origin is not None:
                 effects.append(Send(None, origin))
         return effects
+
+
+def _command(command: int, p1: float) -> m.CommandLong:
+    """For everybody who listens."""
+    return m.CommandLong(p1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, command, 0, 0, 0)

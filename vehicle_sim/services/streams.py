@@ -25,6 +25,7 @@ POSITION_ONLY: Final = {
     m.IDS[m.Heartbeat]: S_NS,
     m.IDS[m.SysStatus]: S_NS,
     m.IDS[m.LocalPositionNed]: S_NS // 10,
+    m.IDS[m.GlobalPositionInt]: S_NS,
 }
 """What a vehicle of a large fleet sends unasked, in place of all that its autopilot does."""
 

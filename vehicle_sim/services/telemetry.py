@@ -21,6 +21,9 @@ from vehicle_sim.wire.ids import MavFrame, PositionIgnore
 Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
 
 MITIGATE_NONE: Final = 1  # FENCE_MITIGATE
+VTOL_UNDEFINED: Final = 0  # MAV_VTOL_STATE
+VTOL_MC: Final = 3
+UNKNOWN_ATTITUDE: Final = (math.nan, math.nan, math.nan, math.nan)
 UNUSED_CHANNEL: Final = 65535
 RSSI_UNKNOWN: Final = 255
 
@@ -37,7 +40,9 @@ def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
 
 
 def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState:
-    return m.ExtendedSysState(vtol_state=0, landed_state=vehicle.landed)
+    """ArduPilot calls a copter a VTOL that flies as a multicopter."""
+    vtol_state = VTOL_MC if profile.name == "ardupilot" else VTOL_UNDEFINED
+    return m.ExtendedSysState(vtol_state=vtol_state, landed_state=vehicle.landed)
 
 
 def attitude(vehicle: Vehicle, profile: Profile) -> m.Attitude:
@@ -98,7 +103,7 @@ def home_position(vehicle: Vehicle, profile: Profile) -> m.HomePosition | None:
     return m.HomePosition(
         *_geodetic(home),
         *pos_ned,
-        q=(1.0, 0.0, 0.0, 0.0),
+        q=UNKNOWN_ATTITUDE if profile.name == "ardupilot" else (1.0, 0.0, 0.0, 0.0),
         approach_x=0.0,
         approach_y=0.0,
         approach_z=0.0,

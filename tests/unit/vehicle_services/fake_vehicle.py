@@ -23,6 +23,7 @@ from vehicle_sim.autopilot.interface import (
     Refusal,
     Result,
     Setpoint,
+    SpeedType,
     Target,
     Truth,
     VehicleEvent,
@@ -208,9 +209,13 @@ class FakeVehicle:
         return self._note("return_home")
 
     def reposition(
-        self, pos_ned: Vec3 | None, yaw_rad: float | None, speed_m_s: float | None
+        self,
+        pos_ned: Vec3 | None,
+        yaw_rad: float | None,
+        speed_m_s: float | None,
+        changes_mode: bool = True,
     ) -> Result:
-        return self._note("reposition", pos_ned, yaw_rad, speed_m_s)
+        return self._note("reposition", pos_ned, yaw_rad, speed_m_s, changes_mode)
 
     def pause(self) -> Result:
         return self._note("pause")
@@ -218,8 +223,8 @@ class FakeVehicle:
     def resume(self) -> Result:
         return self._note("resume")
 
-    def change_speed(self, speed_m_s: float) -> Result:
-        return self._note("change_speed", speed_m_s)
+    def change_speed(self, kind: SpeedType, speed_m_s: float | None) -> Result:
+        return self._note("change_speed", kind, speed_m_s)
 
     def change_altitude(self, up_above_home_m: float) -> Result:
         return self._note("change_altitude", up_above_home_m)
@@ -295,8 +300,17 @@ class FakeVehicle:
     def check_arming(self) -> Result:
         return self._note("check_arming")
 
-    def terminate(self) -> Result:
-        return self._note("terminate")
+    def terminate(self, on: bool) -> Result:
+        return self._note("terminate", on)
+
+    def calibrate(self, parameters: tuple[float, ...]) -> Result | None:
+        return self._note("calibrate", parameters)
+
+    def calibration_position(self, position: float) -> Result:
+        return self._note("calibration_position", position)
+
+    def test_motor(self, seconds: float) -> Result:
+        return self._note("test_motor", seconds)
 
     def reset_parameters(self) -> None:
         self._note("reset_parameters")

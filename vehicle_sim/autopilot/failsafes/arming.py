@@ -9,7 +9,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import Charge, by_capacity, by_vol
 from vehicle_sim.autopilot.failsafes.px4_failsafes import violation
 from vehicle_sim.autopilot.fence.geofence import BreachKind, Geofence, names
 from vehicle_sim.autopilot.interface import Power
-from vehicle_sim.autopilot.modes import Behaviour, Mode
+from vehicle_sim.autopilot.modes import COPTER_NAMES, Behaviour, Mode
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.estimation.estimator import Health
 
@@ -118,7 +118,8 @@ def _copter(parameters: Parameters, ready: Readiness) -> list[str]:
     found: list[str] = []
     barred = ready.mode.name == "AUTO" and not int(get("AUTO_OPTIONS")) & _ARMS_IN_AUTO
     if barred or not ready.mode.may_arm:
-        found.append(f"Arm: {ready.mode.name} mode not armable")
+        name = COPTER_NAMES.get(ready.mode.name, ready.mode.name)
+        found.append(f"Arm: {name} mode not armable")
     if (get("FRAME_CLASS"), get("FRAME_TYPE")) != _QUAD_X:
         found.append("PreArm: Motors: Check frame class and type")
     fenced = ready.geofence.limits.kinds & _NEEDS_PLACE
@@ -182,7 +183,8 @@ def _copter_battery(parameters: Parameters, power: Power) -> list[str]:
 class AutoDisarm:
     """Disarms an armed vehicle that has landed, or has never taken off.
 
-    Both clocks run on simulated time; negative means never (for ardupilot's DISARM_DELAY: 0).
+    Both clocks run on simulated time; negative and 0 mean never (COM_DISARM_LAND,
+    COM_DISARM_PRFLT, DISARM_DELAY).
     `own_landing`: in a mode that lands by itself ArduCopter disarms at once, elsewhere it waits
     DISARM_DELAY; PX4 waits COM_DISARM_LAND after any landing.
     """
@@ -201,6 +203,13 @@ class AutoDisarm:
     def due(self, parameters: Parameters, own_landing: bool, now_ns: int) -> bool:
         landed = self._flown and (parameters.personality == "px4" or own_landing)
         limit_s = parameters.si(Quantity.DISARM_LANDED_S if landed else Quantity.DISARM_IDLE_S)
-        if limit_s < 0.0 or (limit_s == 0.0 and not landed):
+        at_once = landed and parameters.personality == "ardupilot"
+        if limit_s < 0.0 or (limit_s == 0.0 and not at_once):
             return False
         return now_ns - self._since_ns >= int(limit_s * 1e9)
+
+    def words(self, parameters: Parameters) -> str:
+        """The autopilot's STATUSTEXT for it."""
+        if parameters.personality == "ardupilot":
+            return "Disarming motors"
+        return "Disarmed by landing" if self._flown else "Disarmed by auto preflight disarming"

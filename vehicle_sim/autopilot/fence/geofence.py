@@ -65,7 +65,7 @@ def limits_of(parameters: Parameters) -> FenceLimits:
         kinds = BreachKind.POLYGON
         kinds |= BreachKind.ALT_MAX if top_m > 0.0 else BreachKind.NONE
         kinds |= BreachKind.CIRCLE if radius_m > 0.0 else BreachKind.NONE
-        floor_m, margin_m, union = -inf, 0.0, False
+        floor_m, margin_m, union = -inf, 0.0, True  # 1.14: one inclusion zone is enough
         predict = get("GF_PREDICT") != 0
     else:
         kinds = BreachKind(int(get("FENCE_TYPE"))) if get("FENCE_ENABLE") != 0 else BreachKind.NONE

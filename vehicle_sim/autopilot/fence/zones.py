@@ -150,7 +150,8 @@ def _item(item: PlanItem, personality: Personality) -> Refusal | None:
     refusal = check_place(item)
     if refusal is not None:
         return refusal
-    if item.command in _CIRCLES and not 0.0 < item.p1 < inf:
+    # PX4 takes any radius: a circle of 0, of less or of none has no inside.
+    if item.command in _CIRCLES and personality == "ardupilot" and not 0.0 < item.p1 < inf:
         return Refusal(seq, Flaw.PARAM1, f"radius {item.p1:g} m")
     if item.command in _POLYGONS:
         whole = isfinite(item.p1) and item.p1 == int(item.p1)
@@ -176,7 +177,8 @@ def build(items: Iterable[PlanItem], projection: Projection) -> Fence:
     for item in items:
         where_ne = place_ne(item, projection)
         if item.command in _CIRCLES:
-            zones.append(CircleZone(_CIRCLES[item.command], where_ne, item.p1))
+            radius_m = item.p1 if 0.0 < item.p1 < inf else 0.0
+            zones.append(CircleZone(_CIRCLES[item.command], where_ne, radius_m))
         elif item.command in _POLYGONS:
             corners.append(where_ne)
             if len(corners) == int(item.p1):

@@ -41,6 +41,7 @@ class Mission:
         "_next",
         "_parameters",
         "_repeats",
+        "_until_ns",
         "_vehicle",
         "current",
         "finished",
@@ -72,6 +73,7 @@ class Mission:
         self._goal: Vec3 | None = None
         self._before_ned: Vec3 | None = None
         self._first_task: TakeOff | None = None
+        self._until_ns: int | None = None
         self._leg: Leg | None = None
 
     @property
@@ -94,9 +96,13 @@ class Mission:
 
     @property
     def takes_off(self) -> bool:
-        """Whether the next flown item is a take-off."""
-        item = self._flown_from(self.current)
-        return item is not None and item.command == Cmd.TAKEOFF
+        """Whether the next flown item is a take-off; ArduCopter looks past delays for it."""
+        delays = self._parameters.personality == "ardupilot"
+        first = max(self.current, first_of(self._parameters.personality))
+        for item in self.items[first : self._last + 1]:
+            if KINDS[item.command] is ItemKind.FLOWN and not (delays and item.command == Cmd.DELAY):
+                return item.command == Cmd.TAKEOFF
+        return False
 
     def _flown_from(self, index: int) -> PlanItem | None:
         first = max(index, first_of(self._parameters.personality))
@@ -126,8 +132,24 @@ class Mission:
     def lifts_off(self, s: Situation) -> bool:
         if self.finished:
             return False
-        item = self._flown_from(self.current)
+        item = self._flown_from(self._next)
+        if item is not None and item.command == Cmd.DELAY and self._first_task is None:
+            return self._delayed(item, s)
         return item is not None and item.command not in (Cmd.LAND, Cmd.RETURN)
+
+    def _delayed(self, item: PlanItem, s: Situation) -> bool:
+        """NAV_DELAY before the take-off: waited for on the ground; always False."""
+        index = self.items.index(item, self._next)
+        self.current = index
+        if self._until_ns is None:
+            self._until_ns = s.time_ns + int(item.p1 * 1e9)
+        if s.time_ns >= self._until_ns:
+            self._until_ns = None
+            self._vehicle.emit(MissionReached(item.seq))
+            for passed in self.items[self._next : index]:
+                self._errands.put(passed)
+            self.current = self._next = index + 1
+        return False
 
     def begin(self, s: Situation, turner: Turner) -> None:
         starts_anew = self._parameters.personality == "ardupilot" and self._parameters.get(
@@ -136,6 +158,7 @@ class Mission:
         if self.finished or starts_anew:
             self.rewind()
         self.started = True
+        self._until_ns = None
         # The item that was left begins anew; what was to be done on the way is not done twice.
         if self._leg is not None:
             self._next = self.current

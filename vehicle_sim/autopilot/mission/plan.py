@@ -108,6 +108,7 @@ _PLACED = frozenset(
 _HERE_IF_ZERO = frozenset(
     {Cmd.LAND, Cmd.TAKEOFF, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME, Cmd.LOITER_TO_ALT}
 )
+_HERE_IF_ZERO_COPTER = _HERE_IF_ZERO | {Cmd.WAYPOINT, Cmd.LOITER_TURNS, Cmd.SPLINE}
 _GROUND_SPEED = frozenset({0.0, 1.0})  # SPEED_TYPE: a multicopter has no other horizontal one
 
 _GLOBAL = frozenset({0, 5})  # MAV_FRAME_GLOBAL, _INT: metres above mean sea level
@@ -126,6 +127,11 @@ class Datum:
     projection: Projection
     origin: Geodetic
     home_ned: Vec3
+
+
+def here_if_zero(personality: Personality) -> frozenset[int]:
+    """Items that are flown where the vehicle is, if they say 0, 0."""
+    return _HERE_IF_ZERO if personality == "px4" else _HERE_IF_ZERO_COPTER
 
 
 def first_of(personality: Personality) -> int:
@@ -154,7 +160,7 @@ def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None
             return "the altitude is not a number"
         if item.frame != _LOCAL_NED and has_place(item) and not _on_earth(item):
             return "the position is not on Earth"
-        if not has_place(item) and item.command not in _HERE_IF_ZERO:
+        if not has_place(item) and item.command not in here_if_zero(personality):
             return "the position is missing"
     elif item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED, _MISSION}:
         return f"frame {item.frame} is not supported"
@@ -245,6 +251,8 @@ def place_of(item: PlanItem, datum: Datum, here_ned: Vec3) -> Vec3:
         down = datum.home_ned[2] - item.z
         alt_amsl_m = datum.origin.alt_amsl_m - down
     if not has_place(item):
-        return (here_ned[0], here_ned[1], down)
+        # A waypoint at 0, 0 and height 0 is ArduPilot's "here", the height too.
+        here = item.z == 0.0 and item.command in _HERE_IF_ZERO_COPTER - _HERE_IF_ZERO
+        return (here_ned[0], here_ned[1], here_ned[2] if here else down)
     north, east, _ = datum.projection.to_local(Geodetic(item.x * 1e-7, item.y * 1e-7, alt_amsl_m))
     return (north, east, down)

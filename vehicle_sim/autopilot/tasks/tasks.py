@@ -35,20 +35,25 @@ def face(goal_ned: Vec3, s: Situation, turner: Turner) -> None:
 
 
 class Hold:
-    """Brake and stay; or fly to `goal_ned` and stay there."""
+    """Brake and stay; or fly to `goal_ned` and stay there.
+
+    `lifts`: from the ground, too, as PX4 does with a place that it was given there.
+    """
 
     landed_word = Landed.IN_AIR
     done = True
 
-    __slots__ = ("_speed_m_s", "_yaw_rad", "goal_ned")
+    __slots__ = ("_speed_m_s", "_yaw_rad", "goal_ned", "lifts")
 
     def __init__(
         self,
         goal_ned: Vec3 | None = None,
         yaw_rad: float | None = None,
         speed_m_s: float | None = None,
+        lifts: bool = False,
     ) -> None:
         self.goal_ned = goal_ned
+        self.lifts = lifts
         self._yaw_rad = yaw_rad
         self._speed_m_s = speed_m_s
 
@@ -57,7 +62,7 @@ class Hold:
         return Target(self.goal_ned, None, self._yaw_rad)
 
     def lifts_off(self, s: Situation) -> bool:
-        return False
+        return self.lifts
 
     def begin(self, s: Situation, turner: Turner) -> None:
         if self.goal_ned is None:

@@ -1,0 +1,65 @@
+"""Commands for what is carried, and for outputs: mostly for equipment that is not there.
+
+As recorded of vehicles that carry nothing: ArduCopter fails what needs a gimbal or a gripper and
+accepts what only sets an output; PX4 sends no ack where nobody listens (`Profile.unheard`).
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.effects import Send
+from vehicle_sim.services.orders import Answer, Order
+from vehicle_sim.services.ports import CommandContext, CommandEntry
+from vehicle_sim.services.texts import status_text
+from vehicle_sim.wire.ids import Cmd
+
+
+def _accept(context: CommandContext, order: Order) -> Answer:
+    """An output without anything on it."""
+    return Answer(Result.ACCEPTED)
+
+
+def _fail(context: CommandContext, order: Order) -> Answer:
+    return Answer(Result.FAILED)
+
+
+def _shoot(context: CommandContext, order: Order) -> Answer:
+    """DO_DIGICAM_CONTROL: p5 = 1 takes a picture; it is answered alike without one."""
+    if order.p5 == 1.0:
+        context.vehicle.capture_image(0.0, 1)
+    return Answer(Result.ACCEPTED)
+
+
+def _actuator_test(context: CommandContext, order: Order) -> Answer:
+    """PX4 tests no actuator while armed; the motors of this vehicle stand still either way."""
+    return Answer(Result.DENIED if context.vehicle.armed else Result.ACCEPTED)
+
+
+def _banner(context: CommandContext, order: Order) -> Answer:
+    texts = (Send(None, status_text(context.profile, 6, text)) for text in context.profile.banner)
+    return Answer(Result.ACCEPTED, tuple(texts))
+
+
+_COPTER: Final = {
+    Cmd.DO_REPEAT_SERVO: _accept,
+    Cmd.DO_SET_RELAY: _accept,
+    Cmd.DO_SET_SERVO: _accept,
+    Cmd.DO_SET_CAM_TRIGG_DIST: _accept,
+    Cmd.DO_AUX_FUNCTION: _accept,
+    Cmd.DO_DIGICAM_CONTROL: _shoot,
+    Cmd.NAV_VTOL_TAKEOFF: _fail,
+    Cmd.DO_MOUNT_CONTROL: _fail,
+    Cmd.DO_GRIPPER: _fail,
+    Cmd.DO_GIMBAL_MANAGER_PITCHYAW: _fail,
+    Cmd.VIDEO_START_CAPTURE: _fail,
+    Cmd.DO_SEND_BANNER: _banner,
+}
+
+PAYLOAD: Final[dict[Cmd, CommandEntry]] = {
+    **{command: CommandEntry(handler, only="ardupilot") for command, handler in _COPTER.items()},
+    Cmd.DO_SET_ACTUATOR: CommandEntry(_accept, only="px4"),
+    Cmd.ACTUATOR_TEST: CommandEntry(_actuator_test, only="px4"),
+    Cmd.LOGGING_START: CommandEntry(_accept, only="px4"),
+}
