@@ -18,6 +18,8 @@ from vehicle_sim.autopilot.modes import (
 from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
 from vehicle_sim.autopilot.view import View
 
+_CLEAR_M = 0.5  # less than this above home, and a take-off has not left the ground
+
 
 class ModeChanges(View):
     """Each request is answered at once."""
@@ -113,7 +115,10 @@ class ModeChanges(View):
     def _goes_on_up(self, mode: Mode) -> Hold | None:
         """PX4's HOLD, asked for before the take-off has left the ground: up to its height."""
         task = self._task
-        if self.personality != "px4" or self._pilot.flying or not isinstance(task, TakeOff):
+        if self.personality != "px4" or not isinstance(task, TakeOff):
+            return None
+        home_d = self._home_ned[2] if self._home_ned is not None else 0.0
+        if self._pilot.flying and home_d - self._est.pos_d > _CLEAR_M:
             return None
         return Hold(task.target.pos_ned, lifts=True) if mode.behaviour is Behaviour.HOLD else None
 

@@ -66,7 +66,6 @@ _ARDUPILOT_REQUESTS: Final = Requests(
             m.EstimatorStatus,
             m.WindCov,
             m.StorageInformation,
-            m.CameraImageCaptured,
             m.ProtocolVersion,
             m.OrbitExecutionStatus,
             m.CurrentMode,

@@ -7,7 +7,14 @@ from math import nan, pi
 import pytest
 
 from tests.unit.autopilot.flight import Flight
-from vehicle_sim.autopilot.interface import Geodetic, ImageCaptured, Landed, Result, Setpoint
+from vehicle_sim.autopilot.interface import (
+    Geodetic,
+    ImageCaptured,
+    Landed,
+    Result,
+    Setpoint,
+    SpeedType,
+)
 from vehicle_sim.autopilot.modes import KINDS, MODES, Behaviour, Flag, Personality, by_number
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
@@ -58,7 +65,7 @@ def test_the_mode_tables_are_total(personality: Personality) -> None:
 def test_a_mode_that_does_not_exist_is_refused(personality: Personality) -> None:
     flight = Flight(personality).boot()
     refused = {"px4": Result.TEMPORARILY_REJECTED, "ardupilot": Result.FAILED}
-    assert flight.vehicle.set_mode(1, 12345) is refused[personality]
+    assert flight.vehicle.set_mode(1, 99 << 24 | 4 << 16) is refused[personality]
     assert flight.vehicle.set_mode(0, 0) is Result.UNSUPPORTED
     assert flight.vehicle.set_mode_kind("sideways") is Result.UNSUPPORTED
 
@@ -68,7 +75,8 @@ def test_a_mission_mode_without_a_mission_is_refused(personality: Personality) -
     flight = Flight.hovering(personality, 3.0)
     refused = {"px4": Result.TEMPORARILY_REJECTED, "ardupilot": Result.FAILED}
     assert flight.vehicle.set_mode_kind("mission") is refused[personality]
-    assert flight.vehicle.mission_start(0, 0) is Result.DENIED
+    denied = {"px4": Result.DENIED, "ardupilot": Result.FAILED}
+    assert flight.vehicle.mission_start(0, 0) is denied[personality]
 
 
 @either
@@ -131,26 +139,28 @@ def test_asked_to_hold_on_the_way_to_a_reposition_goal_it_stops(personality: Per
     assert flight.pos[0] < north + speed * 0.8 + speed * speed / (2.0 * 1.5)
 
 
-@either
-def test_pause_and_resume(personality: Personality) -> None:
-    flight = Flight.hovering(personality, 5.0)
-    assert flight.vehicle.resume() is Result.DENIED
+def test_pause_and_resume() -> None:
+    """PX4 1.14 knows neither (commands_px4.json: 193 UNSUPPORTED)."""
+    flight = Flight.hovering("ardupilot", 5.0)
+    assert flight.vehicle.resume() is Result.FAILED
     assert flight.vehicle.pause() is Result.ACCEPTED
     flight.fly(2.0)
     assert flight.speed_m_s < 0.25
-    resumed = flight.vehicle.resume()
-    assert resumed is (Result.ACCEPTED if personality == "ardupilot" else Result.DENIED)
+    assert flight.vehicle.resume() is Result.ACCEPTED
+    other = Flight.hovering("px4", 5.0)
+    assert other.vehicle.pause() is other.vehicle.resume() is Result.UNSUPPORTED
 
 
 @either
 def test_speed_changes_and_goes_back(personality: Personality) -> None:
     flight = Flight.hovering(personality, 5.0)
-    assert flight.vehicle.change_speed(-3.0) is Result.DENIED
-    assert flight.vehicle.change_speed(1.5) is Result.ACCEPTED
+    ground = SpeedType.GROUND
+    assert flight.vehicle.change_speed(ground, -3.0) is Result.DENIED
     flight.vehicle.reposition((60.0, 0.0, -5.0), None, None)
+    assert flight.vehicle.change_speed(ground, 1.5) is Result.ACCEPTED
     flight.fly(4.0)
     assert flight.speed_m_s == pytest.approx(1.5, abs=0.2)
-    flight.vehicle.change_speed(-2.0)
+    flight.vehicle.change_speed(ground, None)
     flight.fly(4.0)
     cruise_m_s = {"px4": 5.0, "ardupilot": 10.0}[personality]
     assert flight.speed_m_s == pytest.approx(cruise_m_s, abs=0.3)
@@ -178,12 +188,18 @@ def test_the_nose_turns_the_way_it_was_told(personality: Personality) -> None:
 
 
 @either
-def test_flights_are_refused_on_the_ground(personality: Personality) -> None:
-    vehicle = Flight(personality).boot().vehicle
-    assert vehicle.reposition((1.0, 0.0, -2.0), None, None) is Result.DENIED
-    assert vehicle.change_altitude(3.0) is Result.DENIED
-    assert vehicle.condition_yaw(1.0, False, 1.0, 0) is Result.DENIED
-    assert vehicle.pause() is Result.DENIED
+def test_flights_asked_for_on_the_ground_move_nothing(personality: Personality) -> None:
+    """As recorded they are ACCEPTED there; ArduCopter's pause is FAILED."""
+    flight = Flight(personality).boot()
+    vehicle = flight.vehicle
+    assert vehicle.reposition((1.0, 0.0, -2.0), None, None) is Result.ACCEPTED
+    assert vehicle.change_altitude(3.0) is Result.ACCEPTED
+    assert vehicle.condition_yaw(1.0, False, 1.0, 0) is Result.ACCEPTED
+    unknown = personality == "px4"
+    assert vehicle.pause() is (Result.UNSUPPORTED if unknown else Result.FAILED)
+    flight.fly(5.0)
+    assert flight.landed() is Landed.ON_GROUND
+    assert not vehicle.armed
 
 
 @either

@@ -7,7 +7,7 @@ from math import atan2, cos, hypot, inf, nan, pi, remainder, sin
 import pytest
 
 from tests.unit.autopilot.hand_flight import HandFlight
-from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result
+from vehicle_sim.autopilot.interface import Geodetic, Landed, OrbitRequest, Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -105,10 +105,13 @@ def test_the_sticks_change_an_orbit() -> None:
     assert reversed_.radius_m < 0.0
 
 
-def test_an_orbit_wants_a_flying_px4() -> None:
+def test_an_orbit_wants_a_px4_and_moves_none_on_the_ground() -> None:
+    """commands_px4.json: ACCEPTED on the ground."""
     flight = HandFlight("px4")
     flight.fly(20.0)
-    assert flight.vehicle.orbit(asked()) is Result.TEMPORARILY_REJECTED
+    assert flight.vehicle.orbit(asked()) is Result.ACCEPTED
+    flight.fly(3.0)
+    assert flight.landed() is Landed.ON_GROUND
     copter = HandFlight.hovering("ardupilot", 5.0)
     assert copter.vehicle.orbit(asked()) is Result.UNSUPPORTED
 
@@ -191,7 +194,7 @@ def test_ardupilot_follows_only_when_enabled_and_only_its_leader() -> None:
     assert flight.mode("FOLLOW") is Result.FAILED
     flight.fly(0.1)
     assert "Set FOLL_ENABLE = 1" in flight.texts()
-    assert "Mode change to FOLLOW failed: init failed" in flight.texts()
+    assert "Mode change to Follow failed: init failed" in flight.texts()
     for name, value in (
         ("FOLL_ENABLE", 1),
         ("FOLL_SYSID", 42),

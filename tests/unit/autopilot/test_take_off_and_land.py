@@ -105,10 +105,12 @@ def test_ardupilot_takes_off_armed_and_in_guided_only() -> None:
 
 
 @either
-def test_a_repeated_take_off_is_accepted_without_a_second_effect(personality: Personality) -> None:
+def test_a_repeated_take_off_has_no_second_effect(personality: Personality) -> None:
+    """PX4 accepts it, ArduCopter fails it (commands_*.json: "takeoff in air")."""
     flight = Flight.hovering(personality, 3.0)
     mode = flight.vehicle.mode_name
-    assert flight.vehicle.take_off(20.0) is Result.ACCEPTED
+    answers = {"px4": Result.ACCEPTED, "ardupilot": Result.FAILED}
+    assert flight.vehicle.take_off(20.0) is answers[personality]
     flight.fly(3.0)
     assert flight.vehicle.mode_name == mode
     assert flight.up_m == pytest.approx(3.0, abs=0.25)
@@ -117,7 +119,8 @@ def test_a_repeated_take_off_is_accepted_without_a_second_effect(personality: Pe
 @either
 def test_it_does_not_disarm_in_the_air_unless_forced(personality: Personality) -> None:
     flight = Flight.hovering(personality, 3.0)
-    assert flight.vehicle.disarm(False) in (Result.DENIED, Result.FAILED)
+    refused = {"px4": Result.TEMPORARILY_REJECTED, "ardupilot": Result.FAILED}
+    assert flight.vehicle.disarm(False) is refused[personality]
     assert flight.vehicle.armed
     assert flight.vehicle.disarm(True) is Result.ACCEPTED
     flight.fly(0.5)
@@ -169,10 +172,10 @@ def test_hover_is_steady_and_the_heading_stays(personality: Personality) -> None
 
 def test_termination_stops_the_motors_for_good() -> None:
     flight = Flight.hovering("px4", 5.0)
-    assert flight.vehicle.terminate() is Result.ACCEPTED
+    assert flight.vehicle.terminate(True) is Result.ACCEPTED
     flight.fly(5.0)
     assert not flight.vehicle.armed
-    assert flight.vehicle.arm(True) is Result.DENIED
+    assert flight.vehicle.arm(True) is Result.TEMPORARILY_REJECTED
     assert flight.vehicle.system_status == 8
     assert flight.vehicle.reboot() is Result.ACCEPTED
     flight.fly(1.5)
@@ -205,7 +208,7 @@ def test_a_reboot_on_the_ground_starts_anew_at_home() -> None:
 
 def test_a_reboot_in_the_air_ends_in_a_fall() -> None:
     flight = Flight.hovering("px4", 8.0)
-    flight.vehicle.terminate()
+    flight.vehicle.terminate(True)
     assert flight.vehicle.reboot() is Result.ACCEPTED
     flight.fly(0.5)
     assert flight.vehicle.motor_outputs == (0.0, 0.0, 0.0, 0.0)

@@ -248,11 +248,14 @@ def test_one_of_two_inclusion_zones_is_enough_only_where_fence_options_say_so() 
 
 
 @either
-def test_a_goal_outside_the_fence_is_refused(personality: Personality) -> None:
+def test_a_goal_outside_the_fence_is_not_flown_to(personality: Personality) -> None:
+    """PX4 accepts it, says so, and stays (scenario F2)."""
     flight = fenced(Flight.hovering(personality, 5.0), box(personality, 20.0))
     there = (30.0, 0.0, -5.0)
-    expected = Result.DENIED if personality == "px4" else Result.FAILED
+    expected = Result.ACCEPTED if personality == "px4" else Result.FAILED
     assert flight.vehicle.reposition(there, None, None) is expected
+    flight.fly(3.0)
+    assert flight.off((0.0, 0.0, -5.0)) < 1.0
     assert flight.vehicle.reposition((10.0, 0.0, -5.0), None, None) is Result.ACCEPTED
 
 

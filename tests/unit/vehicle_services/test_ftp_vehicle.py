@@ -44,4 +44,4 @@ def test_only_px4_knows_component_metadata() -> None:
     assert uri == b"mftp://etc/extras/component_general.json"
     (summed,) = ftp_replies(bench.send(frame(Opcode.CALC_FILE_CRC32, uri.removeprefix(b"mftp://"))))
     assert understood(summed).data == told.file_crc.to_bytes(4, "little")
-    assert acks(Bench("ardupilot").send(long(512, 397))) == [(512, 3)]
+    assert acks(Bench("ardupilot").send(long(512, 397))) == [(512, 4)]

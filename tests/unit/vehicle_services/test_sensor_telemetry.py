@@ -26,7 +26,7 @@ def fake(**changes: object) -> FakeVehicle:
 
 def unhealthy(vehicle: FakeVehicle) -> Sensor:
     """Present, and said to be not healthy."""
-    status = build.sys_status(vehicle, PX4)
+    status = build.sys_status(vehicle, ARDUPILOT)
     return Sensor(status.onboard_control_sensors_present & ~status.onboard_control_sensors_health)
 
 
@@ -53,13 +53,25 @@ def test_each_trouble_takes_its_own_health_bits(changes: dict[str, object], bits
     assert unhealthy(fake(**changes)) == bits
 
 
-@pytest.mark.parametrize("profile", [PX4, ARDUPILOT])
-def test_a_fence_that_there_is_not_is_healthy(profile: Profile) -> None:
-    """ArduPilot's `sys_status_failed`; MAVProxy says "fence breach" without the bit."""
+def test_px4_tells_the_sensors_that_the_real_one_tells() -> None:
+    """behaviour.json rank 3: present and enabled; of health 0x2220803f to 0x3220803f."""
+    vehicle = fake()
+    status = build.sys_status(vehicle, PX4)
+    assert status.onboard_control_sensors_present == 0x0220002D
+    assert status.onboard_control_sensors_enabled == 0x0221002D
+    assert status.onboard_control_sensors_health == 0x3220803F
+    vehicle.armable = False
+    assert build.sys_status(vehicle, PX4).onboard_control_sensors_health == 0x2220803F
+
+
+@pytest.mark.parametrize(("profile", "healthy"), [(PX4, False), (ARDUPILOT, True)])
+def test_a_fence_that_there_is_not_is_healthy(profile: Profile, healthy: bool) -> None:
+    """ArduPilot's `sys_status_failed`; MAVProxy says "fence breach" without the bit, as it does
+    of a real PX4, which is recorded without it."""
     vehicle = fake()
     status = build.sys_status(vehicle, profile)
     assert not status.onboard_control_sensors_present & Sensor.GEOFENCE
-    assert status.onboard_control_sensors_health & Sensor.GEOFENCE
+    assert bool(status.onboard_control_sensors_health & Sensor.GEOFENCE) is healthy
     vehicle.fence_state = FenceState(True, True, True, 1, 3, 0)
     status = build.sys_status(vehicle, profile)
     assert not status.onboard_control_sensors_health & Sensor.GEOFENCE, "breached"

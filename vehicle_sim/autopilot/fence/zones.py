@@ -177,7 +177,7 @@ def build(items: Iterable[PlanItem], projection: Projection) -> Fence:
     for item in items:
         where_ne = place_ne(item, projection)
         if item.command in _CIRCLES:
-            radius_m = item.p1 if 0.0 < item.p1 < inf else 0.0
+            radius_m = item.p1 if item.p1 > 0.0 else 0.0
             zones.append(CircleZone(_CIRCLES[item.command], where_ne, radius_m))
         elif item.command in _POLYGONS:
             corners.append(where_ne)

@@ -1,0 +1,154 @@
+"""PREFLIGHT_CALIBRATION: acks, texts and ends, as recorded (scenarios D1, D2, D5; clients.md 12).
+
+Two things are not copied: PX4's recorded gyroscope was too noisy and tried five times, and while
+one calibration ran a second one was answered by a storm of DENIED acks; this one says it once.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long
+from tests.unit.vehicle_services.flown_vehicle import Flown, in_the_air, on_the_ground
+from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.wire import messages as m
+
+CALIBRATE = 241
+ARM = long(400, 1)
+CALIBRATING, STANDBY = 2, 3  # MAV_STATE
+
+
+def calibrate(*params: float) -> m.CommandLong:
+    return long(CALIBRATE, *params)
+
+
+def told(bench: Flown, asked: m.CommandLong, ns: int) -> tuple[list[int], list[str]]:
+    """The results of its acks, and the texts, within that time."""
+    heard = bench.send(asked) + bench.advance(ns)
+    results = [result for command, result in acks(heard) if command == asked.command]
+    return results, bench.texts(heard)
+
+
+GYRO_DONE = [
+    "[cal] calibration started: 2 gyro",
+    *(f"[cal] progress <{part}>" for part in range(0, 101, 10)),
+    "[cal] calibration done: gyro",
+]
+
+
+@pytest.mark.parametrize(
+    ("params", "texts"),
+    [
+        ((1,), GYRO_DONE),
+        ((0, 0, 1), ["[cal] calibration started: 2 baro", "[cal] calibration done: baro"]),
+        ((0, 0, 0, 1), ["Calibration: Disabling RC input\t"]),
+        ((0, 0, 0, 2), ["trim cal done\t"]),
+        ((0, 0, 0, 0, 2), ["[cal] calibration started: 2 level", "[cal] calibration done: level"]),
+        ((0, 0, 0, 0, 4), []),
+        ((), []),
+        ((1, 0, 1), GYRO_DONE),
+    ],
+)
+def test_px4s_run_through_their_steps_and_end(params: tuple[float, ...], texts: list[str]) -> None:
+    """D1, D5: ACCEPTED at once; of two in one command the first; none at all is ACCEPTED."""
+    bench = on_the_ground("px4")
+    assert told(bench, calibrate(*params), 5 * S) == ([Result.ACCEPTED], texts)
+    assert bench.autopilot.system_status == STANDBY
+    assert bench.result(ARM) == Result.ACCEPTED
+
+
+@pytest.mark.parametrize("params", [(3,), (0, 0, 0, 0, 3)])
+def test_px4_does_not_answer_what_it_does_not_know(params: tuple[float, ...]) -> None:
+    """D1: p1 = 3 and p5 = 3."""
+    assert told(on_the_ground("px4"), calibrate(*params), 5 * S) == ([], [])
+
+
+def test_a_calibrating_px4_says_so_and_takes_no_arming_and_no_second_one() -> None:
+    """D2."""
+    bench = on_the_ground("px4")
+    assert bench.result(calibrate(0, 0, 1), 500 * MS) == Result.ACCEPTED
+    assert bench.autopilot.system_status == CALIBRATING
+    results, texts = told(bench, ARM, 200 * MS)
+    assert results == [Result.TEMPORARILY_REJECTED]
+    assert texts == ["Transition denied: Init to Armed\t"]
+    results, texts = told(bench, calibrate(1), 200 * MS)
+    assert results == [Result.TEMPORARILY_REJECTED]
+    assert texts == ["command denied during calibration: 241\t"]
+
+
+def test_px4_cancels_a_gyro_calibration_but_none_that_waits_for_a_side() -> None:
+    """D1, D5, D6: a cancel is all zero."""
+    bench = on_the_ground("px4")
+    assert bench.result(calibrate(1), 300 * MS) == Result.ACCEPTED
+    results, texts = told(bench, calibrate(), 2 * S)
+    assert results == [Result.ACCEPTED]
+    assert texts == ["[cal] calibration cancelled", "[cal] calibration failed: gyro"]
+    assert bench.autopilot.system_status == STANDBY
+    results, texts = told(bench, calibrate(0, 1), S)
+    assert texts == [
+        "[cal] calibration started: 2 mag",
+        "[cal] pending: back front left right up down",
+        "[cal] hold vehicle still on a pending side",
+    ]
+    assert told(bench, calibrate(), 8 * S) == ([Result.TEMPORARILY_REJECTED], [])
+    assert bench.autopilot.system_status == CALIBRATING
+    assert "[cal] calibration failed: mag" in bench.texts(bench.advance(90 * S))
+    assert bench.autopilot.system_status == STANDBY
+
+
+def test_nothing_is_calibrated_while_armed() -> None:
+    """D2, of ArduPilot."""
+    bench = in_the_air("ardupilot")
+    assert told(bench, calibrate(1), S) == ([Result.FAILED], ["Disarm to allow calibration"])
+
+
+@pytest.mark.parametrize(
+    ("params", "results", "texts", "acked_ms"),
+    [
+        ((1,), [Result.ACCEPTED], ["Initialising ArduPilot"], 530),
+        ((0, 0, 1), [Result.ACCEPTED],
+         ["Updating barometer calibration", "Barometer calibration complete"], 0),
+        ((0, 0, 0, 0, 2), [Result.ACCEPTED],
+         ["Initialising ArduPilot", "Trim OK: roll=0.01 pitch=-0.01 yaw=0.00"], 1090),
+        ((0, 0, 0, 0, 4), [Result.TEMPORARILY_REJECTED], [], 0),
+        *((each, [Result.UNSUPPORTED], [], 0)
+          for each in ((3,), (0, 0, 0, 1), (0, 0, 0, 2), (0, 0, 0, 0, 3), (0, 0, 0, 0, 0, 0, 1),
+                       (0, 1), ())),
+    ],
+)  # fmt: skip
+def test_ardupilots_are_acked_when_they_end(
+    params: tuple[float, ...], results: list[Result], texts: list[str], acked_ms: int
+) -> None:
+    """D1: the ack of gyro and level comes at the end."""
+    bench = on_the_ground("ardupilot")
+    heard = bench.send(calibrate(*params))
+    early = [result for command, result in acks(heard) if command == CALIBRATE]
+    assert early == ([] if acked_ms else results)
+    heard += bench.advance(max(0, acked_ms - 150) * MS)
+    assert len(acks(heard)) == len(early)
+    heard += bench.advance(2 * S)
+    assert [result for command, result in acks(heard) if command == CALIBRATE] == results
+    assert bench.texts(heard) == texts
+    assert bench.result(ARM) == Result.ACCEPTED
+
+
+def positions(heard: list[m.Message]) -> list[float]:
+    return [each.param1 for each in heard if isinstance(each, m.CommandLong)]
+
+
+def test_ardupilot_asks_for_sides_and_fails_as_the_vehicle_is_not_turned() -> None:
+    """D1: asked once a second by a command; positions 1 and 2 are taken, then it has failed."""
+    bench = on_the_ground("ardupilot")
+    heard = bench.send(calibrate(0, 0, 0, 0, 1)) + bench.advance(4 * S)
+    assert acks(heard) == [(CALIBRATE, Result.ACCEPTED)]
+    assert bench.texts(heard) == [
+        "Initialising ArduPilot",
+        "Place vehicle level and press any key.",
+    ]
+    assert positions(heard) == [1.0] * 4
+    assert bench.result(long(42429, 1), 0) == Result.ACCEPTED
+    assert positions(bench.advance(1_100 * MS)) == [2.0]
+    results, texts = told(bench, long(42429, 2), 100 * MS)
+    assert (results, texts) == ([Result.ACCEPTED], ["Calibration FAILED"])
+    assert positions(bench.advance(1_100 * MS)) == [16777216.0]
+    assert bench.result(long(42429, 3), 0) == Result.FAILED

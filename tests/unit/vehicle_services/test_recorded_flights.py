@@ -1,0 +1,481 @@
+"""What the real autopilots were recorded to do with commands over time, as short flights.
+
+Each test names the scenario (scenarios_px4.json, scenarios_arducopter.json) that it follows.
+"""
+
+from __future__ import annotations
+
+from math import hypot, nan
+
+import pytest
+
+from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long
+from tests.unit.vehicle_services.flown_vehicle import (
+    HOME,
+    Flown,
+    in_the_air,
+    on_the_ground,
+    take_off,
+)
+from vehicle_sim.autopilot.interface import Landed, PlanItem, Result
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import Cmd
+
+ARM, DISARM = long(Cmd.COMPONENT_ARM_DISARM, 1), long(Cmd.COMPONENT_ARM_DISARM, 0)
+E7_PER_M = 90.0  # of latitude
+
+
+def reposition(
+    flag: int, north_m: float = 15.0, up_m: float = 8.0, speed: float = -1.0
+) -> m.CommandInt:
+    x, y = round(HOME.lat_deg * 1e7 + north_m * E7_PER_M), round(HOME.lon_deg * 1e7)
+    return m.CommandInt(speed, flag, 0.0, nan, x, y, up_m, Cmd.DO_REPOSITION, 1, 1, 6, 0, 0)
+
+
+def item(seq: int, command: int, *params: float, x: int = 0, y: int = 0, z: float = 0) -> PlanItem:
+    p1, p2, p3, p4 = (*params, *(0.0,) * (4 - len(params)))
+    return PlanItem(seq, 3, command, p1, p2, p3, p4, x, y, z, 1)
+
+
+HOME_ITEM = item(0, 16)
+
+
+def beat(bench: Flown, seconds: float, systems: tuple[int, ...] = (255,)) -> list[m.Message]:
+    """Time passes with heartbeats of these stations."""
+    heard: list[m.Message] = []
+    for _ in range(round(seconds)):
+        for system in systems:
+            heard += bench.send(m.Heartbeat(0, 6, 8, 0, 4, 3), system=system)
+        heard += bench.advance(S)
+    return heard
+
+
+def fastest(bench: Flown, seconds: float, climb: bool = False) -> float:
+    """Highest speed over ground, or of climb, within that time [m/s]."""
+    most = 0.0
+    for _ in range(round(seconds * 5)):
+        bench.advance(S // 5)
+        n, e, d = bench.autopilot.truth.v_ned
+        most = max(most, -d if climb else hypot(n, e))
+    return most
+
+
+# ---------------------------------------------------- A take-off and reposition (clients.md 5)
+
+
+def test_px4_flies_to_a_place_given_before_it_has_left_the_ground() -> None:
+    """A1: take-off, 1 s, HOLD, DO_REPOSITION: ACCEPTED, and it flies there."""
+    bench = on_the_ground("px4")
+    take_off(bench)
+    bench.advance(S)
+    assert bench.result(long(176, 1, 4, 3), 0) == Result.ACCEPTED
+    assert bench.result(reposition(1), 0) == Result.ACCEPTED
+    bench.advance(15 * S)
+    north, _, down = bench.autopilot.truth.pos_ned
+    assert (north, -down) == (pytest.approx(15.0, abs=1.5), pytest.approx(8.0, abs=1.0))
+    assert bench.mode_name == "AUTO.LOITER"
+
+
+def test_px4_still_takes_off_when_hold_comes_while_it_stands() -> None:
+    """A5: HOLD 1 s after NAV_TAKEOFF: up to the take-off height, in AUTO.LOITER."""
+    bench = on_the_ground("px4")
+    take_off(bench)
+    bench.advance(S)
+    bench.mode("AUTO.LOITER")
+    bench.advance(12 * S)
+    assert -bench.autopilot.truth.pos_ned[2] == pytest.approx(5.0, abs=0.8)
+    assert bench.mode_name == "AUTO.LOITER"
+
+
+def test_px4_flies_off_when_armed_with_a_place_that_it_was_given_disarmed() -> None:
+    """A4: takes off by itself after arming."""
+    bench = on_the_ground("px4")
+    assert bench.result(reposition(0), 0) == Result.UNSUPPORTED
+    assert bench.result(reposition(1), 0) == Result.ACCEPTED
+    bench.mode("AUTO.LOITER")
+    assert bench.result(ARM, 4 * S) == Result.ACCEPTED
+    assert bench.autopilot.landed is Landed.IN_AIR
+
+
+def test_px4_stands_after_arming_in_hold_alone_and_disarms() -> None:
+    """A6: "Disarmed by auto preflight disarming" 10 s after arming; nothing is left of a place
+    of an earlier flight."""
+    bench = on_the_ground("px4")
+    assert bench.result(reposition(1), 0) == Result.ACCEPTED
+    assert bench.result(ARM, 0) == Result.ACCEPTED
+    assert bench.result(DISARM, 0) == Result.ACCEPTED
+    bench.advance(5 * S)
+    assert bench.result(ARM, 0) == Result.ACCEPTED
+    heard = bench.advance(9_500 * MS)
+    assert bench.autopilot.armed
+    heard += bench.advance(1_000 * MS)
+    assert "Disarmed by auto preflight disarming\t" in bench.texts(heard)
+    assert bench.autopilot.landed is Landed.ON_GROUND
+
+
+@pytest.mark.parametrize("mode", ["AUTO.LOITER", "AUTO.RTL", "AUTO.LAND"])
+def test_px4_repositions_with_the_flag_from_any_mode(mode: str) -> None:
+    """A3 (vehicle.md 4)."""
+    bench = in_the_air("px4")
+    bench.mode(mode)
+    assert bench.result(reposition(0), 0) == Result.UNSUPPORTED
+    assert bench.mode_name == mode
+    assert bench.result(reposition(1), 0) == Result.ACCEPTED
+    assert bench.mode_name == "AUTO.LOITER"
+
+
+@pytest.mark.parametrize("mode", ["LOITER", "RTL", "LAND"])
+def test_ardupilot_repositions_from_another_mode_only_with_the_flag(mode: str) -> None:
+    """A3 (vehicle.md 4): DENIED without; in GUIDED itself the flag makes no difference."""
+    bench = in_the_air("ardupilot")
+    assert bench.result(reposition(0), 0) == Result.ACCEPTED
+    by_long = long(Cmd.DO_REPOSITION, -1, 1, 0, nan, HOME.lat_deg, HOME.lon_deg, 5)
+    assert bench.result(by_long, 0) == Result.UNSUPPORTED
+    bench.mode(mode)
+    assert bench.result(reposition(0), 0) == Result.DENIED
+    assert bench.mode_name == mode
+    assert bench.result(reposition(1), 0) == Result.ACCEPTED
+    assert bench.mode_name == "GUIDED"
+
+
+def test_ardupilot_drops_the_take_off_for_a_place() -> None:
+    """A1: before the motors are up: it never leaves the ground, and disarms after 10 s.
+
+    The recorded one needs 3 s for that, this one 0.5 s."""
+    bench = on_the_ground("ardupilot")
+    take_off(bench)
+    bench.advance(200 * MS)
+    assert bench.result(reposition(1), 0) == Result.ACCEPTED
+    bench.advance(8 * S)
+    assert bench.autopilot.landed is Landed.ON_GROUND
+    assert bench.autopilot.armed
+    bench.advance(3 * S)
+    assert not bench.autopilot.armed
+
+
+# ------------------------------------------------------------ B sticks lost (clients.md 6)
+
+
+def test_px4_goes_on_taking_off_when_the_sticks_are_lost_just_then() -> None:
+    """B1: hold, for COM_FAIL_ACT_T; then it returns.  Never disarmed in between."""
+    bench = on_the_ground("px4")
+    stick = m.ManualControl(0, 0, 500, 0, 0, 1)
+    for _ in range(20):
+        bench.send(stick)
+        bench.advance(50 * MS)
+    take_off(bench)
+    for _ in range(12):
+        bench.send(stick)
+        bench.advance(50 * MS)
+    heard = bench.advance(1_500 * MS)
+    assert bench.autopilot.armed
+    assert bench.mode_name == "AUTO.LOITER"
+    heard += bench.advance(3 * S)
+    assert bench.autopilot.armed
+    assert bench.autopilot.landed is Landed.IN_AIR
+    bench.advance(3 * S)
+    assert bench.mode_name == "AUTO.RTL"
+
+
+# ------------------------------------------- C missions (clients.md 7, 8, 9)
+
+
+@pytest.mark.parametrize("command", [16, 18, 82])
+def test_ardupilot_takes_an_item_at_zero_for_here(command: int) -> None:
+    """C1: WAYPOINT, LOITER_TURNS, SPLINE at 0/0; PX4 has refused them before."""
+    plan = (HOME_ITEM, item(1, 22, z=5), item(2, command, 1.0, z=0))
+    assert on_the_ground("ardupilot").autopilot.check_plan(plan) is None
+
+
+def test_ardupilot_flies_a_waypoint_at_zero_where_it_is() -> None:
+    """C1: 0/0 with altitude 0 is the present place and height."""
+    bench = in_the_air("ardupilot")
+    bench.autopilot.load_plan((HOME_ITEM, item(1, 22, z=5), item(2, 16, 2.0), item(3, 16, 2.0)))
+    bench.autopilot.mission_set_current(2)
+    bench.mode("AUTO")
+    bench.advance(8 * S)
+    north, east, down = bench.autopilot.truth.pos_ned
+    assert hypot(north, east) < 1.0
+    assert -down == pytest.approx(5.0, abs=0.7)
+
+
+def test_ardupilot_waits_and_sets_its_speed_before_the_take_off() -> None:
+    """C2: DO_CHANGE_SPEED 3, NAV_DELAY 5 s, TAKEOFF: 5 s armed on the ground, then up."""
+    bench = on_the_ground("ardupilot")
+    speed, delay = item(1, 178, 1, 3, -1), item(2, 93, 5, -1, -1, -1)
+    far = item(4, 16, x=round(HOME.lat_deg * 1e7 + 60 * E7_PER_M), y=round(HOME.lon_deg * 1e7), z=8)
+    bench.autopilot.load_plan((HOME_ITEM, speed, delay, item(3, 22, z=8), far))
+    bench.mode("GUIDED")
+    assert bench.result(ARM, 0) == Result.ACCEPTED
+    assert bench.result(long(300), 0) == Result.ACCEPTED
+    heard = bench.advance(4_900 * MS)
+    assert bench.autopilot.landed is Landed.ON_GROUND
+    heard += bench.advance(15 * S)
+    reached = [each.seq for each in heard if isinstance(each, m.MissionItemReached)]
+    assert reached == [2, 3]
+    assert fastest(bench, 6) == pytest.approx(3.0, abs=0.3)
+
+
+def test_ardupilot_refuses_auto_without_a_take_off_while_armed_on_the_ground() -> None:
+    """C3: FAILED with two texts; disarmed it is ACCEPTED, and then not armable."""
+    bench = on_the_ground("ardupilot")
+    bench.autopilot.load_plan((HOME_ITEM, item(1, 16, x=473978768, y=85455937, z=8)))
+    auto = long(176, 1, 3)
+    bench.mode("GUIDED")
+    assert bench.result(ARM) == Result.ACCEPTED
+    for asked in (auto, long(300)):
+        heard = bench.send(asked)
+        assert acks(heard) == [(asked.command, Result.FAILED)]
+        assert bench.texts(bench.advance(S)) == [
+            "Auto: Missing Takeoff Cmd",
+            "Mode change to Auto failed: init failed",
+        ]
+    assert bench.result(DISARM, 0) == Result.ACCEPTED
+    assert bench.result(auto, 0) == Result.ACCEPTED
+    heard = bench.send(ARM) + bench.advance(S)
+    assert acks(heard) == [(400, Result.FAILED)]
+    assert "Arm: Auto mode not armable" in bench.texts(heard)
+
+
+def test_ardupilot_without_a_mission_starts_none_when_armed() -> None:
+    """C4: disarmed ACCEPTED, "PreArm: Mode requires mission"; armed FAILED."""
+    bench = on_the_ground("ardupilot")
+    heard = bench.send(long(300)) + bench.advance(S)
+    assert acks(heard) == [(300, Result.ACCEPTED)]
+    assert bench.texts(heard) == ["PreArm: Mode requires mission"]
+    flying = in_the_air("ardupilot")
+    assert flying.result(long(300)) == Result.FAILED
+    assert flying.result(long(176, 1, 3)) == Result.FAILED
+
+
+def test_px4_takes_the_mission_mode_without_a_mission_only_disarmed() -> None:
+    """C10: TEMPORARILY_REJECTED armed and in the air."""
+    bench = on_the_ground("px4")
+    assert bench.result(ARM, 0) == Result.ACCEPTED
+    assert bench.result(long(176, 1, 4, 4), 0) == Result.TEMPORARILY_REJECTED
+    assert in_the_air("px4").result(long(176, 1, 4, 4)) == Result.TEMPORARILY_REJECTED
+
+
+# --------------------------------------------------------- G station lost (vehicle.md 1)
+
+
+@pytest.mark.parametrize("systems", [(255, 77), (77,)])
+def test_only_its_own_station_keeps_ardupilots_failsafe_away(systems: tuple[int, ...]) -> None:
+    """G8: 255 silent while 77 beats: "GCS Failsafe", RTL."""
+    bench = in_the_air("ardupilot")
+    bench.parameters.set("FS_GCS_ENABLE", 1)
+    beat(bench, 2, (255, 77))
+    heard = beat(bench, 8, systems)
+    lost = 255 not in systems
+    assert ("GCS Failsafe" in bench.texts(heard)) is lost
+    assert bench.mode_name == ("RTL" if lost else "GUIDED")
+
+
+def test_any_station_keeps_px4s_failsafe_away() -> None:
+    """G3."""
+    bench = in_the_air("px4")
+    bench.parameters.set("NAV_DLL_ACT", 2)
+    bench.parameters.set("COM_DL_LOSS_T", 5)
+    beat(bench, 2, (255,))
+    beat(bench, 12, (77,))
+    assert bench.mode_name == "AUTO.LOITER"
+
+
+# ------------------------------------------- H speed and termination (vehicle.md 2, 3, 5, 8)
+
+
+def test_px4_takes_a_speed_of_any_type_for_the_horizontal_one() -> None:
+    """H1b: type 2 (climb), 1 m/s: the horizontal cruise is 1.05 m/s."""
+    bench = in_the_air("px4")
+    assert bench.result(long(178, 2, 1, -1), 0) == Result.ACCEPTED
+    bench.mode("AUTO.LOITER")
+    bench.autopilot.load_plan((item(0, 16, x=round(HOME.lat_deg * 1e7 + 4000),
+                                    y=round(HOME.lon_deg * 1e7), z=5),))  # fmt: skip
+    bench.mode("AUTO.MISSION")
+    assert fastest(bench, 8) == pytest.approx(1.05, abs=0.25)
+
+
+@pytest.mark.parametrize("value", [-1.0, -2.0, 0.0, nan])
+def test_px4_restores_its_default_speed_for_what_is_no_speed(value: float) -> None:
+    """H1b: -1, -2, 0 and NaN; on the ground they are ACCEPTED, too (H1)."""
+    bench = in_the_air("px4")
+    bench.autopilot.load_plan((item(0, 16, x=round(HOME.lat_deg * 1e7 + 8000),
+                                    y=round(HOME.lon_deg * 1e7), z=5),))  # fmt: skip
+    for kind in range(5):
+        assert bench.result(long(178, kind, 1.0, -1), 0) == Result.ACCEPTED
+    bench.mode("AUTO.MISSION")
+    assert fastest(bench, 6) < 1.5
+    assert bench.result(long(178, 1, value, -1), 0) == Result.ACCEPTED
+    assert fastest(bench, 8) > 4.0
+    assert on_the_ground("px4").result(long(178, 1, value, -1)) == Result.ACCEPTED
+
+
+def test_px4s_reposition_without_a_speed_restores_the_default() -> None:
+    """H1b: param1 2 gives 2.0 m/s, -1 the default again."""
+    bench = in_the_air("px4")
+    bench.send(reposition(1, north_m=30.0, up_m=5.0, speed=2.0))
+    assert fastest(bench, 6) == pytest.approx(2.0, abs=0.3)
+    bench.send(reposition(1, north_m=80.0, up_m=5.0))
+    assert fastest(bench, 8) > 4.0
+
+
+@pytest.mark.parametrize("value", [-1.0, -2.0, 0.0, -5.0])
+def test_ardupilot_denies_a_speed_that_is_none_and_fails_any_on_the_ground(value: float) -> None:
+    """H1."""
+    assert in_the_air("ardupilot").result(long(178, 1, value)) == Result.DENIED
+    assert in_the_air("ardupilot").result(long(178, 4, 3.0)) == Result.DENIED
+    ground = on_the_ground("ardupilot")
+    assert ground.result(long(178, 1, 3.0)) == Result.FAILED
+    assert ground.result(ARM) == Result.ACCEPTED
+    assert ground.result(long(178, 1, 3.0)) == Result.FAILED
+
+
+def test_ardupilot_sets_the_climb_rate_by_type() -> None:
+    """H1: climb 0.76 m/s after type 2 with 0.7; the horizontal speed is another."""
+    bench = in_the_air("ardupilot")
+    assert bench.result(long(178, 2, 0.7), 0) == Result.ACCEPTED
+    bench.send(reposition(1, north_m=0.0, up_m=12.0))
+    assert fastest(bench, 6, climb=True) == pytest.approx(0.7, abs=0.15)
+    bench.send(reposition(1, north_m=40.0, up_m=12.0))
+    assert fastest(bench, 8) > 3.0
+
+
+def test_px4_stays_armed_after_a_landing_where_the_time_to_disarm_is_zero() -> None:
+    """H2: COM_DISARM_LAND 0 = never: armed in AUTO.LAND for the 13 s that were watched."""
+    bench = in_the_air("px4")
+    bench.parameters.set("COM_DISARM_LAND", 0)
+    bench.mode("AUTO.LAND")
+    bench.advance(12 * S)
+    while bench.autopilot.landed is not Landed.ON_GROUND:
+        bench.advance(S)
+        assert bench.now_ns < 60 * S
+    bench.advance(13 * S)
+    assert bench.autopilot.armed
+    assert bench.result(DISARM) == Result.ACCEPTED
+
+
+def test_px4_stays_armed_on_the_ground_where_that_time_is_zero() -> None:
+    """H2b: COM_DISARM_PRFLT 0: 15.6 s watched."""
+    bench = on_the_ground("px4")
+    bench.parameters.set("COM_DISARM_PRFLT", 0)
+    assert bench.result(ARM) == Result.ACCEPTED
+    bench.advance(16 * S)
+    assert bench.autopilot.armed
+
+
+def test_px4_ends_its_termination() -> None:
+    """H3: disarmed, param1 1: TERMINATION, arming and forced arming TEMPORARILY_REJECTED; 0 ends
+    it, and it arms."""
+    bench = on_the_ground("px4")
+    assert bench.result(long(185, 0), 0) == Result.ACCEPTED
+    assert bench.result(long(185, 1), 0) == Result.ACCEPTED
+    assert bench.autopilot.system_status == 8
+    for force in (0, 21196):
+        heard = bench.send(long(400, 1, force)) + bench.advance(S)
+        assert acks(heard) == [(400, Result.TEMPORARILY_REJECTED)]
+        assert "Preflight Fail: Flight termination active" in bench.texts(heard)
+    assert bench.result(long(185, 0), 0) == Result.ACCEPTED
+    assert bench.autopilot.system_status == 3
+    assert bench.result(ARM) == Result.ACCEPTED
+
+
+def test_ardupilots_termination_is_a_disarming() -> None:
+    """H4, H5: 0 FAILED; 1 ACCEPTED, "Disarming motors", it falls, and arms again."""
+    bench = in_the_air("ardupilot")
+    assert bench.result(long(185, 0), 0) == Result.FAILED
+    heard = bench.send(long(185, 1)) + bench.advance(4 * S)
+    assert acks(heard) == [(185, Result.ACCEPTED)]
+    assert bench.texts(heard) == ["Disarming motors"]
+    assert bench.autopilot.system_status == 3
+    assert bench.result(ARM) == Result.ACCEPTED
+    assert on_the_ground("ardupilot").result(long(185, 1)) == Result.ACCEPTED
+
+
+# ------------------------------------------------------------------------- F fence
+
+
+@pytest.mark.parametrize("radius_m", [0.0, -5.0, nan])
+def test_px4_takes_a_fence_circle_of_any_radius(radius_m: float) -> None:
+    """F1 (clients.md 16): inside of one that is an inclusion there is nothing: not armable.
+    ArduPilot refuses it ("Non-positive circle radius")."""
+    circle = item(0, 5003, radius_m, x=473977420, y=85455940)
+    bench = on_the_ground("px4")
+    assert bench.autopilot.check_fence((circle,)) is None
+    bench.autopilot.load_fence((circle,))
+    bench.advance(S)
+    assert bench.result(ARM) == Result.TEMPORARILY_REJECTED
+    assert on_the_ground("ardupilot").autopilot.check_fence((circle,)) is not None
+
+
+def test_one_inclusion_zone_of_several_is_enough_for_px4() -> None:
+    """F2 (clients.md 19); ArduPilot wants all (F2)."""
+    here = item(0, 5003, 20.0, x=473977420, y=85455940)
+    there = item(1, 5003, 20.0, x=473987420, y=85455940)
+    for personality, result in (("px4", Result.ACCEPTED), ("ardupilot", Result.FAILED)):
+        bench = on_the_ground(personality)  # type: ignore[arg-type]
+        if personality == "ardupilot":
+            bench.parameters.set("FENCE_ENABLE", 1)
+            bench.parameters.set("FENCE_TYPE", 4)
+            bench.mode("GUIDED")
+        bench.autopilot.load_fence((here, there))
+        bench.advance(S)
+        assert bench.result(ARM) == result
+
+
+def test_px4_accepts_a_place_outside_its_fence_and_stays() -> None:
+    """F2: "Reposition is outside geofence"."""
+    bench = in_the_air("px4")
+    bench.autopilot.load_fence((item(0, 5003, 20.0, x=473977420, y=85455940),))
+    heard = bench.send(reposition(1, north_m=60.0)) + bench.advance(6 * S)
+    assert acks(heard) == [(192, Result.ACCEPTED)]
+    assert "Reposition is outside geofence\t" in bench.texts(heard)
+    assert hypot(*bench.autopilot.truth.pos_ned[:2]) < 2.0
+
+
+# ------------------------------------------------------------ heartbeats, texts, banner
+
+
+@pytest.mark.parametrize(
+    ("personality", "mode", "base_mode"),
+    [("px4", "OFFBOARD", 17), ("px4", "POSCTL", 81), ("px4", "AUTO.LOITER", 29),
+     ("ardupilot", "GUIDED", 89), ("ardupilot", "STABILIZE", 81), ("ardupilot", "LAND", 89),
+     ("ardupilot", "RTL", 89), ("ardupilot", "LOITER", 89), ("ardupilot", "AUTO", 89)],
+)  # fmt: skip
+def test_base_mode_disarmed(personality: Personality, mode: str, base_mode: int) -> None:
+    """behaviour.json and the HEARTBEATs of the scenarios; 128 more while armed."""
+    bench = on_the_ground(personality)
+    bench.mode(mode)
+    assert bench.autopilot.base_mode == base_mode
+
+
+def test_px4_says_what_it_does_with_a_tab() -> None:
+    """behaviour.json rank 4; the standard flight L1."""
+    bench = on_the_ground("px4")
+    heard = bench.send(ARM)
+    heard += bench.send(long(22, 0, 0, 0, nan, nan, nan, HOME.alt_amsl_m + 3)) + beat(bench, 9)
+    heard += bench.send(long(21, 0, 0, 0, nan, nan, nan, nan)) + beat(bench, 20)
+    assert bench.texts(heard) == [
+        "Armed by external command\t",
+        "Takeoff detected\t",
+        "Landing at current position\t",
+        "Landing detected\t",
+        "Disarmed by landing\t",
+    ]
+
+
+def test_ardupilot_sends_its_banner_and_px4_does_not_know_the_command() -> None:
+    """D3 (clients.md 21)."""
+    heard = on_the_ground("ardupilot").send(long(Cmd.DO_SEND_BANNER))
+    assert acks(heard) == [(Cmd.DO_SEND_BANNER, Result.ACCEPTED)]
+    assert len([each for each in heard if isinstance(each, m.Statustext)]) == 3
+    px4 = on_the_ground("px4").result(long(Cmd.DO_SEND_BANNER))
+    assert px4 == Result.UNSUPPORTED
+
+
+def test_ardupilot_sends_its_home_when_it_changes_or_is_asked_for() -> None:
+    """clients.md 21: never unasked at a rate."""
+    bench = on_the_ground("ardupilot")
+    assert not [each for each in bench.advance(5 * S) if isinstance(each, m.HomePosition)]
+    (home,) = [each for each in bench.send(long(410)) if isinstance(each, m.HomePosition)]
+    assert all(part != part for part in home.q), "NaN, as the real one sends"
