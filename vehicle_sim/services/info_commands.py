@@ -85,9 +85,10 @@ def _sends(kind: type[m.Message]) -> Handler:
 
 
 def _protocol_version(context: CommandContext, order: Order) -> Answer:
+    """REQUEST_PROTOCOL_VERSION: PX4 takes it, and sends the message to REQUEST_MESSAGE alone."""
     if context.profile.name == "ardupilot":
         raise RefusedError(Result.UNSUPPORTED, "ArduPilot does not know the command")
-    return _send(context, order, m.IDS[m.ProtocolVersion])
+    return Answer(Result.ACCEPTED)
 
 
 INFO: Final[dict[Cmd, CommandEntry]] = {

@@ -54,7 +54,7 @@ _PX4_REQUESTS: Final = Requests(
             m.PositionTargetLocalNed,
         )
     ),
-    accepted=frozenset({m.IDS[m.ProtocolVersion]}),
+    accepted=frozenset(),
 )
 _ARDUPILOT_REQUESTS: Final = Requests(
     Result.FAILED,

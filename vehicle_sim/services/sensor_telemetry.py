@@ -59,6 +59,7 @@ _PX4_PRESENT: Final = (
     | Sensor.GPS
     | Sensor.AHRS
     | Sensor.BATTERY
+    | Sensor.PREARM_CHECK
 )
 _PX4_ENABLED: Final = _PX4_PRESENT | Sensor.RC_RECEIVER
 _PX4_HEALTHY: Final = (
@@ -67,9 +68,10 @@ _PX4_HEALTHY: Final = (
     | Sensor.DIFFERENTIAL_PRESSURE
     | Sensor.MOTOR_OUTPUTS
     | Sensor.OBSTACLE_AVOIDANCE
-    | Sensor.PREARM_CHECK
 )
-"""As recorded: PX4 1.14 says of more that it is healthy than that it is there."""
+"""As recorded, but for one bit: PX4 1.14 has PREARM_CHECK among what is healthy alone, which
+clients that look whether it is present take for a vehicle that does not say if it can be armed.
+"""
 
 
 def _told(fence: FenceState, profile: Profile) -> tuple[Sensor, Sensor, Sensor]:

@@ -89,9 +89,9 @@ def test_what_mavlink_1_has_no_number_for_is_acked_and_not_sent() -> None:
 def test_protocol_version_comes_as_mavlink_2_and_the_first_answer_in_it_switches_for_ever() -> None:
     world = Bench().world
     world.handle(Datagram(0, "ground", BEAT_1), 0)
-    data = sent(world.handle(Datagram(0, "ground", ask(m.IDS[m.ComponentMetadata])), 0))
+    data = sent(world.handle(Datagram(0, "ground", ask(m.IDS[m.ProtocolVersion])), 0))
     frames = split(data, Counters())
-    assert {(frame.number, frame.version) for frame in frames} == {(77, 1), (397, 2)}
+    assert {(frame.number, frame.version) for frame in frames} == {(77, 1), (300, 2)}
     world.handle(Datagram(0, "ground", BEAT_2), 1 * MS)
     world.handle(Datagram(0, "ground", BEAT_1), 2 * MS)
     assert versions(sent(world.handle(Wake(), 500 * MS))) == {2}

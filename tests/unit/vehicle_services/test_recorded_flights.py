@@ -19,6 +19,7 @@ from tests.unit.vehicle_services.flown_vehicle import (
 )
 from vehicle_sim.autopilot.interface import Landed, PlanItem, Result
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.services.streams import POSITION_ONLY
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
@@ -220,6 +221,7 @@ def test_ardupilot_waits_and_sets_its_speed_before_the_take_off() -> None:
 def test_ardupilot_refuses_auto_without_a_take_off_while_armed_on_the_ground() -> None:
     """C3: FAILED with two texts; disarmed it is ACCEPTED, and then not armable."""
     bench = on_the_ground("ardupilot")
+    bench.parameters.set("AUTO_OPTIONS", 0)  # as recorded
     bench.autopilot.load_plan((HOME_ITEM, item(1, 16, x=473978768, y=85455937, z=8)))
     auto = long(176, 1, 3)
     bench.mode("GUIDED")
@@ -479,3 +481,26 @@ def test_ardupilot_sends_its_home_when_it_changes_or_is_asked_for() -> None:
     assert not [each for each in bench.advance(5 * S) if isinstance(each, m.HomePosition)]
     (home,) = [each for each in bench.send(long(410)) if isinstance(each, m.HomePosition)]
     assert all(part != part for part in home.q), "NaN, as the real one sends"
+
+
+def test_px4_returns_in_no_frame_with_a_place() -> None:
+    """behaviour.json rank 2: NAV_RETURN_TO_LAUNCH in frame 6 is refused; in frame 2 it flies."""
+    for frame, refused in ((6, True), (3, True), (2, False)):
+        home = PlanItem(0, frame, 20, 0, 0, 0, 0, 0, 0, 0, 1)
+        assert (on_the_ground("px4").autopilot.check_plan((home,)) is not None) is refused
+        plan = (HOME_ITEM, home)
+        assert on_the_ground("ardupilot").autopilot.check_plan(plan) is None
+
+
+def test_ardupilots_vtol_state_is_a_multicopters() -> None:
+    """behaviour.json rank 3: EXTENDED_SYS_STATE.vtol_state 3 (MC); PX4's is 0."""
+    for personality, state in (("px4", 0), ("ardupilot", 3)):
+        bench = on_the_ground(personality)  # type: ignore[arg-type]
+        bench.send(long(511, 245, 200_000))
+        told = [each for each in bench.advance(S) if isinstance(each, m.ExtendedSysState)]
+        assert {each.vtol_state for each in told} == {state}
+
+
+def test_a_fleets_sparse_streams_have_the_global_position() -> None:
+    """clients.md 21: `--streams position`."""
+    assert m.IDS[m.GlobalPositionInt] in POSITION_ONLY

@@ -54,11 +54,12 @@ def test_each_trouble_takes_its_own_health_bits(changes: dict[str, object], bits
 
 
 def test_px4_tells_the_sensors_that_the_real_one_tells() -> None:
-    """behaviour.json rank 3: present and enabled; of health 0x2220803f to 0x3220803f."""
+    """behaviour.json rank 3: present 0x0220002d, enabled 0x0221002d, of health 0x2220803f to
+    0x3220803f; PREARM_CHECK (0x10000000) is present here, too."""
     vehicle = fake()
     status = build.sys_status(vehicle, PX4)
-    assert status.onboard_control_sensors_present == 0x0220002D
-    assert status.onboard_control_sensors_enabled == 0x0221002D
+    assert status.onboard_control_sensors_present == 0x0220002D | Sensor.PREARM_CHECK
+    assert status.onboard_control_sensors_enabled == 0x0221002D | Sensor.PREARM_CHECK
     assert status.onboard_control_sensors_health == 0x3220803F
     vehicle.armable = False
     assert build.sys_status(vehicle, PX4).onboard_control_sensors_health == 0x2220803F

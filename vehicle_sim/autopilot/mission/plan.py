@@ -164,6 +164,8 @@ def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None
             return "the position is missing"
     elif item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED, _MISSION}:
         return f"frame {item.frame} is not supported"
+    elif item.command == Cmd.RETURN and personality == "px4" and item.frame in _GLOBAL | _RELATIVE:
+        return f"frame {item.frame} is not supported for a return"
     return _why_not_values(item, count, personality)
 
 
