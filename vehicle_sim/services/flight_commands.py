@@ -150,7 +150,7 @@ def _change_speed(context: CommandContext, order: Order) -> Answer:
     if not 0.0 < order.p2 <= FARTHEST or order.p1 not in tuple(SpeedType):
         result = Result.DENIED if context.vehicle.armed else Result.FAILED
         raise RefusedError(result, f"{order.p2} m/s of type {order.p1} is no speed")
-    return Answer(context.vehicle.change_speed(SpeedType(order.p1), order.p2))
+    return Answer(context.vehicle.change_speed(SpeedType(int(order.p1)), order.p2))
 
 
 def _change_altitude(context: CommandContext, order: Order) -> Answer:
