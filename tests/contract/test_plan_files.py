@@ -96,4 +96,7 @@ def taken(personality: Personality, path: Path) -> None:
     if personality == "ardupilot" and (not rows or rows[0].command != NAV_WAYPOINT):
         rows = [HOME, *rows]
     numbered = tuple(replace(row, seq=seq) for seq, row in enumerate(rows))
+    if personality == "px4":
+        # WPL files carry a return in frame 3, which PX4 refuses: ground stations send frame 2.
+        numbered = tuple(replace(row, frame=2) if row.command == 20 else row for row in numbered)
     assert check(numbered, personality) is None

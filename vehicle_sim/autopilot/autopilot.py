@@ -94,14 +94,16 @@ class Autopilot(ManualInput):
             return Result.DENIED
         if pos_ned is not None and self._fenced_off(pos_ned):
             return Result.FAILED if ardupilot else Result.ACCEPTED
-        if speed_m_s is not None and speed_m_s > 0.0:
-            self.cruise_at(speed_m_s)
-        elif not ardupilot:
-            self.cruise_at(None)
         goal = pos_ned if pos_ned is not None else self._look_around().stop_ned
+        wanted = speed_m_s if speed_m_s is not None and speed_m_s > 0.0 else None
         if not ardupilot:
-            self._enter_kind("hold", Hold(goal, yaw_rad, lifts=not self._pilot.flying))
+            # The speed is that of this way alone: DO_CHANGE_SPEED's holds again after it.
+            if wanted is not None:
+                wanted = min(wanted, self.parameters.si(Quantity.FASTEST_M_S))
+            self._enter_kind("hold", Hold(goal, yaw_rad, wanted, lifts=not self._pilot.flying))
             return Result.ACCEPTED
+        if wanted is not None:
+            self.cruise_at(wanted)
         if not guided and self._held_by_fence(MODES["ardupilot"]["GUIDED"]):
             return Result.FAILED
         if not guided or not self._pilot.flying or not isinstance(self._task, Guided):

@@ -46,9 +46,21 @@ def _compass_by_yaw(context: CommandContext, order: Order) -> Answer:
     return Answer(Result.ACCEPTED, tuple(texts))
 
 
+def _compass_calibration(context: CommandContext, order: Order) -> Answer:
+    """DO_START_MAG_CAL and DO_CANCEL_MAG_CAL: nobody turns the vehicle, so none ever ends."""
+    return Answer(Result.ACCEPTED)
+
+
+def _accept_compass(context: CommandContext, order: Order) -> Answer:
+    return Answer(Result.FAILED)
+
+
 CALIBRATION: Final[dict[Cmd, CommandEntry]] = {
     Cmd.PREFLIGHT_CALIBRATION: CommandEntry(_calibrate),
     Cmd.ACCELCAL_VEHICLE_POS: CommandEntry(_lies_so, only="ardupilot"),
+    Cmd.DO_START_MAG_CAL: CommandEntry(_compass_calibration, only="ardupilot"),
+    Cmd.DO_ACCEPT_MAG_CAL: CommandEntry(_accept_compass, only="ardupilot"),
+    Cmd.DO_CANCEL_MAG_CAL: CommandEntry(_compass_calibration, only="ardupilot"),
     Cmd.DO_MOTOR_TEST: CommandEntry(_motor_test, only="ardupilot"),
     Cmd.FIXED_MAG_CAL_YAW: CommandEntry(_compass_by_yaw),
 }

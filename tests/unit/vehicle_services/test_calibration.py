@@ -132,6 +132,15 @@ def test_ardupilots_are_acked_when_they_end(
     assert bench.result(ARM) == Result.ACCEPTED
 
 
+def test_ardupilots_compass_calibration_is_started_and_cancelled() -> None:
+    """D3: 42424 ACCEPTED, 42425 FAILED while it runs, 42426 ACCEPTED; PX4 knows none of them."""
+    results = [Result.ACCEPTED, Result.FAILED, Result.ACCEPTED]
+    bench, px4 = on_the_ground("ardupilot"), on_the_ground("px4")
+    for command, result in zip((42424, 42425, 42426), results, strict=True):
+        assert bench.result(long(command), 0) == result
+        assert px4.result(long(command), 0) == Result.UNSUPPORTED
+
+
 def positions(heard: list[m.Message]) -> list[float]:
     return [each.param1 for each in heard if isinstance(each, m.CommandLong)]
 

@@ -291,10 +291,7 @@ def test_px4_takes_a_speed_of_any_type_for_the_horizontal_one() -> None:
     """H1b: type 2 (climb), 1 m/s: the horizontal cruise is 1.05 m/s."""
     bench = in_the_air("px4")
     assert bench.result(long(178, 2, 1, -1), 0) == Result.ACCEPTED
-    bench.mode("AUTO.LOITER")
-    bench.autopilot.load_plan((item(0, 16, x=round(HOME.lat_deg * 1e7 + 4000),
-                                    y=round(HOME.lon_deg * 1e7), z=5),))  # fmt: skip
-    bench.mode("AUTO.MISSION")
+    bench.send(reposition(1, up_m=5.0))
     assert fastest(bench, 8) == pytest.approx(1.05, abs=0.25)
 
 
