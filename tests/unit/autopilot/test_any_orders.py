@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.unit.autopilot.flight import Flight, item
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.interface import Result, Setpoint
+from vehicle_sim.autopilot.interface import Result, Setpoint, SpeedType
 from vehicle_sim.autopilot.modes import KINDS, Personality
 
 PLAN = (item(0, 22, up_m=3.0), item(1, 22, up_m=3.0), item(2, 16, 5.0, 5.0, 4.0), item(3, 21))
@@ -38,7 +38,9 @@ ORDERS: tuple[Order, ...] = (
     lambda v: v.resume(),
     lambda v: v.change_altitude(6.0),
     lambda v: v.change_altitude(nan),
-    lambda v: v.change_speed(inf),
+    lambda v: v.change_speed(SpeedType.GROUND, inf),
+    lambda v: v.change_speed(SpeedType.CLIMB, 0.5),
+    lambda v: v.change_speed(SpeedType.DESCENT, None),
     lambda v: v.condition_yaw(2.0, True, 1.0, -1),
     lambda v: v.capture_image(0.5, 3),
     load,

@@ -15,8 +15,7 @@ from vehicle_sim.autopilot.modes import MODES, Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.simulation.channels import LinkSpec
-from vehicle_sim.simulation.world import World
+from vehicle_sim.simulation.world import LinkSpec, World
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 

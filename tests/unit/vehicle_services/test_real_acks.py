@@ -168,7 +168,7 @@ def test_a_command_is_answered_as_by_the_real_one(
 TEXTS: Final = [
     (personality, row[0], row[1], text)
     for personality in ("px4", "ardupilot")
-    for row in recorded(personality)[0]  # type: ignore[arg-type]
+    for row in recorded(personality)[0]
     if len(row) > 3
     for text in row[3]
 ]
