@@ -64,7 +64,7 @@ def test_ardupilot_flies_and_serves(tmp_path: Path) -> None:
     )
     assert flown.said == [
         "healthy",
-        "version 4 6",
+        "version 4 5",
         "battery True",
         "taken off",
         "went to a location",
