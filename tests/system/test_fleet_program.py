@@ -86,7 +86,7 @@ def test_a_fleet_that_streams_positions_sends_nothing_else(count: int) -> None:
                 frames += split(ear.recv(65536), Counters())
     for frame in frames:
         heard[frame.system, type(frame.message()).__name__] += 1
-    streamed = {"Heartbeat", "SysStatus", "LocalPositionNed"}
+    streamed = {"Heartbeat", "SysStatus", "LocalPositionNed", "GlobalPositionInt"}
     greeting = {"GpsGlobalOrigin", "HomePosition", "Statustext"}
     assert {name for _, name in heard} <= streamed | greeting
     for system in range(1, count + 1):

@@ -126,16 +126,20 @@ class Stage:
 
     def command(self, number: int, *params: float) -> int:
         """Its result."""
+        answers = self.answers(number, *params)
+        assert len(answers) == 1, f"{len(answers)} answers to {number}"
+        return answers[0]
+
+    def answers(self, number: int, *params: float) -> list[int]:
+        """All results that come within 0.1 s."""
         before = len(self.heard)
         self.send(long(number, *params))
         self.run(0.1)
-        answers = [
+        return [
             message.result
             for _, frame in self.heard[before:]
             if isinstance(message := frame.message(), m.CommandAck) and message.command == number
         ]
-        assert len(answers) == 1, f"{len(answers)} answers to {number}"
-        return answers[0]
 
     def ready(self) -> Stage:
         """Booted, with all its streams on, and in a mode in which it arms."""

@@ -18,8 +18,8 @@ LANDS: dict[Personality, str] = {"px4": "AUTO.LAND", "ardupilot": "LAND"}
 NOT_ARMED: dict[Personality, tuple[str, ...]] = {
     "px4": ("Preflight Fail: no valid position estimate",),
     "ardupilot": (
-        "Mode change to GUIDED failed: requires position",
-        "Arm: LAND mode not armable",
+        "Mode change to Guided failed: requires position",
+        "Arm: Land mode not armable",
     ),
 }
 FOR_10_S = "[[fault]]\nat_s = 20\nfor_s = 10\nkind = 'gps_lost'\n"

@@ -74,7 +74,7 @@ def test_px4_takes_the_lost_voltage_for_lost_charge(lost: float, told: str | Non
     assert stage.last(m.SysStatus).battery_remaining > 95
     said_before = stage.texts
     stage.run(2.0)
-    assert stage.texts[len(said_before) :] == ([] if told is None else [told])
+    assert stage.texts[len(said_before) :] == ([] if told is None else [told + "\t"])
     assert stage.last(m.SysStatus).battery_remaining < {0.25: 75, 0.6: 15, 1.0: 5}[lost]
     assert stage.mode == "AUTO.LOITER"
 

@@ -117,6 +117,7 @@ ON_PURPOSE: Final[dict[tuple[Personality, str], str]] = {
     ("ardupilot", "2000 image"): CAMERA,
     ("ardupilot", "530 cam mode"): CAMERA,
     ("ardupilot", "521 caminfo"): CAMERA,
+    ("px4", "420 inject failure gps ok"): FAULTS,
     ("ardupilot", "420 inject failure gps ok"): FAULTS,
     ("px4", "84 vtol takeoff"): "the mode that it changes to is not flown here",
     ("ardupilot", "400 arm comp 25"): "in the air: the recorded one had been disarmed and had not"
