@@ -99,7 +99,7 @@ def test_px4_follows_fails_breaches_a_fence_reboots_and_falls_as_it_is_told() ->
     fixes = [line for line in flown.vehicle if line.endswith("vehicle1: GPS fix")]
     assert len(fixes) == 3, "it booted three times"
     assert any("Geofence violation" in line for line in flown.vehicle)
-    assert any("Flight terminated" in line for line in flown.vehicle)
+    assert any("Preflight Fail: Flight termination active" in line for line in flown.vehicle)
 
 
 def test_mavsdk_finds_a_vehicle_that_starts_later_loses_it_and_finds_the_next_one() -> None:

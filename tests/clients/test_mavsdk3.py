@@ -21,8 +21,6 @@ SERVICES = [
     "log True",
     "photo True",
     "tune SUCCESS",
-    "calibration UNSUPPORTED",
-    "actuator UNSUPPORTED",
 ]
 
 
@@ -41,6 +39,8 @@ def test_px4_flies_orbits_follows_and_finishes_a_mission(tmp_path: Path) -> None
         "mission downloaded [6, 6, 8]",
         "mission finished True",
         *SERVICES,
+        "calibration True",
+        "actuator SUCCESS",
     ]
     assert flown.modes() == [
         "AUTO.TAKEOFF",
@@ -70,5 +70,6 @@ def test_ardupilot_flies_and_serves(tmp_path: Path) -> None:
         "went to a location",
         "offboard position, velocity, attitude",
         *SERVICES,
+        "actuator SUCCESS",
     ]
     assert flown.modes() == ["GUIDED", "LOITER", "GUIDED", "LOITER", "LAND"]

@@ -43,8 +43,8 @@ def test_mavutil_flies_a_mission_and_every_mode(autopilot: str, tmp_path: Path) 
 def test_mavparm_mavwp_mavftp_and_signing(autopilot: str, tmp_path: Path) -> None:
     with vehicle(autopilot) as (url, said):
         lines = run_script("pymavlink", "pymavlink_services.py", autopilot, url, folder=tmp_path)
-    name, value = ("MPC_XY_CRUISE", "2.5") if autopilot == "px4" else ("WPNAV_SPEED", "250")
-    packed = [r"param.pck: \d+ parameters, changed: \['WPNAV_SPEED,250'\]"]
+    name, value = ("MPC_XY_CRUISE", "2.5") if autopilot == "px4" else ("WPNAV_SPEED", "500")
+    packed = [r"param.pck: \d+ parameters, changed: \['WPNAV_SPEED,500'\]"]
     in_order(
         lines,
         rf"\d+ parameters, {name} = ",

@@ -65,7 +65,6 @@ _ARDUPILOT_REQUESTS: Final = Requests(
             m.Altitude,
             m.EstimatorStatus,
             m.WindCov,
-            m.StorageInformation,
             m.ProtocolVersion,
             m.OrbitExecutionStatus,
             m.CurrentMode,

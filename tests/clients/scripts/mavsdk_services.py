@@ -40,8 +40,6 @@ def parameters(station: Station, personality: str) -> None:
     print("float parameter", param.get_param_float(real) == before_m_s / 2.0)
     param.set_param_float(real, before_m_s)
     print("wrong type", refusal(param.get_param_float, whole))
-    if personality == "ardupilot":  # PX4 says nothing, and MAVSDK waits for it
-        print("unknown parameter", refusal(param.get_param_int, "NO_SUCH_PARAM"))
     known = param.get_all_params()
     print("all parameters", len(known.int_params) >= 10, len(known.float_params) >= 30)
 
@@ -136,9 +134,9 @@ def camera(station: Station) -> None:
 
 
 def calibrations(station: Station) -> None:
-    """Each ends, with a refusal: there is nothing to be calibrated."""
+    """Those that need nobody who turns the vehicle over.  MAVSDK understands PX4's texts alone: on an ArduPilot it would wait for ever."""
     plugin = Calibration(station.system)
-    for name in ("gyro", "accelerometer", "magnetometer", "level_horizon"):
+    for name in ("gyro", "level_horizon"):
         ended = Event()
         results: list[CalibrationResult] = []
 
@@ -149,11 +147,12 @@ def calibrations(station: Station) -> None:
             results: list[CalibrationResult] = results,
             ended: Event = ended,
         ) -> None:
-            results.append(result)
-            ended.set()
+            if result is not CalibrationResult.NEXT:
+                results.append(result)
+                ended.set()
 
         getattr(plugin, f"calibrate_{name}_async")(heard)
-        assert ended.wait(10.0), f"calibration of {name} hangs"
+        assert ended.wait(20.0), f"calibration of {name} hangs"
         print("calibration", name, results[0].name)
 
 
@@ -174,7 +173,7 @@ def metadata(station: Station) -> None:
 
 
 def others(station: Station, action: Action) -> None:
-    """What a quadrotor without the equipment answers: no, and soon."""
+    """What a quadrotor without the equipment answers, and soon."""
     print("gimbals", len(Gimbal(station.system).gimbal_list().gimbals))
     print("actuator", refusal(action.set_actuator, 1, 0.5))
     print("relay", refusal(action.set_relay, 0, 0))
@@ -198,8 +197,8 @@ def main(url: str, personality: str, scratch: Path) -> None:
         files(station, scratch)
         logs(station, scratch)
         camera(station)
-        calibrations(station)
         if personality == "px4":
+            calibrations(station)
             metadata(station)
         others(station, action)
 

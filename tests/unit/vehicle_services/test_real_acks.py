@@ -195,7 +195,7 @@ def test_a_command_is_followed_by_the_real_ones_text(
 
 CAMERA_MESSAGES: Final[dict[Personality, set[int]]] = {
     "px4": {259, 260, 262},
-    "ardupilot": {259, 260, 262, 263},
+    "ardupilot": {259, 260, 261, 262, 263},
 }
 NOT_BUILT: Final[dict[Personality, set[int]]] = {
     # UTM_GLOBAL_POSITION, ACTUATOR_OUTPUT_STATUS, COMPONENT_INFORMATION, OPEN_DRONE_ID_SYSTEM;
