@@ -134,7 +134,10 @@ def camera(station: Station) -> None:
 
 
 def calibrations(station: Station) -> None:
-    """Those that need nobody who turns the vehicle over.  MAVSDK understands PX4's texts alone: on an ArduPilot it would wait for ever."""
+    """Those that need nobody who turns the vehicle over.
+
+    MAVSDK understands PX4's texts alone: on an ArduPilot it would wait for ever.
+    """
     plugin = Calibration(station.system)
     for name in ("gyro", "level_horizon"):
         ended = Event()

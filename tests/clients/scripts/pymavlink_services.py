@@ -228,6 +228,7 @@ def refusals():
     ack = wait("COMMAND_ACK", lambda m: m.command == mavlink.MAV_CMD_PREFLIGHT_CALIBRATION)
     print(f"no parachute; calibration answered with result {ack.result}")
 
+
 # --------------------------------------------------------------------------------- signing
 
 
