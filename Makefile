@@ -56,8 +56,9 @@ mutants: $(TEST) ## alter the gate in one place at a time: does a test notice?
 bench: $(TEST) ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench
 
-messages: $(RUN) ## regenerate gcs/wire/messages.py and ids.py from the dialect
+messages: $(RUN) ## regenerate the message classes of gcs and vehicle_sim from the dialect
 	$(BIN)/python -m gcs.wire.generate
+	$(BIN)/python -m vehicle_sim.wire.generate
 
 wheel: $(TEST) ## build the wheel into dist/
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .

@@ -12,9 +12,8 @@ from typing import Final, NamedTuple, cast
 
 from fastcrc.crc16 import mcrf4xx
 
-from vehicle_sim.wire.dialect import CRC_EXTRAS, LAYOUTS
+from vehicle_sim.wire.layouts import CRC_EXTRAS, PACKINGS
 from vehicle_sim.wire.messages import IDS, TYPES, Message
-from vehicle_sim.wire.supplement import MessageField
 
 STX1: Final = 0xFE
 STX2: Final = 0xFD
@@ -22,31 +21,9 @@ SIGNED: Final = 0x01  # incompat_flags
 NUMBER1_MAX: Final = 0xFF
 """MAVLink 1 has one byte for the message's number."""
 
-_LETTERS: Final = {
-    "char": "c",
-    "uint8_t": "B",
-    "int8_t": "b",
-    "uint16_t": "H",
-    "int16_t": "h",
-    "uint32_t": "I",
-    "int32_t": "i",
-    "uint64_t": "Q",
-    "int64_t": "q",
-    "float": "f",
-    "double": "d",
-}
-_BYTES: Final = {"char", "uint8_t"}
 _HEADER1: Final = struct.Struct("<BBBBB")
 _HEADER2: Final = struct.Struct("<BBBBBB3s")
 _CHECKSUM: Final = struct.Struct("<H")
-
-
-def _format(field: MessageField) -> str:
-    if not field.length:
-        return _LETTERS[field.kind]
-    if field.kind in _BYTES:
-        return f"{field.length}s"
-    return f"{field.length}{_LETTERS[field.kind]}"
 
 
 Value = float | bytes | tuple[float, ...]
@@ -68,24 +45,16 @@ class Codec:
     )
 
     def __init__(self, number: int) -> None:
-        layout = LAYOUTS[number]
+        packing = PACKINGS[number]
         self.number: Final = number
         self.kind = TYPES[number]
-        if [_plain(field.name) for field in layout.fields] != [*map(_plain, self.kind._fields)]:
-            raise AssertionError(f"{layout.name}: the message's fields are not the dialect's")
-        self._struct: Final = struct.Struct("<" + "".join(map(_format, layout.fields)))
+        self._struct: Final = struct.Struct(packing.form)
         self._pack: Final = self._struct.pack
         self.size: Final = self._struct.size
-        base = "".join(_format(field) for field in layout.fields if not field.extension)
-        self.base_size: Final = struct.calcsize("<" + base)
+        self.base_size: Final = packing.base_size
         self.crc_extra: Final = bytes((CRC_EXTRAS[number],))
         self._id_bytes: Final = number.to_bytes(3, "little")
-        # Positions of the arrays that `struct` spreads over several values.
-        self._arrays: Final = tuple(
-            (index, field.length)
-            for index, field in enumerate(layout.fields)
-            if field.length and field.kind not in _BYTES
-        )
+        self._arrays: Final = packing.arrays
 
     def payload(self, message: Message) -> bytes:
         """Packed, trailing zeros cut, at least one byte.
@@ -117,11 +86,6 @@ class Codec:
         """Of a payload that may be cut or longer than this dialect knows."""
         values = self._struct.unpack(payload[: self.size].ljust(self.size, b"\0"))
         return self.kind._make(_gather(values, self._arrays) if self._arrays else values)
-
-
-def _plain(name: str) -> str:
-    """The dialect writes `zoomLevel`, and `count`, which a tuple has for something else."""
-    return name.replace("_", "").lower()
 
 
 def _spread(message: Message, arrays: tuple[tuple[int, int], ...]) -> list[Value]:

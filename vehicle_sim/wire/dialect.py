@@ -1,5 +1,8 @@
 """The dialect as tables: layouts derived from pymavlink's `all` plus the supplement.
 
+For `generate.py` and the tests: the program itself reads `layouts.py`, since loading pymavlink
+takes longer than all else that a vehicle loads.
+
 pymavlink's class attributes pair crosswise: `array_lengths` belongs to `ordered_fieldnames`,
 `fieldtypes` to `fieldnames`; extensions are the parameters of `__init__` that have a default.
 """
@@ -12,7 +15,7 @@ from typing import Final, Protocol
 
 from pymavlink.dialects.v20 import all as upstream
 
-from vehicle_sim.wire.messages import TYPES
+from vehicle_sim.wire.selection import MESSAGES
 from vehicle_sim.wire.supplement import GROWN, NEW, Layout, MessageField
 
 
@@ -58,8 +61,11 @@ NAMES: Final[dict[int, str]] = {
     **{layout.number: layout.name for layout in NEW},
 }
 
+_NUMBERS: Final = {name: number for number, name in NAMES.items()}
+_NEW: Final = {layout.number: layout for layout in NEW}
+
 LAYOUTS: Final[dict[int, Layout]] = {
-    **{number: _layout(_MAP[number]) for number in TYPES if number in _MAP},
-    **{layout.number: layout for layout in NEW},
+    number: _NEW.get(number) or _layout(_MAP[number])
+    for number in sorted(_NUMBERS[name] for name in MESSAGES)
 }
-"""For the messages that this vehicle reads or writes, which keeps the import short."""
+"""For the messages that this vehicle reads or writes."""

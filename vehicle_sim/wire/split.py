@@ -8,7 +8,7 @@ from typing import Final
 from fastcrc.crc16 import mcrf4xx
 
 from vehicle_sim.wire.codec import SIGNED, STX1, STX2, MavlinkFrame
-from vehicle_sim.wire.dialect import CRC_EXTRAS
+from vehicle_sim.wire.layouts import CRC_EXTRAS
 
 _STARTS: Final = (STX1, STX2)
 _KNOWN_FLAGS: Final = SIGNED
