@@ -15,6 +15,7 @@ from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
 
 if TYPE_CHECKING:
     from vehicle_sim.reporting import Launch, Reporter
+    from vehicle_sim.shell.pacer import Redraw
     from vehicle_sim.shell.runtime import Opened, Plan
     from vehicle_sim.simulation.fault_script import Timed
 
@@ -308,9 +309,17 @@ def run(options: Options) -> int:
 
 
 def _fly(options: Options, opened: Opened, launch: Launch, outlet: Reporter) -> int:
-    from vehicle_sim.live_page import Rhythm, statuses
-    from vehicle_sim.shell.pacer import Pace, Redraw
     from vehicle_sim.shell.runtime import run as run_world
+
+    heard = _hearing(opened, outlet) if options.control else None
+    redraw = _redraw(options, opened, outlet) if outlet.redraw_ns else None
+    return run_world(
+        opened, lambda: outlet.ready(launch), outlet.log, options.lifeline, heard, redraw
+    )
+
+
+def _hearing(opened: Opened, outlet: Reporter) -> Callable[[bytes], None]:
+    """What is done with standard input under --control."""
     from vehicle_sim.simulation.control_line import Lines, answer
 
     lines = Lines()
@@ -319,16 +328,20 @@ def _fly(options: Options, opened: Opened, launch: Launch, outlet: Reporter) -> 
         for line in lines.feed(data):
             outlet.answer(answer(line, opened.world))
 
+    return hear
+
+
+def _redraw(options: Options, opened: Opened, outlet: Reporter) -> Redraw:
+    """The live page, drawn again and again."""
+    from vehicle_sim.live_page import Rhythm, statuses
+    from vehicle_sim.shell.pacer import Pace, Redraw
+
     def show(pace: Pace) -> None:
         world = opened.world
         rhythm = Rhythm(world.time_ns / 1e9, float(options.speedup), pace.reached)
         outlet.show(statuses(world.servers, world.links), rhythm)
 
-    redraw = Redraw(outlet.redraw_ns, show) if outlet.redraw_ns else None
-    heard: Callable[[bytes], None] | None = hear if options.control else None
-    return run_world(
-        opened, lambda: outlet.ready(launch), outlet.log, options.lifeline, heard, redraw
-    )
+    return Redraw(outlet.redraw_ns, show)
 
 
 def _outlet(options: Options) -> Reporter:

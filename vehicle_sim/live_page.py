@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from vehicle_sim.services.server import VehicleServer
     from vehicle_sim.simulation.channels import Connection
 
-REDRAW_NS: Final = 250_000_000
 ACTIVE: Final = 4  # MAV_STATE; beyond it is trouble
 _ROOM_LEFT: Final = 6  # lines of the terminal that stay for the log
 _LEAST_ROOM: Final = 3

@@ -11,14 +11,17 @@ import select
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 import click
 
-from vehicle_sim.live_page import REDRAW_NS, LivePage, Rhythm, VehicleLine
 from vehicle_sim.shell.urls import Url, UrlKind
 from vehicle_sim.simulation.traffic import Log
 
+if TYPE_CHECKING:
+    from vehicle_sim.live_page import LivePage, Rhythm, VehicleLine
+
+REDRAW_NS: Final = 250_000_000
 LEVELS: Final = {"debug": 0, "info": 1, "warning": 2, "error": 3, "fatal": 4}
 _TOLD_ONE_BY_ONE: Final = 8
 """Beyond so many vehicles the start says ranges."""
@@ -167,6 +170,8 @@ class Live(Plain):
 
     def show(self, statuses: Sequence[VehicleLine], rhythm: Rhythm) -> None:
         if self._face is None:
+            from vehicle_sim.live_page import LivePage
+
             self._face = LivePage()
         self._face.show(statuses, rhythm)
 

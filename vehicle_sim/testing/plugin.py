@@ -12,12 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from typing import TYPE_CHECKING, TypeAlias
 
 import pytest
 
-from vehicle_sim.testing.process import LOG_LINES, Simulator, SimulatorError, SimVehicle
+if TYPE_CHECKING:
+    from vehicle_sim.testing.process import Simulator, SimVehicle
 
-Factory = Callable[..., tuple[SimVehicle, ...]]
+Factory: TypeAlias = "Callable[..., tuple[SimVehicle, ...]]"
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -41,6 +43,9 @@ def vehicle(request: pytest.FixtureRequest, vehicles: Factory) -> SimVehicle:
 @pytest.fixture
 def vehicles(request: pytest.FixtureRequest) -> Iterator[Factory]:
     """A factory: `vehicles(count=3, personality="px4")` starts one simulator of three."""
+    # Here: every test run loads this file, whether it has vehicles or not.
+    from vehicle_sim.testing.process import LOG_LINES, Simulator, SimulatorError
+
     with ExitStack() as ends:
 
         def end(simulator: Simulator) -> None:
