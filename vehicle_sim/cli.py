@@ -16,7 +16,7 @@ from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
 if TYPE_CHECKING:
     from vehicle_sim.reporting import Launch, Reporter
     from vehicle_sim.shell.pacer import Redraw
-    from vehicle_sim.shell.runtime import Opened, Plan
+    from vehicle_sim.shell.runtime import Opened, Plan, StreamChoice
     from vehicle_sim.simulation.fault_script import Timed
 
 EXIT_USAGE: Final = 2
@@ -52,7 +52,7 @@ class Options:
     signing_key: str | None
     files: str | None
     sysid: int
-    streams: Literal["full", "position"]
+    streams: StreamChoice
     lifeline: bool
     control: bool
     plain: bool
@@ -116,18 +116,25 @@ class _BadFileError(Exception):
     "usual ones.",
 )
 @click.option(
-    "--link", "links", metavar="URL", multiple=True, help="Replaces the usual links, for all."
+    "--link",
+    "links",
+    metavar="URL[,MODE]",
+    multiple=True,
+    help="Replaces the usual links, for all.  MODE is normal or onboard, for --streams real.",
 )
 @click.option(
     "--param", "params", type=AssignmentType(), multiple=True, help="Sets a parameter at start."
 )
 @click.option(
     "--streams",
-    type=click.Choice(["full", "position"]),
+    type=click.Choice(["full", "real", "position"]),
     default="full",
     show_default=True,
-    help="What is sent unasked: all that the autopilot sends, or the position at 10 Hz and a "
-    "heartbeat, which is what 1,000 vehicles have time for.",
+    help="What is sent unasked.  full: all that clients look for, on every link.  real: what the "
+    "real autopilot sends; px4 has one set for ground stations and one for programs on board "
+    "(UDP ports 14540 to 14549, or ,onboard behind the URL of a link), ardupilot sends HEARTBEAT "
+    "and TIMESYNC.  position: the position at 10 Hz and a heartbeat, which is what 1,000 vehicles "
+    "have time for.",
 )
 @click.option("--sysid", type=click.IntRange(1, 250), default=1, show_default=True)
 @click.option(
@@ -157,7 +164,7 @@ def main(
     port: int | None,
     links: tuple[str, ...],
     params: tuple[tuple[str, float], ...],
-    streams: Literal["full", "position"],
+    streams: StreamChoice,
     sysid: int,
     files: str | None,
     signing_key: str | None,
@@ -250,7 +257,7 @@ def plan_of(options: Options) -> Plan:
         VehicleSetup(
             system=1 + (options.sysid - 1 + index) % SYSTEMS_MAX,
             home=Geodetic(*place(options.home, index, count)),
-            urls=(parse(own_link(options.autopilot, index)),) if usual else (),
+            urls=(parse(f"{own_link(options.autopilot, index)},onboard"),) if usual else (),
         )
         for index in range(count)
     )
@@ -272,7 +279,7 @@ def plan_of(options: Options) -> Plan:
         faults=faults,
         signing=None if options.signing_key is None else parse_key(_read(options.signing_key)),
         files=None if options.files is None else Path(options.files),
-        sparse=options.streams == "position",
+        streams=options.streams,
     )
 
 

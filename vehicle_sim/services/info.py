@@ -8,13 +8,14 @@ from typing import Final
 from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
 from vehicle_sim.autopilot.modes import MODES, by_number
 from vehicle_sim.services.metadata import Metadata
+from vehicle_sim.services.odometry import MOTION, utm_global_position
 from vehicle_sim.services.profile import STANDARD_MODES, Profile
 from vehicle_sim.services.status_telemetry import STATUS
 from vehicle_sim.services.telemetry import STATE
 from vehicle_sim.services.units import boot_ms, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
 
-BUILDERS: Final = {**STATE, **STATUS}
+BUILDERS: Final = {**STATE, **STATUS, **MOTION}
 MISSION_ACTIVE: Final = 1  # MISSION_MODE
 MISSION_SUSPENDED: Final = 2
 MISSION_MODES: Final = frozenset({"AUTO.MISSION", "AUTO"})
@@ -35,8 +36,10 @@ class Info:
         unix_start_ns: int,
         plan_ids: Callable[[], tuple[int, int, int, int]],
         metadata: Metadata | None = None,
+        event_sequence: Callable[[], m.CurrentEventSequence] | None = None,
     ) -> None:
-        """`plan_ids`: number of mission items, then the ids of mission, fence and rally points."""
+        """`plan_ids`: number of mission items, then the ids of mission, fence and rally points;
+        `event_sequence`: of a vehicle that has the events interface."""
         self._vehicle = vehicle
         self._profile = profile
         self._modes = tuple(MODES[profile.name].values())
@@ -45,8 +48,12 @@ class Info:
         self._plan_ids = plan_ids
         self._metadata = metadata
         self._images: list[m.CameraImageCaptured] = []
+        self._pings = 0
         self._own: Final[dict[int, Callable[[], m.Message]]] = {
             m.IDS[m.SystemTime]: self._system_time,
+            m.IDS[m.Timesync]: self._timesync,
+            m.IDS[m.Ping]: self._ping,
+            m.IDS[m.UtmGlobalPosition]: self._utm_global_position,
             m.IDS[m.MissionCurrent]: self.mission_current,
             m.IDS[m.CurrentMode]: self._current_mode,
             m.IDS[m.AvailableModesMonitor]: self._available_modes_monitor,
@@ -57,6 +64,8 @@ class Info:
             m.IDS[m.CameraCaptureStatus]: self._camera_capture_status,
             m.IDS[m.StorageInformation]: self._storage_information,
         }
+        if event_sequence is not None:
+            self._own[m.IDS[m.CurrentEventSequence]] = event_sequence
         self.streamable: Final = frozenset(BUILDERS) | frozenset(self._own)
 
     def build(self, number: int) -> m.Message | None:
@@ -130,6 +139,19 @@ class Info:
             time_unix_usec=self._unix_start_ns // 1000 + usec(self._vehicle),
             time_boot_ms=boot_ms(self._vehicle),
         )
+
+    def _timesync(self) -> m.Message:
+        """A request: what it is answered with is not used here."""
+        return m.Timesync(tc1=0, ts1=self._vehicle.clock_ns)
+
+    def _ping(self) -> m.Message:
+        """A request, to everybody."""
+        sequence = self._pings
+        self._pings += 1
+        return m.Ping(usec(self._vehicle), sequence, 0, 0)
+
+    def _utm_global_position(self) -> m.Message | None:
+        return utm_global_position(self._vehicle, self._unix_start_ns)
 
     def mission_current(self) -> m.Message:
         total, mission_id, fence_id, rally_id = self._plan_ids()

@@ -52,6 +52,9 @@ _PX4_REQUESTS: Final = Requests(
             m.PowerStatus,
             m.AttitudeTarget,
             m.PositionTargetLocalNed,
+            m.CurrentEventSequence,
+            m.EscInfo,
+            m.EscStatus,
         )
     ),
     accepted=frozenset(),
@@ -71,6 +74,11 @@ _ARDUPILOT_REQUESTS: Final = Requests(
             m.Hwstatus,
             m.Timesync,
             m.Ping,
+            m.Odometry,
+            m.UtmGlobalPosition,
+            m.ActuatorOutputStatus,
+            m.EscInfo,
+            m.EscStatus,
         )
     ),
     accepted=frozenset({m.IDS[m.ParamValue], VIDEO_STREAM_INFORMATION, GIMBAL_INFORMATION}),
@@ -162,6 +170,7 @@ PX4: Final = Profile(
             m.MissionCurrent: 1,
             m.HomePosition: 0.5,
             m.CurrentMode: 0.5,
+            m.CurrentEventSequence: 1 / 3,
         }
     ),
     rate_parameters={},

@@ -26,6 +26,7 @@ from vehicle_sim.flight_log.recorder import Recorder
 from vehicle_sim.services import param_pack
 from vehicle_sim.services.clocks import ping, timesync
 from vehicle_sim.services.commands import Commands
+from vehicle_sim.services.events import EventServer, with_events
 from vehicle_sim.services.ftp import FtpServer
 from vehicle_sim.services.info import Info
 from vehicle_sim.services.logs import LogServer
@@ -41,10 +42,12 @@ from vehicle_sim.services.setpoints import (
     global_setpoint,
     local_setpoint,
 )
+from vehicle_sim.services.stream_sets import LinkMode, StreamSets, unasked
 from vehicle_sim.services.streams import NEVER, Streams
 from vehicle_sim.services.texts import worded
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import Cmd
 
 COMPONENT: Final = 1
 GROUND_STATION: Final = 6  # MAV_TYPE_GCS
@@ -71,21 +74,30 @@ class VehicleServer:
         store: Store | None = None,
         logging: bool = True,
         phase_ns: int = 0,
+        stream_sets: StreamSets | None = None,
     ) -> None:
         """`store` holds the vehicle's files; `logging`: flights are logged in it; `phase_ns`
-        shifts the times of its streams."""
+        shifts the times of its streams; `stream_sets`: what is sent unasked, if not the usual."""
         self.vehicle: Final = vehicle
         self.store: Final = store if store is not None else MemoryStore()
         self.system = system
         self._profile = profile
         self._speedup = speedup
         self._phase_ns = phase_ns
+        self._stream_sets = stream_sets if stream_sets is not None else unasked(profile)
         self._missions = MissionServer(vehicle, profile)
         self._given = parameters
         self._parameters = ParameterServer(parameters, profile)
         metadata = metadata_of(profile.name) if profile.component_metadata else None
+        self._events = self._event_server()
         self._info = Info(
-            vehicle, profile, system, unix_start_ns, self._missions.plan_ids, metadata
+            vehicle,
+            profile,
+            system,
+            unix_start_ns,
+            self._missions.plan_ids,
+            metadata,
+            self._events.current_sequence if self._events is not None else None,
         )
         packed = {param_pack.PATH: param_pack.param_pack(parameters)}
         self._ftp = FtpServer(self.store, metadata.files if metadata is not None else packed)
@@ -114,12 +126,20 @@ class VehicleServer:
     def mode_name(self) -> str:
         return self._info.mode_name
 
+    def _event_server(self) -> EventServer | None:
+        """Where nobody is told how far they have come, there are no events."""
+        told = self._stream_sets.by_mode[LinkMode.NORMAL]
+        if self._profile.name != "px4" or m.IDS[m.CurrentEventSequence] not in told:
+            return None
+        return EventServer(self.vehicle, self._given)
+
     # ---------------------------------------------------------------------------- channels
 
-    def open(self, channel: int) -> list[Effect]:
+    def open(self, channel: int, mode: LinkMode = LinkMode.NORMAL) -> list[Effect]:
         """A peer that was not there before: it is told at once who and where we are."""
         self._streams[channel] = Streams(
             self._profile,
+            self._stream_sets.by_mode[mode],
             self._info.streamable,
             self._speedup,
             self.vehicle.time_ns,
@@ -132,8 +152,7 @@ class VehicleServer:
                 self._streams[channel].request(asked, self.vehicle.time_ns)
         self.touched = True
         self._schedule()
-        greeting = (m.Heartbeat, m.GpsGlobalOrigin, m.HomePosition)
-        built = (self._info.build(m.IDS[kind]) for kind in greeting)
+        built = (self._info.build(m.IDS[kind]) for kind in self._stream_sets.greeting)
         return [Send(channel, message) for message in built if message is not None]
 
     def close(self, channel: int) -> None:
@@ -158,7 +177,7 @@ class VehicleServer:
         self.vehicle.wall(wall_ns)
         effects = self._dispatch(client, sequence, message, wall_ns)
         self._schedule()
-        return effects
+        return effects if self._events is None else with_events(effects, self._events)
 
     def _obeys(self, client: Client) -> bool:
         """ArduPilot's SYSID_ENFORCE: nobody but its own ground station is heard."""
@@ -189,11 +208,16 @@ class VehicleServer:
             case m.Heartbeat():
                 if message.type == GROUND_STATION and self._counts(client):
                     self.vehicle.gcs_heard(wall_ns)
+                    if self._events is not None:
+                        self._events.station_heard(wall_ns)
                 return []
             case m.CommandLong() | m.CommandInt():
                 if message.target_component not in (0, COMPONENT) and self._profile.name == "px4":
                     return self._commands.refuse(client, message.command)
-                return self._commands.handle(client, sequence, message, wall_ns)
+                effects = self._commands.handle(client, sequence, message, wall_ns)
+                if self._events is not None and message.command == Cmd.RUN_PREARM_CHECKS:
+                    effects += self._events.check(wall_ns)
+                return effects
             case (
                 m.SetPositionTargetLocalNed()
                 | m.SetPositionTargetGlobalInt()
@@ -238,6 +262,8 @@ class VehicleServer:
             case m.RequestDataStream():
                 self._streams[client.channel].request(message, self.vehicle.time_ns)
                 return []
+            case m.RequestEvent():
+                return self._events.request(client, message) if self._events is not None else []
             case m.Timesync():
                 return [*timesync(client, message, self.vehicle.clock_ns)]
             case m.Ping():
@@ -265,6 +291,8 @@ class VehicleServer:
                 return []
             self._noted_ns = wall_ns
             return [Note("warning", f"setpoint of {client.system} refused: {refusal}")]
+        if self._events is not None:
+            self._events.setpoint_heard(wall_ns)
         return []
 
     def _set_mode(self, client: Client, asked: m.SetMode) -> list[Effect]:
@@ -306,6 +334,10 @@ class VehicleServer:
         effects += self._changes()
         if vehicle.clock_ns < self._clock_ns:
             self.system = self._info.system = int(self._given.si(Quantity.SYSTEM_ID))
+            if self._events is not None:
+                self._events.restart()
+        if self._events is not None:
+            effects += self._events.step(wall_ns)
         self._clock_ns = vehicle.clock_ns
         if wall_ns >= self.deadline_ns:
             effects += self._missions.tick(wall_ns)
@@ -385,6 +417,7 @@ class VehicleServer:
                 Send(None, m.Statustext(event.severity, chunk, text_id, number))
                 for number, chunk in enumerate(chunks)
             ),
+            *(self._events.said(event.text) if self._events is not None else ()),
             Note(LEVELS[event.severity], event.text),
         ]
 

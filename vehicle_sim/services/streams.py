@@ -12,22 +12,13 @@ from fractions import Fraction
 from typing import Final
 
 from vehicle_sim.services.profile import DATA_STREAMS, MESSAGE_INTERVAL_MIN_NS, Profile
+from vehicle_sim.services.stream_sets import Intervals
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import DataStream
 
 NEVER: Final = 1 << 62
-S_NS: Final = 1_000_000_000
 INTERVAL_MAX_NS: Final = ((1 << 31) - 1) * 1000
 """The longest that MESSAGE_INTERVAL can tell: 36 minutes."""
-
-
-POSITION_ONLY: Final = {
-    m.IDS[m.Heartbeat]: S_NS,
-    m.IDS[m.SysStatus]: S_NS,
-    m.IDS[m.LocalPositionNed]: S_NS // 10,
-    m.IDS[m.GlobalPositionInt]: S_NS,
-}
-"""What a vehicle of a large fleet sends unasked, in place of all that its autopilot does."""
 
 
 class Streams:
@@ -40,13 +31,16 @@ class Streams:
     def __init__(
         self,
         profile: Profile,
+        unasked: Intervals,
         streamable: frozenset[int],
         speedup: Fraction,
         now_ns: int,
         phase_ns: int = 0,
     ) -> None:
-        """`phase_ns` shifts the whole grid: vehicles of a fleet take turns."""
+        """`unasked` is what is sent at the beginning; `phase_ns` shifts the whole grid: vehicles
+        of a fleet take turns."""
         self._profile = profile
+        self._unasked = unasked
         self._streamable = streamable
         self._stretch = max(Fraction(1), speedup)
         self._phase_ns = phase_ns
@@ -55,7 +49,7 @@ class Streams:
         self._due_ns: dict[int, int] = {}  # by the spaced interval
         self._rows: dict[tuple[int, ...], tuple[int, ...]] = {}  # intervals due -> messages
         self.next_ns = NEVER
-        for number, interval_ns in profile.intervals_ns.items():
+        for number, interval_ns in unasked.items():
             self._note(number, interval_ns)
         self._reckon(now_ns)
 
@@ -115,7 +109,7 @@ class Streams:
         if interval_us < 0:
             self._set(number, 0, now_ns)
         elif interval_us == 0:
-            self._set(number, self._profile.intervals_ns.get(number, 0), now_ns)
+            self._set(number, self._unasked.get(number, 0), now_ns)
         else:
             self._set(number, min(round(interval_us * 1000), INTERVAL_MAX_NS), now_ns)
         return True

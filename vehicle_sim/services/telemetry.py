@@ -20,6 +20,8 @@ from vehicle_sim.wire.ids import MavFrame, PositionIgnore
 
 Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
 
+INTO_THE_GROUND_M_S2: Final = 100.0
+IDLE_THRUST: Final = 0.001
 MITIGATE_NONE: Final = 1  # FENCE_MITIGATE
 VTOL_UNDEFINED: Final = 0  # MAV_VTOL_STATE
 VTOL_MC: Final = 3
@@ -39,8 +41,10 @@ def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
     )
 
 
-def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState:
-    """ArduPilot calls a copter a VTOL that flies as a multicopter."""
+def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState | None:
+    """ArduPilot calls a copter a VTOL that flies as a multicopter, once it knows where it is."""
+    if profile.name == "ardupilot" and vehicle.origin is None:
+        return None
     vtol_state = VTOL_MC if profile.name == "ardupilot" else VTOL_UNDEFINED
     return m.ExtendedSysState(vtol_state=vtol_state, landed_state=vehicle.landed)
 
@@ -130,6 +134,8 @@ def position_target_local_ned(
     vehicle: Vehicle, profile: Profile
 ) -> m.PositionTargetLocalNed | None:
     target = vehicle.target
+    if profile.name == "px4" and not vehicle.armed:
+        return _standing(vehicle)
     ignored = PositionIgnore.ACCELERATION | PositionIgnore.YAW_RATE
     if target.pos_ned is None:
         ignored |= PositionIgnore.POSITION
@@ -151,13 +157,26 @@ def position_target_local_ned(
     )
 
 
+def _standing(vehicle: Vehicle) -> m.PositionTargetLocalNed:
+    """PX4's controllers run on the ground too, and ask for a push into it, as recorded."""
+    return m.PositionTargetLocalNed(
+        boot_ms(vehicle),
+        *(math.nan,) * 6,
+        *(0.0, 0.0, INTO_THE_GROUND_M_S2),
+        yaw=math.remainder(vehicle.estimate.heading_rad, 2.0 * math.pi),
+        yaw_rate=0.0,
+        type_mask=PositionIgnore.POSITION | PositionIgnore.VELOCITY,
+        coordinate_frame=MavFrame.LOCAL_NED,
+    )
+
+
 def position_target_global_int(
     vehicle: Vehicle, profile: Profile
 ) -> m.PositionTargetGlobalInt | None:
     """The same target as a place on earth, heights AMSL."""
     origin = vehicle.origin
     local = position_target_local_ned(vehicle, profile)
-    if origin is None or local is None:
+    if origin is None or local is None or math.isnan(local.x):
         return None
     where = projection(profile.name, origin).to_geodetic((local.x, local.y, local.z))
     known = not local.type_mask & PositionIgnore.POSITION
@@ -176,6 +195,12 @@ def position_target_global_int(
 
 def attitude_target(vehicle: Vehicle, profile: Profile) -> m.AttitudeTarget | None:
     goal = vehicle.attitude_goal
+    if goal is None and profile.name == "px4":
+        half_rad = 0.5 * vehicle.estimate.heading_rad
+        level = (math.cos(half_rad), 0.0, 0.0, math.sin(half_rad))
+        return m.AttitudeTarget(
+            boot_ms(vehicle), level, 0.0, 0.0, 0.0, thrust=IDLE_THRUST, type_mask=0
+        )
     if goal is None:
         return None
     return m.AttitudeTarget(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import signal
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.decisions import phase_ns
@@ -20,9 +20,16 @@ from vehicle_sim.engine.engines import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
-from vehicle_sim.services.profile import profile_of
+from vehicle_sim.services.profile import Profile, profile_of
 from vehicle_sim.services.server import VehicleServer
-from vehicle_sim.services.streams import POSITION_ONLY
+from vehicle_sim.services.stream_sets import (
+    POSITION_ONLY,
+    REAL,
+    StreamSets,
+    mode_of_port,
+    same_on_all,
+    unasked,
+)
 from vehicle_sim.shell.endpoints import Endpoint, EndpointError, Udp, open_endpoint
 from vehicle_sim.shell.files import DiskStore
 from vehicle_sim.shell.limits import allow_sockets
@@ -33,6 +40,8 @@ from vehicle_sim.simulation.fault_script import Timed
 from vehicle_sim.simulation.world import LinkSpec, Log, World
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire.signing import SigningKey
+
+StreamChoice: TypeAlias = Literal["full", "position", "real"]
 
 EXIT_INTERRUPTED: Final = 130
 EXIT_TERMINATED: Final = 0
@@ -66,7 +75,7 @@ class Plan:
     faults: tuple[Timed, ...]
     signing: SigningKey | None
     files: Path | None  # a directory to serve by FTP instead of memory
-    sparse: bool = False  # only the position is streamed unasked
+    streams: StreamChoice = "full"  # what is sent unasked
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +100,7 @@ def launch(plan: Plan) -> Opened:
     engine = engine_for(specs, load(plan.airframe))
     unix_ns = time.time_ns()
     profile = profile_of(plan.personality, plan.firmware)
-    if plan.sparse:
-        profile = replace(profile, intervals_ns=POSITION_ONLY)
+    stream_sets = _stream_sets(plan, profile)
     servers: list[VehicleServer] = []
     for lane, setup in enumerate(plan.vehicles):
         vehicle = Autopilot(
@@ -110,6 +118,7 @@ def launch(plan: Plan) -> Opened:
                 store=stores[lane],
                 logging=len(plan.vehicles) <= LOGGED_MOST,
                 phase_ns=phase_ns(lane),
+                stream_sets=stream_sets,
             )
         )
     start_ns = monotonic_ns()
@@ -124,6 +133,16 @@ def launch(plan: Plan) -> Opened:
         faults=plan.faults,
     )
     return Opened(world, tuple(endpoints), tuple(map(tuple, urls)), start_ns)
+
+
+def _stream_sets(plan: Plan, profile: Profile) -> StreamSets:
+    match plan.streams:
+        case "full":
+            return unasked(profile)
+        case "position":
+            return same_on_all(POSITION_ONLY)
+        case "real":
+            return REAL[plan.personality]
 
 
 def parameters_of(plan: Plan, setup: VehicleSetup) -> Parameters:
@@ -154,7 +173,8 @@ def _open_links(plan: Plan) -> tuple[list[Endpoint], list[LinkSpec], list[list[U
         for vehicle, url in wanted:
             endpoint: Endpoint = open_endpoint(len(endpoints), url)
             endpoints.append(endpoint)
-            links.append(LinkSpec(endpoint.peers, vehicle, not isinstance(endpoint, Udp)))
+            mode = url.mode or mode_of_port(url.port)
+            links.append(LinkSpec(endpoint.peers, vehicle, not isinstance(endpoint, Udp), mode))
             for index in range(len(urls)) if vehicle is None else (vehicle,):
                 urls[index].append(endpoint.url)
     except EndpointError:

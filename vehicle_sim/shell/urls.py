@@ -1,6 +1,7 @@
 """Endpoint URLs: MAVSDK's form and pymavlink's, from one table.
 
 The URL says what the *vehicle* does: `udpout` sends to that address unasked, `udpin` waits there.
+Behind it may stand `,normal` or `,onboard`: which streams the link has (`stream_sets.py`).
 """
 
 from __future__ import annotations
@@ -8,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
+
+from vehicle_sim.services.stream_sets import LinkMode
 
 
 class UrlKind(Enum):
@@ -31,6 +34,7 @@ KINDS: Final[dict[str, UrlKind]] = {
 """By prefix, longest first."""
 
 FORMS: Final = "udpin://HOST:PORT, udpout://HOST:PORT, tcpin://HOST:PORT or tcpout://HOST:PORT"
+MODES: Final = {mode.value: mode for mode in LinkMode}
 
 
 _WAITING: Final = frozenset({UrlKind.UDP_IN, UrlKind.TCP_IN})
@@ -51,6 +55,7 @@ class Url:
     kind: UrlKind
     host: str
     port: int
+    mode: LinkMode | None = None  # None: the port says it
 
     @property
     def waits(self) -> bool:
@@ -58,13 +63,13 @@ class Url:
         return self.kind in _WAITING
 
     def at(self, port: int) -> Url:
-        return Url(self.kind, self.host, port)
+        return Url(self.kind, self.host, port, self.mode)
 
     @property
     def other_end(self) -> Url:
         """What a client is told, to be at the other end."""
         host = "127.0.0.1" if self.host == "0.0.0.0" else self.host
-        return Url(_OTHER_END[self.kind], host, self.port)
+        return Url(_OTHER_END[self.kind], host, self.port, self.mode)
 
     def __str__(self) -> str:
         host = f"[{self.host}]" if ":" in self.host else self.host
@@ -73,13 +78,16 @@ class Url:
 
 def parse(text: str) -> Url:
     """Without a host it is loopback.  Raises UrlError."""
+    place, comma, word = text.partition(",")
+    if comma and word not in MODES:
+        raise UrlError(f"{text}: behind the comma stands normal or onboard, not {word!r}")
     for prefix, kind in KINDS.items():
-        if text.startswith(prefix):
-            host, colon, port = text.removeprefix(prefix).rpartition(":")
+        if place.startswith(prefix):
+            host, colon, port = place.removeprefix(prefix).rpartition(":")
             if not colon or not port.isascii() or not port.isdigit():
                 raise UrlError(f"{text}: a port is missing; use {FORMS}")
             least = 0 if kind in _WAITING else 1
             if not least <= int(port) < 65536:
                 raise UrlError(f"{text}: {port} is no port (1 to 65535)")
-            return Url(kind, host.strip("[]") or "127.0.0.1", int(port))
+            return Url(kind, host.strip("[]") or "127.0.0.1", int(port), MODES.get(word))
     raise UrlError(f"{text}: no such kind of link; use {FORMS}")

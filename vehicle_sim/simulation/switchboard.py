@@ -37,6 +37,7 @@ class Switchboard:
         self._servers = tuple(servers)
         self._active: dict[VehicleServer, None] = {}
         self._channels = Channels(servers, links)
+        self._modes = tuple(link.mode for link in links)
         self._signing = Signing(signing)
         self._unix_offset_ns = unix_offset_ns
         self._unsendable: set[type[m.Message]] = set()  # what has been said of it
@@ -95,9 +96,10 @@ class Switchboard:
             self._greet(self._channels.add(link, peer, now_ns, lasting=True), now_ns, out)
 
     def _greet(self, channel: Channel, now_ns: int, out: list[Output]) -> None:
+        mode = self._modes[channel.link]
         for server in self._channels.servers(channel.link):
             self._active[server] = None
-            self.emit(server, server.open(channel.number), now_ns, out)
+            self.emit(server, server.open(channel.number, mode), now_ns, out)
 
     def leave(self, link: int, peer: Peer, out: list[Output]) -> None:
         """A connection has ended."""

@@ -6,6 +6,8 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from vehicle_sim.services.stream_sets import LinkMode
+
 Peer: TypeAlias = Hashable
 """Who is at the other end of a link: an address, as the shell knows it."""
 
@@ -17,6 +19,7 @@ class LinkSpec:
     peers: tuple[Peer, ...] = ()
     vehicle: int | None = None  # index of the one vehicle on it, None = all
     stream: bool = False  # TCP: nothing is lost or overtaken on it
+    mode: LinkMode = LinkMode.NORMAL  # which of the vehicles' stream sets is sent on it
 
 
 @dataclass(frozen=True, slots=True)

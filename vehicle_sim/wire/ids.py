@@ -93,6 +93,7 @@ class MavFrame(IntEnum):
     BODY_OFFSET_NED = 9
     GLOBAL_TERRAIN_ALT = 10
     GLOBAL_TERRAIN_ALT_INT = 11
+    BODY_FRD = 12
 
 
 ABSOLUTE = frozenset({MavFrame.GLOBAL, MavFrame.GLOBAL_INT})

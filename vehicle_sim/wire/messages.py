@@ -695,6 +695,27 @@ class Timesync(NamedTuple):
     target_component: int = 0
 
 
+class HilStateQuaternion(NamedTuple):
+    """HIL_STATE_QUATERNION (115)."""
+
+    time_usec: int
+    attitude_quaternion: tuple[float, ...]
+    rollspeed: float
+    pitchspeed: float
+    yawspeed: float
+    lat: int
+    lon: int
+    alt: int
+    vx: int
+    vy: int
+    vz: int
+    ind_airspeed: int
+    true_airspeed: int
+    xacc: int
+    yacc: int
+    zacc: int
+
+
 class LogRequestList(NamedTuple):
     """LOG_REQUEST_LIST (117)."""
 
@@ -1048,6 +1069,30 @@ class CameraImageCaptured(NamedTuple):
     file_url: bytes
 
 
+class EscInfo(NamedTuple):
+    """ESC_INFO (290)."""
+
+    time_usec: int
+    error_count: tuple[int, ...]
+    counter: int
+    failure_flags: tuple[int, ...]
+    temperature: tuple[int, ...]
+    index: int
+    count_: int
+    connection_type: int
+    info: int
+
+
+class EscStatus(NamedTuple):
+    """ESC_STATUS (291)."""
+
+    time_usec: int
+    rpm: tuple[int, ...]
+    voltage: tuple[float, ...]
+    current: tuple[float, ...]
+    index: int
+
+
 class ProtocolVersion(NamedTuple):
     """PROTOCOL_VERSION (300)."""
 
@@ -1056,6 +1101,52 @@ class ProtocolVersion(NamedTuple):
     max_version: int
     spec_version_hash: bytes
     library_version_hash: bytes
+
+
+class Odometry(NamedTuple):
+    """ODOMETRY (331)."""
+
+    time_usec: int
+    x: float
+    y: float
+    z: float
+    q: tuple[float, ...]
+    vx: float
+    vy: float
+    vz: float
+    rollspeed: float
+    pitchspeed: float
+    yawspeed: float
+    pose_covariance: tuple[float, ...]
+    velocity_covariance: tuple[float, ...]
+    frame_id: int
+    child_frame_id: int
+    reset_counter: int = 0
+    estimator_type: int = 0
+    quality: int = 0
+
+
+class UtmGlobalPosition(NamedTuple):
+    """UTM_GLOBAL_POSITION (340)."""
+
+    time: int
+    lat: int
+    lon: int
+    alt: int
+    relative_alt: int
+    next_lat: int
+    next_lon: int
+    next_alt: int
+    vx: int
+    vy: int
+    vz: int
+    h_acc: int
+    v_acc: int
+    vel_acc: int
+    update_rate: int
+    uas_id: bytes
+    flight_state: int
+    flags: int
 
 
 class ParamError(NamedTuple):
@@ -1079,12 +1170,58 @@ class OrbitExecutionStatus(NamedTuple):
     frame: int
 
 
+class ActuatorOutputStatus(NamedTuple):
+    """ACTUATOR_OUTPUT_STATUS (375)."""
+
+    time_usec: int
+    active: int
+    actuator: tuple[float, ...]
+
+
 class ComponentMetadata(NamedTuple):
     """COMPONENT_METADATA (397)."""
 
     time_boot_ms: int
     file_crc: int
     uri: bytes
+
+
+class Event(NamedTuple):
+    """EVENT (410)."""
+
+    id: int
+    event_time_boot_ms: int
+    sequence: int
+    destination_component: int
+    destination_system: int
+    log_levels: int
+    arguments: bytes
+
+
+class CurrentEventSequence(NamedTuple):
+    """CURRENT_EVENT_SEQUENCE (411)."""
+
+    sequence: int
+    flags: int
+
+
+class RequestEvent(NamedTuple):
+    """REQUEST_EVENT (412)."""
+
+    first_sequence: int
+    last_sequence: int
+    target_system: int
+    target_component: int
+
+
+class ResponseEventError(NamedTuple):
+    """RESPONSE_EVENT_ERROR (413)."""
+
+    sequence: int
+    sequence_oldest_available: int
+    target_system: int
+    target_component: int
+    reason: int
 
 
 class AvailableModes(NamedTuple):
@@ -1164,6 +1301,7 @@ Message: TypeAlias = (
     | HighresImu
     | FileTransferProtocol
     | Timesync
+    | HilStateQuaternion
     | LogRequestList
     | LogEntry
     | LogRequestData
@@ -1194,10 +1332,19 @@ Message: TypeAlias = (
     | StorageInformation
     | CameraCaptureStatus
     | CameraImageCaptured
+    | EscInfo
+    | EscStatus
     | ProtocolVersion
+    | Odometry
+    | UtmGlobalPosition
     | ParamError
     | OrbitExecutionStatus
+    | ActuatorOutputStatus
     | ComponentMetadata
+    | Event
+    | CurrentEventSequence
+    | RequestEvent
+    | ResponseEventError
     | AvailableModes
     | CurrentMode
     | AvailableModesMonitor
@@ -1254,6 +1401,7 @@ TYPES: Final[dict[int, type[Message]]] = {
     105: HighresImu,
     110: FileTransferProtocol,
     111: Timesync,
+    115: HilStateQuaternion,
     117: LogRequestList,
     118: LogEntry,
     119: LogRequestData,
@@ -1284,10 +1432,19 @@ TYPES: Final[dict[int, type[Message]]] = {
     261: StorageInformation,
     262: CameraCaptureStatus,
     263: CameraImageCaptured,
+    290: EscInfo,
+    291: EscStatus,
     300: ProtocolVersion,
+    331: Odometry,
+    340: UtmGlobalPosition,
     345: ParamError,
     360: OrbitExecutionStatus,
+    375: ActuatorOutputStatus,
     397: ComponentMetadata,
+    410: Event,
+    411: CurrentEventSequence,
+    412: RequestEvent,
+    413: ResponseEventError,
     435: AvailableModes,
     436: CurrentMode,
     437: AvailableModesMonitor,

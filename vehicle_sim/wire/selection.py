@@ -96,5 +96,15 @@ MESSAGES: Final = (
     "AVAILABLE_MODES",
     "CURRENT_MODE",
     "AVAILABLE_MODES_MONITOR",
+    "EVENT",
+    "CURRENT_EVENT_SEQUENCE",
+    "REQUEST_EVENT",
+    "RESPONSE_EVENT_ERROR",
+    "ODOMETRY",
+    "ACTUATOR_OUTPUT_STATUS",
+    "ESC_INFO",
+    "ESC_STATUS",
+    "UTM_GLOBAL_POSITION",
+    "HIL_STATE_QUATERNION",
 )
 """Each gets a class.  What is not among them is checked for its CRC, counted and ignored."""

@@ -27,24 +27,6 @@ class Layout(NamedTuple):
 
 NEW: Final = (
     Layout(
-        8,
-        "LINK_NODE_STATUS",
-        117,
-        (
-            MessageField("timestamp", "uint64_t", 0),
-            MessageField("tx_rate", "uint32_t", 0),
-            MessageField("rx_rate", "uint32_t", 0),
-            MessageField("messages_sent", "uint32_t", 0),
-            MessageField("messages_received", "uint32_t", 0),
-            MessageField("messages_lost", "uint32_t", 0),
-            MessageField("rx_parse_err", "uint16_t", 0),
-            MessageField("tx_overflows", "uint16_t", 0),
-            MessageField("rx_overflows", "uint16_t", 0),
-            MessageField("tx_buf", "uint8_t", 0),
-            MessageField("rx_buf", "uint8_t", 0),
-        ),
-    ),
-    Layout(
         290,
         "ESC_INFO",
         251,
@@ -82,18 +64,6 @@ NEW: Final = (
             MessageField("max_version", "uint16_t", 0),
             MessageField("spec_version_hash", "uint8_t", 8),
             MessageField("library_version_hash", "uint8_t", 8),
-        ),
-    ),
-    Layout(
-        380,
-        "TIME_ESTIMATE_TO_TARGET",
-        232,
-        (
-            MessageField("safe_return", "int32_t", 0),
-            MessageField("land", "int32_t", 0),
-            MessageField("mission_next_item", "int32_t", 0),
-            MessageField("mission_end", "int32_t", 0),
-            MessageField("commanded_action", "int32_t", 0),
         ),
     ),
     Layout(

@@ -35,6 +35,7 @@ from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.plant.faults import Fault
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.services.stream_sets import LinkMode, StreamSets
 from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import encode
@@ -337,12 +338,21 @@ class Bench:
         personality: Personality = "px4",
         speedup: Fraction = Fraction(1),
         firmware: Firmware | None = None,
+        stream_sets: StreamSets | None = None,
+        mode: LinkMode = LinkMode.NORMAL,
     ) -> None:
         self.vehicle = FakeVehicle()
         self.parameters = Parameters(personality, firmware)
         profile = profile_of(personality, self.parameters.firmware)
-        server = VehicleServer(self.vehicle, profile, self.parameters, system=1, speedup=speedup)
-        self.world = World([server], [LinkSpec()], speedup)
+        server = VehicleServer(
+            self.vehicle,
+            profile,
+            self.parameters,
+            system=1,
+            speedup=speedup,
+            stream_sets=stream_sets,
+        )
+        self.world = World([server], [LinkSpec(mode=mode)], speedup)
         self.now_ns = 0
         self.logs: list[Log] = []
         self.sequence = 0

@@ -213,6 +213,8 @@ def test_px4_tells_the_sticks_that_it_flies_by() -> None:
 
 def test_the_target_is_told_as_a_place_on_earth() -> None:
     bench = Bench()
+    assert asked_for(bench, m.PositionTargetGlobalInt) == []
+    bench.vehicle.armed = True
     (told,) = asked_for(bench, m.PositionTargetGlobalInt)
     assert isinstance(told, m.PositionTargetGlobalInt)
     assert (told.lat_int, told.lon_int) == pytest.approx((473977420, 85455940), abs=2)

@@ -19,7 +19,7 @@ from tests.unit.vehicle_services.flown_vehicle import (
 )
 from vehicle_sim.autopilot.interface import Landed, PlanItem, Result
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.services.streams import POSITION_ONLY
+from vehicle_sim.services.stream_sets import POSITION_ONLY
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 

@@ -1,0 +1,277 @@
+"""`--streams real`: what the real autopilots send unasked, message by message."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Final
+
+import pytest
+
+from tests.unit.vehicle_services.fake_vehicle import Bench, S, long
+from vehicle_sim.autopilot.interface import AttitudeGoal, Landed
+from vehicle_sim.services.stream_sets import REAL, LinkMode, mode_of_port
+from vehicle_sim.shell.urls import UrlError, parse
+from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import Cmd
+
+GROUND = m.Heartbeat(0, 6, 8, 0, 4, 3)
+SECONDS: Final = 30
+
+NORMAL_HZ: Final[dict[type[m.Message], float]] = {
+    m.Altitude: 1,
+    m.Attitude: 50,
+    m.AttitudeQuaternion: 50,
+    m.AttitudeTarget: 50,
+    m.BatteryStatus: 0.5,
+    m.CurrentEventSequence: 1 / 3,
+    m.EstimatorStatus: 0.5,
+    m.ExtendedSysState: 1,
+    m.GlobalPositionInt: 50,
+    m.GpsRawInt: 1,
+    m.Heartbeat: 1,
+    m.HomePosition: 0.5,
+    m.LocalPositionNed: 50,
+    m.Ping: 0.1,
+    m.PositionTargetLocalNed: 50,
+    m.ScaledPressure: 1,
+    m.ServoOutputRaw: 50,
+    m.SysStatus: 1,
+    m.UtmGlobalPosition: 0.5,
+    m.VfrHud: 4,
+    m.Vibration: 0.1,
+}
+"""px4_1_14_flight.tlog, on 14550, 6 to 24 s after its beginning, when nothing had been asked for;
+autopilots.md "PX4 on 14550, Hz, real / ours"; behaviour.json "streams on 14550 and 14540".
+Not sent here: DISTANCE_SENSOR 0.5, LINK_NODE_STATUS 1, OPEN_DRONE_ID_LOCATION and
+OPEN_DRONE_ID_SYSTEM 1, TIME_ESTIMATE_TO_TARGET 1."""
+
+ONBOARD_HZ: Final[dict[type[m.Message], float]] = {
+    m.Altitude: 10,
+    m.Attitude: 20,
+    m.AttitudeQuaternion: 50,
+    m.AttitudeTarget: 10,
+    m.BatteryStatus: 1,
+    m.CurrentEventSequence: 1 / 3,
+    m.EstimatorStatus: 1,
+    m.ExtendedSysState: 5,
+    m.GlobalPositionInt: 5,
+    m.GpsRawInt: 1,
+    m.Heartbeat: 1,
+    m.HighresImu: 50,
+    m.HomePosition: 0.5,
+    m.LocalPositionNed: 30,
+    m.MissionCurrent: 10,
+    m.Odometry: 30,
+    m.Ping: 1,
+    m.PositionTargetLocalNed: 5,
+    m.ScaledPressure: 1,
+    m.ServoOutputRaw: 10,
+    m.SystemTime: 1,
+    m.SysStatus: 2,
+    m.Timesync: 10,
+    m.UtmGlobalPosition: 1,
+    m.VfrHud: 10,
+    m.Vibration: 0.5,
+}
+"""rates_px4_14540.json, "real_hz", each counted over 12 s there (9.92 is 10).  Not sent here:
+DISTANCE_SENSOR 10, OPEN_DRONE_ID_LOCATION and OPEN_DRONE_ID_SYSTEM 1, 8 LINK_NODE_STATUS 1, 380
+TIME_ESTIMATE_TO_TARGET 1."""
+
+ROWS: Final = [
+    *(
+        pytest.param(LinkMode.NORMAL, *row, id=f"14550 {row[0].__name__}")
+        for row in NORMAL_HZ.items()
+    ),
+    *(
+        pytest.param(LinkMode.ONBOARD, *row, id=f"14540 {row[0].__name__}")
+        for row in ONBOARD_HZ.items()
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def heard() -> dict[LinkMode, list[m.Message]]:
+    """What a PX4 that stands on the ground sends on either link in half a minute."""
+    told: dict[LinkMode, list[m.Message]] = {}
+    for mode in LinkMode:
+        bench = Bench("px4", stream_sets=REAL["px4"], mode=mode)
+        bench.send(GROUND)
+        told[mode] = bench.advance(SECONDS * S)
+    return told
+
+
+@pytest.mark.parametrize(("mode", "kind", "rate_hz"), ROWS)
+def test_px4_sends_at_the_recorded_rate(
+    heard: dict[LinkMode, list[m.Message]],
+    mode: LinkMode,
+    kind: type[m.Message],
+    rate_hz: float,
+) -> None:
+    count = sum(type(each) is kind for each in heard[mode])
+    assert count == pytest.approx(rate_hz * SECONDS, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("mode", "rates"), [(LinkMode.NORMAL, NORMAL_HZ), (LinkMode.ONBOARD, ONBOARD_HZ)]
+)
+def test_px4_sends_nothing_else(
+    heard: dict[LinkMode, list[m.Message]], mode: LinkMode, rates: dict[type[m.Message], float]
+) -> None:
+    assert {type(each) for each in heard[mode]} - set(rates) == {m.Event}
+
+
+def test_ardupilot_sends_heartbeat_and_timesync() -> None:
+    """autopilots.md 2; arducopter_4_7_flight.tlog: TIMESYNC every 10 s."""
+    bench = Bench("ardupilot", stream_sets=REAL["ardupilot"])
+    assert {type(each) for each in bench.send(GROUND)} == {m.Heartbeat}
+    told = Counter(type(each) for each in bench.advance(SECONDS * S))
+    assert told == {m.Heartbeat: SECONDS, m.Timesync: SECONDS // 10}
+
+
+def test_ardupilot_sends_more_when_asked_and_by_its_parameters() -> None:
+    bench = Bench("ardupilot", stream_sets=REAL["ardupilot"])
+    bench.send(m.RequestDataStream(4, 1, 1, 6, 1))
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, 30, 100_000))
+    told = Counter(type(each) for each in bench.advance(10 * S))
+    assert (told[m.GlobalPositionInt], told[m.Attitude]) == (40, 100)
+    bench = Bench("ardupilot", stream_sets=REAL["ardupilot"])
+    bench.parameters.start_with("SR0_EXTRA1", 5)
+    bench.send(GROUND)
+    assert Counter(type(each) for each in bench.advance(10 * S))[m.Attitude] == 50
+
+
+def test_ardupilot_tells_neither_position_nor_landed_state_before_it_knows_where_it_is() -> None:
+    """behaviour.json "armable": not sent at all before about 40 s."""
+    bench = Bench("ardupilot", stream_sets=REAL["ardupilot"])
+    bench.vehicle.origin = None
+    bench.send(m.RequestDataStream(4, 1, 1, 0, 1))
+    told = Counter(type(each) for each in bench.advance(10 * S))
+    assert told[m.Attitude] == 40
+    assert (told[m.LocalPositionNed], told[m.ExtendedSysState]) == (0, 0)
+    bench.vehicle.origin = Bench().vehicle.origin
+    told = Counter(type(each) for each in bench.advance(10 * S))
+    assert (told[m.LocalPositionNed], told[m.ExtendedSysState]) == (40, 40)
+
+
+def test_an_interval_of_0_is_the_default_of_that_link() -> None:
+    bench = Bench("px4", stream_sets=REAL["px4"], mode=LinkMode.ONBOARD)
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[m.LocalPositionNed], 1_000_000))
+    assert Counter(map(type, bench.advance(10 * S)))[m.LocalPositionNed] == 10
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[m.LocalPositionNed], 0))
+    assert Counter(map(type, bench.advance(10 * S)))[m.LocalPositionNed] == 300
+
+
+@pytest.mark.parametrize("port", [14540, 14549])
+def test_the_ports_of_programs_on_board(port: int) -> None:
+    assert mode_of_port(port) is LinkMode.ONBOARD
+
+
+@pytest.mark.parametrize("port", [14539, 14550, 5760, 0])
+def test_all_other_ports_are_for_ground_stations(port: int) -> None:
+    assert mode_of_port(port) is LinkMode.NORMAL
+
+
+def test_a_link_may_say_what_it_is() -> None:
+    assert parse("udpin://127.0.0.1:14540").mode is None
+    assert parse("udpin://127.0.0.1:14540,normal").mode is LinkMode.NORMAL
+    named = parse("tcpin://127.0.0.1:5760,onboard")
+    assert named.mode is LinkMode.ONBOARD
+    assert str(named) == "tcpin://127.0.0.1:5760"
+    with pytest.raises(UrlError, match="normal or onboard"):
+        parse("udpin://127.0.0.1:14540,on board")
+
+
+# ---------------------------------------------------------------- what is told in these sets
+
+
+def last(told: list[m.Message], kind: type[m.Message]) -> m.Message:
+    return [each for each in told if type(each) is kind][-1]
+
+
+def test_on_the_ground_px4_holds_no_place_and_pushes_into_the_ground(
+    heard: dict[LinkMode, list[m.Message]],
+) -> None:
+    """px4_1_14_flight.tlog, 0 to 66 s: NaN, acceleration 0, 0, 100, type_mask 63."""
+    target = last(heard[LinkMode.NORMAL], m.PositionTargetLocalNed)
+    assert isinstance(target, m.PositionTargetLocalNed)
+    assert all(each != each for each in target[1:7])
+    assert (target.afx, target.afy, target.afz) == (0.0, 0.0, 100.0)
+    assert (target.type_mask, target.coordinate_frame) == (63, 1)
+    attitude = last(heard[LinkMode.NORMAL], m.AttitudeTarget)
+    assert isinstance(attitude, m.AttitudeTarget)
+    assert attitude.q == pytest.approx((1.0, 0.0, 0.0, 0.0))
+    assert attitude.thrust == pytest.approx(0.001)
+
+
+def test_in_flight_the_targets_are_those_of_the_controllers() -> None:
+    bench = Bench("px4", stream_sets=REAL["px4"])
+    bench.vehicle.armed = True
+    bench.vehicle.attitude_goal = AttitudeGoal((0.8, 0.0, 0.0, 0.6), (0.1, 0.2, 0.3), 0.45)
+    told = bench.send(GROUND) + bench.advance(S)
+    target = last(told, m.PositionTargetLocalNed)
+    assert isinstance(target, m.PositionTargetLocalNed)
+    assert (target.x, target.y, target.z) == (0.0, 0.0, -2.0)
+    attitude = last(told, m.AttitudeTarget)
+    assert isinstance(attitude, m.AttitudeTarget)
+    assert (*attitude.q, attitude.thrust) == pytest.approx((0.8, 0.0, 0.0, 0.6, 0.45))
+
+
+def test_odometry_is_in_ned_and_along_the_bodys_axes() -> None:
+    """common.xml: x, y, z in frame_id, vx, vy, vz in child_frame_id.  Heading west: north is to the
+    right."""
+    bench = Bench("px4", stream_sets=REAL["px4"], mode=LinkMode.ONBOARD)
+    half = 0.5**0.5
+    bench.vehicle.q_ned_from_frd = (half, 0.0, 0.0, -half)
+    told = last(bench.send(GROUND) + bench.advance(S), m.Odometry)
+    assert isinstance(told, m.Odometry)
+    assert (told.x, told.y, told.z) == (10.0, 20.0, -5.0)
+    assert (told.vx, told.vy, told.vz) == pytest.approx((0.0, 1.0, 0.0), abs=1e-6)
+    assert (told.frame_id, told.child_frame_id, told.estimator_type) == (1, 12, 8)
+    assert told.q == pytest.approx((half, 0.0, 0.0, -half))
+    assert told.pose_covariance[0] == pytest.approx(0.16)
+    assert told.pose_covariance[1] != told.pose_covariance[1]
+    assert [index for index, each in enumerate(told.velocity_covariance) if each == each] == [
+        *(0, 6, 11, 15, 18, 20)
+    ]
+
+
+def asked_at_1_hz(bench: Bench, kind: type[m.Message]) -> m.Message:
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[kind], 1_000_000))
+    return last(bench.advance(2 * S), kind)
+
+
+def test_outputs_are_900_while_disarmed_and_pulses_in_flight() -> None:
+    """px4_1_14_flight.tlog: ACTUATOR_OUTPUT_STATUS active 16, sixteen times 900, then 0."""
+    bench = Bench("px4")
+    told = asked_at_1_hz(bench, m.ActuatorOutputStatus)
+    assert isinstance(told, m.ActuatorOutputStatus)
+    assert (told.active, told.actuator) == (16, (900.0,) * 16 + (0.0,) * 16)
+    bench.vehicle.armed, bench.vehicle.motor_outputs = True, (0.5, 0.25, 0.75, 1.0)
+    told = asked_at_1_hz(bench, m.ActuatorOutputStatus)
+    assert isinstance(told, m.ActuatorOutputStatus)
+    assert told.actuator[:5] == (1500.0, 1250.0, 1750.0, 2000.0, 900.0)
+
+
+def test_the_motor_controllers_share_the_batterys_current() -> None:
+    bench = Bench("px4")
+    bench.vehicle.motor_outputs = (0.5, 0.25, 0.75, 0.5)
+    told = asked_at_1_hz(bench, m.EscStatus)
+    assert isinstance(told, m.EscStatus)
+    assert told.rpm == (4750, 2375, 7125, 4750)
+    assert told.voltage == pytest.approx((15.2,) * 4)
+    assert told.current == pytest.approx((1.0, 0.5, 1.5, 1.0))
+    info = asked_at_1_hz(bench, m.EscInfo)
+    assert isinstance(info, m.EscInfo)
+    assert (info.count_, info.info, info.failure_flags) == (4, 0b1111, (0,) * 4)
+
+
+def test_utm_position_is_told_as_px4_fills_it() -> None:
+    """px4_1_14_flight.tlog: state 1, flags 109, height 0 on the ground; then 3, 125."""
+    bench = Bench("px4")
+    told = asked_at_1_hz(bench, m.UtmGlobalPosition)
+    assert isinstance(told, m.UtmGlobalPosition)
+    assert (told.flight_state, told.flags, told.relative_alt) == (1, 109, 0)
+    bench.vehicle.landed = Landed.IN_AIR
+    told = asked_at_1_hz(bench, m.UtmGlobalPosition)
+    assert isinstance(told, m.UtmGlobalPosition)
+    assert (told.flight_state, told.flags, told.relative_alt) == (3, 125, 5000)
