@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from vehicle_sim.autopilot.interface import Vehicle
+from vehicle_sim.autopilot.modes import MODES
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.effects import Client, Effect, Send
 from vehicle_sim.services.health_report import Checked, report
@@ -31,25 +32,19 @@ FIRST_REPORT_NS: Final = 2_080_000_000
 """After boot, as recorded."""
 LOOK_EVERY_NS: Final = 500_000_000
 S_NS: Final = 1_000_000_000
+NO_MODES_TO_ARM_IN: Final = frozenset(
+    MODES["px4"][name].custom_mode for name in ("AUTO.RTL", "AUTO.LAND", "POSCTL.ORBIT")
+)
 NO_MISSION: Final = 1  # MISSION_STATE
 NEVER_NS: Final = -(1 << 62)
-
-
-def with_events(effects: list[Effect], events: EventServer) -> list[Effect]:
-    """Behind each short text that a service answered with, the event that goes with it."""
-    whole: list[Effect] = []
-    for effect in effects:
-        whole.append(effect)
-        if isinstance(effect, Send) and isinstance(effect.message, m.Statustext):
-            text = effect.message.text.decode("ascii", "replace").removesuffix("\t")
-            whole += events.said(text)
-    return whole
 
 
 class EventServer:
     """The events of one vehicle.  Pure; the vehicle's own time, wall time where it is said."""
 
-    def __init__(self, vehicle: Vehicle, parameters: Parameters) -> None:
+    def __init__(self, vehicle: Vehicle, parameters: Parameters, on: bool) -> None:
+        """`on`: whether the vehicle has the interface; without it nothing is ever sent."""
+        self.on: Final = on
         self._vehicle = vehicle
         self._given = parameters
         self._kept: deque[m.Event] = deque(maxlen=KEPT)
@@ -79,6 +74,8 @@ class EventServer:
 
     def said(self, text: str) -> list[Effect]:
         """The event that goes with a text, if there is one."""
+        if not self.on:
+            return []
         modes = Modes(self._vehicle.custom_mode, self._custom_mode)
         event = event_of(text, modes)
         return self._send([event]) if event is not None else []
@@ -86,7 +83,7 @@ class EventServer:
     def step(self, wall_ns: int) -> list[Effect]:
         """After the vehicle's decisions: a report, if there is something new to report."""
         now_ns = self._vehicle.time_ns
-        if now_ns < self._look_ns:
+        if now_ns < self._look_ns or not self.on:
             return []
         self._look_ns = now_ns + LOOK_EVERY_NS
         self._custom_mode = self._vehicle.custom_mode
@@ -97,7 +94,7 @@ class EventServer:
 
     def check(self, wall_ns: int) -> list[Effect]:
         """RUN_PREARM_CHECKS: a report in any case."""
-        return self._report(report(self._checked(wall_ns)))
+        return self._report(report(self._checked(wall_ns))) if self.on else []
 
     def current_sequence(self) -> m.CurrentEventSequence:
         """The last one's number."""
@@ -105,6 +102,8 @@ class EventServer:
 
     def request(self, client: Client, asked: m.RequestEvent) -> list[Effect]:
         """REQUEST_EVENT: each event again, or that it is not kept any more."""
+        if not self.on:
+            return []
         count = ((asked.last_sequence - asked.first_sequence) & 0xFFFF) + 1
         kept = {event.sequence: event for event in self._kept}
         oldest = self._kept[0].sequence if self._kept else self._next
@@ -160,4 +159,5 @@ class EventServer:
             station=station_age_ns <= given.get("COM_DL_LOSS_T") * S_NS,
             station_needed=given.get("NAV_DLL_ACT") != 0,
             within_fence=not vehicle.fence_state.breached,
+            mode_to_arm_in=vehicle.custom_mode not in NO_MODES_TO_ARM_IN,
         )

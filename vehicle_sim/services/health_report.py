@@ -22,6 +22,8 @@ OFFBOARD: Final = 0x4000
 BY_LOCAL_POSITION: Final = 0x007E_003C
 BY_GLOBAL_POSITION: Final = 0x38
 BY_ATTITUDE: Final = 0x007E_D03E
+NOT_TO_ARM_IN: Final = 0x003C_3020
+"""rtl, land, follow_target, precland, orbit and two without a name."""
 
 # health_component_t, as a number in a check and as a bit in a summary
 REMOTE_CONTROL: Final = 7
@@ -50,6 +52,8 @@ class Checked(NamedTuple):
     station_needed: bool = False
     """By NAV_DLL_ACT."""
     within_fence: bool = True
+    mode_to_arm_in: bool = True
+    """The present mode is one in which PX4 can be armed."""
 
 
 class _Failed(NamedTuple):
@@ -90,15 +94,12 @@ def _failed(seen: Checked) -> Iterator[_Failed]:
         yield _of_modes(30612409, 0x33, BY_LOCAL_POSITION)
     if not seen.global_position:
         yield _of_modes(26788467, 0x33, BY_GLOBAL_POSITION)
+    if not seen.mode_to_arm_in:
+        yield _Failed(18648929, INFO, NOT_TO_ARM_IN, SYSTEM, cannot_arm=NOT_TO_ARM_IN)
     if not seen.mission:
         yield _of_modes(17154777, INFO, MISSION, error=False)
     if not seen.offboard:
         yield _of_modes(19865031, 0x33, OFFBOARD)
-    if not seen.within_fence:
-        extra = struct.pack("<B", FENCE_VIOLATION)
-        yield _Failed(
-            29908441, 0x33, ALL_MODES, SYSTEM, error=True, cannot_arm=ALL_MODES, extra=extra
-        )
     if not seen.sticks:
         yield _Failed(
             17231145,
@@ -108,6 +109,11 @@ def _failed(seen: Checked) -> Iterator[_Failed]:
             warning=True,
             cannot_arm=BY_STICKS,
             cannot_run=BY_STICKS,
+        )
+    if not seen.within_fence:
+        extra = struct.pack("<B", FENCE_VIOLATION)
+        yield _Failed(
+            29908441, 0x33, ALL_MODES, SYSTEM, error=True, cannot_arm=ALL_MODES, extra=extra
         )
     if not seen.station:
         yield _Failed(

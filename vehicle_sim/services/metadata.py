@@ -1,8 +1,8 @@
-"""What a ground station reads about a px4 vehicle's parameters (MAVLink Component Metadata).
+"""What a ground station reads about a px4 vehicle (MAVLink Component Metadata).
 
-Two JSON files by the schemas of the protocol: the general one says where the others are, the
-other one describes the parameters.  Their texts come from the parameter tables, which write a
-unit as `[m/s]`, choices as `0 warn 2 land when critical`, and bits as `bit 0 this, bit 1 that` or
+JSON files by the schemas of the protocol: the general one says where the others are, one describes
+the parameters, one the events (`event_definitions.py`).  The parameters' texts come from the
+parameter tables, which write a unit as `[m/s]`, choices as `0 warn 2 land when critical`, and bits as `bit 0 this, bit 1 that` or
 as `1 this 2 that; added up`.  Of a parameter that does nothing here they say so, without bounds.
 """
 
@@ -12,23 +12,24 @@ import json
 import re
 from dataclasses import dataclass
 from functools import cache
-from typing import Final, TypeAlias
+from typing import Final
 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.tables import TABLES, ParameterSpec
+from vehicle_sim.services.event_definitions import Json, definitions
 from vehicle_sim.storage.store import crc32_of
 from vehicle_sim.storage.virtual_files import Virtual, VirtualFiles
 
 GENERAL_PATH: Final = "etc/extras/component_general.json"
 PARAMETERS_PATH: Final = "etc/extras/parameters.json"
+EVENTS_PATH: Final = "etc/extras/all_events.json"
 """PX4's own places, without its compression."""
 
 PARAMETER_METADATA: Final = 1  # COMP_METADATA_TYPE_PARAMETER
+EVENTS_METADATA: Final = 4  # COMP_METADATA_TYPE_EVENTS
 _UNIT: Final = re.compile(r" ?\[([^]]+)\]")
 _BIT: Final = re.compile(r"bit (\d+) ([^,]+)")
 _CHOICE: Final = re.compile(r"(?:^|(?<=[ :]))(\d+) ([A-Za-z][A-Za-z, -]*?)(?=,? \d+ |$)")
-
-Json: TypeAlias = "dict[str, str | float | bool | list[Json]]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,20 +46,22 @@ def metadata_of(personality: Personality) -> Metadata:
     """The same for all vehicles of a personality: values do not enter."""
     specs = TABLES[personality]
     described = _json({"version": 1, "parameters": [_described(spec) for spec in specs]})
-    general = _json(
-        {
-            "version": 1,
-            "metadataTypes": [
-                {
-                    "type": PARAMETER_METADATA,
-                    "uri": _uri(PARAMETERS_PATH),
-                    "fileCrc": crc32_of(described),
-                }
-            ],
-        }
-    )
-    files = {GENERAL_PATH: _fixed(general), PARAMETERS_PATH: _fixed(described)}
+    events = _json(definitions())
+    entries = [
+        _entry(PARAMETER_METADATA, PARAMETERS_PATH, described),
+        _entry(EVENTS_METADATA, EVENTS_PATH, events),
+    ]
+    general = _json({"version": 1, "metadataTypes": entries})
+    files = {
+        GENERAL_PATH: _fixed(general),
+        PARAMETERS_PATH: _fixed(described),
+        EVENTS_PATH: _fixed(events),
+    }
     return Metadata(files, _uri(GENERAL_PATH), crc32_of(general))
+
+
+def _entry(kind: int, path: str, data: bytes) -> Json:
+    return {"type": kind, "uri": _uri(path), "fileCrc": crc32_of(data)}
 
 
 def _fixed(data: bytes) -> Virtual:

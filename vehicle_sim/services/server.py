@@ -26,7 +26,7 @@ from vehicle_sim.flight_log.recorder import Recorder
 from vehicle_sim.services import param_pack
 from vehicle_sim.services.clocks import ping, timesync
 from vehicle_sim.services.commands import Commands
-from vehicle_sim.services.events import EventServer, with_events
+from vehicle_sim.services.events import EventServer
 from vehicle_sim.services.ftp import FtpServer
 from vehicle_sim.services.info import Info
 from vehicle_sim.services.logs import LogServer
@@ -44,7 +44,7 @@ from vehicle_sim.services.setpoints import (
 )
 from vehicle_sim.services.stream_sets import LinkMode, StreamSets, unasked
 from vehicle_sim.services.streams import NEVER, Streams
-from vehicle_sim.services.texts import worded
+from vehicle_sim.services.texts import in_chunks
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
@@ -54,7 +54,6 @@ GROUND_STATION: Final = 6  # MAV_TYPE_GCS
 ACK_OF_SET_MODE: Final = 11  # ArduPilot acks SET_MODE under the message's own number
 REACHED_EVERY_NS: Final = 100_000_000
 REFUSAL_NOTED_EVERY_NS: Final = 1_000_000_000
-STATUSTEXT_CHARS: Final = 50
 
 LEVELS: Final = ("fatal", "fatal", "error", "error", "warning", "info", "info", "debug")
 """By MAV_SEVERITY."""
@@ -89,7 +88,9 @@ class VehicleServer:
         self._given = parameters
         self._parameters = ParameterServer(parameters, profile)
         metadata = metadata_of(profile.name) if profile.component_metadata else None
-        self._events = self._event_server()
+        # Where nobody is told how far they have come, there are no events.
+        told = m.IDS[m.CurrentEventSequence] in self._stream_sets.by_mode[LinkMode.NORMAL]
+        self._events = EventServer(vehicle, parameters, profile.name == "px4" and told)
         self._info = Info(
             vehicle,
             profile,
@@ -97,7 +98,7 @@ class VehicleServer:
             unix_start_ns,
             self._missions.plan_ids,
             metadata,
-            self._events.current_sequence if self._events is not None else None,
+            self._events.current_sequence if self._events.on else None,
         )
         packed = {param_pack.PATH: param_pack.param_pack(parameters)}
         self._ftp = FtpServer(self.store, metadata.files if metadata is not None else packed)
@@ -125,13 +126,6 @@ class VehicleServer:
     @property
     def mode_name(self) -> str:
         return self._info.mode_name
-
-    def _event_server(self) -> EventServer | None:
-        """Where nobody is told how far they have come, there are no events."""
-        told = self._stream_sets.by_mode[LinkMode.NORMAL]
-        if self._profile.name != "px4" or m.IDS[m.CurrentEventSequence] not in told:
-            return None
-        return EventServer(self.vehicle, self._given)
 
     # ---------------------------------------------------------------------------- channels
 
@@ -177,7 +171,7 @@ class VehicleServer:
         self.vehicle.wall(wall_ns)
         effects = self._dispatch(client, sequence, message, wall_ns)
         self._schedule()
-        return effects if self._events is None else with_events(effects, self._events)
+        return effects
 
     def _obeys(self, client: Client) -> bool:
         """ArduPilot's SYSID_ENFORCE: nobody but its own ground station is heard."""
@@ -208,14 +202,13 @@ class VehicleServer:
             case m.Heartbeat():
                 if message.type == GROUND_STATION and self._counts(client):
                     self.vehicle.gcs_heard(wall_ns)
-                    if self._events is not None:
-                        self._events.station_heard(wall_ns)
+                    self._events.station_heard(wall_ns)
                 return []
             case m.CommandLong() | m.CommandInt():
                 if message.target_component not in (0, COMPONENT) and self._profile.name == "px4":
                     return self._commands.refuse(client, message.command)
                 effects = self._commands.handle(client, sequence, message, wall_ns)
-                if self._events is not None and message.command == Cmd.RUN_PREARM_CHECKS:
+                if message.command == Cmd.RUN_PREARM_CHECKS:
                     effects += self._events.check(wall_ns)
                 return effects
             case (
@@ -263,7 +256,7 @@ class VehicleServer:
                 self._streams[client.channel].request(message, self.vehicle.time_ns)
                 return []
             case m.RequestEvent():
-                return self._events.request(client, message) if self._events is not None else []
+                return self._events.request(client, message)
             case m.Timesync():
                 return [*timesync(client, message, self.vehicle.clock_ns)]
             case m.Ping():
@@ -291,8 +284,7 @@ class VehicleServer:
                 return []
             self._noted_ns = wall_ns
             return [Note("warning", f"setpoint of {client.system} refused: {refusal}")]
-        if self._events is not None:
-            self._events.setpoint_heard(wall_ns)
+        self._events.setpoint_heard(wall_ns)
         return []
 
     def _set_mode(self, client: Client, asked: m.SetMode) -> list[Effect]:
@@ -334,10 +326,8 @@ class VehicleServer:
         effects += self._changes()
         if vehicle.clock_ns < self._clock_ns:
             self.system = self._info.system = int(self._given.si(Quantity.SYSTEM_ID))
-            if self._events is not None:
-                self._events.restart()
-        if self._events is not None:
-            effects += self._events.step(wall_ns)
+            self._events.restart()
+        effects += self._events.step(wall_ns)
         self._clock_ns = vehicle.clock_ns
         if wall_ns >= self.deadline_ns:
             effects += self._missions.tick(wall_ns)
@@ -384,14 +374,18 @@ class VehicleServer:
         )
 
     def _event(self, event: VehicleEvent) -> list[Effect]:
+        now_ns = self.vehicle.time_ns
         match event:
             case StatusText():
-                return self._status_text(event)
+                return [
+                    *(Send(None, each) for each in in_chunks(self._profile, event, now_ns)),
+                    *self._events.said(event.text),
+                    Note(LEVELS[event.severity], event.text),
+                ]
             case ImageCaptured():
                 note = Note("info", f"image {event.index} captured")
                 return [*(Send(None, image) for image in self._info.captured(event)), note]
             case MissionReached():
-                now_ns = self.vehicle.time_ns
                 # Every item is told at least once; only of the last one the repeats go on.
                 self._reached = [
                     (now_ns + turn * REACHED_EVERY_NS, event.seq)
@@ -406,20 +400,6 @@ class VehicleServer:
                 return self._commands.done(event)
             case CommandSent(command, p1):
                 return [Send(None, _command(command, p1))]
-
-    def _status_text(self, event: StatusText) -> list[Effect]:
-        """Longer texts go out in chunks that share an id."""
-        raw = worded(self._profile, event.text).encode("ascii", "replace")
-        chunks = [raw[at : at + STATUSTEXT_CHARS] for at in range(0, len(raw), STATUSTEXT_CHARS)]
-        text_id = self.vehicle.time_ns // 1_000_000 % 0xFFFF + 1 if len(chunks) > 1 else 0
-        return [
-            *(
-                Send(None, m.Statustext(event.severity, chunk, text_id, number))
-                for number, chunk in enumerate(chunks)
-            ),
-            *(self._events.said(event.text) if self._events is not None else ()),
-            Note(LEVELS[event.severity], event.text),
-        ]
 
     def _look(self) -> tuple[bool, int, bool]:
         return (self.vehicle.armed, self.vehicle.custom_mode, self.vehicle.origin is not None)

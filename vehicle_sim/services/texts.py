@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
+from vehicle_sim.autopilot.interface import StatusText
 from vehicle_sim.services.profile import Profile
 from vehicle_sim.wire import messages as m
 
+STATUSTEXT_CHARS: Final = 50
 _BARE: Final = ("[cal] ", "Preflight Fail: ", "motion, ", "ERROR: ")
 """What PX4 sends without its events interface: the recorded texts that have no TAB."""
 
@@ -14,6 +16,16 @@ _BARE: Final = ("[cal] ", "Preflight Fail: ", "motion, ", "ERROR: ")
 def worded(profile: Profile, text: str) -> str:
     """PX4 ends with a TAB each text that it also sends as an EVENT, for clients to tell."""
     return f"{text}\t" if profile.name == "px4" and not text.startswith(_BARE) else text
+
+
+def in_chunks(profile: Profile, event: StatusText, time_ns: int) -> list[m.Statustext]:
+    """A text of any length: longer ones go out in chunks that share an id."""
+    raw = worded(profile, event.text).encode("ascii", "replace")
+    chunks = [raw[at : at + STATUSTEXT_CHARS] for at in range(0, len(raw), STATUSTEXT_CHARS)]
+    text_id = time_ns // 1_000_000 % 0xFFFF + 1 if len(chunks) > 1 else 0
+    return [
+        m.Statustext(event.severity, chunk, text_id, number) for number, chunk in enumerate(chunks)
+    ]
 
 
 def status_text(profile: Profile, severity: int, text: str) -> m.Statustext:

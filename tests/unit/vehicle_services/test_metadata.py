@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+from struct import calcsize
 
+from tests.unit.vehicle_services.test_events import TEXTS
 from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.services.health_report import Checked, report
 from vehicle_sim.services.metadata import GENERAL_PATH, metadata_of
+from vehicle_sim.services.px4_events import Modes, PX4Event, event_of
 from vehicle_sim.storage.store import crc32_of
 
 METADATA = metadata_of("px4")
@@ -28,7 +32,7 @@ def described() -> dict[str, dict[str, object]]:
         crc32_of(content(GENERAL_PATH)),
     )
     assert general["version"] == 1
-    (entry,) = general["metadataTypes"]
+    entry, _ = general["metadataTypes"]
     assert entry["type"] == 1  # COMP_METADATA_TYPE_PARAMETER
     data = content(entry["uri"].removeprefix("mftp://"))
     assert entry["fileCrc"] == crc32_of(data)
@@ -81,3 +85,69 @@ def test_bits_are_told_apart_from_choices() -> None:
     ]
     assert "values" not in told["COM_RC_OVERRIDE"]
     assert "values" not in told["COM_RCL_EXCEPT"]
+
+
+# --------------------------------------------------------------------------------- events
+
+SIZES = {"uint8_t": "B", "uint16_t": "H", "uint32_t": "I", "int32_t": "i", "float": "f"}
+
+
+def event_file() -> dict[str, dict[str, dict[str, dict[str, object]]]]:
+    """What the general file names as the events of the component 1."""
+    _, entry = json.loads(content(GENERAL_PATH))["metadataTypes"]
+    assert entry["type"] == 4  # COMP_METADATA_TYPE_EVENTS
+    data = content(entry["uri"].removeprefix("mftp://"))
+    assert entry["fileCrc"] == crc32_of(data)
+    told = json.loads(data)
+    assert told["version"] == 1
+    component: dict[str, dict[str, dict[str, dict[str, object]]]] = told["components"]["1"]
+    return component
+
+
+def all_that_are_sent() -> list[PX4Event]:
+    said = (event_of(text, Modes(0x30000, 0x60000)) for text, *_ in TEXTS)
+    nothing_is_well = Checked(
+        *(False,) * 8, station=False, within_fence=False, mode_to_arm_in=False
+    )
+    shaken = Checked(velocity=False)
+    return [
+        *(event for event in said if event is not None),
+        *report(nothing_is_well),
+        *report(shaken),
+    ]
+
+
+def test_every_event_that_is_sent_is_defined_with_arguments_of_its_size() -> None:
+    component = event_file()
+    sizes = {name: SIZES[str(enum["type"])] for name, enum in component["enums"].items()} | SIZES
+    defined: dict[str, list[dict[str, str]]] = {}
+    for group in component["event_groups"].values():
+        for number, event in group["events"].items():
+            assert isinstance(event, dict)
+            defined[number] = event.get("arguments", [])
+    sent = all_that_are_sent()
+    assert {str(event.id & 0xFFFFFF) for event in sent} == set(defined)
+    for event in sent:
+        assert event.id >> 24 == 1
+        arguments = defined[str(event.id & 0xFFFFFF)]
+        form = "<" + "".join(sizes[each["type"]] for each in arguments)
+        assert len(event.arguments) == calcsize(form), event
+
+
+def test_a_station_finds_the_arming_checks_by_their_groups() -> None:
+    groups = event_file()["event_groups"]
+    checks, health = groups["arming_check"]["events"], groups["health"]["events"]
+    summaries = {
+        str(event["name"])
+        for events in (checks, health)
+        for event in events.values()
+        if isinstance(event, dict) and event.get("type") == "summary"
+    }
+    assert summaries == {"commander_arming_check_summary", "commander_health_summary"}
+    assert len(checks) == 11
+    bits = event_file()["enums"]["health_component_t"]["entries"]
+    assert isinstance(bits, dict)
+    assert [bits[str(1 << bit)]["name"] for bit in (3, 7, 11, 12, 17, 20, 27, 29)] == [
+        *("gps", "remote_control", "battery", "communication_links", "local_position_estimate"),
+        *("system", "magnetometer", "gyro"),
+    ]
