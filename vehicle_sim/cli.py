@@ -53,6 +53,7 @@ class Options:
     files: str | None
     sysid: int
     streams: StreamChoice
+    view: str | None
     lifeline: bool
     control: bool
     plain: bool
@@ -136,6 +137,12 @@ class _BadFileError(Exception):
     "and TIMESYNC.  position: the position at 10 Hz and a heartbeat, which is what 1,000 vehicles "
     "have time for.",
 )
+@click.option(
+    "--view",
+    metavar="URL",
+    help="Sends the true state to a 3-D viewer: HIL_STATE_QUATERNION at 50 Hz and HEARTBEAT, for "
+    "PX4's Hawkeye to udp://127.0.0.1:19410.",
+)
 @click.option("--sysid", type=click.IntRange(1, 250), default=1, show_default=True)
 @click.option(
     "--files",
@@ -165,6 +172,7 @@ def main(
     links: tuple[str, ...],
     params: tuple[tuple[str, float], ...],
     streams: StreamChoice,
+    view: str | None,
     sysid: int,
     files: str | None,
     signing_key: str | None,
@@ -202,6 +210,7 @@ def main(
                 files=files,
                 sysid=sysid,
                 streams=streams,
+                view=view,
                 lifeline=lifeline or control,
                 control=control,
                 plain=plain,
@@ -241,7 +250,7 @@ def plan_of(options: Options) -> Plan:
     from vehicle_sim.autopilot.interface import Geodetic
     from vehicle_sim.plant.faults import WindChange
     from vehicle_sim.shell.runtime import Plan, VehicleSetup
-    from vehicle_sim.shell.urls import parse
+    from vehicle_sim.shell.urls import parse, parse_view
     from vehicle_sim.simulation.fault_script import parse as parse_faults
     from vehicle_sim.wire.signing import parse_key
 
@@ -280,6 +289,7 @@ def plan_of(options: Options) -> Plan:
         signing=None if options.signing_key is None else parse_key(_read(options.signing_key)),
         files=None if options.files is None else Path(options.files),
         streams=options.streams,
+        view=None if options.view is None else parse_view(options.view),
     )
 
 

@@ -35,6 +35,7 @@ def options(count: int, links: tuple[str, ...] = ()) -> Options:
         files=None,
         sysid=1,
         streams="full",
+        view=None,
         lifeline=True,
         control=False,
         plain=True,

@@ -93,3 +93,21 @@ def test_pymavlinks_mavutil_is_not_loaded() -> None:
         "assert 'pymavlink.mavutil' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=20)
+
+
+def test_a_viewer_is_sent_where_the_vehicle_is() -> None:
+    """--view: HIL_STATE_QUATERNION (115) and HEARTBEAT (0), and nothing else."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as viewer:
+        viewer.bind(("127.0.0.1", 0))
+        viewer.settimeout(10.0)
+        url = f"udp://127.0.0.1:{viewer.getsockname()[1]}"
+        with vehicle_sim("--port", "0", "--view", url):
+            first, second = viewer.recv(2048), viewer.recv(2048)
+    assert (first[0], first[7:10]) == (0xFD, b"\0\0\0")
+    assert second[7] == 115
+
+
+def test_a_viewers_address_must_be_one() -> None:
+    ended = run("--view", "tcp://127.0.0.1:19410")
+    assert ended.returncode == 2
+    assert "udp://HOST:PORT" in ended.stderr

@@ -2,8 +2,9 @@
 
 JSON files by the schemas of the protocol: the general one says where the others are, one describes
 the parameters, one the events (`event_definitions.py`).  The parameters' texts come from the
-parameter tables, which write a unit as `[m/s]`, choices as `0 warn 2 land when critical`, and bits as `bit 0 this, bit 1 that` or
-as `1 this 2 that; added up`.  Of a parameter that does nothing here they say so, without bounds.
+parameter tables, which write a unit as `[m/s]`, choices as `0 warn 2 land when critical`, and bits
+as `bit 0 this, bit 1 that` or as `1 this 2 that; added up`.  Of a parameter that does nothing here
+they say so, without bounds.
 """
 
 from __future__ import annotations

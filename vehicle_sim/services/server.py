@@ -44,6 +44,7 @@ from vehicle_sim.services.setpoints import (
 )
 from vehicle_sim.services.stream_sets import LinkMode, StreamSets, unasked
 from vehicle_sim.services.streams import NEVER, Streams
+from vehicle_sim.services.telemetry import heartbeat
 from vehicle_sim.services.texts import in_chunks
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
@@ -126,6 +127,9 @@ class VehicleServer:
     @property
     def mode_name(self) -> str:
         return self._info.mode_name
+
+    def heartbeat(self) -> m.Heartbeat:
+        return heartbeat(self.vehicle, self._profile)
 
     # ---------------------------------------------------------------------------- channels
 

@@ -37,7 +37,7 @@ from vehicle_sim.shell.pacer import Pacer, Redraw, Stop, monotonic_ns
 from vehicle_sim.shell.parent import standard_input
 from vehicle_sim.shell.urls import Url
 from vehicle_sim.simulation.fault_script import Timed
-from vehicle_sim.simulation.world import LinkSpec, Log, World
+from vehicle_sim.simulation.world import LinkSpec, Log, Peer, World
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire.signing import SigningKey
 
@@ -76,6 +76,7 @@ class Plan:
     signing: SigningKey | None
     files: Path | None  # a directory to serve by FTP instead of memory
     streams: StreamChoice = "full"  # what is sent unasked
+    view: Url | None = None  # who is sent the truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +94,7 @@ def launch(plan: Plan) -> Opened:
     parameters = [parameters_of(plan, setup) for setup in plan.vehicles]
     stores = [_store(plan, setup) for setup in plan.vehicles]
     endpoints, links, urls = _open_links(plan)
+    viewer = _open_view(plan, endpoints)
     specs = [
         VehicleSpec(plan.seed, index, setup.home.lat_deg)
         for index, setup in enumerate(plan.vehicles)
@@ -131,6 +133,7 @@ def launch(plan: Plan) -> Opened:
         unix_start_ns=unix_ns,
         seed=plan.seed,
         faults=plan.faults,
+        viewer=viewer,
     )
     return Opened(world, tuple(endpoints), tuple(map(tuple, urls)), start_ns)
 
@@ -182,6 +185,20 @@ def _open_links(plan: Plan) -> tuple[list[Endpoint], list[LinkSpec], list[list[U
             endpoint.close()
         raise
     return endpoints, links, urls
+
+
+def _open_view(plan: Plan, endpoints: list[Endpoint]) -> Peer | None:
+    """The viewer's address; its link comes after those of the vehicles."""
+    if plan.view is None:
+        return None
+    try:
+        endpoint = open_endpoint(len(endpoints), plan.view)
+    except EndpointError:
+        for each in endpoints:
+            each.close()
+        raise
+    endpoints.append(endpoint)
+    return endpoint.peers[0]
 
 
 def run(

@@ -33,6 +33,7 @@ KINDS: Final[dict[str, UrlKind]] = {
 }
 """By prefix, longest first."""
 
+VIEW_FORM: Final = "udp://HOST:PORT"
 FORMS: Final = "udpin://HOST:PORT, udpout://HOST:PORT, tcpin://HOST:PORT or tcpout://HOST:PORT"
 MODES: Final = {mode.value: mode for mode in LinkMode}
 
@@ -91,3 +92,10 @@ def parse(text: str) -> Url:
                 raise UrlError(f"{text}: {port} is no port (1 to 65535)")
             return Url(kind, host.strip("[]") or "127.0.0.1", int(port), MODES.get(word))
     raise UrlError(f"{text}: no such kind of link; use {FORMS}")
+
+
+def parse_view(text: str) -> Url:
+    """Where a 3-D viewer waits: here `udp` sends.  Raises UrlError."""
+    if not text.startswith("udp://"):
+        raise UrlError(f"{text}: a viewer is sent to by {VIEW_FORM}")
+    return parse(f"udpout://{text.removeprefix('udp://')}")

@@ -30,6 +30,7 @@ from vehicle_sim.simulation.traffic import (
     Transmit,
     Wake,
 )
+from vehicle_sim.simulation.view import View
 from vehicle_sim.wire.signing import SigningKey
 from vehicle_sim.wire.split import Counters
 
@@ -75,9 +76,11 @@ class World:
         unix_start_ns: int = 0,
         seed: int = 0,
         faults: tuple[Timed, ...] = (),
+        viewer: Peer | None = None,
     ) -> None:
         """All vehicles share one key.  `unix_start_ns` is what `start_ns` is since 1970, for
-        signatures; `seed` is that of the links' impairments; `faults` happen at their times."""
+        signatures; `seed` is that of the links' impairments; `faults` happen at their times;
+        `viewer` is sent the truth, on a link whose number comes after the others'."""
         if len({server.vehicle.dt_ns for server in vehicles}) != 1:
             raise ValueError("all vehicles of a world take steps of the same length")
         self._servers = tuple(vehicles)
@@ -93,6 +96,9 @@ class World:
         # Which servers have something to do after which step; one too many does no harm.
         self._agenda: dict[int, set[int]] = {1: set(range(len(self._servers)))}
         self._board = Switchboard(vehicles, links, signing, unix_start_ns - start_ns, seed)
+        self._view = (
+            View(self._servers, len(self._links), viewer, speedup) if viewer is not None else None
+        )
         self._schedule = Schedule(faults)
         self._fault_ns = self._schedule.due_ns(NEVER_NS)
         self._greeted = False
@@ -162,7 +168,8 @@ class World:
         self._live(now_ns, out)
         match given:
             case Datagram():
-                self._board.receive(given, now_ns, out)
+                if given.link < len(self._links):
+                    self._board.receive(given, now_ns, out)
             case Joined():
                 self._board.join(given.link, given.peer, now_ns, out)
             case Left():
@@ -189,6 +196,9 @@ class World:
                 server = self._servers[number]
                 self._board.emit(server, server.step(wall_ns), wall_ns, out)
                 self._plan(number)
+            if self._view is not None and self.time_ns >= self._view.due_ns:
+                out += self._view.step(self.time_ns)
+                self._agenda.setdefault(-(-self._view.due_ns // self._dt_ns), set())
         self._board.depart(now_ns, out)
 
     def _inject_due(self, out: list[Output]) -> None:
