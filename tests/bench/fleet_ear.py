@@ -190,7 +190,7 @@ def plan(personality: Personality, count: int, own: Sequence[int], shared: Seque
         faults=(),
         signing=None,
         files=None,
-        sparse=sparse,
+        streams="position" if sparse else "full",
     )
 
 

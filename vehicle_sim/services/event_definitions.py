@@ -196,7 +196,10 @@ def _group(*definitions: _Definition, kind: str = "") -> Json:
     for each in definitions:
         event: Json = {"name": each.name, "message": each.message}
         if each.arguments:
-            event["arguments"] = [{"type": type_, "name": name} for type_, name in each.arguments]
+            arguments: list[Json] = [
+                {"type": type_, "name": name} for type_, name in each.arguments
+            ]
+            event["arguments"] = arguments
         if kind:
             event["type"] = kind
         events[str(each.id & 0xFF_FFFF)] = event

@@ -49,7 +49,7 @@ class Info:
         self._metadata = metadata
         self._images: list[m.CameraImageCaptured] = []
         self._pings = 0
-        self._own: Final[dict[int, Callable[[], m.Message]]] = {
+        self._own: Final[dict[int, Callable[[], m.Message | None]]] = {
             m.IDS[m.SystemTime]: self._system_time,
             m.IDS[m.Timesync]: self._timesync,
             m.IDS[m.Ping]: self._ping,

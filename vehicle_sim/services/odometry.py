@@ -126,7 +126,7 @@ def esc_status(vehicle: Vehicle, profile: Profile) -> m.EscStatus | None:
         rpm=tuple(round(FULL_RPM * output) for output in outputs),
         voltage=(power.voltage_v,) * ESCS,
         current=tuple(power.current_a * share for share in shares),
-        index=0,
+        index_=0,
     )
 
 
@@ -139,7 +139,7 @@ def esc_info(vehicle: Vehicle, profile: Profile) -> m.EscInfo | None:
         counter=usec(vehicle) // 1_000_000 & 0xFFFF,
         failure_flags=(0,) * ESCS,
         temperature=(INT16_MAX,) * ESCS,
-        index=0,
+        index_=0,
         count_=ESCS,
         connection_type=DSHOT,
         info=ALL_ONLINE,

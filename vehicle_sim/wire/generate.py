@@ -34,8 +34,8 @@ LETTERS: Final = {
 """Type of the dialect -> letter of `struct`."""
 BYTES: Final = frozenset({"char", "uint8_t"})
 """Arrays of these are `bytes`."""
-TAKEN: Final = {"count": "count_"}
-"""What a tuple has a method for."""
+TAKEN: Final = {"count": "count_", "index": "index_"}
+"""What a tuple has methods for."""
 CRC_EXTRAS_A_ROW: Final = 8
 
 MESSAGES_HEAD: Final = '''\

@@ -1077,7 +1077,7 @@ class EscInfo(NamedTuple):
     counter: int
     failure_flags: tuple[int, ...]
     temperature: tuple[int, ...]
-    index: int
+    index_: int
     count_: int
     connection_type: int
     info: int
@@ -1090,7 +1090,7 @@ class EscStatus(NamedTuple):
     rpm: tuple[int, ...]
     voltage: tuple[float, ...]
     current: tuple[float, ...]
-    index: int
+    index_: int
 
 
 class ProtocolVersion(NamedTuple):
