@@ -293,8 +293,9 @@ def test_many_vehicles_share_a_port(personality: Personality) -> None:
     client = sky.client()
     client.beat_if_due()
     sky.run(3.0)
-    heard = {each.message.get_srcSystem() for each in client.heard}
-    assert heard == {1, 2, 3}
+    # pymavlink knows no EVENT (410) and CURRENT_EVENT_SEQUENCE (411), and tells not who sent them.
+    known = [each.message for each in client.heard if each.message.get_type()[:7] != "UNKNOWN"]
+    assert {each.get_srcSystem() for each in known} == {1, 2, 3}
     if personality == "ardupilot":
         assert client.long(176, 1, 4, target=2) == [ACCEPTED]
     assert client.long(400, 1, target=2) == [ACCEPTED]
