@@ -12,7 +12,7 @@ flights give equal bytes: the date comes from `unix_start_ns` and the vehicle's 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -20,9 +20,7 @@ from vehicle_sim.autopilot.interface import StatusText, Vehicle, VehicleEvent
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.effects import Effect, Note
-from vehicle_sim.flight_log.ardupilot import ArdupilotFormat
 from vehicle_sim.flight_log.log_directory import LOG_BYTES_MAX, LogDirectory, LogFile
-from vehicle_sim.flight_log.px4 import Px4Format
 from vehicle_sim.flight_log.snapshot import Format, Head, Parameter, Snapshot, VehicleStatus
 from vehicle_sim.storage.store import StoreError
 
@@ -31,10 +29,18 @@ FLUSH_BYTES: Final = 8192
 NEVER: Final = 1 << 62
 _ARMED, _UNTIL_DISARMED, _ALWAYS = 0, 1, 2  # SDLOG_MODE; -1 is never
 
-FORMATS: Final[dict[Personality, Callable[[], Format]]] = {
-    "px4": Px4Format,
-    "ardupilot": ArdupilotFormat,
-}
+
+def _format_of(personality: Personality) -> Format:
+    """A writer of logs is loaded with the first log."""
+    match personality:
+        case "px4":
+            from vehicle_sim.flight_log.px4 import Px4Format
+
+            return Px4Format()
+        case "ardupilot":
+            from vehicle_sim.flight_log.ardupilot import ArdupilotFormat
+
+            return ArdupilotFormat()
 
 
 @dataclass(slots=True)
@@ -167,7 +173,7 @@ class Recorder:
     def _begin(self, armed_us: int) -> _Log:
         status = self._status()
         now = self._snapshot(status, armed_us)
-        form = FORMATS[self._parameters.personality]()
+        form = _format_of(self._parameters.personality)
         parameters = self._read_parameters()
         dt_us = max(1, self._vehicle.dt_ns // 1000)
         head = Head(self._system, self._version, dt_us, tuple(parameters.values()))

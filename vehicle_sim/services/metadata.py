@@ -13,13 +13,15 @@ import json
 import re
 from dataclasses import dataclass
 from functools import cache
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.tables import TABLES, ParameterSpec
-from vehicle_sim.services.event_definitions import Json, definitions
 from vehicle_sim.storage.store import crc32_of
 from vehicle_sim.storage.virtual_files import Virtual, VirtualFiles
+
+if TYPE_CHECKING:
+    from vehicle_sim.services.event_definitions import Json
 
 GENERAL_PATH: Final = "etc/extras/component_general.json"
 PARAMETERS_PATH: Final = "etc/extras/parameters.json"
@@ -39,12 +41,31 @@ class Metadata:
 
     files: VirtualFiles
     uri: str
-    crc: int
+    personality: Personality
+
+    @property
+    def crc(self) -> int:
+        return crc32_of(_texts(self.personality)[GENERAL_PATH])
+
+
+def metadata_of(personality: Personality) -> Metadata:
+    """The same for all vehicles of a personality: values do not enter.
+
+    The texts are made when somebody asks for one.
+    """
+
+    def read(path: str) -> Virtual:
+        return Virtual(lambda query: _texts(personality)[path])
+
+    files = {path: read(path) for path in (GENERAL_PATH, PARAMETERS_PATH, EVENTS_PATH)}
+    return Metadata(files, _uri(GENERAL_PATH), personality)
 
 
 @cache
-def metadata_of(personality: Personality) -> Metadata:
-    """The same for all vehicles of a personality: values do not enter."""
+def _texts(personality: Personality) -> dict[str, bytes]:
+    """By path."""
+    from vehicle_sim.services.event_definitions import definitions
+
     specs = TABLES[personality]
     described = _json({"version": 1, "parameters": [_described(spec) for spec in specs]})
     events = _json(definitions())
@@ -53,20 +74,11 @@ def metadata_of(personality: Personality) -> Metadata:
         _entry(EVENTS_METADATA, EVENTS_PATH, events),
     ]
     general = _json({"version": 1, "metadataTypes": entries})
-    files = {
-        GENERAL_PATH: _fixed(general),
-        PARAMETERS_PATH: _fixed(described),
-        EVENTS_PATH: _fixed(events),
-    }
-    return Metadata(files, _uri(GENERAL_PATH), crc32_of(general))
+    return {GENERAL_PATH: general, PARAMETERS_PATH: described, EVENTS_PATH: events}
 
 
 def _entry(kind: int, path: str, data: bytes) -> Json:
     return {"type": kind, "uri": _uri(path), "fileCrc": crc32_of(data)}
-
-
-def _fixed(data: bytes) -> Virtual:
-    return Virtual(lambda query: data)
 
 
 def _uri(path: str) -> str:

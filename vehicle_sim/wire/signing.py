@@ -8,14 +8,15 @@ key lives in memory only.
 
 from __future__ import annotations
 
-import hashlib
-import hmac
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from vehicle_sim.wire.codec import MavlinkFrame
 from vehicle_sim.wire.messages import SetupSigning
+
+if TYPE_CHECKING:
+    from _hashlib import HASH
 
 KEY_BYTES: Final = 32
 EPOCH_UNIX_NS: Final = 1_420_070_400 * 1_000_000_000
@@ -46,6 +47,13 @@ class SigningKey:
             raise SigningKeyError(f"a signing key has {KEY_BYTES} bytes, not {len(self.secret)}")
 
 
+def _sha256(data: bytes) -> HASH:
+    """Loaded with the first key: most vehicles have none."""
+    from hashlib import sha256
+
+    return sha256(data)
+
+
 def parse_key(data: bytes) -> SigningKey:
     """What a key file holds: 32 raw bytes, 64 hexadecimal digits, or a passphrase.
 
@@ -64,7 +72,7 @@ def parse_key(data: bytes) -> SigningKey:
         except ValueError:
             # As many characters, but a passphrase.
             pass
-    return SigningKey(hashlib.sha256(line).digest())
+    return SigningKey(_sha256(line).digest())
 
 
 class Verdict(Enum):
@@ -89,7 +97,7 @@ class Signing:
 
     def __init__(self, key: SigningKey | None = None) -> None:
         self._key: SigningKey | None = None
-        self._keyed = hashlib.sha256()
+        self._keyed: HASH | None = None
         self._timestamp = 0
         self._streams: dict[tuple[int, int, int], int] = {}
         self.setup(key, 0)
@@ -105,7 +113,7 @@ class Signing:
         The streams stay: when a key comes back, its old frames must not.
         """
         self._key = key
-        self._keyed = hashlib.sha256(key.secret if key is not None else b"")
+        self._keyed = _sha256(key.secret) if key is not None else None
         self._timestamp = max(self._timestamp, min(timestamp, TIMESTAMP_MAX))
 
     def follow(self, asked: SetupSigning) -> None:
@@ -120,7 +128,9 @@ class Signing:
         if not frame.signed:
             return Verdict.UNSIGNED
         raw = frame.raw
-        if not hmac.compare_digest(self._sign(raw[:-_SIGNATURE]), raw[-_SIGNATURE:]):
+        from hmac import compare_digest
+
+        if not compare_digest(self._sign(raw[:-_SIGNATURE]), raw[-_SIGNATURE:]):
             return Verdict.BAD_SIGNATURE
         timestamp = int.from_bytes(raw[1 - _STAMP : -_SIGNATURE], "little")
         stream = (frame.system, frame.component, raw[-_STAMP])
@@ -142,6 +152,7 @@ class Signing:
         return stamped + self._sign(stamped)
 
     def _sign(self, stamped: bytes) -> bytes:
+        assert self._keyed is not None, "without a key nothing is signed"
         keyed = self._keyed.copy()
         keyed.update(stamped)
         return keyed.digest()[:_SIGNATURE]
