@@ -10,6 +10,7 @@ from vehicle_sim.autopilot.modes import MODES, by_number
 from vehicle_sim.services.metadata import Metadata
 from vehicle_sim.services.odometry import MOTION, utm_global_position
 from vehicle_sim.services.profile import STANDARD_MODES, Profile
+from vehicle_sim.services.remote_id import open_drone_id_location, open_drone_id_system
 from vehicle_sim.services.status_telemetry import STATUS
 from vehicle_sim.services.telemetry import STATE
 from vehicle_sim.services.units import boot_ms, degrees_e7, millimetres, usec
@@ -54,6 +55,8 @@ class Info:
             m.IDS[m.Timesync]: self._timesync,
             m.IDS[m.Ping]: self._ping,
             m.IDS[m.UtmGlobalPosition]: self._utm_global_position,
+            m.IDS[m.OpenDroneIdLocation]: self._open_drone_id_location,
+            m.IDS[m.OpenDroneIdSystem]: self._open_drone_id_system,
             m.IDS[m.MissionCurrent]: self.mission_current,
             m.IDS[m.CurrentMode]: self._current_mode,
             m.IDS[m.AvailableModesMonitor]: self._available_modes_monitor,
@@ -152,6 +155,12 @@ class Info:
 
     def _utm_global_position(self) -> m.Message | None:
         return utm_global_position(self._vehicle, self._unix_start_ns)
+
+    def _open_drone_id_location(self) -> m.Message | None:
+        return open_drone_id_location(self._vehicle)
+
+    def _open_drone_id_system(self) -> m.Message | None:
+        return open_drone_id_system(self._vehicle, self._unix_start_ns)
 
     def mission_current(self) -> m.Message:
         total, mission_id, fence_id, rally_id = self._plan_ids()

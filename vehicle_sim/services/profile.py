@@ -79,6 +79,8 @@ _ARDUPILOT_REQUESTS: Final = Requests(
             m.ActuatorOutputStatus,
             m.EscInfo,
             m.EscStatus,
+            m.OpenDroneIdLocation,
+            m.OpenDroneIdSystem,
         )
     ),
     accepted=frozenset({m.IDS[m.ParamValue], VIDEO_STREAM_INFORMATION, GIMBAL_INFORMATION}),

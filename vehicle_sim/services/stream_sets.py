@@ -3,9 +3,9 @@
 PX4 starts each of its links in a mode with its own set: MAVLINK_MODE_NORMAL on UDP port 14550, for
 ground stations, and MAVLINK_MODE_ONBOARD on 14540, for programs.  The rates are those that PX4
 1.14.3's own simulation was recorded with on both, before anything was asked for.  Not sent here,
-for want of what they tell of: DISTANCE_SENSOR (no range sensor), LINK_NODE_STATUS,
-TIME_ESTIMATE_TO_TARGET, OPEN_DRONE_ID_LOCATION and OPEN_DRONE_ID_SYSTEM.  Not recorded, and from
-memory of PX4's sources: RC_CHANNELS and MANUAL_CONTROL, which want a radio.
+for want of what they tell of: DISTANCE_SENSOR (no range sensor), LINK_NODE_STATUS and
+TIME_ESTIMATE_TO_TARGET.  Not recorded, and from memory of PX4's sources: RC_CHANNELS and
+MANUAL_CONTROL, which want a radio, and rates while an orbit or a goal is flown on 14540.
 
 ArduCopter sends HEARTBEAT and TIMESYNC; all else is asked for, by a message or by its parameters.
 """
@@ -67,6 +67,8 @@ PX4_NORMAL: Final = intervals(
         m.GpsRawInt: 1,
         m.Altitude: 1,
         m.ScaledPressure: 1,
+        m.OpenDroneIdLocation: 1,
+        m.OpenDroneIdSystem: 1,
         m.PositionTargetGlobalInt: 1,
         m.BatteryStatus: 0.5,
         m.EstimatorStatus: 0.5,
@@ -103,6 +105,8 @@ PX4_ONBOARD: Final = intervals(
         m.BatteryStatus: 1,
         m.EstimatorStatus: 1,
         m.ScaledPressure: 1,
+        m.OpenDroneIdLocation: 1,
+        m.OpenDroneIdSystem: 1,
         m.SystemTime: 1,
         m.UtmGlobalPosition: 1,
         m.Ping: 1,

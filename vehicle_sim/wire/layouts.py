@@ -115,6 +115,8 @@ PACKINGS: Final[dict[int, Packing]] = {
     435: Packing("<IIBBB35sB", 46),
     436: Packing("<IIB", 9),
     437: Packing("<B", 1),
+    12901: Packing("<iiffffHHhBB20sBBBBBBB", 59),
+    12904: Packing("<iifffIHHBB20sBBBB", 54),
 }
 """By the number of the message."""
 

@@ -1250,6 +1250,50 @@ class AvailableModesMonitor(NamedTuple):
     seq: int
 
 
+class OpenDroneIdLocation(NamedTuple):
+    """OPEN_DRONE_ID_LOCATION (12901)."""
+
+    latitude: int
+    longitude: int
+    altitude_barometric: float
+    altitude_geodetic: float
+    height: float
+    timestamp: float
+    direction: int
+    speed_horizontal: int
+    speed_vertical: int
+    target_system: int
+    target_component: int
+    id_or_mac: bytes
+    status: int
+    height_reference: int
+    horizontal_accuracy: int
+    vertical_accuracy: int
+    barometer_accuracy: int
+    speed_accuracy: int
+    timestamp_accuracy: int
+
+
+class OpenDroneIdSystem(NamedTuple):
+    """OPEN_DRONE_ID_SYSTEM (12904)."""
+
+    operator_latitude: int
+    operator_longitude: int
+    area_ceiling: float
+    area_floor: float
+    operator_altitude_geo: float
+    timestamp: int
+    area_count: int
+    area_radius: int
+    target_system: int
+    target_component: int
+    id_or_mac: bytes
+    operator_location_type: int
+    classification_type: int
+    category_eu: int
+    class_eu: int
+
+
 Message: TypeAlias = (
     Heartbeat
     | SysStatus
@@ -1348,6 +1392,8 @@ Message: TypeAlias = (
     | AvailableModes
     | CurrentMode
     | AvailableModesMonitor
+    | OpenDroneIdLocation
+    | OpenDroneIdSystem
 )
 
 TYPES: Final[dict[int, type[Message]]] = {
@@ -1448,6 +1494,8 @@ TYPES: Final[dict[int, type[Message]]] = {
     435: AvailableModes,
     436: CurrentMode,
     437: AvailableModesMonitor,
+    12901: OpenDroneIdLocation,
+    12904: OpenDroneIdSystem,
 }
 """Number -> class."""
 

@@ -106,5 +106,7 @@ MESSAGES: Final = (
     "ESC_STATUS",
     "UTM_GLOBAL_POSITION",
     "HIL_STATE_QUATERNION",
+    "OPEN_DRONE_ID_LOCATION",
+    "OPEN_DRONE_ID_SYSTEM",
 )
 """Each gets a class.  What is not among them is checked for its CRC, counted and ignored."""

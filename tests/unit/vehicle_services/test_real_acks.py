@@ -198,8 +198,8 @@ CAMERA_MESSAGES: Final[dict[Personality, set[int]]] = {
     "ardupilot": {259, 260, 261, 262, 263},
 }
 NOT_BUILT: Final[dict[Personality, set[int]]] = {
-    # COMPONENT_INFORMATION, OPEN_DRONE_ID_SYSTEM
-    "px4": {395, 12904},
+    # COMPONENT_INFORMATION
+    "px4": {395},
     # AHRS2, AHRS, SCALED_IMU2, TERRAIN_REPORT: sensors and a terrain that there are not;
     # ATTITUDE_TARGET, POSITION_TARGET_LOCAL_NED: no target on the ground.
     "ardupilot": {83, 85, 116, 136, 163, 168, 178},

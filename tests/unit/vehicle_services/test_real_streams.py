@@ -31,6 +31,8 @@ NORMAL_HZ: Final[dict[type[m.Message], float]] = {
     m.Heartbeat: 1,
     m.HomePosition: 0.5,
     m.LocalPositionNed: 50,
+    m.OpenDroneIdLocation: 1,
+    m.OpenDroneIdSystem: 1,
     m.Ping: 0.1,
     m.PositionTargetLocalNed: 50,
     m.ScaledPressure: 1,
@@ -42,8 +44,7 @@ NORMAL_HZ: Final[dict[type[m.Message], float]] = {
 }
 """px4_1_14_flight.tlog, on 14550, 6 to 24 s after its beginning, when nothing had been asked for;
 autopilots.md "PX4 on 14550, Hz, real / ours"; behaviour.json "streams on 14550 and 14540".
-Not sent here: DISTANCE_SENSOR 0.5, LINK_NODE_STATUS 1, OPEN_DRONE_ID_LOCATION and
-OPEN_DRONE_ID_SYSTEM 1, TIME_ESTIMATE_TO_TARGET 1."""
+Not sent here: DISTANCE_SENSOR 0.5, LINK_NODE_STATUS 1, TIME_ESTIMATE_TO_TARGET 1."""
 
 ONBOARD_HZ: Final[dict[type[m.Message], float]] = {
     m.Altitude: 10,
@@ -62,6 +63,8 @@ ONBOARD_HZ: Final[dict[type[m.Message], float]] = {
     m.LocalPositionNed: 30,
     m.MissionCurrent: 10,
     m.Odometry: 30,
+    m.OpenDroneIdLocation: 1,
+    m.OpenDroneIdSystem: 1,
     m.Ping: 1,
     m.PositionTargetLocalNed: 5,
     m.ScaledPressure: 1,
@@ -74,8 +77,7 @@ ONBOARD_HZ: Final[dict[type[m.Message], float]] = {
     m.Vibration: 0.5,
 }
 """rates_px4_14540.json, "real_hz", each counted over 12 s there (9.92 is 10).  Not sent here:
-DISTANCE_SENSOR 10, OPEN_DRONE_ID_LOCATION and OPEN_DRONE_ID_SYSTEM 1, 8 LINK_NODE_STATUS 1, 380
-TIME_ESTIMATE_TO_TARGET 1."""
+DISTANCE_SENSOR 10, 8 LINK_NODE_STATUS 1, 380 TIME_ESTIMATE_TO_TARGET 1."""
 
 ROWS: Final = [
     *(
@@ -275,3 +277,29 @@ def test_utm_position_is_told_as_px4_fills_it() -> None:
     told = asked_at_1_hz(bench, m.UtmGlobalPosition)
     assert isinstance(told, m.UtmGlobalPosition)
     assert (told.flight_state, told.flags, told.relative_alt) == (3, 125, 5000)
+
+
+def test_remote_identification_is_told_as_px4_fills_it() -> None:
+    """px4_1_14_flight.tlog: timestamp 65535, status 1 and 2, accuracies 12, 5, 1, 3; area -1000."""
+    bench = Bench("px4")
+    told = asked_at_1_hz(bench, m.OpenDroneIdLocation)
+    assert isinstance(told, m.OpenDroneIdLocation)
+    assert (told.latitude, told.longitude) == (473978000, 85459000)
+    assert (told.altitude_geodetic, told.height, told.timestamp) == (493.0, 5.0, 65535.0)
+    assert (told.direction, told.speed_horizontal, told.speed_vertical) == (0, 100, 0)
+    assert (told.status, told.height_reference, told.timestamp_accuracy) == (1, 0, 0)
+    accuracies = (told.horizontal_accuracy, told.vertical_accuracy, told.barometer_accuracy)
+    assert (*accuracies, told.speed_accuracy) == (12, 5, 1, 3)
+    bench.vehicle.landed = Landed.IN_AIR
+    told = asked_at_1_hz(bench, m.OpenDroneIdLocation)
+    assert isinstance(told, m.OpenDroneIdLocation)
+    assert told.status == 2
+    operator = asked_at_1_hz(bench, m.OpenDroneIdSystem)
+    assert isinstance(operator, m.OpenDroneIdSystem)
+    assert (operator.operator_latitude, operator.operator_longitude) == (473977420, 85455940)
+    assert (operator.area_ceiling, operator.area_floor, operator.area_count) == (
+        -1000.0,
+        -1000.0,
+        1,
+    )
+    assert operator.operator_altitude_geo == 488.0
