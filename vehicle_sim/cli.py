@@ -14,6 +14,7 @@ from vehicle_sim.autopilot.firmware import FIRMWARES, Firmware, FirmwareError, f
 from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
 
 if TYPE_CHECKING:
+    from vehicle_sim.autopilot.boot import Boot
     from vehicle_sim.reporting import Launch, Reporter
     from vehicle_sim.shell.runtime import Opened, Plan
     from vehicle_sim.simulation.fault_script import Timed
@@ -39,6 +40,7 @@ AIRFRAMES: Final = ("s500", "racer250")
 class Options:
     autopilot: Literal["px4", "ardupilot"]
     firmware: Firmware
+    boot: Boot
     count: int
     airframe: str
     home: tuple[float, float, float]
@@ -83,6 +85,14 @@ class _BadFileError(Exception):
     type=click.Choice([each for firmwares in FIRMWARES.values() for each in firmwares]),
     help="Which generation of it: its version and the names of its parameters.  px4 has 1.14 (the "
     "default) and 1.15, ardupilot 4.5 (the default) and 4.7.",
+)
+@click.option(
+    "--boot",
+    type=click.Choice(["quick", "real"]),
+    default="quick",
+    show_default=True,
+    help="How long it takes to start up: ready to arm after half a second, or as the real one "
+    "(px4 9 s, ardupilot 41 s), with its refusals and texts meanwhile.",
 )
 @click.option(
     "--count",
@@ -146,6 +156,7 @@ class _BadFileError(Exception):
 def main(
     autopilot: Literal["px4", "ardupilot"],
     firmware: str | None,
+    boot: Boot,
     count: int,
     airframe: str,
     home: tuple[float, float, float] | None,
@@ -181,6 +192,7 @@ def main(
             Options(
                 autopilot=autopilot,
                 firmware=played,
+                boot=boot,
                 count=count,
                 airframe=airframe,
                 home=home or HOMES[autopilot],
@@ -261,6 +273,7 @@ def plan_of(options: Options) -> Plan:
     return Plan(
         personality=options.autopilot,
         firmware=options.firmware,
+        boot=options.boot,
         airframe=options.airframe,
         vehicles=vehicles,
         shared=tuple(map(parse, together if usual else options.links)),

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import assert_never
 
+from vehicle_sim.autopilot.boot import Boot, BootSequence, BootStage
 from vehicle_sim.autopilot.calibration import Calibration
 from vehicle_sim.autopilot.camera import Camera
 from vehicle_sim.autopilot.control.airflow import Airflow
@@ -70,6 +71,7 @@ class Core:
         index: int = 0,
         params: Parameters | None = None,
         seat: Seat | None = None,
+        boot: Boot = "quick",
     ) -> None:
         """Without a `seat` in a fleet's engine the vehicle has an engine of its own."""
         self.parameters = params if params is not None else Parameters(personality)
@@ -105,11 +107,13 @@ class Core:
         self._geofence = Geofence(self.parameters)
         self._rally: tuple[Point, ...] = ()
         self._mission = Mission(self.parameters, self)
+        self._boot_sequence = BootSequence(personality, boot)
         self._restart()
 
     def _restart(self) -> None:
         """As after power-up, but for the clock and the stored mission."""
         self._boot_ns = self.time_ns
+        self._boot_sequence.restart()
         self._judged = None
         self._origin: Geodetic | None = None
         self._home_ned: Vec3 | None = None
@@ -143,6 +147,15 @@ class Core:
     def clock_ns(self) -> int:
         clock_ns = self.engine.k * DT_NS - self._boot_ns + self._clock_off_ns
         return clock_ns if clock_ns > 0 else 0
+
+    @property
+    def _age_ns(self) -> int:
+        """Simulated time since power-up."""
+        return self.time_ns - self._boot_ns
+
+    @property
+    def boot_stage(self) -> BootStage:
+        return self._boot_sequence.stage(self._age_ns)
 
     def _poke(self) -> None:
         """Something came that cannot wait for the next regular decision."""
@@ -181,7 +194,8 @@ class Core:
         """The estimate judged: once a step, for all who ask."""
         k = self.engine.k
         if self._judged is None or self._judged[0] != k:
-            self._judged = (k, health(self._est, self.blocks.sensed))
+            judged = health(self._est, self.blocks.sensed)
+            self._judged = (k, self._boot_sequence.known(judged, self._age_ns))
         return self._judged[1]
 
     def _look_around(self) -> Situation:
@@ -275,7 +289,7 @@ class Core:
 
     @property
     def _position_ok(self) -> bool:
-        return position_ok(self._est)
+        return position_ok(self._est) and self.boot_stage.position
 
     def _disarm(self, text: str) -> None:
         self._armed = False

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import Enum, IntEnum
 from typing import Final, Protocol, TypeAlias
 
+from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.estimation.estimator import Health
 from vehicle_sim.numerics.vectors import Quat, Vec3
 from vehicle_sim.plant.faults import Fault
@@ -332,6 +333,11 @@ class Vehicle(Protocol):
     @property
     def health(self) -> Health:
         """The estimate judged: what is good enough to fly by."""
+        ...
+
+    @property
+    def boot_stage(self) -> BootStage:
+        """How far it has started up."""
         ...
 
     @property

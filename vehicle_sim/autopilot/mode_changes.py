@@ -38,7 +38,7 @@ class ModeChanges(View):
         if self._calibration.busy and self.personality == "px4":
             self._say(2, "Transition denied: Init to Armed")
             return Result.TEMPORARILY_REJECTED
-        if not force and self._say_against_arming():
+        if self._held_by_boot(force) or (not force and self._say_against_arming()):
             return self._not_now
         self._armed = True
         self._armed_ns = self.time_ns
@@ -87,7 +87,8 @@ class ModeChanges(View):
             return Result.ACCEPTED
         if self._held_by_fence(mode):
             return self._not_now
-        if mode.needs_position and not self._position_ok:
+        starting = not self._armed and not self.boot_stage.position
+        if mode.needs_position and not self._position_ok and not starting:
             return self._refuse(mode, "requires position")
         if mode.behaviour is Behaviour.MISSION and not self._may_start(mode):
             return self._refuse(mode, "init failed")

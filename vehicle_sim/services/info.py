@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
-from vehicle_sim.autopilot.modes import MODES, by_number
+from vehicle_sim.autopilot.modes import MODES, Personality, by_number
 from vehicle_sim.services.metadata import Metadata
 from vehicle_sim.services.profile import STANDARD_MODES, Profile
 from vehicle_sim.services.status_telemetry import STATUS
@@ -22,6 +23,15 @@ IMAGES_KEPT: Final = 200
 HAS_IMAGE_MODE: Final = 0x2 | 0x8  # CAMERA_CAP_FLAGS: captures images, in a mode for it
 STORAGE_READY: Final = 2
 AVAILABLE_MIB: Final = 30_000.0
+
+AWAITED: Final[dict[Personality, dict[int, Callable[[BootStage], bool]]]] = {
+    "px4": {
+        m.IDS[kind]: lambda stage: stage.attitude
+        for kind in (m.Attitude, m.AttitudeQuaternion, m.GlobalPositionInt)
+    },
+    "ardupilot": {m.IDS[m.LocalPositionNed]: lambda stage: stage.position},
+}
+"""What is not sent before the vehicle has started up so far, as recorded (`autopilot/boot.py`)."""
 
 
 class Info:
@@ -40,6 +50,7 @@ class Info:
         self._vehicle = vehicle
         self._profile = profile
         self._modes = tuple(MODES[profile.name].values())
+        self._awaited = AWAITED[profile.name]
         self.system = system
         self._unix_start_ns = unix_start_ns
         self._plan_ids = plan_ids
@@ -61,6 +72,9 @@ class Info:
 
     def build(self, number: int) -> m.Message | None:
         """None: there is no such message, or nothing true to say yet."""
+        awaited = self._awaited.get(number)
+        if awaited is not None and not awaited(self._vehicle.boot_stage):
+            return None
         builder = BUILDERS.get(number)
         if builder is not None:
             return builder(self._vehicle, self._profile)

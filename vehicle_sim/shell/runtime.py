@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.decisions import phase_ns
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
@@ -66,6 +67,7 @@ class Plan:
     faults: tuple[Timed, ...]
     signing: SigningKey | None
     files: Path | None  # a directory to serve by FTP instead of memory
+    boot: Boot = "quick"
     sparse: bool = False  # only the position is streamed unasked
 
 
@@ -96,7 +98,13 @@ def launch(plan: Plan) -> Opened:
     servers: list[VehicleServer] = []
     for lane, setup in enumerate(plan.vehicles):
         vehicle = Autopilot(
-            plan.personality, setup.home, plan.seed, lane, parameters[lane], Seat(engine, lane)
+            plan.personality,
+            setup.home,
+            plan.seed,
+            lane,
+            parameters[lane],
+            Seat(engine, lane),
+            plan.boot,
         )
         vehicle.inject(plan.wind)
         servers.append(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from vehicle_sim.autopilot.boot import READY
 from vehicle_sim.autopilot.fence import rally
 from vehicle_sim.autopilot.fence import zones as fence
 from vehicle_sim.autopilot.firmware import Firmware
@@ -106,6 +107,7 @@ class FakeVehicle:
         self.pos_ned: Vec3 = (10.0, 20.0, -5.0)
         self.q_ned_from_frd = (1.0, 0.0, 0.0, 0.0)
         self.health = HEALTHY
+        self.boot_stage = READY
         self.gps = GpsFix(3, 12, 47.39785, 8.54595, 492.0, (3.0, 4.0, 0.0), 0.6, 0.9)
 
     @property

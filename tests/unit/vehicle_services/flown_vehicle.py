@@ -10,6 +10,7 @@ from functools import cache
 
 from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S, acks, long
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.interface import Geodetic, Result
 from vehicle_sim.autopilot.modes import MODES, Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
@@ -28,10 +29,10 @@ HOME = Geodetic(47.397742, 8.545594, 488.0)
 class Flown(Bench):
     """As `Bench`; `vehicle` is an `Autopilot`."""
 
-    def __init__(self, personality: Personality) -> None:
+    def __init__(self, personality: Personality, boot: Boot = "quick") -> None:
         self.personality: Personality = personality
         self.parameters = Parameters(personality)
-        self.autopilot = Autopilot(personality, HOME, 1, 0, self.parameters)
+        self.autopilot = Autopilot(personality, HOME, 1, 0, self.parameters, boot=boot)
         server = VehicleServer(
             self.autopilot, PROFILES[personality], self.parameters, system=1, logging=False
         )
