@@ -41,6 +41,7 @@ class Options:
     autopilot: Literal["px4", "ardupilot"]
     firmware: Firmware
     boot: Boot
+    camera: Literal["still", "none"]
     count: int
     airframe: str
     home: tuple[float, float, float]
@@ -93,6 +94,13 @@ class _BadFileError(Exception):
     show_default=True,
     help="How long it takes to start up: ready to arm after half a second, or as the real one "
     "(px4 9 s, ardupilot 41 s), with its refusals and texts meanwhile.",
+)
+@click.option(
+    "--camera",
+    type=click.Choice(["still", "none"]),
+    default="still",
+    show_default=True,
+    help="One that takes pictures, or none, as on a bare autopilot.",
 )
 @click.option(
     "--count",
@@ -157,6 +165,7 @@ def main(
     autopilot: Literal["px4", "ardupilot"],
     firmware: str | None,
     boot: Boot,
+    camera: Literal["still", "none"],
     count: int,
     airframe: str,
     home: tuple[float, float, float] | None,
@@ -193,6 +202,7 @@ def main(
                 autopilot=autopilot,
                 firmware=played,
                 boot=boot,
+                camera=camera,
                 count=count,
                 airframe=airframe,
                 home=home or HOMES[autopilot],
@@ -274,6 +284,7 @@ def plan_of(options: Options) -> Plan:
         personality=options.autopilot,
         firmware=options.firmware,
         boot=options.boot,
+        camera=options.camera == "still",
         airframe=options.airframe,
         vehicles=vehicles,
         shared=tuple(map(parse, together if usual else options.links)),

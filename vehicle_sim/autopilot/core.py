@@ -72,6 +72,7 @@ class Core:
         params: Parameters | None = None,
         seat: Seat | None = None,
         boot: Boot = "quick",
+        camera: bool = True,
     ) -> None:
         """Without a `seat` in a fleet's engine the vehicle has an engine of its own."""
         self.parameters = params if params is not None else Parameters(personality)
@@ -95,6 +96,7 @@ class Core:
         self._judged: tuple[int, Health] | None = None
         self._situation = Situation(self._limits())
         self._camera = Camera()
+        self._has_camera = camera
         self._calibration = Calibration()
         self._airflow = Airflow()
         self._radio = Radio(self.parameters)
@@ -349,7 +351,8 @@ class Core:
         return Datum(self._projection, self._field, self._home_ned or (0.0, 0.0, 0.0))
 
     def take_pictures(self, interval_s: float, count: int) -> None:
-        self._camera.capture(interval_s, count, self.time_ns)
+        if self._has_camera:
+            self._camera.capture(interval_s, count, self.time_ns)
 
     def stop_pictures(self) -> None:
         self._camera.stop()

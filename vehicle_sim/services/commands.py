@@ -110,6 +110,9 @@ class Commands:
         entry = TABLE.get(Cmd(order.command)) if known else None
         if order.command in profile.unheard:
             return Answer(Result.UNSUPPORTED, acked=False)
+        absent = profile.absent.get(Cmd(order.command)) if known else None
+        if absent is not None:
+            return Answer(absent, (Note("debug", f"nothing carries out {order.command}"),))
         if entry is None or entry.only not in (None, profile.name):
             note = Note("debug" if told else "warning", f"command {order.command} is not supported")
             return Answer(Result.UNSUPPORTED, (note,))

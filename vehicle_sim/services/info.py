@@ -9,7 +9,7 @@ from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
 from vehicle_sim.autopilot.modes import MODES, Personality, by_number
 from vehicle_sim.services.metadata import Metadata
-from vehicle_sim.services.profile import STANDARD_MODES, Profile
+from vehicle_sim.services.profile import CAMERA_MESSAGES, STANDARD_MODES, Profile
 from vehicle_sim.services.status_telemetry import STATUS
 from vehicle_sim.services.telemetry import STATE
 from vehicle_sim.services.units import boot_ms, degrees_e7, millimetres, usec
@@ -68,7 +68,8 @@ class Info:
             m.IDS[m.CameraCaptureStatus]: self._camera_capture_status,
             m.IDS[m.StorageInformation]: self._storage_information,
         }
-        self.streamable: Final = frozenset(BUILDERS) | frozenset(self._own)
+        missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES
+        self.streamable: Final = (frozenset(BUILDERS) | frozenset(self._own)) - missing
 
     def build(self, number: int) -> m.Message | None:
         """None: there is no such message, or nothing true to say yet."""

@@ -110,6 +110,8 @@ class Profile:
     component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
     unheard: frozenset[Cmd]  # commands that nobody on board answers
     banner: tuple[str, ...]  # DO_SEND_BANNER
+    camera: bool  # there is one
+    absent: dict[Cmd, Result]  # answers to commands for equipment that there is not
     requests: Requests  # what REQUEST_MESSAGE is answered
 
 
@@ -203,6 +205,8 @@ PX4: Final = Profile(
         }
     ),
     banner=(),
+    camera=True,
+    absent={},
     requests=_PX4_REQUESTS,
 )
 
@@ -249,6 +253,8 @@ ARDUPILOT: Final = Profile(
     component_metadata=False,
     unheard=frozenset(),
     banner=("ArduCopter V4.6.0", "vehicle-sim", "Frame: QUAD/X"),
+    camera=True,
+    absent={},
     requests=_ARDUPILOT_REQUESTS,
 )
 
@@ -262,6 +268,47 @@ def profile_of(personality: Personality, firmware: Firmware) -> Profile:
         PROFILES[personality],
         flight_sw_version=FLIGHT_SW_VERSION[firmware],
         parameter_errors=firmware == "4.7",
+    )
+
+
+CAMERA_MESSAGES: Final = frozenset(
+    m.IDS[kind] for kind in (m.CameraInformation, m.CameraSettings, m.CameraCaptureStatus)
+)
+"""What a camera tells of itself; STORAGE_INFORMATION is also the autopilot's own."""
+
+_NO_CAMERA: Final[dict[Personality, dict[Cmd, Result]]] = {
+    "px4": {
+        Cmd.IMAGE_START_CAPTURE: Result.UNSUPPORTED,
+        Cmd.IMAGE_STOP_CAPTURE: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_INFORMATION: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_CAPTURE_STATUS: Result.UNSUPPORTED,  # from memory
+    },
+    "ardupilot": {
+        Cmd.IMAGE_START_CAPTURE: Result.FAILED,
+        Cmd.IMAGE_STOP_CAPTURE: Result.FAILED,  # from memory
+        Cmd.SET_CAMERA_MODE: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_INFORMATION: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_CAPTURE_STATUS: Result.UNSUPPORTED,  # from memory
+    },
+}
+"""As the recorded autopilots, which had no camera, answered."""
+
+
+def without_camera(profile: Profile) -> Profile:
+    """The same autopilot with no camera on board; PX4 does not even answer SET_CAMERA_MODE."""
+    px4 = profile.name == "px4"
+    requests = profile.requests
+    image = m.IDS[m.CameraImageCaptured]
+    return replace(
+        profile,
+        camera=False,
+        absent=_NO_CAMERA[profile.name],
+        unheard=profile.unheard | {Cmd.SET_CAMERA_MODE} if px4 else profile.unheard,
+        requests=replace(
+            requests,
+            never=requests.never | {image} | (CAMERA_MESSAGES if px4 else frozenset()),
+            accepted=requests.accepted if px4 else requests.accepted | CAMERA_MESSAGES,
+        ),
     )
 
 

@@ -21,7 +21,7 @@ from vehicle_sim.engine.engines import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
-from vehicle_sim.services.profile import profile_of
+from vehicle_sim.services.profile import profile_of, without_camera
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.services.streams import POSITION_ONLY
 from vehicle_sim.shell.endpoints import Endpoint, EndpointError, Udp, open_endpoint
@@ -68,6 +68,7 @@ class Plan:
     signing: SigningKey | None
     files: Path | None  # a directory to serve by FTP instead of memory
     boot: Boot = "quick"
+    camera: bool = True
     sparse: bool = False  # only the position is streamed unasked
 
 
@@ -93,6 +94,8 @@ def launch(plan: Plan) -> Opened:
     engine = engine_for(specs, load(plan.airframe))
     unix_ns = time.time_ns()
     profile = profile_of(plan.personality, plan.firmware)
+    if not plan.camera:
+        profile = without_camera(profile)
     if plan.sparse:
         profile = replace(profile, intervals_ns=POSITION_ONLY)
     servers: list[VehicleServer] = []
@@ -105,6 +108,7 @@ def launch(plan: Plan) -> Opened:
             parameters[lane],
             Seat(engine, lane),
             plan.boot,
+            plan.camera,
         )
         vehicle.inject(plan.wind)
         servers.append(

@@ -21,3 +21,11 @@ def test_another_boot_is_a_mistake_of_usage() -> None:
     result = CliRunner().invoke(main, ["--boot", "slow"])
     assert result.exit_code == 2
     assert "--boot" in result.output
+
+
+def test_it_has_a_camera_unless_told_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert plan_of(options(["--port", "0"], monkeypatch)).camera
+
+
+def test_it_has_none_when_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not plan_of(options(["--port", "0", "--camera", "none"], monkeypatch)).camera
