@@ -131,6 +131,7 @@ class Core:
         self._mode: Mode = MODES[self.personality][BOOT_MODE[self.personality]]
         self._radio.forget()
         self._gestures.forget()
+        self._mode_after_disarming = self._mode
         self._roi_ned: Vec3 | None = None
         self._task: Task = self._task_of(self._mode)
         self._pilot.stop()
@@ -301,15 +302,12 @@ class Core:
         self._failsafe_active = False
         self._auto_armed = False
         self._say(6, text)
-        if self.personality == "px4" and self._mode.behaviour in (
-            Behaviour.LAND,
-            Behaviour.RETURN,
-            Behaviour.TAKEOFF,
-            Behaviour.MISSION,
-            Behaviour.HOLD,
-        ):
-            # Also from HOLD: what it was to fly to ends with the flight.
-            self._enter(MODES["px4"]["AUTO.LOITER"])
+        if self.personality != "px4":
+            return
+        before = self._mode_after_disarming
+        if before is not self._mode or before.behaviour is Behaviour.HOLD:
+            # HOLD begins anew: what it was to fly to ends with the flight.
+            self._enter(before)
 
     def _terminate(self) -> None:
         """ArduCopter's termination is no more than a disarming: nothing of it stays."""

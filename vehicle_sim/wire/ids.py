@@ -13,6 +13,7 @@ class Cmd(IntEnum):
 
     NAV_WAYPOINT = 16
     NAV_LOITER_UNLIM = 17
+    NAV_LOITER_TIME = 19
     NAV_RETURN_TO_LAUNCH = 20
     NAV_LAND = 21
     NAV_TAKEOFF = 22
