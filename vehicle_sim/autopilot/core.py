@@ -16,6 +16,7 @@ from vehicle_sim.autopilot.control.airflow import Airflow
 from vehicle_sim.autopilot.control.demands import Situation, Task
 from vehicle_sim.autopilot.control.flight_control import FlightControl, heading_of
 from vehicle_sim.autopilot.control.gains import write_gains
+from vehicle_sim.autopilot.failsafes.arm_authorization import ArmAuthorization
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
 from vehicle_sim.autopilot.failsafes.failsafe_checks import FailsafeChecks
@@ -106,6 +107,7 @@ class Core:
         self._stream = SetpointStream()
         self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](self.parameters)
         self._failure_detector = FailureDetector(self.parameters)
+        self._arm_authorization = ArmAuthorization(self.parameters)
         self._geofence = Geofence(self.parameters)
         self._rally: tuple[Point, ...] = ()
         self._mission = Mission(self.parameters, self)
@@ -116,6 +118,7 @@ class Core:
         """As after power-up, but for the clock and the stored mission."""
         self._boot_ns = self.time_ns
         self._boot_sequence.restart()
+        self._arm_authorization.restart()
         self._judged = None
         self._origin: Geodetic | None = None
         self._home_ned: Vec3 | None = None

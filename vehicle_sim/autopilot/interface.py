@@ -258,10 +258,11 @@ class CommandDone:
 
 @dataclass(frozen=True, slots=True)
 class CommandSent:
-    """A command that the vehicle itself sends to whoever listens, with its first parameter."""
+    """A command that the vehicle itself sends, with its first parameter; `system` 0 = to all."""
 
     command: int
     p1: float
+    system: int = 0
 
 
 VehicleEvent: TypeAlias = (
@@ -423,7 +424,10 @@ class Vehicle(Protocol):
         ...
 
     # requests: each answers at once; effects are seen in the state above ---------------
-    def arm(self, force: bool) -> Result: ...
+    def arm(self, force: bool) -> Result:
+        """IN_PROGRESS: nothing is answered until a `CommandDone`."""
+        ...
+
     def disarm(self, force: bool) -> Result: ...
     def set_mode(self, base_mode: int, custom_mode: int) -> Result: ...
     def set_mode_kind(self, kind: str) -> Result:
@@ -533,6 +537,10 @@ class Vehicle(Protocol):
 
     def test_motor(self, seconds: float) -> Result:
         """DO_MOTOR_TEST."""
+        ...
+
+    def command_acked(self, command: int, result: int, param1: int, param2: int) -> None:
+        """An answer to a command that the vehicle itself sent."""
         ...
 
     def reboot(self) -> Result: ...

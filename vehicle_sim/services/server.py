@@ -208,6 +208,12 @@ class VehicleServer:
             ):
                 manual_input(self.vehicle, self._given, self.system, client, message, wall_ns)
                 return []
+            case m.CommandAck():
+                if message.target_system == self.system:
+                    self.vehicle.command_acked(
+                        message.command, message.result, message.progress, message.result_param2
+                    )
+                return []
             case m.SetMode():
                 return self._set_mode(client, message)
             case m.MissionCount() | m.MissionWritePartialList():
@@ -372,8 +378,8 @@ class VehicleServer:
                 return [Send(None, home)] if home is not None else []
             case CommandDone():
                 return self._commands.done(event)
-            case CommandSent(command, p1):
-                return [Send(None, _command(command, p1))]
+            case CommandSent(command, p1, system):
+                return [Send(None, _command(command, p1, system))]
 
     def _status_text(self, event: StatusText) -> list[Effect]:
         """Longer texts go out in chunks that share an id."""
@@ -416,6 +422,6 @@ class VehicleServer:
         return effects
 
 
-def _command(command: int, p1: float) -> m.CommandLong:
-    """For everybody who listens."""
-    return m.CommandLong(p1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, command, 0, 0, 0)
+def _command(command: int, p1: float, system: int) -> m.CommandLong:
+    """Sent on every link; system 0 = for everybody who listens."""
+    return m.CommandLong(p1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, command, system, 0, 0)

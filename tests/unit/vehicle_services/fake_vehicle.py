@@ -190,6 +190,9 @@ class FakeVehicle:
         self.armed = self.armed or result is Result.ACCEPTED
         return result
 
+    def command_acked(self, command: int, result: int, param1: int, param2: int) -> None:
+        self._note("command_acked", command, result, param1, param2)
+
     def disarm(self, force: bool) -> Result:
         self.armed = False
         return self._note("disarm", force)
