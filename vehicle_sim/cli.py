@@ -42,6 +42,7 @@ class Options:
     firmware: Firmware
     boot: Boot
     camera: Literal["still", "none"]
+    operator_control: bool
     count: int
     airframe: str
     home: tuple[float, float, float]
@@ -101,6 +102,11 @@ class _BadFileError(Exception):
     default="still",
     show_default=True,
     help="One that takes pictures, or none, as on a bare autopilot.",
+)
+@click.option(
+    "--operator-control",
+    is_flag=True,
+    help="One ground station at a time commands it, by MAVLink's operator control protocol.",
 )
 @click.option(
     "--count",
@@ -166,6 +172,7 @@ def main(
     firmware: str | None,
     boot: Boot,
     camera: Literal["still", "none"],
+    operator_control: bool,
     count: int,
     airframe: str,
     home: tuple[float, float, float] | None,
@@ -203,6 +210,7 @@ def main(
                 firmware=played,
                 boot=boot,
                 camera=camera,
+                operator_control=operator_control,
                 count=count,
                 airframe=airframe,
                 home=home or HOMES[autopilot],
@@ -285,6 +293,7 @@ def plan_of(options: Options) -> Plan:
         firmware=options.firmware,
         boot=options.boot,
         camera=options.camera == "still",
+        operator_control=options.operator_control,
         airframe=options.airframe,
         vehicles=vehicles,
         shared=tuple(map(parse, together if usual else options.links)),

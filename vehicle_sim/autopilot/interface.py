@@ -33,6 +33,7 @@ class Result(IntEnum):
     COMMAND_LONG_ONLY = 7
     COMMAND_INT_ONLY = 8
     UNSUPPORTED_MAV_FRAME = 9
+    NOT_IN_CONTROL = 10
 
 
 class SpeedType(IntEnum):

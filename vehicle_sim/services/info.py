@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
@@ -14,6 +14,9 @@ from vehicle_sim.services.status_telemetry import STATUS
 from vehicle_sim.services.telemetry import STATE
 from vehicle_sim.services.units import boot_ms, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
+
+if TYPE_CHECKING:
+    from vehicle_sim.services.operator_control import OperatorControl
 
 BUILDERS: Final = {**STATE, **STATUS}
 MISSION_ACTIVE: Final = 1  # MISSION_MODE
@@ -45,6 +48,7 @@ class Info:
         unix_start_ns: int,
         plan_ids: Callable[[], tuple[int, int, int, int]],
         metadata: Metadata | None = None,
+        operator_control: OperatorControl | None = None,
     ) -> None:
         """`plan_ids`: number of mission items, then the ids of mission, fence and rally points."""
         self._vehicle = vehicle
@@ -68,6 +72,8 @@ class Info:
             m.IDS[m.CameraCaptureStatus]: self._camera_capture_status,
             m.IDS[m.StorageInformation]: self._storage_information,
         }
+        if operator_control is not None:
+            self._own[m.IDS[m.ControlStatus]] = operator_control.status
         missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES
         self.streamable: Final = (frozenset(BUILDERS) | frozenset(self._own)) - missing
 

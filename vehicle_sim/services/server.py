@@ -15,6 +15,7 @@ from vehicle_sim.autopilot.interface import (
     HomeChanged,
     ImageCaptured,
     MissionReached,
+    Result,
     StatusText,
     Vehicle,
     VehicleEvent,
@@ -32,6 +33,7 @@ from vehicle_sim.services.logs import LogServer
 from vehicle_sim.services.manual import manual_input
 from vehicle_sim.services.metadata import metadata_of
 from vehicle_sim.services.mission import MissionServer
+from vehicle_sim.services.operator_control import OperatorControl, with_operator_control
 from vehicle_sim.services.parameters import ParameterServer
 from vehicle_sim.services.ports import CommandContext
 from vehicle_sim.services.profile import Profile
@@ -71,12 +73,16 @@ class VehicleServer:
         store: Store | None = None,
         logging: bool = True,
         phase_ns: int = 0,
+        operator_control: bool = False,
     ) -> None:
         """`store` holds the vehicle's files; `logging`: flights are logged in it; `phase_ns`
-        shifts the times of its streams."""
+        shifts the times of its streams; `operator_control`: one station at a time commands."""
         self.vehicle: Final = vehicle
         self.store: Final = store if store is not None else MemoryStore()
         self.system = system
+        self._operator_control = OperatorControl() if operator_control else None
+        if operator_control:
+            profile = with_operator_control(profile)
         self._profile = profile
         self._speedup = speedup
         self._phase_ns = phase_ns
@@ -85,7 +91,13 @@ class VehicleServer:
         self._parameters = ParameterServer(parameters, profile)
         metadata = metadata_of(profile.name) if profile.component_metadata else None
         self._info = Info(
-            vehicle, profile, system, unix_start_ns, self._missions.plan_ids, metadata
+            vehicle,
+            profile,
+            system,
+            unix_start_ns,
+            self._missions.plan_ids,
+            metadata,
+            self._operator_control,
         )
         packed = {param_pack.PATH: param_pack.param_pack(parameters)}
         self._ftp = FtpServer(self.store, metadata.files if metadata is not None else packed)
@@ -99,7 +111,9 @@ class VehicleServer:
         )
         self._logs = LogServer(vehicle, profile, self._recorder)
         self._streams: dict[int, Streams] = {}
-        self._commands = Commands(CommandContext(vehicle, profile, self._info, self._streams))
+        self._commands = Commands(
+            CommandContext(vehicle, profile, self._info, self._streams, self._operator_control)
+        )
         self._clock_ns = vehicle.clock_ns
         self._due_ns = NEVER
         self.deadline_ns = NEVER
@@ -156,9 +170,19 @@ class VehicleServer:
             return []
         self.touched = True
         self.vehicle.wall(wall_ns)
-        effects = self._dispatch(client, sequence, message, wall_ns)
+        control = self._operator_control
+        if control is None or control.admits(client, self.system, message):
+            effects = self._dispatch(client, sequence, message, wall_ns)
+        else:
+            effects = self._not_in_control(client, message)
         self._schedule()
         return effects
+
+    def _not_in_control(self, client: Client, message: m.Message) -> list[Effect]:
+        """Commands are refused; what is no command is not answered."""
+        if isinstance(message, m.CommandLong | m.CommandInt):
+            return self._commands.refuse(client, message.command, Result.NOT_IN_CONTROL)
+        return []
 
     def _obeys(self, client: Client) -> bool:
         """ArduPilot's SYSID_ENFORCE: nobody but its own ground station is heard."""

@@ -69,6 +69,7 @@ class Plan:
     files: Path | None  # a directory to serve by FTP instead of memory
     boot: Boot = "quick"
     camera: bool = True
+    operator_control: bool = False  # one station at a time commands
     sparse: bool = False  # only the position is streamed unasked
 
 
@@ -122,6 +123,7 @@ def launch(plan: Plan) -> Opened:
                 store=stores[lane],
                 logging=len(plan.vehicles) <= LOGGED_MOST,
                 phase_ns=phase_ns(lane),
+                operator_control=plan.operator_control,
             )
         )
     start_ns = monotonic_ns()

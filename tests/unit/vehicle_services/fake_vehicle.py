@@ -342,11 +342,19 @@ class Bench:
         personality: Personality = "px4",
         speedup: Fraction = Fraction(1),
         firmware: Firmware | None = None,
+        operator_control: bool = False,
     ) -> None:
         self.vehicle = FakeVehicle()
         self.parameters = Parameters(personality, firmware)
         profile = profile_of(personality, self.parameters.firmware)
-        server = VehicleServer(self.vehicle, profile, self.parameters, system=1, speedup=speedup)
+        server = VehicleServer(
+            self.vehicle,
+            profile,
+            self.parameters,
+            system=1,
+            speedup=speedup,
+            operator_control=operator_control,
+        )
         self.world = World([server], [LinkSpec()], speedup)
         self.now_ns = 0
         self.logs: list[Log] = []

@@ -29,3 +29,11 @@ def test_it_has_a_camera_unless_told_otherwise(monkeypatch: pytest.MonkeyPatch) 
 
 def test_it_has_none_when_told(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not plan_of(options(["--port", "0", "--camera", "none"], monkeypatch)).camera
+
+
+def test_anybody_commands_unless_told_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not plan_of(options(["--port", "0"], monkeypatch)).operator_control
+
+
+def test_one_station_commands_when_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert plan_of(options(["--port", "0", "--operator-control"], monkeypatch)).operator_control

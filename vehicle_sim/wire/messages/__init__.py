@@ -48,7 +48,7 @@ from vehicle_sim.wire.messages.motion import (
     SetPositionTargetLocalNed,
     VfrHud,
 )
-from vehicle_sim.wire.messages.security import SetupSigning
+from vehicle_sim.wire.messages.security import ControlStatus, SetupSigning
 from vehicle_sim.wire.messages.sensors import (
     BatteryStatus,
     EkfStatusReport,
@@ -178,6 +178,7 @@ Message: TypeAlias = (
     | ExtendedSysState
     | Statustext
     | SetupSigning
+    | ControlStatus
     | CameraInformation
     | CameraSettings
     | StorageInformation
@@ -276,6 +277,7 @@ TYPES: Final[dict[int, type[Message]]] = {
     245: ExtendedSysState,
     253: Statustext,
     256: SetupSigning,
+    512: ControlStatus,
     259: CameraInformation,
     260: CameraSettings,
     261: StorageInformation,
@@ -312,6 +314,7 @@ __all__ = [
     "CommandInt",
     "CommandLong",
     "ComponentMetadata",
+    "ControlStatus",
     "CurrentMode",
     "EkfStatusReport",
     "EstimatorStatus",

@@ -12,3 +12,11 @@ class SetupSigning(NamedTuple):
     target_system: int
     target_component: int
     secret_key: bytes
+
+
+class ControlStatus(NamedTuple):
+    """Which ground stations control the vehicle; 0 = none."""
+
+    flags: int
+    gcs_main: int
+    gcs_secondary: bytes
