@@ -10,6 +10,7 @@ from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Capability, Cmd, DataStream, MissionType
+from vehicle_sim.wire.signing import PX4_UNSIGNED, RADIOS
 
 MESSAGE_INTERVAL_MIN_NS: Final = 5_000_000
 VIDEO_STREAM_INFORMATION: Final = 269
@@ -110,6 +111,7 @@ class Profile:
     component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
     unheard: frozenset[Cmd]  # commands that nobody on board answers
     banner: tuple[str, ...]  # DO_SEND_BANNER
+    unsigned_allowed: frozenset[int]  # messages that are taken unsigned under a key
     camera: bool  # there is one
     absent: dict[Cmd, Result]  # answers to commands for equipment that there is not
     requests: Requests  # what REQUEST_MESSAGE is answered
@@ -205,6 +207,7 @@ PX4: Final = Profile(
         }
     ),
     banner=(),
+    unsigned_allowed=PX4_UNSIGNED,
     camera=True,
     absent={},
     requests=_PX4_REQUESTS,
@@ -253,6 +256,7 @@ ARDUPILOT: Final = Profile(
     component_metadata=False,
     unheard=frozenset(),
     banner=("ArduCopter V4.6.0", "vehicle-sim", "Frame: QUAD/X"),
+    unsigned_allowed=RADIOS,
     camera=True,
     absent={},
     requests=_ARDUPILOT_REQUESTS,

@@ -125,6 +125,10 @@ class VehicleServer:
         self._clock_ns = 0  # it goes back with a reboot
 
     @property
+    def unsigned_allowed(self) -> frozenset[int]:
+        return self._profile.unsigned_allowed
+
+    @property
     def mode_name(self) -> str:
         return self._info.mode_name
 
