@@ -69,9 +69,7 @@ class Sky:
             for name, value in (parameters or {}).items():
                 own.set(name, value)
             self.parameters.append(own)
-            vehicle = Autopilot(
-                personality, self.home, 1, index, own, boot=boot, camera=camera
-            )
+            vehicle = Autopilot(personality, self.home, 1, index, own, boot=boot, camera=camera)
             profile = profile_of(personality, own.firmware)
             if not camera:
                 profile = without_camera(profile)

@@ -74,7 +74,7 @@ class Info:
         }
         if operator_control is not None:
             self._own[m.IDS[m.ControlStatus]] = operator_control.status
-        missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES
+        missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES[profile.name]
         self.streamable: Final = (frozenset(BUILDERS) | frozenset(self._own)) - missing
 
     def build(self, number: int) -> m.Message | None:

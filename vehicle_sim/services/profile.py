@@ -275,10 +275,14 @@ def profile_of(personality: Personality, firmware: Firmware) -> Profile:
     )
 
 
-CAMERA_MESSAGES: Final = frozenset(
+_OF_CAMERA: Final = frozenset(
     m.IDS[kind] for kind in (m.CameraInformation, m.CameraSettings, m.CameraCaptureStatus)
 )
-"""What a camera tells of itself; STORAGE_INFORMATION is also the autopilot's own."""
+CAMERA_MESSAGES: Final[dict[Personality, frozenset[int]]] = {
+    "px4": _OF_CAMERA,
+    "ardupilot": _OF_CAMERA | {m.IDS[m.StorageInformation]},
+}
+"""What only a vehicle with a camera tells; PX4 has a storage of its own."""
 
 _NO_CAMERA: Final[dict[Personality, dict[Cmd, Result]]] = {
     "px4": {
@@ -293,6 +297,7 @@ _NO_CAMERA: Final[dict[Personality, dict[Cmd, Result]]] = {
         Cmd.SET_CAMERA_MODE: Result.UNSUPPORTED,
         Cmd.REQUEST_CAMERA_INFORMATION: Result.UNSUPPORTED,
         Cmd.REQUEST_CAMERA_CAPTURE_STATUS: Result.UNSUPPORTED,  # from memory
+        Cmd.REQUEST_STORAGE_INFORMATION: Result.UNSUPPORTED,  # from memory
     },
 }
 """As the recorded autopilots, which had no camera, answered."""
@@ -310,8 +315,8 @@ def without_camera(profile: Profile) -> Profile:
         unheard=profile.unheard | {Cmd.SET_CAMERA_MODE} if px4 else profile.unheard,
         requests=replace(
             requests,
-            never=requests.never | {image} | (CAMERA_MESSAGES if px4 else frozenset()),
-            accepted=requests.accepted if px4 else requests.accepted | CAMERA_MESSAGES,
+            never=requests.never | {image} | CAMERA_MESSAGES[profile.name],
+            accepted=requests.accepted if px4 else requests.accepted | _OF_CAMERA,
         ),
     )
 

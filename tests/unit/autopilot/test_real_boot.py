@@ -39,6 +39,16 @@ def first_time(flight: Flight, text: str, limit_s: float = 60.0) -> float:
     return flight.vehicle.time_ns / 1e9
 
 
+def has_places(flight: Flight) -> tuple[bool, bool]:
+    """Whether there are an origin and a home."""
+    return flight.vehicle.origin is not None, flight.vehicle.home is not None
+
+
+def knows(flight: Flight) -> tuple[bool, bool]:
+    """Whether it has an attitude and a position."""
+    return flight.vehicle.health.attitude_ok, flight.vehicle.health.position_ok
+
+
 def peek(flight: Flight) -> list[object]:
     """What was said since power-up."""
     flight.seen += flight.vehicle.events()
@@ -166,14 +176,13 @@ def test_arducopter_is_healthy_at_23_s_for_who_does_not_ask_in_guided() -> None:
 def test_arducopter_has_home_20_s_after_power_up_and_a_position_after_41() -> None:
     """The flight: HOME_POSITION with 20.01 s in it, "is using GPS" at 41.42 s."""
     flight = booting("ardupilot", 19.8)
-    vehicle = flight.vehicle
-    assert (vehicle.origin, vehicle.home) == (None, None)
+    assert has_places(flight) == (False, False)
     flight.fly(0.4)
-    assert vehicle.origin is not None
+    assert has_places(flight) == (True, True)
     assert any(isinstance(event, HomeChanged) for event in flight.seen)
-    assert not vehicle.health.position_ok
+    assert knows(flight) == (True, False)
     flight.fly(21.4)
-    assert vehicle.health.position_ok
+    assert knows(flight) == (True, True)
 
 
 def test_arducopters_heartbeat_until_it_is_initialised() -> None:
@@ -218,8 +227,7 @@ def test_px4_refuses_without_a_word(at_s: float) -> None:
 
 def test_px4_cannot_be_forced_either() -> None:
     """`H7_force_arm_not_ready`, 3.2 s after the first heartbeat."""
-    refused = (Result.TEMPORARILY_REJECTED, [])
-    assert refusal(booting("px4", 4.4), force=True) == refused
+    assert refusal(booting("px4", 4.4), force=True) == (Result.TEMPORARILY_REJECTED, [])
 
 
 def test_px4_is_ready_after_9_s() -> None:
@@ -240,19 +248,17 @@ def test_px4_has_origin_then_home_then_attitude_then_position() -> None:
     ESTIMATOR_STATUS 831 at 8.15; the receiver has a fix from the first message."""
     flight = booting("px4", 1.0)
     vehicle = flight.vehicle
-    assert vehicle.origin is None
+    assert has_places(flight) == (False, False)
     assert vehicle.health.gps_fix == 3
     flight.fly(0.3)
-    assert vehicle.origin is not None
-    assert vehicle.home is None
+    assert has_places(flight) == (True, False)
     flight.fly(1.0)
-    assert vehicle.home is not None
-    assert not vehicle.health.attitude_ok
+    assert has_places(flight) == (True, True)
+    assert knows(flight) == (False, False)
     flight.fly(4.2)
-    assert vehicle.health.attitude_ok
-    assert not vehicle.health.position_ok
+    assert knows(flight) == (True, False)
     flight.fly(1.8)
-    assert vehicle.health.position_ok
+    assert knows(flight) == (True, True)
     assert "GPS fix" not in flight.texts()
 
 
