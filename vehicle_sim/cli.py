@@ -14,6 +14,7 @@ from vehicle_sim.autopilot.firmware import FIRMWARES, Firmware, FirmwareError, f
 from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
 
 if TYPE_CHECKING:
+    from vehicle_sim.autopilot.boot import Boot
     from vehicle_sim.reporting import Launch, Reporter
     from vehicle_sim.shell.pacer import Redraw
     from vehicle_sim.shell.runtime import Opened, Plan, StreamChoice
@@ -40,6 +41,9 @@ AIRFRAMES: Final = ("s500", "racer250")
 class Options:
     autopilot: Literal["px4", "ardupilot"]
     firmware: Firmware
+    boot: Boot
+    camera: Literal["still", "none"]
+    operator_control: bool
     count: int
     airframe: str
     home: tuple[float, float, float]
@@ -85,6 +89,26 @@ class _BadFileError(Exception):
     type=click.Choice([each for firmwares in FIRMWARES.values() for each in firmwares]),
     help="Which generation of it: its version and the names of its parameters.  px4 has 1.14 (the "
     "default) and 1.15, ardupilot 4.5 (the default) and 4.7.",
+)
+@click.option(
+    "--boot",
+    type=click.Choice(["quick", "real"]),
+    default="quick",
+    show_default=True,
+    help="How long it takes to start up: ready to arm after half a second, or as the real one "
+    "(px4 9 s, ardupilot 41 s), with its refusals and texts meanwhile.",
+)
+@click.option(
+    "--camera",
+    type=click.Choice(["still", "none"]),
+    default="still",
+    show_default=True,
+    help="One that takes pictures, or none, as on a bare autopilot.",
+)
+@click.option(
+    "--operator-control",
+    is_flag=True,
+    help="One ground station at a time commands it, by MAVLink's operator control protocol.",
 )
 @click.option(
     "--count",
@@ -161,6 +185,9 @@ class _BadFileError(Exception):
 def main(
     autopilot: Literal["px4", "ardupilot"],
     firmware: str | None,
+    boot: Boot,
+    camera: Literal["still", "none"],
+    operator_control: bool,
     count: int,
     airframe: str,
     home: tuple[float, float, float] | None,
@@ -197,6 +224,9 @@ def main(
             Options(
                 autopilot=autopilot,
                 firmware=played,
+                boot=boot,
+                camera=camera,
+                operator_control=operator_control,
                 count=count,
                 airframe=airframe,
                 home=home or HOMES[autopilot],
@@ -278,6 +308,9 @@ def plan_of(options: Options) -> Plan:
     return Plan(
         personality=options.autopilot,
         firmware=options.firmware,
+        boot=options.boot,
+        camera=options.camera == "still",
+        operator_control=options.operator_control,
         airframe=options.airframe,
         vehicles=vehicles,
         shared=tuple(map(parse, together if usual else options.links)),

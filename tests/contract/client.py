@@ -11,11 +11,12 @@ from typing import Any, Final, TypeAlias
 from pymavlink.dialects.v20 import all as mavlink
 
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.services.profile import profile_of
+from vehicle_sim.services.profile import profile_of, without_camera
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire.signing import SigningKey
@@ -56,6 +57,8 @@ class Sky:
         parameters: dict[str, float] | None = None,
         home: Geodetic | None = None,
         firmware: Firmware | None = None,
+        boot: Boot = "quick",
+        camera: bool = True,
     ) -> None:
         self.personality: Personality = personality
         self.home = home or HOMES[personality]
@@ -66,8 +69,10 @@ class Sky:
             for name, value in (parameters or {}).items():
                 own.set(name, value)
             self.parameters.append(own)
-            vehicle = Autopilot(personality, self.home, 1, index, own)
+            vehicle = Autopilot(personality, self.home, 1, index, own, boot=boot, camera=camera)
             profile = profile_of(personality, own.firmware)
+            if not camera:
+                profile = without_camera(profile)
             servers.append(VehicleServer(vehicle, profile, own, index + 1, speedup, UNIX_START_NS))
         self.vehicles = [server.vehicle for server in servers]
         self.world = World(

@@ -27,6 +27,7 @@ from tests.loopback import eyes
 from tests.loopback.air import CLEAR, Air, Weather
 from tests.loopback.looks import START_NS, Looks, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.parameters.parameters import Parameters
@@ -68,6 +69,7 @@ class Flight(Looks):
         down: Weather = CLEAR,
         params: dict[str, float] | None = None,
         firmware: Firmware | None = None,
+        boot: Boot = "quick",
     ) -> None:
         """`up` is the weather towards the vehicle, `down` towards the ground station."""
         super().__init__()
@@ -76,7 +78,9 @@ class Flight(Looks):
         parameters = Parameters(personality, firmware)
         for name, value in (params or {}).items():
             parameters.set(name, value)
-        self.vehicle = Autopilot(personality, HOMES[personality], seed, params=parameters)
+        self.vehicle = Autopilot(
+            personality, HOMES[personality], seed, params=parameters, boot=boot
+        )
         profile = profile_of(personality, parameters.firmware)
         server = VehicleServer(self.vehicle, profile, parameters, 1)
         self.world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)

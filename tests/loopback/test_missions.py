@@ -11,6 +11,7 @@ from typing import Any
 
 import pymap3d
 import pytest
+from _pytest.mark import ParameterSet
 
 from gcs import ipc
 from gcs.gate.effects import Level
@@ -29,6 +30,20 @@ WAYPOINT = 16
 MISS_M = 1.5
 
 LAB3 = ("lab3/first_step.toml", "lab3/pictures.toml", "lab3/square.toml")
+PX4_ALTERED, COPTER_ALTERED = ("lab3/pictures.toml", "px4"), ("triangle.waypoints", "ardupilot")
+ALTERED = pytest.mark.xfail(
+    strict=True,
+    reason="autopilots.md, defect 4 of the station: PX4 keeps a heading through radians, and "
+    "ArduPilot of NAV_LOITER_TIME's radius only the sign: the read-back is another mission",
+)
+
+
+def flown(name: str, personality: Personality, policy: str) -> ParameterSet:
+    """A row of `FLOWN`, which the station is known to refuse or not."""
+    altered = (name, personality) in (PX4_ALTERED, COPTER_ALTERED)
+    return pytest.param(name, personality, policy, marks=[ALTERED] if altered else [])
+
+
 FLOWN: list[tuple[str, Personality, str]] = [
     *((name, personality, "lab") for name in LAB3 for personality in PERSONALITIES),
     *((name, personality, "default") for name in LAB3 for personality in PERSONALITIES),
@@ -86,7 +101,7 @@ def inside(enu: Enu, policy: str) -> bool:
     return math.hypot(east_m, north_m) <= 150.0 and -0.1 <= up_m <= 50.0
 
 
-@pytest.mark.parametrize(("name", "personality", "policy"), FLOWN)
+@pytest.mark.parametrize(("name", "personality", "policy"), [flown(*row) for row in FLOWN])
 def test_a_shipped_mission_is_flown_past_each_waypoint_inside_the_fence(
     name: str, personality: Personality, policy: str
 ) -> None:
@@ -109,7 +124,8 @@ def test_a_shipped_mission_is_flown_past_each_waypoint_inside_the_fence(
 
 
 @pytest.mark.parametrize(
-    ("name", "personality"), [("survey.plan", "px4"), ("triangle.waypoints", "ardupilot")]
+    ("name", "personality"),
+    [("survey.plan", "px4"), pytest.param(*COPTER_ALTERED, marks=ALTERED)],
 )
 @pytest.mark.parametrize("seed", [3, 4, 10])
 def test_a_mission_gets_through_a_lossy_link_whole(

@@ -38,6 +38,9 @@ STREAMED: Final = (
 TOOK_OFF: Final = {"H1_change_speed": 10.0}
 """Where the recorder took off, to so many metres, before the first step."""
 
+FROM_POWER_UP: Final = {"H7_force_arm_not_ready"}
+"""Begun with the start of the process: played to a vehicle that boots as the real one."""
+
 READY_S: Final = 3.0
 ANSWER_S: Final = 1.5
 """How long the recorder waited for an answer."""
@@ -91,14 +94,22 @@ def playable(scenario: Scenario) -> bool:
 class _Player:
     def __init__(self, personality: Personality, scenario: Scenario) -> None:
         self._personality, self._scenario = personality, scenario
-        self._sky = Sky(personality, home=HOMES[personality], firmware=FIRMWARE[personality])
+        self._starting = scenario.scenario in FROM_POWER_UP
+        self._sky = Sky(
+            personality,
+            home=HOMES[personality],
+            firmware=FIRMWARE[personality],
+            boot="real" if self._starting else "quick",
+            camera=False,
+        )
         self._client = self._sky.client()
         self._played = Played()
         self._zero_s = 0.0
 
     def play(self) -> Played:
         self._client.beat_if_due()
-        self._sky.run(READY_S)
+        if not self._starting:
+            self._sky.run(READY_S)
         start = next((e for e in self._scenario.events if e.kind == "STATE_AT_START"), None)
         if start is not None and start.armed:
             self._client.take_off(max(1.0, start.up or 0.0))

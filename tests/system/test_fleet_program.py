@@ -22,6 +22,9 @@ def options(count: int, links: tuple[str, ...] = ()) -> Options:
     return Options(
         autopilot="px4",
         firmware="1.14",
+        boot="quick",
+        camera="still",
+        operator_control=False,
         count=count,
         airframe="s500",
         home=(47.0, 8.0, 400.0),

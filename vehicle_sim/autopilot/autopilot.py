@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from math import isfinite
 
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.calibration import copter_procedure, motor_test, px4_procedure
 from vehicle_sim.autopilot.interface import (
     AttitudeSetpoint,
@@ -348,6 +349,7 @@ def create(
     index: int = 0,
     params: Parameters | None = None,
     seat: Seat | None = None,
+    boot: Boot = "quick",
 ) -> Vehicle:
     """A vehicle, for whoever needs no more than the contract."""
-    return Autopilot(personality, home, seed, index, params, seat)
+    return Autopilot(personality, home, seed, index, params, seat, boot)

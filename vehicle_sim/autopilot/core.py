@@ -9,12 +9,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import assert_never
 
+from vehicle_sim.autopilot.boot import Boot, BootSequence, BootStage
 from vehicle_sim.autopilot.calibration import Calibration
 from vehicle_sim.autopilot.camera import Camera
 from vehicle_sim.autopilot.control.airflow import Airflow
 from vehicle_sim.autopilot.control.demands import Situation, Task
 from vehicle_sim.autopilot.control.flight_control import FlightControl, heading_of
 from vehicle_sim.autopilot.control.gains import write_gains
+from vehicle_sim.autopilot.failsafes.arm_authorization import ArmAuthorization
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
 from vehicle_sim.autopilot.failsafes.failsafe_checks import FailsafeChecks
@@ -70,6 +72,8 @@ class Core:
         index: int = 0,
         params: Parameters | None = None,
         seat: Seat | None = None,
+        boot: Boot = "quick",
+        camera: bool = True,
     ) -> None:
         """Without a `seat` in a fleet's engine the vehicle has an engine of its own."""
         self.parameters = params if params is not None else Parameters(personality)
@@ -93,6 +97,7 @@ class Core:
         self._judged: tuple[int, Health] | None = None
         self._situation = Situation(self._limits())
         self._camera = Camera()
+        self._has_camera = camera
         self._calibration = Calibration()
         self._airflow = Airflow()
         self._radio = Radio(self.parameters)
@@ -102,14 +107,18 @@ class Core:
         self._stream = SetpointStream()
         self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](self.parameters)
         self._failure_detector = FailureDetector(self.parameters)
+        self._arm_authorization = ArmAuthorization(self.parameters)
         self._geofence = Geofence(self.parameters)
         self._rally: tuple[Point, ...] = ()
         self._mission = Mission(self.parameters, self)
+        self._boot_sequence = BootSequence(personality, boot)
         self._restart()
 
     def _restart(self) -> None:
         """As after power-up, but for the clock and the stored mission."""
         self._boot_ns = self.time_ns
+        self._boot_sequence.restart()
+        self._arm_authorization.restart()
         self._judged = None
         self._origin: Geodetic | None = None
         self._home_ned: Vec3 | None = None
@@ -125,6 +134,7 @@ class Core:
         self._mode: Mode = MODES[self.personality][BOOT_MODE[self.personality]]
         self._radio.forget()
         self._gestures.forget()
+        self._mode_after_disarming = self._mode
         self._roi_ned: Vec3 | None = None
         self._task: Task = self._task_of(self._mode)
         self._pilot.stop()
@@ -143,6 +153,15 @@ class Core:
     def clock_ns(self) -> int:
         clock_ns = self.engine.k * DT_NS - self._boot_ns + self._clock_off_ns
         return clock_ns if clock_ns > 0 else 0
+
+    @property
+    def _age_ns(self) -> int:
+        """Simulated time since power-up."""
+        return self.time_ns - self._boot_ns
+
+    @property
+    def boot_stage(self) -> BootStage:
+        return self._boot_sequence.stage(self._age_ns)
 
     def _poke(self) -> None:
         """Something came that cannot wait for the next regular decision."""
@@ -181,7 +200,8 @@ class Core:
         """The estimate judged: once a step, for all who ask."""
         k = self.engine.k
         if self._judged is None or self._judged[0] != k:
-            self._judged = (k, health(self._est, self.blocks.sensed))
+            judged = health(self._est, self.blocks.sensed)
+            self._judged = (k, self._boot_sequence.known(judged, self._age_ns))
         return self._judged[1]
 
     def _look_around(self) -> Situation:
@@ -275,7 +295,7 @@ class Core:
 
     @property
     def _position_ok(self) -> bool:
-        return position_ok(self._est)
+        return position_ok(self._est) and self.boot_stage.position
 
     def _disarm(self, text: str) -> None:
         self._armed = False
@@ -285,15 +305,12 @@ class Core:
         self._failsafe_active = False
         self._auto_armed = False
         self._say(6, text)
-        if self.personality == "px4" and self._mode.behaviour in (
-            Behaviour.LAND,
-            Behaviour.RETURN,
-            Behaviour.TAKEOFF,
-            Behaviour.MISSION,
-            Behaviour.HOLD,
-        ):
-            # Also from HOLD: what it was to fly to ends with the flight.
-            self._enter(MODES["px4"]["AUTO.LOITER"])
+        if self.personality != "px4":
+            return
+        before = self._mode_after_disarming
+        if before is not self._mode or before.behaviour is Behaviour.HOLD:
+            # HOLD begins anew: what it was to fly to ends with the flight.
+            self._enter(before)
 
     def _terminate(self) -> None:
         """ArduCopter's termination is no more than a disarming: nothing of it stays."""
@@ -335,7 +352,8 @@ class Core:
         return Datum(self._projection, self._field, self._home_ned or (0.0, 0.0, 0.0))
 
     def take_pictures(self, interval_s: float, count: int) -> None:
-        self._camera.capture(interval_s, count, self.time_ns)
+        if self._has_camera:
+            self._camera.capture(interval_s, count, self.time_ns)
 
     def stop_pictures(self) -> None:
         self._camera.stop()

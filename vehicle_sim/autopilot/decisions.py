@@ -176,11 +176,19 @@ class Decisions(FailsafeActions):
     # ------------------------------------------------------------------------- guards
 
     def _boot(self) -> None:
-        if self._origin is None and self._est.placed:
+        stage = self.boot_stage
+        for text in self._boot_sequence.texts(self._age_ns, self._field.alt_amsl_m):
+            self._say(6, text)
+        if self._origin is None and stage.origin and self._est.placed:
             self._origin = self._field
+        if self._home_ned is None and stage.home and self._origin is not None:
             self._home_ned = (0.0, 0.0, 0.0)
-            self._say(6, "EKF3 IMU0 origin set" if self.personality == "ardupilot" else "GPS fix")
+            if not self._boot_sequence.real:
+                ardupilot = self.personality == "ardupilot"
+                self._say(6, "EKF3 IMU0 origin set" if ardupilot else "GPS fix")
             self._events.append(HomeChanged())
+        if self._boot_sequence.shows_prearm(self._age_ns) and not self._armed:
+            self.check_arming()
 
     def _try_offboard(self) -> None:
         """OFFBOARD was asked for: enter once the stream has proven itself."""

@@ -60,8 +60,23 @@ class HealthChecks(Bounds):
     def check_arming(self) -> Result:
         if self._armed:
             return self._while_armed
-        self._say_against_arming()
+        if self._boot_sequence.holds(self._age_ns):
+            self._say_boot_reasons("PreArm", forced=False)
+        else:
+            self._say_against_arming()
         return Result.ACCEPTED
+
+    def _held_by_boot(self, forced: bool) -> bool:
+        """Whether it has not started up far enough to arm, after telling why."""
+        boot, age_ns = self._boot_sequence, self._age_ns
+        if not (boot.holds_forced(age_ns) if forced else boot.holds(age_ns)):
+            return False
+        self._say_boot_reasons("Arm", forced)
+        return True
+
+    def _say_boot_reasons(self, checked_for: str, forced: bool) -> None:
+        for reason in self._boot_sequence.reasons(self._age_ns, self._mode, forced):
+            self._say(2, f"{checked_for}: {reason}")
 
     @property
     def _while_armed(self) -> Result:

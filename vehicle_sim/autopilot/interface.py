@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import Enum, IntEnum
 from typing import Final, Protocol, TypeAlias
 
+from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.estimation.estimator import Health
 from vehicle_sim.numerics.vectors import Quat, Vec3
 from vehicle_sim.plant.faults import Fault
@@ -32,6 +33,7 @@ class Result(IntEnum):
     COMMAND_LONG_ONLY = 7
     COMMAND_INT_ONLY = 8
     UNSUPPORTED_MAV_FRAME = 9
+    NOT_IN_CONTROL = 10
 
 
 class SpeedType(IntEnum):
@@ -257,10 +259,11 @@ class CommandDone:
 
 @dataclass(frozen=True, slots=True)
 class CommandSent:
-    """A command that the vehicle itself sends to whoever listens, with its first parameter."""
+    """A command that the vehicle itself sends, with its first parameter; `system` 0 = to all."""
 
     command: int
     p1: float
+    system: int = 0
 
 
 VehicleEvent: TypeAlias = (
@@ -332,6 +335,11 @@ class Vehicle(Protocol):
     @property
     def health(self) -> Health:
         """The estimate judged: what is good enough to fly by."""
+        ...
+
+    @property
+    def boot_stage(self) -> BootStage:
+        """How far it has started up."""
         ...
 
     @property
@@ -417,7 +425,10 @@ class Vehicle(Protocol):
         ...
 
     # requests: each answers at once; effects are seen in the state above ---------------
-    def arm(self, force: bool) -> Result: ...
+    def arm(self, force: bool) -> Result:
+        """IN_PROGRESS: nothing is answered until a `CommandDone`."""
+        ...
+
     def disarm(self, force: bool) -> Result: ...
     def set_mode(self, base_mode: int, custom_mode: int) -> Result: ...
     def set_mode_kind(self, kind: str) -> Result:
@@ -527,6 +538,10 @@ class Vehicle(Protocol):
 
     def test_motor(self, seconds: float) -> Result:
         """DO_MOTOR_TEST."""
+        ...
+
+    def command_acked(self, command: int, result: int, param1: int, param2: int) -> None:
+        """An answer to a command that the vehicle itself sent."""
         ...
 
     def reboot(self) -> Result: ...

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.autopilot.failsafes.arm_authorization import (
+    ARM_AUTHORIZATION_REQUEST,
+    Permission,
+)
+from vehicle_sim.autopilot.interface import CommandDone, Result
 from vehicle_sim.autopilot.modes import (
     AUTO_MAIN_MODE,
     KINDS,
@@ -18,6 +22,7 @@ from vehicle_sim.autopilot.modes import (
 from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
 from vehicle_sim.autopilot.view import View
 
+_ARM_DISARM, _MISSION_START = 400, 300  # MAV_CMD that arm
 _CLEAR_M = 0.5  # less than this above home, and a take-off has not left the ground
 
 
@@ -38,8 +43,18 @@ class ModeChanges(View):
         if self._calibration.busy and self.personality == "px4":
             self._say(2, "Transition denied: Init to Armed")
             return Result.TEMPORARILY_REJECTED
-        if not force and self._say_against_arming():
+        if self._held_by_boot(force) or (not force and self._say_against_arming()):
             return self._not_now
+        if self.personality == "px4" and not force:
+            permission = self._arm_authorization.ask(self._sense().wall_ns)
+            self._tell_authorization()
+            if permission is not Permission.GRANTED:
+                waits = permission is Permission.WAIT
+                return Result.IN_PROGRESS if waits else self._not_now
+        self._start_motors()
+        return Result.ACCEPTED
+
+    def _start_motors(self) -> None:
         self._armed = True
         self._armed_ns = self.time_ns
         self._auto_disarm.on_ground(False, self.time_ns)
@@ -50,7 +65,37 @@ class ModeChanges(View):
         self._poke()
         ardupilot = self.personality == "ardupilot"
         self._say(6, "Arming motors" if ardupilot else "Armed by external command")
-        return Result.ACCEPTED
+
+    # --------------------------------------------------------------- arm authorization
+
+    def command_acked(self, command: int, result: int, param1: int, param2: int) -> None:
+        if self.personality == "px4" and command == ARM_AUTHORIZATION_REQUEST:
+            wall_ns = self._sense().wall_ns
+            permission = self._arm_authorization.answered(result, param1, param2, wall_ns)
+            self._settle_authorization(permission)
+
+    def _decide(self, regular: bool) -> None:
+        authorization = self._arm_authorization
+        if authorization.waiting and authorization.timed_out(self._sense().wall_ns):
+            self._settle_authorization(Permission.REFUSED)
+        super()._decide(regular)
+
+    def _settle_authorization(self, permission: Permission) -> None:
+        """The `arm` that waited is carried out, or refused."""
+        self._tell_authorization()
+        if permission is Permission.WAIT or int(self.parameters.get("COM_ARM_AUTH_MET")) != 0:
+            return
+        granted = permission is Permission.GRANTED and not self._terminated
+        if granted and not self._armed:
+            self._start_motors()
+        result = Result.ACCEPTED if granted else self._not_now
+        for command in (_ARM_DISARM, _MISSION_START):
+            self.emit(CommandDone(command, result))
+        self._poke()
+
+    def _tell_authorization(self) -> None:
+        events, self._arm_authorization.events = self._arm_authorization.events, []
+        self._events += events
 
     def disarm(self, force: bool) -> Result:
         if not self._armed:
@@ -87,7 +132,8 @@ class ModeChanges(View):
             return Result.ACCEPTED
         if self._held_by_fence(mode):
             return self._not_now
-        if mode.needs_position and not self._position_ok:
+        starting = not self._armed and not self.boot_stage.position
+        if mode.needs_position and not self._position_ok and not starting:
             return self._refuse(mode, "requires position")
         if mode.behaviour is Behaviour.MISSION and not self._may_start(mode):
             return self._refuse(mode, "init failed")

@@ -147,7 +147,9 @@ class View(Decisions):
 
     @property
     def base_mode(self) -> int:
-        return self._mode.flags | (Flag.SAFETY_ARMED if self._armed else 0)
+        flags = self._mode.flags | (Flag.SAFETY_ARMED if self._armed else 0)
+        # As recorded of ArduCopter: until it is initialised it says that it is guided, too.
+        return flags if self.boot_stage.initialised else flags | Flag.GUIDED_ENABLED
 
     @property
     def system_status(self) -> int:
@@ -155,12 +157,17 @@ class View(Decisions):
             return 8  # MAV_STATE_FLIGHT_TERMINATION
         if self._failsafe_active:
             return 6 if self.emergency else 5  # EMERGENCY, CRITICAL
-        if not booted(self._est):
+        if not self._initialised:
             return 1  # BOOT
         if self._calibration.busy:
             return 2  # CALIBRATING
         flying = self._armed if self.personality == "px4" else self._pilot.flying
         return 4 if flying else 3  # ACTIVE, STANDBY
+
+    @property
+    def _initialised(self) -> bool:
+        real = self._boot_sequence.real
+        return self.boot_stage.initialised if real else booted(self._est)
 
     @property
     def origin(self) -> Geodetic | None:
@@ -178,7 +185,9 @@ class View(Decisions):
 
     @property
     def armable(self) -> bool:
-        return not self._terminated and not self._against_arming()
+        if self._terminated or self._boot_sequence.holds(self._age_ns):
+            return False
+        return not self._against_arming()
 
     @property
     def mav_type(self) -> int:

@@ -18,6 +18,7 @@ from vehicle_sim.services.calibration_commands import CALIBRATION
 from vehicle_sim.services.failures import FAILURE
 from vehicle_sim.services.flight_commands import FLIGHT
 from vehicle_sim.services.info_commands import INFO
+from vehicle_sim.services.operator_control import OPERATOR
 from vehicle_sim.services.orders import Answer, Order, from_int, from_long
 from vehicle_sim.services.payload_commands import PAYLOAD
 from vehicle_sim.services.ports import CommandContext, CommandEntry, RefusedError
@@ -31,7 +32,14 @@ RETRY_NS: Final = 3_500_000_000
 REMEMBERED_MAX: Final = 256
 """Senders and commands, the oldest forgotten first."""
 
-TABLE: Final[dict[Cmd, CommandEntry]] = {**FLIGHT, **INFO, **FAILURE, **PAYLOAD, **CALIBRATION}
+TABLE: Final[dict[Cmd, CommandEntry]] = {
+    **FLIGHT,
+    **INFO,
+    **FAILURE,
+    **PAYLOAD,
+    **CALIBRATION,
+    **OPERATOR,
+}
 """Every command that this vehicle understands; all others are UNSUPPORTED."""
 
 
@@ -83,9 +91,9 @@ class Commands:
         ack = [self._ack(client, asked.command, answer.result)] if answer.acked else []
         return [*ack, *answer.after]
 
-    def refuse(self, client: Client, command: int) -> list[Effect]:
-        """What was sent to a component that there is not."""
-        return [self._ack(client, command, Result.FAILED)]
+    def refuse(self, client: Client, command: int, result: Result = Result.FAILED) -> list[Effect]:
+        """FAILED: it was sent to a component that there is not."""
+        return [self._ack(client, command, result)]
 
     def done(self, event: CommandDone) -> list[Effect]:
         """A command that was IN_PROGRESS has ended."""
@@ -110,6 +118,9 @@ class Commands:
         entry = TABLE.get(Cmd(order.command)) if known else None
         if order.command in profile.unheard:
             return Answer(Result.UNSUPPORTED, acked=False)
+        absent = profile.absent.get(Cmd(order.command)) if known else None
+        if absent is not None:
+            return Answer(absent, (Note("debug", f"nothing carries out {order.command}"),))
         if entry is None or entry.only not in (None, profile.name):
             note = Note("debug" if told else "warning", f"command {order.command} is not supported")
             return Answer(Result.UNSUPPORTED, (note,))

@@ -37,10 +37,15 @@ def _home(context: CommandContext) -> Geodetic:
 def _arm_disarm(context: CommandContext, order: Order) -> Answer:
     force = order.p2 == FORCE
     if order.p1 == 1.0:
-        return Answer(context.vehicle.arm(force))
+        return _once_decided(context.vehicle.arm(force))
     if order.p1 == 0.0:
         return Answer(context.vehicle.disarm(force))
     raise RefusedError(Result.DENIED, f"{order.p1} is neither arm (1) nor disarm (0)")
+
+
+def _once_decided(result: Result) -> Answer:
+    """PX4 answers an `arm` that waits for its authorization when that has come, and not before."""
+    return Answer(result, acked=result is not Result.IN_PROGRESS)
 
 
 def _take_off(context: CommandContext, order: Order) -> Answer:
@@ -182,7 +187,7 @@ def _set_home(context: CommandContext, order: Order) -> Answer:
 
 def _mission_start(context: CommandContext, order: Order) -> Answer:
     first, last = order.whole(order.p1), order.whole(order.p2)
-    return Answer(context.vehicle.mission_start(first or 0, last or 0))
+    return _once_decided(context.vehicle.mission_start(first or 0, last or 0))
 
 
 def _set_mission_current(context: CommandContext, order: Order) -> Answer:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
+from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
-from vehicle_sim.autopilot.modes import MODES, by_number
+from vehicle_sim.autopilot.modes import MODES, Personality, by_number
 from vehicle_sim.services.metadata import Metadata
 from vehicle_sim.services.odometry import MOTION, utm_global_position
-from vehicle_sim.services.profile import STANDARD_MODES, Profile
+from vehicle_sim.services.profile import CAMERA_MESSAGES, STANDARD_MODES, Profile
 from vehicle_sim.services.remote_id import open_drone_id_location, open_drone_id_system
 from vehicle_sim.services.status_telemetry import STATUS
 from vehicle_sim.services.telemetry import STATE
 from vehicle_sim.services.units import boot_ms, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
+
+if TYPE_CHECKING:
+    from vehicle_sim.services.operator_control import OperatorControl
 
 BUILDERS: Final = {**STATE, **STATUS, **MOTION}
 MISSION_ACTIVE: Final = 1  # MISSION_MODE
@@ -24,6 +28,15 @@ IMAGES_KEPT: Final = 200
 HAS_IMAGE_MODE: Final = 0x2 | 0x8  # CAMERA_CAP_FLAGS: captures images, in a mode for it
 STORAGE_READY: Final = 2
 AVAILABLE_MIB: Final = 30_000.0
+
+AWAITED: Final[dict[Personality, dict[int, Callable[[BootStage], bool]]]] = {
+    "px4": {
+        m.IDS[kind]: lambda stage: stage.attitude
+        for kind in (m.Attitude, m.AttitudeQuaternion, m.GlobalPositionInt)
+    },
+    "ardupilot": {m.IDS[m.LocalPositionNed]: lambda stage: stage.position},
+}
+"""What is not sent before the vehicle has started up so far, as recorded (`autopilot/boot.py`)."""
 
 
 class Info:
@@ -38,12 +51,14 @@ class Info:
         plan_ids: Callable[[], tuple[int, int, int, int]],
         metadata: Metadata | None = None,
         event_sequence: Callable[[], m.CurrentEventSequence] | None = None,
+        operator_control: OperatorControl | None = None,
     ) -> None:
         """`plan_ids`: number of mission items, then the ids of mission, fence and rally points;
         `event_sequence`: of a vehicle that has the events interface."""
         self._vehicle = vehicle
         self._profile = profile
         self._modes = tuple(MODES[profile.name].values())
+        self._awaited = AWAITED[profile.name]
         self.system = system
         self._unix_start_ns = unix_start_ns
         self._plan_ids = plan_ids
@@ -69,10 +84,16 @@ class Info:
         }
         if event_sequence is not None:
             self._own[m.IDS[m.CurrentEventSequence]] = event_sequence
-        self.streamable: Final = frozenset(BUILDERS) | frozenset(self._own)
+        if operator_control is not None:
+            self._own[m.IDS[m.ControlStatus]] = operator_control.status
+        missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES[profile.name]
+        self.streamable: Final = (frozenset(BUILDERS) | frozenset(self._own)) - missing
 
     def build(self, number: int) -> m.Message | None:
         """None: there is no such message, or nothing true to say yet."""
+        awaited = self._awaited.get(number)
+        if awaited is not None and not awaited(self._vehicle.boot_stage):
+            return None
         builder = BUILDERS.get(number)
         if builder is not None:
             return builder(self._vehicle, self._profile)

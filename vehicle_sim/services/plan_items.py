@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import zlib
 from dataclasses import replace
 from math import isfinite
@@ -38,6 +39,13 @@ _KEPT: Final[dict[int, tuple[bool, bool, bool, bool]]] = {
     206: (True, False, True, False),
 }
 """The parameters that ArduCopter stores, where it does not store all four."""
+
+_TURNED: Final = frozenset({16, 17, 21, 22, 84, 85})
+"""NAV_WAYPOINT, _LOITER_UNLIM, _LAND, _TAKEOFF and those of VTOLs: PX4 stores a heading of them."""
+_PI: Final = 3.1415927410125732
+_RAD_PER_DEG: Final = 0.01745329238474369
+_DEG_PER_RAD: Final = 57.295776367187500
+"""Float32 numbers, as PX4 works them out: pi / 180 and 180 / pi."""
 
 _PLAIN: Final = {
     MavFrame.GLOBAL_INT: MavFrame.GLOBAL,
@@ -96,8 +104,26 @@ def to_float(item: PlanItem, client: Client, kind: int) -> m.MissionItem:
 
 
 def as_px4_gives_back(item: PlanItem) -> PlanItem:
-    """Global frames in their integer form."""
+    """Global frames in their integer form; a heading as it comes back from float radians in 0 to
+    2 pi; a take-off without its pitch."""
+    if item.command in _TURNED and isfinite(item.p4):
+        item = replace(item, p4=_through_radians(item.p4))
+    if item.command == Cmd.NAV_TAKEOFF:
+        item = replace(item, p1=0.0)
     return replace(item, frame=_INT.get(MavFrame(item.frame), item.frame)) if _known(item) else item
+
+
+def _through_radians(yaw_deg: float) -> float:
+    """In float32, as PX4 keeps it: 225 becomes 224.99998, and -90 becomes 270."""
+    yaw_rad = _float32(_float32(yaw_deg) * _RAD_PER_DEG)
+    if yaw_rad < 0.0:
+        yaw_rad = _float32(yaw_rad + 2.0 * _PI)
+    return _float32(yaw_rad * _DEG_PER_RAD)
+
+
+def _float32(value: float) -> float:
+    kept: float = struct.unpack("<f", struct.pack("<f", value))[0]
+    return kept
 
 
 def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
@@ -124,6 +150,8 @@ def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
         p3=_kept(item.p3, k3),
         p4=_kept(item.p4, k4),
     )
+    if item.command == Cmd.NAV_LOITER_TIME:
+        item = replace(item, p3=-1.0 if item.p3 < 0.0 else 1.0)  # of the radius only the sign
     goes_somewhere = item.command <= _LAST_NAV and item.command not in _PLACELESS_NAVS
     if not (goes_somewhere or item.command in _PLACED_DOS):
         return replace(item, frame=MavFrame.GLOBAL)

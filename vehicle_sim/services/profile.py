@@ -10,6 +10,7 @@ from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Capability, Cmd, DataStream, MissionType
+from vehicle_sim.wire.signing import PX4_UNSIGNED, RADIOS
 
 MESSAGE_INTERVAL_MIN_NS: Final = 5_000_000
 VIDEO_STREAM_INFORMATION: Final = 269
@@ -120,6 +121,9 @@ class Profile:
     component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
     unheard: frozenset[Cmd]  # commands that nobody on board answers
     banner: tuple[str, ...]  # DO_SEND_BANNER
+    unsigned_allowed: frozenset[int]  # messages that are taken unsigned under a key
+    camera: bool  # there is one
+    absent: dict[Cmd, Result]  # answers to commands for equipment that there is not
     requests: Requests  # what REQUEST_MESSAGE is answered
 
 
@@ -214,6 +218,9 @@ PX4: Final = Profile(
         }
     ),
     banner=(),
+    unsigned_allowed=PX4_UNSIGNED,
+    camera=True,
+    absent={},
     requests=_PX4_REQUESTS,
 )
 
@@ -260,6 +267,9 @@ ARDUPILOT: Final = Profile(
     component_metadata=False,
     unheard=frozenset(),
     banner=("ArduCopter V4.6.0", "vehicle-sim", "Frame: QUAD/X"),
+    unsigned_allowed=RADIOS,
+    camera=True,
+    absent={},
     requests=_ARDUPILOT_REQUESTS,
 )
 
@@ -273,6 +283,52 @@ def profile_of(personality: Personality, firmware: Firmware) -> Profile:
         PROFILES[personality],
         flight_sw_version=FLIGHT_SW_VERSION[firmware],
         parameter_errors=firmware == "4.7",
+    )
+
+
+_OF_CAMERA: Final = frozenset(
+    m.IDS[kind] for kind in (m.CameraInformation, m.CameraSettings, m.CameraCaptureStatus)
+)
+CAMERA_MESSAGES: Final[dict[Personality, frozenset[int]]] = {
+    "px4": _OF_CAMERA,
+    "ardupilot": _OF_CAMERA | {m.IDS[m.StorageInformation]},
+}
+"""What only a vehicle with a camera tells; PX4 has a storage of its own."""
+
+_NO_CAMERA: Final[dict[Personality, dict[Cmd, Result]]] = {
+    "px4": {
+        Cmd.IMAGE_START_CAPTURE: Result.UNSUPPORTED,
+        Cmd.IMAGE_STOP_CAPTURE: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_INFORMATION: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_CAPTURE_STATUS: Result.UNSUPPORTED,  # from memory
+    },
+    "ardupilot": {
+        Cmd.IMAGE_START_CAPTURE: Result.FAILED,
+        Cmd.IMAGE_STOP_CAPTURE: Result.FAILED,  # from memory
+        Cmd.SET_CAMERA_MODE: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_INFORMATION: Result.UNSUPPORTED,
+        Cmd.REQUEST_CAMERA_CAPTURE_STATUS: Result.UNSUPPORTED,  # from memory
+        Cmd.REQUEST_STORAGE_INFORMATION: Result.UNSUPPORTED,  # from memory
+    },
+}
+"""As the recorded autopilots, which had no camera, answered."""
+
+
+def without_camera(profile: Profile) -> Profile:
+    """The same autopilot with no camera on board; PX4 does not even answer SET_CAMERA_MODE."""
+    px4 = profile.name == "px4"
+    requests = profile.requests
+    image = m.IDS[m.CameraImageCaptured]
+    return replace(
+        profile,
+        camera=False,
+        absent=_NO_CAMERA[profile.name],
+        unheard=profile.unheard | {Cmd.SET_CAMERA_MODE} if px4 else profile.unheard,
+        requests=replace(
+            requests,
+            never=requests.never | {image} | CAMERA_MESSAGES[profile.name],
+            accepted=requests.accepted if px4 else requests.accepted | _OF_CAMERA,
+        ),
     )
 
 

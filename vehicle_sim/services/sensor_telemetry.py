@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.autopilot.interface import GPS_HDOP, FenceState, Readings, Vehicle
 from vehicle_sim.services.profile import Profile
 from vehicle_sim.services.units import (
@@ -89,6 +90,14 @@ def _told(fence: FenceState, profile: Profile) -> tuple[Sensor, Sensor, Sensor]:
     return present, enabled, healthy & ~Sensor.GEOFENCE if fence.breached else healthy
 
 
+def _px4_starting(stage: BootStage) -> tuple[Sensor, Sensor, Sensor]:
+    """Present, enabled and healthy before there is a position, as recorded."""
+    healthy = _PX4_HEALTHY & ~Sensor.PREARM_CHECK
+    if not stage.sensors:
+        return Sensor(0), Sensor(0), healthy | Sensor.RC_RECEIVER
+    return _PX4_PRESENT & ~Sensor.GPS, _PX4_ENABLED & ~Sensor.GPS, healthy
+
+
 def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
     power, health = vehicle.power, vehicle.health
     present, enabled, healthy = _told(vehicle.fence_state, profile)
@@ -107,6 +116,8 @@ def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
         healthy &= ~Sensor.ABSOLUTE_PRESSURE
     if not (vehicle.armable or vehicle.armed):
         healthy &= ~Sensor.PREARM_CHECK
+    if profile.name == "px4" and not vehicle.boot_stage.position:
+        present, enabled, healthy = _px4_starting(vehicle.boot_stage)
     return m.SysStatus(
         onboard_control_sensors_present=present,
         onboard_control_sensors_enabled=enabled,

@@ -15,6 +15,7 @@ from vehicle_sim.autopilot.interface import (
     HomeChanged,
     ImageCaptured,
     MissionReached,
+    Result,
     StatusText,
     Vehicle,
     VehicleEvent,
@@ -33,6 +34,7 @@ from vehicle_sim.services.logs import LogServer
 from vehicle_sim.services.manual import manual_input
 from vehicle_sim.services.metadata import metadata_of
 from vehicle_sim.services.mission import MissionServer
+from vehicle_sim.services.operator_control import OperatorControl, with_operator_control
 from vehicle_sim.services.parameters import ParameterServer
 from vehicle_sim.services.ports import CommandContext
 from vehicle_sim.services.profile import Profile
@@ -75,12 +77,17 @@ class VehicleServer:
         logging: bool = True,
         phase_ns: int = 0,
         stream_sets: StreamSets | None = None,
+        operator_control: bool = False,
     ) -> None:
         """`store` holds the vehicle's files; `logging`: flights are logged in it; `phase_ns`
-        shifts the times of its streams; `stream_sets`: what is sent unasked, if not the usual."""
+        shifts the times of its streams; `stream_sets`: what is sent unasked, if not the usual;
+        `operator_control`: one station at a time commands."""
         self.vehicle: Final = vehicle
         self.store: Final = store if store is not None else MemoryStore()
         self.system = system
+        self._operator_control = OperatorControl() if operator_control else None
+        if operator_control:
+            profile = with_operator_control(profile)
         self._profile = profile
         self._speedup = speedup
         self._phase_ns = phase_ns
@@ -100,6 +107,7 @@ class VehicleServer:
             self._missions.plan_ids,
             metadata,
             self._events.current_sequence if self._events.on else None,
+            self._operator_control,
         )
         packed = {param_pack.PATH: param_pack.param_pack(parameters)}
         self._ftp = FtpServer(self.store, metadata.files if metadata is not None else packed)
@@ -113,7 +121,9 @@ class VehicleServer:
         )
         self._logs = LogServer(vehicle, profile, self._recorder)
         self._streams: dict[int, Streams] = {}
-        self._commands = Commands(CommandContext(vehicle, profile, self._info, self._streams))
+        self._commands = Commands(
+            CommandContext(vehicle, profile, self._info, self._streams, self._operator_control)
+        )
         self._clock_ns = vehicle.clock_ns
         self._due_ns = NEVER
         self.deadline_ns = NEVER
@@ -123,6 +133,10 @@ class VehicleServer:
         self._reached: list[tuple[int, int]] = []  # (due in vehicle's time, seq)
         self._noted_ns = -REFUSAL_NOTED_EVERY_NS
         self._clock_ns = 0  # it goes back with a reboot
+
+    @property
+    def unsigned_allowed(self) -> frozenset[int]:
+        return self._profile.unsigned_allowed
 
     @property
     def mode_name(self) -> str:
@@ -173,9 +187,19 @@ class VehicleServer:
             return []
         self.touched = True
         self.vehicle.wall(wall_ns)
-        effects = self._dispatch(client, sequence, message, wall_ns)
+        control = self._operator_control
+        if control is None or control.admits(client, self.system, message):
+            effects = self._dispatch(client, sequence, message, wall_ns)
+        else:
+            effects = self._not_in_control(client, message)
         self._schedule()
         return effects
+
+    def _not_in_control(self, client: Client, message: m.Message) -> list[Effect]:
+        """Commands are refused; what is no command is not answered."""
+        if isinstance(message, m.CommandLong | m.CommandInt):
+            return self._commands.refuse(client, message.command, Result.NOT_IN_CONTROL)
+        return []
 
     def _obeys(self, client: Client) -> bool:
         """ArduPilot's SYSID_ENFORCE: nobody but its own ground station is heard."""
@@ -228,6 +252,12 @@ class VehicleServer:
                 | m.GlobalPositionInt()
             ):
                 manual_input(self.vehicle, self._given, self.system, client, message, wall_ns)
+                return []
+            case m.CommandAck():
+                if message.target_system == self.system:
+                    self.vehicle.command_acked(
+                        message.command, message.result, message.progress, message.result_param2
+                    )
                 return []
             case m.SetMode():
                 return self._set_mode(client, message)
@@ -402,8 +432,8 @@ class VehicleServer:
                 return [Send(None, home)] if home is not None else []
             case CommandDone():
                 return self._commands.done(event)
-            case CommandSent(command, p1):
-                return [Send(None, _command(command, p1))]
+            case CommandSent(command, p1, system):
+                return [Send(None, _command(command, p1, system))]
 
     def _look(self) -> tuple[bool, int, bool]:
         return (self.vehicle.armed, self.vehicle.custom_mode, self.vehicle.origin is not None)
@@ -433,6 +463,6 @@ class VehicleServer:
         return effects
 
 
-def _command(command: int, p1: float) -> m.CommandLong:
-    """For everybody who listens."""
-    return m.CommandLong(p1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, command, 0, 0, 0)
+def _command(command: int, p1: float, system: int) -> m.CommandLong:
+    """Sent on every link; system 0 = for everybody who listens."""
+    return m.CommandLong(p1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, command, system, 0, 0)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.decisions import phase_ns
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
@@ -20,7 +21,7 @@ from vehicle_sim.engine.engines import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
-from vehicle_sim.services.profile import Profile, profile_of
+from vehicle_sim.services.profile import Profile, profile_of, without_camera
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.services.stream_sets import (
     POSITION_ONLY,
@@ -77,6 +78,9 @@ class Plan:
     files: Path | None  # a directory to serve by FTP instead of memory
     streams: StreamChoice = "full"  # what is sent unasked
     view: Url | None = None  # who is sent the truth
+    boot: Boot = "quick"
+    camera: bool = True
+    operator_control: bool = False  # one station at a time commands
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,11 +106,20 @@ def launch(plan: Plan) -> Opened:
     engine = engine_for(specs, load(plan.airframe))
     unix_ns = time.time_ns()
     profile = profile_of(plan.personality, plan.firmware)
+    if not plan.camera:
+        profile = without_camera(profile)
     stream_sets = _stream_sets(plan, profile)
     servers: list[VehicleServer] = []
     for lane, setup in enumerate(plan.vehicles):
         vehicle = Autopilot(
-            plan.personality, setup.home, plan.seed, lane, parameters[lane], Seat(engine, lane)
+            plan.personality,
+            setup.home,
+            plan.seed,
+            lane,
+            parameters[lane],
+            Seat(engine, lane),
+            plan.boot,
+            plan.camera,
         )
         vehicle.inject(plan.wind)
         servers.append(
@@ -121,6 +134,7 @@ def launch(plan: Plan) -> Opened:
                 logging=len(plan.vehicles) <= LOGGED_MOST,
                 phase_ns=phase_ns(lane),
                 stream_sets=stream_sets,
+                operator_control=plan.operator_control,
             )
         )
     start_ns = monotonic_ns()

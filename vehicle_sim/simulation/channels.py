@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 from vehicle_sim.services.server import COMPONENT, VehicleServer
 from vehicle_sim.simulation.traffic import LinkSpec, Peer
 from vehicle_sim.wire.codec import NUMBER1_MAX, SIGNED, Codec, MavlinkFrame
-from vehicle_sim.wire.signing import UNSIGNED_ALLOWED, Signing, Verdict
+from vehicle_sim.wire.signing import RADIOS, Signing, Verdict
 from vehicle_sim.wire.split import Counters
 
 DATAGRAM_BYTES: Final = 1200
@@ -66,7 +66,7 @@ class Channel:
         for the first time (PX4's MAV_PROTO_VER 0).  What a radio says of itself says nothing of
         the peer behind it.
         """
-        if frame.number not in UNSIGNED_ALLOWED and not self._heard_2:
+        if frame.number not in RADIOS and not self._heard_2:
             self.version = frame.version
             self._heard_2 = frame.version == 2
         client = (frame.system, frame.component)

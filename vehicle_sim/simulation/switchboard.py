@@ -38,7 +38,7 @@ class Switchboard:
         self._active: dict[VehicleServer, None] = {}
         self._channels = Channels(servers, links)
         self._modes = tuple(link.mode for link in links)
-        self._signing = Signing(signing)
+        self._signing = Signing(signing, servers[0].unsigned_allowed)
         self._unix_offset_ns = unix_offset_ns
         self._unsendable: set[type[m.Message]] = set()  # what has been said of it
         streams = tuple(link.stream for link in links)

@@ -13,6 +13,7 @@ class Cmd(IntEnum):
 
     NAV_WAYPOINT = 16
     NAV_LOITER_UNLIM = 17
+    NAV_LOITER_TIME = 19
     NAV_RETURN_TO_LAUNCH = 20
     NAV_LAND = 21
     NAV_TAKEOFF = 22
@@ -77,6 +78,7 @@ class Cmd(IntEnum):
     DO_CANCEL_MAG_CAL = 42426
     DO_SEND_BANNER = 42428
     ACCELCAL_VEHICLE_POS = 42429
+    REQUEST_OPERATOR_CONTROL = 32100
 
 
 class MavFrame(IntEnum):
@@ -143,6 +145,7 @@ class Capability(IntFlag):
     MISSION_FENCE = 0x4000
     MISSION_RALLY = 0x8000
     PARAM_ENCODE_C_CAST = 0x20000
+    COMPONENT_ACCEPTS_GCS_CONTROL = 0x80000
 
 
 class EstimatorFlag(IntFlag):

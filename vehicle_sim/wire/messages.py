@@ -1250,6 +1250,14 @@ class AvailableModesMonitor(NamedTuple):
     seq: int
 
 
+class ControlStatus(NamedTuple):
+    """CONTROL_STATUS (512)."""
+
+    flags: int
+    gcs_main: int
+    gcs_secondary: bytes
+
+
 class OpenDroneIdLocation(NamedTuple):
     """OPEN_DRONE_ID_LOCATION (12901)."""
 
@@ -1392,6 +1400,7 @@ Message: TypeAlias = (
     | AvailableModes
     | CurrentMode
     | AvailableModesMonitor
+    | ControlStatus
     | OpenDroneIdLocation
     | OpenDroneIdSystem
 )
@@ -1494,6 +1503,7 @@ TYPES: Final[dict[int, type[Message]]] = {
     435: AvailableModes,
     436: CurrentMode,
     437: AvailableModesMonitor,
+    512: ControlStatus,
     12901: OpenDroneIdLocation,
     12904: OpenDroneIdSystem,
 }

@@ -108,5 +108,6 @@ MESSAGES: Final = (
     "HIL_STATE_QUATERNION",
     "OPEN_DRONE_ID_LOCATION",
     "OPEN_DRONE_ID_SYSTEM",
+    "CONTROL_STATUS",
 )
 """Each gets a class.  What is not among them is checked for its CRC, counted and ignored."""

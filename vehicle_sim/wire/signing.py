@@ -25,8 +25,11 @@ TIMESTAMP_MAX: Final = (1 << 48) - 1
 NEW_STREAM_LATE_MAX: Final = 60 * 100_000
 """In ticks: how far a stream that was not heard before may be behind."""
 STREAMS_MAX: Final = 256
-UNSIGNED_ALLOWED: Final = frozenset({109, 166})
+RADIOS: Final = frozenset({109, 166})
 """RADIO_STATUS and RADIO come from the radio itself, which has no key (ArduPilot's list)."""
+PX4_UNSIGNED: Final = frozenset({0, 109, 246, 247})
+"""What PX4 1.17 takes unsigned on every link, USB too: HEARTBEAT, RADIO_STATUS, ADSB_VEHICLE and
+COLLISION ("Unsigned Message Allowlist" of its page on message signing)."""
 
 _SIGNATURE: Final = 6
 _STAMP: Final = 7 + _SIGNATURE
@@ -95,7 +98,11 @@ class Signing:
     A stream is (system, component, link id).  One time serves all links, so that it rises on each.
     """
 
-    def __init__(self, key: SigningKey | None = None) -> None:
+    def __init__(
+        self, key: SigningKey | None = None, unsigned_allowed: frozenset[int] = RADIOS
+    ) -> None:
+        """`unsigned_allowed`: numbers of messages that are taken whatever their signature."""
+        self._unsigned_allowed = unsigned_allowed
         self._key: SigningKey | None = None
         self._keyed: HASH | None = None
         self._timestamp = 0
@@ -123,8 +130,13 @@ class Signing:
 
     def judge(self, frame: MavlinkFrame, unix_ns: int) -> Verdict:
         """Whether a frame is to be taken; one that is taken moves its stream on."""
-        if self._key is None or (frame.number in UNSIGNED_ALLOWED and not frame.signed):
+        if self._key is None:
             return Verdict.GOOD
+        verdict = self._judge_signature(frame, unix_ns)
+        # MAVLink's C library asks the autopilot also about frames whose signature is wrong.
+        return Verdict.GOOD if frame.number in self._unsigned_allowed else verdict
+
+    def _judge_signature(self, frame: MavlinkFrame, unix_ns: int) -> Verdict:
         if not frame.signed:
             return Verdict.UNSIGNED
         raw = frame.raw

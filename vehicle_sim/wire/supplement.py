@@ -122,7 +122,20 @@ NEW: Final = (
             MessageField("reason", "uint8_t", 0),
         ),
     ),
+    Layout(
+        512,
+        "CONTROL_STATUS",
+        21,
+        (
+            MessageField("flags", "uint8_t", 0),
+            MessageField("gcs_main", "uint8_t", 0),
+            MessageField("gcs_secondary", "uint8_t", 10),
+        ),
+    ),
 )
+
+COMMANDS: Final = {"MAV_CMD_REQUEST_OPERATOR_CONTROL": 32100}
+"""Of development.xml, as CONTROL_STATUS: work in progress."""
 
 GROWN: Final[dict[str, tuple[MessageField, ...]]] = {
     "MISSION_CURRENT": (

@@ -9,6 +9,7 @@ from math import nan, sqrt
 from typing import Self
 
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.interface import (
     Geodetic,
     Landed,
@@ -30,8 +31,8 @@ HOMES: dict[Personality, Geodetic] = {
 class Flight:
     """One vehicle and its past events.  `fly(s)` lets simulated seconds pass."""
 
-    def __init__(self, personality: Personality, seed: int = 1) -> None:
-        self.vehicle = Autopilot(personality, HOMES[personality], seed)
+    def __init__(self, personality: Personality, seed: int = 1, boot: Boot = "quick") -> None:
+        self.vehicle = Autopilot(personality, HOMES[personality], seed, boot=boot)
         self.personality: Personality = personality
         self.seen: list[VehicleEvent] = []
 

@@ -141,6 +141,20 @@ CASES: tuple[Case, ...] = (
     Case("CAL_ACC0_ID", {0: True, 1310988: False}, fly.against_arming("Accel 0 uncalibrated")),
     Case("CAL_GYRO0_ID", {0: True, 1310988: False}, fly.against_arming("Gyro 0 uncalibrated")),
     Case("CAL_MAG0_ID", {0: True, 197388: False}, fly.against_arming("Compass 0 uncalibrated")),
+    Case("COM_ARM_AUTH_REQ", {0: Result.ACCEPTED, 1: Result.IN_PROGRESS}, own.arms),
+    Case(
+        "COM_ARM_AUTH_MET",
+        {0: Result.IN_PROGRESS, 1: Result.TEMPORARILY_REJECTED},
+        own.arms,
+        {"COM_ARM_AUTH_REQ": 1},
+    ),
+    Case("COM_ARM_AUTH_ID", {10: 10, 77: 77}, own.authorizer, {"COM_ARM_AUTH_REQ": 1}),
+    Case(
+        "COM_ARM_AUTH_TO",
+        {1.0: pytest.approx(1.0, abs=0.15), 3.0: pytest.approx(3.0, abs=0.15)},
+        own.waits_for_authorizer_s,
+        {"COM_ARM_AUTH_REQ": 1},
+    ),
     Case("COM_ARM_MIS_REQ", {0: False, 1: True}, fly.against_arming("no valid mission")),
     Case("COM_ARM_WO_GPS", {0: True, 1: False}, fly.against_arming("GPS fix too low", own.no_fix)),
     Case(

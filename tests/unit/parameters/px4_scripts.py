@@ -19,7 +19,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import RANK, charge_of
 from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector, Posture
 from vehicle_sim.autopilot.fence.geofence import Geofence
 from vehicle_sim.autopilot.fence.rally import Point, landing_site
-from vehicle_sim.autopilot.interface import OrbitRequest, Power, Result, Setpoint
+from vehicle_sim.autopilot.interface import CommandSent, OrbitRequest, Power, Result, Setpoint
 from vehicle_sim.autopilot.manual.sticks import Radio
 from vehicle_sim.plant.faults import GpsLost
 from vehicle_sim.wire import messages as m
@@ -318,3 +318,20 @@ def baro_off_m(setting: Setting) -> float:
     flight = setting.at_home()
     flight.fly(0.5)
     return flight.vehicle.readings.pressure_alt_amsl_m - 488.0
+
+
+def arms(setting: Setting) -> object:
+    """What an `arm` is answered at once."""
+    return setting.at_home().vehicle.arm(False)
+
+
+def authorizer(setting: Setting) -> object:
+    """Which system is asked whether the vehicle may arm."""
+    flight = setting.at_home()
+    flight.vehicle.arm(False)
+    return next(e.system for e in flight.vehicle.events() if isinstance(e, CommandSent))
+
+
+def waits_for_authorizer_s(setting: Setting) -> object:
+    flight = setting.at_home()
+    return fly.waits(flight, lambda f: f.vehicle.arm(False), fly.says("Arm auth: No response"))

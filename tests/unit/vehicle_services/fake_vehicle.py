@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from vehicle_sim.autopilot.boot import READY
 from vehicle_sim.autopilot.fence import rally
 from vehicle_sim.autopilot.fence import zones as fence
 from vehicle_sim.autopilot.firmware import Firmware
@@ -107,6 +108,7 @@ class FakeVehicle:
         self.pos_ned: Vec3 = (10.0, 20.0, -5.0)
         self.q_ned_from_frd = (1.0, 0.0, 0.0, 0.0)
         self.health = HEALTHY
+        self.boot_stage = READY
         self.gps = GpsFix(3, 12, 47.39785, 8.54595, 492.0, (3.0, 4.0, 0.0), 0.6, 0.9)
 
     @property
@@ -188,6 +190,9 @@ class FakeVehicle:
         result = self._note("arm", force)
         self.armed = self.armed or result is Result.ACCEPTED
         return result
+
+    def command_acked(self, command: int, result: int, param1: int, param2: int) -> None:
+        self._note("command_acked", command, result, param1, param2)
 
     def disarm(self, force: bool) -> Result:
         self.armed = False
@@ -340,6 +345,7 @@ class Bench:
         firmware: Firmware | None = None,
         stream_sets: StreamSets | None = None,
         mode: LinkMode = LinkMode.NORMAL,
+        operator_control: bool = False,
     ) -> None:
         self.vehicle = FakeVehicle()
         self.parameters = Parameters(personality, firmware)
@@ -351,6 +357,7 @@ class Bench:
             system=1,
             speedup=speedup,
             stream_sets=stream_sets,
+            operator_control=operator_control,
         )
         self.world = World([server], [LinkSpec(mode=mode)], speedup)
         self.now_ns = 0

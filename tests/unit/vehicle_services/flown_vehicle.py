@@ -10,10 +10,11 @@ from functools import cache
 
 from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S, acks, long
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.interface import Geodetic, Result
 from vehicle_sim.autopilot.modes import MODES, Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.services.profile import PROFILES
+from vehicle_sim.services.profile import PROFILES, without_camera
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import LinkSpec, World
 from vehicle_sim.wire import messages as m
@@ -28,13 +29,16 @@ HOME = Geodetic(47.397742, 8.545594, 488.0)
 class Flown(Bench):
     """As `Bench`; `vehicle` is an `Autopilot`."""
 
-    def __init__(self, personality: Personality) -> None:
+    def __init__(self, personality: Personality, boot: Boot = "quick", camera: bool = True) -> None:
         self.personality: Personality = personality
         self.parameters = Parameters(personality)
-        self.autopilot = Autopilot(personality, HOME, 1, 0, self.parameters)
-        server = VehicleServer(
-            self.autopilot, PROFILES[personality], self.parameters, system=1, logging=False
+        self.autopilot = Autopilot(
+            personality, HOME, 1, 0, self.parameters, boot=boot, camera=camera
         )
+        profile = PROFILES[personality]
+        if not camera:
+            profile = without_camera(profile)
+        server = VehicleServer(self.autopilot, profile, self.parameters, system=1, logging=False)
         self.world = World([server], [LinkSpec()], Fraction(1))
         self.now_ns = 0
         self.logs = []

@@ -143,7 +143,8 @@ def test_a_stranger_sees_the_vehicle_but_is_not_heard() -> None:
     sent = field.hear(encode(m.Heartbeat(0, 6, 8, 0, 4, 3), 0, 255, 190))
     heard = [each.get_type() for data in sent for each in mav.parse_buffer(data)]
     assert "HEARTBEAT" in heard
-    assert field.vehicle.named("gcs_heard") == []
+    field.hear(land(station(None)))
+    assert field.landings == 0
 
 
 def test_each_link_has_its_id_and_time_rises_over_all_of_them() -> None:

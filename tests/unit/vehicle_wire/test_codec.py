@@ -15,7 +15,7 @@ from vehicle_sim.wire.codec import BY_TYPE, encode
 from vehicle_sim.wire.dialect import LAYOUTS, NAMES
 from vehicle_sim.wire.messages import IDS, TYPES, Heartbeat, LocalPositionNed, Message, Timesync
 from vehicle_sim.wire.split import Counters, Reassembler, split
-from vehicle_sim.wire.supplement import GROWN, MessageField
+from vehicle_sim.wire.supplement import COMMANDS, GROWN, MessageField
 
 RANGES = {
     "uint8_t": (0, 2**8 - 1),
@@ -207,6 +207,7 @@ def test_the_numbers_are_the_dialects(ours: type[ids.Cmd], prefix: str) -> None:
     for member in ours:
         names = [prefix + _upstream_name(member.name)]
         found = [getattr(upstream, name) for name in names if hasattr(upstream, name)]
+        found += [COMMANDS[name] for name in names if name in COMMANDS]
         assert found == [member.value], names
 
 

@@ -95,8 +95,8 @@ INERT = (
     }),
     *inert("arming and failsafes", StoredAs.INT32, {
         "CBRK_AIRSPD_CHK": 0, "CBRK_BUZZER": 0, "CBRK_IO_SAFETY": 22027, "CBRK_SUPPLY_CHK": 894281,
-        "CBRK_USB_CHK": 197848, "CBRK_VTOLARMING": 0, "COM_ARM_ARSP_EN": 1, "COM_ARM_AUTH_ID": 10,
-        "COM_ARM_AUTH_MET": 0, "COM_ARM_AUTH_REQ": 0, "COM_ARM_CHK_ESCS": 0, "COM_ARM_HFLT_CHK": 1,
+        "CBRK_USB_CHK": 197848, "CBRK_VTOLARMING": 0, "COM_ARM_ARSP_EN": 1,
+        "COM_ARM_CHK_ESCS": 0, "COM_ARM_HFLT_CHK": 1,
         "COM_ARM_MAG_ANG": 60, "COM_ARM_MAG_STR": 2, "COM_ARM_SDCARD": 1, "COM_ARM_SWISBTN": 0,
         "COM_FLIGHT_UUID": 0, "COM_FLT_PROFILE": 0, "COM_FLT_TIME_MAX": -1, "COM_HLDL_LOSS_T": 120,
         "COM_HLDL_REG_T": 0, "COM_HOME_EN": 1, "COM_HOME_IN_AIR": 0, "COM_IMB_PROP_ACT": 0,
@@ -106,7 +106,7 @@ INERT = (
         "GF_COUNT": -1, "GF_SOURCE": 0,
     }),
     *inert("arming and failsafes", StoredAs.REAL32, {
-        "COM_ARM_AUTH_TO": 1.0, "COM_ARM_EKF_HGT": 1.0, "COM_ARM_EKF_POS": 0.5,
+        "COM_ARM_EKF_HGT": 1.0, "COM_ARM_EKF_POS": 0.5,
         "COM_ARM_EKF_VEL": 0.5, "COM_ARM_EKF_YAW": 0.5, "COM_ARM_IMU_ACC": 0.7,
         "COM_ARM_IMU_GYR": 0.25, "COM_CPU_MAX": -1.0, "COM_KILL_DISARM": 5.0,
         "COM_LKDOWN_TKO": 3.0, "COM_OBC_LOSS_T": 5.0, "COM_POS_LOW_EPH": -1.0,
