@@ -82,7 +82,7 @@ class Decisions(FailsafeActions):
             self._boot()
             for event in self._calibration.update(self.time_ns):
                 self.emit(event)
-            strength = self._body.strength
+            strength = self._sensed.battery_v / self._believed.full_v
             least = _STRENGTH_LEAST
             self.blocks.flight.strength_inv = 1.0 / (strength if strength > least else least)
             self._feel_air(strength)
@@ -100,11 +100,11 @@ class Decisions(FailsafeActions):
 
     def _feel_air(self, strength: float) -> None:
         f = self.blocks.flight
-        self._airflow.shake(self.blocks.sensed)
+        self._airflow.shake(self._sensed)
         if self._pilot.flying:
             spin = strength * (f.u1 + f.u2 + f.u3 + f.u4)
             self._airflow.update(
-                self._est, self.blocks.sensed, spin, self.engine.frame, _DECIDE_EVERY * DT_NS * 1e-9
+                self._est, self._sensed, spin, self._believed, _DECIDE_EVERY * DT_NS * 1e-9
             )
 
     def _fly(self, s: Situation, regular: bool) -> None:

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from math import sqrt
 
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.flight import BY_RATES, Flight
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import kernel
-from vehicle_sim.plant.frame import AirframeConstants
 
 _RATE_SHARE = 0.55  # of 1 / motor lag
 _ATTITUDE_SHARE = 0.41  # of the rate gain
@@ -21,9 +21,9 @@ _ATTITUDE_P_MAX = 12.0
 _YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
 
 
-def tune(flight: Flight, frame: AirframeConstants) -> None:
+def tune(flight: Flight, believed: Believed) -> None:
     """The gains of the attitude and rate loops that fit these motors."""
-    rate = _RATE_SHARE / frame.motor_time_constant_s
+    rate = _RATE_SHARE / believed.motor_time_constant_s
     attitude = _ATTITUDE_SHARE * rate
     attitude = attitude if attitude < _ATTITUDE_P_MAX else _ATTITUDE_P_MAX
     flight.kp_rate_roll = flight.kp_rate_pitch = rate
@@ -31,7 +31,7 @@ def tune(flight: Flight, frame: AirframeConstants) -> None:
 
 
 @kernel
-def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
+def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     """Attitude and rate loops and the mixer, by the estimate: leaves `u1 .. u4`."""
     # q_error = conj(q) q_setpoint; its vector part is half the turn that is missing.
     w = est.qw
@@ -60,12 +60,12 @@ def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
 
     # The torque that it takes, as each motor's share of thrust over its lever.
     gain = 0.25 * f.kp_rate_roll
-    roll = gain * frame.inertia_xx_kg_m2 / frame.arm_right_m * (rate_x - est.rate_x)
+    roll = gain * believed.inertia_xx_kg_m2 / believed.arm_right_m * (rate_x - est.rate_x)
     gain = 0.25 * f.kp_rate_pitch
-    pitch = gain * frame.inertia_yy_kg_m2 / frame.arm_forward_m * (rate_y - est.rate_y)
-    gain = 0.25 * f.kp_rate_yaw * frame.inertia_zz_kg_m2 / frame.torque_per_thrust_m
+    pitch = gain * believed.inertia_yy_kg_m2 / believed.arm_forward_m * (rate_y - est.rate_y)
+    gain = 0.25 * f.kp_rate_yaw * believed.inertia_zz_kg_m2 / believed.torque_per_thrust_m
     yaw = gain * (rate_z - est.rate_z)
-    most = 0.25 * _YAW_SHARE * GRAVITY_M_S2 * frame.mass_kg
+    most = 0.25 * _YAW_SHARE * GRAVITY_M_S2 * believed.mass_kg
     yaw = most if yaw > most else -most if yaw < -most else yaw
 
     t1 = pitch - roll + yaw
@@ -79,7 +79,7 @@ def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
     low = t1 if t1 < t2 else t2
     low = t3 if t3 < low else low
     low = t4 if t4 < low else low
-    full = frame.thrust_max_n
+    full = believed.thrust_max_n
     each = 0.25 * f.collective_n
     each = full - top if each + top > full else each
     each = -low if each + low < 0.0 else each

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.flight import ACCELERATE, BY_MOTION, THRUST, Flight
 from vehicle_sim.control_loops.trajectory import move_goal, move_reference
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.angles import sincos
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import kernel
-from vehicle_sim.plant.frame import AirframeConstants
 
 _INTEGRAL_MAX_M_S2 = 3.0
 _LIFT_MIN_M_S2 = 0.3 * GRAVITY_M_S2
@@ -29,13 +29,13 @@ _LAND_LAG_M = 0.2
 
 
 @kernel
-def guide(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> None:
+def guide(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     """All of it, once."""
     move_goal(f, dt_s)
     move_reference(f, est, dt_s)
     turn(f, dt_s)
-    follow(f, est, frame, dt_s)
-    feel_ground(f, est, frame, dt_s)
+    follow(f, est, believed, dt_s)
+    feel_ground(f, est, believed, dt_s)
 
 
 @kernel
@@ -56,7 +56,7 @@ def turn(f: Flight, dt_s: float) -> None:
 
 
 @kernel
-def follow(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> None:
+def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     """Position and velocity loops, then the attitude and the collective that they need."""
     err_n = f.ref_vel_n + f.kp_pos_xy * (f.ref_n - est.pos_n) - est.vel_n
     err_e = f.ref_vel_e + f.kp_pos_xy * (f.ref_e - est.pos_e) - est.vel_e
@@ -77,9 +77,9 @@ def follow(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> 
     # the integrators learn it in a long flight, and give it back as an overshoot at its end.
     n = f.ref_vel_n
     e = f.ref_vel_e
-    hover = sqrt(0.25 * GRAVITY_M_S2 * frame.mass_kg / frame.thrust_max_n)
-    drag = 4.0 * hover * frame.rotor_drag_n_s_per_m
-    drag = (drag + frame.drag_n_per_m2_s2 * sqrt(n * n + e * e)) / frame.mass_kg
+    hover = sqrt(0.25 * GRAVITY_M_S2 * believed.mass_kg / believed.thrust_max_n)
+    drag = 4.0 * hover * believed.rotor_drag_n_s_per_m
+    drag = (drag + believed.drag_n_per_m2_s2 * sqrt(n * n + e * e)) / believed.mass_kg
     as_asked = f.horizontal >= ACCELERATE
     a_n = f.acc_n if as_asked else f.ref_acc_n + f.kp_vel_xy * err_n + int_n + drag * n
     a_e = f.acc_e if as_asked else f.ref_acc_e + f.kp_vel_xy * err_e + int_e + drag * e
@@ -112,16 +112,16 @@ def follow(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> 
     # An attitude from outside costs height unless the collective makes up for its tilt.
     upright = 1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy)
     upright = _UPRIGHT_MIN if upright < _UPRIGHT_MIN else upright
-    wanted = frame.mass_kg * (size if by_motion else lift / upright)
-    full = 4.0 * frame.thrust_max_n
+    wanted = believed.mass_kg * (size if by_motion else lift / upright)
+    full = 4.0 * believed.thrust_max_n
     wanted = f.thrust * full if f.vertical == THRUST else wanted
-    low = _THRUST_LOW * GRAVITY_M_S2 * frame.mass_kg
+    low = _THRUST_LOW * GRAVITY_M_S2 * believed.mass_kg
     high = _THRUST_HIGH * full
     f.collective_n = low if wanted < low else high if wanted > high else wanted
 
 
 @kernel
-def feel_ground(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float) -> None:
+def feel_ground(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     """Land detector: how long the vehicle wants to descend, does not, and hardly carries itself.
 
     A horizontal velocity that no fix holds any more is no evidence against the ground.
@@ -132,5 +132,5 @@ def feel_ground(f: Flight, est: Estimated, frame: AirframeConstants, dt_s: float
     still_e = est.vel_e < slow and est.vel_e > -slow
     still = still_d and ((still_n and still_e) or not est.gps_used)
     sinking = f.ref_d - est.pos_d > _LAND_LAG_M
-    light = f.collective_n < _LAND_THRUST * GRAVITY_M_S2 * frame.mass_kg
+    light = f.collective_n < _LAND_THRUST * GRAVITY_M_S2 * believed.mass_kg
     f.still_s = f.still_s + dt_s if sinking and still and light and f.flying else 0.0

@@ -1,7 +1,7 @@
 """The sensors of a vehicle: what a MEMS board and a receiver on it would say of the truth.
 
-Gyroscope and accelerometer answer in every step, magnetometer and barometer at 25 Hz, GPS at 5 Hz
-and 120 ms late.  Noise is drawn from the step's number, so nothing depends on who asks, or how
+Gyroscope and accelerometer answer in every step, magnetometer and barometer at 25 Hz, the power
+module and the ESCs at 10 Hz, GPS at 5 Hz and 120 ms late.  Noise is drawn from the step's number, so nothing depends on who asks, or how
 often.
 """
 
@@ -13,6 +13,7 @@ from typing import Final
 
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.noise import key_of, mix64
+from vehicle_sim.plant.battery import BATTERY_EVERY
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.sensed import Sensed
 
@@ -36,6 +37,10 @@ _ACCEL_MAX_M_S2: Final = 156.9  # 16 g
 _MAG_MAX_GAUSS: Final = 16.0
 _FAR_M: Final = 1e8
 _FAST_M_S: Final = 1e5
+
+_POWER_S: Final = 0.1
+_VOLT_LAG_S: Final = 0.2
+_AMP_LAG_S: Final = 0.5
 
 _BARO_LAG_S: Final = 0.05
 _BARO_GAIN: Final = SLOW_S / (_BARO_LAG_S + SLOW_S)
@@ -64,7 +69,9 @@ class SensorGrade:
     White noise a sample, `*_bias` of a power-up, `*_walk` a square root of a second, `*_wander`
     and `*_drift` of slow errors.  The defaults are what data sheets and logs of consumer parts
     show (ICM-42688 class IMU: gyroscope 0.005 deg/s/sqrt(Hz) over 125 Hz; IST8310; MS5611; u-blox
-    M8 in the open, whose wander is kept small so that a flight stays where its plan says).
+    M8 in the open, whose wander is kept small so that a flight stays where its plan says; a power
+    module after its calibration, with a 10-bit converter behind it).  `*_scale` are factors of a
+    power-up; `*_gain` is a filter's part of a new sample.
     """
 
     gyro_rad_s: float = 0.001
@@ -83,6 +90,13 @@ class SensorGrade:
     gps_wander_m: float = 0.15
     gps_wander_up_m: float = 0.15
     gps_m_s: float = 0.05
+    volt_v: float = 0.01
+    volt_scale: float = 0.001
+    volt_gain: float = _POWER_S / (_VOLT_LAG_S + _POWER_S)
+    amp_a: float = 0.1
+    amp_scale: float = 0.01
+    amp_gain: float = _POWER_S / (_AMP_LAG_S + _POWER_S)
+    esc: float = 0.005
 
 
 MEMS: Final = SensorGrade()
@@ -95,6 +109,13 @@ IDEAL: Final = SensorGrade(
     gps_wander_m=0.0,
     gps_wander_up_m=0.0,
     gps_m_s=0.0,
+    volt_v=0.0,
+    volt_scale=0.0,
+    volt_gain=1.0,
+    amp_a=0.0,
+    amp_scale=0.0,
+    amp_gain=1.0,
+    esc=0.0,
 )
 """Only rates and latencies are left."""
 
@@ -114,7 +135,9 @@ def switch_on(sensed: Sensed, seed: int, vehicle: int, lat_deg: float, grade: Se
         sensed.gps_pos_key,
         sensed.gps_vel_key,
         sensed.gps_wander_key,
-    ) = (key_of(seed, vehicle, source) for source in range(_FIRST_SOURCE, _FIRST_SOURCE + 9))
+        sensed.power_key,
+        sensed.esc_key,
+    ) = (key_of(seed, vehicle, source) for source in range(_FIRST_SOURCE, _FIRST_SOURCE + 11))
     x, y, z = three(sensed.gyro_walk_key, 0)
     sensed.gyro_bias_x = x * grade.gyro_bias_rad_s
     sensed.gyro_bias_y = y * grade.gyro_bias_rad_s
@@ -131,6 +154,9 @@ def switch_on(sensed: Sensed, seed: int, vehicle: int, lat_deg: float, grade: Se
     sensed.gps_wander_n = x * grade.gps_wander_m
     sensed.gps_wander_e = y * grade.gps_wander_m
     sensed.gps_wander_d = z * grade.gps_wander_up_m
+    x, y, _ = three(sensed.power_key, 0)
+    sensed.volt_scale = 1.0 + x * grade.volt_scale
+    sensed.amp_scale = 1.0 + y * grade.amp_scale
     latitude = radians(lat_deg)
     horizontal = _DIPOLE_GAUSS * cos(latitude)
     sensed.field_n = max(horizontal, _HORIZONTAL_LEAST_GAUSS)
@@ -211,6 +237,8 @@ def sense(sensed: Sensed, body: Body, grade: SensorGrade, k: int) -> None:
         _take_fix(sensed, body, grade, counter)
     if k % GPS_EVERY == 0:
         _give_fix(sensed)
+    if k % BATTERY_EVERY == 0:
+        measure_power(sensed, body, grade, counter)
     if k % _WALK_EVERY == 0:
         _walk(sensed, grade, counter)
 
@@ -283,6 +311,39 @@ def _give_fix(sensed: Sensed) -> None:
     sensed.gps_vel_d = sensed.taken_vel_d if here else sensed.gps_vel_d
     sensed.gps_fix = 3.0 if here else 0.0
     sensed.gps_fresh = here
+
+
+@kernel
+def measure_power(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
+    """The power module behind its filters, and the ESCs.
+
+    The charge is counted from the current as it is measured, so it has the current's scale; its
+    noise has no mean.  The first sample fills the filters.
+    """
+    x, y, _ = three(sensed.power_key, counter)
+    volts = sensed.volt_scale * body.voltage_v + grade.volt_v * x
+    volts = volts if volts > 0.0 else 0.0
+    amps = sensed.amp_scale * body.current_a + grade.amp_a * y
+    amps = amps if amps > 0.0 else 0.0
+    first = sensed.battery_v == 0.0
+    volts = volts if first else sensed.battery_v + grade.volt_gain * (volts - sensed.battery_v)
+    amps = amps if first else sensed.battery_a + grade.amp_gain * (amps - sensed.battery_a)
+    sensed.battery_v = volts
+    sensed.battery_a = amps
+    sensed.battery_used_mah = sensed.amp_scale * body.consumed_mah
+    x, y, z = three(sensed.esc_key, counter)
+    white = grade.esc
+    sensed.esc_1 = _at_least_0(body.s1 * body.health_1, x * white)
+    sensed.esc_2 = _at_least_0(body.s2 * body.health_2, y * white)
+    sensed.esc_3 = _at_least_0(body.s3 * body.health_3, z * white)
+    sensed.esc_4 = _at_least_0(body.s4 * body.health_4, (x + y) * (0.7 * white))
+
+
+@kernel
+def _at_least_0(value: float, noise: float) -> float:
+    """With noise where something turns; what stands still is 0."""
+    noisy = value + noise
+    return noisy if value > 0.0 and noisy > 0.0 else 0.0
 
 
 @kernel

@@ -9,10 +9,10 @@ from math import radians, tan
 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.cascade import tune
 from vehicle_sim.control_loops.flight import Flight
 from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.plant.frame import AirframeConstants
 
 _GAINS: dict[Personality, dict[str, str]] = {
     "px4": {
@@ -63,12 +63,12 @@ _TILT_MOST_DEG = 80.0  # beyond it no collective carries any vehicle
 
 
 def write_gains(
-    parameters: Parameters, flight: Flight, est: Estimated, frame: AirframeConstants
+    parameters: Parameters, flight: Flight, est: Estimated, believed: Believed
 ) -> None:
     """Gains and bounds of one vehicle, from its airframe and its parameters."""
     get = parameters.get
     designed = Flight()
-    tune(designed, frame)
+    tune(designed, believed)
     for name, field in _GAINS[parameters.personality].items():
         ratio = get(name) / parameters.designed(name)
         setattr(flight, field, ratio * getattr(designed, field))
