@@ -2,7 +2,9 @@
 
 Gains are a factor of two to three apart from loop to loop, so that each sees the next as
 immediate.  The rate gain follows from the lag of the motors: with a lag of tau the rate loop is
-of second order, and a gain of 0.55 / tau damps it at 0.67.
+of second order, and a gain of 0.55 / tau damps it at 0.67; the D-term, behind a filter of 30 Hz,
+takes the damping up for a body whose inertia is less than believed.  The integrators take what
+keeps on turning the body: a weak motor, a centre of mass that is not in the middle.
 """
 
 from __future__ import annotations
@@ -18,6 +20,8 @@ from vehicle_sim.numerics.kernel import kernel
 _RATE_SHARE = 0.55  # of 1 / motor lag
 _ATTITUDE_SHARE = 0.41  # of the rate gain
 _ATTITUDE_P_MAX = 12.0
+_INTEGRAL_SHARE = 0.5  # of a motor's thrust in hover, for each axis
+_D_FILTER_S = 0.0053  # 30 Hz, as PX4's IMU_DGYRO_CUTOFF
 _YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
 
 
@@ -59,13 +63,43 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     rate_z = f.rate_sp_z if by_rates else rate_z
 
     # The torque that it takes, as each motor's share of thrust over its lever.
-    gain = 0.25 * f.kp_rate_roll
-    roll = gain * believed.inertia_xx_kg_m2 / believed.arm_right_m * (rate_x - est.rate_x)
-    gain = 0.25 * f.kp_rate_pitch
-    pitch = gain * believed.inertia_yy_kg_m2 / believed.arm_forward_m * (rate_y - est.rate_y)
+    dt_s = believed.dt_s
+    flying = f.flying
+    # On the ground there is nothing to learn, and while it may have been reached it is kept.
+    learn_s = dt_s if f.still_s == 0.0 else 0.0
+    share = 0.25 * GRAVITY_M_S2 * believed.mass_kg
+    most = _INTEGRAL_SHARE * share
+    is_x = est.rate_x
+    is_y = est.rate_y
+    change_x = is_x - f.rate_slow_x
+    change_y = is_y - f.rate_slow_y
+    f.rate_slow_x += dt_s / (_D_FILTER_S + dt_s) * change_x
+    f.rate_slow_y += dt_s / (_D_FILTER_S + dt_s) * change_y
+
+    gain = 0.25 * f.kp_rate_roll * believed.inertia_xx_kg_m2 / believed.arm_right_m
+    err = gain * (rate_x - is_x)
+    kept = f.int_roll_n + f.ki_rate_roll * learn_s * err
+    kept = most if kept > most else -most if kept < -most else kept
+    kept = kept if flying else 0.0
+    f.int_roll_n = kept
+    roll = err - gain * f.kd_rate_roll / _D_FILTER_S * change_x + kept
+
+    gain = 0.25 * f.kp_rate_pitch * believed.inertia_yy_kg_m2 / believed.arm_forward_m
+    err = gain * (rate_y - is_y)
+    kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * err
+    kept = most if kept > most else -most if kept < -most else kept
+    kept = kept if flying else 0.0
+    f.int_pitch_n = kept
+    pitch = err - gain * f.kd_rate_pitch / _D_FILTER_S * change_y + kept
+
     gain = 0.25 * f.kp_rate_yaw * believed.inertia_zz_kg_m2 / believed.torque_per_thrust_m
-    yaw = gain * (rate_z - est.rate_z)
-    most = 0.25 * _YAW_SHARE * GRAVITY_M_S2 * believed.mass_kg
+    err = gain * (rate_z - est.rate_z)
+    kept = f.int_yaw_n + f.ki_rate_yaw * learn_s * err
+    kept = most if kept > most else -most if kept < -most else kept
+    kept = kept if flying else 0.0
+    f.int_yaw_n = kept
+    yaw = err + kept
+    most = _YAW_SHARE * share
     yaw = most if yaw > most else -most if yaw < -most else yaw
 
     t1 = pitch - roll + yaw
@@ -93,7 +127,6 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     u2 = sqrt(t2 if t2 > 0.0 else 0.0) * scale
     u3 = sqrt(t3 if t3 > 0.0 else 0.0) * scale
     u4 = sqrt(t4 if t4 > 0.0 else 0.0) * scale
-    flying = f.flying
     idle = f.idle
     f.u1 = (1.0 if u1 > 1.0 else u1) if flying else idle
     f.u2 = (1.0 if u2 > 1.0 else u2) if flying else idle

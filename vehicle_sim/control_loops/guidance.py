@@ -16,15 +16,22 @@ from vehicle_sim.numerics.angles import sincos
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import kernel
 
-_INTEGRAL_MAX_M_S2 = 3.0
+_INTEGRAL_TILT = 0.7  # of the steepest tilt, for each axis
 _LIFT_MIN_M_S2 = 0.3 * GRAVITY_M_S2
 _THRUST_LOW = 0.23  # of hover: below it the motors lose their authority over the attitude
 _THRUST_HIGH = 0.95  # of full: the rest is for the attitude
+_LOAD_MIN = 0.4
+_LOAD_ROOM = 0.95  # of the thrust that there is: so much may carry the weight at the most
+_LEARN_S = 4.0  # of the hover thrust
+_LEARN_SPEED_M_S = 0.6  # ArduCopter learns its hover throttle below this vertical speed, too
+_ALOFT_M = 0.5  # above where it stood: the ground carries nothing any more
 _UPRIGHT_MIN = 0.5  # cosine of the tilt up to which the collective makes up for it
 _EASE_P = 1.5  # 1/s: a turn slows down before its goal, at last to _EASE_RAD_S
 _EASE_RAD_S = 0.1
 _LAND_SPEED_M_S = 0.3
 _LAND_THRUST = 0.7  # of hover: the reference has gone on below the ground
+_LAND_THRUST_UNASKED = 0.4  # where nothing sinks: a vehicle lighter than believed hovers on 0.6
+_LAND_ASKED_M_S = 0.1
 _LAND_LAG_M = 0.2
 
 
@@ -62,24 +69,32 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     err_e = f.ref_vel_e + f.kp_pos_xy * (f.ref_e - est.pos_e) - est.vel_e
     err_d = f.ref_vel_d + f.kp_pos_z * (f.ref_d - est.pos_d) - est.vel_d
     # Where the motion is not controlled the reference is the estimate, and nothing is learnt.
+    mass = believed.mass_kg
+    load = f.load
+    full = 4.0 * believed.thrust_max_n
+    low = _THRUST_LOW * GRAVITY_M_S2 * mass * load
+    high = _THRUST_HIGH * full
     gain = f.ki_vel_xy * dt_s
     int_n = f.int_n + gain * err_n
     int_e = f.int_e + gain * err_e
-    int_d = f.int_d + f.ki_vel_z * dt_s * err_d
-    most = _INTEGRAL_MAX_M_S2
+    most = _INTEGRAL_TILT * f.tilt_max * GRAVITY_M_S2
     int_n = most if int_n > most else -most if int_n < -most else int_n
     int_e = most if int_e > most else -most if int_e < -most else int_e
-    int_d = most if int_d > most else -most if int_d < -most else int_d
-    f.int_n = int_n
-    f.int_e = int_e
-    f.int_d = int_d
+    # Vertically up to what the thrust can give, and no further while it gives all or nothing.
+    asked = f.collective_n
+    spent = (asked >= high and err_d < 0.0) or (asked <= low and err_d > 0.0)
+    int_d = f.int_d + (0.0 if spent else f.ki_vel_z * dt_s * err_d)
+    most = GRAVITY_M_S2 - low / (mass * load)
+    int_d = most if int_d > most else int_d
+    most = GRAVITY_M_S2 - high / (mass * load)
+    int_d = most if int_d < most else int_d
     # What drag will take in still air is fed forward (Faessler et al., IEEE RA-L 3(2), 2018): else
     # the integrators learn it in a long flight, and give it back as an overshoot at its end.
     n = f.ref_vel_n
     e = f.ref_vel_e
-    hover = sqrt(0.25 * GRAVITY_M_S2 * believed.mass_kg / believed.thrust_max_n)
+    hover = sqrt(0.25 * GRAVITY_M_S2 * mass / believed.thrust_max_n)
     drag = 4.0 * hover * believed.rotor_drag_n_s_per_m
-    drag = (drag + believed.drag_n_per_m2_s2 * sqrt(n * n + e * e)) / believed.mass_kg
+    drag = (drag + believed.drag_n_per_m2_s2 * sqrt(n * n + e * e)) / mass
     as_asked = f.horizontal >= ACCELERATE
     a_n = f.acc_n if as_asked else f.ref_acc_n + f.kp_vel_xy * err_n + int_n + drag * n
     a_e = f.acc_e if as_asked else f.ref_acc_e + f.kp_vel_xy * err_e + int_e + drag * e
@@ -90,7 +105,10 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     lift = _LIFT_MIN_M_S2 if lift < _LIFT_MIN_M_S2 else lift
     flat = sqrt(a_n * a_n + a_e * a_e)
     most = f.tilt_max * lift
-    scale = most / flat if flat > most else 1.0
+    steep = flat > most
+    f.int_n = f.int_n if steep and int_n * err_n > 0.0 else int_n
+    f.int_e = f.int_e if steep and int_e * err_e > 0.0 else int_e
+    scale = most / flat if steep else 1.0
     a_n = a_n * scale
     a_e = a_e * scale
     size = sqrt(a_n * a_n + a_e * a_e + lift * lift)
@@ -112,11 +130,23 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     # An attitude from outside costs height unless the collective makes up for its tilt.
     upright = 1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy)
     upright = _UPRIGHT_MIN if upright < _UPRIGHT_MIN else upright
-    wanted = believed.mass_kg * (size if by_motion else lift / upright)
-    full = 4.0 * believed.thrust_max_n
+    # What carries it is learnt: believed weight and thrust may both be wrong.  What the vertical
+    # integrator had of it goes over, so that the collective does not jump.
+    floor_d = f.floor_d if f.flying else est.pos_d
+    f.floor_d = floor_d
+    aloft = f.flying and floor_d - est.pos_d > _ALOFT_M and f.ref_d - est.pos_d < _LAND_LAG_M
+    slow = _LEARN_SPEED_M_S
+    steady = est.vel_d < slow and est.vel_d > -slow
+    steady = steady and f.ref_vel_d < slow and f.ref_vel_d > -slow and f.vertical < ACCELERATE
+    weight = GRAVITY_M_S2 * mass
+    new = load + dt_s / _LEARN_S * (asked * upright / weight - load)
+    most = _LOAD_ROOM * high / weight
+    new = most if new > most else _LOAD_MIN if new < _LOAD_MIN else new
+    new = new if aloft and steady else load
+    f.load = new
+    f.int_d = int_d + lift * (1.0 - load / new)
+    wanted = mass * load * (size if by_motion else lift / upright)
     wanted = f.thrust * full if f.vertical == THRUST else wanted
-    low = _THRUST_LOW * GRAVITY_M_S2 * believed.mass_kg
-    high = _THRUST_HIGH * full
     f.collective_n = low if wanted < low else high if wanted > high else wanted
 
 
@@ -132,5 +162,6 @@ def feel_ground(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> N
     still_e = est.vel_e < slow and est.vel_e > -slow
     still = still_d and ((still_n and still_e) or not est.gps_used)
     sinking = f.ref_d - est.pos_d > _LAND_LAG_M
-    light = f.collective_n < _LAND_THRUST * GRAVITY_M_S2 * believed.mass_kg
+    share = _LAND_THRUST if f.ref_vel_d > _LAND_ASKED_M_S else _LAND_THRUST_UNASKED
+    light = f.collective_n < share * GRAVITY_M_S2 * believed.mass_kg * f.load
     f.still_s = f.still_s + dt_s if sinking and still and light and f.flying else 0.0

@@ -38,7 +38,7 @@ def drain(body: Body, plant: Plant) -> None:
         strength if strength > _WEAKEST else _WEAKEST
     )
     consumed_mah = body.consumed_mah + current_a * (plant.dt_s * BATTERY_EVERY / 3.6)
-    left = 1.0 - consumed_mah / plant.capacity_mah
+    left = 1.0 - consumed_mah / (plant.capacity_mah * body.capacity_scale)
     body.current_a = current_a
     body.consumed_mah = consumed_mah
     body.remaining = left if left > 0.0 else 0.0
@@ -52,9 +52,10 @@ def settle(body: Body, plant: Plant) -> None:
     An empty battery does not hold its last voltage: drawn on, its cells collapse.
     """
     cells = plant.cells - body.cells_lost
-    over = body.consumed_mah / plant.capacity_mah - 1.0
+    over = body.consumed_mah / (plant.capacity_mah * body.capacity_scale) - 1.0
     open_v = cell_v(body.remaining) - (_COLLAPSE_V * over if over > 0.0 else 0.0)
-    voltage_v = cells * open_v - body.current_a * plant.resistance_ohm
+    resistance_ohm = plant.resistance_ohm * body.resistance_scale
+    voltage_v = cells * open_v - body.current_a * resistance_ohm
     voltage_v = voltage_v if voltage_v > 0.0 else 0.0
     body.voltage_v = voltage_v
     body.strength = voltage_v / (plant.cells * FULL_CELL_V)

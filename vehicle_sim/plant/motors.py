@@ -24,6 +24,7 @@ def spin(
     (clockwise from above) for the propellers that turn to the left.
 
     `health` scales what a propeller lifts, as if it were broken; a dead motor gets no current.
+    `thrust_scale` does so for all four: other propellers than those of the data sheet.
     """
     keep = plant.motor_keep
     gain = plant.motor_gain * body.strength
@@ -45,10 +46,11 @@ def spin(
     pitch = body.rate_y * plant.arm_forward_m
     sink_right = sink + roll
     sink_left = sink - roll
-    t1 = health_1 * s1 * (top * s1 + inflow * (sink_right - pitch))
-    t2 = health_2 * s2 * (top * s2 + inflow * (sink_left + pitch))
-    t3 = health_3 * s3 * (top * s3 + inflow * (sink_left - pitch))
-    t4 = health_4 * s4 * (top * s4 + inflow * (sink_right + pitch))
+    scale = body.thrust_scale
+    t1 = scale * health_1 * s1 * (top * s1 + inflow * (sink_right - pitch))
+    t2 = scale * health_2 * s2 * (top * s2 + inflow * (sink_left + pitch))
+    t3 = scale * health_3 * s3 * (top * s3 + inflow * (sink_left - pitch))
+    t4 = scale * health_4 * s4 * (top * s4 + inflow * (sink_right + pitch))
     # Each pair is symmetric, so a mirrored command gives an exactly mirrored torque.
     right = t1 + t4
     left = t2 + t3

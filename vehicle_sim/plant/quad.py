@@ -35,6 +35,9 @@ def advance(
     """Step number `k`, of `plant.dt_s`, with the motors commanded to `u` (0..1 of what the
     battery can turn).  The ground is the plane down = 0, where the feet stand.
 
+    Where the centre of mass is not that of the rotors, thrust and ground turn the body: the part of
+    both along body z is what weighs, the rest is left out, and so is what moves the sensors.
+
     Drag is quadratic for the body and linear in the plane of the rotors, whose thrust leans back
     against the flow (Faessler et al., IEEE RA-L 3(2), 2018); both are against the air.
     """
@@ -62,9 +65,16 @@ def advance(
     force_e = -lift * z_e - drag * air_e
     force_d = -lift * z_d - drag * air_d
     torque_z = torque_z - rotors * plant.arm_squared_m2 * body.rate_z
+    off_x = body.mass_off_x
+    off_y = body.mass_off_y
+    torque_x = torque_x + off_y * thrust
+    torque_y = torque_y - off_x * thrust
 
     if anywhere(body.pos_d > plant.near_ground_d_m or body.touching):
         push_n, push_e, push_d, push_x, push_y, push_z = stand(body, plant)
+        press = push_n * z_n + push_e * z_e + push_d * z_d
+        push_x = push_x - off_y * press
+        push_y = push_y + off_x * press
         # Who does not touch gets the very bytes that it gets alone: x + 0.0 is not always x.
         touching = body.touching
         force_n = force_n + push_n if touching else force_n

@@ -14,6 +14,9 @@ from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
 
 
+_MASS_LEAST = 0.25  # of the data sheet's: a negative payload takes no more away
+
+
 @kernel
 def move(
     body: Body,
@@ -35,7 +38,9 @@ def move(
     """
     dt_s = plant.dt_s
     half = 0.5 * dt_s
-    mass = plant.mass_kg
+    mass = plant.mass_kg + body.payload_kg
+    least = _MASS_LEAST * plant.mass_kg
+    mass = mass if mass > least else least
     acc_n = force_n / mass
     acc_e = force_e / mass
     acc_d = force_d / mass
@@ -61,9 +66,10 @@ def move(
     couple_x = plant.couple_x
     couple_y = plant.couple_y
     couple_z = plant.couple_z
-    turn_x = torque_x / plant.inertia_xx_kg_m2
-    turn_y = torque_y / plant.inertia_yy_kg_m2
-    turn_z = torque_z / plant.inertia_zz_kg_m2
+    scale = body.inertia_scale
+    turn_x = torque_x / (plant.inertia_xx_kg_m2 * scale)
+    turn_y = torque_y / (plant.inertia_yy_kg_m2 * scale)
+    turn_z = torque_z / (plant.inertia_zz_kg_m2 * scale)
     mid_x = x + (turn_x + couple_x * y * z) * half
     mid_y = y + (turn_y + couple_y * z * x) * half
     mid_z = z + (turn_z + couple_z * x * y) * half

@@ -16,8 +16,8 @@ from vehicle_sim.plant import battery, cells, ground, motors, quad, rigid_body, 
 from vehicle_sim.plant.quad import advance
 
 GOLDEN = {
-    "racer250": "f7a58447676cf207231b0897d2c48031a05182971beaaa92aeadea923c1eeb63",
-    "s500": "d9141a2def00e2ddcfa14cb597044b37669714fc63f7ff22091e1e174dd01c63",
+    "racer250": "2957251567d2040ae295e5f8bd82efad381c6443df14306cfdefdcbce1a24848",
+    "s500": "d77498848f165525af89ddf326c69ae4e2233193a33474248f908134cf3d5c45",
 }
 """SHA-256 over the states of the flight below.  A change of the physics changes it, on purpose;
 a different machine or Python must not."""

@@ -29,6 +29,10 @@ def scene(body: Body, index: int) -> None:
         body.health_2, body.health_3 = 0.0, 0.6
     if index % 7 == 2:
         body.cells_lost = 1.0
+    if index % 6 == 5:
+        body.payload_kg, body.mass_off_x, body.mass_off_y = 0.05 * index, 0.01, -0.02
+        body.inertia_scale, body.thrust_scale = 1.5, 0.9
+        body.resistance_scale, body.capacity_scale = 2.0, 0.5
     body.wind_e, body.gust_m_s = 0.7 * (index % 11), 0.4 * (index % 4)
 
 

@@ -146,6 +146,7 @@ class FlightControl:
         f.flying = True
         f.still_s = 0.0
         f.int_n = f.int_e = f.int_d = 0.0
+        f.int_roll_n = f.int_pitch_n = f.int_yaw_n = 0.0
         f.ref_n, f.ref_e, f.ref_d = pos_ned
         f.ref_vel_n = f.ref_vel_e = f.ref_vel_d = 0.0
         f.ref_acc_n = f.ref_acc_e = f.ref_acc_d = 0.0
