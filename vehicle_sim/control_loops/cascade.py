@@ -22,6 +22,7 @@ _ATTITUDE_SHARE = 0.41  # of the rate gain
 _ATTITUDE_P_MAX = 12.0
 _INTEGRAL_SHARE = 0.5  # of a motor's thrust in hover, for each axis
 _D_FILTER_S = 0.0053  # 30 Hz, as PX4's IMU_DGYRO_CUTOFF
+_TUMBLE_RAD_S = 7.0  # 400 deg/s: with such an error of a rate nothing is learnt any more
 _YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
 
 
@@ -77,24 +78,33 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     f.rate_slow_y += dt_s / (_D_FILTER_S + dt_s) * change_y
 
     gain = 0.25 * f.kp_rate_roll * believed.inertia_xx_kg_m2 / believed.arm_right_m
+    off = (rate_x - is_x) / _TUMBLE_RAD_S
     err = gain * (rate_x - is_x)
-    kept = f.int_roll_n + f.ki_rate_roll * learn_s * err
+    part = 1.0 - off * off
+    part = part if part > 0.0 else 0.0
+    kept = f.int_roll_n + f.ki_rate_roll * learn_s * part * err
     kept = most if kept > most else -most if kept < -most else kept
     kept = kept if flying else 0.0
     f.int_roll_n = kept
     roll = err - gain * f.kd_rate_roll / _D_FILTER_S * change_x + kept
 
     gain = 0.25 * f.kp_rate_pitch * believed.inertia_yy_kg_m2 / believed.arm_forward_m
+    off = (rate_y - is_y) / _TUMBLE_RAD_S
     err = gain * (rate_y - is_y)
-    kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * err
+    part = 1.0 - off * off
+    part = part if part > 0.0 else 0.0
+    kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * part * err
     kept = most if kept > most else -most if kept < -most else kept
     kept = kept if flying else 0.0
     f.int_pitch_n = kept
     pitch = err - gain * f.kd_rate_pitch / _D_FILTER_S * change_y + kept
 
     gain = 0.25 * f.kp_rate_yaw * believed.inertia_zz_kg_m2 / believed.torque_per_thrust_m
+    off = (rate_z - est.rate_z) / _TUMBLE_RAD_S
     err = gain * (rate_z - est.rate_z)
-    kept = f.int_yaw_n + f.ki_rate_yaw * learn_s * err
+    part = 1.0 - off * off
+    part = part if part > 0.0 else 0.0
+    kept = f.int_yaw_n + f.ki_rate_yaw * learn_s * part * err
     kept = most if kept > most else -most if kept < -most else kept
     kept = kept if flying else 0.0
     f.int_yaw_n = kept

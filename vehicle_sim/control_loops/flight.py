@@ -108,9 +108,9 @@ class Flight:
     kp_rate_yaw: float = 6.0
     ki_rate_roll: float = 2.0  # integral over proportional gain, 1/s
     ki_rate_pitch: float = 2.0
-    ki_rate_yaw: float = 1.0
-    kd_rate_roll: float = 0.008  # derivative over proportional gain, s
-    kd_rate_pitch: float = 0.008
+    ki_rate_yaw: float = 0.3
+    kd_rate_roll: float = 0.005  # derivative over proportional gain, s
+    kd_rate_pitch: float = 0.005
     roll_rate_max_rad_s: float = 3.8
     pitch_rate_max_rad_s: float = 3.8
     yaw_rate_max_rad_s: float = 1.6

@@ -82,7 +82,9 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     int_e = most if int_e > most else -most if int_e < -most else int_e
     # Vertically up to what the thrust can give, and no further while it gives all or nothing.
     asked = f.collective_n
+    upright = 1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy)
     spent = (asked >= high and err_d < 0.0) or (asked <= low and err_d > 0.0)
+    spent = spent or upright < _UPRIGHT_MIN
     int_d = f.int_d + (0.0 if spent else f.ki_vel_z * dt_s * err_d)
     most = GRAVITY_M_S2 - low / (mass * load)
     int_d = most if int_d > most else int_d
@@ -128,7 +130,6 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     f.sp_z = w * s if by_motion else f.sp_z
 
     # An attitude from outside costs height unless the collective makes up for its tilt.
-    upright = 1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy)
     upright = _UPRIGHT_MIN if upright < _UPRIGHT_MIN else upright
     # What carries it is learnt: believed weight and thrust may both be wrong.  What the vertical
     # integrator had of it goes over, so that the collective does not jump.

@@ -39,7 +39,7 @@ _FAR_M: Final = 1e8
 _FAST_M_S: Final = 1e5
 
 _POWER_S: Final = 0.1
-_VOLT_LAG_S: Final = 0.2
+_VOLT_LAG_S: Final = 0.02
 _AMP_LAG_S: Final = 0.5
 
 _BARO_LAG_S: Final = 0.05
