@@ -29,9 +29,7 @@ def begin(body: Body, gust_key: int, plant: Plant) -> None:
 
 
 @kernel
-def advance(
-    body: Body, u1: float, u2: float, u3: float, u4: float, plant: Plant, k: int
-) -> None:
+def advance(body: Body, u1: float, u2: float, u3: float, u4: float, plant: Plant, k: int) -> None:
     """Step number `k`, of `plant.dt_s`, with the motors commanded to `u` (0..1 of what the
     battery can turn).  The ground is the plane down = 0, where the feet stand.
 

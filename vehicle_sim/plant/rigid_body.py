@@ -13,7 +13,6 @@ from vehicle_sim.numerics.kernel import anywhere, kernel
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
 
-
 _MASS_LEAST = 0.25  # of the data sheet's: a negative payload takes no more away
 
 

@@ -1,8 +1,8 @@
 """The sensors of a vehicle: what a MEMS board and a receiver on it would say of the truth.
 
 Gyroscope and accelerometer answer in every step, magnetometer and barometer at 25 Hz, the power
-module and the ESCs at 10 Hz, GPS at 5 Hz and 120 ms late.  Noise is drawn from the step's number, so nothing depends on who asks, or how
-often.
+module and the ESCs at 10 Hz, GPS at 5 Hz and 120 ms late.  Noise is drawn from the step's number,
+so nothing depends on who asks, or how often.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class SensorGrade:
     volt_scale: float = 0.001
     volt_gain: float = _POWER_S / (_VOLT_LAG_S + _POWER_S)
     amp_a: float = 0.1
-    amp_scale: float = 0.01
+    amp_scale: float = 0.002
     amp_gain: float = _POWER_S / (_AMP_LAG_S + _POWER_S)
     esc: float = 0.005
 

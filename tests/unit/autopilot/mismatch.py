@@ -8,7 +8,7 @@ prints the table of all cases.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot
+from math import degrees, hypot, remainder, tau
 from typing import Final
 
 from tests.unit.autopilot.flight import Flight
@@ -90,17 +90,9 @@ def flown(personality: Personality, faults: tuple[ModelFault, ...], seed: int = 
     assert vehicle.take_off(UP_M) is Result.ACCEPTED
     climb_over_m = 0.0
 
-    def rise() -> bool:
-        nonlocal climb_over_m
+    for _ in range(200):
+        flight.fly(0.1)
         climb_over_m = max(climb_over_m, -flight.pos[2] - UP_M)
-        return False
-
-    def watched(seconds: float) -> None:
-        for _ in range(round(seconds * 10)):
-            flight.fly(0.1)
-            rise()
-
-    watched(20.0)
     heading_rad = vehicle.estimate.heading_rad
     hover_m = hover_up_m = 0.0
     for _ in range(100):
@@ -130,10 +122,9 @@ def flown(personality: Personality, faults: tuple[ModelFault, ...], seed: int = 
     assert vehicle.land() is Result.ACCEPTED
     land_s = flight.fly(60.0, lambda: not vehicle.armed)
     assert vehicle.truth.landed
-    yaw = (heading_rad + 3.141592653589793) % 6.283185307179586 - 3.141592653589793
     return Figures(
         hover_m, hover_up_m, climb_over_m, over_m, square_s, land_s,
-        vehicle.blocks.flight.load, abs(yaw) * 57.29577951308232,
+        vehicle.blocks.flight.load, abs(degrees(remainder(heading_rad, tau))),
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from math import sqrt
 
 import pytest
 
-from tests.unit.model.bodies import DT_S, PLANTS, OFF, airborne, energy_of, run, standing
+from tests.unit.model.bodies import DT_S, OFF, PLANTS, airborne, energy_of, run, standing
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.plant.airframe import AirframeError, load
 from vehicle_sim.plant.constants import Plant, plant_of
@@ -80,9 +80,7 @@ def test_friction_stops_a_spin(plant: Plant) -> None:
 @EVERY
 @pytest.mark.parametrize("up_m", [0.3, 1.0, 3.0])
 @pytest.mark.parametrize("lean", [0.0, 0.1, 0.3])
-def test_a_drop_gains_no_energy_and_ends_at_rest(
-    plant: Plant, up_m: float, lean: float
-) -> None:
+def test_a_drop_gains_no_energy_and_ends_at_rest(plant: Plant, up_m: float, lean: float) -> None:
     body = airborne(plant, up_m)
     body.vel_n = 0.5
     body.qx, body.qy = lean, -0.5 * lean

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from tests.unit.model.bodies import (
     DT_S,
-    PLANTS,
     OFF,
+    PLANTS,
     Motors,
     airborne,
     airless,
@@ -225,9 +225,7 @@ def test_a_weak_motor_turns_as_it_is_told_and_lifts_its_share(plant: Plant) -> N
 @EVERY
 @settings(max_examples=15, deadline=None)
 @given(u=st.tuples(UNIT, UNIT, UNIT, UNIT), up_m=st.sampled_from([0.0, 0.2, 500.0]))
-def test_mirror_images_fly_mirrored_to_the_bit(
-    plant: Plant, u: Motors, up_m: float
-) -> None:
+def test_mirror_images_fly_mirrored_to_the_bit(plant: Plant, u: Motors, up_m: float) -> None:
     """Left and right swap motors 1 with 3 and 2 with 4; front and back 1 with 4 and 2 with 3."""
     one, swapped, reverse = (airborne(plant, up_m) for _ in range(3))
     for k in range(1, 301):

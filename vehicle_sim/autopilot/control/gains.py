@@ -62,9 +62,7 @@ _RATES: dict[Personality, dict[str, str]] = {
 _TILT_MOST_DEG = 80.0  # beyond it no collective carries any vehicle
 
 
-def write_gains(
-    parameters: Parameters, flight: Flight, est: Estimated, believed: Believed
-) -> None:
+def write_gains(parameters: Parameters, flight: Flight, est: Estimated, believed: Believed) -> None:
     """Gains and bounds of one vehicle, from its airframe and its parameters."""
     get = parameters.get
     designed = Flight()
