@@ -58,8 +58,18 @@ Strike: TypeAlias = Failsafe | Cleared
 class FailsafeChecks(ABC):
     """Remembers what has struck, so that each is told and acted on once."""
 
-    __slots__ = ("_believed", "_charge", "_first", "_parameters", "_station_limit_ns",
-                 "_station_ns", "_version", "position_lost", "station_lost", "sticks_lost")  # fmt: skip
+    __slots__ = (
+        "_believed",
+        "_charge",
+        "_first",
+        "_parameters",
+        "_station_limit_ns",
+        "_station_ns",
+        "_version",
+        "position_lost",
+        "station_lost",
+        "sticks_lost",
+    )
 
     back_again: Cleared
     """What is said when the ground station is heard again."""
