@@ -14,7 +14,6 @@ from math import sqrt
 from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.flight import BY_RATES, Flight
 from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import kernel
 
 _RATE_SHARE = 0.55  # of 1 / motor lag
@@ -22,7 +21,6 @@ _ATTITUDE_SHARE = 0.41  # of the rate gain
 _ATTITUDE_P_MAX = 12.0
 _INTEGRAL_SHARE = 0.5  # of a motor's thrust in hover, for each axis
 _D_FILTER_S = 0.0053  # 30 Hz, as PX4's IMU_DGYRO_CUTOFF
-_TUMBLE_RAD_S = 7.0  # 400 deg/s: with such an error of a rate nothing is learnt any more
 _YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
 
 
@@ -64,52 +62,22 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     rate_z = f.rate_sp_z if by_rates else rate_z
 
     # The torque that it takes, as each motor's share of thrust over its lever.
+    err_x = rate_x - est.rate_x
+    err_y = rate_y - est.rate_y
+    err_z = rate_z - est.rate_z
+    change_x = est.rate_x - f.rate_slow_x
+    change_y = est.rate_y - f.rate_slow_y
     dt_s = believed.dt_s
-    flying = f.flying
-    # On the ground there is nothing to learn, and while it may have been reached it is kept.
-    learn_s = dt_s if f.still_s == 0.0 else 0.0
-    share = 0.25 * GRAVITY_M_S2 * believed.mass_kg
-    most = _INTEGRAL_SHARE * share
-    is_x = est.rate_x
-    is_y = est.rate_y
-    change_x = is_x - f.rate_slow_x
-    change_y = is_y - f.rate_slow_y
-    f.rate_slow_x += dt_s / (_D_FILTER_S + dt_s) * change_x
-    f.rate_slow_y += dt_s / (_D_FILTER_S + dt_s) * change_y
-
-    gain = 0.25 * f.kp_rate_roll * believed.inertia_xx_kg_m2 / believed.arm_right_m
-    off = (rate_x - is_x) / _TUMBLE_RAD_S
-    err = gain * (rate_x - is_x)
-    part = 1.0 - off * off
-    part = part if part > 0.0 else 0.0
-    kept = f.int_roll_n + f.ki_rate_roll * learn_s * part * err
-    kept = most if kept > most else -most if kept < -most else kept
-    kept = kept if flying else 0.0
-    f.int_roll_n = kept
-    roll = err - gain * f.kd_rate_roll / _D_FILTER_S * change_x + kept
-
-    gain = 0.25 * f.kp_rate_pitch * believed.inertia_yy_kg_m2 / believed.arm_forward_m
-    off = (rate_y - is_y) / _TUMBLE_RAD_S
-    err = gain * (rate_y - is_y)
-    part = 1.0 - off * off
-    part = part if part > 0.0 else 0.0
-    kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * part * err
-    kept = most if kept > most else -most if kept < -most else kept
-    kept = kept if flying else 0.0
-    f.int_pitch_n = kept
-    pitch = err - gain * f.kd_rate_pitch / _D_FILTER_S * change_y + kept
-
-    gain = 0.25 * f.kp_rate_yaw * believed.inertia_zz_kg_m2 / believed.torque_per_thrust_m
-    off = (rate_z - est.rate_z) / _TUMBLE_RAD_S
-    err = gain * (rate_z - est.rate_z)
-    part = 1.0 - off * off
-    part = part if part > 0.0 else 0.0
-    kept = f.int_yaw_n + f.ki_rate_yaw * learn_s * part * err
-    kept = most if kept > most else -most if kept < -most else kept
-    kept = kept if flying else 0.0
-    f.int_yaw_n = kept
-    yaw = err + kept
-    most = _YAW_SHARE * share
+    follow = dt_s / (_D_FILTER_S + dt_s)
+    f.rate_slow_x += follow * change_x
+    f.rate_slow_y += follow * change_y
+    gain_x = f.kp_rate_roll * believed.roll_n_s2
+    gain_y = f.kp_rate_pitch * believed.pitch_n_s2
+    gain_z = f.kp_rate_yaw * believed.yaw_n_s2
+    roll = gain_x * (err_x - f.kd_rate_roll / _D_FILTER_S * change_x) + f.int_roll_n
+    pitch = gain_y * (err_y - f.kd_rate_pitch / _D_FILTER_S * change_y) + f.int_pitch_n
+    yaw = gain_z * err_z + f.int_yaw_n
+    most = _YAW_SHARE * believed.hover_n
     yaw = most if yaw > most else -most if yaw < -most else yaw
 
     t1 = pitch - roll + yaw
@@ -124,6 +92,17 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     low = t3 if t3 < low else low
     low = t4 if t4 < low else low
     full = believed.thrust_max_n
+    flying = f.flying
+    # Nothing is learnt while the motors cannot give what is asked, as in a tumble, nor where the
+    # ground may carry.
+    learn_s = dt_s if flying and top - low < full and f.still_s == 0.0 else 0.0
+    most = _INTEGRAL_SHARE * believed.hover_n
+    kept = f.int_roll_n + f.ki_rate_roll * learn_s * gain_x * err_x
+    f.int_roll_n = most if kept > most else -most if kept < -most else kept
+    kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * gain_y * err_y
+    f.int_pitch_n = most if kept > most else -most if kept < -most else kept
+    kept = f.int_yaw_n + f.ki_rate_yaw * learn_s * gain_z * err_z
+    f.int_yaw_n = most if kept > most else -most if kept < -most else kept
     each = 0.25 * f.collective_n
     each = full - top if each + top > full else each
     each = -low if each + low < 0.0 else each

@@ -22,15 +22,19 @@ _THRUST_LOW = 0.23  # of hover: below it the motors lose their authority over th
 _THRUST_HIGH = 0.95  # of full: the rest is for the attitude
 _LOAD_MIN = 0.4
 _LOAD_ROOM = 0.95  # of the thrust that there is: so much may carry the weight at the most
-_LEARN_S = 4.0  # of the hover thrust
-_LEARN_SPEED_M_S = 0.6  # ArduCopter learns its hover throttle below this vertical speed, too
+# ArduCopter's for MOT_THST_HOVER (AP_MOTORS_THST_HOVER_TC and Copter::update_throttle_hover), by
+# memory: much slower than the integrator that it relieves.
+_LEARN_S = 10.0
+_LEARN_SPEED_M_S = 0.6
 _ALOFT_M = 0.5  # above where it stood: the ground carries nothing any more
 _UPRIGHT_MIN = 0.5  # cosine of the tilt up to which the collective makes up for it
 _EASE_P = 1.5  # 1/s: a turn slows down before its goal, at last to _EASE_RAD_S
 _EASE_RAD_S = 0.1
 _LAND_SPEED_M_S = 0.3
 _LAND_THRUST = 0.7  # of hover: the reference has gone on below the ground
-_LAND_THRUST_UNASKED = 0.4  # where nothing sinks: a vehicle lighter than believed hovers on 0.6
+# Where neither a descent nor a height at the ground is asked for: a vehicle 40 % lighter than
+# believed hovers on 0.6 of the believed weight, above its reference, until that is learnt.
+_LAND_THRUST_UNASKED = 0.4
 _LAND_ASKED_M_S = 0.1
 _LAND_LAG_M = 0.2
 
@@ -131,8 +135,9 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
 
     # An attitude from outside costs height unless the collective makes up for its tilt.
     upright = _UPRIGHT_MIN if upright < _UPRIGHT_MIN else upright
-    # What carries it is learnt: believed weight and thrust may both be wrong.  What the vertical
-    # integrator had of it goes over, so that the collective does not jump.
+    # What carries it is learnt: believed weight and thrust may both be wrong.  It is what the
+    # vertical integrator has come to in a hover, and the integrator gives it back at once, so that
+    # the collective does not jump.
     floor_d = f.floor_d if f.flying else est.pos_d
     f.floor_d = floor_d
     aloft = f.flying and floor_d - est.pos_d > _ALOFT_M and f.ref_d - est.pos_d < _LAND_LAG_M
@@ -140,12 +145,12 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     steady = est.vel_d < slow and est.vel_d > -slow
     steady = steady and f.ref_vel_d < slow and f.ref_vel_d > -slow and f.vertical < ACCELERATE
     weight = GRAVITY_M_S2 * mass
-    new = load + dt_s / _LEARN_S * (asked * upright / weight - load)
+    new = load - dt_s / _LEARN_S * load * int_d / GRAVITY_M_S2
     most = _LOAD_ROOM * high / weight
     new = most if new > most else _LOAD_MIN if new < _LOAD_MIN else new
     new = new if aloft and steady else load
     f.load = new
-    f.int_d = int_d + lift * (1.0 - load / new)
+    f.int_d = GRAVITY_M_S2 - load / new * (GRAVITY_M_S2 - int_d)
     wanted = mass * load * (size if by_motion else lift / upright)
     wanted = f.thrust * full if f.vertical == THRUST else wanted
     f.collective_n = low if wanted < low else high if wanted > high else wanted
@@ -163,6 +168,7 @@ def feel_ground(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> N
     still_e = est.vel_e < slow and est.vel_e > -slow
     still = still_d and ((still_n and still_e) or not est.gps_used)
     sinking = f.ref_d - est.pos_d > _LAND_LAG_M
-    share = _LAND_THRUST if f.ref_vel_d > _LAND_ASKED_M_S else _LAND_THRUST_UNASKED
+    asked = f.ref_vel_d > _LAND_ASKED_M_S or f.ref_d > f.floor_d
+    share = _LAND_THRUST if asked else _LAND_THRUST_UNASKED
     light = f.collective_n < share * GRAVITY_M_S2 * believed.mass_kg * f.load
     f.still_s = f.still_s + dt_s if sinking and still and light and f.flying else 0.0

@@ -40,17 +40,17 @@ def spin(
     body.s2 = s2
     body.s3 = s3
     body.s4 = s4
-    top = plant.thrust_max_n
-    inflow = plant.inflow_n_s_per_m
+    scale = body.thrust_scale
+    top = scale * plant.thrust_max_n
+    inflow = scale * plant.inflow_n_s_per_m
     roll = body.rate_x * plant.arm_right_m
     pitch = body.rate_y * plant.arm_forward_m
     sink_right = sink + roll
     sink_left = sink - roll
-    scale = body.thrust_scale
-    t1 = scale * health_1 * s1 * (top * s1 + inflow * (sink_right - pitch))
-    t2 = scale * health_2 * s2 * (top * s2 + inflow * (sink_left + pitch))
-    t3 = scale * health_3 * s3 * (top * s3 + inflow * (sink_left - pitch))
-    t4 = scale * health_4 * s4 * (top * s4 + inflow * (sink_right + pitch))
+    t1 = health_1 * s1 * (top * s1 + inflow * (sink_right - pitch))
+    t2 = health_2 * s2 * (top * s2 + inflow * (sink_left + pitch))
+    t3 = health_3 * s3 * (top * s3 + inflow * (sink_left - pitch))
+    t4 = health_4 * s4 * (top * s4 + inflow * (sink_right + pitch))
     # Each pair is symmetric, so a mirrored command gives an exactly mirrored torque.
     right = t1 + t4
     left = t2 + t3

@@ -471,7 +471,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "PSC_ACCZ_I",
         {0.2: pytest.approx(-0.116, rel=0.12), 2.0: pytest.approx(-0.964, rel=0.12)},
-        fly.learns("int_d", 3.0, health_1=0.8, health_2=0.8, health_3=0.8, health_4=0.8),
+        fly.lifts(3.0, 0.8),
     ),
     # Messages and logs.
     Case("LOG_BACKEND_TYPE", {0: (False, False, False), 1: (False, True, False)}, fly.logs_written),

@@ -489,7 +489,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "MPC_Z_VEL_I_ACC",
         {0.5: pytest.approx(-0.153, rel=0.12), 3.0: pytest.approx(-0.798, rel=0.12)},
-        fly.learns("int_d", 3.0, health_1=0.8, health_2=0.8, health_3=0.8, health_4=0.8),
+        fly.lifts(3.0, 0.8),
     ),
     Case(
         "MPC_JERK_AUTO",
