@@ -106,8 +106,9 @@ class Flight:
     kp_rate_roll: float = 22.0
     kp_rate_pitch: float = 22.0
     kp_rate_yaw: float = 6.0
-    ki_rate_roll: float = 2.0  # integral over proportional gain, 1/s
-    ki_rate_pitch: float = 2.0
+    # Integral over proportional gain, 1/s: PX4's MC_ROLLRATE_I over MC_ROLLRATE_P.
+    ki_rate_roll: float = 1.33
+    ki_rate_pitch: float = 1.33
     ki_rate_yaw: float = 0.3
     kd_rate_roll: float = 0.005  # derivative over proportional gain, s
     kd_rate_pitch: float = 0.005
