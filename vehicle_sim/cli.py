@@ -41,6 +41,7 @@ class Options:
     firmware: Firmware
     count: int
     airframe: str
+    sensors: Literal["good", "real"]
     home: tuple[float, float, float]
     seed: int
     speedup: Fraction
@@ -99,6 +100,14 @@ class _BadFileError(Exception):
     show_default=True,
     help="What it is built of.",
 )
+@click.option(
+    "--sensors",
+    type=click.Choice(["good", "real"]),
+    default="good",
+    show_default=True,
+    help="How true its sensors are: good ones, with which a flight stays where its plan says, or "
+    "as measured in life (GPS wanders by a metre, the barometer drifts, the rotors shake).",
+)
 @click.option("--home", type=HomeType(), help="Where it stands; the autopilot's usual place.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Of all noise.")
 @click.option(
@@ -148,6 +157,7 @@ def main(
     firmware: str | None,
     count: int,
     airframe: str,
+    sensors: Literal["good", "real"],
     home: tuple[float, float, float] | None,
     seed: int,
     speedup: Fraction,
@@ -183,6 +193,7 @@ def main(
                 firmware=played,
                 count=count,
                 airframe=airframe,
+                sensors=sensors,
                 home=home or HOMES[autopilot],
                 seed=seed,
                 speedup=speedup,
@@ -232,6 +243,7 @@ def plan_of(options: Options) -> Plan:
 
     from vehicle_sim.autopilot.interface import Geodetic
     from vehicle_sim.plant.faults import WindChange
+    from vehicle_sim.plant.sensors import GRADES
     from vehicle_sim.shell.runtime import Plan, VehicleSetup
     from vehicle_sim.shell.urls import parse
     from vehicle_sim.simulation.fault_script import parse as parse_faults
@@ -272,6 +284,7 @@ def plan_of(options: Options) -> Plan:
         signing=None if options.signing_key is None else parse_key(_read(options.signing_key)),
         files=None if options.files is None else Path(options.files),
         sparse=options.streams == "position",
+        grade=GRADES[options.sensors],
     )
 
 

@@ -80,6 +80,7 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     pitch = gain_y * (err_y - f.kd_rate_pitch / _D_FILTER_S * change_y) + f.int_pitch_n
     yaw = gain_z * err_z + f.int_yaw_n
     most = _YAW_SHARE * believed.hover_n
+    weak = yaw > most or yaw < -most
     yaw = most if yaw > most else -most if yaw < -most else yaw
 
     t1 = pitch - roll + yaw
@@ -103,7 +104,7 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     f.int_roll_n = most if kept > most else -most if kept < -most else kept
     kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * gain_y * err_y
     f.int_pitch_n = most if kept > most else -most if kept < -most else kept
-    kept = f.int_yaw_n + f.ki_rate_yaw * learn_s * gain_z * err_z
+    kept = f.int_yaw_n + (0.0 if weak else f.ki_rate_yaw * learn_s * gain_z * err_z)
     f.int_yaw_n = most if kept > most else -most if kept < -most else kept
     each = 0.25 * f.collective_n
     each = full - top if each + top > full else each

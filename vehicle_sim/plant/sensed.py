@@ -16,8 +16,8 @@ class Sensed:
     `gps_*` is the last fix that has come out of the receiver, in local NED, late by its latency;
     `gps_fix` is 0 or 3.  `*_fresh` are true in the one step in which a sample comes.
 
-    `battery_*` is what the power module measures: voltage and current behind their filters, and
-    the charge that it has counted since power-up.  `esc_*` is what each ESC tells of its motor,
+    `battery_*` is what the power module measures: voltage, current and the charge that it
+    has counted since power-up.  `esc_*` is what each ESC tells of its motor,
     0..1 of the load at full speed; 0 where nothing turns or nothing is lifted.
     """
 
@@ -62,6 +62,9 @@ class Sensed:
     field_d: float = 0.43
     volt_scale: float = 1.0
     amp_scale: float = 1.0
+    shaken_x: float = 0.0  # by the rotors in the last step, m/s^2
+    shaken_y: float = 0.0
+    shaken_z: float = 0.0
     baro_lag_m: float = 0.0
     baro_drift_m: float = 0.0
     gps_wander_n: float = 0.0
@@ -84,6 +87,7 @@ class Sensed:
     gps_wander_key: int = 0
     power_key: int = 0
     esc_key: int = 0
+    shake_key: int = 0
     # What faults do to them: constant errors in the units of the sensor, and silence.
     gyro_off_x: float = 0.0
     gyro_off_y: float = 0.0

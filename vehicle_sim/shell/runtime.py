@@ -20,6 +20,7 @@ from vehicle_sim.engine.engines import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
+from vehicle_sim.plant.sensors import MEMS, SensorGrade
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.services.streams import POSITION_ONLY
@@ -67,6 +68,7 @@ class Plan:
     signing: SigningKey | None
     files: Path | None  # a directory to serve by FTP instead of memory
     sparse: bool = False  # only the position is streamed unasked
+    grade: SensorGrade = MEMS
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +90,7 @@ def launch(plan: Plan) -> Opened:
         VehicleSpec(plan.seed, index, setup.home.lat_deg)
         for index, setup in enumerate(plan.vehicles)
     ]
-    engine = engine_for(specs, load(plan.airframe))
+    engine = engine_for(specs, load(plan.airframe), plan.grade)
     unix_ns = time.time_ns()
     profile = profile_of(plan.personality, plan.firmware)
     if plan.sparse:
