@@ -14,7 +14,7 @@ from vehicle_sim.autopilot.camera import Camera
 from vehicle_sim.autopilot.control.airflow import Airflow
 from vehicle_sim.autopilot.control.battery_charge import charge_by_voltage
 from vehicle_sim.autopilot.control.demands import Situation, Task
-from vehicle_sim.autopilot.control.flight_control import FlightControl, heading_of
+from vehicle_sim.autopilot.control.flight_control import LAND_S, FlightControl, heading_of
 from vehicle_sim.autopilot.control.gains import write_gains
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
@@ -79,7 +79,9 @@ class Core:
         self.blocks: Blocks = self.engine.blocks(self._seat.lane)
         self._sensed, self._est = self.blocks.sensed, self.blocks.est
         self._believed = self.engine.believed
-        self._pilot = FlightControl(self.blocks.flight, self._believed.idle)
+        self._pilot = FlightControl(
+            self.blocks.flight, self._believed.idle, LAND_S[personality]
+        )
         self._events: list[VehicleEvent] = []
         self._index = index
         self._poked = False
@@ -252,7 +254,7 @@ class Core:
 
     def _take_off_task(self, up_m: float) -> TakeOff:
         home_d = self._home_ned[2] if self._home_ned is not None else 0.0
-        return TakeOff(home_d - up_m, self.parameters.si(Quantity.TAKEOFF_CLIMB_M_S))
+        return TakeOff(home_d - up_m, self.parameters)
 
     def _limits(self) -> MotionLimits:
         self._limits_version = self.parameters.version

@@ -109,8 +109,8 @@ REAL: Final = SensorGrade(
     amp_scale=0.02,
     vibration_m_s2=10.0,
 )
-"""As measured in life: GPS wanders by 0.5 to 1.5 m, the barometer drifts by 1 to 2 m in two minutes,
-and VIBRATION reads 3 to 15 m/s^2 in a hover."""
+"""As measured in life: GPS wanders by 0.5 to 1.5 m, the barometer drifts by 1 to 2 m in two
+minutes, and VIBRATION reads 3 to 15 m/s^2 in a hover."""
 
 GRADES: Final = {"good": MEMS, "real": REAL}
 """By the name on the command line."""
