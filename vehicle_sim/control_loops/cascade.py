@@ -22,6 +22,7 @@ _ATTITUDE_P_MAX = 12.0
 # Of a motor's thrust in hover, for each axis: a motor at 0.4 takes 0.15 and a centre of mass 2 cm
 # off its place 0.11; with more a vehicle that has lost a motor flies on, spinning, and bounces.
 _INTEGRAL_SHARE = 0.2
+_TUMBLE_RAD_S = 7.0  # 400 deg/s, where PX4's integrators take nothing up any more
 _D_FILTER_S = 0.0053  # 30 Hz, as PX4's IMU_DGYRO_CUTOFF
 _YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
 
@@ -96,9 +97,11 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     low = t4 if t4 < low else low
     full = believed.thrust_max_n
     flying = f.flying
-    # Nothing is learnt while the motors cannot give what is asked, as in a tumble, nor where the
+    # Nothing is learnt in a tumble, nor while the motors cannot give what is asked, nor where the
     # ground may carry.
-    learn_s = dt_s if flying and top - low < full and f.still_s == 0.0 else 0.0
+    tumbles = err_x * err_x + err_y * err_y + err_z * err_z > _TUMBLE_RAD_S * _TUMBLE_RAD_S
+    learns = flying and top - low < full and f.still_s == 0.0 and not tumbles
+    learn_s = dt_s if learns else 0.0
     most = _INTEGRAL_SHARE * believed.hover_n
     kept = f.int_roll_n + f.ki_rate_roll * learn_s * gain_x * err_x
     f.int_roll_n = most if kept > most else -most if kept < -most else kept

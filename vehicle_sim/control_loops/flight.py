@@ -102,7 +102,7 @@ class Flight:
     ki_vel_z: float = 0.3
     kp_roll: float = 9.0
     kp_pitch: float = 9.0
-    kp_yaw: float = 2.8
+    kp_yaw: float = 2.0
     kp_rate_roll: float = 22.0
     kp_rate_pitch: float = 22.0
     kp_rate_yaw: float = 6.0
@@ -114,8 +114,8 @@ class Flight:
     kd_rate_pitch: float = 0.005
     roll_rate_max_rad_s: float = 3.8
     pitch_rate_max_rad_s: float = 3.8
-    yaw_rate_max_rad_s: float = 3.5
-    land_share: float = 0.7  # of hover: on less it may stand on the ground
+    yaw_rate_max_rad_s: float = 1.6
+    land_share: float = 0.7  # of hover: with less in a descent it may stand on the ground
     tilt_max: float = 0.7  # tangent
     jerk_m_s3: float = 30.0
     lead_max_m: float = 4.0  # so far ahead of the vehicle the reference stands and waits

@@ -31,7 +31,8 @@ _UPRIGHT_MIN = 0.5  # cosine of the tilt up to which the collective makes up for
 _EASE_P = 1.5  # 1/s: a turn slows down before its goal, at last to _EASE_RAD_S
 _EASE_RAD_S = 0.1
 _LAND_SPEED_M_S = 0.3
-# Where neither a descent nor a height at the ground is asked for: a vehicle 40 % lighter than
+_LAND_THRUST = 0.7  # of hover, where a height at or below the ground is asked for
+# Where neither that nor a descent is asked for: a vehicle 40 % lighter than
 # believed hovers on 0.6 of the believed weight, above its reference, until that is learnt.
 _LAND_THRUST_UNASKED = 0.4
 _LAND_ASKED_M_S = 0.1
@@ -167,7 +168,7 @@ def feel_ground(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> N
     still_e = est.vel_e < slow and est.vel_e > -slow
     still = still_d and ((still_n and still_e) or not est.gps_used)
     sinking = f.ref_d - est.pos_d > _LAND_LAG_M
-    asked = f.ref_vel_d > _LAND_ASKED_M_S or f.ref_d > f.floor_d
-    share = f.land_share if asked else _LAND_THRUST_UNASKED
+    share = _LAND_THRUST if f.ref_d > f.floor_d else _LAND_THRUST_UNASKED
+    share = f.land_share if f.ref_vel_d > _LAND_ASKED_M_S else share
     light = f.collective_n < share * GRAVITY_M_S2 * believed.mass_kg * f.load
     f.still_s = f.still_s + dt_s if sinking and still and light and f.flying else 0.0

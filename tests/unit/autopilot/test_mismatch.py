@@ -21,5 +21,5 @@ def test_it_takes_off_hovers_flies_the_square_lands_and_disarms(
     assert figures.climb_over_m < 1.1
     assert figures.over_m < 0.5
     assert figures.square_s < 20.0
-    assert figures.land_s < (17.0 if personality == "px4" else 25.0)
+    assert figures.land_s < (20.0 if personality == "px4" else 25.0)
     assert figures.yaw_deg < 2.0

@@ -134,9 +134,12 @@ def _reference_m_s2(flight: HandFlight) -> float:
 
 
 def turn_deg_s(setting: Setting) -> float:
-    """Turning on the way to a heading behind it."""
+    """Turning on the way to a heading behind it: not a setpoint's, which it takes at once."""
     flight = setting.aloft()
-    flight.vehicle.reposition(where(flight), 3.0, None)
+    if setting.personality == "ardupilot":
+        flight.vehicle.condition_yaw(3.0, False, 0.0, 0)
+    else:
+        flight.vehicle.reposition(where(flight), 3.0, None)
     flight.fly(1.2)
     before = flight.vehicle.estimate.heading_rad
     flight.fly(0.5)

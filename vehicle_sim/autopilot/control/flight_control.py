@@ -87,7 +87,8 @@ class Heading:
     def point(self, yaw_rad: float) -> None:
         """At once: as fast as the attitude loop takes it there, as a setpoint from outside."""
         if yaw_rad != self._goal_rad or self._flight.yaw_spin_rad_s != 0.0:
-            self.reset(yaw_rad)
+            self.reset(wrap_pi(yaw_rad))
+            self._goal_rad = yaw_rad
 
     def turn(self, yaw_rad: float, rate_rad_s: float, direction: int) -> None:
         """`direction` 1 clockwise, -1 counter-clockwise, 0 the shorter way."""

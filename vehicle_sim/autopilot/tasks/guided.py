@@ -134,7 +134,7 @@ class Guided:
 
     def lifts_off(self, s: Situation) -> bool:
         if self._takeoff is not None:
-            return True
+            return self._takeoff.lifts_off(s)
         if self._personality == "ardupilot":
             return False
         setpoint = self._stream.setpoint
