@@ -79,9 +79,7 @@ class Core:
         self.blocks: Blocks = self.engine.blocks(self._seat.lane)
         self._sensed, self._est = self.blocks.sensed, self.blocks.est
         self._believed = self.engine.believed
-        self._pilot = FlightControl(
-            self.blocks.flight, self._believed.idle, LAND_S[personality]
-        )
+        self._pilot = FlightControl(self.blocks.flight, self._believed.idle, LAND_S[personality])
         self._events: list[VehicleEvent] = []
         self._index = index
         self._poked = False
