@@ -46,6 +46,7 @@ class Options:
     operator_control: bool
     count: int
     airframe: str
+    sensors: Literal["good", "real"]
     home: tuple[float, float, float]
     seed: int
     speedup: Fraction
@@ -125,6 +126,14 @@ class _BadFileError(Exception):
     show_default=True,
     help="What it is built of.",
 )
+@click.option(
+    "--sensors",
+    type=click.Choice(["good", "real"]),
+    default="good",
+    show_default=True,
+    help="How true its sensors are: good ones, with which a flight stays where its plan says, or "
+    "as measured in life (GPS wanders by a metre, the barometer drifts, the rotors shake).",
+)
 @click.option("--home", type=HomeType(), help="Where it stands; the autopilot's usual place.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Of all noise.")
 @click.option(
@@ -190,6 +199,7 @@ def main(
     operator_control: bool,
     count: int,
     airframe: str,
+    sensors: Literal["good", "real"],
     home: tuple[float, float, float] | None,
     seed: int,
     speedup: Fraction,
@@ -229,6 +239,7 @@ def main(
                 operator_control=operator_control,
                 count=count,
                 airframe=airframe,
+                sensors=sensors,
                 home=home or HOMES[autopilot],
                 seed=seed,
                 speedup=speedup,
@@ -279,6 +290,7 @@ def plan_of(options: Options) -> Plan:
 
     from vehicle_sim.autopilot.interface import Geodetic
     from vehicle_sim.plant.faults import WindChange
+    from vehicle_sim.plant.sensors import GRADES
     from vehicle_sim.shell.runtime import Plan, VehicleSetup
     from vehicle_sim.shell.urls import parse, parse_view
     from vehicle_sim.simulation.fault_script import parse as parse_faults
@@ -323,6 +335,7 @@ def plan_of(options: Options) -> Plan:
         files=None if options.files is None else Path(options.files),
         streams=options.streams,
         view=None if options.view is None else parse_view(options.view),
+        grade=GRADES[options.sensors],
     )
 
 

@@ -25,7 +25,7 @@ from vehicle_sim.engine.many import Many
 from vehicle_sim.engine.step import DT_S, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import frame_of
+from vehicle_sim.plant.constants import plant_of
 from vehicle_sim.plant.quad import advance, begin
 
 PEERS = ("F450", "c172x")
@@ -72,15 +72,15 @@ def ours() -> Timed:
 
 
 def physics_only() -> Timed:
-    frame, body = frame_of(load(), DT_S), Body()
-    begin(body, 1, frame)
+    plant, body = plant_of(load(), DT_S), Body()
+    begin(body, 1, plant)
     body.pos_d = -HIGH_M
     k = 0
 
     def step() -> None:
         nonlocal k
         k += 1
-        advance(body, 0.66, 0.66, 0.66, 0.66, frame, k)
+        advance(body, 0.66, 0.66, 0.66, 0.66, plant, k)
 
     return Timed("physics alone", step)
 

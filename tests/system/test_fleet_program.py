@@ -27,6 +27,7 @@ def options(count: int, links: tuple[str, ...] = ()) -> Options:
         operator_control=False,
         count=count,
         airframe="s500",
+        sensors="good",
         home=(47.0, 8.0, 400.0),
         seed=1,
         speedup=SpeedType().convert("1", None, None),

@@ -25,9 +25,10 @@ from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.parameters.simulated import Simulated
 from vehicle_sim.autopilot.tasks.guided import AnySetpoint, Guided, is_sound
 from vehicle_sim.autopilot.tasks.tasks import Hold
-from vehicle_sim.engine.step import Seat, put_home, restart
+from vehicle_sim.engine.step import Seat, restart
+from vehicle_sim.engine.truth import inject, put_home
 from vehicle_sim.numerics.vectors import Vec3
-from vehicle_sim.plant.faults import ClockJump, Fault, RcLost, Reboot, inject
+from vehicle_sim.plant.faults import ClockJump, Fault, RcLost, Reboot
 
 _LOWEST_GOAL_UP_M = 0.5
 _SIMPLE_ACCEL = 4.0  # PREFLIGHT_CALIBRATION's parameter 5
@@ -316,9 +317,8 @@ class Autopilot(ManualInput):
     def _power_up(self) -> None:
         self.parameters.power_up()
         # Who stands is a simulator's vehicle again on its home ground; who flies falls.
-        if self._body.touching:
-            put_home(self._body)
-        restart(self.blocks, self.engine.frame)
+        put_home(self.blocks)
+        restart(self.blocks, self._believed)
         self._clock_off_ns = 0
         self._restart()
 
@@ -335,7 +335,7 @@ class Autopilot(ManualInput):
             case Reboot():
                 self._power_up()
             case _:
-                inject(fault, self._body, self.blocks.sensed)
+                inject(fault, self.blocks)
 
 
 def _on_earth(where: Geodetic) -> bool:

@@ -13,8 +13,9 @@ from vehicle_sim.autopilot.boot import Boot, BootSequence, BootStage
 from vehicle_sim.autopilot.calibration import Calibration
 from vehicle_sim.autopilot.camera import Camera
 from vehicle_sim.autopilot.control.airflow import Airflow
+from vehicle_sim.autopilot.control.battery_charge import charge_by_voltage
 from vehicle_sim.autopilot.control.demands import Situation, Task
-from vehicle_sim.autopilot.control.flight_control import FlightControl, heading_of
+from vehicle_sim.autopilot.control.flight_control import LAND_S, FlightControl, heading_of
 from vehicle_sim.autopilot.control.gains import write_gains
 from vehicle_sim.autopilot.failsafes.arm_authorization import ArmAuthorization
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
@@ -51,7 +52,6 @@ from vehicle_sim.engine.step import DT_NS, Blocks, Seat, VehicleSpec
 from vehicle_sim.estimation.estimator import Health, health, position_ok
 from vehicle_sim.numerics.vectors import Quat, Vec3
 from vehicle_sim.plant.airframe import load
-from vehicle_sim.plant.battery import charge_by_voltage
 
 UNMEASURED = Power(0.0, -0.01, 0.0, -1)
 """As MAVLink says it: current and remaining charge of -1."""
@@ -81,8 +81,9 @@ class Core:
         self._seat = seat or Seat(Few([VehicleSpec(seed, index, home.lat_deg)], load()), 0)
         self.engine = self._seat.engine
         self.blocks: Blocks = self.engine.blocks(self._seat.lane)
-        self._body, self._est = self.blocks.body, self.blocks.est
-        self._pilot = FlightControl(self.blocks.flight, self.engine.frame.idle)
+        self._sensed, self._est = self.blocks.sensed, self.blocks.est
+        self._believed = self.engine.believed
+        self._pilot = FlightControl(self.blocks.flight, self._believed.idle, LAND_S[personality])
         self._events: list[VehicleEvent] = []
         self._index = index
         self._poked = False
@@ -105,7 +106,9 @@ class Core:
         self._leader = Leader(self.parameters)
         self._auto_disarm = AutoDisarm()
         self._stream = SetpointStream()
-        self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](self.parameters)
+        self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](
+            self.parameters, self._believed
+        )
         self._failure_detector = FailureDetector(self.parameters)
         self._arm_authorization = ArmAuthorization(self.parameters)
         self._geofence = Geofence(self.parameters)
@@ -200,7 +203,7 @@ class Core:
         """The estimate judged: once a step, for all who ask."""
         k = self.engine.k
         if self._judged is None or self._judged[0] != k:
-            judged = health(self._est, self.blocks.sensed)
+            judged = health(self._est, self._sensed)
             self._judged = (k, self._boot_sequence.known(judged, self._age_ns))
         return self._judged[1]
 
@@ -269,7 +272,7 @@ class Core:
 
     def _take_off_task(self, up_m: float) -> TakeOff:
         home_d = self._home_ned[2] if self._home_ned is not None else 0.0
-        return TakeOff(home_d - up_m, self.parameters.si(Quantity.TAKEOFF_CLIMB_M_S))
+        return TakeOff(home_d - up_m, self.parameters)
 
     def _limits(self) -> MotionLimits:
         self._limits_version = self.parameters.version
@@ -283,7 +286,7 @@ class Core:
             si(Quantity.ACCEL_VERTICAL_M_S2),
             si(Quantity.ACCEL_UP_M_S2),
         )
-        write_gains(self.parameters, self.blocks.flight, self._est, self.engine.frame)
+        write_gains(self.parameters, self.blocks.flight, self._est, self._believed)
         if self.personality == "ardupilot":
             self._pilot.idle = self.parameters.get("MOT_SPIN_ARM")
         cruise = self._cruise_m_s
@@ -325,13 +328,13 @@ class Core:
 
     @property
     def power(self) -> Power:
-        body = self._body
+        sensed = self._sensed
         if self.personality == "ardupilot" and self.parameters.get("BATT_MONITOR") == 0:
             return UNMEASURED
         return Power(
-            body.voltage_v,
-            body.current_a,
-            body.consumed_mah,
+            sensed.battery_v,
+            sensed.battery_a,
+            sensed.battery_used_mah,
             int(100.0 * self._charge_seen + 0.5),
         )
 
@@ -341,10 +344,10 @@ class Core:
         px4 = self.personality == "px4"
         capacity_mah = self.parameters.get("BAT1_CAPACITY" if px4 else "BATT_CAPACITY")
         if px4 and capacity_mah <= 0.0:
-            return charge_by_voltage(self._body, self.engine.frame)
+            return charge_by_voltage(self._sensed, self._believed)
         if capacity_mah <= 0.0:
             return 0.0
-        return max(0.0, 1.0 - self._body.consumed_mah / capacity_mah)
+        return max(0.0, 1.0 - self._sensed.battery_used_mah / capacity_mah)
 
     # ----------------------------------------------------------- what a mission asks for
 

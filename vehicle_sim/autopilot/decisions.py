@@ -16,6 +16,7 @@ from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff, face
 from vehicle_sim.engine.step import DT_NS, GUIDE_EVERY
 
 _DECIDE_EVERY = 25  # 10 Hz
+_ARMING_DELAY_S = 2.0  # ArduCopter's ARMING_DELAY_SEC, by memory: its motors idle so long at first
 _STRENGTH_LEAST = 0.5  # of a full battery's voltage; for less the motors do not make up
 _TAKES_OFF_BY_ITSELF = 2  # AUTO_OPTIONS
 
@@ -82,7 +83,7 @@ class Decisions(FailsafeActions):
             self._boot()
             for event in self._calibration.update(self.time_ns):
                 self.emit(event)
-            strength = self._body.strength
+            strength = self._sensed.battery_v / self._believed.full_v
             least = _STRENGTH_LEAST
             self.blocks.flight.strength_inv = 1.0 / (strength if strength > least else least)
             self._feel_air(strength)
@@ -100,11 +101,11 @@ class Decisions(FailsafeActions):
 
     def _feel_air(self, strength: float) -> None:
         f = self.blocks.flight
-        self._airflow.shake(self.blocks.sensed)
+        self._airflow.shake(self._sensed)
         if self._pilot.flying:
             spin = strength * (f.u1 + f.u2 + f.u3 + f.u4)
             self._airflow.update(
-                self._est, self.blocks.sensed, spin, self.engine.frame, _DECIDE_EVERY * DT_NS * 1e-9
+                self._est, self._sensed, spin, self._believed, _DECIDE_EVERY * DT_NS * 1e-9
             )
 
     def _fly(self, s: Situation, regular: bool) -> None:
@@ -134,10 +135,11 @@ class Decisions(FailsafeActions):
         if pilot.touched_down():
             self._touch_down(s)
         elif task.done:
-            self._move_on(task)
+            self._move_on(task, s)
 
     def _may_lift_off(self, task: Task, s: Situation) -> bool:
-        spool_up_ns = int(self.parameters.si(Quantity.SPOOL_UP_S) * 1e9)
+        delay_s = _ARMING_DELAY_S if self.personality == "ardupilot" else 0.0
+        spool_up_ns = int((delay_s + self.parameters.si(Quantity.SPOOL_UP_S)) * 1e9)
         if s.time_ns - self._armed_ns < spool_up_ns:
             return False
         # ArduCopter's AUTO leaves the ground only once the mission was started in so many words.
@@ -159,8 +161,11 @@ class Decisions(FailsafeActions):
         if self._task is self._mission:
             self._mission.touched_down()
 
-    def _move_on(self, task: Task) -> None:
-        """PX4 goes to AUTO.LOITER after a take-off and after a mission; ArduCopter stays."""
+    def _move_on(self, task: Task, s: Situation) -> None:
+        """PX4 goes to AUTO.LOITER after a take-off and after a mission; ArduCopter stays.
+
+        After a take-off it holds the height where it is now.
+        """
         if self.personality != "px4":
             return
         if isinstance(task, TakeOff) or task is self._mission:
@@ -170,7 +175,10 @@ class Decisions(FailsafeActions):
             if goes_on and self._mission_ok:
                 self._enter(MODES["px4"]["AUTO.MISSION"])
                 return
-            self._enter(MODES["px4"]["AUTO.LOITER"], Hold(task.target.pos_ned))
+            goal = task.target.pos_ned
+            if isinstance(task, TakeOff) and goal is not None:
+                goal = (goal[0], goal[1], s.pos_ned[2])
+            self._enter(MODES["px4"]["AUTO.LOITER"], Hold(goal))
             self._offboard_wanted = wanted
 
     # ------------------------------------------------------------------------- guards

@@ -24,7 +24,7 @@ class HealthChecks(Bounds):
     def _against_arming(self) -> tuple[str, ...]:
         """All that speaks against arming now, in the autopilot's words."""
         s = self._sense()
-        est, sensed = self._est, self.blocks.sensed
+        est, sensed = self._est, self._sensed
         posture = self._posture()
         return reasons(
             self.parameters,
@@ -89,12 +89,12 @@ class HealthChecks(Bounds):
         """Whether no failsafe's trigger can have come or gone."""
         lost = self._radio.lost(s.wall_ns)
         return crossing is NOTHING and self._failsafe_checks.quiet(
-            s.wall_ns, self._body, self._est, lost
+            s.wall_ns, self._sensed, self._est, lost
         )
 
     def _see(self, s: Situation, crossing: Crossing) -> Seen:
-        body = self._body
-        power = Power(body.voltage_v, body.current_a, body.consumed_mah, 0)
+        sensed = self._sensed
+        power = Power(sensed.battery_v, sensed.battery_a, sensed.battery_used_mah, 0)
         return Seen(
             time_ns=s.time_ns,
             wall_ns=s.wall_ns,
@@ -119,22 +119,16 @@ class HealthChecks(Bounds):
 
     @property
     def _calm(self) -> bool:
-        est, f, body = self._est, self.blocks.flight, self._body
-        least = min(
-            body.s1 * body.health_1,
-            body.s2 * body.health_2,
-            body.s3 * body.health_3,
-            body.s4 * body.health_4,
-        )
+        est, f, sensed = self._est, self.blocks.flight, self._sensed
         return self._failure_detector.calm(
             1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy),
             1.0 - 2.0 * (f.sp_x * f.sp_x + f.sp_y * f.sp_y),
             max(f.u1, f.u2, f.u3, f.u4),
-            least,
+            min(sensed.esc_1, sensed.esc_2, sensed.esc_3, sensed.esc_4),
         )
 
     def _posture(self) -> Posture:
-        est, f, body = self._est, self.blocks.flight, self._body
+        est, f, sensed = self._est, self.blocks.flight, self._sensed
         w, x, y, z = est.qw, est.qx, est.qy, est.qz
         a, b, c, d = f.sp_w, f.sp_x, f.sp_y, f.sp_z
         up_is = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
@@ -148,12 +142,7 @@ class HealthChecks(Bounds):
             accel_m_s2=_size(est.acc_n, est.acc_e, est.acc_d),
             climb_m_s=-est.vel_d,
             asked=(f.u1, f.u2, f.u3, f.u4),
-            thrust=(
-                body.s1 * body.health_1,
-                body.s2 * body.health_2,
-                body.s3 * body.health_3,
-                body.s4 * body.health_4,
-            ),
+            thrust=(sensed.esc_1, sensed.esc_2, sensed.esc_3, sensed.esc_4),
         )
 
 

@@ -140,7 +140,7 @@ class ManualInput(ModeChanges):
         f = self.blocks.flight
         if not f.flying:
             return None
-        full_n = 4.0 * self.engine.frame.thrust_max_n
+        full_n = 4.0 * self._believed.thrust_max_n
         return AttitudeGoal(
             (f.sp_w, f.sp_x, f.sp_y, f.sp_z),
             (f.rate_sp_x, f.rate_sp_y, f.rate_sp_z),

@@ -18,6 +18,7 @@ from vehicle_sim.autopilot.interface import (
 )
 from vehicle_sim.autopilot.modes import Flag
 from vehicle_sim.engine.step import state_bytes
+from vehicle_sim.engine.truth import motion_of
 from vehicle_sim.estimation.estimator import booted
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -37,22 +38,21 @@ class View(Decisions):
 
     @property
     def truth(self) -> Truth:
-        b = self._body
-        pos_ned = (b.pos_n, b.pos_e, b.pos_d)
-        where = self._projection.to_geodetic(pos_ned)
+        real = motion_of(self.blocks)
+        where = self._projection.to_geodetic(real.pos_ned)
         return Truth(
             time_s=self.time_ns / 1e9,
-            pos_ned=pos_ned,
-            v_ned=(b.vel_n, b.vel_e, b.vel_d),
-            q_ned_from_frd=(b.qw, b.qx, b.qy, b.qz),
-            rates_frd=(b.rate_x, b.rate_y, b.rate_z),
+            pos_ned=real.pos_ned,
+            v_ned=real.v_ned,
+            q_ned_from_frd=real.q_ned_from_frd,
+            rates_frd=real.rates_frd,
             lat_deg=where.lat_deg,
             lon_deg=where.lon_deg,
             alt_amsl_m=where.alt_amsl_m,
             armed=self._armed,
             mode=self._mode.name,
-            landed=not self._pilot.flying and b.touching,
-            battery=b.remaining,
+            landed=not self._pilot.flying and real.touching,
+            battery=real.charge,
         )
 
     def state_bytes(self) -> bytes:
@@ -72,7 +72,7 @@ class View(Decisions):
             and self._shown_home is home_ned
         ):
             return shown
-        est, sensed = self._est, self.blocks.sensed
+        est, sensed = self._est, self._sensed
         pos_ned = (est.pos_n, est.pos_e, est.pos_d)
         q = self._attitude
         where = self._projection.to_geodetic(pos_ned)
@@ -97,7 +97,7 @@ class View(Decisions):
 
     @property
     def readings(self) -> Readings:
-        s = self.blocks.sensed
+        s = self._sensed
         judged = self.health
         where = self._projection.to_geodetic((s.gps_n, s.gps_e, s.gps_d))
         return Readings(

@@ -2,28 +2,34 @@
 
 Gains are a factor of two to three apart from loop to loop, so that each sees the next as
 immediate.  The rate gain follows from the lag of the motors: with a lag of tau the rate loop is
-of second order, and a gain of 0.55 / tau damps it at 0.67.
+of second order, and a gain of 0.55 / tau damps it at 0.67; the D-term, behind a filter of 30 Hz,
+takes the damping up for a body whose inertia is less than believed.  The integrators take what
+keeps on turning the body: a weak motor, a centre of mass that is not in the middle.
 """
 
 from __future__ import annotations
 
 from math import sqrt
 
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.flight import BY_RATES, Flight
 from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import kernel
-from vehicle_sim.plant.frame import AirframeConstants
 
 _RATE_SHARE = 0.55  # of 1 / motor lag
 _ATTITUDE_SHARE = 0.41  # of the rate gain
 _ATTITUDE_P_MAX = 12.0
+# Of a motor's thrust in hover, for each axis: a motor at 0.4 takes 0.15 and a centre of mass 2 cm
+# off its place 0.11; with more a vehicle that has lost a motor flies on, spinning, and bounces.
+_INTEGRAL_SHARE = 0.2
+_TUMBLE_RAD_S = 7.0  # 400 deg/s, where PX4's integrators take nothing up any more
+_D_FILTER_S = 0.0053  # 30 Hz, as PX4's IMU_DGYRO_CUTOFF
 _YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
 
 
-def tune(flight: Flight, frame: AirframeConstants) -> None:
+def tune(flight: Flight, believed: Believed) -> None:
     """The gains of the attitude and rate loops that fit these motors."""
-    rate = _RATE_SHARE / frame.motor_time_constant_s
+    rate = _RATE_SHARE / believed.motor_time_constant_s
     attitude = _ATTITUDE_SHARE * rate
     attitude = attitude if attitude < _ATTITUDE_P_MAX else _ATTITUDE_P_MAX
     flight.kp_rate_roll = flight.kp_rate_pitch = rate
@@ -31,7 +37,7 @@ def tune(flight: Flight, frame: AirframeConstants) -> None:
 
 
 @kernel
-def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
+def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     """Attitude and rate loops and the mixer, by the estimate: leaves `u1 .. u4`."""
     # q_error = conj(q) q_setpoint; its vector part is half the turn that is missing.
     w = est.qw
@@ -59,13 +65,23 @@ def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
     rate_z = f.rate_sp_z if by_rates else rate_z
 
     # The torque that it takes, as each motor's share of thrust over its lever.
-    gain = 0.25 * f.kp_rate_roll
-    roll = gain * frame.inertia_xx_kg_m2 / frame.arm_right_m * (rate_x - est.rate_x)
-    gain = 0.25 * f.kp_rate_pitch
-    pitch = gain * frame.inertia_yy_kg_m2 / frame.arm_forward_m * (rate_y - est.rate_y)
-    gain = 0.25 * f.kp_rate_yaw * frame.inertia_zz_kg_m2 / frame.torque_per_thrust_m
-    yaw = gain * (rate_z - est.rate_z)
-    most = 0.25 * _YAW_SHARE * GRAVITY_M_S2 * frame.mass_kg
+    err_x = rate_x - est.rate_x
+    err_y = rate_y - est.rate_y
+    err_z = rate_z - est.rate_z
+    change_x = est.rate_x - f.rate_slow_x
+    change_y = est.rate_y - f.rate_slow_y
+    dt_s = believed.dt_s
+    follow = dt_s / (_D_FILTER_S + dt_s)
+    f.rate_slow_x += follow * change_x
+    f.rate_slow_y += follow * change_y
+    gain_x = f.kp_rate_roll * believed.roll_n_s2
+    gain_y = f.kp_rate_pitch * believed.pitch_n_s2
+    gain_z = f.kp_rate_yaw * believed.yaw_n_s2
+    roll = gain_x * (err_x - f.kd_rate_roll / _D_FILTER_S * change_x) + f.int_roll_n
+    pitch = gain_y * (err_y - f.kd_rate_pitch / _D_FILTER_S * change_y) + f.int_pitch_n
+    yaw = gain_z * err_z + f.int_yaw_n
+    most = _YAW_SHARE * believed.hover_n
+    weak = yaw > most or yaw < -most
     yaw = most if yaw > most else -most if yaw < -most else yaw
 
     t1 = pitch - roll + yaw
@@ -79,7 +95,20 @@ def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
     low = t1 if t1 < t2 else t2
     low = t3 if t3 < low else low
     low = t4 if t4 < low else low
-    full = frame.thrust_max_n
+    full = believed.thrust_max_n
+    flying = f.flying
+    # Nothing is learnt in a tumble, nor while the motors cannot give what is asked, nor where the
+    # ground may carry.
+    tumbles = err_x * err_x + err_y * err_y + err_z * err_z > _TUMBLE_RAD_S * _TUMBLE_RAD_S
+    learns = flying and top - low < full and f.still_s == 0.0 and not tumbles
+    learn_s = dt_s if learns else 0.0
+    most = _INTEGRAL_SHARE * believed.hover_n
+    kept = f.int_roll_n + f.ki_rate_roll * learn_s * gain_x * err_x
+    f.int_roll_n = most if kept > most else -most if kept < -most else kept
+    kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * gain_y * err_y
+    f.int_pitch_n = most if kept > most else -most if kept < -most else kept
+    kept = f.int_yaw_n + (0.0 if weak else f.ki_rate_yaw * learn_s * gain_z * err_z)
+    f.int_yaw_n = most if kept > most else -most if kept < -most else kept
     each = 0.25 * f.collective_n
     each = full - top if each + top > full else each
     each = -low if each + low < 0.0 else each
@@ -93,7 +122,6 @@ def stabilise(f: Flight, est: Estimated, frame: AirframeConstants) -> None:
     u2 = sqrt(t2 if t2 > 0.0 else 0.0) * scale
     u3 = sqrt(t3 if t3 > 0.0 else 0.0) * scale
     u4 = sqrt(t4 if t4 > 0.0 else 0.0) * scale
-    flying = f.flying
     idle = f.idle
     f.u1 = (1.0 if u1 > 1.0 else u1) if flying else idle
     f.u2 = (1.0 if u2 > 1.0 else u2) if flying else idle

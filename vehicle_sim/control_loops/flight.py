@@ -80,6 +80,13 @@ class Flight:
     sp_y: float = 0.0
     sp_z: float = 0.0
     collective_n: float = 0.0
+    load: float = 1.0  # learnt: newtons asked for a newton of the believed weight, in hover
+    floor_d: float = 0.0  # where it stood last
+    int_roll_n: float = 0.0  # of the rate loops, in each motor's share of thrust
+    int_pitch_n: float = 0.0
+    int_yaw_n: float = 0.0
+    rate_slow_x: float = 0.0  # behind the filter of the D-term
+    rate_slow_y: float = 0.0
     still_s: float = 0.0  # how long the land detector has believed in ground
     strength_inv: float = 1.0  # full battery voltage over the measured one
     u1: float = 0.0  # motor commands, 0..1
@@ -99,9 +106,16 @@ class Flight:
     kp_rate_roll: float = 22.0
     kp_rate_pitch: float = 22.0
     kp_rate_yaw: float = 6.0
+    # Integral over proportional gain, 1/s: PX4's MC_ROLLRATE_I over MC_ROLLRATE_P.
+    ki_rate_roll: float = 1.33
+    ki_rate_pitch: float = 1.33
+    ki_rate_yaw: float = 0.3
+    kd_rate_roll: float = 0.005  # derivative over proportional gain, s
+    kd_rate_pitch: float = 0.005
     roll_rate_max_rad_s: float = 3.8
     pitch_rate_max_rad_s: float = 3.8
     yaw_rate_max_rad_s: float = 1.6
+    land_share: float = 0.7  # of hover: with less in a descent it may stand on the ground
     tilt_max: float = 0.7  # tangent
     jerk_m_s3: float = 30.0
     lead_max_m: float = 4.0  # so far ahead of the vehicle the reference stands and waits

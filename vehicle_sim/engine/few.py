@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from vehicle_sim.control_loops.believed import believed_of
 from vehicle_sim.control_loops.flight import Flight
 from vehicle_sim.engine.step import DT_S, Blocks, VehicleSpec, begin, live
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.plant.airframe import Airframe
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import frame_of
+from vehicle_sim.plant.constants import plant_of
 from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.plant.sensors import MEMS, SensorGrade
 
@@ -21,17 +22,18 @@ class Few:
         self, specs: Sequence[VehicleSpec], airframe: Airframe, grade: SensorGrade = MEMS
     ) -> None:
         self.k = 0
-        self.frame = frame_of(airframe, DT_S)
+        self.believed = believed_of(airframe, DT_S)
+        self._plant = plant_of(airframe, DT_S)
         self._grade = grade
         self._vehicles = [Blocks(Body(), Sensed(), Estimated(), Flight()) for _ in specs]
         for blocks, spec in zip(self._vehicles, specs, strict=True):
-            begin(blocks, spec, self.frame, grade)
+            begin(blocks, spec, self._plant, self.believed, grade)
 
     def blocks(self, lane: int) -> Blocks:
         return self._vehicles[lane]
 
     def step(self) -> None:
         self.k = k = self.k + 1
-        frame, grade = self.frame, self._grade
+        plant, believed, grade = self._plant, self.believed, self._grade
         for each in self._vehicles:
-            live(each.body, each.sensed, each.est, each.flight, frame, grade, k)
+            live(each.body, each.sensed, each.est, each.flight, plant, believed, grade, k)

@@ -6,25 +6,27 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vehicle_sim.control_loops.believed import believed_of
 from vehicle_sim.control_loops.flight import Flight
 from vehicle_sim.engine.step import DT_S, Blocks, VehicleSpec, begin, live
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.lanes import Lanes, batched
 from vehicle_sim.plant.airframe import Airframe
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import frame_of
+from vehicle_sim.plant.constants import plant_of
 from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.plant.sensors import MEMS, SensorGrade
 
 
 class Many:
-    """See `fleet.Engine`."""
+    """An engine over rows; see `step.Engine`."""
 
     def __init__(
         self, specs: Sequence[VehicleSpec], airframe: Airframe, grade: SensorGrade = MEMS
     ) -> None:
         self.k = 0
-        self.frame = frame_of(airframe, DT_S)
+        self.believed = believed_of(airframe, DT_S)
+        self._plant = plant_of(airframe, DT_S)
         self._grade = grade
         count = len(specs)
         self._bodies = Lanes(Body, count)
@@ -33,7 +35,7 @@ class Many:
         self._flights = Lanes(Flight, count)
         self._live = batched(live)
         for lane, spec in enumerate(specs):
-            begin(self.blocks(lane), spec, self.frame, grade)
+            begin(self.blocks(lane), spec, self._plant, self.believed, grade)
 
     def blocks(self, lane: int) -> Blocks:
         return Blocks(
@@ -52,7 +54,8 @@ class Many:
                 self._sensed.all,
                 self._estimated.all,
                 self._flights.all,
-                self.frame,
+                self._plant,
+                self.believed,
                 self._grade,
                 self.k,
             )

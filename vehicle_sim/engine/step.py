@@ -13,6 +13,7 @@ import struct
 from dataclasses import dataclass, fields
 from typing import Final, Protocol
 
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.cascade import stabilise, tune
 from vehicle_sim.control_loops.flight import Flight
 from vehicle_sim.control_loops.guidance import guide
@@ -21,16 +22,15 @@ from vehicle_sim.estimation.estimator import align, estimate
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.noise import key_of
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.constants import Plant
 from vehicle_sim.plant.quad import advance
 from vehicle_sim.plant.quad import begin as begin_body
 from vehicle_sim.plant.sensed import Sensed
-from vehicle_sim.plant.sensors import SensorGrade, sense, switch_on
+from vehicle_sim.plant.sensors import SensorGrade, measure_power, sense, switch_on
 
 DT_NS: Final = 4_000_000
 DT_S: Final = DT_NS / 1e9
 GUIDE_EVERY: Final = 5  # 50 Hz
-MANY_FROM: Final = 20  # vehicles from which numpy is the faster
 _GUIDE_S: Final = DT_S * GUIDE_EVERY
 _GUST_SOURCE: Final = 0  # of noise; the sensors' begin further up
 
@@ -66,7 +66,7 @@ class Engine(Protocol):
         ...
 
     @property
-    def frame(self) -> AirframeConstants: ...
+    def believed(self) -> Believed: ...
     def blocks(self, lane: int) -> Blocks: ...
     def step(self) -> None:
         """One step of `DT_S`."""
@@ -87,48 +87,37 @@ def live(
     sensed: Sensed,
     est: Estimated,
     flight: Flight,
-    frame: AirframeConstants,
+    plant: Plant,
+    believed: Believed,
     grade: SensorGrade,
     k: int,
 ) -> None:
     """Step number `k` of one vehicle."""
     if k % GUIDE_EVERY == 0:
-        guide(flight, est, frame, _GUIDE_S)
-    stabilise(flight, est, frame)
-    advance(body, flight.u1, flight.u2, flight.u3, flight.u4, frame, k)
+        guide(flight, est, believed, _GUIDE_S)
+    stabilise(flight, est, believed)
+    advance(body, flight.u1, flight.u2, flight.u3, flight.u4, plant, k)
     sense(sensed, body, grade, k)
     estimate(est, sensed, k)
 
 
-def begin(blocks: Blocks, spec: VehicleSpec, frame: AirframeConstants, grade: SensorGrade) -> None:
+def begin(
+    blocks: Blocks, spec: VehicleSpec, plant: Plant, believed: Believed, grade: SensorGrade
+) -> None:
     """Make fresh blocks a vehicle on its home ground, seen from power-up."""
-    begin_body(blocks.body, key_of(spec.seed, spec.index, _GUST_SOURCE), frame)
+    begin_body(blocks.body, key_of(spec.seed, spec.index, _GUST_SOURCE), plant)
     switch_on(blocks.sensed, spec.seed, spec.index, spec.lat_deg, grade)
-    tune(blocks.flight, frame)
+    measure_power(blocks.sensed, blocks.body, grade, 0)
+    tune(blocks.flight, believed)
 
 
-def restart(blocks: Blocks, frame: AirframeConstants) -> None:
+def restart(blocks: Blocks, believed: Believed) -> None:
     """The autopilot's computer starts anew: it knows nothing, and its motors stop."""
     align(blocks.est)
     fresh = Flight()
     for name in Flight.__slots__:
         setattr(blocks.flight, name, getattr(fresh, name))
-    tune(blocks.flight, frame)
-
-
-def put_home(body: Body) -> None:
-    """Set it down on its home ground, at rest; its battery, its faults and the wind stay."""
-    fresh = Body()
-    for name in _AT_REST:
-        setattr(body, name, getattr(fresh, name))
-
-
-_AT_REST: Final = tuple(
-    field.name
-    for field in fields(Body)
-    if field.name.startswith(("pos_", "vel_", "q", "rate_", "sf_", "grip_"))
-    or field.name in ("s1", "s2", "s3", "s4", "touching")
-)
+    tune(blocks.flight, believed)
 
 
 _LETTERS: Final = {"float": "d", "int": "Q", "bool": "?"}

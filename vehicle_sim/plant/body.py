@@ -45,6 +45,14 @@ class Body:
     health_2: float = 1.0
     health_3: float = 1.0
     health_4: float = 1.0
+    # In what the plant differs from its data sheets, as faults make it.
+    payload_kg: float = 0.0  # carried at the centre, without an inertia of its own
+    mass_off_x: float = 0.0  # of the centre of mass from the rotors' centre, FRD, metres
+    mass_off_y: float = 0.0
+    inertia_scale: float = 1.0
+    thrust_scale: float = 1.0
+    resistance_scale: float = 1.0
+    capacity_scale: float = 1.0
     touching: bool = False
     grip_n1: float = 0.0
     grip_e1: float = 0.0

@@ -46,6 +46,43 @@ class CellsLost:
 
 
 @dataclass(frozen=True, slots=True)
+class Payload:
+    """It carries so much more [kg], or so much less, than its data sheet says."""
+
+    mass_kg: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class CentreOfMass:
+    """The centre of mass is off the rotors' centre by this, forward and right [m]."""
+
+    forward_m: float = 0.0
+    right_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class WeakBattery:
+    """Internal resistance and capacity as multiples of the data sheet's."""
+
+    resistance_scale: float = 1.0
+    capacity_scale: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class ThrustScale:
+    """Every motor lifts this multiple of what the data sheet says."""
+
+    scale: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class InertiaScale:
+    """All three moments of inertia are this multiple of the data sheet's."""
+
+    scale: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
 class WindChange:
     """The air's velocity [m/s, NED] from now on, and the standard deviation of its gusts."""
 
@@ -88,6 +125,11 @@ ModelFault: TypeAlias = (
     | GpsGlitch
     | MotorFault
     | CellsLost
+    | Payload
+    | CentreOfMass
+    | WeakBattery
+    | ThrustScale
+    | InertiaScale
     | WindChange
     | AccelBias
     | GyroBias
@@ -131,6 +173,8 @@ def sound(fault: ModelFault | RcLost) -> ModelFault | RcLost:
             return CellsLost(0.0)
         case GpsGlitch() | WindChange() | AccelBias() | GyroBias() | BaroFault() | MagFault():
             return type(fault)()
+        case Payload() | CentreOfMass() | WeakBattery() | ThrustScale() | InertiaScale():
+            return type(fault)()
         case _:
             assert_never(fault)
 
@@ -146,6 +190,16 @@ def inject(fault: ModelFault, body: Body, sensed: Sensed) -> None:
             setattr(body, f"health_{motor}", health)
         case CellsLost(cells):
             body.cells_lost = cells
+        case Payload(mass_kg):
+            body.payload_kg = mass_kg
+        case CentreOfMass(forward_m, right_m):
+            body.mass_off_x, body.mass_off_y = forward_m, right_m
+        case WeakBattery(resistance_scale, capacity_scale):
+            body.resistance_scale, body.capacity_scale = resistance_scale, capacity_scale
+        case ThrustScale(scale):
+            body.thrust_scale = scale
+        case InertiaScale(scale):
+            body.inertia_scale = scale
         case WindChange((north, east, down), gust_m_s):
             body.wind_n, body.wind_e, body.wind_d = north, east, down
             body.gust_m_s = gust_m_s

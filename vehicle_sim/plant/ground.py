@@ -7,14 +7,14 @@ from typing import TypeAlias
 
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.constants import Plant
 
 Push: TypeAlias = tuple[float, float, float, float, float, float]
 """Force north, east, down [N] and torque about body x, y, z [N m]."""
 
 
 @kernel
-def stand(body: Body, frame: AirframeConstants) -> Push:
+def stand(body: Body, plant: Plant) -> Push:
     """What the ground does to `body` in this step.
 
     Feet are numbered and placed as the motors are: 1 (+,+), 2 (-,-), 3 (+,-), 4 (-,+).  A foot at
@@ -34,10 +34,10 @@ def stand(body: Body, frame: AirframeConstants) -> Push:
     r31 = 2.0 * (qx * qz - qw * qy)
     r32 = 2.0 * (qy * qz + qw * qx)
     r33 = 1.0 - 2.0 * (qx * qx + qy * qy)
-    x = frame.foot_forward_m
-    y = frame.foot_right_m
+    x = plant.foot_forward_m
+    y = plant.foot_right_m
     # Turned over, it lies on its propellers.
-    z = frame.foot_down_m if r33 > 0.0 else -frame.top_up_m
+    z = plant.foot_down_m if r33 > 0.0 else -plant.top_up_m
     p = body.rate_x
     q = body.rate_y
     r = body.rate_z
@@ -51,7 +51,7 @@ def stand(body: Body, frame: AirframeConstants) -> Push:
     v_n = body.vel_n + z * (r11 * q - r12 * p)
     v_e = body.vel_e + z * (r21 * q - r22 * p)
     v_d = body.vel_d + z * (r31 * q - r32 * p)
-    depth = body.pos_d + z * r33 - frame.plane_d_m
+    depth = body.pos_d + z * r33 - plant.plane_d_m
     fore = x * r31
     side = y * r32
     depth_1 = depth + fore + side
@@ -65,7 +65,7 @@ def stand(body: Body, frame: AirframeConstants) -> Push:
         v_d + x_d + y_d,
         body.grip_n1,
         body.grip_e1,
-        frame,
+        plant,
     )
     n2, e2, d2, body.grip_n2, body.grip_e2 = _foot(
         depth_2,
@@ -74,7 +74,7 @@ def stand(body: Body, frame: AirframeConstants) -> Push:
         v_d - x_d - y_d,
         body.grip_n2,
         body.grip_e2,
-        frame,
+        plant,
     )
     n3, e3, d3, body.grip_n3, body.grip_e3 = _foot(
         depth_3,
@@ -83,7 +83,7 @@ def stand(body: Body, frame: AirframeConstants) -> Push:
         v_d + x_d - y_d,
         body.grip_n3,
         body.grip_e3,
-        frame,
+        plant,
     )
     n4, e4, d4, body.grip_n4, body.grip_e4 = _foot(
         depth_4,
@@ -92,7 +92,7 @@ def stand(body: Body, frame: AirframeConstants) -> Push:
         v_d - x_d + y_d,
         body.grip_n4,
         body.grip_e4,
-        frame,
+        plant,
     )
     body.touching = depth_1 > 0.0 or depth_2 > 0.0 or depth_3 > 0.0 or depth_4 > 0.0
 
@@ -133,7 +133,7 @@ def _foot(
     v_d: float,
     grip_n: float,
     grip_e: float,
-    frame: AirframeConstants,
+    plant: Plant,
 ) -> tuple[float, float, float, float, float]:
     """Force on one foot [N, NED], and how far its friction is stretched now [m].
 
@@ -141,18 +141,18 @@ def _foot(
     where Coulomb's law gives way (Cundall and Strack, Geotechnique 29, 1979): so a vehicle stands
     where it stands, also in a wind, and slides with mu N.
     """
-    stiffness = frame.stiffness_n_per_m
-    damping = frame.damping_n_s_per_m
+    stiffness = plant.stiffness_n_per_m
+    damping = plant.damping_n_s_per_m
     load = stiffness * depth + damping * v_d
     loaded = depth > 0.0 and load > 0.0
     load = load if loaded else 0.0
-    dt_s = frame.dt_s
+    dt_s = plant.dt_s
     grip_n = grip_n + v_n * dt_s
     grip_e = grip_e + v_e * dt_s
     pull_n = stiffness * grip_n + damping * v_n
     pull_e = stiffness * grip_e + damping * v_e
     pull = sqrt(pull_n * pull_n + pull_e * pull_e)
-    hold = frame.friction * load
+    hold = plant.friction * load
     slips = pull > hold
     part = hold / (pull if slips else 1.0) if slips else 1.0
     return (

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.constants import Plant
 
 
 @kernel
 def spin(
-    body: Body, u1: float, u2: float, u3: float, u4: float, sink: float, frame: AirframeConstants
+    body: Body, u1: float, u2: float, u3: float, u4: float, sink: float, plant: Plant
 ) -> tuple[float, float, float, float]:
     """One step towards the commands `u` (0..1 of what the battery can turn).
 
@@ -24,9 +24,10 @@ def spin(
     (clockwise from above) for the propellers that turn to the left.
 
     `health` scales what a propeller lifts, as if it were broken; a dead motor gets no current.
+    `thrust_scale` does so for all four: other propellers than those of the data sheet.
     """
-    keep = frame.motor_keep
-    gain = frame.motor_gain * body.strength
+    keep = plant.motor_keep
+    gain = plant.motor_gain * body.strength
     health_1 = body.health_1
     health_2 = body.health_2
     health_3 = body.health_3
@@ -39,10 +40,11 @@ def spin(
     body.s2 = s2
     body.s3 = s3
     body.s4 = s4
-    top = frame.thrust_max_n
-    inflow = frame.inflow_n_s_per_m
-    roll = body.rate_x * frame.arm_right_m
-    pitch = body.rate_y * frame.arm_forward_m
+    scale = body.thrust_scale
+    top = scale * plant.thrust_max_n
+    inflow = scale * plant.inflow_n_s_per_m
+    roll = body.rate_x * plant.arm_right_m
+    pitch = body.rate_y * plant.arm_forward_m
     sink_right = sink + roll
     sink_left = sink - roll
     t1 = health_1 * s1 * (top * s1 + inflow * (sink_right - pitch))
@@ -56,7 +58,7 @@ def spin(
     rear = t2 + t4
     return (
         left + right,
-        (left - right) * frame.arm_right_m,
-        (front - rear) * frame.arm_forward_m,
-        ((t1 + t2) - (t3 + t4)) * frame.torque_per_thrust_m,
+        (left - right) * plant.arm_right_m,
+        (front - rear) * plant.arm_forward_m,
+        ((t1 + t2) - (t3 + t4)) * plant.torque_per_thrust_m,
     )

@@ -11,7 +11,9 @@ from math import sqrt
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import anywhere, kernel
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.constants import Plant
+
+_MASS_LEAST = 0.25  # of the data sheet's: a negative payload takes no more away
 
 
 @kernel
@@ -23,7 +25,7 @@ def move(
     torque_x: float,
     torque_y: float,
     torque_z: float,
-    frame: AirframeConstants,
+    plant: Plant,
 ) -> None:
     """One step under `force` [N, NED, without gravity] and `torque` [N m, FRD].
 
@@ -33,9 +35,11 @@ def move(
     with the gyroscopic term of half a step on: of second order, so that tumbling gains no energy
     worth the name.
     """
-    dt_s = frame.dt_s
+    dt_s = plant.dt_s
     half = 0.5 * dt_s
-    mass = frame.mass_kg
+    mass = plant.mass_kg + body.payload_kg
+    least = _MASS_LEAST * plant.mass_kg
+    mass = mass if mass > least else least
     acc_n = force_n / mass
     acc_e = force_e / mass
     acc_d = force_d / mass
@@ -58,19 +62,20 @@ def move(
     x = body.rate_x
     y = body.rate_y
     z = body.rate_z
-    couple_x = frame.couple_x
-    couple_y = frame.couple_y
-    couple_z = frame.couple_z
-    turn_x = torque_x / frame.inertia_xx_kg_m2
-    turn_y = torque_y / frame.inertia_yy_kg_m2
-    turn_z = torque_z / frame.inertia_zz_kg_m2
+    couple_x = plant.couple_x
+    couple_y = plant.couple_y
+    couple_z = plant.couple_z
+    scale = body.inertia_scale
+    turn_x = torque_x / (plant.inertia_xx_kg_m2 * scale)
+    turn_y = torque_y / (plant.inertia_yy_kg_m2 * scale)
+    turn_z = torque_z / (plant.inertia_zz_kg_m2 * scale)
     mid_x = x + (turn_x + couple_x * y * z) * half
     mid_y = y + (turn_y + couple_y * z * x) * half
     mid_z = z + (turn_z + couple_z * x * y) * half
     new_x = x + (turn_x + couple_x * mid_y * mid_z) * dt_s
     new_y = y + (turn_y + couple_y * mid_z * mid_x) * dt_s
     new_z = z + (turn_z + couple_z * mid_x * mid_y) * dt_s
-    most = frame.rate_max_rad_s
+    most = plant.rate_max_rad_s
     size = new_x * new_x + new_y * new_y + new_z * new_z
     fast = size > most * most
     if anywhere(fast):

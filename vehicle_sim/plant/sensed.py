@@ -15,6 +15,10 @@ class Sensed:
     magnetic field in FRD, in gauss; `baro_up_m` the height over the start by air pressure.
     `gps_*` is the last fix that has come out of the receiver, in local NED, late by its latency;
     `gps_fix` is 0 or 3.  `*_fresh` are true in the one step in which a sample comes.
+
+    `battery_*` is what the power module measures: voltage, current and the charge that it
+    has counted since power-up.  `esc_*` is what each ESC tells of its motor,
+    0..1 of the load at full speed; 0 where nothing turns or nothing is lifted.
     """
 
     gyro_x: float = 0.0
@@ -37,6 +41,13 @@ class Sensed:
     gps_vel_d: float = 0.0
     gps_fix: float = 0.0
     gps_fresh: bool = False
+    battery_v: float = 0.0
+    battery_a: float = 0.0
+    battery_used_mah: float = 0.0
+    esc_1: float = 0.0
+    esc_2: float = 0.0
+    esc_3: float = 0.0
+    esc_4: float = 0.0
     # The sensors' own state: biases of this power-up, slow errors, the fix on its way.
     gyro_bias_x: float = 0.0
     gyro_bias_y: float = 0.0
@@ -49,6 +60,11 @@ class Sensed:
     mag_iron_z: float = 0.0
     field_n: float = 0.21  # the Earth's field at the start, gauss, NED
     field_d: float = 0.43
+    volt_scale: float = 1.0
+    amp_scale: float = 1.0
+    shaken_x: float = 0.0  # by the rotors in the last step, m/s^2
+    shaken_y: float = 0.0
+    shaken_z: float = 0.0
     baro_lag_m: float = 0.0
     baro_drift_m: float = 0.0
     gps_wander_n: float = 0.0
@@ -69,6 +85,9 @@ class Sensed:
     gps_pos_key: int = 0
     gps_vel_key: int = 0
     gps_wander_key: int = 0
+    power_key: int = 0
+    esc_key: int = 0
+    shake_key: int = 0
     # What faults do to them: constant errors in the units of the sensor, and silence.
     gyro_off_x: float = 0.0
     gyro_off_y: float = 0.0

@@ -1,8 +1,8 @@
 """The sensors of a vehicle: what a MEMS board and a receiver on it would say of the truth.
 
-Gyroscope and accelerometer answer in every step, magnetometer and barometer at 25 Hz, GPS at 5 Hz
-and 120 ms late.  Noise is drawn from the step's number, so nothing depends on who asks, or how
-often.
+Gyroscope and accelerometer answer in every step, magnetometer and barometer at 25 Hz, the power
+module and the ESCs at 10 Hz, GPS at 5 Hz and 120 ms late.  Noise is drawn from the step's number,
+so nothing depends on who asks, or how often.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Final
 
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.noise import key_of, mix64
+from vehicle_sim.plant.battery import BATTERY_EVERY
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.sensed import Sensed
 
@@ -49,6 +50,8 @@ _WANDER_STIR: Final = sqrt(1.0 - _WANDER_KEEP * _WANDER_KEEP)
 _DIPOLE_GAUSS: Final = 0.31
 _HORIZONTAL_LEAST_GAUSS: Final = 0.02
 
+_SWING: Final = sqrt(0.5)  # the difference of two such is as large as one
+
 _MASK: Final = 0xFFFFFFFFFFFFFFFF
 _GOLDEN: Final = 0x9E3779B97F4A7C15
 _PAIRS: Final = 0x3FF | 0x3FF << 20 | 0x3FF << 40
@@ -64,7 +67,12 @@ class SensorGrade:
     White noise a sample, `*_bias` of a power-up, `*_walk` a square root of a second, `*_wander`
     and `*_drift` of slow errors.  The defaults are what data sheets and logs of consumer parts
     show (ICM-42688 class IMU: gyroscope 0.005 deg/s/sqrt(Hz) over 125 Hz; IST8310; MS5611; u-blox
-    M8 in the open, whose wander is kept small so that a flight stays where its plan says).
+    M8 in the open, whose wander is kept small so that a flight stays where its plan says; a power
+    module of 90 A with a 10-bit converter of its current and a 12-bit one of its voltage).
+    `*_scale` are errors of a factor that last for a power-up: 0.1 % of the voltage and 0.2 % of the
+    current are what the best calibration leaves, so that a failsafe of the battery strikes where
+    its parameter says; see `REAL` for a usual one.  `baro_gain` is a filter's part of a new sample.
+    `vibration_m_s2` is what the accelerometer feels of all four rotors at full speed.
     """
 
     gyro_rad_s: float = 0.001
@@ -83,9 +91,29 @@ class SensorGrade:
     gps_wander_m: float = 0.15
     gps_wander_up_m: float = 0.15
     gps_m_s: float = 0.05
+    volt_v: float = 0.01
+    volt_scale: float = 0.001
+    amp_a: float = 0.1
+    amp_scale: float = 0.002
+    esc: float = 0.005
+    vibration_m_s2: float = 0.0
 
 
 MEMS: Final = SensorGrade()
+
+REAL: Final = SensorGrade(
+    baro_drift_m=1.3,
+    gps_wander_m=0.7,
+    gps_wander_up_m=1.2,
+    volt_scale=0.005,
+    amp_scale=0.02,
+    vibration_m_s2=10.0,
+)
+"""As measured in life: GPS wanders by 0.5 to 1.5 m, the barometer drifts by 1 to 2 m in two
+minutes, and VIBRATION reads 3 to 15 m/s^2 in a hover."""
+
+GRADES: Final = {"good": MEMS, "real": REAL}
+"""By the name on the command line."""
 
 IDEAL: Final = SensorGrade(
     *(0.0,) * 10,
@@ -95,6 +123,11 @@ IDEAL: Final = SensorGrade(
     gps_wander_m=0.0,
     gps_wander_up_m=0.0,
     gps_m_s=0.0,
+    volt_v=0.0,
+    volt_scale=0.0,
+    amp_a=0.0,
+    amp_scale=0.0,
+    esc=0.0,
 )
 """Only rates and latencies are left."""
 
@@ -114,7 +147,10 @@ def switch_on(sensed: Sensed, seed: int, vehicle: int, lat_deg: float, grade: Se
         sensed.gps_pos_key,
         sensed.gps_vel_key,
         sensed.gps_wander_key,
-    ) = (key_of(seed, vehicle, source) for source in range(_FIRST_SOURCE, _FIRST_SOURCE + 9))
+        sensed.power_key,
+        sensed.esc_key,
+        sensed.shake_key,
+    ) = (key_of(seed, vehicle, source) for source in range(_FIRST_SOURCE, _FIRST_SOURCE + 12))
     x, y, z = three(sensed.gyro_walk_key, 0)
     sensed.gyro_bias_x = x * grade.gyro_bias_rad_s
     sensed.gyro_bias_y = y * grade.gyro_bias_rad_s
@@ -131,6 +167,9 @@ def switch_on(sensed: Sensed, seed: int, vehicle: int, lat_deg: float, grade: Se
     sensed.gps_wander_n = x * grade.gps_wander_m
     sensed.gps_wander_e = y * grade.gps_wander_m
     sensed.gps_wander_d = z * grade.gps_wander_up_m
+    x, y, _ = three(sensed.power_key, 0)
+    sensed.volt_scale = 1.0 + x * grade.volt_scale
+    sensed.amp_scale = 1.0 + y * grade.amp_scale
     latitude = radians(lat_deg)
     horizontal = _DIPOLE_GAUSS * cos(latitude)
     sensed.field_n = max(horizontal, _HORIZONTAL_LEAST_GAUSS)
@@ -202,6 +241,8 @@ def sense(sensed: Sensed, body: Body, grade: SensorGrade, k: int) -> None:
     sensed.accel_z = _within(
         f_z + sensed.accel_bias_z + sensed.accel_off_z + z * white, _ACCEL_MAX_M_S2
     )
+    if grade.vibration_m_s2 > 0.0:
+        _shake(sensed, body, grade, counter)
     sensed.mag_fresh = sensed.baro_fresh = sensed.gps_fresh = False
     if k % MAG_EVERY == 0:
         _feel_field(sensed, body, grade, counter)
@@ -211,8 +252,28 @@ def sense(sensed: Sensed, body: Body, grade: SensorGrade, k: int) -> None:
         _take_fix(sensed, body, grade, counter)
     if k % GPS_EVERY == 0:
         _give_fix(sensed)
+    if k % BATTERY_EVERY == 0:
+        measure_power(sensed, body, grade, counter)
     if k % _WALK_EVERY == 0:
         _walk(sensed, grade, counter)
+
+
+@kernel
+def _shake(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
+    """Rotors out of balance shake the frame: with the square of their speed, and without a mean.
+
+    What shakes it now swings back in the next step, so the speed that it adds up to stays small.
+    """
+    x, y, z = three(sensed.shake_key, counter)
+    s1, s2, s3, s4 = body.s1, body.s2, body.s3, body.s4
+    size = 0.25 * _SWING * grade.vibration_m_s2 * ((s1 * s1 + s2 * s2) + (s3 * s3 + s4 * s4))
+    x, y, z = size * x, size * y, size * z
+    sensed.accel_x = _within(sensed.accel_x + x - sensed.shaken_x, _ACCEL_MAX_M_S2)
+    sensed.accel_y = _within(sensed.accel_y + y - sensed.shaken_y, _ACCEL_MAX_M_S2)
+    sensed.accel_z = _within(sensed.accel_z + z - sensed.shaken_z, _ACCEL_MAX_M_S2)
+    sensed.shaken_x = x
+    sensed.shaken_y = y
+    sensed.shaken_z = z
 
 
 @kernel
@@ -283,6 +344,35 @@ def _give_fix(sensed: Sensed) -> None:
     sensed.gps_vel_d = sensed.taken_vel_d if here else sensed.gps_vel_d
     sensed.gps_fix = 3.0 if here else 0.0
     sensed.gps_fresh = here
+
+
+@kernel
+def measure_power(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
+    """The power module and the ESCs, as they are read: without a filter, as ArduPilot reads them.
+
+    PX4's filters (1 s of the voltage, 0.5 s of the current, by memory) are left out.  The charge is
+    counted from the current as it is measured, so it has the current's scale; its noise has no
+    mean.
+    """
+    x, y, _ = three(sensed.power_key, counter)
+    volts = sensed.volt_scale * body.voltage_v + grade.volt_v * x
+    sensed.battery_v = volts if volts > 0.0 else 0.0
+    amps = sensed.amp_scale * body.current_a + grade.amp_a * y
+    sensed.battery_a = amps if amps > 0.0 else 0.0
+    sensed.battery_used_mah = sensed.amp_scale * body.consumed_mah
+    x, y, z = three(sensed.esc_key, counter)
+    white = grade.esc
+    sensed.esc_1 = _at_least_0(body.s1 * body.health_1, x * white)
+    sensed.esc_2 = _at_least_0(body.s2 * body.health_2, y * white)
+    sensed.esc_3 = _at_least_0(body.s3 * body.health_3, z * white)
+    sensed.esc_4 = _at_least_0(body.s4 * body.health_4, (x + y) * (0.7 * white))
+
+
+@kernel
+def _at_least_0(value: float, noise: float) -> float:
+    """With noise where something turns; what stands still is 0."""
+    noisy = value + noise
+    return noisy if value > 0.0 and noisy > 0.0 else 0.0
 
 
 @kernel

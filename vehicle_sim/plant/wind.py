@@ -13,7 +13,7 @@ from typing import Final
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.noise import bits, uniform
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.constants import Plant
 
 WIND_EVERY: Final = 5
 """Steps between two updates of the air."""
@@ -32,14 +32,14 @@ _SLOWEST_M_S: Final = 1.0
 
 
 @kernel
-def blow(body: Body, frame: AirframeConstants, k: int) -> None:
+def blow(body: Body, plant: Plant, k: int) -> None:
     """`WIND_EVERY` steps of the air; `k` is the step number, which the noise draws by.
 
     The field stands still in the moving air (Taylor), so it passes at the airspeed V and its
     correlation time is L / V.  Whatever V does, the variance stays: g' = a g + sqrt(1 - a^2) s n.
     One even draw for each axis is enough; over a correlation time they add up to a normal one.
     """
-    dt_s = frame.dt_s * WIND_EVERY
+    dt_s = plant.dt_s * WIND_EVERY
     follow = dt_s / (body.wind_rise_s + dt_s)
     flow_n = body.flow_n + follow * (body.wind_n - body.flow_n)
     flow_e = body.flow_e + follow * (body.wind_e - body.flow_e)

@@ -21,6 +21,7 @@ from vehicle_sim.engine.engines import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
+from vehicle_sim.plant.sensors import MEMS, SensorGrade
 from vehicle_sim.services.profile import Profile, profile_of, without_camera
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.services.stream_sets import (
@@ -81,6 +82,7 @@ class Plan:
     boot: Boot = "quick"
     camera: bool = True
     operator_control: bool = False  # one station at a time commands
+    grade: SensorGrade = MEMS
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +105,7 @@ def launch(plan: Plan) -> Opened:
         VehicleSpec(plan.seed, index, setup.home.lat_deg)
         for index, setup in enumerate(plan.vehicles)
     ]
-    engine = engine_for(specs, load(plan.airframe))
+    engine = engine_for(specs, load(plan.airframe), plan.grade)
     unix_ns = time.time_ns()
     profile = profile_of(plan.personality, plan.firmware)
     if not plan.camera:

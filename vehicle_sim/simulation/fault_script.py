@@ -11,6 +11,9 @@
     kind = "link"
     loss = 0.3           # and delay_s, jitter_s, duplicate, reorder, out, direction
 
+payload, centre_of_mass, weak_battery, thrust, inertia and motor change the vehicle alone: the
+autopilot goes on believing its airframe's data sheet.
+
 The kinds and their keys are the literal table `KINDS`.  Equal files and seeds give equal flights.
 """
 
@@ -135,6 +138,15 @@ KINDS: Final[dict[str, Callable[[_Entry], AnyFault]]] = {
         int(e.required("motor", 1, 4)), e.number("health", 0.0, 0.0, 1.0)
     ),
     "battery": lambda e: model.CellsLost(e.number("cells", 1.0, 0.0, 12.0)),
+    "payload": lambda e: model.Payload(e.required("mass_kg", -10.0, 50.0)),
+    "centre_of_mass": lambda e: model.CentreOfMass(
+        e.number("forward_m", 0.0, -0.2, 0.2), e.number("right_m", 0.0, -0.2, 0.2)
+    ),
+    "weak_battery": lambda e: model.WeakBattery(
+        e.number("resistance_scale", 1.0, 0.1, 20.0), e.number("capacity_scale", 1.0, 0.05, 2.0)
+    ),
+    "thrust": lambda e: model.ThrustScale(e.required("scale", 0.0, 2.0)),
+    "inertia": lambda e: model.InertiaScale(e.required("scale", 0.5, 4.0)),
     "wind": lambda e: model.WindChange(
         e.vector("wind_ned_m_s", 60.0), e.number("gust_m_s", 0.0, 0.0, 20.0)
     ),

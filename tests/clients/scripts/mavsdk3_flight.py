@@ -102,7 +102,7 @@ async def fly(drone: System, personality: str) -> None:
     await action.arm()
     await action.takeoff()
     await until(telemetry.armed(), bool, "armed")
-    await until(telemetry.position(), lambda p: p.relative_altitude_m > 3.6, "4 m up")
+    await until(telemetry.position(), lambda p: p.relative_altitude_m > 3.1, "4 m up")
     print("taken off")
     home = await first(telemetry.home())
     await action.set_current_speed(4.0)

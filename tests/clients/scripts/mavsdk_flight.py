@@ -62,7 +62,8 @@ def fly(telemetry: Telemetry, action: Action, personality: str) -> None:
     until(telemetry.armed, "armed")
     action.takeoff()
     until(telemetry.in_air, "in the air")
-    until(lambda: abs(telemetry.position().relative_altitude_m - 4.0) < 0.3, "4 m up")
+    low_m = 0.8 if personality == "px4" else 0.0  # PX4 ends its climb within NAV_MC_ALT_RAD
+    until(lambda: -low_m - 0.3 < telemetry.position().relative_altitude_m - 4.0 < 0.3, "4 m up")
     if personality == "px4":
         until(lambda: telemetry.flight_mode() is FlightMode.HOLD, "taken off")
     print("taken off", telemetry.landed_state() is not LandedState.ON_GROUND)

@@ -27,7 +27,7 @@ def take_off(telemetry: Telemetry, action: Action, up_m: float) -> None:
     action.set_takeoff_altitude(up_m)
     action.arm()
     action.takeoff()
-    until(lambda: telemetry.position().relative_altitude_m > up_m - 0.5, "up")
+    until(lambda: telemetry.position().relative_altitude_m > up_m - 0.9, "up")
     until(lambda: telemetry.flight_mode() is FlightMode.HOLD, "taken off")
 
 

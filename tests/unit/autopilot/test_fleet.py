@@ -96,6 +96,11 @@ def trouble(vehicles: Sequence[Autopilot]) -> None:
                 blocks.sensed.gps_lost = True
             case 4:
                 blocks.sensed.baro_off_m = 3.0
+            case 5:
+                blocks.body.payload_kg, blocks.body.mass_off_x = 0.5, 0.02
+            case 6:
+                blocks.body.thrust_scale, blocks.body.inertia_scale = 0.7, 0.5
+                blocks.body.health_2 = 0.8
             case _:
                 pass
 

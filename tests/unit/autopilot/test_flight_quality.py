@@ -45,7 +45,7 @@ class Hand:
         self.engine = Few([VehicleSpec(seed, 0, 47.4)], load(airframe))
         blocks = self.engine.blocks(0)
         self.body, self.est, self.flight = blocks.body, blocks.est, blocks.flight
-        self.pilot = FlightControl(self.flight, self.engine.frame.idle)
+        self.pilot = FlightControl(self.flight, self.engine.believed.idle)
 
     def situation(self) -> Situation:
         s = Situation(LIMITS)

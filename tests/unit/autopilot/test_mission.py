@@ -259,7 +259,7 @@ def test_another_item_can_be_made_current(personality: Personality) -> None:
         item(1, 16, 30.0, 0.0, 4.0),
         item(2, 16, 0.0, 5.0, 4.0),
     )
-    flight.fly(6.0)
+    flight.fly(9.0)
     assert flight.vehicle.mission_set_current(99) is Result.DENIED
     assert flight.vehicle.mission_set_current(2 + first) is Result.ACCEPTED
     flight.fly(20.0, lambda: flight.vehicle.mission_state == 5)

@@ -75,7 +75,7 @@ def test_an_empty_battery_carries_nobody() -> None:
     """PX4 only warns of a low battery by default (COM_LOW_BAT_ACT 0): it flies on till it falls."""
     flight = HandFlight.hovering("px4", 5.0)
     body = flight.vehicle.blocks.body
-    body.consumed_mah = flight.vehicle.engine.frame.capacity_mah
+    body.consumed_mah = 5000.0
     flight.fly(300.0, lambda: flight.up_m < 0.1)
     assert flight.up_m < 0.1
     assert flight.vehicle.truth.battery == 0.0

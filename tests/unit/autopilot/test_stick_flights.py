@@ -60,7 +60,7 @@ def test_thrust_modes_climb_and_sink_with_the_throttle(personality: Personality,
     assert flight.mode(mode) is Result.ACCEPTED
     flight.hold(0.5, up=0)
     assert flight.vehicle.arm(False) is Result.ACCEPTED
-    flight.hold(1.0, up=200)
+    flight.hold(3.0, up=200)  # ArduCopter's motors only idle for so long after the arming
     assert flight.landed() is Landed.ON_GROUND
     flight.hold(2.0, up=750)
     assert flight.vehicle.truth.v_ned[2] < -1.0
@@ -76,7 +76,7 @@ def test_the_yaw_stick_turns_clockwise_and_the_heading_stays_afterwards(
 ) -> None:
     flight = HandFlight.by_hand(personality, mode)
     before = flight.vehicle.estimate.heading_rad
-    flight.hold(1.5, clockwise=500)
+    flight.hold(1.0, clockwise=500)
     flight.hold(1.0)
     turned = (flight.vehicle.estimate.heading_rad - before) % (2.0 * pi)
     assert 0.4 < turned < pi

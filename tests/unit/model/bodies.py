@@ -10,11 +10,11 @@ from typing import TypeAlias
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.plant.airframe import load, shipped
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants, frame_of
+from vehicle_sim.plant.constants import Plant, plant_of
 from vehicle_sim.plant.quad import advance, begin
 
 DT_S = 0.004
-FRAMES = {name: frame_of(load(name), DT_S) for name in shipped()}
+PLANTS = {name: plant_of(load(name), DT_S) for name in shipped()}
 Motors: TypeAlias = tuple[float, float, float, float]
 OFF: Motors = (0.0, 0.0, 0.0, 0.0)
 _LETTERS = {"float": "d", "int": "Q", "bool": "?"}
@@ -26,42 +26,42 @@ def state_bytes(body: Body) -> bytes:
     return struct.pack(layout, *(getattr(body, field.name) for field in fields(Body)))
 
 
-def standing(frame: AirframeConstants, gust_key: int = 1) -> Body:
+def standing(plant: Plant, gust_key: int = 1) -> Body:
     body = Body()
-    begin(body, gust_key, frame)
+    begin(body, gust_key, plant)
     return body
 
 
-def airborne(frame: AirframeConstants, up_m: float = 1000.0) -> Body:
-    body = standing(frame)
+def airborne(plant: Plant, up_m: float = 1000.0) -> Body:
+    body = standing(plant)
     body.pos_d = -up_m
     return body
 
 
-def airless(frame: AirframeConstants) -> AirframeConstants:
-    return replace(frame, drag_n_per_m2_s2=0.0, rotor_drag_n_s_per_m=0.0, inflow_n_s_per_m=0.0)
+def airless(plant: Plant) -> Plant:
+    return replace(plant, drag_n_per_m2_s2=0.0, rotor_drag_n_s_per_m=0.0, inflow_n_s_per_m=0.0)
 
 
-def run(body: Body, frame: AirframeConstants, seconds: float, motors: Motors = OFF) -> None:
+def run(body: Body, plant: Plant, seconds: float, motors: Motors = OFF) -> None:
     """From step 1 on; the commands stay the same."""
-    for k in range(1, round(seconds / frame.dt_s) + 1):
-        advance(body, *motors, frame, k)
+    for k in range(1, round(seconds / plant.dt_s) + 1):
+        advance(body, *motors, plant, k)
 
 
-def hover_speed(frame: AirframeConstants) -> float:
+def hover_speed(plant: Plant) -> float:
     """Of each motor, as a part of full speed."""
-    return sqrt(frame.mass_kg * GRAVITY_M_S2 / 4.0 / frame.thrust_max_n)
+    return sqrt(plant.mass_kg * GRAVITY_M_S2 / 4.0 / plant.thrust_max_n)
 
 
-def hovering(frame: AirframeConstants) -> Body:
+def hovering(plant: Plant) -> Body:
     """In the air with the motors at hover speed already."""
-    body = airborne(frame)
-    body.s1 = body.s2 = body.s3 = body.s4 = hover_speed(frame)
+    body = airborne(plant)
+    body.s1 = body.s2 = body.s3 = body.s4 = hover_speed(plant)
     return body
 
 
-def hover_motors(body: Body, frame: AirframeConstants) -> Motors:
-    u = hover_speed(frame) / body.strength
+def hover_motors(body: Body, plant: Plant) -> Motors:
+    u = hover_speed(plant) / body.strength
     return (u, u, u, u)
 
 
@@ -83,19 +83,19 @@ def turned(body: Body, vector: tuple[float, float, float]) -> tuple[float, float
     )
 
 
-def energy_of(body: Body, frame: AirframeConstants) -> float:
+def energy_of(body: Body, plant: Plant) -> float:
     """Kinetic and potential [J], over the level of rest."""
     v2 = body.vel_n**2 + body.vel_e**2 + body.vel_d**2
     return (
-        0.5 * frame.mass_kg * v2
-        - frame.mass_kg * GRAVITY_M_S2 * body.pos_d
-        + turning_energy_of(body, frame)
+        0.5 * plant.mass_kg * v2
+        - plant.mass_kg * GRAVITY_M_S2 * body.pos_d
+        + turning_energy_of(body, plant)
     )
 
 
-def turning_energy_of(body: Body, frame: AirframeConstants) -> float:
+def turning_energy_of(body: Body, plant: Plant) -> float:
     return 0.5 * (
-        frame.inertia_xx_kg_m2 * body.rate_x**2
-        + frame.inertia_yy_kg_m2 * body.rate_y**2
-        + frame.inertia_zz_kg_m2 * body.rate_z**2
+        plant.inertia_xx_kg_m2 * body.rate_x**2
+        + plant.inertia_yy_kg_m2 * body.rate_y**2
+        + plant.inertia_zz_kg_m2 * body.rate_z**2
     )

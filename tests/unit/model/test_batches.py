@@ -7,11 +7,11 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from tests.unit.model.bodies import FRAMES, Motors, standing, state_bytes
+from tests.unit.model.bodies import PLANTS, Motors, standing, state_bytes
 from vehicle_sim.numerics.lanes import Lanes, batched
 from vehicle_sim.numerics.noise import key_of
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.constants import Plant
 from vehicle_sim.plant.quad import advance, begin
 
 STEPS = 2000
@@ -29,6 +29,10 @@ def scene(body: Body, index: int) -> None:
         body.health_2, body.health_3 = 0.0, 0.6
     if index % 7 == 2:
         body.cells_lost = 1.0
+    if index % 6 == 5:
+        body.payload_kg, body.mass_off_x, body.mass_off_y = 0.05 * index, 0.01, -0.02
+        body.inertia_scale, body.thrust_scale = 1.5, 0.9
+        body.resistance_scale, body.capacity_scale = 2.0, 0.5
     body.wind_e, body.gust_m_s = 0.7 * (index % 11), 0.4 * (index % 4)
 
 
@@ -39,11 +43,11 @@ def commands(k: int) -> Motors:
 
 
 @pytest.mark.parametrize("count", [1, 7, 100])
-@pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
-def test_a_batch_flies_as_each_by_itself(frame: AirframeConstants, count: int) -> None:
-    alone = [standing(frame) for _ in range(count)]
+@pytest.mark.parametrize("plant", PLANTS.values(), ids=PLANTS)
+def test_a_batch_flies_as_each_by_itself(plant: Plant, count: int) -> None:
+    alone = [standing(plant) for _ in range(count)]
     together = Lanes(Body, count)
-    batched(begin)(together.all, 1, frame)
+    batched(begin)(together.all, 1, plant)
     for index, body in enumerate(alone):
         scene(body, index)
         scene(together.lane(index), index)
@@ -52,8 +56,8 @@ def test_a_batch_flies_as_each_by_itself(frame: AirframeConstants, count: int) -
         for k in range(1, STEPS + 1):
             u = commands(k)
             for body in alone:
-                advance(body, *u, frame, k)
-            step(together.all, *u, frame, k)
+                advance(body, *u, plant, k)
+            step(together.all, *u, plant, k)
     ends = [state_bytes(body) for body in alone]
     assert [state_bytes(together.lane(index)) for index in range(count)] == ends
     assert len(set(ends)) == count

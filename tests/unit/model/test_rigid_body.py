@@ -7,13 +7,13 @@ from math import log2, pi, sqrt
 
 import pytest
 
-from tests.unit.model.bodies import DT_S, FRAMES, energy_of, turned, turning_energy_of
+from tests.unit.model.bodies import DT_S, PLANTS, energy_of, turned, turning_energy_of
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.frame import AirframeConstants
+from vehicle_sim.plant.constants import Plant
 from vehicle_sim.plant.rigid_body import move
 
-S500 = FRAMES["s500"]
+S500 = PLANTS["s500"]
 ASYMMETRIC = replace(
     S500,
     inertia_xx_kg_m2=0.02,
@@ -25,18 +25,18 @@ ASYMMETRIC = replace(
 )
 
 
-def coast(body: Body, frame: AirframeConstants, steps: int) -> None:
+def coast(body: Body, plant: Plant, steps: int) -> None:
     for _ in range(steps):
-        move(body, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, frame)
+        move(body, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, plant)
 
 
-def angular_momentum_ned(body: Body, frame: AirframeConstants) -> tuple[float, float, float]:
+def angular_momentum_ned(body: Body, plant: Plant) -> tuple[float, float, float]:
     return turned(
         body,
         (
-            frame.inertia_xx_kg_m2 * body.rate_x,
-            frame.inertia_yy_kg_m2 * body.rate_y,
-            frame.inertia_zz_kg_m2 * body.rate_z,
+            plant.inertia_xx_kg_m2 * body.rate_x,
+            plant.inertia_yy_kg_m2 * body.rate_y,
+            plant.inertia_zz_kg_m2 * body.rate_z,
         ),
     )
 
@@ -101,13 +101,13 @@ def test_the_tumbling_of_an_asymmetric_body_keeps_momentum_and_energy() -> None:
 
 def test_tumbling_is_integrated_to_the_second_order() -> None:
     def drift(steps: int) -> tuple[float, float]:
-        frame = replace(ASYMMETRIC, dt_s=2.0 / steps)
+        plant = replace(ASYMMETRIC, dt_s=2.0 / steps)
         body = Body(rate_x=2.0, rate_y=6.0, rate_z=1.0)
-        before, energy = angular_momentum_ned(body, frame), turning_energy_of(body, frame)
-        coast(body, frame, steps)
-        after = angular_momentum_ned(body, frame)
+        before, energy = angular_momentum_ned(body, plant), turning_energy_of(body, plant)
+        coast(body, plant, steps)
+        after = angular_momentum_ned(body, plant)
         off = sqrt(sum((a - b) ** 2 for a, b in zip(after, before, strict=True)))
-        return off, abs(turning_energy_of(body, frame) - energy)
+        return off, abs(turning_energy_of(body, plant) - energy)
 
     (coarse, coarse_j), (fine, fine_j) = drift(500), drift(1000)
     assert log2(coarse / fine) == pytest.approx(2.0, abs=0.1)

@@ -6,13 +6,13 @@ from math import exp, sqrt
 
 import pytest
 
-from tests.unit.model.bodies import FRAMES, airborne, hover_motors, hovering, standing, state_bytes
+from tests.unit.model.bodies import PLANTS, airborne, hover_motors, hovering, standing, state_bytes
 from vehicle_sim.numerics.noise import key_of
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.quad import advance, begin
 from vehicle_sim.plant.wind import LENGTH_D_M, LENGTH_M, RATIO_D, WIND_EVERY, blow
 
-S500 = FRAMES["s500"]
+S500 = PLANTS["s500"]
 UPDATE_S = S500.dt_s * WIND_EVERY
 AIRSPEED_M_S = 34.0
 SIGMA_M_S = 2.0

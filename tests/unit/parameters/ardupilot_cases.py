@@ -133,8 +133,16 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "MOT_SPOOL_TIME",
-        {0.05: pytest.approx(0.06, abs=0.12), 2.0: pytest.approx(2.0, abs=0.12)},
+        # After the delay of 2 s, and with 0.05 s until the throttle is open; asked at 10 Hz.
+        {0.05: pytest.approx(2.15, abs=0.12), 2.0: pytest.approx(4.1, abs=0.12)},
         fly.lifts_off_after_s,
+        also={"TKOFF_SLEW_TIME": 0.25, "MOT_THST_HOVER": 0.2},
+    ),
+    Case(
+        "TKOFF_SLEW_TIME",
+        {2.0: pytest.approx(2.5 + 0.39 * 2.0, abs=0.12), 5.0: pytest.approx(4.45, abs=0.12)},
+        fly.lifts_off_after_s,
+        also={"MOT_THST_HOVER": 0.39},
     ),
     # Fence and rally points.
     Case(
@@ -456,7 +464,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "PSC_POSZ_P",
         {0.5: pytest.approx(0.224, rel=0.12), 1.0: pytest.approx(0.53, rel=0.12)},
-        fly.answer("pos_d", fly.reference(ref_d=1.0, goal_d=1.0), 1.0),
+        fly.answer("pos_d", fly.reference(ref_d=1.0, goal_d=1.0), 1.0, hover_s=6.0),
     ),
     Case(
         "PSC_VELZ_P",
@@ -471,7 +479,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "PSC_ACCZ_I",
         {0.2: pytest.approx(-0.116, rel=0.12), 2.0: pytest.approx(-0.964, rel=0.12)},
-        fly.learns("int_d", 3.0, health_1=0.8, health_2=0.8, health_3=0.8, health_4=0.8),
+        fly.lifts(3.0, 0.8),
     ),
     # Messages and logs.
     Case("LOG_BACKEND_TYPE", {0: (False, False, False), 1: (False, True, False)}, fly.logs_written),

@@ -129,7 +129,7 @@ def takes_off_by_itself(setting: Setting) -> bool:
     flight.vehicle.load_plan((item(0, 16), item(1, 22, up_m=5.0)))
     flight.mode("AUTO")
     flight.vehicle.arm(True)
-    flight.fly(4.0)
+    flight.fly(7.0)
     return flight.up_m > 1.0
 
 

@@ -213,6 +213,13 @@ CASES: tuple[Case, ...] = (
         "MIS_TAKEOFF_ALT",
         {2.5: pytest.approx(2.5, abs=0.3), 6.0: pytest.approx(6.0, abs=0.3)},
         fly.take_off_height_m,
+        also={"NAV_MC_ALT_RAD": 0.2},
+    ),
+    Case(
+        "NAV_MC_ALT_RAD",
+        {0.2: pytest.approx(5.0 - 0.15, abs=0.15), 0.8: pytest.approx(5.0 - 0.65, abs=0.15)},
+        fly.take_off_height_m,
+        also={"MIS_TAKEOFF_ALT": 5.0},
     ),
     Case(
         "MPC_ACC_DOWN_MAX",
@@ -245,6 +252,12 @@ CASES: tuple[Case, ...] = (
         "MPC_LAND_SPEED",
         {0.7: pytest.approx(0.7, abs=0.1), 1.2: pytest.approx(1.2, abs=0.1)},
         fly.sink_at(3.0),
+    ),
+    Case(
+        "MPC_TKO_RAMP_T",
+        # 1 m/s is two thirds of MPC_TKO_SPEED.
+        {0.0: pytest.approx(0.6, abs=0.3), 5.0: pytest.approx(5.0 * 2 / 3 + 0.3, abs=0.3)},
+        own.climbs_1_m_s_after_s,
     ),
     Case(
         "MPC_TKO_SPEED",
@@ -478,7 +491,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "MPC_XY_P",
         {0.5: pytest.approx(0.304, rel=0.12), 0.95: pytest.approx(0.551, rel=0.12)},
-        fly.answer("pos_n", fly.reference(ref_n=1.0, goal_n=1.0), 1.0),
+        fly.answer("pos_n", fly.reference(ref_n=1.0, goal_n=1.0), 1.0, hover_s=6.0),
     ),
     Case(
         "MPC_XY_VEL_P_ACC",
@@ -488,7 +501,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "MPC_Z_P",
         {0.5: pytest.approx(0.22, rel=0.12), 1.0: pytest.approx(0.51, rel=0.12)},
-        fly.answer("pos_d", fly.reference(ref_d=1.0, goal_d=1.0), 1.0),
+        fly.answer("pos_d", fly.reference(ref_d=1.0, goal_d=1.0), 1.0, hover_s=6.0),
     ),
     Case(
         "MPC_Z_VEL_P_ACC",
@@ -503,7 +516,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "MPC_Z_VEL_I_ACC",
         {0.5: pytest.approx(-0.153, rel=0.12), 3.0: pytest.approx(-0.798, rel=0.12)},
-        fly.learns("int_d", 3.0, health_1=0.8, health_2=0.8, health_3=0.8, health_4=0.8),
+        fly.lifts(3.0, 0.8),
     ),
     Case(
         "MPC_JERK_AUTO",

@@ -47,6 +47,15 @@ def percent_left(setting: Setting) -> int:
     return flight.vehicle.power.remaining_pct
 
 
+def climbs_1_m_s_after_s(setting: Setting) -> float:
+    """From leaving the ground."""
+    flight = setting.at_home()
+    flight.vehicle.arm(False)
+    flight.vehicle.take_off(15.0)
+    flight.fly(5.0, lambda: flight.vehicle.blocks.flight.flying)
+    return flight.fly(10.0, lambda: flight.vehicle.truth.v_ned[2] < -1.0)
+
+
 _LEVEL = Posture(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.5,) * 4, (0.5,) * 4)
 
 

@@ -23,6 +23,7 @@ from tests.unit.vehicle_services.fake_vehicle import Bench, S, long
 from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, MissionReached, Setpoint
 from vehicle_sim.autopilot.manual.stick_feel import Feel, feel_of, thrust_of
 from vehicle_sim.autopilot.manual.sticks import Sticks
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.vectors import Quat
 from vehicle_sim.plant.faults import Fault
 from vehicle_sim.services.profile import profile_of
@@ -133,9 +134,12 @@ def _reference_m_s2(flight: HandFlight) -> float:
 
 
 def turn_deg_s(setting: Setting) -> float:
-    """Turning on the way to a heading behind it."""
+    """Turning on the way to a heading behind it: not a setpoint's, which it takes at once."""
     flight = setting.aloft()
-    flight.vehicle.reposition(where(flight), 3.0, None)
+    if setting.personality == "ardupilot":
+        flight.vehicle.condition_yaw(3.0, False, 0.0, 0)
+    else:
+        flight.vehicle.reposition(where(flight), 3.0, None)
     flight.fly(1.2)
     before = flight.vehicle.estimate.heading_rad
     flight.fly(0.5)
@@ -346,6 +350,26 @@ def learns(field: str, seconds: float, **wind: float) -> Script:
             setattr(flight.vehicle.blocks.body, name, value)
         flight.fly(seconds)
         return float(getattr(flight.vehicle.blocks.flight, field)) - before
+
+    return script
+
+
+def lifts(seconds: float, health: float) -> Script:
+    """What the vertical integrator has taken up [m/s^2, down] of weaker motors.
+
+    The hover thrust that is learnt from it meanwhile counts as its work: it is handed over.
+    """
+
+    def taken(flight: HandFlight) -> float:
+        f = flight.vehicle.blocks.flight
+        return GRAVITY_M_S2 - f.load * (GRAVITY_M_S2 - f.int_d)
+
+    def script(setting: Setting) -> object:
+        flight = setting.aloft()
+        before, body = taken(flight), flight.vehicle.blocks.body
+        body.health_1 = body.health_2 = body.health_3 = body.health_4 = health
+        flight.fly(seconds)
+        return taken(flight) - before
 
     return script
 

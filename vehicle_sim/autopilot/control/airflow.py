@@ -10,9 +10,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import Final
 
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.vectors import Vec3
-from vehicle_sim.plant.frame import AirframeConstants
 from vehicle_sim.plant.sensed import Sensed
 
 _SMOOTH_S: Final = 3.0
@@ -65,13 +65,13 @@ class Airflow:
         )
 
     def update(
-        self, est: Estimated, sensed: Sensed, spin: float, frame: AirframeConstants, dt_s: float
+        self, est: Estimated, sensed: Sensed, spin: float, believed: Believed, dt_s: float
     ) -> None:
         """In flight; `spin` is the sum of the motors' speeds, each 0..1."""
-        drag_x, drag_y = frame.mass_kg * sensed.accel_x, frame.mass_kg * sensed.accel_y
+        drag_x, drag_y = believed.mass_kg * sensed.accel_x, believed.mass_kg * sensed.accel_y
         drag = sqrt(drag_x * drag_x + drag_y * drag_y)
         # (rotors + body v) v = drag
-        rotors, body = frame.rotor_drag_n_s_per_m * spin, frame.drag_n_per_m2_s2
+        rotors, body = believed.rotor_drag_n_s_per_m * spin, believed.drag_n_per_m2_s2
         speed = (sqrt(rotors * rotors + 4.0 * body * drag) - rotors) / (2.0 * body)
         scale = -speed / drag if drag > 0.0 else 0.0
         x, y = scale * drag_x, scale * drag_y

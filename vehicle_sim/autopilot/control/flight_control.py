@@ -7,7 +7,7 @@ the flight; the land detector ends it.
 from __future__ import annotations
 
 from math import atan2, pi, remainder, sqrt
-from typing import assert_never
+from typing import Final, assert_never
 
 from vehicle_sim.autopilot.control.demands import (
     STILL,
@@ -23,6 +23,7 @@ from vehicle_sim.autopilot.control.demands import (
     Situation,
 )
 from vehicle_sim.autopilot.interface import AttitudeSetpoint
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.control_loops.flight import (
     ACCELERATE,
     AT_VELOCITY,
@@ -36,7 +37,9 @@ from vehicle_sim.control_loops.flight import (
 from vehicle_sim.control_loops.trajectory import MotionLimits
 from vehicle_sim.numerics.vectors import Quat, Vec3
 
-_LAND_S = 0.6
+LAND_S: Final[dict[Personality, float]] = {"px4": 1.0, "ardupilot": 0.6}
+"""How long the land detector must feel the ground: LNDMC_TRIG_TIME, by memory; ArduCopter's 1 s
+begins earlier than `guidance.feel_ground` can tell."""
 
 
 def heading_of(q_ned_from_frd: Quat) -> float:
@@ -81,6 +84,12 @@ class Heading:
             return
         self.turn(yaw_rad, self.max_rad_s, 0)
 
+    def point(self, yaw_rad: float) -> None:
+        """At once: as fast as the attitude loop takes it there, as a setpoint from outside."""
+        if yaw_rad != self._goal_rad or self._flight.yaw_spin_rad_s != 0.0:
+            self.reset(wrap_pi(yaw_rad))
+            self._goal_rad = yaw_rad
+
     def turn(self, yaw_rad: float, rate_rad_s: float, direction: int) -> None:
         """`direction` 1 clockwise, -1 counter-clockwise, 0 the shorter way."""
         f = self._flight
@@ -108,13 +117,14 @@ class Heading:
 class FlightControl:
     """The demands of one vehicle, written into its loops."""
 
-    __slots__ = ("_demand", "flight", "heading", "idle")
+    __slots__ = ("_demand", "_land_s", "flight", "heading", "idle")
 
-    def __init__(self, flight: Flight, idle: float) -> None:
-        """`idle`: speed (0..1) of an armed motor on the ground."""
+    def __init__(self, flight: Flight, idle: float, land_s: float = 1.0) -> None:
+        """`idle`: speed (0..1) of an armed motor on the ground; `land_s`: see `LAND_S`."""
         self.flight = flight
         self.heading = Heading(flight)
         self.idle = idle
+        self._land_s = land_s
         self._demand: Demand | None = None
 
     @property
@@ -146,6 +156,7 @@ class FlightControl:
         f.flying = True
         f.still_s = 0.0
         f.int_n = f.int_e = f.int_d = 0.0
+        f.int_roll_n = f.int_pitch_n = f.int_yaw_n = 0.0
         f.ref_n, f.ref_e, f.ref_d = pos_ned
         f.ref_vel_n = f.ref_vel_e = f.ref_vel_d = 0.0
         f.ref_acc_n = f.ref_acc_e = f.ref_acc_d = 0.0
@@ -154,7 +165,7 @@ class FlightControl:
 
     def touched_down(self) -> bool:
         """The land detector has struck."""
-        return self.flight.still_s >= _LAND_S
+        return self.flight.still_s >= self._land_s
 
     # -------------------------------------------------------------------------- demands
 

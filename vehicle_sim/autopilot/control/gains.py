@@ -9,10 +9,10 @@ from math import radians, tan
 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.cascade import tune
 from vehicle_sim.control_loops.flight import Flight
 from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.plant.frame import AirframeConstants
 
 _GAINS: dict[Personality, dict[str, str]] = {
     "px4": {
@@ -59,16 +59,17 @@ _RATES: dict[Personality, dict[str, str]] = {
         "ATC_RATE_Y_MAX": "yaw_rate_max_rad_s",
     },
 }
+# PX4: MPC_THR_MIN and LNDMC_LOW_T_THR (0.3, by memory) of the way from it to MPC_THR_HOVER, with
+# their defaults of 0.12 and 0.5.  ArduCopter's as the time from touch-down to disarming has it.
+_LAND_SHARE: dict[Personality, float] = {"px4": (0.12 + 0.3 * (0.5 - 0.12)) / 0.5, "ardupilot": 0.7}
 _TILT_MOST_DEG = 80.0  # beyond it no collective carries any vehicle
 
 
-def write_gains(
-    parameters: Parameters, flight: Flight, est: Estimated, frame: AirframeConstants
-) -> None:
+def write_gains(parameters: Parameters, flight: Flight, est: Estimated, believed: Believed) -> None:
     """Gains and bounds of one vehicle, from its airframe and its parameters."""
     get = parameters.get
     designed = Flight()
-    tune(designed, frame)
+    tune(designed, believed)
     for name, field in _GAINS[parameters.personality].items():
         ratio = get(name) / parameters.designed(name)
         setattr(flight, field, ratio * getattr(designed, field))
@@ -79,6 +80,7 @@ def write_gains(
         setattr(flight, field, radians(get(name)) if own else getattr(designed, field))
     lean_deg = get("MPC_TILTMAX_AIR") if px4 else 0.01 * get("ANGLE_MAX")
     flight.tilt_max = tan(radians(min(lean_deg, _TILT_MOST_DEG)))
+    flight.land_share = _LAND_SHARE[parameters.personality]
     if px4:
         flight.jerk_m_s3 = get("MPC_JERK_AUTO")
         flight.lead_max_m = get("MPC_XY_ERR_MAX")

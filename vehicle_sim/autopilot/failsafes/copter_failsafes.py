@@ -23,7 +23,7 @@ from vehicle_sim.autopilot.fence.geofence import names
 from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import position_ok
-from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.sensed import Sensed
 
 _GIVE_UP_M = 100.0  # it lands at once when it is further outside than this
 _EKF_CHECKS = 10  # of ekf_check: a second of bad ones in a row
@@ -52,10 +52,10 @@ class CopterFailsafes(FailsafeChecks):
         self._used_most_mah = get("BATT_CAPACITY") - max(get("BATT_LOW_MAH"), get("BATT_CRT_MAH"))
         self._ratio_most = get("FS_EKF_THRESH")
 
-    def _well(self, body: Body, est: Estimated) -> bool:
-        if self._low_since_ns is not None or body.voltage_v < self._volt_least:
+    def _well(self, sensed: Sensed, est: Estimated) -> bool:
+        if self._low_since_ns is not None or sensed.battery_v < self._volt_least:
             return False
-        if body.consumed_mah > self._used_most_mah:
+        if sensed.battery_used_mah > self._used_most_mah:
             return False
         most = self._ratio_most
         return most <= 0.0 or (

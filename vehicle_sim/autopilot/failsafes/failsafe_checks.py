@@ -16,9 +16,10 @@ from vehicle_sim.autopilot.fence.geofence import Crossing
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Mode
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import Health
-from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.sensed import Sensed
 
 
 @dataclass(slots=True)
@@ -57,14 +58,25 @@ Strike: TypeAlias = Failsafe | Cleared
 class FailsafeChecks(ABC):
     """Remembers what has struck, so that each is told and acted on once."""
 
-    __slots__ = ("_charge", "_first", "_parameters", "_station_limit_ns", "_station_ns",
-                 "_version", "position_lost", "station_lost", "sticks_lost")  # fmt: skip
+    __slots__ = (
+        "_believed",
+        "_charge",
+        "_first",
+        "_parameters",
+        "_station_limit_ns",
+        "_station_ns",
+        "_version",
+        "position_lost",
+        "station_lost",
+        "sticks_lost",
+    )
 
     back_again: Cleared
     """What is said when the ground station is heard again."""
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: Parameters, believed: Believed) -> None:
         self._parameters = parameters
+        self._believed = believed
         self._version = -1
         self._station_ns: int | None = None
         self.station_lost = False
@@ -84,7 +96,7 @@ class FailsafeChecks(ABC):
         self.station_lost = False
         return self.back_again if back else None
 
-    def quiet(self, wall_ns: int, body: Body, est: Estimated, sticks_lost: bool) -> bool:
+    def quiet(self, wall_ns: int, sensed: Sensed, est: Estimated, sticks_lost: bool) -> bool:
         """Whether `check` would find nothing, the fence aside, and change nothing.
 
         Nearly always so, and much cheaper than to check.
@@ -98,14 +110,14 @@ class FailsafeChecks(ABC):
         heard_ns = None if self.station_lost else self._station_ns
         if heard_ns is not None and wall_ns - heard_ns >= self._station_limit_ns:
             return False
-        return self._well(body, est)
+        return self._well(sensed, est)
 
     @abstractmethod
     def _learn(self) -> None:
         """Parameters have changed."""
 
     @abstractmethod
-    def _well(self, body: Body, est: Estimated) -> bool:
+    def _well(self, sensed: Sensed, est: Estimated) -> bool:
         """Battery and position are far from any failsafe."""
 
     def check(self, seen: Seen) -> list[Strike]:

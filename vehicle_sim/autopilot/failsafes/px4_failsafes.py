@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
+from vehicle_sim.autopilot.control.battery_charge import resting_v, voltage_of
 from vehicle_sim.autopilot.failsafes.failsafe import (
     BATTERY,
     BREACH,
@@ -25,7 +26,7 @@ from vehicle_sim.autopilot.fence.geofence import BreachKind
 from vehicle_sim.autopilot.modes import Behaviour, StickLaw
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import position_ok
-from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.sensed import Sensed
 
 _BATTERY_ADVICE = {
     Charge.LOW: ("Low battery level, return advised", 4),
@@ -35,6 +36,8 @@ _BATTERY_ADVICE = {
 
 # COM_RCL_EXCEPT: 1 mission, 2 every other mode that flies by itself, 4 offboard.
 _RC_EXCEPTION = {Behaviour.MISSION: 1, Behaviour.GUIDED: 4}
+
+_ROUNDING_V = 1e-6
 
 _VIOLATIONS = {
     BreachKind.CIRCLE: "exceeding maximum distance to Home",
@@ -53,24 +56,24 @@ def violation(kinds: BreachKind) -> str:
 class Px4Failsafes(FailsafeChecks):
     """PX4's."""
 
-    __slots__ = ("_charge_least", "_eph_most_m", "_without_sticks")
+    __slots__ = ("_eph_most_m", "_resting_least_v", "_without_sticks")
 
     back_again = Cleared(Cause.STATION, "GCS connection regained")
 
     def _learn(self) -> None:
         get = self._parameters.get
         names = ("BAT_LOW_THR", "BAT_CRIT_THR", "BAT_EMERGEN_THR")
-        # With a capacity of its own the charge that it sees is another than the battery's.
+        # With a capacity of its own it goes by the charge that was drawn, and not by the voltage.
         counted = get("BAT1_CAPACITY") > 0.0
-        self._charge_least = inf if counted else max(get(name) for name in names)
+        least = max(get(name) for name in names)
+        self._resting_least_v = inf if counted else voltage_of(least) + _ROUNDING_V
         worst_m = get("COM_POS_FS_EPH")
         self._eph_most_m = worst_m if worst_m >= 0.0 else inf
 
-    def _well(self, body: Body, est: Estimated) -> bool:
+    def _well(self, sensed: Sensed, est: Estimated) -> bool:
         return (
             not self._without_sticks
-            and body.remaining >= self._charge_least
-            and body.cells_lost == 0.0
+            and resting_v(sensed, self._believed) >= self._resting_least_v
             and est.accuracy_m <= self._eph_most_m
             and position_ok(est)
         )

@@ -308,7 +308,7 @@ class Mission:
         return place_of(follower, self._vehicle.datum(), place)
 
     def _take_off(self, goal_d: float) -> TakeOff:
-        return TakeOff(goal_d, self._parameters.si(Quantity.TAKEOFF_CLIMB_M_S))
+        return TakeOff(goal_d, self._parameters)
 
     def _set_heading(self, item: PlanItem, place: Vec3, s: Situation, turner: Turner) -> None:
         self._by_home = False

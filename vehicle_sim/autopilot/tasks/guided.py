@@ -128,13 +128,13 @@ class Guided:
 
     def take_off(self, goal_d: float, s: Situation, turner: Turner) -> None:
         """ArduCopter's take-off within GUIDED; the height is then held."""
-        self._takeoff = TakeOff(goal_d, self._parameters.si(Quantity.TAKEOFF_CLIMB_M_S))
+        self._takeoff = TakeOff(goal_d, self._parameters)
         self._takeoff.begin(s, turner)
         self._stream.forget()
 
     def lifts_off(self, s: Situation) -> bool:
         if self._takeoff is not None:
-            return True
+            return self._takeoff.lifts_off(s)
         if self._personality == "ardupilot":
             return False
         setpoint = self._stream.setpoint
@@ -174,7 +174,7 @@ class Guided:
         if isinstance(setpoint, AttitudeSetpoint):
             return FlyAttitude(setpoint, self._thrust_is_climb, s.limits)
         if setpoint.yaw_rad is not None:
-            turner.turn_to(setpoint.yaw_rad)
+            turner.point(setpoint.yaw_rad)
         else:
             turner.turn_by_rate(setpoint.yaw_rate_rad_s or 0.0)
         if is_partial(setpoint):

@@ -103,15 +103,22 @@ class Level:
 
 
 class TakeOff:
-    """Straight up to `goal_d` [m, NED]."""
+    """Straight up to `goal_d` [m, NED].
 
-    __slots__ = ("_climb_m_s", "_done", "_goal_d", "_ned")
+    PX4 climbs slower for its first MPC_TKO_RAMP_T, and calls it done within NAV_MC_ALT_RAD of the
+    height (navigator, `MissionBlock::is_mission_item_reached`), where it then holds: up to that
+    much too low.  ArduCopter opens its throttle within TKOFF_SLEW_TIME, so it leaves the ground
+    when it has come to the thrust of hover.
+    """
 
-    def __init__(self, goal_d: float, climb_m_s: float) -> None:
+    __slots__ = ("_done", "_goal_d", "_ned", "_parameters", "_since_ns")
+
+    def __init__(self, goal_d: float, parameters: Parameters) -> None:
         self._goal_d = goal_d
-        self._climb_m_s = climb_m_s
+        self._parameters = parameters
         self._ned: Vec3 = (0.0, 0.0, goal_d)
         self._done = False
+        self._since_ns: int | None = None  # ArduCopter's throttle opens, PX4 has left the ground
 
     @property
     def landed_word(self) -> Landed:
@@ -126,18 +133,33 @@ class TakeOff:
         return Target(self._ned, None, None)
 
     def lifts_off(self, s: Situation) -> bool:
-        return True
+        get = self._parameters.get
+        if self._parameters.personality == "px4":
+            return True
+        return self._run_s(s) >= get("TKOFF_SLEW_TIME") * get("MOT_THST_HOVER")
 
     def begin(self, s: Situation, turner: Turner) -> None:
         where = s.stop_ned if s.flying else s.pos_ned
         self._ned = (where[0], where[1], self._goal_d)
 
     def update(self, s: Situation, turner: Turner) -> Demand:
-        if not self._done and abs(s.pos_ned[2] - self._goal_d) < _REACHED_M:
+        px4 = self._parameters.personality == "px4"
+        near_m = self._parameters.get("NAV_MC_ALT_RAD") if px4 else _REACHED_M
+        if not self._done and abs(s.pos_ned[2] - self._goal_d) < near_m:
             self._done = True
+        climb_m_s = self._parameters.si(Quantity.TAKEOFF_CLIMB_M_S)
+        if px4:
+            ramp_s = self._parameters.get("MPC_TKO_RAMP_T")
+            gone_s = self._run_s(s)
+            climb_m_s *= gone_s / ramp_s if gone_s < ramp_s else 1.0
         limits = s.limits
-        climb = min(limits.climb_m_s, self._climb_m_s)
-        return FlyTo(self._ned, replace(limits, climb_m_s=climb))
+        return FlyTo(self._ned, replace(limits, climb_m_s=min(limits.climb_m_s, climb_m_s)))
+
+    def _run_s(self, s: Situation) -> float:
+        """Since this was asked first."""
+        if self._since_ns is None:
+            self._since_ns = s.time_ns
+        return 1e-9 * (s.time_ns - self._since_ns)
 
 
 class Land:

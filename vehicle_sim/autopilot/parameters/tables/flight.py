@@ -17,6 +17,7 @@ PX4 = (
     real("MPC_LAND_ALT1",    10.0, 0.0,  122.0, "a landing slows down from this height [m]"),
     real("MPC_LAND_ALT2",    5.0,  0.0,  122.0, "a landing has slowed down at this height [m]"),
     real("MPC_LAND_SPEED",   0.7,  0.6,  3.0,   "landing descent [m/s]"),
+    real("MPC_TKO_RAMP_T",   3.0,  0.0,  5.0,   "until a take-off climbs at MPC_TKO_SPEED [s]"),
     real("MPC_TKO_SPEED",    1.5,  1.0,  5.0,   "take-off climb [m/s]"),
     real("MPC_XY_CRUISE",    5.0,  0.5,  20.0,  "horizontal speed of its own flights [m/s]"),
     real("MPC_XY_VEL_MAX",   12.0, 0.5,  20.0,  "highest horizontal speed ever [m/s]"),
@@ -27,6 +28,7 @@ PX4 = (
     real("MPC_Z_VEL_MAX_UP", 3.0,  0.5,  8.0,   "fastest climb ever, also by hand [m/s]"),
     real("MPC_Z_V_AUTO_DN",  1.5,  0.5,  4.0,   "descent of its own flights [m/s]"),
     real("MPC_Z_V_AUTO_UP",  3.0,  0.5,  8.0,   "climb of its own flights [m/s]"),
+    real("NAV_MC_ALT_RAD",   0.8,  0.05, 200.0, "a take-off ends so near its height [m]"),
     real("NAV_ACC_RAD",      2.0,  0.05, 200.0, "a waypoint counts as reached within [m]"),
     int32("RTL_CONE_ANG",    45,   0,    90,    "return from near: climb into a cone of this half "
                                               "angle [deg], 0 = to RTL_RETURN_ALT"),
@@ -43,6 +45,7 @@ ARDUPILOT = (
     int8("MIS_RESTART",      0,    0,    1,     "AUTO entered again: 0 goes on 1 starts anew"),
     real("MOT_SPIN_ARM",     0.1,  0.0,  0.2,   "speed of armed motors on the ground"),
     real("MOT_SPOOL_TIME",   0.5,  0.05, 2.0,   "from arming to lift-off at least [s]"),
+    real("TKOFF_SLEW_TIME",  2.0,  0.25, 5.0,   "take-off: until the throttle is open [s]"),
     real("PILOT_TKOFF_ALT",  0.0,  0.0,  1000,  "take-off height without a given one [cm]"),
     int32("RTL_ALT",         1500, 30,   300000, "return: height of the way home [cm]"),
     int16("RTL_CLIMB_MIN",   0,    0,    3000,  "return: climb at least [cm]"),

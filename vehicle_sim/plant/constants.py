@@ -14,7 +14,7 @@ _TURN_MAX_RAD: Final = 0.25
 
 
 @dataclass(frozen=True, slots=True)
-class AirframeConstants:
+class Plant:
     """Constants of the physics and of the control loops, for steps of `dt_s`.
 
     Those of the TOML have its names.  `couple_*` are the factors of Euler's equations, such as
@@ -61,7 +61,7 @@ class AirframeConstants:
     motor_current_max_a: float
 
 
-def frame_of(airframe: Airframe, dt_s: float) -> AirframeConstants:
+def plant_of(airframe: Airframe, dt_s: float) -> Plant:
     """What `airframe` means for steps of `dt_s`.  Raises AirframeError where they are too long.
 
     Local height is measured at the centre of mass, as an estimator does, and is 0 at rest on the
@@ -77,7 +77,7 @@ def frame_of(airframe: Airframe, dt_s: float) -> AirframeConstants:
     reach_m = sqrt(x * x + y * y + tallest * tallest)
     _check_steps(airframe, dt_s, reach_m)
     plane_d_m = z - body.mass_kg * GRAVITY_M_S2 / (4.0 * gear.stiffness_n_per_m)
-    return AirframeConstants(
+    return Plant(
         dt_s=dt_s,
         mass_kg=body.mass_kg,
         inertia_xx_kg_m2=ixx,

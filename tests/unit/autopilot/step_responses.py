@@ -1,0 +1,302 @@
+"""Step responses of our vehicle, beside those that were recorded of the real autopilots.
+
+    python -m tests.unit.autopilot.step_responses
+
+prints the table.  The real figures are those of the scenarios I1_step_response (the first of two
+runs) and I2_takeoff_and_goto_profiles: PX4 1.14.3 in SIH and ArduCopter 4.7-dev in SITL, each with
+an airframe of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import acos, atan2, degrees, hypot, radians, remainder, tau
+from typing import Final
+
+from tests.unit.autopilot.flight import Flight
+from vehicle_sim.autopilot.interface import Result, Setpoint, Truth
+from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.numerics.vectors import Vec3
+
+UP_M: Final = 10.0
+NEAR_M: Final = 0.5
+
+REAL: Final[dict[Personality, dict[str, float]]] = {
+    "px4": {
+        "10 m: first within 0.5 m, s": 3.31,
+        "10 m: stays within 0.5 m, s": 6.44,
+        "10 m: highest speed, m/s": 4.99,
+        "10 m: steepest tilt, deg": 48.0,
+        "10 m: highest acceleration, m/s2": 7.3,
+        "climb 5 m: within 0.5 m, s": 2.5,
+        "climb 5 m: highest speed, m/s": 2.68,
+        "climb 5 m: highest acceleration, m/s2": 7.6,
+        "descend 5 m: within 0.5 m, s": 4.29,
+        "descend 5 m: highest speed, m/s": 1.48,
+        "yaw 90 deg: to 85, s": 1.05,
+        "yaw 90 deg: fastest, deg/s": 122.3,
+        "yaw 90 deg: overshoot, deg": 9.6,
+        "velocity 3 m/s: to 2.7, s": 4.78,
+        "velocity 3 m/s: highest, m/s": 2.75,
+        "stream stops: to 0.3 m/s, s": 2.85,
+        "stream stops: way, m": 6.5,
+        "stream stops: then sinks, m/s": 0.76,
+        "land from 10 m: to disarm, s": 21.1,
+        "land: touch-down to disarm, s": 5.27,
+        "land: at 8 to 9 m, m/s": 0.97,
+        "land: at 4 to 5 m, m/s": 0.80,
+        "land: at 1 to 2 m, m/s": 0.61,
+        "take-off 10 m: first 0.2 m, s": 2.15,
+        "take-off 10 m: to 9 m, s": 12.33,
+        "take-off 10 m: ends at, m": 9.18,
+        "goto 40 m: highest speed, m/s": 4.48,
+        "goto 40 m: within 1 m, s": 13.33,
+        "return from 40 m: to disarm, s": 63.3,
+        "return: fastest climb, m/s": 2.5,
+        "return: fastest descent, m/s": 1.75,
+    },
+    "ardupilot": {
+        "10 m: first within 0.5 m, s": 3.62,
+        "10 m: stays within 0.5 m, s": 3.6,
+        "10 m: highest speed, m/s": 4.72,
+        "10 m: steepest tilt, deg": 21.9,
+        "10 m: highest acceleration, m/s2": 3.35,
+        "climb 5 m: within 0.5 m, s": 3.5,
+        "climb 5 m: highest speed, m/s": 2.2,
+        "climb 5 m: highest acceleration, m/s2": 1.14,
+        "descend 5 m: within 0.5 m, s": 3.95,
+        "descend 5 m: highest speed, m/s": 1.57,
+        "yaw 90 deg: to 85, s": 1.15,
+        "yaw 90 deg: fastest, deg/s": 139.6,
+        "yaw 90 deg: overshoot, deg": 7.3,
+        "velocity 3 m/s: to 2.7, s": 1.51,
+        "velocity 3 m/s: highest, m/s": 3.1,
+        "stream stops: to 0.3 m/s, s": 4.38,
+        "stream stops: way, m": 12.03,
+        "land from 10 m: to disarm, s": 22.7,
+        "land: touch-down to disarm, s": 2.15,
+        "land: at 8 to 9 m, m/s": 0.49,
+        "land: at 4 to 5 m, m/s": 0.50,
+        "land: at 1 to 2 m, m/s": 0.50,
+        "take-off 10 m: first 0.2 m, s": 3.95,
+        "take-off 10 m: to 9 m, s": 8.3,
+        "take-off 10 m: ends at, m": 9.97,
+        "goto 40 m: highest speed, m/s": 9.59,
+        "goto 40 m: within 1 m, s": 8.47,
+        "return from 40 m: to disarm, s": 49.2,
+        "return: fastest climb, m/s": 1.65,
+        "return: fastest descent, m/s": 1.57,
+    },
+}
+
+OFTEN_S: Final = 0.02
+SETPOINT_EVERY: Final = 3  # of them, about 20 Hz
+STEPS: Final = 5  # of the vehicle in OFTEN_S
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """What the body did, seen from where and when the step was asked for."""
+
+    t_s: float
+    truth: Truth
+
+    @property
+    def up_m(self) -> float:
+        return -self.truth.pos_ned[2]
+
+    @property
+    def speed_m_s(self) -> float:
+        return hypot(self.truth.v_ned[0], self.truth.v_ned[1])
+
+    @property
+    def climb_m_s(self) -> float:
+        return -self.truth.v_ned[2]
+
+    @property
+    def tilt_deg(self) -> float:
+        _, x, y, _ = self.truth.q_ned_from_frd
+        return degrees(acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y)))))
+
+
+class Track(list[Sample]):
+    """The samples of one step."""
+
+    def first(self, holds: Callable[[Sample], bool]) -> float:
+        """When it was so first [s]."""
+        return next(sample.t_s for sample in self if holds(sample))
+
+    def stays(self, holds: Callable[[Sample], bool]) -> float:
+        """From when on it was so until the end [s]."""
+        return max((sample.t_s for sample in self if not holds(sample)), default=0.0)
+
+    def most(self, look: Callable[[Sample], float]) -> float:
+        return max(look(sample) for sample in self)
+
+    def accelerations(self, of: Callable[[Sample], float]) -> list[float]:
+        """Over tenths of a second, as a recorded track has them."""
+        return [
+            (of(later) - of(sample)) / (later.t_s - sample.t_s)
+            for sample, later in zip(self, self[5:], strict=False)
+        ]
+
+
+class Stepper:
+    """One flight through all steps."""
+
+    def __init__(self, personality: Personality) -> None:
+        self.personality: Personality = personality
+        self.flight = Flight(personality).boot()
+        self.vehicle = self.flight.vehicle
+
+    def track(
+        self, seconds: float, setpoint: Setpoint | None = None, until_disarmed: bool = False
+    ) -> Track:
+        track = Track()
+        for tick in range(round(seconds / OFTEN_S)):
+            if setpoint is not None and tick % SETPOINT_EVERY == 0:
+                self.vehicle.set_setpoint(setpoint)
+            for _ in range(STEPS):
+                self.vehicle.step()
+            track.append(Sample((tick + 1) * OFTEN_S, self.vehicle.truth))
+            if until_disarmed and not self.vehicle.armed:
+                break
+        self.flight.seen += self.vehicle.events()
+        return track
+
+    def take_off(self) -> Track:
+        if self.personality == "ardupilot":
+            self.vehicle.set_mode_kind("guided")
+        assert self.vehicle.arm(False) is Result.ACCEPTED
+        assert self.vehicle.take_off(UP_M) is Result.ACCEPTED
+        return self.track(17.0)
+
+
+def step_responses(personality: Personality) -> dict[str, float]:
+    """Every cell of `REAL`, flown by our vehicle."""
+    return {**_steps(personality), **_profiles(personality)}
+
+
+def _steps(personality: Personality) -> dict[str, float]:
+    fly = Stepper(personality)
+    fly.take_off()
+    n, e, d = fly.vehicle.estimate.pos_ned
+    d = -UP_M
+    fly.track(2.0, Setpoint(pos_ned=(n, e, d)))
+    fly.vehicle.set_mode_kind("guided")
+    fly.track(6.0, Setpoint(pos_ned=(n, e, d)))
+    cells: dict[str, float] = {}
+
+    start = fly.vehicle.truth.pos_ned
+    go = fly.track(15.0, Setpoint(pos_ned=(n + 10.0, e, d)))
+    off: Callable[[Sample], float] = lambda s: abs(s.truth.pos_ned[0] - start[0] - 10.0)  # noqa: E731
+    cells["10 m: first within 0.5 m, s"] = go.first(lambda s: off(s) < NEAR_M)
+    cells["10 m: stays within 0.5 m, s"] = go.stays(lambda s: off(s) < NEAR_M)
+    cells["10 m: highest speed, m/s"] = go.most(lambda s: s.speed_m_s)
+    cells["10 m: steepest tilt, deg"] = go.most(lambda s: s.tilt_deg)
+    cells["10 m: highest acceleration, m/s2"] = max(go.accelerations(lambda s: s.speed_m_s))
+    n += 10.0
+
+    for name, by_m in (("climb 5 m", 5.0), ("descend 5 m", -5.0)):
+        begin_m = -fly.vehicle.truth.pos_ned[2]
+        d -= by_m
+        go = fly.track(12.0, Setpoint(pos_ned=(n, e, d)))
+        near = _reached(begin_m + by_m)
+        cells[f"{name}: within 0.5 m, s"] = go.first(near)
+        sign = 1.0 if by_m > 0.0 else -1.0
+        cells[f"{name}: highest speed, m/s"] = max(sign * s.climb_m_s for s in go)
+        if by_m > 0.0:
+            rates = go.accelerations(lambda s: s.climb_m_s)
+            cells[f"{name}: highest acceleration, m/s2"] = max(rates)
+
+    yaw_rad = fly.vehicle.estimate.heading_rad
+    go = fly.track(8.0, Setpoint(pos_ned=(n, e, d), yaw_rad=yaw_rad + radians(90.0)))
+    turned = [(s.t_s, _yaw_deg(s.truth, yaw_rad)) for s in go]
+    cells["yaw 90 deg: to 85, s"] = next(t_s for t_s, deg in turned if deg > 85.0)
+    cells["yaw 90 deg: fastest, deg/s"] = go.most(lambda s: degrees(s.truth.rates_frd[2]))
+    cells["yaw 90 deg: overshoot, deg"] = max(deg for _, deg in turned) - 90.0
+
+    yaw_rad += radians(90.0)
+    go = fly.track(5.0, Setpoint(v_ned=(3.0, 0.0, 0.0), yaw_rad=yaw_rad))
+    cells["velocity 3 m/s: to 2.7, s"] = next((s.t_s for s in go if s.speed_m_s > 2.7), 99.0)
+    cells["velocity 3 m/s: highest, m/s"] = go.most(lambda s: s.speed_m_s)
+    at = fly.vehicle.truth.pos_ned
+    go = fly.track(9.0)
+    slow_s = go.first(lambda s: s.speed_m_s < 0.3)
+    cells["stream stops: to 0.3 m/s, s"] = slow_s
+    there = next(s.truth.pos_ned for s in go if s.t_s >= slow_s)
+    cells["stream stops: way, m"] = hypot(there[0] - at[0], there[1] - at[1])
+    if personality == "px4":
+        later = [s.climb_m_s for s in go if s.t_s > slow_s]
+        cells["stream stops: then sinks, m/s"] = -sum(later) / len(later)
+        fly.vehicle.set_mode_kind("hold")
+
+    high: Vec3 = (*fly.vehicle.truth.pos_ned[:2], -UP_M)
+    assert fly.vehicle.reposition(high, None, None) is Result.ACCEPTED
+    fly.track(12.0)
+    assert fly.vehicle.land() is Result.ACCEPTED
+    go = fly.track(40.0, until_disarmed=True)
+    cells["land from 10 m: to disarm, s"] = go[-1].t_s
+    cells["land: touch-down to disarm, s"] = go[-1].t_s - go.first(lambda s: s.up_m < 0.02)
+    for low, top in ((8, 9), (4, 5), (1, 2)):
+        rates = [-s.climb_m_s for s in go if low <= s.up_m < top]
+        cells[f"land: at {low} to {top} m, m/s"] = sum(rates) / len(rates)
+    return cells
+
+
+def _profiles(personality: Personality) -> dict[str, float]:
+    fly = Stepper(personality)
+    go = fly.take_off()
+    cells = {
+        "take-off 10 m: first 0.2 m, s": go.first(lambda s: s.up_m > 0.2),
+        "take-off 10 m: to 9 m, s": go.first(lambda s: s.up_m > 9.0),
+        "take-off 10 m: ends at, m": go[-1].up_m,
+    }
+    n, e, d = fly.vehicle.estimate.pos_ned
+    assert fly.vehicle.reposition((n, e + 40.0, d), None, None) is Result.ACCEPTED
+    go = fly.track(27.0 if personality == "px4" else 11.0)
+    cells["goto 40 m: highest speed, m/s"] = go.most(lambda s: s.speed_m_s)
+    cells["goto 40 m: within 1 m, s"] = go.first(
+        lambda s: hypot(s.truth.pos_ned[0] - n, s.truth.pos_ned[1] - e - 40.0) < 1.0
+    )
+    fly.vehicle.set_mode_kind("return")
+    go = fly.track(120.0, until_disarmed=True)
+    cells["return from 40 m: to disarm, s"] = go[-1].t_s
+    cells["return: fastest climb, m/s"] = go.most(lambda s: s.climb_m_s)
+    cells["return: fastest descent, m/s"] = go.most(lambda s: -s.climb_m_s)
+    return cells
+
+
+def _reached(up_m: float) -> Callable[[Sample], bool]:
+    return lambda sample: abs(sample.up_m - up_m) < NEAR_M
+
+
+def _yaw_deg(truth: Truth, from_rad: float) -> float:
+    w, x, y, z = truth.q_ned_from_frd
+    yaw_rad = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return degrees(remainder(yaw_rad - from_rad, tau))
+
+
+def table() -> str:
+    """Ours beside the real figures, a line for each cell."""
+    lines = ["| cell | PX4 | ours | | ArduCopter | ours | |", "|---|---|---|---|---|---|---|"]
+    ours: dict[Personality, dict[str, float]] = {
+        "px4": step_responses("px4"),
+        "ardupilot": step_responses("ardupilot"),
+    }
+    names = list(REAL["px4"]) + [name for name in REAL["ardupilot"] if name not in REAL["px4"]]
+    for name in names:
+        line = f"| {name} |"
+        for personality, figures in ours.items():
+            real, is_so = REAL[personality].get(name), figures.get(name)
+            if real is None or is_so is None:
+                line += " | | |"
+                continue
+            line += f" {real:.2f} | {is_so:.2f} | {100.0 * (is_so / real - 1.0):+.0f} % |"
+        lines.append(line)
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(table())

@@ -1,0 +1,25 @@
+"""The mismatch grid: with another plant than it believes in, the vehicle still does its work."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.unit.autopilot.mismatch import CASES, flown
+from vehicle_sim.autopilot.modes import Personality
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+@pytest.mark.parametrize("case", CASES)
+def test_it_takes_off_hovers_flies_the_square_lands_and_disarms(
+    case: str, personality: Personality
+) -> None:
+    """`python -m tests.unit.autopilot.mismatch` prints the figures."""
+    figures = flown(personality, CASES[case])
+    assert figures.hover_m < 0.3
+    assert figures.hover_up_m < 0.4
+    assert figures.climb_over_m < 1.1
+    assert figures.over_m < 0.5
+    assert figures.square_s < 20.0
+    assert figures.land_s < (20.0 if personality == "px4" else 25.0)
+    assert figures.yaw_deg < 2.0
