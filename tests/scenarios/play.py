@@ -11,15 +11,23 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from tests.contract.client import Sky
 from tests.scenarios.facts import Item, Scenario, Step
+from tests.scenarios.untold import UNTOLD
 from vehicle_sim.autopilot.firmware import Firmware
+from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
 
 HOMES: Final[dict[Personality, Geodetic]] = {
     "px4": Geodetic(47.397742, 8.545594, 32.5),
-    "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
+    "ardupilot": Geodetic(47.397742, 8.545594, 488.08),
 }
-"""Where the real ones stood."""
+"""Where the real ones' simulations began."""
+
+PARAMETERS: Final[dict[Personality, dict[str, float]]] = {
+    "px4": {"SDLOG_MODE": 1.0},
+    "ardupilot": {},
+}
+"""The real ones' defaults where ours are others on purpose (`parameters/tables/deliberate.py`)."""
 
 FIRMWARE: Final[dict[Personality, Firmware]] = {"px4": "1.14", "ardupilot": "4.7"}
 """What was recorded."""
@@ -34,9 +42,6 @@ STREAMED: Final = (
     *("velocity setpoints", "velocity 3 m/s", "20 Hz", "stream stops", "override released"),
 )
 """How a recording says that it streamed something, which its steps do not tell."""
-
-TOOK_OFF: Final = {"H1_change_speed": 10.0}
-"""Where the recorder took off, to so many metres, before the first step."""
 
 READY_S: Final = 3.0
 ANSWER_S: Final = 1.5
@@ -91,7 +96,12 @@ def playable(scenario: Scenario) -> bool:
 class _Player:
     def __init__(self, personality: Personality, scenario: Scenario) -> None:
         self._personality, self._scenario = personality, scenario
-        self._sky = Sky(personality, home=HOMES[personality], firmware=FIRMWARE[personality])
+        self._sky = Sky(
+            personality,
+            home=_start(personality, scenario),
+            firmware=FIRMWARE[personality],
+            parameters=PARAMETERS[personality],
+        )
         self._client = self._sky.client()
         self._played = Played()
         self._zero_s = 0.0
@@ -99,24 +109,37 @@ class _Player:
     def play(self) -> Played:
         self._client.beat_if_due()
         self._sky.run(READY_S)
-        start = next((e for e in self._scenario.events if e.kind == "STATE_AT_START"), None)
-        if start is not None and start.armed:
-            self._client.take_off(max(1.0, start.up or 0.0))
-        if start is not None and start.mode not in (None, self._now().mode):
-            self._set_mode(str(start.mode))
-            self._sky.run(1.0)
-        if self._scenario.scenario in TOOK_OFF:
-            self._client.take_off(TOOK_OFF[self._scenario.scenario])
+        self._prepare()
         self._client.forget()
         self._zero_s = self._sky.now_ns / 1e9
         self._played.seen.append(self._now())
-        for step in self._scenario.steps:
+        told = [(step, True) for step in self._scenario.steps]
+        untold = UNTOLD.get((self._personality, self._scenario.scenario), ())
+        for step, compared in sorted(
+            [*told, *((step, False) for step in untold)], key=lambda pair: pair[0].t
+        ):
             self._until(step.t)
-            self._played.acks.append(self._take(step))
+            answer = self._take(step)
+            if compared:
+                self._played.acks.append(answer)
             self._note()
         self._until(self._scenario.end_s)
         self._played.texts = self._client.texts()
         return self._played
+
+    def _prepare(self) -> None:
+        """Flown before, in the air and in the mode, as the real one was."""
+        start = self._scenario.start
+        if self._scenario.flown_before and not start.armed:
+            self._client.long(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+            self._sky.run(1.0)
+            self._client.long(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+            self._sky.run(1.0)
+        if start.armed:
+            self._client.take_off(max(1.0, start.up or 0.0))
+        if start.mode not in (None, self._now().mode):
+            self._set_mode(str(start.mode))
+            self._sky.run(1.0)
 
     # ------------------------------------------------------------------------------ seeing
 
@@ -154,7 +177,8 @@ class _Player:
         if words[0] == "mission":
             return self._upload(step.items, int(words[-1]))
         if "silent" in step.sent:
-            self._client.beats = False
+            for client in self._sky.clients.values():
+                client.beats = False
             if "77 beats" in step.sent:
                 self._sky.client("other", system=77)
         elif "beats" in step.sent or "again" in step.sent:
@@ -231,6 +255,15 @@ class _Player:
             modes = mavlink.enums["COPTER_MODE"].items()
             numbers = (next(n for n, mode in modes if mode.name == f"COPTER_MODE_{name}"), 0)
         self._client.long(mavlink.MAV_CMD_DO_SET_MODE, 1, *numbers)
+
+
+def _start(personality: Personality, scenario: Scenario) -> Geodetic:
+    """Where the real one stood at the start of a scenario."""
+    home = HOMES[personality]
+    start = scenario.start
+    north, east = round(start.n or 0.0), round(start.e or 0.0)
+    where = projection(personality, home).to_geodetic((north, east, 0.0))
+    return Geodetic(where.lat_deg, where.lon_deg, home.alt_amsl_m)
 
 
 def _mode_name(personality: Personality, custom_mode: int) -> str:
