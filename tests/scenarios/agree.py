@@ -117,5 +117,11 @@ def _states(scenario: Scenario, played: Played, at_s: float, found: Agreement) -
         yield "mode", found.modes, modes, ours.mode
     if armed := known(lambda event: event.armed):
         yield "armed", found.armed, armed, ours.armed
-    if landed := known(lambda event: event.state):
+    if landed := known(lambda event: event.state or _at_first(scenario, event)):
         yield "landed", found.landed, landed, ours.landed
+
+
+def _at_first(scenario: Scenario, event: Event) -> str | None:
+    """Who is disarmed at the start stands; told where a change is seen later."""
+    changes = any(other.state is not None for other in scenario.events)
+    return "ON_GROUND" if event is scenario.start and event.armed is False and changes else None

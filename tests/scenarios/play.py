@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any, Final
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -105,6 +106,7 @@ class _Player:
         self._client = self._sky.client()
         self._played = Played()
         self._zero_s = 0.0
+        self._next_s = inf
 
     def play(self) -> Played:
         self._client.beat_if_due()
@@ -115,9 +117,11 @@ class _Player:
         self._played.seen.append(self._now())
         told = [(step, True) for step in self._scenario.steps]
         untold = UNTOLD.get((self._personality, self._scenario.scenario), ())
-        for step, compared in sorted(
-            [*told, *((step, False) for step in untold)], key=lambda pair: pair[0].t
-        ):
+        both = [*told, *((step, False) for step in untold)]
+        both.sort(key=lambda pair: pair[0].t)
+        times = [step.t for step, _ in both]
+        for (step, compared), next_s in zip(both, [*times[1:], inf], strict=True):
+            self._next_s = next_s
             self._until(step.t)
             answer = self._take(step)
             if compared:
@@ -206,8 +210,11 @@ class _Player:
         return None
 
     def _wait(self, kind: str, before: int) -> list[Any]:
-        """Until a message of that kind came, or the recorder's patience is over."""
-        end_s = self._sky.now_ns / 1e9 + ANSWER_S
+        """Until a message of that kind came, or the recorder's patience is over.
+
+        It is over at the next step, too: the recorder waited less in some scenarios.
+        """
+        end_s = min(self._sky.now_ns / 1e9 + ANSWER_S, self._zero_s + self._next_s)
         while self._sky.now_ns / 1e9 < end_s:
             found = [h.message for h in self._client.heard[before:] if h.message.get_type() == kind]
             if found:

@@ -220,6 +220,8 @@ class Autopilot(ManualInput):
 
     def load_plan(self, items: tuple[PlanItem, ...]) -> None:
         self._mission.load(items)
+        if self.personality == "ardupilot" and items:
+            self._say(6, "Flight plan received")
         self._judge_mission()
         if self._task is self._mission:
             if not self._mission.empty:
@@ -274,14 +276,17 @@ class Autopilot(ManualInput):
         return self._calibration.begin(procedure, self.time_ns)
 
     def _calibrate_px4(self, parameters: tuple[float, ...]) -> Result | None:
-        if not any(parameters):
+        if not any(parameters[:6]) and (self._calibration.busy or not any(parameters)):
             result, events = self._calibration.cancel_px4()
             for event in events:
                 self.emit(event)
             return result
         if self._calibration.busy:
+            # Two answer, the procedure (if it listens) and the commander; the first one is told.
+            if not self._calibration.listens:
+                return Result.TEMPORARILY_REJECTED
             self._say(2, "command denied during calibration: 241")
-            return Result.TEMPORARILY_REJECTED
+            return Result.DENIED
         if self._armed:
             return Result.TEMPORARILY_REJECTED
         procedure = px4_procedure(parameters)

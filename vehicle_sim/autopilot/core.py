@@ -39,6 +39,7 @@ from vehicle_sim.autopilot.mission.mission import Mission
 from vehicle_sim.autopilot.mission.plan import Datum
 from vehicle_sim.autopilot.modes import BOOT_MODE, KINDS, MODES, Behaviour, Mode, Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.parameters.simulated import SimulatedBattery
 from vehicle_sim.autopilot.tasks.follow import Follow, Leader
 from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
 from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
@@ -98,6 +99,7 @@ class Core:
         self._radio = Radio(self.parameters)
         self._gestures = Gestures(self.parameters)
         self._leader = Leader(self.parameters)
+        self._simulated_battery = SimulatedBattery(self.parameters)
         self._auto_disarm = AutoDisarm()
         self._stream = SetpointStream()
         self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](self.parameters)
@@ -116,6 +118,8 @@ class Core:
         self._armed = False
         self._armed_ns = self.time_ns
         self._terminated = False
+        self._cut_off_in_air = False
+        self._yaw_aligned = False
         self._failsafe_active = False
         self._offboard_wanted = False
         self._auto_armed = False
@@ -123,6 +127,7 @@ class Core:
         self._calibration = Calibration()
         self._cruise_m_s = self._climb_m_s = self._descend_m_s = None
         self._mode: Mode = MODES[self.personality][BOOT_MODE[self.personality]]
+        self._mode_once_disarmed = self._mode
         self._radio.forget()
         self._gestures.forget()
         self._roi_ned: Vec3 | None = None
@@ -284,25 +289,25 @@ class Core:
         self._limits_version = -1
         self._failsafe_active = False
         self._auto_armed = False
+        self._cut_off_in_air = False
+        self._yaw_aligned = False
         self._say(6, text)
-        if self.personality == "px4" and self._mode.behaviour in (
-            Behaviour.LAND,
-            Behaviour.RETURN,
-            Behaviour.TAKEOFF,
-            Behaviour.MISSION,
-            Behaviour.HOLD,
-        ):
-            # Also from HOLD: what it was to fly to ends with the flight.
-            self._enter(MODES["px4"]["AUTO.LOITER"])
+        if self.personality == "px4":
+            # Where the mode stays, what it was to fly to ends with the flight all the same.
+            self._enter(self._mode_once_disarmed)
 
     def _terminate(self) -> None:
-        """ArduCopter's termination is no more than a disarming: nothing of it stays."""
+        """Motors off.  ArduCopter's is no more than a disarming: nothing of it stays.
+
+        PX4 stays armed and in its mode.  As the mode's demands go on, its land detector does not
+        notice the fall: it says IN_AIR until it is told to land.
+        """
         if self.personality == "ardupilot":
             if self._armed:
                 self._disarm("Disarming motors")
             return
-        self._armed = False
         self._terminated = True
+        self._cut_off_in_air = self._cut_off_in_air or self._pilot.flying
         self._pilot.stop()
         self._say(2, "Preflight Fail: Flight termination active")
 
@@ -321,6 +326,10 @@ class Core:
     @property
     def _charge_seen(self) -> float:
         """0..1: PX4, unless it is told a capacity, goes by the voltage; ArduCopter counts."""
+        f = self.blocks.flight
+        simulated = self._simulated_battery.charge(0.25 * (f.u1 + f.u2 + f.u3 + f.u4))
+        if simulated is not None:
+            return simulated
         px4 = self.personality == "px4"
         capacity_mah = self.parameters.get("BAT1_CAPACITY" if px4 else "BATT_CAPACITY")
         if px4 and capacity_mah <= 0.0:
@@ -376,5 +385,6 @@ class Core:
     def leave_for_return(self) -> bool:
         if self.personality != "px4":
             return False
+        self._say(6, "Returning to launch")
         self._enter(MODES["px4"]["AUTO.RTL"])
         return True

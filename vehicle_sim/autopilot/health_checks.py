@@ -15,9 +15,18 @@ from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.autopilot.tasks.descend import Descend
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 
+_CHECKED_EVERY_NS = 1_000_000_000
+_AGAIN_NS = 4_000_000_000
+_DISPLAYED_EVERY_NS = 30_000_000_000
+
 
 class HealthChecks(Bounds):
     """Looks, and decides nothing."""
+
+    def _restart(self) -> None:
+        super()._restart()
+        self._checked_ns = self._displayed_ns = self.time_ns
+        self._was_ready = self._newly_unready = False
 
     # --------------------------------------------------------------------------- arming
 
@@ -45,23 +54,43 @@ class HealthChecks(Bounds):
                 has_mission=self._mission_ok,
                 mission_ok=self._mode.behaviour is not Behaviour.MISSION or self._mission_ok,
                 setpoints=self._stream.alive(s.wall_ns),
+                sticks=self._radio.sticks(s.wall_ns) is not None,
                 sticks_lost=self._radio.lost(s.wall_ns),
                 station_lost=self._failsafe_checks.station_lost,
             ),
         )
 
-    def _say_against_arming(self) -> bool:
+    def _say_against_arming(self, asked_to_arm: bool) -> bool:
         """Whether there is something, after telling it."""
         against = self._against_arming()
         for reason in against:
+            # ArduCopter's words begin with what it was asked for.
+            head, colon, rest = reason.partition(": ")
+            if asked_to_arm and head == "PreArm":
+                reason = f"Arm{colon}{rest}"
             self._say(2, reason)
         return bool(against)
 
     def check_arming(self) -> Result:
         if self._armed:
             return self._while_armed
-        self._say_against_arming()
+        self._say_against_arming(False)
         return Result.ACCEPTED
+
+    def _display_failures(self) -> None:
+        """AP_Arming::update, once a second: what is against arming is told when it comes, and every
+        30 s."""
+        last_ns, quiet_ns = self._checked_ns, self.time_ns - self._displayed_ns
+        if self.personality != "ardupilot" or self.time_ns - last_ns < _CHECKED_EVERY_NS:
+            return
+        self._checked_ns = self.time_ns
+        if quiet_ns > (_AGAIN_NS if self._newly_unready else _DISPLAYED_EVERY_NS):
+            self._newly_unready = False
+            self._displayed_ns = self.time_ns
+            self._say_against_arming(False)
+        ready = not self._against_arming()
+        self._newly_unready = self._newly_unready or (self._was_ready and not ready)
+        self._was_ready = ready
 
     @property
     def _while_armed(self) -> Result:

@@ -20,6 +20,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
 )
 from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
 from vehicle_sim.autopilot.fence.geofence import names
+from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import position_ok
@@ -66,8 +67,16 @@ class CopterFailsafes(FailsafeChecks):
             and position_ok(est)
         )
 
-    def _begin(self, seen: Seen) -> None:
+    def _begin(self, seen: Seen) -> Iterator[Strike]:
         """Its own checks before arming have let it pass; forced, it acts at once."""
+        return iter(())
+
+    def _station_words(self) -> Iterator[Failsafe]:
+        if self._parameters.get("FS_GCS_ENABLE") != 0.0:
+            yield Failsafe(Cause.STATION, Action.WARN, "GCS Failsafe", 4)
+
+    def _battery_words(self, power: Power, remaining: float) -> Iterator[Failsafe]:
+        return iter(())
 
     def _battery(self, seen: Seen) -> Iterator[Strike]:
         get = self._parameters.get
@@ -89,13 +98,12 @@ class CopterFailsafes(FailsafeChecks):
         text = f"Battery 1 is {charge.name.lower()} {power.voltage_v:.2f}V used "
         text += f"{power.consumed_mah:.0f} mAh"
         yield Failsafe(Cause.BATTERY, Action.WARN, text, 4)
-        if action is not Action.WARN:
-            yield self._copter("Battery", Cause.BATTERY, action, seen)
+        yield self._copter("Battery", Cause.BATTERY, action, seen)
 
     def _station(self, seen: Seen) -> Iterator[Strike]:
         name, actions = STATION_LOSS["ardupilot"]
         action = actions.get(int(self._parameters.get(name)))
-        if action is not None and self._station_gone(seen):
+        if action is not None and self._station_gone(seen.wall_ns):
             yield self._copter("GCS", Cause.STATION, action, seen)
 
     def _sticks(self, seen: Seen) -> Iterator[Strike]:

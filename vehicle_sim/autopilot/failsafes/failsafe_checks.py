@@ -110,10 +110,12 @@ class FailsafeChecks(ABC):
 
     def check(self, seen: Seen) -> list[Strike]:
         """What strikes and what clears now, in no order of weight."""
+        begun: list[Strike] = []
         if self._first:
             self._first = False
-            self._begin(seen)
+            begun = list(self._begin(seen))
         return [
+            *begun,
             *self._battery(seen),
             *self._station(seen),
             *self._sticks(seen),
@@ -122,8 +124,8 @@ class FailsafeChecks(ABC):
         ]
 
     @abstractmethod
-    def _begin(self, seen: Seen) -> None:
-        """Just armed: what is wrong already was accepted with it."""
+    def _begin(self, seen: Seen) -> Iterator[Strike]:
+        """Just armed: what is wrong already was accepted with it, and may be told."""
 
     @abstractmethod
     def _battery(self, seen: Seen) -> Iterator[Strike]: ...
@@ -140,10 +142,24 @@ class FailsafeChecks(ABC):
     @abstractmethod
     def _position(self, seen: Seen) -> Iterator[Strike]: ...
 
-    def _station_gone(self, seen: Seen) -> bool:
+    def check_disarmed(self, wall_ns: int, power: Power, remaining: float) -> Iterator[Failsafe]:
+        """What is only told, once each, while nothing can be done about it."""
+        if self._station_gone(wall_ns):
+            yield from self._station_words()
+        yield from self._battery_words(power, remaining)
+
+    @abstractmethod
+    def _station_words(self) -> Iterator[Failsafe]:
+        """What is said of a lost station before anything is done about it."""
+
+    @abstractmethod
+    def _battery_words(self, power: Power, remaining: float) -> Iterator[Failsafe]:
+        """What is said of a low battery while disarmed."""
+
+    def _station_gone(self, wall_ns: int) -> bool:
         """Whether the silence has just become too long."""
         if self._station_ns is None or self.station_lost:
             return False
         limit_ns = int(self._parameters.si(Quantity.STATION_LOSS_S) * 1e9)
-        self.station_lost = seen.wall_ns - self._station_ns >= limit_ns
+        self.station_lost = wall_ns - self._station_ns >= limit_ns
         return self.station_lost

@@ -31,6 +31,7 @@ FIX_SATELLITES = 4
 _PA_PER_M = 12.01  # of air at sea level: density times gravity
 _M_PER_DEG = 111_318.84502145034  # as ArduPilot reckons places
 _MOTORS = (1, 2, 3, 4)
+_LOAD_DROP = 0.1 / 0.45
 _FULL_V = 4.0 * FULL_CELL_V
 
 
@@ -82,6 +83,44 @@ _GROUPS: dict[Personality, tuple[_Group, ...]] = {
         _Group(("SIM_WIND_DIR", "SIM_WIND_SPD", "SIM_WIND_TURB"), lambda _, v: (_wind(*v),)),
     ),
 }
+
+
+class SimulatedBattery:
+    """PX4's own simulated battery: by SIM_BAT_DRAIN seconds from full to empty while armed, and not
+    below SIM_BAT_MIN_PCT; full again when disarmed.
+
+    It takes the airframe's place in what is measured once one of the two was changed; the motors'
+    strength stays what it is.  As its voltage does not sag, the share that PX4 adds for the load
+    (0.1 V of the 0.45 V between BAT1_V_EMPTY and BAT1_V_CHARGED) makes it look fuller than it is.
+    """
+
+    __slots__ = ("_left", "_parameters")
+
+    def __init__(self, parameters: Parameters) -> None:
+        self._parameters = parameters
+        self._left = 1.0
+
+    def update(self, armed: bool, dt_s: float) -> None:
+        """Of `dt_s` more seconds."""
+        if self._parameters.personality != "px4":
+            return
+        get = self._parameters.get
+        least = 0.01 * get("SIM_BAT_MIN_PCT")
+        self._left = max(least, self._left - dt_s / get("SIM_BAT_DRAIN")) if armed else 1.0
+
+    def charge(self, throttle: float) -> float | None:
+        """0..1 as it is estimated under that throttle (0..1); None = the airframe's counts."""
+        if not self.measured(self._parameters):
+            return None
+        return min(1.0, self._left + throttle * _LOAD_DROP)
+
+    @staticmethod
+    def measured(parameters: Parameters) -> bool:
+        """Whether it has taken the airframe's place."""
+        if parameters.personality != "px4":
+            return False
+        names = ("SIM_BAT_DRAIN", "SIM_BAT_MIN_PCT")
+        return any(parameters.get(name) != parameters.designed(name) for name in names)
 
 
 class Simulated:
