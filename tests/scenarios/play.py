@@ -12,11 +12,12 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from tests.contract.client import Sky
 from tests.scenarios.facts import Item, Scenario, Step
-from tests.scenarios.untold import UNTOLD
+from tests.scenarios.untold import SHAKEN, UNTOLD
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.plant.faults import GyroBias
 
 HOMES: Final[dict[Personality, Geodetic]] = {
     "px4": Geodetic(47.397742, 8.545594, 32.5),
@@ -45,6 +46,11 @@ STREAMED: Final = (
 """How a recording says that it streamed something, which its steps do not tell."""
 
 READY_S: Final = 3.0
+AT_BOOT: Final = ("H7_force_arm_not_ready",)
+"""Not waited for: they begin with the start."""
+LAST_S: Final = 0.1
+"""Until what the last step led to has been said."""
+SHAKING_RAD_S: Final = 0.02
 ANSWER_S: Final = 1.5
 """How long the recorder waited for an answer."""
 
@@ -110,8 +116,9 @@ class _Player:
 
     def play(self) -> Played:
         self._client.beat_if_due()
-        self._sky.run(READY_S)
-        self._prepare()
+        if self._scenario.scenario not in AT_BOOT:
+            self._sky.run(READY_S)
+            self._prepare()
         self._client.forget()
         self._zero_s = self._sky.now_ns / 1e9
         self._played.seen.append(self._now())
@@ -127,7 +134,7 @@ class _Player:
             if compared:
                 self._played.acks.append(answer)
             self._note()
-        self._until(self._scenario.end_s)
+        self._until(self._scenario.end_s + LAST_S)
         self._played.texts = self._client.texts()
         return self._played
 
@@ -149,8 +156,16 @@ class _Player:
 
     def _until(self, t: float) -> None:
         while (left_s := self._zero_s + t - self._sky.now_ns / 1e9) > 1e-9:
+            self._shake(t - left_s)
             self._sky.run(min(0.1, left_s))
             self._note()
+
+    def _shake(self, t: float) -> None:
+        begin_s, end_s = SHAKEN.get(self._scenario.scenario, (inf, 0.0))
+        if self._personality == "px4" and begin_s <= t:
+            by_rad_s = SHAKING_RAD_S if t < end_s else 0.0
+            by_rad_s *= 1.0 if t % 0.6 < 0.3 else -1.0
+            self._sky.vehicles[0].inject(GyroBias((by_rad_s, 0.0, 0.0)))
 
     def _now(self) -> Seen:
         vehicle = self._sky.vehicles[0]
@@ -187,6 +202,8 @@ class _Player:
                 self._sky.client("other", system=77)
         elif "beats" in step.sent or "again" in step.sent:
             self._client.beats = True
+            self._client.beat_ns = self._sky.now_ns
+            self._client.beat_if_due()
         return None
 
     def _command(self, step: Step) -> str | None:

@@ -21,9 +21,17 @@ KEPT_OF_EVENTS: Final = ("t", "kind", "mode", "armed", "n", "e", "up", "state", 
 KINDS: Final = ("STATE_AT_START", "HEARTBEAT", "LANDED_STATE", "STATUSTEXT")
 
 
+LATE_S: Final = 1.2
+"""States come with heartbeats: those of the end are seen so much later."""
+
+
+def _is_late(event: dict[str, Any]) -> bool:
+    return event["kind"] != "STATUSTEXT"
+
+
 def reduced(scenario: dict[str, Any]) -> dict[str, Any]:
     events = scenario["events"]
-    last = [*scenario["steps"], *events][-1]["t"] if events or scenario["steps"] else 0.0
+    last = max((told["t"] for told in (*scenario["steps"], *events)), default=0.0)
     end_s = next((event["t"] for event in events if event["kind"] == END), last)
     numbers = [event["id"] for event in events if event["kind"] == "STATUSTEXT" and "id" in event]
     return {
@@ -43,7 +51,7 @@ def reduced(scenario: dict[str, Any]) -> dict[str, Any]:
         "events": [
             {key: event[key] for key in KEPT_OF_EVENTS if key in event}
             for event in events
-            if event["kind"] in KINDS and event["t"] <= end_s
+            if event["kind"] in KINDS and event["t"] <= end_s + (LATE_S if _is_late(event) else 0.0)
         ],
     }
 

@@ -41,6 +41,7 @@ UNTOLD: Final[dict[tuple[Personality, str], tuple[Step, ...]]] = {
         Step(0.25, "silent"),
         Step(11.2, "beats again"),
     ),
+    ("ardupilot", "G9_gcs_failsafe_in_auto_and_loiter"): (Step(34.7, "beats again"),),
     ("ardupilot", "H1_change_speed"): (
         _long(0.35, "DO_SET_MODE", 1.0, 4.0),
         _arm(0.7),
@@ -52,3 +53,10 @@ UNTOLD: Final[dict[tuple[Personality, str], tuple[Step, ...]]] = {
     ),
 }
 """By autopilot and scenario; they are sent with the others, and nothing of them is compared."""
+
+SHAKEN: Final[dict[str, tuple[float, float]]] = {
+    "D1_preflight_calibration_kinds": (0.0, 4.6),
+    "D2_calibration_wrong_state": (0.0, 60.0),
+    "D5_calibrations_alone": (2.0, 18.0),
+}
+"""From when to when PX4's simulated gyroscope was too noisy to be calibrated; ours is shaken then."""

@@ -226,7 +226,7 @@ class Autopilot(ManualInput):
         if self._task is self._mission:
             if not self._mission.empty:
                 self._mission.begin(self._look_around(), self._pilot.heading)
-            else:
+            elif self.personality == "px4" or self._armed:
                 self._enter_kind("hold")
 
     def mission_start(self, first: int, last: int) -> Result:
@@ -270,6 +270,7 @@ class Autopilot(ManualInput):
             return Result.FAILED
         if parameters[4] == _SIMPLE_ACCEL:
             return Result.TEMPORARILY_REJECTED
+        self._calibration.mind_radio(parameters[3])
         procedure = copter_procedure(parameters)
         if procedure is None:
             return Result.UNSUPPORTED

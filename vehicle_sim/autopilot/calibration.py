@@ -79,18 +79,18 @@ def _sides(name: str) -> Procedure:
 _GYRO: Final = Procedure(
     (
         _started("gyro"),
-        *(Line(0.05 + 0.001 * part, 6, f"[cal] progress <{part // 10}>")
+        *(Line(0.04 + 0.00095 * part, 6, f"[cal] progress <{part // 10}>")
           for part in range(0, 1001, 100)),
-        Line(1.06, 6, "[cal] calibration done: gyro"),
+        Line(1.0, 6, "[cal] calibration done: gyro"),
     ),
-    1.06,
+    1.0,
     "gyro",
     cancels=True,
     tries=20,
     failed=("ERROR: Motion during calibration", "[cal] calibration failed: gyro"),
 )  # fmt: skip
 _MOVES_RAD_S: Final = 0.0105
-"""PX4's gyroscope calibration begins anew where the rate changes by more than 0.6 deg/s meanwhile."""
+"""PX4's calibration of the gyroscope begins anew where its rate changes by more than 0.6 deg/s."""
 _AIRSPEED: Final = Procedure(
     (_started("airspeed"), Line(0.05, 2, "[cal] Ensure sensor is not measuring wind")),
     _GIVES_UP_S,
@@ -99,6 +99,7 @@ _AIRSPEED: Final = Procedure(
 )
 _RADIO_OFF: Final = Procedure((Line(0.0, 6, "Calibration: Disabling RC input"),), 0.0)
 _TRIM: Final = Procedure((Line(0.4, 6, "trim cal done"),), 0.4, "trim")
+_RADIO: Final = "RC calibrating"
 _NOTHING: Final = Procedure((), 0.0)
 
 # By the number (1..7) and the value of the parameter that is not 0; the first one counts.
@@ -146,7 +147,7 @@ class Calibration:
 
     __slots__ = (
         "_acked", "_asked_ns", "_began_ns", "_highest", "_lowest", "_position", "_said",
-        "_tries", "running",
+        "_tries", "against_arming", "running",
     )  # fmt: skip
 
     def __init__(self) -> None:
@@ -158,11 +159,17 @@ class Calibration:
         self._acked = True
         self._tries = 0
         self._lowest = self._highest = _STILL
+        self.against_arming: tuple[str, ...] = ()
 
     @property
     def busy(self) -> bool:
         """PX4 says MAV_STATE_CALIBRATING, and does not arm."""
         return self.running is not None and bool(self.running.name)
+
+    def mind_radio(self, wanted: float) -> None:
+        """ArduPilot's parameter 4: a station calibrates the sticks by itself, until it says 0."""
+        others = tuple(why for why in self.against_arming if why != _RADIO)
+        self.against_arming = (*others, _RADIO) if wanted > 0.0 else others
 
     @property
     def listens(self) -> bool:
@@ -196,6 +203,7 @@ class Calibration:
             self._position = 2.0
             return Result.ACCEPTED, []
         self._position = _FAILED_POSITION
+        self.against_arming = (*self.against_arming, "3D Accel calibration needed")
         return Result.ACCEPTED, [StatusText(2, "Calibration FAILED")]
 
     def update(self, time_ns: int, rates_frd: Vec3 = _STILL) -> list[VehicleEvent]:

@@ -305,6 +305,8 @@ class Core:
         if self.personality == "ardupilot":
             if self._armed:
                 self._disarm("Disarming motors")
+            else:
+                self._say(6, "Disarming motors")
             return
         self._terminated = True
         self._cut_off_in_air = self._cut_off_in_air or self._pilot.flying
@@ -317,7 +319,7 @@ class Core:
         if self.personality == "ardupilot" and self.parameters.get("BATT_MONITOR") == 0:
             return UNMEASURED
         return Power(
-            body.voltage_v,
+            self._simulated_battery.volts(body.voltage_v),
             body.current_a,
             body.consumed_mah,
             int(100.0 * self._charge_seen + 0.5),

@@ -45,7 +45,7 @@ class FailsafeActions(HealthChecks):
 
     def _restart(self) -> None:
         super()._restart()
-        self._failsafe_checks.reset()
+        self._failsafe_checks.restart()
         self._failure_detector.reset()
         self._geofence.forget()
         self._on_its_own = False
@@ -126,6 +126,7 @@ class FailsafeActions(HealthChecks):
                 self._strike(strike, s)
         if self._due_ns is not None and s.time_ns >= self._due_ns and self._acting is not None:
             self._due_ns = None
+            self._say(self._acting.severity, self._acting.text)
             self._carry_out(self._acting.action)
 
     def _watch_disarmed(self, s: Situation) -> None:

@@ -57,6 +57,8 @@ class HealthChecks(Bounds):
                 sticks=self._radio.sticks(s.wall_ns) is not None,
                 sticks_lost=self._radio.lost(s.wall_ns),
                 station_lost=self._failsafe_checks.station_lost,
+                battery_failed=self._failsafe_checks.battery_failed,
+                calibration=self._calibration.against_arming,
             ),
         )
 
@@ -108,7 +110,8 @@ class HealthChecks(Bounds):
 
     def _see(self, s: Situation, crossing: Crossing) -> Seen:
         body = self._body
-        power = Power(body.voltage_v, body.current_a, body.consumed_mah, 0)
+        volts = self._simulated_battery.volts(body.voltage_v)
+        power = Power(volts, body.current_a, body.consumed_mah, 0)
         return Seen(
             time_ns=s.time_ns,
             wall_ns=s.wall_ns,

@@ -55,6 +55,8 @@ class Readiness:
     sticks: bool
     sticks_lost: bool
     station_lost: bool
+    battery_failed: bool  # its failsafe has struck since the start
+    calibration: tuple[str, ...]  # what ArduCopter's calibrations have against arming
 
 
 def reasons(parameters: Parameters, ready: Readiness) -> tuple[str, ...]:
@@ -157,6 +159,9 @@ def _copter(parameters: Parameters, ready: Readiness) -> list[str]:
         found.append("PreArm: GCS failsafe on")
     if (asked(_BATTERY) or asked(_VOLTAGE)) and get("BATT_MONITOR") != 0:
         found += [f"PreArm: Battery 1 {why}" for why in _copter_battery(parameters, ready.power)]
+        if ready.battery_failed:
+            found.append("PreArm: Battery failsafe")
+    found += [f"PreArm: {why}" for why in ready.calibration]
     if get("FENCE_ENABLE") != 0:
         misfit = ready.geofence.misfit()
         if misfit is not None:

@@ -6,6 +6,7 @@ By ArduCopter's events.cpp, fence.cpp and ekf_check.cpp, and by AP_BattMonitor.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 
 from vehicle_sim.autopilot.failsafes.failsafe import (
     BATTERY,
@@ -49,7 +50,8 @@ class CopterFailsafes(FailsafeChecks):
 
     def _learn(self) -> None:
         get = self._parameters.get
-        self._volt_least = max(get("BATT_LOW_VOLT"), get("BATT_CRT_VOLT"))
+        simulated = get("SIM_BATT_VOLTAGE") != self._parameters.designed("SIM_BATT_VOLTAGE")
+        self._volt_least = max(get("BATT_LOW_VOLT"), get("BATT_CRT_VOLT")) if not simulated else inf
         self._used_most_mah = get("BATT_CAPACITY") - max(get("BATT_LOW_MAH"), get("BATT_CRT_MAH"))
         self._ratio_most = get("FS_EKF_THRESH")
 
@@ -91,6 +93,7 @@ class CopterFailsafes(FailsafeChecks):
         if charge <= self._charge:
             return
         self._charge = charge
+        self.battery_failed = True
         self._low_since_ns = None
         name, actions = BATTERY["ardupilot"][charge]
         action = actions.get(int(get(name)), Action.WARN)

@@ -58,7 +58,8 @@ class FailsafeChecks(ABC):
     """Remembers what has struck, so that each is told and acted on once."""
 
     __slots__ = ("_charge", "_first", "_parameters", "_station_limit_ns", "_station_ns",
-                 "_version", "position_lost", "station_lost", "sticks_lost")  # fmt: skip
+                 "_version", "battery_failed",
+                 "position_lost", "station_lost", "sticks_lost")  # fmt: skip
 
     back_again: Cleared
     """What is said when the ground station is heard again."""
@@ -68,6 +69,11 @@ class FailsafeChecks(ABC):
         self._version = -1
         self._station_ns: int | None = None
         self.station_lost = False
+        self.restart()
+
+    def restart(self) -> None:
+        """As after power-up."""
+        self.battery_failed = False
         self.reset()
 
     def reset(self) -> None:
