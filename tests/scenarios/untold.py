@@ -59,4 +59,4 @@ SHAKEN: Final[dict[str, tuple[float, float]]] = {
     "D2_calibration_wrong_state": (0.0, 60.0),
     "D5_calibrations_alone": (2.0, 18.0),
 }
-"""From when to when PX4's simulated gyroscope was too noisy to be calibrated; ours is shaken then."""
+"""From when to when PX4's simulated gyroscope was too noisy for a calibration: ours is shaken."""

@@ -127,9 +127,9 @@ class Core:
         self._calibration = Calibration()
         self._cruise_m_s = self._climb_m_s = self._descend_m_s = None
         self._mode: Mode = MODES[self.personality][BOOT_MODE[self.personality]]
-        self._mode_once_disarmed = self._mode
         self._radio.forget()
         self._gestures.forget()
+        self._mode_after_disarming = self._mode
         self._roi_ned: Vec3 | None = None
         self._task: Task = self._task_of(self._mode)
         self._pilot.stop()
@@ -292,9 +292,12 @@ class Core:
         self._cut_off_in_air = False
         self._yaw_aligned = False
         self._say(6, text)
-        if self.personality == "px4":
-            # Where the mode stays, what it was to fly to ends with the flight all the same.
-            self._enter(self._mode_once_disarmed)
+        if self.personality != "px4":
+            return
+        before = self._mode_after_disarming
+        if before is not self._mode or before.behaviour is Behaviour.HOLD:
+            # HOLD begins anew: what it was to fly to ends with the flight.
+            self._enter(before)
 
     def _terminate(self) -> None:
         """Motors off.  ArduCopter's is no more than a disarming: nothing of it stays.

@@ -83,7 +83,8 @@ class FailsafeActions(HealthChecks):
         if self._on_its_own:
             return
         if mode.may_arm:
-            self._mode_once_disarmed = mode
+            # PX4 goes back to it with the disarming (UserModeIntention).
+            self._mode_after_disarming = mode
         if self._acting is not None and self._acting.cause is Cause.FENCE:
             self._geofence.taken_over(self.time_ns)
         self._stand_down()

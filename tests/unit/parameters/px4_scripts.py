@@ -47,6 +47,14 @@ def percent_left(setting: Setting) -> int:
     return flight.vehicle.power.remaining_pct
 
 
+def percent_after_10_s(setting: Setting) -> int:
+    """Armed on the ground, by the simulated battery where it is switched on."""
+    flight = setting.at_home()
+    flight.vehicle.arm(False)
+    flight.fly(9.9)
+    return flight.vehicle.power.remaining_pct
+
+
 _LEVEL = Posture(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.5,) * 4, (0.5,) * 4)
 
 

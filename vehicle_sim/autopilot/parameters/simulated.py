@@ -120,7 +120,7 @@ class SimulatedBattery:
         return min(1.0, self._left + throttle * _LOAD_DROP)
 
     def volts(self, airframe_v: float) -> float:
-        """What is measured: ArduCopter's SIM_BATT_VOLTAGE, which no load lowers, if it was changed."""
+        """What is measured: ArduCopter's SIM_BATT_VOLTAGE if it was changed; no load lowers it."""
         if self._parameters.personality != "ardupilot":
             return airframe_v
         set_v = self._parameters.get("SIM_BATT_VOLTAGE")
