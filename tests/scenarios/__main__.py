@@ -25,7 +25,7 @@ def main(words: list[str]) -> None:
         for name, scenario in recorded(personality).items():
             if not name.startswith(names or ("",)):
                 continue
-            if not playable(scenario):
+            if not playable(personality, scenario):
                 print(f"{personality} {name}: not played")
                 continue
             agreement = compare(scenario, play(personality, scenario))

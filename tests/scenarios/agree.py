@@ -57,7 +57,7 @@ def compare(scenario: Scenario, played: Played) -> Agreement:
     name = scenario.scenario
     steps = scenario.steps
     for number, (step, ours) in enumerate(zip(steps, played.acks, strict=True)):
-        if step.sent.startswith(("COMMAND_", "mission", "MISSION_")):
+        if step.sent.startswith(("COMMAND_", "mission upload", "MISSION_")):
             agree = ours == step.ack
             found.acks[agree] += 1
             if not agree:

@@ -23,7 +23,7 @@ SCENARIOS = [
     pytest.param(personality, name, id=f"{personality}-{name}")
     for personality in get_args(Personality)
     for name, scenario in recorded(personality).items()
-    if playable(scenario) and (SOAKING or scenario.end_s <= SHORT_S)
+    if playable(personality, scenario) and (SOAKING or scenario.end_s <= SHORT_S)
 ]
 
 

@@ -37,6 +37,8 @@ UNTOLD: Final[dict[tuple[Personality, str], tuple[Step, ...]]] = {
     ),
     ("px4", "K1_small_services"): (_arm(49.15),),
     ("px4", "L2_events_not_armable"): (Step(0.03, "silent"), Step(15.05, "beats again")),
+    ("ardupilot", "C1_items_at_zero_position"): (_long(0.55, "MISSION_START"),),
+    ("ardupilot", "C2_do_items_before_takeoff"): (_long(0.5, "MISSION_START"),),
     ("ardupilot", "G10_gcs_failsafe_never_heard"): (
         Step(0.25, "silent"),
         Step(11.2, "beats again"),

@@ -239,8 +239,11 @@ class Autopilot(ManualInput):
         mission.limit(last)
         if mission.empty and not self._armed:
             self._say(2, "PreArm: Mode requires mission")
+        begun = self._task is mission
         result = self.set_mode_kind("mission")
         if result is Result.ACCEPTED:
+            if not begun:
+                mission.announce_begin()  # by the command, after the mode has done so
             self._auto_armed = True
             if self.personality == "px4":
                 result = self.arm(False)

@@ -11,7 +11,6 @@ import pytest
 from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long
 from tests.unit.vehicle_services.flown_vehicle import Flown, in_the_air, on_the_ground
 from vehicle_sim.autopilot.interface import Result
-from vehicle_sim.effects import Effect
 from vehicle_sim.plant.faults import GyroBias
 from vehicle_sim.wire import messages as m
 
@@ -31,7 +30,7 @@ def told(bench: Flown, asked: m.CommandLong, ns: int) -> tuple[list[int], list[s
     return results, heard_of_it(bench, heard)
 
 
-def heard_of_it(bench: Flown, heard: list[Effect]) -> list[str]:
+def heard_of_it(bench: Flown, heard: list[m.Message]) -> list[str]:
     """No station beats here, which is told, too."""
     return [text for text in bench.texts(heard) if not text.startswith("Connection to ground")]
 

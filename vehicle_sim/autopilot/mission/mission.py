@@ -39,6 +39,7 @@ from vehicle_sim.numerics.vectors import Vec3
 _SEARCHED_MAX = 64  # items in one update
 _BY_HOME = {1: 1.0, 2: -1.0}  # MPC_YAW_MODE: towards it, away from it
 _RADIUS_M = 10.0  # of LOITER_TURNS without one
+_TOLD_WHEN_REACHED = frozenset({Cmd.WAYPOINT, Cmd.SPLINE})
 _THROUGH = frozenset({Cmd.WAYPOINT, Cmd.SPLINE, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME})
 
 
@@ -197,7 +198,7 @@ class Mission:
         self._next = max(self._next, first_of(self._parameters.personality))
         self.current = max(self.current, first_of(self._parameters.personality))
         self._leg = None
-        self._announce(self._flown_from(self._next))
+        self.announce_begin()
         self._goal = s.stop_ned
         self._before_ned = None
         if not s.flying and not self.takes_off:
@@ -257,9 +258,15 @@ class Mission:
             else:
                 self._errands.put(item)
                 self._next += 1
+                if item.seq > self._announced:
+                    self._announce(item)
+                    self._announced = -1
 
     def _reached(self) -> None:
-        self._vehicle.emit(MissionReached(self.items[self.current].seq))
+        item = self.items[self.current]
+        self._vehicle.emit(MissionReached(item.seq))
+        if self._parameters.personality == "ardupilot" and item.command in _TOLD_WHEN_REACHED:
+            self._vehicle.emit(StatusText(6, f"Reached command #{item.seq}"))
         self._leg = None
         self._errands.drop()
 
@@ -274,16 +281,27 @@ class Mission:
         if self._parameters.personality == "px4":
             self._vehicle.emit(StatusText(6, "DO JUMP repetitions completed."))
 
-    def _announce(self, item: PlanItem | None) -> None:
-        """ArduCopter names each item that it begins."""
-        if item is not None and self._parameters.personality == "ardupilot":
-            name = COPTER_ITEMS.get(item.command, "")
-            self._vehicle.emit(StatusText(6, f"Mission: {item.seq} {name}"))
-            self._announced = item.seq
+    def announce_begin(self) -> None:
+        """ArduCopter names what it begins with: all up to the first flown item."""
+        for item in self.items[self._next : self._last + 1]:
+            self._announce(item)
+            if KINDS[item.command] is ItemKind.FLOWN:
+                break
+
+    def _announce(self, item: PlanItem) -> None:
+        """ArduCopter names each item that it begins, but a DO_JUMP."""
+        if self._parameters.personality != "ardupilot" or item.command == Cmd.JUMP:
+            return
+        name = COPTER_ITEMS.get(item.command, "")
+        self._vehicle.emit(StatusText(6, f"Mission: {item.seq} {name}"))
+        if item.command == Cmd.DELAY:
+            self._vehicle.emit(StatusText(6, f"Delaying {int(item.p1)} sec"))
+        self._announced = item.seq
 
     def _start(self, item: PlanItem, s: Situation, turner: Turner, entry_m_s: float) -> None:
-        if item.seq != self._announced:
+        if item.seq > self._announced:
             self._announce(item)
+        self._announced = -1
         if item.command == Cmd.RETURN:
             self._errands.work(s, self._goal)
             if self._vehicle.leave_for_return():
