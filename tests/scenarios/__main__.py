@@ -12,6 +12,7 @@ from typing import get_args
 
 from tests.scenarios.agree import Agreement, compare
 from tests.scenarios.facts import recorded
+from tests.scenarios.judged import by_judgement
 from tests.scenarios.known import write
 from tests.scenarios.play import play, playable
 from vehicle_sim.autopilot.modes import Personality
@@ -34,6 +35,8 @@ def main(words: list[str]) -> None:
             if names:
                 print("\n".join(f"    {line}" for line in agreement.differences))
         print(f"{personality}, {len(found)} scenarios: {total}")
+        for judgement, number in by_judgement(personality, found).most_common():
+            print(f"    {number} differences: {judgement.value}")
         if "--write" in words and not names:
             write(personality, found)
 

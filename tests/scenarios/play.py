@@ -12,6 +12,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from tests.contract.client import Sky
 from tests.scenarios.facts import Item, Scenario, Step
+from tests.scenarios.names import mission_ack, mode_name, mode_numbers, plan_item
 from tests.scenarios.streams import PERIOD_S, STREAMS, message
 from tests.scenarios.untold import SHAKEN, UNTOLD
 from vehicle_sim.autopilot.firmware import Firmware
@@ -53,20 +54,6 @@ LAST_S: Final = 0.1
 SHAKING_RAD_S: Final = 0.02
 ANSWER_S: Final = 1.5
 """How long the recorder waited for an answer."""
-
-PX4_MODES: Final = {
-    (1, 0): "MANUAL",
-    (2, 0): "ALTCTL",
-    (3, 0): "POSCTL",
-    (4, 2): "AUTO.TAKEOFF",
-    (4, 3): "AUTO.LOITER",
-    (4, 4): "AUTO.MISSION",
-    (4, 5): "AUTO.RTL",
-    (4, 6): "AUTO.LAND",
-    (5, 0): "ACRO",
-    (6, 0): "OFFBOARD",
-    (7, 0): "STABILIZED",
-}
 
 
 @dataclass(frozen=True)
@@ -186,7 +173,7 @@ class _Player:
         vehicle = self._sky.vehicles[0]
         return Seen(
             self._sky.now_ns / 1e9 - self._zero_s,
-            _mode_name(self._personality, vehicle.custom_mode),
+            mode_name(self._personality, vehicle.custom_mode),
             vehicle.armed,
             vehicle.landed.name,
         )
@@ -203,7 +190,7 @@ class _Player:
         words = step.words
         if words[0] in ("COMMAND_LONG", "COMMAND_INT"):
             return self._command(step)
-        if "=" in words[-1]:
+        if words[0].startswith(("PARAM_SET", "FENCE_OPTIONS=")):
             name, _, value = words[-1].partition("=")
             return "ok" if self._set_parameter(name, float(value)) else "no"
         if words[0] == "MISSION_CLEAR_ALL":
@@ -269,7 +256,7 @@ class _Player:
     def _clear(self, kind: int) -> str | None:
         before = len(self._client.heard)
         self._client.send(mavlink.MAVLink_mission_clear_all_message(1, 1, kind))
-        return _mission_ack(self._wait("MISSION_ACK", before))
+        return mission_ack(self._wait("MISSION_ACK", before))
 
     def _upload(self, items: tuple[Item, ...], kind: int) -> str | None:
         before = len(self._client.heard)
@@ -283,17 +270,13 @@ class _Player:
             if not asked:
                 return None
             if asked[-1].get_type() == "MISSION_ACK":
-                return _mission_ack(asked[-1:])
+                return mission_ack(asked[-1:])
             before = len(self._client.heard)
-            self._client.send(_item(items[asked[-1].seq], asked[-1].seq, kind))
+            self._client.send(plan_item(items[asked[-1].seq], asked[-1].seq, kind))
         return None
 
     def _set_mode(self, name: str) -> None:
-        if self._personality == "px4":
-            numbers = next(pair for pair, mode in PX4_MODES.items() if mode == name)
-        else:
-            modes = mavlink.enums["COPTER_MODE"].items()
-            numbers = (next(n for n, mode in modes if mode.name == f"COPTER_MODE_{name}"), 0)
+        numbers = mode_numbers(self._personality, name)
         self._client.long(mavlink.MAV_CMD_DO_SET_MODE, 1, *numbers)
 
 
@@ -304,24 +287,3 @@ def _start(personality: Personality, scenario: Scenario) -> Geodetic:
     north, east = round(start.n or 0.0), round(start.e or 0.0)
     where = projection(personality, home).to_geodetic((north, east, 0.0))
     return Geodetic(where.lat_deg, where.lon_deg, home.alt_amsl_m)
-
-
-def _mode_name(personality: Personality, custom_mode: int) -> str:
-    if personality == "px4":
-        return PX4_MODES.get((custom_mode >> 16 & 0xFF, custom_mode >> 24), str(custom_mode))
-    name: str = mavlink.enums["COPTER_MODE"][custom_mode].name
-    return name.removeprefix("COPTER_MODE_")
-
-
-def _mission_ack(acks: list[Any]) -> str | None:
-    return mavlink.enums["MAV_MISSION_RESULT"][acks[-1].type].name if acks else None
-
-
-def _item(item: Item, seq: int, kind: int) -> Any:
-    frame, name, *rest = item
-    values = [math.nan if value is None else value for value in rest]
-    number = next(k for k, entry in mavlink.enums["MAV_CMD"].items() if entry.name == name)
-    x, y = (0 if math.isnan(value) else int(value) for value in values[4:6])
-    return mavlink.MAVLink_mission_item_int_message(
-        1, 1, seq, frame, number, 0, 1, *values[:4], x, y, values[6], kind
-    )

@@ -64,7 +64,7 @@ class HealthChecks(Bounds):
 
     def _say_against_arming(self, asked_to_arm: bool) -> bool:
         """Whether there is something, after telling it."""
-        against = self._against_arming()
+        against = self._against_arming() if asked_to_arm else self._unready()
         for reason in against:
             # ArduCopter's words begin with what it was asked for.
             head, colon, rest = reason.partition(": ")
@@ -72,6 +72,10 @@ class HealthChecks(Bounds):
                 reason = f"Arm{colon}{rest}"
             self._say(2, reason)
         return bool(against)
+
+    def _unready(self) -> tuple[str, ...]:
+        """What is against arming at any time; some of ArduCopter's checks are made only then."""
+        return tuple(why for why in self._against_arming() if not why.startswith("Arm: "))
 
     def check_arming(self) -> Result:
         if self._armed:
@@ -90,7 +94,7 @@ class HealthChecks(Bounds):
             self._newly_unready = False
             self._displayed_ns = self.time_ns
             self._say_against_arming(False)
-        ready = not self._against_arming()
+        ready = not self._unready()
         self._newly_unready = self._newly_unready or (self._was_ready and not ready)
         self._was_ready = ready
 

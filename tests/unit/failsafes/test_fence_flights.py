@@ -216,7 +216,7 @@ def test_ardupilot_back_inside_says_so() -> None:
     flight.vehicle.parameters.set("RTL_ALT", 500)
     outwards(flight, 4.5)
     flight.fly(8.0)
-    assert said(flight, "Polygon fence cleared")
+    assert said(flight, "Fence breach cleared")
     assert not flight.vehicle.fence_state.breached
 
 

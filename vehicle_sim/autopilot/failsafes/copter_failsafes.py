@@ -143,7 +143,7 @@ class CopterFailsafes(FailsafeChecks):
     def _fence(self, seen: Seen) -> Iterator[Strike]:
         crossing = seen.crossing
         if crossing.cleared:
-            yield Cleared(Cause.FENCE, f"{names(crossing.cleared)} cleared", 5)
+            yield Cleared(Cause.FENCE, "Fence breach cleared", 5)
         if not crossing.struck:
             return
         name, actions = BREACH["ardupilot"]

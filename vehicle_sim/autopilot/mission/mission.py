@@ -18,9 +18,9 @@ from vehicle_sim.autopilot.interface import (
     StatusText,
     Target,
 )
+from vehicle_sim.autopilot.mission.item_texts import ItemTexts
 from vehicle_sim.autopilot.mission.mission_commands import MissionCommands, MissionVehicle
 from vehicle_sim.autopilot.mission.plan import (
-    COPTER_ITEMS,
     KINDS,
     Cmd,
     ItemKind,
@@ -39,7 +39,6 @@ from vehicle_sim.numerics.vectors import Vec3
 _SEARCHED_MAX = 64  # items in one update
 _BY_HOME = {1: 1.0, 2: -1.0}  # MPC_YAW_MODE: towards it, away from it
 _RADIUS_M = 10.0  # of LOITER_TURNS without one
-_TOLD_WHEN_REACHED = frozenset({Cmd.WAYPOINT, Cmd.SPLINE})
 _THROUGH = frozenset({Cmd.WAYPOINT, Cmd.SPLINE, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME})
 
 
@@ -47,7 +46,6 @@ class Mission:
     """The plan, where it stands, and the task of the mission mode."""
 
     __slots__ = (
-        "_announced",
         "_before_ned",
         "_by_home",
         "_errands",
@@ -58,6 +56,7 @@ class Mission:
         "_next",
         "_parameters",
         "_repeats",
+        "_texts",
         "_until_ns",
         "_vehicle",
         "current",
@@ -69,6 +68,7 @@ class Mission:
     def __init__(self, parameters: Parameters, vehicle: MissionVehicle) -> None:
         self._parameters = parameters
         self._vehicle = vehicle
+        self._texts = ItemTexts(vehicle, told=parameters.personality == "ardupilot")
         self._errands = MissionCommands(vehicle, reports=parameters.personality == "px4")
         self.load(())
 
@@ -91,7 +91,6 @@ class Mission:
         self._before_ned: Vec3 | None = None
         self._first_task: TakeOff | None = None
         self._until_ns: int | None = None
-        self._announced = -1
         self._leg: Leg | None = None
 
     @property
@@ -258,15 +257,12 @@ class Mission:
             else:
                 self._errands.put(item)
                 self._next += 1
-                if item.seq > self._announced:
-                    self._announce(item)
-                    self._announced = -1
+                self._texts.start(item)
 
     def _reached(self) -> None:
         item = self.items[self.current]
         self._vehicle.emit(MissionReached(item.seq))
-        if self._parameters.personality == "ardupilot" and item.command in _TOLD_WHEN_REACHED:
-            self._vehicle.emit(StatusText(6, f"Reached command #{item.seq}"))
+        self._texts.reached(item)
         self._leg = None
         self._errands.drop()
 
@@ -282,26 +278,10 @@ class Mission:
             self._vehicle.emit(StatusText(6, "DO JUMP repetitions completed."))
 
     def announce_begin(self) -> None:
-        """ArduCopter names what it begins with: all up to the first flown item."""
-        for item in self.items[self._next : self._last + 1]:
-            self._announce(item)
-            if KINDS[item.command] is ItemKind.FLOWN:
-                break
-
-    def _announce(self, item: PlanItem) -> None:
-        """ArduCopter names each item that it begins, but a DO_JUMP."""
-        if self._parameters.personality != "ardupilot" or item.command == Cmd.JUMP:
-            return
-        name = COPTER_ITEMS.get(item.command, "")
-        self._vehicle.emit(StatusText(6, f"Mission: {item.seq} {name}"))
-        if item.command == Cmd.DELAY:
-            self._vehicle.emit(StatusText(6, f"Delaying {int(item.p1)} sec"))
-        self._announced = item.seq
+        self._texts.begin(self.items[self._next : self._last + 1])
 
     def _start(self, item: PlanItem, s: Situation, turner: Turner, entry_m_s: float) -> None:
-        if item.seq > self._announced:
-            self._announce(item)
-        self._announced = -1
+        self._texts.start(item)
         if item.command == Cmd.RETURN:
             self._errands.work(s, self._goal)
             if self._vehicle.leave_for_return():

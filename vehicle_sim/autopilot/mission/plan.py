@@ -92,27 +92,6 @@ KINDS: dict[int, ItemKind] = {
     Cmd.FENCE_RETURN_POINT: ItemKind.NOTHING,
 }
 
-COPTER_ITEMS: dict[int, str] = {
-    Cmd.WAYPOINT: "WP",
-    Cmd.LOITER_UNLIM: "LoitUnlim",
-    Cmd.LOITER_TURNS: "LoitTurns",
-    Cmd.LOITER_TIME: "LoitTime",
-    Cmd.RETURN: "RTL",
-    Cmd.LAND: "Land",
-    Cmd.TAKEOFF: "Takeoff",
-    Cmd.LOITER_TO_ALT: "LoitAltitude",
-    Cmd.SPLINE: "SplineWP",
-    Cmd.DELAY: "Delay",
-    Cmd.CONDITION_DELAY: "CondDelay",
-    Cmd.CONDITION_DISTANCE: "CondDist",
-    Cmd.CONDITION_YAW: "CondYaw",
-    Cmd.CHANGE_SPEED: "ChangeSpeed",
-    Cmd.SET_HOME: "SetHome",
-    Cmd.ROI: "SetROI",
-}
-"""What ArduCopter calls an item that it begins: "WP", "Takeoff", "RTL" and "SetROI" as recorded,
-the others from memory of AP_Mission."""
-
 _PLACED = frozenset(
     {
         Cmd.WAYPOINT,
