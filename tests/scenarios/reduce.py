@@ -26,7 +26,7 @@ LATE_S: Final = 1.2
 
 
 def _is_late(event: dict[str, Any]) -> bool:
-    return event["kind"] != "STATUSTEXT"
+    return bool(event["kind"] != "STATUSTEXT")
 
 
 def reduced(scenario: dict[str, Any]) -> dict[str, Any]:

@@ -17,7 +17,8 @@ from tests.scenarios.known import known
 from tests.scenarios.play import play, playable
 from vehicle_sim.autopilot.modes import Personality
 
-SHORT_S = 40.0
+SHORT_S = 22.0
+"""Scenarios that are no longer than this are in `make test`."""
 SOAKING = "MAVGATE_SOAK" in os.environ
 
 SCENARIOS = [

@@ -181,8 +181,9 @@ def test_termination_stops_the_motors_for_good() -> None:
     assert flight.vehicle.arm(False) is Result.ACCEPTED
     assert flight.vehicle.land() is Result.ACCEPTED
     flight.fly(6.0, lambda: not flight.vehicle.armed)
-    assert flight.landed() is Landed.ON_GROUND
-    assert not flight.vehicle.armed
+    landed = flight.landed()
+    assert landed is Landed.ON_GROUND
+    assert not flight.armable()
     assert flight.vehicle.arm(True) is Result.TEMPORARILY_REJECTED
     assert flight.vehicle.system_status == 8
     assert flight.vehicle.reboot() is Result.ACCEPTED
