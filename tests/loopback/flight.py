@@ -102,6 +102,13 @@ class Flight(Looks):
 
     # ------------------------------------------------------------------------------- time
 
+    def flown_by_hand(self) -> None:
+        """A pilot takes the vehicle over; PX4 enters the mode only while there are sticks."""
+        if self.personality == "px4":
+            self.vehicle.parameters.set("NAV_RCL_ACT", 0)  # and stays in it when they are silent
+            self.vehicle.joystick(0, 0, 500, 0, self.now_ns)
+        self.vehicle.set_mode_kind("position")
+
     def run(self, seconds: float) -> None:
         """Let time pass."""
         until_ns = self.now_ns + round(seconds * 1e9)

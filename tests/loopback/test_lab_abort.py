@@ -67,7 +67,7 @@ def holding(flight: Flight) -> None:
 
 def external(flight: Flight) -> None:
     flight.hovering(1.0)
-    flight.vehicle.set_mode_kind("position")
+    flight.flown_by_hand()
     flight.run(2.0)
 
 

@@ -24,7 +24,7 @@ def test_somebody_else_changes_the_mode(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     goal = flight.goto(20.0, 0.0, 3.0)
     flight.run(1.0)
-    flight.vehicle.set_mode_kind("position")
+    flight.flown_by_hand()
     flight.run(2.0)
     assert flight.is_in(State.EXTERNAL)
     assert flight.session.gate.control is Control.NONE

@@ -12,6 +12,7 @@ from typing import get_args
 
 from tests.scenarios.agree import Agreement, compare
 from tests.scenarios.facts import recorded
+from tests.scenarios.judged import by_judgement
 from tests.scenarios.known import write
 from tests.scenarios.play import play, playable
 from vehicle_sim.autopilot.modes import Personality
@@ -25,7 +26,7 @@ def main(words: list[str]) -> None:
         for name, scenario in recorded(personality).items():
             if not name.startswith(names or ("",)):
                 continue
-            if not playable(scenario):
+            if not playable(personality, scenario):
                 print(f"{personality} {name}: not played")
                 continue
             agreement = compare(scenario, play(personality, scenario))
@@ -34,6 +35,8 @@ def main(words: list[str]) -> None:
             if names:
                 print("\n".join(f"    {line}" for line in agreement.differences))
         print(f"{personality}, {len(found)} scenarios: {total}")
+        for judgement, number in by_judgement(personality, found).most_common():
+            print(f"    {number} differences: {judgement.value}")
         if "--write" in words and not names:
             write(personality, found)
 

@@ -50,23 +50,37 @@ class Step(msgspec.Struct, frozen=True):
 
 
 class Event(msgspec.Struct, frozen=True):
-    """Something that was seen at `t` seconds; a field is None where it did not change."""
+    """Something that was seen at `t` seconds; a field is None where it did not change.
+
+    `n`, `e`, `up`: metres from where the simulation stood at first, of STATE_AT_START.
+    """
 
     t: float
     kind: str
     mode: str | None = None
     armed: bool | None = None
+    n: float | None = None
+    e: float | None = None
     up: float | None = None
     state: str | None = None
     text: str | None = None
 
 
 class Scenario(msgspec.Struct, frozen=True):
+    """`flown_before`: not the first since the autopilot's start."""
+
     scenario: str
     what: str
     end_s: float
+    flown_before: bool
     steps: tuple[Step, ...]
     events: tuple[Event, ...]
+
+    @property
+    def start(self) -> Event:
+        """The state at the start; nothing is known of it where none was seen."""
+        found = (event for event in self.events if event.kind == "STATE_AT_START")
+        return next(found, Event(0.0, "STATE_AT_START"))
 
 
 class Recording(msgspec.Struct, frozen=True):

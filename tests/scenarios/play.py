@@ -5,59 +5,56 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any, Final
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from tests.contract.client import Sky
 from tests.scenarios.facts import Item, Scenario, Step
+from tests.scenarios.names import mission_ack, mode_name, mode_numbers, plan_item
+from tests.scenarios.streams import PERIOD_S, STREAMS, message
+from tests.scenarios.untold import SHAKEN, UNTOLD
 from vehicle_sim.autopilot.firmware import Firmware
+from vehicle_sim.autopilot.geo import projection
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.numerics.vectors import Vec3
+from vehicle_sim.plant.faults import GyroBias
 
 HOMES: Final[dict[Personality, Geodetic]] = {
     "px4": Geodetic(47.397742, 8.545594, 32.5),
-    "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
+    "ardupilot": Geodetic(47.397742, 8.545594, 488.08),
 }
-"""Where the real ones stood."""
+"""Where the real ones' simulations began."""
+
+PARAMETERS: Final[dict[Personality, dict[str, float]]] = {
+    "px4": {"SDLOG_MODE": 1.0},
+    "ardupilot": {},
+}
+"""The real ones' defaults where ours are others on purpose (`parameters/tables/deliberate.py`)."""
 
 FIRMWARE: Final[dict[Personality, Firmware]] = {"px4": "1.14", "ardupilot": "4.7"}
 """What was recorded."""
 
 PLAYED: Final = (
-    *("COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "mission upload", "MISSION_CLEAR_ALL", "###"),
-    *("silent", "all silent", "255 ", "beats"),
+    *("COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "mission", "MISSION_CLEAR_ALL", "###"),
+    *("FENCE_OPTIONS", "silent", "all silent", "255 ", "beats"),
 )
 """What steps begin with that can be played; "###" is a remark."""
 
-STREAMED: Final = (
-    *("velocity setpoints", "velocity 3 m/s", "20 Hz", "stream stops", "override released"),
-)
-"""How a recording says that it streamed something, which its steps do not tell."""
-
-TOOK_OFF: Final = {"H1_change_speed": 10.0}
-"""Where the recorder took off, to so many metres, before the first step."""
+UNTOLD_WHOLLY: Final = ("C8_upload_item_kinds",)
+"""Their uploads are figures, not steps; `test_mission_answers.py` has them."""
 
 FROM_POWER_UP: Final = {"H7_force_arm_not_ready"}
 """Begun with the start of the process: played to a vehicle that boots as the real one."""
 
 READY_S: Final = 3.0
+LAST_S: Final = 0.1
+"""Until what the last step led to has been said."""
+SHAKING_RAD_S: Final = 0.02
 ANSWER_S: Final = 1.5
 """How long the recorder waited for an answer."""
-
-PX4_MODES: Final = {
-    (1, 0): "MANUAL",
-    (2, 0): "ALTCTL",
-    (3, 0): "POSCTL",
-    (4, 2): "AUTO.TAKEOFF",
-    (4, 3): "AUTO.LOITER",
-    (4, 4): "AUTO.MISSION",
-    (4, 5): "AUTO.RTL",
-    (4, 6): "AUTO.LAND",
-    (5, 0): "ACRO",
-    (6, 0): "OFFBOARD",
-    (7, 0): "STABILIZED",
-}
 
 
 @dataclass(frozen=True)
@@ -84,11 +81,12 @@ def play(personality: Personality, scenario: Scenario) -> Played:
     return _Player(personality, scenario).play()
 
 
-def playable(scenario: Scenario) -> bool:
-    """The recording tells every message that was sent: no sticks, and no stream of setpoints."""
-    streams = any(word in scenario.what for word in STREAMED)
+def playable(personality: Personality, scenario: Scenario) -> bool:
+    """It is known what was sent: by the steps, or by the table of streams."""
     told = all(step.sent.startswith(PLAYED) for step in scenario.steps)
-    return bool(scenario.steps) and told and not streams
+    streams = (personality, scenario.scenario) in STREAMS
+    known = scenario.scenario not in UNTOLD_WHOLLY
+    return bool(scenario.steps) and known and (told or streams)
 
 
 class _Player:
@@ -97,50 +95,89 @@ class _Player:
         self._starting = scenario.scenario in FROM_POWER_UP
         self._sky = Sky(
             personality,
-            home=HOMES[personality],
+            home=_start(personality, scenario),
             firmware=FIRMWARE[personality],
+            parameters=PARAMETERS[personality],
             boot="real" if self._starting else "quick",
             camera=False,
         )
         self._client = self._sky.client()
         self._played = Played()
         self._zero_s = 0.0
+        self._next_s = inf
+        self._first_ned: Vec3 | None = None
 
     def play(self) -> Played:
         self._client.beat_if_due()
         if not self._starting:
             self._sky.run(READY_S)
-        start = next((e for e in self._scenario.events if e.kind == "STATE_AT_START"), None)
-        if start is not None and start.armed:
-            self._client.take_off(max(1.0, start.up or 0.0))
-        if start is not None and start.mode not in (None, self._now().mode):
-            self._set_mode(str(start.mode))
-            self._sky.run(1.0)
-        if self._scenario.scenario in TOOK_OFF:
-            self._client.take_off(TOOK_OFF[self._scenario.scenario])
+            self._prepare()
         self._client.forget()
         self._zero_s = self._sky.now_ns / 1e9
         self._played.seen.append(self._now())
-        for step in self._scenario.steps:
+        told = [(step, True) for step in self._scenario.steps]
+        untold = UNTOLD.get((self._personality, self._scenario.scenario), ())
+        both = [*told, *((step, False) for step in untold)]
+        both.sort(key=lambda pair: pair[0].t)
+        times = [step.t for step, _ in both]
+        for (step, compared), next_s in zip(both, [*times[1:], inf], strict=True):
+            self._next_s = next_s
             self._until(step.t)
-            self._played.acks.append(self._take(step))
+            answer = self._take(step)
+            if compared:
+                self._played.acks.append(answer)
             self._note()
-        self._until(self._scenario.end_s)
+        self._until(self._scenario.end_s + LAST_S)
         self._played.texts = self._client.texts()
         return self._played
+
+    def _prepare(self) -> None:
+        """Flown before, in the air and in the mode, as the real one was."""
+        start = self._scenario.start
+        if self._scenario.flown_before and not start.armed:
+            self._client.long(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+            self._sky.run(1.0)
+            self._client.long(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+            self._sky.run(1.0)
+        if start.armed:
+            self._client.take_off(max(1.0, start.up or 0.0))
+        if start.mode not in (None, self._now().mode):
+            self._set_mode(str(start.mode))
+            self._sky.run(1.0)
 
     # ------------------------------------------------------------------------------ seeing
 
     def _until(self, t: float) -> None:
         while (left_s := self._zero_s + t - self._sky.now_ns / 1e9) > 1e-9:
-            self._sky.run(min(0.1, left_s))
+            now_s = t - left_s
+            self._shake(now_s)
+            streaming = self._stream(now_s)
+            self._sky.run(min(PERIOD_S if streaming else 0.1, left_s))
             self._note()
+
+    def _stream(self, t: float) -> bool:
+        """Send one message of what is streamed now; False where nothing is."""
+        streams = STREAMS.get((self._personality, self._scenario.scenario), ())
+        now = next((stream for begin, end, stream in streams if begin <= t < end), None)
+        if now is None:
+            return False
+        if self._first_ned is None:
+            self._first_ned = self._sky.vehicles[0].estimate.pos_ned
+        self._client.send(message(now, self._first_ned))
+        return True
+
+    def _shake(self, t: float) -> None:
+        begin_s, end_s = SHAKEN.get(self._scenario.scenario, (inf, 0.0))
+        if self._personality == "px4" and begin_s <= t:
+            by_rad_s = SHAKING_RAD_S if t < end_s else 0.0
+            by_rad_s *= 1.0 if t % 0.6 < 0.3 else -1.0
+            self._sky.vehicles[0].inject(GyroBias((by_rad_s, 0.0, 0.0)))
 
     def _now(self) -> Seen:
         vehicle = self._sky.vehicles[0]
         return Seen(
             self._sky.now_ns / 1e9 - self._zero_s,
-            _mode_name(self._personality, vehicle.custom_mode),
+            mode_name(self._personality, vehicle.custom_mode),
             vehicle.armed,
             vehicle.landed.name,
         )
@@ -157,19 +194,22 @@ class _Player:
         words = step.words
         if words[0] in ("COMMAND_LONG", "COMMAND_INT"):
             return self._command(step)
-        if words[0] == "PARAM_SET":
-            name, _, value = words[1].partition("=")
+        if words[0].startswith(("PARAM_SET", "FENCE_OPTIONS=")):
+            name, _, value = words[-1].partition("=")
             return "ok" if self._set_parameter(name, float(value)) else "no"
         if words[0] == "MISSION_CLEAR_ALL":
             return self._clear(int(words[-1]))
-        if words[0] == "mission":
+        if words[:2] == ["mission", "upload"]:
             return self._upload(step.items, int(words[-1]))
         if "silent" in step.sent:
-            self._client.beats = False
+            for client in self._sky.clients.values():
+                client.beats = False
             if "77 beats" in step.sent:
                 self._sky.client("other", system=77)
         elif "beats" in step.sent or "again" in step.sent:
             self._client.beats = True
+            self._client.beat_ns = self._sky.now_ns
+            self._client.beat_if_due()
         return None
 
     def _command(self, step: Step) -> str | None:
@@ -193,13 +233,17 @@ class _Player:
         return None
 
     def _wait(self, kind: str, before: int) -> list[Any]:
-        """Until a message of that kind came, or the recorder's patience is over."""
-        end_s = self._sky.now_ns / 1e9 + ANSWER_S
+        """Until a message of that kind came, or the recorder's patience is over.
+
+        It is over at the next step, too: the recorder waited less in some scenarios.
+        """
+        end_s = min(self._sky.now_ns / 1e9 + ANSWER_S, self._zero_s + self._next_s)
         while self._sky.now_ns / 1e9 < end_s:
             found = [h.message for h in self._client.heard[before:] if h.message.get_type() == kind]
             if found:
                 return found
-            self._sky.run(0.05)
+            self._stream(self._sky.now_ns / 1e9 - self._zero_s)
+            self._sky.run(PERIOD_S)
             self._note()
         return []
 
@@ -216,7 +260,7 @@ class _Player:
     def _clear(self, kind: int) -> str | None:
         before = len(self._client.heard)
         self._client.send(mavlink.MAVLink_mission_clear_all_message(1, 1, kind))
-        return _mission_ack(self._wait("MISSION_ACK", before))
+        return mission_ack(self._wait("MISSION_ACK", before))
 
     def _upload(self, items: tuple[Item, ...], kind: int) -> str | None:
         before = len(self._client.heard)
@@ -230,36 +274,20 @@ class _Player:
             if not asked:
                 return None
             if asked[-1].get_type() == "MISSION_ACK":
-                return _mission_ack(asked[-1:])
+                return mission_ack(asked[-1:])
             before = len(self._client.heard)
-            self._client.send(_item(items[asked[-1].seq], asked[-1].seq, kind))
+            self._client.send(plan_item(items[asked[-1].seq], asked[-1].seq, kind))
         return None
 
     def _set_mode(self, name: str) -> None:
-        if self._personality == "px4":
-            numbers = next(pair for pair, mode in PX4_MODES.items() if mode == name)
-        else:
-            modes = mavlink.enums["COPTER_MODE"].items()
-            numbers = (next(n for n, mode in modes if mode.name == f"COPTER_MODE_{name}"), 0)
+        numbers = mode_numbers(self._personality, name)
         self._client.long(mavlink.MAV_CMD_DO_SET_MODE, 1, *numbers)
 
 
-def _mode_name(personality: Personality, custom_mode: int) -> str:
-    if personality == "px4":
-        return PX4_MODES.get((custom_mode >> 16 & 0xFF, custom_mode >> 24), str(custom_mode))
-    name: str = mavlink.enums["COPTER_MODE"][custom_mode].name
-    return name.removeprefix("COPTER_MODE_")
-
-
-def _mission_ack(acks: list[Any]) -> str | None:
-    return mavlink.enums["MAV_MISSION_RESULT"][acks[-1].type].name if acks else None
-
-
-def _item(item: Item, seq: int, kind: int) -> Any:
-    frame, name, *rest = item
-    values = [math.nan if value is None else value for value in rest]
-    number = next(k for k, entry in mavlink.enums["MAV_CMD"].items() if entry.name == name)
-    x, y = (0 if math.isnan(value) else int(value) for value in values[4:6])
-    return mavlink.MAVLink_mission_item_int_message(
-        1, 1, seq, frame, number, 0, 1, *values[:4], x, y, values[6], kind
-    )
+def _start(personality: Personality, scenario: Scenario) -> Geodetic:
+    """Where the real one stood at the start of a scenario."""
+    home = HOMES[personality]
+    start = scenario.start
+    north, east = round(start.n or 0.0), round(start.e or 0.0)
+    where = projection(personality, home).to_geodetic((north, east, 0.0))
+    return Geodetic(where.lat_deg, where.lon_deg, home.alt_amsl_m)

@@ -12,23 +12,38 @@ import pytest
 
 from tests.scenarios.agree import compare
 from tests.scenarios.facts import recorded
+from tests.scenarios.judged import JUDGED, judged
 from tests.scenarios.known import known
 from tests.scenarios.play import play, playable
 from vehicle_sim.autopilot.modes import Personality
 
-SHORT_S = 40.0
+SHORT_S = 22.0
+"""Scenarios that are no longer than this are in `make test`."""
 SOAKING = "MAVGATE_SOAK" in os.environ
 
 SCENARIOS = [
     pytest.param(personality, name, id=f"{personality}-{name}")
     for personality in get_args(Personality)
     for name, scenario in recorded(personality).items()
-    if playable(scenario) and (SOAKING or scenario.end_s <= SHORT_S)
+    if playable(personality, scenario) and (SOAKING or scenario.end_s <= SHORT_S)
 ]
 
 
 def test_the_sample_is_large_enough() -> None:
     assert len(SCENARIOS) >= 30
+
+
+@pytest.mark.parametrize("personality", get_args(Personality))
+def test_every_known_difference_is_judged_and_every_judgement_is_of_use(
+    personality: Personality,
+) -> None:
+    used = set()
+    for name, lines in known(personality).items():
+        for line in lines:
+            found = judged(personality, name, line)
+            assert found, f"not judged: {line}"
+            used |= set(found)
+    assert used == {row for row in JUDGED if row.personality == personality}
 
 
 @pytest.mark.slow

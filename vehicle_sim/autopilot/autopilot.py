@@ -222,11 +222,13 @@ class Autopilot(ManualInput):
 
     def load_plan(self, items: tuple[PlanItem, ...]) -> None:
         self._mission.load(items)
+        if self.personality == "ardupilot" and items:
+            self._say(6, "Flight plan received")
         self._judge_mission()
         if self._task is self._mission:
             if not self._mission.empty:
                 self._mission.begin(self._look_around(), self._pilot.heading)
-            else:
+            elif self.personality == "px4" or self._armed:
                 self._enter_kind("hold")
 
     def mission_start(self, first: int, last: int) -> Result:
@@ -239,8 +241,11 @@ class Autopilot(ManualInput):
         mission.limit(last)
         if mission.empty and not self._armed:
             self._say(2, "PreArm: Mode requires mission")
+        begun = self._task is mission
         result = self.set_mode_kind("mission")
         if result is Result.ACCEPTED:
+            if not begun:
+                mission.announce_begin()  # by the command, after the mode has done so
             self._auto_armed = True
             if self.personality == "px4":
                 result = self.arm(False)
@@ -270,20 +275,24 @@ class Autopilot(ManualInput):
             return Result.FAILED
         if parameters[4] == _SIMPLE_ACCEL:
             return Result.TEMPORARILY_REJECTED
+        self._calibration.mind_radio(parameters[3])
         procedure = copter_procedure(parameters)
         if procedure is None:
             return Result.UNSUPPORTED
         return self._calibration.begin(procedure, self.time_ns)
 
     def _calibrate_px4(self, parameters: tuple[float, ...]) -> Result | None:
-        if not any(parameters):
+        if not any(parameters[:6]) and (self._calibration.busy or not any(parameters)):
             result, events = self._calibration.cancel_px4()
             for event in events:
                 self.emit(event)
             return result
         if self._calibration.busy:
+            # Two answer, the procedure (if it listens) and the commander; the first one is told.
+            if not self._calibration.listens:
+                return Result.TEMPORARILY_REJECTED
             self._say(2, "command denied during calibration: 241")
-            return Result.TEMPORARILY_REJECTED
+            return Result.DENIED
         if self._armed:
             return Result.TEMPORARILY_REJECTED
         procedure = px4_procedure(parameters)

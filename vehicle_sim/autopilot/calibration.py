@@ -18,9 +18,11 @@ from vehicle_sim.autopilot.interface import (
     StatusText,
     VehicleEvent,
 )
+from vehicle_sim.numerics.vectors import Vec3
 
 PREFLIGHT_CALIBRATION: Final = 241
 ACCELCAL_VEHICLE_POS: Final = 42429
+_STILL: Final = (0.0, 0.0, 0.0)
 _FAILED_POSITION: Final = 16777216.0  # ACCELCAL_VEHICLE_POS_FAILED
 _GIVES_UP_S: Final = 90.0
 _ASKED_EVERY_NS: Final = 1_000_000_000
@@ -37,7 +39,10 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Procedure:
-    """`acked_s`: when the command is answered; None = at once.  `cancels`: PX4 obeys a cancel."""
+    """`acked_s`: when the command is answered; None = at once.  `cancels`: PX4 obeys a cancel.
+
+    `tries`: how often it is tried while the vehicle moves, and what is said in the end (`failed`).
+    """
 
     lines: tuple[Line, ...]
     lasts_s: float
@@ -45,6 +50,8 @@ class Procedure:
     acked_s: float | None = None
     cancels: bool = False
     positions: bool = False
+    tries: int = 1
+    failed: tuple[str, ...] = ()
 
 
 def _started(name: str) -> Line:
@@ -72,14 +79,18 @@ def _sides(name: str) -> Procedure:
 _GYRO: Final = Procedure(
     (
         _started("gyro"),
-        *(Line(0.05 + 0.001 * part, 6, f"[cal] progress <{part // 10}>")
+        *(Line(0.04 + 0.00095 * part, 6, f"[cal] progress <{part // 10}>")
           for part in range(0, 1001, 100)),
-        Line(1.1, 6, "[cal] calibration done: gyro"),
+        Line(1.0, 6, "[cal] calibration done: gyro"),
     ),
-    1.1,
+    1.0,
     "gyro",
     cancels=True,
+    tries=20,
+    failed=("ERROR: Motion during calibration", "[cal] calibration failed: gyro"),
 )  # fmt: skip
+_MOVES_RAD_S: Final = 0.0105
+"""PX4's calibration of the gyroscope begins anew where its rate changes by more than 0.6 deg/s."""
 _AIRSPEED: Final = Procedure(
     (_started("airspeed"), Line(0.05, 2, "[cal] Ensure sensor is not measuring wind")),
     _GIVES_UP_S,
@@ -88,6 +99,7 @@ _AIRSPEED: Final = Procedure(
 )
 _RADIO_OFF: Final = Procedure((Line(0.0, 6, "Calibration: Disabling RC input"),), 0.0)
 _TRIM: Final = Procedure((Line(0.4, 6, "trim cal done"),), 0.4, "trim")
+_RADIO: Final = "RC calibrating"
 _NOTHING: Final = Procedure((), 0.0)
 
 # By the number (1..7) and the value of the parameter that is not 0; the first one counts.
@@ -133,7 +145,10 @@ def motor_test(seconds: float) -> Procedure:
 class Calibration:
     """At most one procedure at a time, in simulated time."""
 
-    __slots__ = ("_acked", "_asked_ns", "_began_ns", "_position", "_said", "running")
+    __slots__ = (
+        "_acked", "_asked_ns", "_began_ns", "_highest", "_lowest", "_position", "_said",
+        "_tries", "against_arming", "running",
+    )  # fmt: skip
 
     def __init__(self) -> None:
         self.running: Procedure | None = None
@@ -142,15 +157,29 @@ class Calibration:
         self._began_ns = 0
         self._said = 0
         self._acked = True
+        self._tries = 0
+        self._lowest = self._highest = _STILL
+        self.against_arming: tuple[str, ...] = ()
 
     @property
     def busy(self) -> bool:
         """PX4 says MAV_STATE_CALIBRATING, and does not arm."""
         return self.running is not None and bool(self.running.name)
 
+    def mind_radio(self, wanted: float) -> None:
+        """ArduPilot's parameter 4: a station calibrates the sticks by itself, until it says 0."""
+        others = tuple(why for why in self.against_arming if why != _RADIO)
+        self.against_arming = (*others, _RADIO) if wanted > 0.0 else others
+
+    @property
+    def listens(self) -> bool:
+        """PX4's procedure looks at commands while it runs."""
+        return self.running is not None and self.running.cancels
+
     def begin(self, procedure: Procedure, time_ns: int) -> Result:
         self.running = procedure
-        self._began_ns, self._said = time_ns, 0
+        self._began_ns, self._said, self._tries = time_ns, 0, 0
+        self._lowest = self._highest = _STILL
         self._position = 0.0
         self._acked = procedure.acked_s is None
         return Result.ACCEPTED if self._acked else Result.IN_PROGRESS
@@ -174,14 +203,17 @@ class Calibration:
             self._position = 2.0
             return Result.ACCEPTED, []
         self._position = _FAILED_POSITION
+        self.against_arming = (*self.against_arming, "3D Accel calibration needed")
         return Result.ACCEPTED, [StatusText(2, "Calibration FAILED")]
 
-    def update(self, time_ns: int) -> list[VehicleEvent]:
-        """What is said now; called ten times a second."""
+    def update(self, time_ns: int, rates_frd: Vec3 = _STILL) -> list[VehicleEvent]:
+        """What is said now; called ten times a second with what the gyroscope shows."""
         found: list[VehicleEvent] = []
         running = self.running
         if running is not None:
             past_s = (time_ns - self._began_ns) * 1e-9
+            if running.failed and self._moves(rates_frd) and past_s >= running.lasts_s:
+                return self._again(running, time_ns)
             while self._said < len(running.lines) and running.lines[self._said].at_s <= past_s:
                 line = running.lines[self._said]
                 found.append(StatusText(line.severity, line.text))
@@ -196,6 +228,29 @@ class Calibration:
         if self._position > 0.0 and time_ns - self._asked_ns >= _ASKED_EVERY_NS:
             self._asked_ns = time_ns
             found.append(CommandSent(ACCELCAL_VEHICLE_POS, self._position))
+        return found
+
+    def _moves(self, rates_frd: Vec3) -> bool:
+        """Whether the vehicle has moved since this try began."""
+        if self._lowest == self._highest == _STILL:
+            self._lowest = self._highest = rates_frd
+        pairs = zip(self._lowest, self._highest, rates_frd, strict=True)
+        bounds = [(min(low, rate), max(high, rate)) for low, high, rate in pairs]
+        (a, d), (b, e), (c, f) = bounds
+        self._lowest, self._highest = (a, b, c), (d, e, f)
+        return any(high - low > _MOVES_RAD_S for low, high in bounds)
+
+    def _again(self, running: Procedure, time_ns: int) -> list[VehicleEvent]:
+        """Another try, until there were enough of them; what was left to say of this one first."""
+        self._tries += 1
+        last = [line for line in running.lines[self._said :] if line.at_s < running.lasts_s]
+        found: list[VehicleEvent] = [StatusText(line.severity, line.text) for line in last]
+        found.append(StatusText(2, "motion, retrying.."))
+        if self._tries >= running.tries:
+            self.running = None
+            return [*found, *(StatusText(2, text) for text in running.failed)]
+        self._began_ns, self._said = time_ns, 1
+        self._lowest = self._highest = _STILL
         return found
 
 

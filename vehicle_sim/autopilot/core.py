@@ -42,6 +42,7 @@ from vehicle_sim.autopilot.mission.mission import Mission
 from vehicle_sim.autopilot.mission.plan import Datum
 from vehicle_sim.autopilot.modes import BOOT_MODE, KINDS, MODES, Behaviour, Mode, Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.parameters.simulated import SimulatedBattery
 from vehicle_sim.autopilot.tasks.follow import Follow, Leader
 from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
 from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
@@ -104,6 +105,7 @@ class Core:
         self._radio = Radio(self.parameters)
         self._gestures = Gestures(self.parameters)
         self._leader = Leader(self.parameters)
+        self._simulated_battery = SimulatedBattery(self.parameters)
         self._auto_disarm = AutoDisarm()
         self._stream = SetpointStream()
         self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](
@@ -128,6 +130,8 @@ class Core:
         self._armed = False
         self._armed_ns = self.time_ns
         self._terminated = False
+        self._cut_off_in_air = False
+        self._yaw_aligned = False
         self._failsafe_active = False
         self._offboard_wanted = False
         self._auto_armed = False
@@ -307,6 +311,8 @@ class Core:
         self._limits_version = -1
         self._failsafe_active = False
         self._auto_armed = False
+        self._cut_off_in_air = False
+        self._yaw_aligned = False
         self._say(6, text)
         if self.personality != "px4":
             return
@@ -316,13 +322,19 @@ class Core:
             self._enter(before)
 
     def _terminate(self) -> None:
-        """ArduCopter's termination is no more than a disarming: nothing of it stays."""
+        """Motors off.  ArduCopter's is no more than a disarming: nothing of it stays.
+
+        PX4 stays armed and in its mode.  As the mode's demands go on, its land detector does not
+        notice the fall: it says IN_AIR until it is told to land.
+        """
         if self.personality == "ardupilot":
             if self._armed:
                 self._disarm("Disarming motors")
+            else:
+                self._say(6, "Disarming motors")
             return
-        self._armed = False
         self._terminated = True
+        self._cut_off_in_air = self._cut_off_in_air or self._pilot.flying
         self._pilot.stop()
         self._say(2, "Preflight Fail: Flight termination active")
 
@@ -332,7 +344,7 @@ class Core:
         if self.personality == "ardupilot" and self.parameters.get("BATT_MONITOR") == 0:
             return UNMEASURED
         return Power(
-            sensed.battery_v,
+            self._simulated_battery.volts(sensed.battery_v),
             sensed.battery_a,
             sensed.battery_used_mah,
             int(100.0 * self._charge_seen + 0.5),
@@ -341,6 +353,10 @@ class Core:
     @property
     def _charge_seen(self) -> float:
         """0..1: PX4, unless it is told a capacity, goes by the voltage; ArduCopter counts."""
+        f = self.blocks.flight
+        simulated = self._simulated_battery.charge(0.25 * (f.u1 + f.u2 + f.u3 + f.u4))
+        if simulated is not None:
+            return simulated
         px4 = self.personality == "px4"
         capacity_mah = self.parameters.get("BAT1_CAPACITY" if px4 else "BATT_CAPACITY")
         if px4 and capacity_mah <= 0.0:
@@ -397,5 +413,6 @@ class Core:
     def leave_for_return(self) -> bool:
         if self.personality != "px4":
             return False
+        self._say(6, "Returning to launch")
         self._enter(MODES["px4"]["AUTO.RTL"])
         return True

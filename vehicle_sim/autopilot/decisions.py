@@ -17,6 +17,8 @@ from vehicle_sim.engine.step import DT_NS, GUIDE_EVERY
 
 _DECIDE_EVERY = 25  # 10 Hz
 _ARMING_DELAY_S = 2.0  # ArduCopter's ARMING_DELAY_SEC, by memory: its motors idle so long at first
+_ALIGNED_UP_M = 2.5  # EKF3_MAG_FINAL_RESET_ALT
+_STILL_M_S = 0.5  # no more than this up or down: it does not fall
 _STRENGTH_LEAST = 0.5  # of a full battery's voltage; for less the motors do not make up
 _TAKES_OFF_BY_ITSELF = 2  # AUTO_OPTIONS
 
@@ -81,7 +83,10 @@ class Decisions(FailsafeActions):
         """`regular`: one of ten a second, not one in between."""
         if regular:
             self._boot()
-            for event in self._calibration.update(self.time_ns):
+            self._simulated_battery.update(self._armed, _DECIDE_EVERY * DT_NS * 1e-9)
+            sensed = self.blocks.sensed
+            rates_frd = (sensed.gyro_x, sensed.gyro_y, sensed.gyro_z)
+            for event in self._calibration.update(self.time_ns, rates_frd):
                 self.emit(event)
             strength = self._sensed.battery_v / self._believed.full_v
             least = _STRENGTH_LEAST
@@ -94,10 +99,15 @@ class Decisions(FailsafeActions):
             if regular:
                 self._guard(s)
             self._watch_offboard(s)
-            if self._armed:
+            if self._armed and self._terminated:
+                self._lie_down(s, regular)
+            elif self._armed:
                 self._fly(s, regular)
         elif regular:
-            self._look_at_fence(self._look_around())
+            s = self._look_around()
+            self._look_at_fence(s)
+            self._watch_disarmed(s)
+            self._display_failures()
 
     def _feel_air(self, strength: float) -> None:
         f = self.blocks.flight
@@ -120,11 +130,10 @@ class Decisions(FailsafeActions):
                 self._auto_armed = True
             else:
                 pilot.rest()
-                if regular and self._auto_disarm.due(
-                    self.parameters, self._lands_itself, s.time_ns
-                ):
-                    self._disarm(self._auto_disarm.words(self.parameters))
+                self._disarm_when_due(s, regular)
                 return
+        if regular and self.personality == "ardupilot":
+            self._align_yaw(s)
         demand = task.update(s, pilot.heading)
         if self._task is not task:
             return
@@ -136,6 +145,26 @@ class Decisions(FailsafeActions):
             self._touch_down(s)
         elif task.done:
             self._move_on(task, s)
+
+    def _align_yaw(self, s: Situation) -> None:
+        """EKF3 aligns its yaw anew, once in each flight, when the ground no longer disturbs the
+        magnetometer; it runs on two IMUs."""
+        if not self._yaw_aligned and s.home_ned[2] - s.pos_ned[2] > _ALIGNED_UP_M:
+            self._yaw_aligned = True
+            for imu in (0, 1):
+                self._say(6, f"EKF3 IMU{imu} MAG0 in-flight yaw alignment complete")
+
+    def _disarm_when_due(self, s: Situation, regular: bool) -> None:
+        if regular and self._auto_disarm.due(self.parameters, self._lands_itself, s.time_ns):
+            self._disarm(self._auto_disarm.words(self.parameters))
+
+    def _lie_down(self, s: Situation, regular: bool) -> None:
+        """Armed with its motors cut off; a landing that is asked for is over at once."""
+        if not self._cut_off_in_air:
+            self._disarm_when_due(s, regular)
+        elif self._mode.behaviour is Behaviour.LAND and abs(s.v_ned[2]) < _STILL_M_S:
+            self._cut_off_in_air = False
+            self._touch_down(s)
 
     def _may_lift_off(self, task: Task, s: Situation) -> bool:
         delay_s = _ARMING_DELAY_S if self.personality == "ardupilot" else 0.0
@@ -160,6 +189,8 @@ class Decisions(FailsafeActions):
             self._say(6, "Landing detected")
         if self._task is self._mission:
             self._mission.touched_down()
+            if self.personality == "px4" and self._mission.finished:
+                self._say(6, "Mission finished, landed")
 
     def _move_on(self, task: Task, s: Situation) -> None:
         """PX4 goes to AUTO.LOITER after a take-off and after a mission; ArduCopter stays.
@@ -178,6 +209,8 @@ class Decisions(FailsafeActions):
             goal = task.target.pos_ned
             if isinstance(task, TakeOff) and goal is not None:
                 goal = (goal[0], goal[1], s.pos_ned[2])
+            if task is self._mission:
+                self._say(6, "Mission finished, loitering")
             self._enter(MODES["px4"]["AUTO.LOITER"], Hold(goal))
             self._offboard_wanted = wanted
 

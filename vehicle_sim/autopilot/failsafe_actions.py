@@ -8,6 +8,8 @@ inside, unless FENCE_OPTIONS allows it.
 
 from __future__ import annotations
 
+from math import ceil, inf
+
 from vehicle_sim.autopilot.control.demands import Situation, Task
 from vehicle_sim.autopilot.failsafes.failsafe import (
     OFFBOARD_LOSS,
@@ -26,12 +28,15 @@ from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
 from vehicle_sim.control_loops.flight import BY_RATES
 
 _WITHOUT = frozenset({Action.POSITION, Action.HOLD, Action.BRAKE, Action.RETURN, Action.LAND})
+_GRACE_COMES_BACK = 4.0
 _EMERGENCY = frozenset({Action.DESCEND, Action.DISARM, Action.TERMINATE})
 
 
 class FailsafeActions(HealthChecks):
     """Failsafes, carried out."""
 
+    _grace_left_s: float
+    _grace_ns: int
     _acting: Failsafe | None
     _due_ns: int | None
     _came_from: Mode | None
@@ -40,14 +45,20 @@ class FailsafeActions(HealthChecks):
 
     def _restart(self) -> None:
         super()._restart()
-        self._failsafe_checks.reset()
+        self._failsafe_checks.restart()
         self._failure_detector.reset()
         self._geofence.forget()
         self._on_its_own = False
+        self._due_ns = None
+        self._grace_left_s = inf
+        self._grace_ns = self.time_ns
         self._stand_down()
 
     def _stand_down(self) -> None:
         """Nothing is being done about anything."""
+        if self._due_ns is not None:  # what is left of the delay is left for the next one
+            self._grace_left_s = max(0.0, (self._due_ns - self.time_ns) * 1e-9)
+            self._grace_ns = self.time_ns
         self._acting = None
         self._due_ns = None
         self._came_from = None
@@ -67,6 +78,8 @@ class FailsafeActions(HealthChecks):
 
     def _enter(self, mode: Mode, task: Task | None = None) -> None:
         super()._enter(mode, task)
+        if self.personality == "ardupilot" and self._geofence.breached:
+            self._say(6, "Manual recovery started")
         if self._on_its_own:
             return
         if mode.may_arm:
@@ -114,7 +127,15 @@ class FailsafeActions(HealthChecks):
                 self._strike(strike, s)
         if self._due_ns is not None and s.time_ns >= self._due_ns and self._acting is not None:
             self._due_ns = None
+            self._say(self._acting.severity, self._acting.text)
             self._carry_out(self._acting.action)
+
+    def _watch_disarmed(self, s: Situation) -> None:
+        """Ten times a second while disarmed: what is told then, and stands in the way of arming."""
+        for struck in self._failsafe_checks.check_disarmed(
+            s.wall_ns, self.power, self._charge_seen
+        ):
+            self._say(struck.severity, struck.text)
 
     # -------------------------------------------------------------------- what it does
 
@@ -123,7 +144,8 @@ class FailsafeActions(HealthChecks):
         acting = self._acting
         worse = acting is None or RANK[struck.action] > RANK[acting.action]
         if struck.action is Action.WARN or not worse:
-            self._say(struck.severity, struck.text)
+            if struck.action is Action.WARN or self.personality != "px4":
+                self._say(struck.severity, struck.text)
             return
         wait_s = self._grace_s(struck, s)
         self._acting = struck
@@ -131,7 +153,8 @@ class FailsafeActions(HealthChecks):
         self._overruled = acting
         if wait_s > 0.0:
             self._due_ns = s.time_ns + int(wait_s * 1e9)
-            self._say(struck.severity, f"{struck.text} in {wait_s:.0f} seconds")
+            self._grace_left_s, self._grace_ns = 0.0, self._due_ns
+            self._say(struck.severity, f"{struck.text} in {ceil(wait_s):.0f} seconds")
             climbing = self._task if isinstance(self._task, TakeOff) and not s.flying else None
             self._change(Action.HOLD)
             if climbing is not None:
@@ -151,7 +174,9 @@ class FailsafeActions(HealthChecks):
             or self._failsafe_checks.position_lost
         ):
             return 0.0
-        return self.parameters.get("COM_FAIL_ACT_T")
+        # A delay that was used comes back in four times the time that it lasted.
+        back_s = max(0, s.time_ns - self._grace_ns) * 1e-9 / _GRACE_COMES_BACK
+        return min(self._grace_left_s + back_s, self.parameters.get("COM_FAIL_ACT_T"))
 
     def _carry_out(self, action: Action) -> None:
         match action:

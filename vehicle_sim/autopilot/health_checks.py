@@ -15,9 +15,18 @@ from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.autopilot.tasks.descend import Descend
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 
+_CHECKED_EVERY_NS = 1_000_000_000
+_AGAIN_NS = 4_000_000_000
+_DISPLAYED_EVERY_NS = 30_000_000_000
+
 
 class HealthChecks(Bounds):
     """Looks, and decides nothing."""
+
+    def _restart(self) -> None:
+        super()._restart()
+        self._checked_ns = self._displayed_ns = self.time_ns
+        self._was_ready = self._newly_unready = False
 
     # --------------------------------------------------------------------------- arming
 
@@ -45,17 +54,28 @@ class HealthChecks(Bounds):
                 has_mission=self._mission_ok,
                 mission_ok=self._mode.behaviour is not Behaviour.MISSION or self._mission_ok,
                 setpoints=self._stream.alive(s.wall_ns),
+                sticks=self._radio.sticks(s.wall_ns) is not None,
                 sticks_lost=self._radio.lost(s.wall_ns),
                 station_lost=self._failsafe_checks.station_lost,
+                battery_failed=self._failsafe_checks.battery_failed,
+                calibration=self._calibration.against_arming,
             ),
         )
 
-    def _say_against_arming(self) -> bool:
+    def _say_against_arming(self, asked_to_arm: bool) -> bool:
         """Whether there is something, after telling it."""
-        against = self._against_arming()
+        against = self._against_arming() if asked_to_arm else self._unready()
         for reason in against:
+            # ArduCopter's words begin with what it was asked for.
+            head, colon, rest = reason.partition(": ")
+            if asked_to_arm and head == "PreArm":
+                reason = f"Arm{colon}{rest}"
             self._say(2, reason)
         return bool(against)
+
+    def _unready(self) -> tuple[str, ...]:
+        """What is against arming at any time; some of ArduCopter's checks are made only then."""
+        return tuple(why for why in self._against_arming() if not why.startswith("Arm: "))
 
     def check_arming(self) -> Result:
         if self._armed:
@@ -63,7 +83,7 @@ class HealthChecks(Bounds):
         if self._boot_sequence.holds(self._age_ns):
             self._say_boot_reasons("PreArm", forced=False)
         else:
-            self._say_against_arming()
+            self._say_against_arming(False)
         return Result.ACCEPTED
 
     def _held_by_boot(self, forced: bool) -> bool:
@@ -77,6 +97,21 @@ class HealthChecks(Bounds):
     def _say_boot_reasons(self, checked_for: str, forced: bool) -> None:
         for reason in self._boot_sequence.reasons(self._age_ns, self._mode, forced):
             self._say(2, f"{checked_for}: {reason}")
+
+    def _display_failures(self) -> None:
+        """AP_Arming::update, once a second: what is against arming is told when it comes, and every
+        30 s."""
+        last_ns, quiet_ns = self._checked_ns, self.time_ns - self._displayed_ns
+        if self.personality != "ardupilot" or self.time_ns - last_ns < _CHECKED_EVERY_NS:
+            return
+        self._checked_ns = self.time_ns
+        if quiet_ns > (_AGAIN_NS if self._newly_unready else _DISPLAYED_EVERY_NS):
+            self._newly_unready = False
+            self._displayed_ns = self.time_ns
+            self._say_against_arming(False)
+        ready = not self._unready()
+        self._newly_unready = self._newly_unready or (self._was_ready and not ready)
+        self._was_ready = ready
 
     @property
     def _while_armed(self) -> Result:
@@ -94,7 +129,8 @@ class HealthChecks(Bounds):
 
     def _see(self, s: Situation, crossing: Crossing) -> Seen:
         sensed = self._sensed
-        power = Power(sensed.battery_v, sensed.battery_a, sensed.battery_used_mah, 0)
+        volts = self._simulated_battery.volts(sensed.battery_v)
+        power = Power(volts, sensed.battery_a, sensed.battery_used_mah, 0)
         return Seen(
             time_ns=s.time_ns,
             wall_ns=s.wall_ns,

@@ -6,7 +6,7 @@ from vehicle_sim.autopilot.failsafes.arm_authorization import (
     ARM_AUTHORIZATION_REQUEST,
     Permission,
 )
-from vehicle_sim.autopilot.interface import CommandDone, Result
+from vehicle_sim.autopilot.interface import CommandDone, Landed, Result
 from vehicle_sim.autopilot.modes import (
     AUTO_MAIN_MODE,
     KINDS,
@@ -43,7 +43,7 @@ class ModeChanges(View):
         if self._calibration.busy and self.personality == "px4":
             self._say(2, "Transition denied: Init to Armed")
             return Result.TEMPORARILY_REJECTED
-        if self._held_by_boot(force) or (not force and self._say_against_arming()):
+        if self._held_by_boot(force) or (not force and self._say_against_arming(True)):
             return self._not_now
         if self.personality == "px4" and not force:
             permission = self._arm_authorization.ask(self._sense().wall_ns)
@@ -65,6 +65,7 @@ class ModeChanges(View):
         self._poke()
         ardupilot = self.personality == "ardupilot"
         self._say(6, "Arming motors" if ardupilot else "Armed by external command")
+        self._say_take_off()
 
     # --------------------------------------------------------------- arm authorization
 
@@ -100,7 +101,7 @@ class ModeChanges(View):
     def disarm(self, force: bool) -> Result:
         if not self._armed:
             return Result.ACCEPTED
-        if self._pilot.flying and not force:
+        if (self._pilot.flying or self._cut_off_in_air) and not force:
             if self.personality == "px4":
                 self._say(2, "Disarming denied! Not landed")
             return self._not_now
@@ -135,6 +136,12 @@ class ModeChanges(View):
         starting = not self._armed and not self.boot_stage.position
         if mode.needs_position and not self._position_ok and not starting:
             return self._refuse(mode, "requires position")
+        if self._lacks_sticks(mode):
+            return self._refuse(mode, "no manual control")
+        if self._has_flown(mode):
+            self._say(2, "No valid mission available, loitering")
+            self._enter_kind("hold")
+            return Result.ACCEPTED
         if mode.behaviour is Behaviour.MISSION and not self._may_start(mode):
             return self._refuse(mode, "init failed")
         if mode.name == "FOLLOW" and not self.parameters.get("FOLL_ENABLE"):
@@ -143,9 +150,31 @@ class ModeChanges(View):
         if mode.name == "OFFBOARD" and self._armed:
             return self._ask_offboard(mode)
         self._enter(mode, self._goes_on_up(mode))
-        if self.personality == "px4" and mode.behaviour is Behaviour.RETURN:
-            self._say(6, "RTL HOME activated")
+        self._say_take_off()
         return Result.ACCEPTED
+
+    def _lacks_sticks(self, mode: Mode) -> bool:
+        """Armed, PX4 enters no mode that is flown by hand while there are no sticks."""
+        by_hand = self.personality == "px4" and self._armed and mode.law is not None
+        return by_hand and self._radio.sticks(self._sense().wall_ns) is None
+
+    def _has_flown(self, mode: Mode) -> bool:
+        """In the air PX4 does not begin a mission that is over from the start."""
+        flown = self._mission.finished and self._pilot.flying
+        return self.personality == "px4" and mode.behaviour is Behaviour.MISSION and flown
+
+    def _say_take_off(self) -> None:
+        """What PX4 says when its mission is going to leave the ground."""
+        mission = self._mission
+        grounded = self._armed and not self._pilot.flying
+        if self.personality != "px4" or self._task is not mission or not grounded:
+            return
+        beyond = mission.jump_beyond
+        if beyond is not None:
+            count = len(mission.items)
+            self._say(2, f"Mission item index out of bound, index: {beyond}, max: {count}.")
+        up_m = mission.take_off_up_m(self._home_ned or (0.0, 0.0, 0.0))
+        self._say(6, f"Takeoff to {up_m:.1f} meters above home")
 
     def _may_start(self, mode: Mode) -> bool:
         """A disarmed vehicle takes the mission mode with any mission, and with none."""
@@ -166,7 +195,9 @@ class ModeChanges(View):
         home_d = self._home_ned[2] if self._home_ned is not None else 0.0
         if self._pilot.flying and home_d - self._est.pos_d > _CLEAR_M:
             return None
-        return Hold(task.target.pos_ned, lifts=True) if mode.behaviour is Behaviour.HOLD else None
+        if mode.behaviour is not Behaviour.HOLD:
+            return None
+        return Hold(task.target.pos_ned, lifts=True, landed_word=Landed.TAKEOFF)
 
     @property
     def _leaves_the_ground(self) -> bool:

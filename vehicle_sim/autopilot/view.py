@@ -132,7 +132,7 @@ class View(Decisions):
 
     @property
     def landed(self) -> Landed:
-        if self._pilot.flying:
+        if self._pilot.flying or self._cut_off_in_air:
             return self._task.landed_word
         falling = abs(self._est.vel_d) > _FALLING_M_S
         return Landed.IN_AIR if falling else Landed.ON_GROUND

@@ -85,6 +85,7 @@ class Recorder:
         self._armed_us: int | None = None
         self._full = False
         self._has_armed = False
+        self._opened: str | None = None
 
     @property
     def _wanted(self) -> bool:
@@ -121,6 +122,11 @@ class Recorder:
             return [Note("warning", f"the flight log ends here: {error}")]
         return []
 
+    def opened(self) -> str | None:
+        """The path of the log that was opened since this was asked last."""
+        path, self._opened = self._opened, None
+        return path
+
     def flush(self) -> None:
         """What is buffered becomes readable.  Raises `StoreError`."""
         log = self._log
@@ -148,7 +154,10 @@ class Recorder:
         time_us = vehicle.time_ns // 1000
         if self._armed_us is None:
             self._armed_us = time_us
-        log = self._log or self._begin(self._armed_us)
+        log = self._log
+        if log is None:
+            log = self._begin(self._armed_us)
+            self._opened = log.path
         for event in events:
             if isinstance(event, StatusText):
                 log.buffer += log.form.text(time_us, event.severity, event.text)

@@ -55,6 +55,8 @@ from vehicle_sim.wire.ids import Cmd
 COMPONENT: Final = 1
 GROUND_STATION: Final = 6  # MAV_TYPE_GCS
 ACK_OF_SET_MODE: Final = 11  # ArduPilot acks SET_MODE under the message's own number
+PX4_STORAGE: Final = "/fs/microsd"
+"""What stands before a log's path on a board's card; a simulation's log is told without it."""
 REACHED_EVERY_NS: Final = 100_000_000
 REFUSAL_NOTED_EVERY_NS: Final = 1_000_000_000
 
@@ -353,6 +355,9 @@ class VehicleServer:
         vehicle.live()
         events = vehicle.events()
         effects = self._recorder.step(events)
+        opened = self._recorder.opened()
+        if opened is not None and self._profile.name == "px4":
+            events.append(StatusText(6, f"[logger] .{opened.removeprefix(PX4_STORAGE)}"))
         for event in events:
             effects += self._event(event)
         if self._reached and vehicle.time_ns >= self._reached[0][0]:

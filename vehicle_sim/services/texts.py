@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from vehicle_sim.autopilot.interface import StatusText
@@ -11,11 +12,26 @@ from vehicle_sim.wire import messages as m
 STATUSTEXT_CHARS: Final = 50
 _BARE: Final = ("[cal] ", "Preflight Fail: ", "motion, ", "ERROR: ")
 """What PX4 sends without its events interface: the recorded texts that have no TAB."""
+_TABBED: Final = (
+    "Preflight Fail: low battery",
+    "Preflight Fail: No connection to the ground control station",
+)
+
+
+_FAILSAFE: Final = re.compile(r"Failsafe activated.*?(?: in (\d+) seconds)?")
+"""Which failsafe acts, and how, PX4 1.14 says in its EVENT alone."""
 
 
 def worded(profile: Profile, text: str) -> str:
     """PX4 ends with a TAB each text that it also sends as an EVENT, for clients to tell."""
-    return f"{text}\t" if profile.name == "px4" and not text.startswith(_BARE) else text
+    if profile.name != "px4":
+        return text
+    failsafe = _FAILSAFE.fullmatch(text)
+    if failsafe is not None:
+        delay_s = failsafe[1]
+        text = "Failsafe activated"
+        text += f", entering Hold for {delay_s} seconds" if delay_s is not None else ""
+    return text if text.startswith(_BARE) and text not in _TABBED else f"{text}\t"
 
 
 def in_chunks(profile: Profile, event: StatusText, time_ns: int) -> list[m.Statustext]:

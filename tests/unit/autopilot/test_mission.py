@@ -135,13 +135,14 @@ def reached_now(flight: Flight) -> list[int]:
 
 @either
 def test_speed_camera_yaw_and_delay_items(personality: Personality) -> None:
+    turns = [item(4, 115, p1=90.0, p2=45.0, p3=1.0, p4=0.0)]
     flight = started(
         personality,
         item(0, 22, up_m=4.0),
         item(1, 178, p1=1.0, p2=2.0, p3=-1.0),
         item(2, 2000, p2=0.0, p3=1.0),
         item(3, 530, frame=2, p2=0.0),
-        item(4, 115, p1=90.0, p2=45.0, p3=1.0, p4=0.0),
+        *(turns if personality == "ardupilot" else []),  # PX4 flies no conditions
         item(5, 93, p1=1.5),
         item(6, 16, 20.0, 0.0, 4.0),
     )
@@ -273,10 +274,7 @@ def test_another_item_can_be_made_current(personality: Personality) -> None:
         (item(1, 9999), "9999"),
         (item(1, 16, 1.0, frame=10), "frame 10"),
         (item(1, 16, 1.0, frame=2), "frame 2"),
-        (item(1, 16, 1.0, up_m=nan), "altitude"),
         (item(1, 16, frame=3, up_m=5.0), "missing"),
-        (item(1, 16, 95_000.0, frame=3, up_m=5.0), "Earth"),
-        (item(1, 177, p1=7.0, p2=1.0), "jump"),
         (item(1, 178, p2=0.0), "speed"),
         (item(1, 207, p1=1.0), "geofence"),
         (item(1, 18, 1.0, p1=0.0), "turns"),
@@ -290,6 +288,70 @@ def test_what_cannot_be_flown_is_refused_with_its_seq_and_why(bad: PlanItem, wor
     assert refusal is not None
     assert refusal[0] == 1
     assert word in refusal[1]
+
+
+@pytest.mark.parametrize(
+    ("bad", "word"),
+    [
+        (item(1, 16, 1.0, up_m=nan), "altitude"),
+        (item(1, 16, 95_000.0, frame=3, up_m=5.0), "Earth"),
+        (item(1, 177, p1=7.0, p2=1.0), "jump"),
+    ],
+)
+def test_px4_stores_and_flies_what_leads_nowhere_and_ardupilot_refuses_it(
+    bad: PlanItem, word: str
+) -> None:
+    """C11: PX4 1.14 arms with a jump beyond the end, with LAT 91, and without an altitude."""
+    flight = Flight("px4").boot()
+    plan = (item(0, 22, up_m=3.0), bad)
+    assert flight.vehicle.check_plan(plan) is None
+    flight.vehicle.load_plan(plan)
+    assert flight.vehicle.set_mode_kind("mission") is Result.ACCEPTED
+    assert flight.vehicle.arm(False) is Result.ACCEPTED
+    flight.fly(15.0)
+    assert flight.up_m > 2.5
+    refusal = Flight("ardupilot").vehicle.check_plan((item(0, 16), bad))
+    assert refusal is not None
+    assert word in refusal[1]
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        (item(0, 22, up_m=3.0), item(1, 112, p1=3.0), item(2, 16, 8.0, up_m=3.0)),
+        (item(0, 16, 8.0, up_m=3.0), item(1, 22, up_m=3.0)),
+        (item(0, 21, 8.0), item(1, 16, 8.0, up_m=3.0)),
+    ],
+    ids=["condition", "take-off second", "landing first"],
+)
+def test_px4_stores_and_does_not_fly_what_is_not_feasible(plan: tuple[PlanItem, ...]) -> None:
+    """C9, C9c, C11."""
+    flight = Flight("px4").boot()
+    assert flight.vehicle.check_plan(plan) is None
+    flight.vehicle.load_plan(plan)
+    assert flight.vehicle.set_mode_kind("mission") is Result.ACCEPTED
+    assert flight.vehicle.arm(False) is Result.TEMPORARILY_REJECTED
+    flight.vehicle.set_mode_kind("hold")
+    assert flight.vehicle.arm(False) is Result.ACCEPTED
+    assert flight.vehicle.set_mode_kind("mission") is Result.TEMPORARILY_REJECTED
+
+
+def test_px4_goes_up_to_the_first_item_says_so_and_does_not_begin_a_mission_anew_in_the_air() -> (
+    None
+):
+    """C6 and C10."""
+    flight = Flight("px4").boot()
+    flight.vehicle.load_plan((item(0, 16, 6.0, 0.0, 8.0),))
+    flight.vehicle.set_mode_kind("mission")
+    assert flight.vehicle.arm(False) is Result.ACCEPTED
+    flight.fly(40.0, lambda: flight.vehicle.mode_name == "AUTO.LOITER")
+    assert flight.up_m == pytest.approx(8.0, abs=0.5)
+    assert "Takeoff to 8.0 meters above home" in flight.texts()
+    assert "Mission finished, loitering" in flight.texts()
+    assert flight.vehicle.set_mode_kind("mission") is Result.ACCEPTED
+    flight.fly(1.0)
+    assert flight.vehicle.mode_name == "AUTO.LOITER"
+    assert flight.texts()[-1] == "No valid mission available, loitering"
 
 
 def test_ardupilots_home_item_is_not_judged_nor_flown() -> None:

@@ -14,13 +14,15 @@ from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.tasks.spline import curve
 
 TAKE_OFF = item(0, 22, up_m=5.0)
+that_waits = pytest.mark.parametrize("personality", ["ardupilot"])
+"""PX4 1.14 stores conditions and does not fly them (C9)."""
 
 
 def heading_deg(flight: Flight) -> float:
     return degrees(flight.vehicle.estimate.heading_rad)
 
 
-@either
+@that_waits
 def test_a_condition_delays_what_follows_it_and_not_the_flight(personality: Personality) -> None:
     flight = started(
         personality,
@@ -39,7 +41,7 @@ def test_a_condition_delays_what_follows_it_and_not_the_flight(personality: Pers
     assert flight.capturing(), "three seconds after the waypoint"
 
 
-@either
+@that_waits
 def test_what_a_condition_holds_up_too_long_is_left_out(personality: Personality) -> None:
     flight = started(
         personality,
@@ -53,7 +55,7 @@ def test_what_a_condition_holds_up_too_long_is_left_out(personality: Personality
     assert flight.vehicle.images_captured == 0
 
 
-@either
+@that_waits
 def test_what_follows_the_last_flown_item_is_done_before_the_end(personality: Personality) -> None:
     flight = started(
         personality,
@@ -69,7 +71,7 @@ def test_what_follows_the_last_flown_item_is_done_before_the_end(personality: Pe
     assert flight.capturing()
 
 
-@either
+@that_waits
 def test_a_distance_is_counted_to_the_next_waypoint(personality: Personality) -> None:
     flight = started(
         personality,
@@ -82,7 +84,7 @@ def test_a_distance_is_counted_to_the_next_waypoint(personality: Personality) ->
     assert 40.0 - flight.pos[0] == pytest.approx(12.0, abs=1.0)
 
 
-@either
+@that_waits
 def test_the_nose_turns_while_it_flies_on(personality: Personality) -> None:
     flight = started(
         personality,

@@ -79,10 +79,19 @@ def test_a_mission_mode_without_a_mission_is_refused(personality: Personality) -
     assert flight.vehicle.mission_start(0, 0) is denied[personality]
 
 
-@either
 @pytest.mark.parametrize("kind", ["manual", "altitude", "position"])
-def test_manual_modes_without_sticks_keep_the_height(personality: Personality, kind: str) -> None:
-    flight = Flight.hovering(personality, 5.0)
+def test_px4_takes_no_manual_mode_in_the_air_without_sticks(kind: str) -> None:
+    """B4: TEMPORARILY_REJECTED; on the ground it is entered, and does not arm."""
+    flight = Flight.hovering("px4", 5.0)
+    assert flight.vehicle.set_mode_kind(kind) is Result.TEMPORARILY_REJECTED
+    flight = Flight("px4").boot()
+    assert flight.vehicle.set_mode_kind(kind) is Result.ACCEPTED
+    assert flight.vehicle.arm(False) is Result.TEMPORARILY_REJECTED
+
+
+@pytest.mark.parametrize("kind", ["manual", "altitude", "position"])
+def test_ardupilots_manual_modes_without_sticks_keep_the_height(kind: str) -> None:
+    flight = Flight.hovering("ardupilot", 5.0)
     assert flight.vehicle.set_mode_kind(kind) is Result.ACCEPTED
     flight.fly(10.0)
     assert flight.up_m == pytest.approx(5.0, abs=0.4)

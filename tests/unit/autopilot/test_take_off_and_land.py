@@ -178,7 +178,16 @@ def test_termination_stops_the_motors_for_good() -> None:
     flight = Flight.hovering("px4", 5.0)
     assert flight.vehicle.terminate(True) is Result.ACCEPTED
     flight.fly(5.0)
-    assert not flight.vehicle.armed
+    # H5: it lies there armed and "in the air" until it is told to land.
+    assert flight.vehicle.motor_outputs == (0.0, 0.0, 0.0, 0.0)
+    assert flight.vehicle.armed
+    assert flight.landed() is Landed.IN_AIR
+    assert flight.vehicle.arm(False) is Result.ACCEPTED
+    assert flight.vehicle.land() is Result.ACCEPTED
+    flight.fly(6.0, lambda: not flight.vehicle.armed)
+    landed = flight.landed()
+    assert landed is Landed.ON_GROUND
+    assert not flight.armable()
     assert flight.vehicle.arm(True) is Result.TEMPORARILY_REJECTED
     assert flight.vehicle.system_status == 8
     assert flight.vehicle.reboot() is Result.ACCEPTED
@@ -212,7 +221,7 @@ def test_a_reboot_on_the_ground_starts_anew_at_home() -> None:
 
 def test_a_reboot_in_the_air_ends_in_a_fall() -> None:
     flight = Flight.hovering("px4", 8.0)
-    flight.vehicle.terminate(True)
+    flight.vehicle.disarm(True)
     assert flight.vehicle.reboot() is Result.ACCEPTED
     flight.fly(0.5)
     assert flight.vehicle.motor_outputs == (0.0, 0.0, 0.0, 0.0)

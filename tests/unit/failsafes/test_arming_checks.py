@@ -73,10 +73,10 @@ def test_px4_says_what_is_wrong(trouble: Trouble, words: str) -> None:
 @pytest.mark.parametrize(
     ("trouble", "bit", "words"),
     [
-        (no_gps, 8, "PreArm: GPS 1: Bad fix"),
-        (no_compass, 4, "PreArm: Compass not healthy"),
-        (no_barometer, 2, "PreArm: Baro: not healthy"),
-        (bent_accelerometer, 16, "PreArm: Accels inconsistent"),
+        (no_gps, 8, "Arm: GPS 1: Bad fix"),
+        (no_compass, 4, "Arm: Compass not healthy"),
+        (no_barometer, 2, "Arm: Baro: not healthy"),
+        (bent_accelerometer, 16, "Arm: Accels inconsistent"),
     ],
 )
 def test_ardupilot_says_what_is_wrong_and_arming_check_chooses_the_checks(
@@ -99,7 +99,7 @@ def test_ardupilot_needs_a_position_where_the_mode_does_whatever_arming_check_sa
     flight.vehicle.set_mode_kind("guided")
     no_gps(flight)
     flight.vehicle.parameters.set("ARMING_CHECK", 0)
-    refused(flight, "PreArm: Need Position Estimate")
+    refused(flight, "Arm: Need Position Estimate")
     flight.vehicle.set_mode_kind("manual")
     assert flight.vehicle.arm(False) is Result.ACCEPTED
 
@@ -110,6 +110,7 @@ def test_px4_arms_without_gps_as_com_arm_wo_gps_says(allowed: int) -> None:
     flight.vehicle.parameters.set("COM_ARM_WO_GPS", allowed)
     flight.vehicle.set_mode_kind("manual")
     no_gps(flight)
+    flight.vehicle.joystick(0, 0, 500, 0, flight.vehicle.time_ns)
     assert flight.vehicle.armable == bool(allowed)
     if not allowed:
         refused(flight, "Preflight Fail: GPS fix too low")
@@ -118,11 +119,11 @@ def test_px4_arms_without_gps_as_com_arm_wo_gps_says(allowed: int) -> None:
 @pytest.mark.parametrize(
     ("name", "value", "words"),
     [
-        ("BATT_LOW_VOLT", 25.0, "PreArm: Battery 1 low voltage failsafe"),
-        ("BATT_CRT_VOLT", 25.0, "PreArm: Battery 1 critical voltage failsafe"),
-        ("BATT_LOW_MAH", 4000.0, "PreArm: Battery 1 low capacity failsafe"),
-        ("BATT_ARM_VOLT", 25.0, "PreArm: Battery 1 below minimum arming voltage"),
-        ("BATT_ARM_MAH", 4000.0, "PreArm: Battery 1 below minimum arming capacity"),
+        ("BATT_LOW_VOLT", 25.0, "Arm: Battery 1 low voltage failsafe"),
+        ("BATT_CRT_VOLT", 25.0, "Arm: Battery 1 critical voltage failsafe"),
+        ("BATT_LOW_MAH", 4000.0, "Arm: Battery 1 low capacity failsafe"),
+        ("BATT_ARM_VOLT", 25.0, "Arm: Battery 1 below minimum arming voltage"),
+        ("BATT_ARM_MAH", 4000.0, "Arm: Battery 1 below minimum arming capacity"),
     ],
 )
 def test_ardupilot_and_its_battery(name: str, value: float, words: str) -> None:
@@ -156,7 +157,7 @@ def test_ardupilot_takes_an_accelerometer_as_bad_as_arming_accthresh() -> None:
     flight = Flight("ardupilot").boot()
     flight.vehicle.blocks.sensed.accel_off_z = 1.0
     flight.fly(0.1)
-    refused(flight, "PreArm: Accels inconsistent")
+    refused(flight, "Arm: Accels inconsistent")
     flight.vehicle.parameters.set("ARMING_ACCTHRESH", 1.5)
     assert flight.vehicle.armable
 
@@ -164,9 +165,9 @@ def test_ardupilot_takes_an_accelerometer_as_bad_as_arming_accthresh() -> None:
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        ({"FENCE_TYPE": 0}, "PreArm: Fences enabled, but none selected"),
-        ({"FENCE_ALT_MAX": 10.0, "FENCE_ALT_MIN": 20.0}, "PreArm: FENCE_ALT_MAX < FENCE_ALT_MIN"),
-        ({"FENCE_MARGIN": 10.0, "FENCE_ALT_MAX": 10.0}, "PreArm: FENCE_MARGIN too big"),
+        ({"FENCE_TYPE": 0}, "Arm: Fences enabled, but none selected"),
+        ({"FENCE_ALT_MAX": 10.0, "FENCE_ALT_MIN": 20.0}, "Arm: FENCE_ALT_MAX < FENCE_ALT_MIN"),
+        ({"FENCE_MARGIN": 10.0, "FENCE_ALT_MAX": 10.0}, "Arm: FENCE_MARGIN too big"),
     ],
 )
 def test_ardupilots_fence_must_make_sense(settings: dict[str, float], words: str) -> None:
@@ -182,7 +183,7 @@ def test_ardupilot_minds_lost_sticks_and_a_lost_station() -> None:
     flight = Flight("ardupilot").boot()
     flight.vehicle.joystick(0, 0, 500, 0, flight.vehicle.time_ns)
     flight.fly(6.0)
-    refused(flight, "PreArm: Radio failsafe on")
+    refused(flight, "Arm: Radio failsafe on")
     flight.vehicle.parameters.set("FS_THR_ENABLE", 0)
     assert flight.vehicle.armable
 
@@ -207,7 +208,7 @@ def test_prearm_checks_tell_everything_at_once(personality: Personality) -> None
     no_barometer(flight)
     flight.vehicle.check_arming()
     flight.fly(0.1)
-    assert len(flight.texts()) == before + 2
+    assert len(set(flight.texts()[before:])) == 2
     flight.vehicle.arm(True)
     armed = {"px4": Result.ACCEPTED, "ardupilot": Result.TEMPORARILY_REJECTED}
     assert flight.vehicle.check_arming() is armed[personality]

@@ -35,14 +35,10 @@ def drain(flight: Flight, left: float) -> None:
 
 def test_px4_only_warns_if_that_is_set() -> None:
     flight = aloft("px4", COM_LOW_BAT_ACT=0)
-    for left, text in (
-        (0.12, "Low battery level, return advised"),
-        (0.06, "Critical battery level, land now"),
-        (0.04, "Emergency battery level, land immediately"),
-    ):
-        assert not said(flight, text)
+    for number, left in enumerate((0.12, 0.06, 0.04), start=1):  # G2c
         drain(flight, left)
-        assert said(flight, text)
+        assert flight.texts().count("Preflight Fail: low battery") == number
+        assert said(flight, "System does not support shutdown") == (left == 0.04)
     assert flight.vehicle.mode_name == "AUTO.LOITER"
     assert flight.vehicle.system_status == 4
 
@@ -110,7 +106,7 @@ def test_ardupilot_does_about_its_charge_what_the_parameters_say(
     drain(flight, 0.15)
     assert said(flight, "Battery 1 is " + ("low" if "LOW" in name else "critical"))
     assert flight.vehicle.mode_name == mode
-    assert said(flight, "Battery Failsafe") == (action > 0)
+    assert said(flight, "Battery Failsafe")  # also where nothing is done: G6
 
 
 def test_ardupilot_terminates_when_told_to() -> None:
@@ -170,7 +166,8 @@ def test_px4_without_its_ground_station(action: int, mode: str) -> None:
 def test_px4_ends_the_flight_for_its_ground_station_where_told_to(action: int) -> None:
     flight = aloft("px4", NAV_DLL_ACT=action)
     silence(flight, 11)
-    assert not flight.vehicle.armed
+    assert flight.vehicle.motor_outputs == (0.0, 0.0, 0.0, 0.0)
+    assert flight.vehicle.armed == (action == 5)  # who terminates stays armed: H5
 
 
 @pytest.mark.parametrize(
@@ -324,6 +321,7 @@ def test_a_descent_without_a_position_ends_on_the_ground(personality: Personalit
 @pytest.mark.parametrize(("choice", "mode"), [(0, "ALTCTL"), (1, "AUTO.LAND")])
 def test_px4_in_position_mode_without_a_position(choice: int, mode: str) -> None:
     flight = aloft("px4", 15.0, COM_POSCTL_NAVL=choice)
+    flight.vehicle.joystick(0, 0, 500, 0, flight.vehicle.time_ns)
     flight.vehicle.set_mode_kind("position")
     flight.vehicle.blocks.sensed.gps_lost = True
     for tick in range(70):
@@ -419,10 +417,10 @@ def test_px4_tells_of_an_upset_and_ends_the_flight_only_without_the_breaker() ->
     told = aloft("px4", 22.0)
     lean(told, 1.0)
     assert said(told, "Attitude failure (roll)")
-    assert told.vehicle.armed
+    assert told.vehicle.system_status != 8
     ended = aloft("px4", 22.0, CBRK_FLIGHTTERM=0)
     lean(ended, 1.0)
-    assert not ended.vehicle.armed
+    assert ended.vehicle.motor_outputs == (0.0, 0.0, 0.0, 0.0)
     assert ended.vehicle.system_status == 8
 
 
@@ -448,7 +446,7 @@ def test_px4_ends_the_flight_with_a_dead_motor_where_told_to() -> None:
     flight = aloft("px4", 22.0, COM_ACT_FAIL_ACT=4)
     flight.vehicle.blocks.body.health_2 = 0.0
     flight.fly(0.4)
-    assert not flight.vehicle.armed
+    assert flight.vehicle.system_status == 8
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,8 @@ def test_px4_does_about_a_dead_motor_what_com_act_fail_act_says(action: int, mod
 
 def test_px4_without_the_circuit_breaker_ends_the_flight() -> None:
     stage = aloft("px4", motor(2), parameters={"CBRK_FLIGHTTERM": 0})
-    assert stage.until(lambda: not stage.armed, 3.0) < 1.5
+    assert stage.until(lambda: stage.vehicle.system_status == 8, 3.0) < 1.5
+    assert stage.armed
     assert stage.said("Preflight Fail: Flight termination active")
     stage.run(4.0)
     assert stage.last(m.ServoOutputRaw).servo1_raw <= 1000

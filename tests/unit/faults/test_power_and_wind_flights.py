@@ -64,17 +64,25 @@ def test_a_lost_cell_is_seen_in_the_voltage_and_made_up_for(
 @pytest.mark.parametrize(
     ("lost", "told"),
     [
-        (0.25, None),
-        (0.6, "Low battery level, return advised"),
-        (1.0, "Emergency battery level, land immediately"),
+        (0.25, []),
+        (0.6, ["Preflight Fail: low battery\t", "Failsafe activated\t"]),
+        (
+            1.0,
+            [
+                "Preflight Fail: low battery\t",
+                "Transition denied: Armed to Shutdown\t",
+                "System does not support shutdown\t",
+                "Failsafe activated\t",
+            ],
+        ),
     ],
 )
-def test_px4_takes_the_lost_voltage_for_lost_charge(lost: float, told: str | None) -> None:
+def test_px4_takes_the_lost_voltage_for_lost_charge(lost: float, told: list[str]) -> None:
     stage = aloft("px4", cells(lost), parameters=TOLD_ONLY["px4"])
     assert stage.last(m.SysStatus).battery_remaining > 95
     said_before = stage.texts
     stage.run(2.0)
-    assert stage.texts[len(said_before) :] == ([] if told is None else [told + "\t"])
+    assert stage.texts[len(said_before) :] == told
     assert stage.last(m.SysStatus).battery_remaining < {0.25: 75, 0.6: 15, 1.0: 5}[lost]
     assert stage.mode == "AUTO.LOITER"
 

@@ -39,7 +39,7 @@ def by_hand(personality: Personality, text: str, **parameters: float) -> Stage:
 def test_px4_without_sticks_holds_for_five_seconds_then_returns() -> None:
     stage = by_hand("px4", fault("rc_lost", at_s=22.0))
     stage.run_to(23.0)
-    assert stage.said("due to manual control loss, triggering RTL in 5 seconds")
+    assert stage.said("Failsafe activated, entering Hold for 5 seconds")
     assert stage.mode == "AUTO.LOITER"
     stage.run_to(28.0)
     assert stage.mode == "AUTO.RTL"

@@ -554,6 +554,8 @@ CASES: tuple[Case, ...] = (
         {0.0: pytest.approx(0.0, abs=1.0), -240.2: pytest.approx(20.0, abs=1.0)},
         own.baro_off_m,
     ),
+    Case("SIM_BAT_DRAIN", {30.0: 69, 120.0: 94}, own.percent_after_10_s),
+    Case("SIM_BAT_MIN_PCT", {50.0: 100, 90.0: 92}, own.percent_after_10_s),
     Case("SIM_GPS_USED", {10: (3, 10), 14: (3, 14), 3: (1, 0)}, own.satellites),
     Case(
         "SIM_MAG_OFFSET_X",

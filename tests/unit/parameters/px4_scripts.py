@@ -56,6 +56,14 @@ def climbs_1_m_s_after_s(setting: Setting) -> float:
     return flight.fly(10.0, lambda: flight.vehicle.truth.v_ned[2] < -1.0)
 
 
+def percent_after_10_s(setting: Setting) -> int:
+    """Armed on the ground, by the simulated battery where it is switched on."""
+    flight = setting.at_home()
+    flight.vehicle.arm(False)
+    flight.fly(9.9)
+    return flight.vehicle.power.remaining_pct
+
+
 _LEVEL = Posture(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.5,) * 4, (0.5,) * 4)
 
 

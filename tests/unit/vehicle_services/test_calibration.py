@@ -1,7 +1,7 @@
 """PREFLIGHT_CALIBRATION: acks, texts and ends, as recorded (scenarios D1, D2, D5; clients.md 12).
 
-Two things are not copied: PX4's recorded gyroscope was too noisy and tried five times, and while
-one calibration ran a second one was answered by a storm of DENIED acks; this one says it once.
+One thing is not copied: while one calibration ran, PX4 answered a second one by a storm of DENIED
+acks; this one says it once.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import pytest
 from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long
 from tests.unit.vehicle_services.flown_vehicle import Flown, in_the_air, on_the_ground
 from vehicle_sim.autopilot.interface import Result
+from vehicle_sim.plant.faults import GyroBias
 from vehicle_sim.wire import messages as m
 
 CALIBRATE = 241
@@ -26,7 +27,12 @@ def told(bench: Flown, asked: m.CommandLong, ns: int) -> tuple[list[int], list[s
     """The results of its acks, and the texts, within that time."""
     heard = bench.send(asked) + bench.advance(ns)
     results = [result for command, result in acks(heard) if command == asked.command]
-    return results, bench.texts(heard)
+    return results, heard_of_it(bench, heard)
+
+
+def heard_of_it(bench: Flown, heard: list[m.Message]) -> list[str]:
+    """No station beats here, which is told, too."""
+    return [text for text in bench.texts(heard) if not text.startswith("Connection to ground")]
 
 
 GYRO_DONE = [
@@ -71,9 +77,24 @@ def test_a_calibrating_px4_says_so_and_takes_no_arming_and_no_second_one() -> No
     results, texts = told(bench, ARM, 200 * MS)
     assert results == [Result.TEMPORARILY_REJECTED]
     assert texts == ["Transition denied: Init to Armed\t"]
-    results, texts = told(bench, calibrate(1), 200 * MS)
-    assert results == [Result.TEMPORARILY_REJECTED]
-    assert texts == ["command denied during calibration: 241\t"]
+    assert told(bench, calibrate(1), 200 * MS) == ([Result.TEMPORARILY_REJECTED], [])
+
+
+def test_px4s_gyro_calibration_denies_another_and_begins_anew_while_the_vehicle_moves() -> None:
+    """D2: 20 tries of a second each; D1: done once it lies still."""
+    for shaken_s, last in ((30.0, "[cal] calibration failed: gyro"), (3.0, "done: gyro")):
+        bench = on_the_ground("px4")
+        assert bench.result(calibrate(1), 0) == Result.ACCEPTED
+        results, texts = told(bench, calibrate(0, 0, 1), 100 * MS)
+        assert results == [Result.DENIED]
+        assert "command denied during calibration: 241\t" in texts
+        said: list[str] = []
+        for tick in range(240):
+            rate = 0.02 * (-1) ** (tick // 3) if tick < 10 * shaken_s else 0.0
+            bench.autopilot.inject(GyroBias((rate, 0.0, 0.0)))
+            said += heard_of_it(bench, bench.advance(100 * MS))
+        assert said[-1].endswith(last)
+        assert said.count("motion, retrying..") == pytest.approx(min(20.0, shaken_s), abs=1)
 
 
 def test_px4_cancels_a_gyro_calibration_but_none_that_waits_for_a_side() -> None:
@@ -128,8 +149,9 @@ def test_ardupilots_are_acked_when_they_end(
     assert len(acks(heard)) == len(early)
     heard += bench.advance(2 * S)
     assert [result for command, result in acks(heard) if command == CALIBRATE] == results
-    assert bench.texts(heard) == texts
-    assert bench.result(ARM) == Result.ACCEPTED
+    assert bench.texts(heard)[: len(texts)] == texts
+    sticks = params[3:4] > (0,)  # D1: "PreArm: RC calibrating"
+    assert bench.result(ARM) == (Result.FAILED if sticks else Result.ACCEPTED)
 
 
 def test_ardupilots_compass_calibration_is_started_and_cancelled() -> None:

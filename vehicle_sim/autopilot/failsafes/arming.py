@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import cos
 
 from vehicle_sim.autopilot.failsafes.failsafe import Charge, by_capacity, by_voltage, charge_of
-from vehicle_sim.autopilot.failsafes.px4_failsafes import violation
+from vehicle_sim.autopilot.failsafes.px4_failsafes import NO_STATION, violation
 from vehicle_sim.autopilot.fence.geofence import BreachKind, Geofence, names
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import COPTER_NAMES, Behaviour, Mode
@@ -52,8 +52,11 @@ class Readiness:
     mission_ok: bool
     has_mission: bool  # the same in any mode
     setpoints: bool  # they come at more than 2 Hz
+    sticks: bool
     sticks_lost: bool
     station_lost: bool
+    battery_failed: bool  # its failsafe has struck since the start
+    calibration: tuple[str, ...]  # what ArduCopter's calibrations have against arming
 
 
 def reasons(parameters: Parameters, ready: Readiness) -> tuple[str, ...]:
@@ -105,7 +108,11 @@ def _px4(parameters: Parameters, ready: Readiness) -> list[str]:
     if charge_of(parameters, ready.power, ready.remaining) >= Charge.CRITICAL:
         found.append("Preflight Fail: low battery")
     if ready.geofence.breached and get("GF_ACTION") != 0:
-        found.append(violation(ready.geofence.breached))
+        found.append(violation())
+    if ready.station_lost and get("NAV_DLL_ACT") > 0.0:
+        found.append(NO_STATION)
+    if ready.mode.law is not None and not ready.sticks:
+        found.append("Preflight Fail: No manual control input")
     return found
 
 
@@ -152,6 +159,9 @@ def _copter(parameters: Parameters, ready: Readiness) -> list[str]:
         found.append("PreArm: GCS failsafe on")
     if (asked(_BATTERY) or asked(_VOLTAGE)) and get("BATT_MONITOR") != 0:
         found += [f"PreArm: Battery 1 {why}" for why in _copter_battery(parameters, ready.power)]
+        if ready.battery_failed:
+            found.append("PreArm: Battery failsafe")
+    found += [f"PreArm: {why}" for why in ready.calibration]
     if get("FENCE_ENABLE") != 0:
         misfit = ready.geofence.misfit()
         if misfit is not None:

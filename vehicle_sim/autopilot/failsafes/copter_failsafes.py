@@ -6,6 +6,7 @@ By ArduCopter's events.cpp, fence.cpp and ekf_check.cpp, and by AP_BattMonitor.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 
 from vehicle_sim.autopilot.failsafes.failsafe import (
     BATTERY,
@@ -20,6 +21,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
 )
 from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
 from vehicle_sim.autopilot.fence.geofence import names
+from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import position_ok
@@ -48,7 +50,8 @@ class CopterFailsafes(FailsafeChecks):
 
     def _learn(self) -> None:
         get = self._parameters.get
-        self._volt_least = max(get("BATT_LOW_VOLT"), get("BATT_CRT_VOLT"))
+        simulated = get("SIM_BATT_VOLTAGE") != self._parameters.designed("SIM_BATT_VOLTAGE")
+        self._volt_least = max(get("BATT_LOW_VOLT"), get("BATT_CRT_VOLT")) if not simulated else inf
         self._used_most_mah = get("BATT_CAPACITY") - max(get("BATT_LOW_MAH"), get("BATT_CRT_MAH"))
         self._ratio_most = get("FS_EKF_THRESH")
 
@@ -66,8 +69,16 @@ class CopterFailsafes(FailsafeChecks):
             and position_ok(est)
         )
 
-    def _begin(self, seen: Seen) -> None:
+    def _begin(self, seen: Seen) -> Iterator[Strike]:
         """Its own checks before arming have let it pass; forced, it acts at once."""
+        return iter(())
+
+    def _station_words(self) -> Iterator[Failsafe]:
+        if self._parameters.get("FS_GCS_ENABLE") != 0.0:
+            yield Failsafe(Cause.STATION, Action.WARN, "GCS Failsafe", 4)
+
+    def _battery_words(self, power: Power, remaining: float) -> Iterator[Failsafe]:
+        return iter(())
 
     def _battery(self, seen: Seen) -> Iterator[Strike]:
         get = self._parameters.get
@@ -82,6 +93,7 @@ class CopterFailsafes(FailsafeChecks):
         if charge <= self._charge:
             return
         self._charge = charge
+        self.battery_failed = True
         self._low_since_ns = None
         name, actions = BATTERY["ardupilot"][charge]
         action = actions.get(int(get(name)), Action.WARN)
@@ -89,13 +101,12 @@ class CopterFailsafes(FailsafeChecks):
         text = f"Battery 1 is {charge.name.lower()} {power.voltage_v:.2f}V used "
         text += f"{power.consumed_mah:.0f} mAh"
         yield Failsafe(Cause.BATTERY, Action.WARN, text, 4)
-        if action is not Action.WARN:
-            yield self._copter("Battery", Cause.BATTERY, action, seen)
+        yield self._copter("Battery", Cause.BATTERY, action, seen)
 
     def _station(self, seen: Seen) -> Iterator[Strike]:
         name, actions = STATION_LOSS["ardupilot"]
         action = actions.get(int(self._parameters.get(name)))
-        if action is not None and self._station_gone(seen):
+        if action is not None and self._station_gone(seen.wall_ns):
             yield self._copter("GCS", Cause.STATION, action, seen)
 
     def _sticks(self, seen: Seen) -> Iterator[Strike]:
@@ -132,7 +143,7 @@ class CopterFailsafes(FailsafeChecks):
     def _fence(self, seen: Seen) -> Iterator[Strike]:
         crossing = seen.crossing
         if crossing.cleared:
-            yield Cleared(Cause.FENCE, f"{names(crossing.cleared)} cleared", 5)
+            yield Cleared(Cause.FENCE, "Fence breach cleared", 5)
         if not crossing.struck:
             return
         name, actions = BREACH["ardupilot"]

@@ -80,6 +80,8 @@ _PX4_ACTION_WORDS = {
 def activated(action: Action, cause: str = "") -> str:
     """What PX4 says when a failsafe acts (events of commander's failsafe framework)."""
     due = f" due to {cause}" if cause else ""
+    if action is Action.WARN:
+        return f"Failsafe activated{due}"
     return f"Failsafe activated{due}, triggering {_PX4_ACTION_WORDS[action]}"
 
 

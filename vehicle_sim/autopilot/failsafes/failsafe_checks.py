@@ -66,6 +66,7 @@ class FailsafeChecks(ABC):
         "_station_limit_ns",
         "_station_ns",
         "_version",
+        "battery_failed",
         "position_lost",
         "station_lost",
         "sticks_lost",
@@ -80,6 +81,11 @@ class FailsafeChecks(ABC):
         self._version = -1
         self._station_ns: int | None = None
         self.station_lost = False
+        self.restart()
+
+    def restart(self) -> None:
+        """As after power-up."""
+        self.battery_failed = False
         self.reset()
 
     def reset(self) -> None:
@@ -122,10 +128,12 @@ class FailsafeChecks(ABC):
 
     def check(self, seen: Seen) -> list[Strike]:
         """What strikes and what clears now, in no order of weight."""
+        begun: list[Strike] = []
         if self._first:
             self._first = False
-            self._begin(seen)
+            begun = list(self._begin(seen))
         return [
+            *begun,
             *self._battery(seen),
             *self._station(seen),
             *self._sticks(seen),
@@ -134,8 +142,8 @@ class FailsafeChecks(ABC):
         ]
 
     @abstractmethod
-    def _begin(self, seen: Seen) -> None:
-        """Just armed: what is wrong already was accepted with it."""
+    def _begin(self, seen: Seen) -> Iterator[Strike]:
+        """Just armed: what is wrong already was accepted with it, and may be told."""
 
     @abstractmethod
     def _battery(self, seen: Seen) -> Iterator[Strike]: ...
@@ -152,10 +160,24 @@ class FailsafeChecks(ABC):
     @abstractmethod
     def _position(self, seen: Seen) -> Iterator[Strike]: ...
 
-    def _station_gone(self, seen: Seen) -> bool:
+    def check_disarmed(self, wall_ns: int, power: Power, remaining: float) -> Iterator[Failsafe]:
+        """What is only told, once each, while nothing can be done about it."""
+        if self._station_gone(wall_ns):
+            yield from self._station_words()
+        yield from self._battery_words(power, remaining)
+
+    @abstractmethod
+    def _station_words(self) -> Iterator[Failsafe]:
+        """What is said of a lost station before anything is done about it."""
+
+    @abstractmethod
+    def _battery_words(self, power: Power, remaining: float) -> Iterator[Failsafe]:
+        """What is said of a low battery while disarmed."""
+
+    def _station_gone(self, wall_ns: int) -> bool:
         """Whether the silence has just become too long."""
         if self._station_ns is None or self.station_lost:
             return False
         limit_ns = int(self._parameters.si(Quantity.STATION_LOSS_S) * 1e9)
-        self.station_lost = seen.wall_ns - self._station_ns >= limit_ns
+        self.station_lost = wall_ns - self._station_ns >= limit_ns
         return self.station_lost

@@ -22,41 +22,40 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
     charge_of,
 )
 from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
-from vehicle_sim.autopilot.fence.geofence import BreachKind
+from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Behaviour, StickLaw
+from vehicle_sim.autopilot.parameters.simulated import SimulatedBattery
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import position_ok
 from vehicle_sim.plant.sensed import Sensed
-
-_BATTERY_ADVICE = {
-    Charge.LOW: ("Low battery level, return advised", 4),
-    Charge.CRITICAL: ("Critical battery level, land now", 2),
-    Charge.EMERGENCY: ("Emergency battery level, land immediately", 0),
-}
 
 # COM_RCL_EXCEPT: 1 mission, 2 every other mode that flies by itself, 4 offboard.
 _RC_EXCEPTION = {Behaviour.MISSION: 1, Behaviour.GUIDED: 4}
 
 _ROUNDING_V = 1e-6
 
-_VIOLATIONS = {
-    BreachKind.CIRCLE: "exceeding maximum distance to Home",
-    BreachKind.ALT_MAX: "exceeding maximum altitude above Home",
-    BreachKind.POLYGON: "approaching or outside geofence",
-}
+NO_STATION = "Preflight Fail: No connection to the ground control station"
+_LOW = Failsafe(Cause.BATTERY, Action.WARN, "Preflight Fail: low battery", 0)
+_EMPTY = (
+    Failsafe(Cause.BATTERY, Action.WARN, "Transition denied: Armed to Shutdown", 2),
+    Failsafe(Cause.BATTERY, Action.WARN, "System does not support shutdown", 2),
+)
+"""An empty battery makes it ask for a shutdown, which a simulation has not."""
 
 
-def violation(kinds: BreachKind) -> str:
-    """PX4's words for a breach (geofenceCheck)."""
-    return "Geofence violation: " + next(
-        (text for kind, text in _VIOLATIONS.items() if kind in kinds), "outside geofence"
-    )
+def violation() -> str:
+    """PX4's words for a breach of any kind (geofenceCheck)."""
+    return "Preflight Fail: Geofence violation"
 
 
 class Px4Failsafes(FailsafeChecks):
     """PX4's."""
 
-    __slots__ = ("_eph_most_m", "_resting_least_v", "_without_sticks")
+    __slots__ = ("_eph_most_m", "_low_told", "_resting_least_v", "_without_sticks")
+
+    def reset(self) -> None:
+        super().reset()
+        self._low_told = False
 
     back_again = Cleared(Cause.STATION, "GCS connection regained")
 
@@ -64,7 +63,7 @@ class Px4Failsafes(FailsafeChecks):
         get = self._parameters.get
         names = ("BAT_LOW_THR", "BAT_CRIT_THR", "BAT_EMERGEN_THR")
         # With a capacity of its own it goes by the charge that was drawn, and not by the voltage.
-        counted = get("BAT1_CAPACITY") > 0.0
+        counted = get("BAT1_CAPACITY") > 0.0 or SimulatedBattery.measured(self._parameters)
         least = max(get(name) for name in names)
         self._resting_least_v = inf if counted else voltage_of(least) + _ROUNDING_V
         worst_m = get("COM_POS_FS_EPH")
@@ -78,9 +77,11 @@ class Px4Failsafes(FailsafeChecks):
             and position_ok(est)
         )
 
-    def _begin(self, seen: Seen) -> None:
+    def _begin(self, seen: Seen) -> Iterator[Strike]:
         self._without_sticks = seen.sticks_lost
         self._charge = charge_of(self._parameters, seen.power, seen.remaining)
+        if self._charge > Charge.FINE:
+            yield Failsafe(Cause.BATTERY, Action.WARN, activated(Action.WARN), 2)
 
     def _battery(self, seen: Seen) -> Iterator[Strike]:
         charge = charge_of(self._parameters, seen.power, seen.remaining)
@@ -89,22 +90,32 @@ class Px4Failsafes(FailsafeChecks):
         self._charge = charge
         name, actions = BATTERY["px4"][charge]
         action = actions.get(int(self._parameters.get(name)), Action.WARN)
-        if action is Action.WARN:
-            advice, severity = _BATTERY_ADVICE[charge]
-            yield Failsafe(Cause.BATTERY, action, advice, severity)
-        else:
-            text = activated(action, f"{charge.name.lower()} battery level")
-            yield Failsafe(Cause.BATTERY, action, text, 2, delayed=True)
+        yield _LOW
+        if charge is Charge.EMERGENCY:
+            yield from _EMPTY
+        text = activated(action, f"{charge.name.lower()} battery level")
+        yield Failsafe(Cause.BATTERY, action, text, 2, delayed=True)
+
+    def _battery_words(self, power: Power, remaining: float) -> Iterator[Failsafe]:
+        low = charge_of(self._parameters, power, remaining) > Charge.FINE
+        if low and not self._low_told:
+            yield _LOW
+        self._low_told = low
 
     def _station(self, seen: Seen) -> Iterator[Strike]:
-        if not self._station_gone(seen):
+        if not self._station_gone(seen.wall_ns):
             return
-        yield Failsafe(Cause.STATION, Action.WARN, "Connection to ground station lost", 6)
+        yield from self._station_words()
         name, actions = STATION_LOSS["px4"]
         action = actions.get(int(self._parameters.get(name)))
         if action is not None and seen.mode.behaviour is not Behaviour.LAND:
             text = activated(action, "GCS connection loss")
             yield Failsafe(Cause.STATION, action, text, 2, delayed=True)
+
+    def _station_words(self) -> Iterator[Failsafe]:
+        yield Failsafe(Cause.STATION, Action.WARN, "Connection to ground station lost", 6)
+        if self._parameters.get("NAV_DLL_ACT") > 0.0:
+            yield Failsafe(Cause.STATION, Action.WARN, NO_STATION, 4)
 
     def _sticks(self, seen: Seen) -> Iterator[Strike]:
         self._without_sticks = self._without_sticks and seen.sticks_lost
@@ -126,10 +137,9 @@ class Px4Failsafes(FailsafeChecks):
             yield Cleared(Cause.FENCE)
         if not seen.crossing.struck or action is None:
             return
-        yield Failsafe(Cause.FENCE, Action.WARN, violation(seen.crossing.struck), 2)
-        if action is not Action.WARN:
-            delayed = action is not Action.HOLD
-            yield Failsafe(Cause.FENCE, action, activated(action), 2, delayed)
+        yield Failsafe(Cause.FENCE, Action.WARN, violation(), 2)
+        delayed = action is not Action.HOLD
+        yield Failsafe(Cause.FENCE, action, activated(action), 2, delayed)
 
     def _position(self, seen: Seen) -> Iterator[Strike]:
         worst_m = self._parameters.get("COM_POS_FS_EPH")

@@ -238,6 +238,13 @@ class Geofence:
         """Whether the floor does not count, however high the vehicle is."""
         self._floor_barred = barred
 
+    def beyond(self, pos_ned: Vec3, home_ned: Vec3) -> BreachKind:
+        """The limits that a goal is beyond."""
+        kinds = BreachKind.NONE
+        for kind in self._outside(pos_ned, home_ned):
+            kinds |= kind
+        return kinds
+
     def allows(self, pos_ned: Vec3, home_ned: Vec3) -> bool:
         """Whether a goal lies within all that is fenced now."""
         return not self._outside(pos_ned, home_ned)

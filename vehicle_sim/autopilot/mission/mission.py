@@ -11,9 +11,24 @@ from __future__ import annotations
 from math import inf, isfinite, radians
 
 from vehicle_sim.autopilot.control.demands import Demand, FlyTo, Situation, Turner
-from vehicle_sim.autopilot.interface import Landed, MissionReached, PlanItem, Target
+from vehicle_sim.autopilot.interface import (
+    Landed,
+    MissionReached,
+    PlanItem,
+    StatusText,
+    Target,
+)
+from vehicle_sim.autopilot.mission.item_texts import ItemTexts
 from vehicle_sim.autopilot.mission.mission_commands import MissionCommands, MissionVehicle
-from vehicle_sim.autopilot.mission.plan import KINDS, Cmd, ItemKind, first_of, has_place, place_of
+from vehicle_sim.autopilot.mission.plan import (
+    KINDS,
+    Cmd,
+    ItemKind,
+    first_of,
+    has_height,
+    has_place,
+    place_of,
+)
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.circle import CircleTask
 from vehicle_sim.autopilot.tasks.legs import Go, GoAndLand, GoToHeight, Leg, Rise, Whole
@@ -41,6 +56,7 @@ class Mission:
         "_next",
         "_parameters",
         "_repeats",
+        "_texts",
         "_until_ns",
         "_vehicle",
         "current",
@@ -52,6 +68,7 @@ class Mission:
     def __init__(self, parameters: Parameters, vehicle: MissionVehicle) -> None:
         self._parameters = parameters
         self._vehicle = vehicle
+        self._texts = ItemTexts(vehicle, told=parameters.personality == "ardupilot")
         self._errands = MissionCommands(vehicle, reports=parameters.personality == "px4")
         self.load(())
 
@@ -103,6 +120,21 @@ class Mission:
             if KINDS[item.command] is ItemKind.FLOWN and not (delays and item.command == Cmd.DELAY):
                 return item.command == Cmd.TAKEOFF
         return False
+
+    @property
+    def jump_beyond(self) -> int | None:
+        """Where a DO_JUMP of the plan leads to that is no item; None = nowhere."""
+        goals = (int(item.p1) for item in self.items if item.command == Cmd.JUMP)
+        return next((goal for goal in goals if not 0 <= goal < len(self.items)), None)
+
+    def take_off_up_m(self, home_ned: Vec3) -> float:
+        """PX4's first climb: to the first item's height above home, and not less than its own."""
+        least_m = self._parameters.si(Quantity.TAKEOFF_UP_M)
+        item = self._flown_from(self._next)
+        if item is None or not has_height(item):
+            return least_m
+        up_m = home_ned[2] - place_of(item, self._vehicle.datum(), home_ned)[2]
+        return up_m if item.command == Cmd.TAKEOFF else max(up_m, least_m)
 
     def _flown_from(self, index: int) -> PlanItem | None:
         first = max(index, first_of(self._parameters.personality))
@@ -165,10 +197,11 @@ class Mission:
         self._next = max(self._next, first_of(self._parameters.personality))
         self.current = max(self.current, first_of(self._parameters.personality))
         self._leg = None
+        self.announce_begin()
         self._goal = s.stop_ned
         self._before_ned = None
         if not s.flying and not self.takes_off:
-            goal_d = s.home_ned[2] - self._parameters.si(Quantity.TAKEOFF_UP_M)
+            goal_d = s.home_ned[2] - self.take_off_up_m(s.home_ned)
             self._first_task = self._take_off(goal_d)
             self._first_task.begin(s, turner)
 
@@ -224,21 +257,31 @@ class Mission:
             else:
                 self._errands.put(item)
                 self._next += 1
+                self._texts.start(item)
 
     def _reached(self) -> None:
-        self._vehicle.emit(MissionReached(self.items[self.current].seq))
+        item = self.items[self.current]
+        self._vehicle.emit(MissionReached(item.seq))
+        self._texts.reached(item)
         self._leg = None
         self._errands.drop()
 
     def _jump(self, item: PlanItem) -> None:
+        """PX4 may hold one that leads beyond its items: the mission ends there."""
         done = self._repeats.get(item.seq, 0)
         if item.p2 < 0 or done < item.p2:
             self._repeats[item.seq] = done + 1
-            self._next = int(item.p1)
-        else:
-            self._next += 1
+            self._next = int(item.p1) if 0 <= item.p1 < len(self.items) else self._last + 1
+            return
+        self._next += 1
+        if self._parameters.personality == "px4":
+            self._vehicle.emit(StatusText(6, "DO JUMP repetitions completed."))
+
+    def announce_begin(self) -> None:
+        self._texts.begin(self.items[self._next : self._last + 1])
 
     def _start(self, item: PlanItem, s: Situation, turner: Turner, entry_m_s: float) -> None:
+        self._texts.start(item)
         if item.command == Cmd.RETURN:
             self._errands.work(s, self._goal)
             if self._vehicle.leave_for_return():

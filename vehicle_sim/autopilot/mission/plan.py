@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from math import isfinite
 
@@ -150,15 +150,24 @@ def check(items: tuple[PlanItem, ...], personality: Personality) -> tuple[int, s
     return None
 
 
+def infeasible(items: tuple[PlanItem, ...]) -> bool:
+    """PX4 stores it, and does not fly it: it waits for a condition, takes off in between, or
+    begins with a landing."""
+    flown = [item.command for item in items if KINDS[item.command] is ItemKind.FLOWN]
+    waits = any(KINDS[item.command] is ItemKind.WAITED for item in items)
+    return waits or Cmd.TAKEOFF in flown[1:] or Cmd.LAND in flown[:1]
+
+
 def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None:
     if item.command not in KINDS or (item.command == Cmd.SPLINE and personality == "px4"):
         return f"command {item.command} is not supported"
     if item.command in _PLACED:
         if item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED}:
             return f"frame {item.frame} is not supported"
-        if not isfinite(item.z):
+        if personality == "ardupilot" and not isfinite(item.z):
             return "the altitude is not a number"
-        if item.frame != _LOCAL_NED and has_place(item) and not _on_earth(item):
+        somewhere = item.frame != _LOCAL_NED and has_place(item)
+        if personality == "ardupilot" and somewhere and not _on_earth(item):
             return "the position is not on Earth"
         if not has_place(item) and item.command not in here_if_zero(personality):
             return "the position is missing"
@@ -173,7 +182,7 @@ def _why_not_values(item: PlanItem, count: int, personality: Personality) -> str
     first = first_of(personality)
     match item.command:
         case Cmd.JUMP:
-            if not isfinite(item.p1) or not first <= item.p1 < count:
+            if not isfinite(item.p1) or (personality == "ardupilot" and not 1 <= item.p1 < count):
                 return f"jump to item {item.p1:g}, which is not there"
             if not isfinite(item.p2) or item.p2 < -1:
                 return f"{item.p2:g} repetitions"
@@ -238,12 +247,23 @@ def has_place(item: PlanItem) -> bool:
     return (item.x != 0 or item.y != 0) and item.x != _NO_PLACE and item.y != _NO_PLACE
 
 
+def has_height(item: PlanItem) -> bool:
+    """Whether the item has a place and says how high it is."""
+    return item.command in _PLACED and isfinite(item.z)
+
+
 def _on_earth(item: PlanItem) -> bool:
     return abs(item.x) <= 900_000_000 and abs(item.y) <= 1_800_000_000
 
 
 def place_of(item: PlanItem, datum: Datum, here_ned: Vec3) -> Vec3:
-    """Where the item is [m, NED]; without coordinates: over `here_ned`, at its height."""
+    """Where the item is [m, NED]; without coordinates: over `here_ned`, at its height.
+
+    Without a height: as high as `here_ned`.
+    """
+    if not isfinite(item.z):
+        north, east, _ = place_of(replace(item, frame=0, z=0.0), datum, here_ned)
+        return (north, east, here_ned[2])
     if item.frame == _LOCAL_NED:
         return (item.x * 1e-4, item.y * 1e-4, item.z)
     if item.frame in _GLOBAL:

@@ -12,7 +12,6 @@ from math import cos, radians, sin
 
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.plant.battery import FULL_CELL_V
 from vehicle_sim.plant.faults import (
     AccelBias,
     BaroFault,
@@ -31,7 +30,9 @@ FIX_SATELLITES = 4
 _PA_PER_M = 12.01  # of air at sea level: density times gravity
 _M_PER_DEG = 111_318.84502145034  # as ArduPilot reckons places
 _MOTORS = (1, 2, 3, 4)
-_FULL_V = 4.0 * FULL_CELL_V
+_LOAD_DROP = 0.1 / 0.45
+_CELLS = 4.0  # of the airframe
+_FULL_V = 12.6  # of SITL's three cells: with these its motors are as strong as they get
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,11 @@ class _Group:
 def _wind(from_deg: float, speed_m_s: float, gust_m_s: float) -> WindChange:
     towards = radians(from_deg + 180.0)
     return WindChange((speed_m_s * cos(towards), speed_m_s * sin(towards), 0.0), gust_m_s)
+
+
+def _weakened(full_v: float) -> CellsLost:
+    """Motors as weak as SITL's are with that voltage of its own battery."""
+    return CellsLost(_CELLS * max(0.0, 1.0 - full_v / _FULL_V))
 
 
 def _engines(failed: float, left: float) -> tuple[Fault, ...]:
@@ -68,7 +74,7 @@ _GROUPS: dict[Personality, tuple[_Group, ...]] = {
         _Group(
             ("SIM_BARO_GLITCH", "SIM_BARO_DISABLE"), lambda _, v: (BaroFault(v[0], v[1] != 0.0),)
         ),
-        _Group(("SIM_BATT_VOLTAGE",), lambda _, v: (CellsLost((_FULL_V - v[0]) / FULL_CELL_V),)),
+        _Group(("SIM_BATT_VOLTAGE",), lambda _, v: (_weakened(v[0]),)),
         _Group(("SIM_ENGINE_FAIL", "SIM_ENGINE_MUL"), lambda _, v: _engines(v[0], v[1])),
         _Group(("SIM_GPS_DISABLE",), lambda _, v: (GpsLost(v[0] != 0.0),)),
         _Group(
@@ -82,6 +88,51 @@ _GROUPS: dict[Personality, tuple[_Group, ...]] = {
         _Group(("SIM_WIND_DIR", "SIM_WIND_SPD", "SIM_WIND_TURB"), lambda _, v: (_wind(*v),)),
     ),
 }
+
+
+class SimulatedBattery:
+    """PX4's own simulated battery: by SIM_BAT_DRAIN seconds from full to empty while armed, and not
+    below SIM_BAT_MIN_PCT; full again when disarmed.
+
+    It takes the airframe's place in what is measured once one of the two was changed; the motors'
+    strength stays what it is.  As its voltage does not sag, the share that PX4 adds for the load
+    (0.1 V of the 0.45 V between BAT1_V_EMPTY and BAT1_V_CHARGED) makes it look fuller than it is.
+    """
+
+    __slots__ = ("_left", "_parameters")
+
+    def __init__(self, parameters: Parameters) -> None:
+        self._parameters = parameters
+        self._left = 1.0
+
+    def update(self, armed: bool, dt_s: float) -> None:
+        """Of `dt_s` more seconds."""
+        if self._parameters.personality != "px4":
+            return
+        get = self._parameters.get
+        least = 0.01 * get("SIM_BAT_MIN_PCT")
+        self._left = max(least, self._left - dt_s / get("SIM_BAT_DRAIN")) if armed else 1.0
+
+    def charge(self, throttle: float) -> float | None:
+        """0..1 as it is estimated under that throttle (0..1); None = the airframe's counts."""
+        if not self.measured(self._parameters):
+            return None
+        return min(1.0, self._left + throttle * _LOAD_DROP)
+
+    def volts(self, airframe_v: float) -> float:
+        """What is measured: ArduCopter's SIM_BATT_VOLTAGE if it was changed; no load lowers it."""
+        if self._parameters.personality != "ardupilot":
+            return airframe_v
+        set_v = self._parameters.get("SIM_BATT_VOLTAGE")
+        return airframe_v if set_v == self._parameters.designed("SIM_BATT_VOLTAGE") else set_v
+
+    @staticmethod
+    def measured(parameters: Parameters) -> bool:
+        """Whether it has taken the airframe's place."""
+        if parameters.personality != "px4":
+            return False
+        names = ("SIM_BAT_DRAIN", "SIM_BAT_MIN_PCT")
+        return any(parameters.get(name) != parameters.designed(name) for name in names)
 
 
 class Simulated:

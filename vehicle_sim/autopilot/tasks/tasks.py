@@ -37,13 +37,13 @@ def face(goal_ned: Vec3, s: Situation, turner: Turner) -> None:
 class Hold:
     """Brake and stay; or fly to `goal_ned` and stay there.
 
-    `lifts`: from the ground, too, as PX4 does with a place that it was given there.
+    `lifts`: from the ground, too, as PX4 does with a place that it was given there; a take-off
+    that goes on so is still called one (`landed_word`).
     """
 
-    landed_word = Landed.IN_AIR
     done = True
 
-    __slots__ = ("_speed_m_s", "_yaw_rad", "goal_ned", "lifts")
+    __slots__ = ("_speed_m_s", "_yaw_rad", "goal_ned", "landed_word", "lifts")
 
     def __init__(
         self,
@@ -51,8 +51,10 @@ class Hold:
         yaw_rad: float | None = None,
         speed_m_s: float | None = None,
         lifts: bool = False,
+        landed_word: Landed = Landed.IN_AIR,
     ) -> None:
         self.goal_ned = goal_ned
+        self.landed_word = landed_word
         self.lifts = lifts
         self._yaw_rad = yaw_rad
         self._speed_m_s = speed_m_s
@@ -206,7 +208,8 @@ class _Leg(Enum):
 class Return:
     """Climb to the return height, home in a straight line, down, wait, land.
 
-    `haven` finds another place than home, from where the return begins.
+    `haven` finds another place than home, from where the return begins.  `tell` is given the words
+    for each leg, and the heights [m, NED] where it goes and of the ground there.
     """
 
     done = False
@@ -218,13 +221,18 @@ class Return:
         "_landing_site",
         "_leg",
         "_parameters",
+        "_tell",
         "_until_ns",
     )
 
     def __init__(
-        self, parameters: Parameters, haven: Callable[[Vec3], LandingSite] | None = None
+        self,
+        parameters: Parameters,
+        haven: Callable[[Vec3], LandingSite] | None = None,
+        tell: Callable[[str, float, float], None] | None = None,
     ) -> None:
         self._parameters = parameters
+        self._tell = tell
         self._find_landing_site = haven
         self._landing_site: LandingSite | None = None
         self._leg = _Leg.CLIMB
@@ -254,6 +262,11 @@ class Return:
         self._landing_site = haven
         self._leg = _Leg.CLIMB
         self._goal = (s.stop_ned[0], s.stop_ned[1], top)
+        self._say("climb to", top)
+
+    def _say(self, words: str, down_m: float) -> None:
+        if self._tell is not None and self._landing_site is not None:
+            self._tell(words, down_m, self._landing_site.ground_ned[2])
 
     def update(self, s: Situation, turner: Turner) -> Demand:
         goal = self._goal or s.stop_ned
@@ -264,6 +277,7 @@ class Return:
                 if s.pos_ned[2] < goal[2] + _REACHED_M:
                     self._leg = _Leg.HOME
                     goal = (home[0], home[1], goal[2])
+                    self._say("return at", goal[2])
                     if self._faces_home:
                         face(goal, s, turner)
             case _Leg.HOME:
@@ -271,6 +285,7 @@ class Return:
                     self._leg = _Leg.DESCEND
                     wait_d = home[2] - self._parameters.si(Quantity.RETURN_WAIT_UP_M)
                     goal = (home[0], home[1], max(goal[2], wait_d))
+                    self._say("descend to", goal[2])
             case _Leg.DESCEND:
                 if arrived:
                     self._leg = _Leg.WAIT
@@ -299,6 +314,7 @@ class Return:
             return (home[0], home[1], home[2] - final_up_m)
         self._leg = _Leg.LAND
         self._land = Land(self._parameters, goal)
+        self._say("land", goal[2])
         return goal
 
     @property

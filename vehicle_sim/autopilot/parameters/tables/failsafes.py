@@ -6,9 +6,9 @@ from vehicle_sim.autopilot.parameters.tables.spec import int8, int32, real
 
 # fmt: off
 PX4 = (
-    real("BAT_CRIT_THR",     0.07, 0.05, 0.5,   "critical battery, part of the charge"),
-    real("BAT_EMERGEN_THR",  0.05, 0.03, 0.5,   "emergency battery, part of the charge"),
-    real("BAT_LOW_THR",      0.15, 0.12, 0.5,   "low battery, part of the charge"),
+    real("BAT_CRIT_THR",     0.07, 0.05, 1.0,   "critical battery, part of the charge"),
+    real("BAT_EMERGEN_THR",  0.05, 0.03, 1.0,   "emergency battery, part of the charge"),
+    real("BAT_LOW_THR",      0.15, 0.12, 1.0,   "low battery, part of the charge"),
     real("BAT1_CAPACITY",    -1.0, -1.0, 100000, "capacity [mAh], -1 = the battery tells it"),
     int32("CBRK_FLIGHTTERM", 121212, 0,  121212, "121212: an upset is told, else it terminates"),
     int32("COM_ACT_FAIL_ACT", 0,   0,    4,     "motor failure: 0 warn 1 hold 2 land 3 return "

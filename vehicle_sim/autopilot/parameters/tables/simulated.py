@@ -7,6 +7,9 @@ from vehicle_sim.autopilot.parameters.tables.spec import int8, int32, real
 # fmt: off
 PX4 = (
     real("SIM_BARO_OFF_P",   0.0,  -5000., 5000., "barometer is off by [Pa]"),
+    real("SIM_BAT_DRAIN",    60.0, 1.0,  86400., "simulated battery: full to empty in [s]; once "
+                                                "it or the next one is changed"),
+    real("SIM_BAT_MIN_PCT",  50.0, 0.0,  100.,  "simulated battery: goes no lower than [%]"),
     int32("SIM_GPS_USED",    10,   0,    50,    "satellites; with less than 4 there is no fix"),
     real("SIM_MAG_OFFSET_X", 0.0,  -5.0, 5.0,   "magnetometer is off forwards by [gauss]"),
     real("SIM_MAG_OFFSET_Y", 0.0,  -5.0, 5.0,   "magnetometer is off to the right by [gauss]"),
