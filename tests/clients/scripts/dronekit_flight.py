@@ -216,6 +216,8 @@ def fly_px4(vehicle):
     height_m = vehicle.location.global_relative_frame.alt
     assert 2.0 < height_m < 3.0, height_m
     print(f"took off to {height_m:.1f} m")
+    # PX4 enters it only while there are sticks.
+    vehicle.send_mavlink(vehicle.message_factory.manual_control_encode(1, 0, 0, 500, 0, 0))
     vehicle.mode = VehicleMode("POSCTL")
     vehicle.wait_for_mode("POSCTL", timeout=10)
     vehicle.mode = VehicleMode("LAND")

@@ -182,7 +182,7 @@ def fly_px4(prompt):
     prompt.wait("LOITER>")
     prompt.do(f"guided {lat} {lon} 30", "DO_REPOSITION: ACCEPTED", r"height [23]\d", seconds=60)
     prompt.do("long DO_SET_MODE 29 4 4", "Mode MISSION", "waypoint 2", "waypoint 3", seconds=60)
-    prompt.do("long DO_SET_MODE 81 3", "Mode POSCTL")
+    prompt.do("long DO_SET_MODE 81 3", "DO_SET_MODE: TEMPORARILY_REJECTED")  # without sticks
     prompt.do("long NAV_LAND", "NAV_LAND: ACCEPTED", "Mode LAND", "DISARMED", seconds=90)
 
 

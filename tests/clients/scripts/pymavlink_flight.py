@@ -99,6 +99,13 @@ def set_mode(name):
     wait("HEARTBEAT", lambda m: link.flightmode == name)
 
 
+def centre_sticks(personality):
+    """PX4 enters a mode that is flown by hand only while there are sticks."""
+    if personality == "px4":
+        link.mav.manual_control_send(1, 0, 0, 500, 0, 0)
+        link.mav.manual_control_send(1, 0, 0, 500, 0, 0)
+
+
 def height_reached(up_m):
     wait("GLOBAL_POSITION_INT", lambda m: abs(m.relative_alt * 1e-3 - up_m) < 0.5)
 
@@ -217,12 +224,14 @@ def fly_every_mode(personality):
         link.param_set_send("FOLL_ENABLE", 1)
         wait("PARAM_VALUE", lambda m: m.param_id == "FOLL_ENABLE" and m.param_value == 1)
     for mode in FLOWN_MODES[personality]:
+        centre_sticks(personality)
         set_mode(mode)
     print(f"flew in {', '.join(FLOWN_MODES[personality])}")
 
 
 def fly_by_sticks(personality):
     """RC_CHANNELS_OVERRIDE (ArduPilot) and MANUAL_CONTROL (PX4): up, and stay."""
+    centre_sticks(personality)
     set_mode({"ardupilot": "LOITER", "px4": "POSCTL"}[personality])
     start = wait("GLOBAL_POSITION_INT").relative_alt
 
