@@ -58,8 +58,6 @@ JUDGED: Final = (
     Judged("px4", "G3_", r"6 (mode|armed): .*", _J.AIRFRAME, "has landed and disarmed already"),
     # ------------------------------------------------------------------------- ArduCopter
     Judged("ardupilot", "", "text: SIM Hit ground .*", _J.SIMULATOR, "SITL's own"),
-    Judged("ardupilot", "A[12]_", "text: Disarming motors", _J.AIRFRAME,
-           "had left the ground when the take-off was taken back"),
     Judged("ardupilot", "B[58]_", r"\d (mode|landed): .*", _J.SIMULATOR,
            "SITL's receiver with a low throttle takes over; here no receiver is heard"),
     Judged("ardupilot", "B7_", "text: Radio Failsafe Cleared", _J.NOT_BUILT,
@@ -80,11 +78,9 @@ JUDGED: Final = (
            "is not back within the fence yet"),
     Judged("ardupilot", "G7_", ".*", _J.SIMULATOR, "SITL's copter drops with 9.7 V from 14 m"),
     Judged("ardupilot", "G8_", "8 landed: .*", _J.AIRFRAME, "is over its home already"),
-    Judged("ardupilot", "H7_", ".*", _J.DELIBERATE,
-           "ready at once; --boot real is as late as ArduCopter"),
     Judged("ardupilot", "H8_", "3 COMMAND_LONG .*", _J.SIMULATOR, "SITL dies of a NaN"),
+    Judged("ardupilot", "I1_", "text: Disarming motors", _J.AIRFRAME, "is still coming down"),
     Judged("ardupilot", "J2_", "text: .*", _J.UNTOLD, "requests for logs"),
-    Judged("ardupilot", "K1_", "3 COMMAND_LONG .*", _J.DELIBERATE, "has a camera; --camera none"),
     Judged("ardupilot", "K1_", "text: .*", _J.UNTOLD, "requests for rates and messages"),
 )  # fmt: skip
 
