@@ -19,6 +19,7 @@ from vehicle_sim.autopilot.modes import (
     refusal_words,
     unknown_mode_words,
 )
+from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
 from vehicle_sim.autopilot.view import View
 
@@ -32,7 +33,7 @@ class ModeChanges(View):
     @property
     def _not_now(self) -> Result:
         """How the personality answers what its own checks refuse."""
-        return Result.FAILED if self.personality == "ardupilot" else Result.TEMPORARILY_REJECTED
+        return RULES[self.personality].not_now
 
     def arm(self, force: bool) -> Result:
         if self._armed:
