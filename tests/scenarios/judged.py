@@ -17,7 +17,6 @@ class Judgement(Enum):
     SIMULATOR = "of the recorded simulator, not of the autopilot"
     AIRFRAME = "another airframe: it climbs, flies and lands in other times"
     UNTOLD = "the recording does not tell what was sent, or what was seen between two heartbeats"
-    DELIBERATE = "on purpose; the real behaviour is an option"
     RACE = "two parts of PX4 answer, and either may be first"
     NOT_BUILT = "not built"
 
