@@ -53,6 +53,7 @@ def test_px4_flies_orbits_follows_and_finishes_a_mission(tmp_path: Path) -> None
         "AUTO.LOITER",
         "AUTO.MISSION",
         "AUTO.RTL",
+        "AUTO.MISSION",  # disarmed: the mode that was asked for last
         "AUTO.LOITER",
     ]
     assert ULog(str(tmp_path / "flight.log")).last_timestamp > 60_000_000

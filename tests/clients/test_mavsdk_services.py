@@ -80,6 +80,7 @@ def test_px4_carries_plans_and_flies_a_mission_with_photos_a_pause_and_a_return(
         "AUTO.LOITER",
         "AUTO.MISSION",
         "AUTO.RTL",
+        "AUTO.MISSION",  # disarmed: the mode that was asked for last
         "AUTO.LOITER",
     ]
     reached = [int(line.split()[-2]) for line in flown.vehicle if line.endswith(" reached")]

@@ -240,6 +240,7 @@ def test_a_box_goes_up_and_comes_down_equal_in_meaning() -> None:
     up_and_down(SAMPLES / "plans" / "box.plan")
 
 
+@pytest.mark.xfail(strict=True, reason="autopilots.md, defects of gcs 4: PX4 drops the pitch")
 def test_px4s_mission_box_goes_up_and_comes_down_equal_in_meaning() -> None:
     up_and_down(elsewhere("plans", "MC_mission_box.plan"))
 
