@@ -127,13 +127,16 @@ def test_ardupilots_low_voltage_must_last_without_a_break() -> None:
 
 
 def test_px4_does_not_hold_once_more_for_a_worse_failsafe() -> None:
-    """COM_FAIL_ACT_T, 5 s, is waited before the first action alone."""
-    worse = cells(0.66) + cells(1.0).replace("at_s = 20", "at_s = 22")
-    stage = aloft("px4", worse, parameters={"COM_LOW_BAT_ACT": 3, "COM_FAIL_ACT_T": 5})
+    """COM_FAIL_ACT_T, 5 s, is waited before the first action; the next one comes at once."""
+    worse = cells(0.66) + cells(1.0).replace("at_s = 20", "at_s = 33")
+    low = {"COM_LOW_BAT_ACT": 3, "COM_FAIL_ACT_T": 5, "RTL_RETURN_ALT": 60}
+    stage = aloft("px4", worse, parameters=low)
     stage.run(1.5)
     assert stage.said("Failsafe activated, entering Hold for 5 seconds")
     assert stage.mode == "AUTO.LOITER"
-    stage.run(1.0)
+    stage.run(6.0)
+    assert stage.mode == "AUTO.RTL"
+    stage.run_to(33.6)
     assert stage.mode == "AUTO.LAND"
 
 
