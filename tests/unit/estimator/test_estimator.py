@@ -8,6 +8,7 @@ from statistics import fmean
 import pytest
 
 from tests.unit.estimator.flown import STEPS_A_SECOND, Flown, attitude_error_deg
+from vehicle_sim.estimation.corrections import hold_position
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import align, estimate, health
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
@@ -348,3 +349,17 @@ def test_standing_still_it_says_so() -> None:
     assert sensed.accel_z == pytest.approx(-GRAVITY_M_S2, abs=0.3)
     judged = health(est, sensed)
     assert max(judged.pos_ratio, judged.vel_ratio, judged.height_ratio, judged.mag_ratio) < 0.3
+
+
+@pytest.mark.parametrize(("off_m_s", "used"), [(1.9, True), (2.1, False)])
+def test_a_velocity_that_is_more_than_2_m_s_off_is_refused(off_m_s: float, used: bool) -> None:
+    """Five deviations of 0.4 m/s: between EKF2_GPS_V_NOISE (0.3) and EK3_VELNE_M_NSE (0.5)."""
+    vehicle = Flown()
+    vehicle.lift_off()
+    vehicle.fly(10.0)
+    est, sensed = vehicle.est, vehicle.sensed
+    sensed.gps_fresh = True
+    sensed.gps_n, sensed.gps_e, sensed.gps_d = est.then_n, est.then_e, est.then_d
+    sensed.gps_vel_n, sensed.gps_vel_e = est.then_vel_n, est.then_vel_e + off_m_s
+    hold_position(est, sensed)
+    assert est.gps_used is used

@@ -117,6 +117,29 @@ def test_ardupilots_voltage_failsafe_waits_its_ten_seconds() -> None:
     assert stage.last(m.SysStatus).battery_remaining > 90, "it counts the charge"
 
 
+def test_ardupilots_low_voltage_must_last_without_a_break() -> None:
+    """BATT_LOW_TIMER, 10 s: a voltage that recovers in between starts it anew."""
+    twice = cells(1.0, for_s=6.0) + cells(1.0, for_s=6.0).replace("at_s = 20", "at_s = 27")
+    stage = aloft("ardupilot", twice, parameters={"BATT_LOW_VOLT": 12.6, "BATT_FS_LOW_ACT": 2})
+    stage.run(14.0)
+    assert not stage.said("Battery 1 is low")
+    assert stage.mode == "GUIDED"
+
+
+def test_px4_does_not_hold_once_more_for_a_worse_failsafe() -> None:
+    """COM_FAIL_ACT_T, 5 s, is waited before the first action; the next one comes at once."""
+    worse = cells(0.66) + cells(1.0).replace("at_s = 20", "at_s = 33")
+    low = {"COM_LOW_BAT_ACT": 3, "COM_FAIL_ACT_T": 5, "RTL_RETURN_ALT": 60}
+    stage = aloft("px4", worse, parameters=low)
+    stage.run(1.5)
+    assert stage.said("Failsafe activated, entering Hold for 5 seconds")
+    assert stage.mode == "AUTO.LOITER"
+    stage.run(6.0)
+    assert stage.mode == "AUTO.RTL"
+    stage.run_to(33.6)
+    assert stage.mode == "AUTO.LAND"
+
+
 @either
 def test_a_voltage_that_is_too_low_to_hover_on_brings_it_down_on_its_feet(
     personality: Personality,
