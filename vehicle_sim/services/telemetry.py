@@ -41,10 +41,8 @@ def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
     )
 
 
-def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState | None:
-    """ArduPilot calls a copter a VTOL that flies as a multicopter, once it knows where it is."""
-    if profile.name == "ardupilot" and vehicle.origin is None:
-        return None
+def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState:
+    """ArduPilot calls a copter a VTOL that flies as a multicopter."""
     vtol_state = VTOL_MC if profile.name == "ardupilot" else VTOL_UNDEFINED
     return m.ExtendedSysState(vtol_state=vtol_state, landed_state=vehicle.landed)
 
