@@ -66,6 +66,7 @@ class Sky:
         camera: bool = True,
         real_streams: bool = False,
         grade: SensorGrade = MEMS,
+        phase_ns: int = 0,
     ) -> None:
         self.personality: Personality = personality
         self.home = home or HOMES[personality]
@@ -90,6 +91,7 @@ class Sky:
                     index + 1,
                     speedup,
                     UNIX_START_NS,
+                    phase_ns=phase_ns,
                     stream_sets=REAL[personality] if real_streams else None,
                 )
             )

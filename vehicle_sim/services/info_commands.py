@@ -13,7 +13,6 @@ from vehicle_sim.services.texts import status_text
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
-CURRENT_MODE_US: Final = 2_000_000
 
 
 def _send(context: CommandContext, order: Order, number: int, index: float = 0) -> Answer:
@@ -41,10 +40,6 @@ def _request_message(context: CommandContext, order: Order) -> Answer:
     if number == m.IDS[m.MessageInterval] and known:
         wanted = order.whole(order.p2)
         return _interval(context, order, wanted if wanted is not None else -1)
-    if number == m.IDS[m.AvailableModes] and known:
-        # Who asks for the modes wants to be told which one it is, from then on.
-        streams = context.streams[order.client.channel]
-        streams.begin(m.IDS[m.CurrentMode], CURRENT_MODE_US, context.vehicle.time_ns)
     return _send(context, order, number, order.p2)
 
 

@@ -11,7 +11,7 @@ from typing import Final
 
 from tests.scenarios.agree import DATES
 from tests.scenarios.flights.facts import Flight, Point, State, Word
-from tests.scenarios.flights.script import FIGURES, Figure
+from tests.scenarios.flights.script import FIGURES, PHASES, Figure, commands
 from vehicle_sim.autopilot.modes import Personality
 
 LATE_S: Final = 1.2
@@ -19,8 +19,9 @@ LATE_S: Final = 1.2
 SOON_S: Final = 0.6
 """Texts and first messages that come within so long of each other come together."""
 RATE_SHARE: Final = 0.15
-RATE_HZ: Final = 0.3
-"""What rates may differ by: a share, or one message too many in three seconds."""
+RATE_COUNT: Final = 1.5
+"""What rates may differ by: a share, or one message in a phase."""
+REQUEST_MESSAGE: Final = 512
 ALIKE: Final = 0.2
 """Issue 8: step responses within 20 %."""
 
@@ -46,12 +47,12 @@ class Agreement:
 
 def compare(personality: Personality, real: Flight, ours: Flight) -> Agreement:
     found = Agreement()
-    _acks(found, real, ours)
+    _acks(personality, found, real, ours)
     _states(found, real, ours)
     _landed(found, real, ours)
     _texts(found, real, ours)
     _kinds(found, real, ours)
-    _rates(found, real, ours)
+    _rates(personality, found, real, ours)
     for figure in FIGURES[personality]:
         told, own = measured(figure, real), measured(figure, ours)
         found.figures.append((figure, told, own))
@@ -63,15 +64,17 @@ def compare(personality: Personality, real: Flight, ours: Flight) -> Agreement:
 # ------------------------------------------------------------------------- what was answered
 
 
-def _acks(found: Agreement, real: Flight, ours: Flight) -> None:
+def _acks(personality: Personality, found: Agreement, real: Flight, ours: Flight) -> None:
     """Each recorded ack beside the next of ours for that command; the rest of ours is too many."""
     left = list(ours.acks)
-    for ack in real.acks:
+    sent = (command for command in commands(personality) if command.acked)
+    for ack, command in zip(real.acks, sent, strict=True):
         near = [o for o in left if o.command == ack.command and abs(o.t - ack.t) < SOON_S]
         own = near[0].result if near else None
         if near:
             left.remove(near[0])
-        words = f"ack of {ack.command}: {ack.result}, ours {own}"
+        asked = f" of message {command.params[0]:.0f}" if ack.command == REQUEST_MESSAGE else ""
+        words = f"ack of {ack.command}{asked}: {ack.result}, ours {own}"
         found.count("acks", own == ack.result, words)
     for extra in left:
         found.count("acks", False, f"ack of {extra.command}: none, ours {extra.result}")
@@ -165,13 +168,17 @@ def _kinds(found: Agreement, real: Flight, ours: Flight) -> None:
             found.counted.setdefault("order of two kinds", Counter())[own[after] > own[name]] += 1
 
 
-def _rates(found: Agreement, real: Flight, ours: Flight) -> None:
+def _rates(personality: Personality, found: Agreement, real: Flight, ours: Flight) -> None:
     both = {kind.name for kind in real.kinds} & {kind.name for kind in ours.kinds}
-    for phase, rates_hz in real.rates_hz.items():
+    for (phase, from_s, to_s), rates_hz in zip(
+        ((each.name, each.from_s, each.to_s) for each in PHASES[personality]),
+        real.rates_hz.values(),
+        strict=True,
+    ):
         own_hz = ours.rates_hz[phase]
         for name in sorted(both & (rates_hz.keys() | own_hz.keys())):
             told, own = rates_hz.get(name, 0.0), own_hz.get(name, 0.0)
-            alike = abs(own - told) <= max(RATE_SHARE * told, RATE_HZ)
+            alike = abs(own - told) <= max(RATE_SHARE * told, RATE_COUNT / (to_s - from_s))
             more = "more" if own > told else "fewer"
             found.count("rates", alike, f"rate {phase}, {name}: ours {more}")
 

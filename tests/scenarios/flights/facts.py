@@ -23,6 +23,19 @@ from vehicle_sim.autopilot.modes import Personality
 FOLDER: Final = Path(__file__).parent / "facts"
 TRACK_S: Final = 0.25
 MODES: Final = {**PX4_MODES, (3, 1): "ORBIT", (4, 10): "AUTO.VTOL_TAKEOFF"}
+NAMES: Final = {
+    "UNKNOWN_8": "LINK_NODE_STATUS",
+    "UNKNOWN_300": "PROTOCOL_VERSION",
+    "UNKNOWN_380": "TIME_ESTIMATE_TO_TARGET",
+    "UNKNOWN_395": "COMPONENT_INFORMATION",
+    "UNKNOWN_397": "COMPONENT_METADATA",
+    "UNKNOWN_410": "EVENT",
+    "UNKNOWN_411": "CURRENT_EVENT_SEQUENCE",
+    "UNKNOWN_435": "AVAILABLE_MODES",
+    "UNKNOWN_437": "AVAILABLE_MODES_MONITOR",
+}
+"""Of messages that pymavlink's dialect does not have."""
+
 ON_EVENT: Final = frozenset(
     {"COMMAND_ACK", "STATUSTEXT", "EVENT", "PARAM_VALUE", "PARAM_ERROR", "FENCE_STATUS"}
 )
@@ -105,7 +118,7 @@ def recorded(personality: Personality) -> Flight:
 
 def reduced(personality: Personality, source: str, told: Told) -> Flight:
     """`told` is in the order of its coming."""
-    named = [(each.message.get_type(), each) for each in told]
+    named = [(_name(each.message), each) for each in told]
     counts = Counter(name for name, _ in named)
     firsts = {name: each.t for name, each in reversed(named)}
     return Flight(
@@ -119,6 +132,11 @@ def reduced(personality: Personality, source: str, told: Told) -> Flight:
         {phase.name: _rates_hz(phase, named) for phase in PHASES[personality]},
         _track([each for name, each in named if name == "LOCAL_POSITION_NED"]),
     )
+
+
+def _name(message: Any) -> str:
+    name: str = message.get_type()
+    return NAMES.get(name, name)
 
 
 def _ack(each: Timed) -> Ack:

@@ -26,6 +26,9 @@ from vehicle_sim.plant.sensors import GRADES
 AFTER_S: Final = 0.18
 """How long after the one before the recorder sent a command that was not answered."""
 
+PHASE_NS: Final[dict[Personality, int]] = {"px4": 120_000_000, "ardupilot": 20_000_000}
+"""When in a second the recorded HEARTBEATs came."""
+
 POSITION_AND_YAW: Final = 0b100111111000
 """What a setpoint's mask ignores: all but the position and the heading."""
 
@@ -43,6 +46,7 @@ def played(personality: Personality, sensors: str = "good") -> Flight:
         camera=False,
         real_streams=True,
         grade=GRADES[sensors],
+        phase_ns=PHASE_NS[personality],
     )
     client = sky.client()
     client.beat_if_due()
@@ -51,7 +55,7 @@ def played(personality: Personality, sensors: str = "good") -> Flight:
         _send(client, sent)
     sky.run(ENDS_S[personality] - sky.now_ns / 1e9)
     starts_s = recorded(personality).starts_s
-    heard = [Timed(each.at_s, each.message) for each in client.heard if each.at_s >= starts_s]
+    heard = [Timed(each.at_s, each.message) for each in client.heard if each.at_s >= starts_s - 0.1]
     return reduced(personality, "vehicle-sim", heard)
 
 
@@ -94,10 +98,15 @@ def _otherwise(asked: Asked) -> Any:
             return mavlink.MAVLink_param_request_list_message(1, 1)
         case ["hold"]:
             return mavlink.MAVLink_command_long_message(1, 1, 176, 0, 1, 4, 3, 0, 0, 0, 0)
+        case ["land"]:
+            return mavlink.MAVLink_command_long_message(1, 1, 176, 0, 1, 4, 6, 0, 0, 0, 0)
         case ["read", name]:
             return mavlink.MAVLink_param_request_read_message(1, 1, name.encode(), -1)
         case ["streams"]:
             return mavlink.MAVLink_request_data_stream_message(1, 1, 0, int(asked.value), 1)
+        case ["throttle", "down"]:
+            sticks = (1500, 1500, 1000, 1500, *(65535,) * 4)
+            return mavlink.MAVLink_rc_channels_override_message(1, 1, *sticks)
         case ["setpoint"]:
             place, still = (5.0, 3.0, -5.0), (0.0,) * 6
             return mavlink.MAVLink_set_position_target_local_ned_message(

@@ -29,9 +29,10 @@ ENDS_S: Final[dict[Personality, float]] = {"px4": 163.0, "ardupilot": 124.0}
 METRES_A_DEGREE: Final = 111_319.5
 
 
-NOT_RECORDED_S: Final = 78.0
-"""Ours alone is asked to hold: the recorded PX4 had gone from the orbit to a VTOL's take-off, a mode
-that ours does not fly, and out of an orbit neither can be armed."""
+HOLD_S: Final = 78.0
+LAND_S: Final = 152.0
+"""What ours alone is asked for: the recorded PX4 went, by a VTOL's take-off, from the orbit to a
+mode that ours does not fly.  On the ground it was armed in it, in the air it came down in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +92,12 @@ def unanswered(number: int, *params: float) -> Command:
     return Command(number, params, acked=False)
 
 
-def located(personality: Personality, frame: int, north: float, east: float, alt: float) -> Command:
-    """DO_REPOSITION to metres from home and an altitude AMSL."""
-    lat_e7, lon_e7 = _place_e7(personality, north, east)
-    return Command(192, (-1.0, 1.0, 0.0, nan, lat_e7, lon_e7, alt), frame=frame)
+def located(
+    personality: Personality, frame: int, north: float, alt: float, change_mode: float = 0.0
+) -> Command:
+    """DO_REPOSITION to so many metres north of home and an altitude AMSL."""
+    lat_e7, lon_e7 = _place_e7(personality, north, 0.0)
+    return Command(192, (-1.0, change_mode, 0.0, nan, lat_e7, lon_e7, alt), frame=frame)
 
 
 def _place_e7(personality: Personality, north: float, east: float) -> tuple[float, float]:
@@ -135,8 +138,8 @@ def _commands(personality: Personality) -> Iterable[Command]:
     lat_e7, lon_e7 = _place_e7(personality, 4.0, 12.0)
     place = (lat_e7 / 1e7, lon_e7 / 1e7)
     yield long(192, -1, 1, 0, nan, *place, home.alt_amsl_m + 1.5 if px4 else 493.0)
-    yield located(personality, 8, 0.0, 0.0, home.alt_amsl_m + 5)
-    yield located(personality, 2, 0.0, 0.0, home.alt_amsl_m + 5)
+    yield located(personality, 8, 0.0, home.alt_amsl_m + 5)
+    yield located(personality, 2, 0.0, home.alt_amsl_m + 5)
     yield from (long(193, 0), long(193, 1), long(178, 1, 3, -1), long(178, 1, -5, -1))
     yield from (long(186, 8, 3), long(34, 5, 1, 0, nan, nan, nan, nan), long(115, 90, 20, 1))
     yield from (long(2000, 0, 0, 1), long(2001), absent(203, 0, 0, 0, 0, 1), long(2500))
@@ -182,7 +185,7 @@ def commands(personality: Personality) -> list[Command]:
         *(long(400, 0), long(179, 1)),
         *(() if px4 else (hold,)),
         *(long(400, 1), long(400, 1), take_off),
-        located(personality, 5, 5.0, 0.0, alt),
+        located(personality, 5, 5.0, alt, change_mode=1.0),
         *(long(22, 0, 0, 0, 0, 0, 0, 5), long(400, 0), long(400, 1)),
         *(offboard if px4 else (hold, hold)),
         *_commands(personality),
@@ -195,7 +198,7 @@ def asked_otherwise(personality: Personality) -> list[Asked]:
     if personality == "px4":
         return [
             Asked(25.4, "parameters"),
-            Asked(NOT_RECORDED_S, "hold"),
+            *(Asked(HOLD_S, "hold"), Asked(LAND_S, "land")),
             *(Asked(round(121.6 + 0.05 * n, 2), "setpoint") for n in range(175)),
         ]
     return [
@@ -203,6 +206,7 @@ def asked_otherwise(personality: Personality) -> list[Asked]:
         *(Asked(36.64, "read _HASH_CHECK"), Asked(36.74, "read WP_SPD")),
         *(Asked(36.96, "read NOSUCH_PARAM"), Asked(37.16, "read WP_SPD")),
         *(Asked(52.1, "streams", 4.0), Asked(96.9, "setpoint")),
+        *(Asked(115.9 + n, "throttle down") for n in range(9)),
     ]
 
 
