@@ -190,7 +190,7 @@ def _mission_start(context: CommandContext, order: Order) -> Answer:
 
 
 def _set_mission_current(context: CommandContext, order: Order) -> Answer:
-    """ArduCopter fails what MISSION_SET_CURRENT would refuse; a number beyond the plan is denied."""
+    """ArduCopter fails what MISSION_SET_CURRENT would refuse; beyond the plan it denies."""
     seq = order.whole(order.p1)
     if seq is None or not 0 <= seq < max(1, len(context.vehicle.plan)):
         raise RefusedError(Result.DENIED, f"{order.p1} is no mission item")

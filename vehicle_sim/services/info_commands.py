@@ -13,6 +13,7 @@ from vehicle_sim.services.texts import status_text
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
+MONITOR_US: Final = 5_000_000
 
 
 def _send(context: CommandContext, order: Order, number: int, index: float = 0) -> Answer:
@@ -40,6 +41,10 @@ def _request_message(context: CommandContext, order: Order) -> Answer:
     if number == m.IDS[m.MessageInterval] and known:
         wanted = order.whole(order.p2)
         return _interval(context, order, wanted if wanted is not None else -1)
+    if number == m.IDS[m.AvailableModes] and known:
+        # As recorded: who asks for the modes hears from then on whether they have changed.
+        streams = context.streams[order.client.channel]
+        streams.begin(m.IDS[m.AvailableModesMonitor], MONITOR_US, context.vehicle.time_ns)
     return _send(context, order, number, order.p2)
 
 

@@ -19,8 +19,9 @@ from enum import Enum
 from typing import Final, Literal, TypeAlias
 
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.services.profile import DATA_STREAMS, DataStream, Profile
+from vehicle_sim.services.profile import DATA_STREAMS, Profile
 from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import DataStream
 
 S_NS: Final = 1_000_000_000
 Intervals: TypeAlias = dict[int, int]

@@ -117,6 +117,11 @@ class Streams:
             self._set(number, min(round(interval_us * 1000), INTERVAL_MAX_NS), now_ns)
         return True
 
+    def begin(self, number: int, interval_us: int, now_ns: int) -> None:
+        """A stream that runs already keeps its rate."""
+        if number not in self._interval_ns:
+            self._set(number, interval_us * 1000, now_ns)
+
     def request(self, asked: m.RequestDataStream, now_ns: int) -> None:
         """The old REQUEST_DATA_STREAM, still what MAVProxy and DroneKit use."""
         if asked.req_stream_id == DataStream.ALL:

@@ -183,9 +183,7 @@ def _text(each: Timed) -> Word:
 
 def _rates_hz(phase: Phase, named: Sequence[tuple[str, Timed]]) -> dict[str, float]:
     counts = Counter(
-        name
-        for name, each in named
-        if phase.from_s <= each.t < phase.to_s and name not in ON_EVENT
+        name for name, each in named if phase.from_s <= each.t < phase.to_s and name not in ON_EVENT
     )
     long_s = phase.to_s - phase.from_s
     return {name: round(count / long_s, 2) for name, count in sorted(counts.items())}

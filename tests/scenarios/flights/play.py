@@ -61,7 +61,10 @@ def played(personality: Personality, sensors: str = "good") -> Flight:
 
 def script(personality: Personality) -> list[tuple[float, Sent]]:
     """What is sent, with its time."""
-    both = [*_timed_commands(personality), *((each.t, each) for each in asked_otherwise(personality))]
+    both = [
+        *_timed_commands(personality),
+        *((each.t, each) for each in asked_otherwise(personality)),
+    ]
     return sorted(both, key=lambda pair: pair[0])
 
 
@@ -77,9 +80,7 @@ def _send(client: Client, sent: Sent) -> None:
     match sent:
         case Command(frame=None):
             p = (*sent.params, *(0.0,) * (7 - len(sent.params)))
-            client.send(
-                mavlink.MAVLink_command_long_message(1, sent.component, sent.number, 0, *p)
-            )
+            client.send(mavlink.MAVLink_command_long_message(1, sent.component, sent.number, 0, *p))
         case Command():
             p = (*sent.params, *(0.0,) * (7 - len(sent.params)))
             x, y = (0 if isnan(value) else int(value) for value in p[4:6])

@@ -64,7 +64,9 @@ def _mapped(clock: list[tuple[float, float]], t: float) -> float:
 
 def _by_rows(text: str) -> str:
     """A row a line."""
-    return text.replace(",\n", ", ").replace("[\n", "[").replace("\n]", "]").replace("], [", "],\n[")
+    return (
+        text.replace(",\n", ", ").replace("[\n", "[").replace("\n]", "]").replace("], [", "],\n[")
+    )
 
 
 if __name__ == "__main__":

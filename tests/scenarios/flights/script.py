@@ -170,7 +170,9 @@ def commands(personality: Personality) -> list[Command]:
     """All commands, in order; those that are `acked` match the recorded COMMAND_ACKs one by one."""
     px4 = personality == "px4"
     alt = HOMES[personality].alt_amsl_m + 5.0
-    at_once = () if px4 else (long(400, 1), long(22, 0, 0, 0, 0, 0, 0, 5), long(176, 1, 4), long(401))
+    at_once = (
+        () if px4 else (long(400, 1), long(22, 0, 0, 0, 0, 0, 0, 5), long(176, 1, 4), long(401))
+    )
     take_off = long(22, 0, 0, 0, nan, nan, nan, alt if px4 else 5.0)
     land = long(21, 0, 0, 0, nan, nan, nan, nan)
     hold = long(176, 1, 4, 3) if px4 else long(176, 1, 4)

@@ -10,6 +10,7 @@ import pytest
 from tests.unit.vehicle_services.fake_vehicle import Bench, S, long
 from tests.unit.vehicle_services.flown_vehicle import Flown
 from vehicle_sim.autopilot.interface import AttitudeGoal, Landed
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.services.stream_sets import REAL, LinkMode, mode_of_port
 from vehicle_sim.shell.urls import UrlError, parse
 from vehicle_sim.wire import messages as m
@@ -182,7 +183,8 @@ def test_ardupilots_groups_hold_what_the_recorded_one_sent() -> None:
 def test_a_heartbeat_comes_out_of_turn_when_ardupilots_mode_changes_alone() -> None:
     """Both flights' HEARTBEATs: PX4's come on their second whatever happens, ArduCopter's tells a
     new mode at once and arming not."""
-    for personality, expected in (("px4", (0, 0)), ("ardupilot", (1, 0))):
+    expected: dict[Personality, tuple[int, int]] = {"px4": (0, 0), "ardupilot": (1, 0)}
+    for personality, beats in expected.items():
         bench = Bench(personality, stream_sets=REAL[personality])
         bench.send(GROUND)
         bench.advance(S // 10)
@@ -190,7 +192,7 @@ def test_a_heartbeat_comes_out_of_turn_when_ardupilots_mode_changes_alone() -> N
         mode = Counter(map(type, bench.advance(S // 10)))
         bench.vehicle.armed = not bench.vehicle.armed
         arming = Counter(map(type, bench.advance(S // 10)))
-        assert (mode[m.Heartbeat], arming[m.Heartbeat]) == expected
+        assert (mode[m.Heartbeat], arming[m.Heartbeat]) == beats
 
 
 def test_an_interval_of_0_is_the_default_of_that_link() -> None:

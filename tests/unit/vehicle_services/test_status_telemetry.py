@@ -99,11 +99,13 @@ def test_the_mission_mode_is_told_beside_the_item() -> None:
             assert told.mission_mode == expected
 
 
-def test_ardupilot_tells_its_modes_and_never_the_present_one_beside_the_heartbeat() -> None:
-    """arducopter_4_7_flight.tlog: AVAILABLE_MODES was asked for at 47.3 s, no CURRENT_MODE came."""
+def test_who_asks_for_the_modes_hears_from_then_on_whether_they_changed() -> None:
+    """arducopter_4_7_flight.tlog: AVAILABLE_MODES was asked for at 47.3 s; the monitor came at
+    52.3, 57.3, 62.3 s, CURRENT_MODE never."""
     bench = Bench("ardupilot")
     bench.send(m.Heartbeat(0, 6, 8, 0, 4, 3))
     listed = bench.send(long(512, m.IDS[m.AvailableModes]))
     assert [each for each in listed if isinstance(each, m.AvailableModes)]
-    after = bench.advance(6_000_000_000)
+    after = bench.advance(15_000_000_000)
+    assert len([each for each in after if isinstance(each, m.AvailableModesMonitor)]) == 3
     assert not [each for each in after if isinstance(each, m.CurrentMode)]
