@@ -16,8 +16,13 @@ from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.engine.engines import engine_for
+from vehicle_sim.engine.step import Seat, VehicleSpec
+from vehicle_sim.plant.airframe import load
+from vehicle_sim.plant.sensors import MEMS, SensorGrade
 from vehicle_sim.services.profile import profile_of, without_camera
 from vehicle_sim.services.server import VehicleServer
+from vehicle_sim.services.stream_sets import REAL
 from vehicle_sim.simulation.world import Datagram, LinkSpec, Log, Transmit, Wake, World
 from vehicle_sim.wire.signing import SigningKey
 
@@ -59,6 +64,9 @@ class Sky:
         firmware: Firmware | None = None,
         boot: Boot = "quick",
         camera: bool = True,
+        real_streams: bool = False,
+        grade: SensorGrade = MEMS,
+        phase_ns: int = 0,
     ) -> None:
         self.personality: Personality = personality
         self.home = home or HOMES[personality]
@@ -69,11 +77,24 @@ class Sky:
             for name, value in (parameters or {}).items():
                 own.set(name, value)
             self.parameters.append(own)
-            vehicle = Autopilot(personality, self.home, 1, index, own, boot=boot, camera=camera)
+            spec = VehicleSpec(1, index, self.home.lat_deg)
+            seat = Seat(engine_for([spec], load(), grade), 0)
+            vehicle = Autopilot(personality, self.home, 1, index, own, seat, boot, camera)
             profile = profile_of(personality, own.firmware)
             if not camera:
                 profile = without_camera(profile)
-            servers.append(VehicleServer(vehicle, profile, own, index + 1, speedup, UNIX_START_NS))
+            servers.append(
+                VehicleServer(
+                    vehicle,
+                    profile,
+                    own,
+                    index + 1,
+                    speedup,
+                    UNIX_START_NS,
+                    phase_ns=phase_ns,
+                    stream_sets=REAL[personality] if real_streams else None,
+                )
+            )
         self.vehicles = [server.vehicle for server in servers]
         self.world = World(
             servers, [LinkSpec()], speedup, signing=signing, unix_start_ns=UNIX_START_NS

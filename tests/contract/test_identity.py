@@ -79,7 +79,7 @@ def test_the_autopilots_version_is_told_on_request(personality: Personality) -> 
     assert again.capabilities == version.capabilities
 
 
-def test_modes_are_listed_one_message_each_and_the_present_one_is_told() -> None:
+def test_modes_are_listed_one_message_each() -> None:
     """REQUEST_MESSAGE(AVAILABLE_MODES, 0)."""
     assert connected("px4").request_message(435, 0)[0] == DENIED, "not in PX4 1.14"
     personality: Personality = "ardupilot"
@@ -97,9 +97,7 @@ def test_modes_are_listed_one_message_each_and_the_present_one_is_told() -> None
     assert client.request_message(435, len(modes) + 1) == (ACCEPTED, [])
     client.forget()
     client.sky.run(10.0)
-    present = client.all("CURRENT_MODE")
-    assert len(present) == 5
-    assert {each.custom_mode for each in present} == {client.last("HEARTBEAT").custom_mode}
+    assert client.all("CURRENT_MODE") == [], "arducopter_4_7_flight.tlog has none"
     assert client.request_message(437)[0] == ACCEPTED
 
 

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from vehicle_sim.autopilot.interface import CommandDone, Result
+from vehicle_sim.autopilot.modes import by_number
 from vehicle_sim.effects import Client, Effect, Note, Send
 from vehicle_sim.services.calibration_commands import CALIBRATION
 from vehicle_sim.services.failures import FAILURE
-from vehicle_sim.services.flight_commands import FLIGHT
+from vehicle_sim.services.flight_commands import CHANGE_MODE, FLIGHT
 from vehicle_sim.services.info_commands import INFO
 from vehicle_sim.services.operator_control import OPERATOR
 from vehicle_sim.services.orders import Answer, Order, from_int, from_long
@@ -134,12 +135,19 @@ class Commands:
             return Answer(refusal.result, (note,))
 
     def _wrong_frame(self, order: Order) -> Answer:
-        """Of DO_REPOSITION it is recorded how each refuses a frame without coordinates."""
+        """Of DO_REPOSITION it is recorded how each refuses a frame without coordinates.
+
+        ArduCopter looks first whether it is in GUIDED, or may change to it.
+        """
         profile = self._context.profile
         if order.command != Cmd.DO_REPOSITION:
             return Answer(Result.UNSUPPORTED_MAV_FRAME)
         if profile.name == "px4":
             return Answer(Result.UNSUPPORTED)
+        mode = by_number(profile.name, self._context.vehicle.custom_mode)
+        guided = mode is not None and mode.name == "GUIDED"
+        if not guided and not (order.whole(order.p2) or 0) & CHANGE_MODE:
+            return Answer(Result.DENIED)
         text = f"Unknown mavlink coordinate frame {order.frame}"
         return Answer(Result.DENIED, (Send(None, status_text(profile, 6, text)),))
 

@@ -153,8 +153,7 @@ def _change_speed(context: CommandContext, order: Order) -> Answer:
         speed_m_s = order.p2 if 0.0 < order.p2 <= FARTHEST else None
         return Answer(context.vehicle.change_speed(SpeedType.GROUND, speed_m_s))
     if not 0.0 < order.p2 <= FARTHEST or order.p1 not in tuple(SpeedType):
-        result = Result.DENIED if context.vehicle.armed else Result.FAILED
-        raise RefusedError(result, f"{order.p2} m/s of type {order.p1} is no speed")
+        raise RefusedError(Result.DENIED, f"{order.p2} m/s of type {order.p1} is no speed")
     return Answer(context.vehicle.change_speed(SpeedType(int(order.p1)), order.p2))
 
 
@@ -191,9 +190,9 @@ def _mission_start(context: CommandContext, order: Order) -> Answer:
 
 
 def _set_mission_current(context: CommandContext, order: Order) -> Answer:
-    """ArduCopter fails what MISSION_SET_CURRENT would refuse."""
+    """ArduCopter fails what MISSION_SET_CURRENT would refuse; beyond the plan it denies."""
     seq = order.whole(order.p1)
-    if seq is None or seq < 0:
+    if seq is None or not 0 <= seq < max(1, len(context.vehicle.plan)):
         raise RefusedError(Result.DENIED, f"{order.p1} is no mission item")
     result = context.vehicle.mission_set_current(seq)
     return Answer(Result.FAILED if result is Result.DENIED else result)

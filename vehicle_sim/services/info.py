@@ -34,7 +34,10 @@ AWAITED: Final[dict[Personality, dict[int, Callable[[BootStage], bool]]]] = {
         m.IDS[kind]: lambda stage: stage.attitude
         for kind in (m.Attitude, m.AttitudeQuaternion, m.GlobalPositionInt)
     },
-    "ardupilot": {m.IDS[m.LocalPositionNed]: lambda stage: stage.position},
+    "ardupilot": {
+        m.IDS[m.LocalPositionNed]: lambda stage: stage.position,
+        m.IDS[m.ExtendedSysState]: lambda stage: stage.initialised,
+    },
 }
 """What is not sent before the vehicle has started up so far, as recorded (`autopilot/boot.py`)."""
 

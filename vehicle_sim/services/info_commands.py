@@ -13,7 +13,7 @@ from vehicle_sim.services.texts import status_text
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
-CURRENT_MODE_US: Final = 2_000_000
+MONITOR_US: Final = 5_000_000
 
 
 def _send(context: CommandContext, order: Order, number: int, index: float = 0) -> Answer:
@@ -42,9 +42,9 @@ def _request_message(context: CommandContext, order: Order) -> Answer:
         wanted = order.whole(order.p2)
         return _interval(context, order, wanted if wanted is not None else -1)
     if number == m.IDS[m.AvailableModes] and known:
-        # Who asks for the modes wants to be told which one it is, from then on.
+        # As recorded: who asks for the modes hears from then on whether they have changed.
         streams = context.streams[order.client.channel]
-        streams.begin(m.IDS[m.CurrentMode], CURRENT_MODE_US, context.vehicle.time_ns)
+        streams.begin(m.IDS[m.AvailableModesMonitor], MONITOR_US, context.vehicle.time_ns)
     return _send(context, order, number, order.p2)
 
 

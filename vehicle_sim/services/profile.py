@@ -120,7 +120,7 @@ class Profile:
     logs_while_armed: bool  # logs are listed and sent in flight too
     component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
     unheard: frozenset[Cmd]  # commands that nobody on board answers
-    banner: tuple[str, ...]  # DO_SEND_BANNER
+    banner: tuple[str, ...]  # DO_SEND_BANNER, and to who asks for the list of parameters
     unsigned_allowed: frozenset[int]  # messages that are taken unsigned under a key
     camera: bool  # there is one
     absent: dict[Cmd, Result]  # answers to commands for equipment that there is not
@@ -277,10 +277,19 @@ PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILO
 """Of the firmware that is played unless another is asked for."""
 
 
+_RELEASE: Final[dict[Firmware, str]] = {
+    "4.5": "ArduCopter V4.5.7",
+    "4.7": "ArduCopter V4.7.0-dev (4165a6fb)",
+}
+"""The banner's first line; 4.7-dev's as recorded."""
+
+
 def profile_of(personality: Personality, firmware: Firmware) -> Profile:
     """ArduPilot has PARAM_ERROR since 4.7 (MAVLink has it since September 2025)."""
+    profile = PROFILES[personality]
     return replace(
-        PROFILES[personality],
+        profile,
+        banner=(_RELEASE[firmware], *profile.banner[1:]) if personality == "ardupilot" else (),
         flight_sw_version=FLIGHT_SW_VERSION[firmware],
         parameter_errors=firmware == "4.7",
     )
@@ -304,7 +313,7 @@ _NO_CAMERA: Final[dict[Personality, dict[Cmd, Result]]] = {
     },
     "ardupilot": {
         Cmd.IMAGE_START_CAPTURE: Result.FAILED,
-        Cmd.IMAGE_STOP_CAPTURE: Result.FAILED,  # from memory
+        Cmd.IMAGE_STOP_CAPTURE: Result.ACCEPTED,
         Cmd.SET_CAMERA_MODE: Result.UNSUPPORTED,
         Cmd.REQUEST_CAMERA_INFORMATION: Result.UNSUPPORTED,
         Cmd.REQUEST_CAMERA_CAPTURE_STATUS: Result.UNSUPPORTED,  # from memory

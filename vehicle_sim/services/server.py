@@ -44,10 +44,10 @@ from vehicle_sim.services.setpoints import (
     global_setpoint,
     local_setpoint,
 )
-from vehicle_sim.services.stream_sets import LinkMode, StreamSets, unasked
+from vehicle_sim.services.stream_sets import Change, LinkMode, StreamSets, unasked
 from vehicle_sim.services.streams import NEVER, Streams
 from vehicle_sim.services.telemetry import heartbeat
-from vehicle_sim.services.texts import in_chunks
+from vehicle_sim.services.texts import in_chunks, status_text
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
@@ -158,6 +158,7 @@ class VehicleServer:
             self._speedup,
             self.vehicle.time_ns,
             self._phase_ns,
+            groups=self._stream_sets.groups,
         )
         for name, stream in self._profile.rate_parameters.items():
             rate_hz = int(self._given.get(name))
@@ -279,7 +280,9 @@ class VehicleServer:
                 refused = self._missions.set_current(client, message)
                 return refused or [Send(None, self._info.mission_current())]
             case m.ParamRequestList():
-                return self._parameters.request_list(client, wall_ns)
+                banner = self._profile.banner
+                texts = [Send(None, status_text(self._profile, 6, text)) for text in banner]
+                return [*texts, *self._parameters.request_list(client, wall_ns)]
             case m.ParamRequestRead():
                 return self._parameters.read(client, message)
             case m.ParamSet():
@@ -446,7 +449,8 @@ class VehicleServer:
     def _changes(self) -> list[Effect]:
         """What nobody asked for but everybody wants to know: arming, mode, origin.
 
-        A heartbeat is sent at once, as ArduPilot does: under speed-up the next one is far.
+        A heartbeat is sent at once, unless the stream sets say otherwise: under speed-up the next
+        one is far.
         """
         seen = self._look()
         if seen == self._seen:
@@ -454,11 +458,14 @@ class VehicleServer:
         armed, custom_mode, has_origin = self._seen
         self._seen = seen
         effects: list[Effect] = []
+        changed: set[Change] = set()
         if seen[0] != armed:
+            changed.add("arming")
             effects.append(Note("info", "armed" if seen[0] else "disarmed"))
         if seen[1] != custom_mode:
+            changed.add("mode")
             effects.append(Note("info", f"mode {self._info.mode_name}"))
-        if seen[:2] != (armed, custom_mode):
+        if changed & self._stream_sets.beats_at_once:
             beat = self._info.build(m.IDS[m.Heartbeat])
             effects.extend([Send(None, beat)] if beat is not None else [])
         if seen[2] and not has_origin:

@@ -8,21 +8,25 @@ TIME_ESTIMATE_TO_TARGET.  Not recorded, and from memory of PX4's sources: RC_CHA
 MANUAL_CONTROL, which want a radio, and rates while an orbit or a goal is flown on 14540.
 
 ArduCopter sends HEARTBEAT and TIMESYNC; all else is asked for, by a message or by its parameters.
+What its groups of REQUEST_DATA_STREAM hold is of arducopter_4_7_flight.tlog, which asked for all.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import Final, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.profile import DATA_STREAMS, Profile
 from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import DataStream
 
 S_NS: Final = 1_000_000_000
 Intervals: TypeAlias = dict[int, int]
+Groups: TypeAlias = Mapping[DataStream, tuple[type[m.Message], ...]]
+Change: TypeAlias = Literal["arming", "mode"]
 
 
 class LinkMode(Enum):
@@ -125,6 +129,17 @@ class StreamSets:
     by_mode: Mapping[LinkMode, Intervals]
     greeting: tuple[type[m.Message], ...] = (m.Heartbeat, m.GpsGlobalOrigin, m.HomePosition)
     """Sent at once to a peer that was not there before."""
+    groups: Groups = field(default_factory=lambda: DATA_STREAMS)
+    """What REQUEST_DATA_STREAM asks for."""
+    beats_at_once: frozenset[Change] = frozenset({"arming", "mode"})
+    """What is followed by a HEARTBEAT out of turn."""
+
+
+def _without(groups: Groups, *kinds: type[m.Message]) -> Groups:
+    return {
+        stream: tuple(kind for kind in group if kind not in kinds)
+        for stream, group in groups.items()
+    }
 
 
 def same_on_all(sent: Intervals) -> StreamSets:
@@ -135,8 +150,17 @@ REAL: Final[dict[Personality, StreamSets]] = {
     "px4": StreamSets(
         {LinkMode.NORMAL: PX4_NORMAL, LinkMode.ONBOARD: PX4_ONBOARD},
         (m.Heartbeat, m.GpsGlobalOrigin),
+        beats_at_once=frozenset(),
     ),
-    "ardupilot": replace(same_on_all(ARDUPILOT_REAL), greeting=(m.Heartbeat,)),
+    "ardupilot": replace(
+        same_on_all(ARDUPILOT_REAL),
+        greeting=(m.Heartbeat,),
+        groups=_without(
+            DATA_STREAMS,
+            *(m.ExtendedSysState, m.AttitudeQuaternion, m.PositionTargetLocalNed, m.Hwstatus),
+        ),
+        beats_at_once=frozenset({"mode"}),
+    ),
 }
 """As recorded from the real ones."""
 

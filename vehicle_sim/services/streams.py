@@ -11,8 +11,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Final
 
-from vehicle_sim.services.profile import DATA_STREAMS, MESSAGE_INTERVAL_MIN_NS, Profile
-from vehicle_sim.services.stream_sets import Intervals
+from vehicle_sim.services.profile import MESSAGE_INTERVAL_MIN_NS, Profile
+from vehicle_sim.services.stream_sets import Groups, Intervals
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import DataStream
 
@@ -36,14 +36,17 @@ class Streams:
         speedup: Fraction,
         now_ns: int,
         phase_ns: int = 0,
+        *,
+        groups: Groups,
     ) -> None:
         """`unasked` is what is sent at the beginning; `phase_ns` shifts the whole grid: vehicles
-        of a fleet take turns."""
+        of a fleet take turns; `groups` is what REQUEST_DATA_STREAM asks for."""
         self._profile = profile
         self._unasked = unasked
         self._streamable = streamable
         self._stretch = max(Fraction(1), speedup)
         self._phase_ns = phase_ns
+        self._groups = groups
         self._interval_ns: dict[int, int] = {}
         self._spaced_ns: dict[int, int] = {}  # in the vehicle's own time
         self._due_ns: dict[int, int] = {}  # by the spaced interval
@@ -122,11 +125,11 @@ class Streams:
     def request(self, asked: m.RequestDataStream, now_ns: int) -> None:
         """The old REQUEST_DATA_STREAM, still what MAVProxy and DroneKit use."""
         if asked.req_stream_id == DataStream.ALL:
-            kinds = [kind for group in DATA_STREAMS.values() for kind in group]
+            kinds = [kind for group in self._groups.values() for kind in group]
         else:
             kinds = [
                 kind
-                for stream, group in DATA_STREAMS.items()
+                for stream, group in self._groups.items()
                 if stream == asked.req_stream_id
                 for kind in group
             ]

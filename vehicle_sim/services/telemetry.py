@@ -10,7 +10,8 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.geo import projection
-from vehicle_sim.autopilot.interface import Geodetic, Vehicle
+from vehicle_sim.autopilot.interface import Geodetic, Landed, Vehicle
+from vehicle_sim.autopilot.modes import by_number
 from vehicle_sim.numerics.vectors import euler_rad
 from vehicle_sim.services import sensor_telemetry as sensors
 from vehicle_sim.services.profile import Profile
@@ -41,10 +42,8 @@ def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
     )
 
 
-def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState | None:
-    """ArduPilot calls a copter a VTOL that flies as a multicopter, once it knows where it is."""
-    if profile.name == "ardupilot" and vehicle.origin is None:
-        return None
+def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState:
+    """ArduPilot calls a copter a VTOL that flies as a multicopter."""
     vtol_state = VTOL_MC if profile.name == "ardupilot" else VTOL_UNDEFINED
     return m.ExtendedSysState(vtol_state=vtol_state, landed_state=vehicle.landed)
 
@@ -173,10 +172,12 @@ def _standing(vehicle: Vehicle) -> m.PositionTargetLocalNed:
 def position_target_global_int(
     vehicle: Vehicle, profile: Profile
 ) -> m.PositionTargetGlobalInt | None:
-    """The same target as a place on earth, heights AMSL."""
+    """The same target as a place on earth, heights AMSL; only in modes that fly to a place."""
     origin = vehicle.origin
     local = position_target_local_ned(vehicle, profile)
     if origin is None or local is None or math.isnan(local.x):
+        return None
+    if not _flies_to_a_place(vehicle, profile):
         return None
     where = projection(profile.name, origin).to_geodetic((local.x, local.y, local.z))
     known = not local.type_mask & PositionIgnore.POSITION
@@ -190,6 +191,19 @@ def position_target_global_int(
         yaw_rate=local.yaw_rate,
         type_mask=local.type_mask,
         coordinate_frame=MavFrame.GLOBAL_INT,
+    )
+
+
+def _flies_to_a_place(vehicle: Vehicle, profile: Profile) -> bool:
+    """As recorded (px4_1_14_flight.tlog, arducopter_4_7_flight.tlog): PX4 in its AUTO modes, not in
+    OFFBOARD, POSCTL and ORBIT; ArduCopter in AUTO and RTL, and in GUIDED after the take-off."""
+    mode = by_number(profile.name, vehicle.custom_mode)
+    if mode is None:
+        return False
+    if profile.name == "px4":
+        return mode.name.startswith("AUTO.")
+    return mode.name in ("AUTO", "RTL") or (
+        mode.name == "GUIDED" and vehicle.landed is Landed.IN_AIR
     )
 
 

@@ -202,7 +202,7 @@ NOT_BUILT: Final[dict[Personality, set[int]]] = {
     "px4": {395},
     # AHRS2, AHRS, SCALED_IMU2, TERRAIN_REPORT: sensors and a terrain that there are not;
     # ATTITUDE_TARGET, POSITION_TARGET_LOCAL_NED: no target on the ground.
-    "ardupilot": {83, 85, 116, 136, 163, 168, 178},
+    "ardupilot": {83, 85, 116, 136, 163, 178},
 }
 EARLY: Final = {32}
 """The recorded ArduCopter had no position yet; this vehicle has one after half a second."""

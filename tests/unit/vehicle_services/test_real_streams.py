@@ -8,7 +8,9 @@ from typing import Final
 import pytest
 
 from tests.unit.vehicle_services.fake_vehicle import Bench, S, long
+from tests.unit.vehicle_services.flown_vehicle import Flown
 from vehicle_sim.autopilot.interface import AttitudeGoal, Landed
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.services.stream_sets import REAL, LinkMode, mode_of_port
 from vehicle_sim.shell.urls import UrlError, parse
 from vehicle_sim.wire import messages as m
@@ -142,17 +144,55 @@ def test_ardupilot_sends_more_when_asked_and_by_its_parameters() -> None:
     assert Counter(type(each) for each in bench.advance(10 * S))[m.Attitude] == 50
 
 
-def test_ardupilot_tells_neither_position_nor_landed_state_before_it_knows_where_it_is() -> None:
-    """behaviour.json "armable": not sent at all before about 40 s."""
+def test_ardupilot_tells_no_position_before_it_knows_where_it_is() -> None:
+    """behaviour.json "armable": LOCAL_POSITION_NED is not sent at all before about 40 s."""
     bench = Bench("ardupilot", stream_sets=REAL["ardupilot"])
     bench.vehicle.origin = None
     bench.send(m.RequestDataStream(4, 1, 1, 0, 1))
     told = Counter(type(each) for each in bench.advance(10 * S))
-    assert told[m.Attitude] == 40
-    assert (told[m.LocalPositionNed], told[m.ExtendedSysState]) == (0, 0)
+    assert (told[m.Attitude], told[m.LocalPositionNed]) == (40, 0)
     bench.vehicle.origin = Bench().vehicle.origin
+    assert Counter(map(type, bench.advance(10 * S)))[m.LocalPositionNed] == 40
+
+
+def test_ardupilot_tells_its_landed_state_as_soon_as_it_is_initialised() -> None:
+    """Scenarios `boot_to_ready` and `H7_force_arm_not_ready`: ON_GROUND 2.7 s after power-up.
+
+    In arducopter_4_7_flight.tlog it was not asked for before 42.4 s, and then told at once: what
+    behaviour.json "armable" says of it, not sent before about 40 s, is that nobody had asked.
+    """
+    bench = Flown("ardupilot", boot="real")
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[m.ExtendedSysState], 200_000))
+    assert Counter(map(type, bench.advance(12 * S // 5)))[m.ExtendedSysState] == 0
+    told = [each for each in bench.advance(S) if isinstance(each, m.ExtendedSysState)]
+    assert len(told) == 5
+    assert {each.landed_state for each in told} == {Landed.ON_GROUND}
+
+
+def test_ardupilots_groups_hold_what_the_recorded_one_sent() -> None:
+    """arducopter_4_7_flight.tlog, 53 to 61 s: all groups at 4 Hz, EXTENDED_SYS_STATE stays at 5."""
+    bench = Bench("ardupilot", stream_sets=REAL["ardupilot"])
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[m.ExtendedSysState], 200_000))
+    bench.send(m.RequestDataStream(4, 1, 1, 0, 1))
     told = Counter(type(each) for each in bench.advance(10 * S))
-    assert (told[m.LocalPositionNed], told[m.ExtendedSysState]) == (40, 40)
+    assert (told[m.ExtendedSysState], told[m.Attitude], told[m.Wind]) == (50, 40, 40)
+    silent = (m.AttitudeQuaternion, m.PositionTargetLocalNed, m.Hwstatus)
+    assert [told[kind] for kind in silent] == [0, 0, 0]
+
+
+def test_a_heartbeat_comes_out_of_turn_when_ardupilots_mode_changes_alone() -> None:
+    """Both flights' HEARTBEATs: PX4's come on their second whatever happens, ArduCopter's tells a
+    new mode at once and arming not."""
+    expected: dict[Personality, tuple[int, int]] = {"px4": (0, 0), "ardupilot": (1, 0)}
+    for personality, beats in expected.items():
+        bench = Bench(personality, stream_sets=REAL[personality])
+        bench.send(GROUND)
+        bench.advance(S // 10)
+        bench.vehicle.custom_mode = 9
+        mode = Counter(map(type, bench.advance(S // 10)))
+        bench.vehicle.armed = not bench.vehicle.armed
+        arming = Counter(map(type, bench.advance(S // 10)))
+        assert (mode[m.Heartbeat], arming[m.Heartbeat]) == beats
 
 
 def test_an_interval_of_0_is_the_default_of_that_link() -> None:
