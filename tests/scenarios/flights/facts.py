@@ -17,12 +17,11 @@ import msgspec
 from pymavlink.dialects.v20 import all as mavlink
 
 from tests.scenarios.flights.script import PHASES, Phase
-from tests.scenarios.play import PX4_MODES
+from tests.scenarios.names import mode_name
 from vehicle_sim.autopilot.modes import Personality
 
 FOLDER: Final = Path(__file__).parent / "facts"
 TRACK_S: Final = 0.25
-MODES: Final = {**PX4_MODES, (3, 1): "ORBIT", (4, 10): "AUTO.VTOL_TAKEOFF"}
 NAMES: Final = {
     "UNKNOWN_8": "LINK_NODE_STATUS",
     "UNKNOWN_300": "PROTOCOL_VERSION",
@@ -150,13 +149,6 @@ def _state(personality: Personality, each: Timed) -> State:
         round(each.t, 2), mode_name(personality, beat.custom_mode), beat.base_mode,
         beat.system_status,
     )  # fmt: skip
-
-
-def mode_name(personality: Personality, custom_mode: int) -> str:
-    if personality == "px4":
-        return MODES.get((custom_mode >> 16 & 0xFF, custom_mode >> 24), str(custom_mode))
-    name: str = mavlink.enums["COPTER_MODE"][custom_mode].name
-    return name.removeprefix("COPTER_MODE_")
 
 
 def _changes(states: Iterable[State]) -> list[State]:

@@ -13,6 +13,9 @@ SILENT: Final = (
     "the recorder had not spoken yet; from memory ArduPilot tells texts to who has, alone"
 )
 NO_SENSOR: Final = "of a sensor, a terrain or a simulator that this vehicle does not have"
+LOGGER: Final = "the scenarios have it at every arming, this recording not at its only one"
+RETURN_TOLD: Final = "to mend: PX4 tells the legs of a return in the air alone"
+PERIODIC: Final = "what is against arming is told every 30 s; in another second here"
 VTOL: Final = "NAV_VTOL_TAKEOFF: a mode that is not flown here; ours is asked to hold, and to land"
 TAKE_OFF_AGAIN: Final = "to mend: a take-off in the air, to a height below, climbs MIS_TAKEOFF_ALT"
 OFFBOARD_LOST: Final = "to mend: without a radio PX4 comes down at 0.8 m/s in POSCTL, and says less"
@@ -26,13 +29,15 @@ NOT_BUILT: Final = "not built here"
 STANDING: Final = "its velocity estimate drifted while it stood"
 INJECTED: Final = "on purpose: failures can be injected without a simulator's parameters"
 OWN_NAME: Final = "on purpose: ours says what it is and how it is built"
-IN_FLIGHT_YAW: Final = "to mend: the magnetometer's alignment in flight is not told"
 UNASKED: Final = (
     "to mend: parameters that the vehicle itself changes are not told unasked (MIS_TOTAL)"
 )
 CLIMB: Final = "ours gathers speed more slowly; another airframe, or its jerk: not looked into"
 
 PX4: Final[dict[str, str]] = {
+    "text '[logger] ./log/<date>.ulg': ours only": LOGGER,
+    "text 'RTL: landing at home position.': ours only": RETURN_TOLD,
+    "text 'RTL: climb to 33 m (1 m above destination)': ours only": RETURN_TOLD,
     "ack of 512 of message 395: ACCEPTED, ours DENIED": NOT_BUILT,
     "ack of 84: ACCEPTED, ours UNSUPPORTED": VTOL,
     "ack of 176: none, ours ACCEPTED": VTOL,
@@ -55,12 +60,9 @@ PX4: Final[dict[str, str]] = {
     "landed ON_GROUND: ours LANDING": LATER_DOWN,
     "text 'Preflight Fail: horizontal velocity unstable': ours never": STANDING,
     "text 'Using minimum takeoff altitude: 2.50 m': ours never": TAKE_OFF_AGAIN,
-    "text 'Failsafe activated': ours never": OFFBOARD_LOST,
     "text 'Landing detected': ours later": LATER_DOWN,
     "text 'Disarmed by landing': ours later": LATER_DOWN,
     "text 'Arming denied: not in mode POSCTL.ORBIT': ours only": PREARM,
-    "text 'Failsafe activated due to no offboard signal, trig': ours only": OFFBOARD_LOST,
-    "text 'gering Position mode': ours only": OFFBOARD_LOST,
     "kind TIME_ESTIMATE_TO_TARGET: the real one only": "not sent here: a known gap",
     "kind LINK_NODE_STATUS: the real one only": "not sent here: a known gap",
     "kind DISTANCE_SENSOR: the real one only": NO_SENSOR,
@@ -81,6 +83,7 @@ PX4: Final[dict[str, str]] = {
 }
 
 ARDUPILOT: Final[dict[str, str]] = {
+    "text 'PreArm: Need Position Estimate': ours only": PERIODIC,
     "ack of 512 of message 116: ACCEPTED, ours FAILED": NO_SENSOR,
     "ack of 512 of message 178: ACCEPTED, ours FAILED": NOT_BUILT,
     "ack of 512 of message 163: ACCEPTED, ours FAILED": NOT_BUILT,
@@ -90,8 +93,6 @@ ARDUPILOT: Final[dict[str, str]] = {
     "text 'Frame: QUAD/PLUS': ours never": OWN_NAME,
     "text 'vehicle-sim': ours only": OWN_NAME,
     "text 'Frame: QUAD/X': ours only": OWN_NAME,
-    "text 'EKF3 IMU1 MAG0 in-flight yaw alignment complete': ours never": IN_FLIGHT_YAW,
-    "text 'EKF3 IMU0 MAG0 in-flight yaw alignment complete': ours never": IN_FLIGHT_YAW,
     "text 'SIM Hit ground at 2.447183 m/s': ours never": NO_SENSOR,
     "text 'PreArm: Mode requires mission': ours only": "to mend: MISSION_START is quiet",
     **dict.fromkeys(
