@@ -6,6 +6,7 @@ from vehicle_sim.autopilot.control.battery_charge import charge_by_voltage
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.parameters.simulated import SimulatedBattery
+from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.engine.step import Blocks
 
@@ -18,6 +19,7 @@ class BatteryMonitor:
 
     def __init__(self, parameters: Parameters, blocks: Blocks, believed: Believed) -> None:
         self._parameters = parameters
+        self._rules = RULES[parameters.personality]
         self._blocks = blocks
         self._sensed = blocks.sensed
         self._believed = believed
@@ -34,10 +36,8 @@ class BatteryMonitor:
     @property
     def power(self) -> Power:
         sensed = self._sensed
-        if (
-            self._parameters.personality == "ardupilot"
-            and self._parameters.get("BATT_MONITOR") == 0
-        ):
+        switch = self._rules.battery_monitor
+        if switch is not None and self._parameters.get(switch) == 0:
             return UNMEASURED
         return Power(
             self.volts,
@@ -53,10 +53,8 @@ class BatteryMonitor:
         simulated = self._simulated.charge(0.25 * (f.u1 + f.u2 + f.u3 + f.u4))
         if simulated is not None:
             return simulated
-        px4 = self._parameters.personality == "px4"
-        capacity_mah = self._parameters.get("BAT1_CAPACITY" if px4 else "BATT_CAPACITY")
-        if px4 and capacity_mah <= 0.0:
-            return charge_by_voltage(self._sensed, self._believed)
+        capacity_mah = self._parameters.get(self._rules.battery_capacity)
         if capacity_mah <= 0.0:
-            return 0.0
+            by_voltage = self._rules.charge_by_voltage
+            return charge_by_voltage(self._sensed, self._believed) if by_voltage else 0.0
         return max(0.0, 1.0 - self._sensed.battery_used_mah / capacity_mah)

@@ -30,12 +30,12 @@ class Bounds:
     def load_fence(self, items: tuple[PlanItem, ...]) -> None:
         state = self._state
         self.geofence.load(fences.build(items, state.projection))
-        if state.personality == "ardupilot" and items:
+        if state.rules.tells_uploads and items:
             state.say(7, "Fence Indexed OK")
 
     def enable_fence(self, choice: int) -> Result:
         """ArduCopter's DO_FENCE_ENABLE, command or mission item; PX4 does not know it."""
-        if self._state.personality == "px4":
+        if not self._state.rules.fence_command:
             return Result.UNSUPPORTED
         if choice not in (0, 1, 2):
             return Result.FAILED
@@ -63,7 +63,7 @@ class Bounds:
         state = self._state
         if self.geofence.allows(goal_ned, state.home_ned or (0.0, 0.0, 0.0)):
             return False
-        if state.personality == "px4":
+        if state.rules.tells_goal_beyond_fence:
             if state.parameters.get("GF_ACTION") in _ONLY_WATCHED:
                 return False
             beyond = self.geofence.beyond(goal_ned, state.home_ned or (0.0, 0.0, 0.0))

@@ -7,10 +7,10 @@ measures the other side (setpoint and ground-station silence) runs on wall time.
 
 from __future__ import annotations
 
-from vehicle_sim.autopilot.arming_commands import ArmingCommands
+from vehicle_sim.autopilot.arming_requests import ArmingRequests
 from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
 from vehicle_sim.autopilot.bounds import Bounds
-from vehicle_sim.autopilot.camera_commands import CameraCommands
+from vehicle_sim.autopilot.camera_requests import CameraRequests
 from vehicle_sim.autopilot.control.airflow import Airflow
 from vehicle_sim.autopilot.failsafe_actions import FailsafeActions
 from vehicle_sim.autopilot.fault_injection import FaultInjection
@@ -50,9 +50,9 @@ class Decisions:
         health_checks: HealthChecks,
         failsafe_actions: FailsafeActions,
         task_flight: TaskFlight,
-        arming: ArmingCommands,
+        arming: ArmingRequests,
         mode_changes: ModeChanges,
-        camera: CameraCommands,
+        camera: CameraRequests,
         faults: FaultInjection,
         airflow: Airflow,
     ) -> None:
@@ -141,8 +141,7 @@ class Decisions:
         if state.home_ned is None and stage.home and state.origin is not None:
             state.home_ned = (0.0, 0.0, 0.0)
             if not state.boot_sequence.real:
-                ardupilot = state.personality == "ardupilot"
-                state.say(6, "EKF3 IMU0 origin set" if ardupilot else "GPS fix")
+                state.say(6, state.rules.origin_found)
             state.emit(HomeChanged())
         if state.boot_sequence.shows_prearm(state.age_ns) and not state.armed:
             self._health_checks.check_arming()

@@ -73,7 +73,7 @@ class FailsafeActions:
         state = self._state
         acting = self._acting.failsafe
         if (
-            state.personality == "px4"
+            not state.rules.fence_may_hold_mode
             or acting is None
             or acting.cause is not Cause.FENCE
             or not self._bounds.geofence.breached
@@ -132,7 +132,7 @@ class FailsafeActions:
         acting = self._acting.failsafe
         worse = acting is None or RANK[struck.action] > RANK[acting.action]
         if struck.action is Action.WARN or not worse:
-            if struck.action is Action.WARN or state.personality != "px4":
+            if struck.action is Action.WARN or state.rules.tells_lesser_failsafes:
                 state.say(struck.severity, struck.text)
             return
         wait_s = self._grace_s(struck, s)
@@ -196,9 +196,9 @@ class FailsafeActions:
         if cleared.text:
             self._state.say(cleared.severity, cleared.text)
         acting, came_from = self._acting.failsafe, self._acting.came_from
-        if self._state.personality != "px4" or acting is None or acting.cause is not Cause.POSITION:
+        if not self._state.rules.mode_back_with_position or acting is None:
             return
-        if cleared.cause is not Cause.POSITION:
+        if acting.cause is not Cause.POSITION or cleared.cause is not Cause.POSITION:
             return
         if self._acting.overruled is not None:
             self._acting.failsafe, self._acting.overruled = self._acting.overruled, None

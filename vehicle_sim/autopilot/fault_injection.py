@@ -24,8 +24,8 @@ class FaultInjection:
     @property
     def allowed(self) -> bool:
         """Whether INJECT_FAILURE is taken."""
-        state = self._state
-        return state.personality != "px4" or state.parameters.get("SYS_FAILURE_EN") == 1
+        switch = self._state.rules.failures_allowed_by
+        return switch is None or self._state.parameters.get(switch) == 1
 
     def update(self) -> None:
         """What parameters that have changed bring about."""

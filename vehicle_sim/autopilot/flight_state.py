@@ -17,6 +17,7 @@ from vehicle_sim.autopilot.interface import (
 from vehicle_sim.autopilot.mission.plan import Datum
 from vehicle_sim.autopilot.modes import BOOT_MODE, MODES, Mode
 from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.autopilot.rules import RULES, AutopilotRules
 from vehicle_sim.autopilot.speed_limits import SpeedLimits
 from vehicle_sim.autopilot.tasks.tasks import Hold
 from vehicle_sim.control_loops.trajectory import stopping_point
@@ -36,6 +37,7 @@ class FlightState:
     def __init__(self, ground: Geodetic, parameters: Parameters, seat: Seat, boot: Boot) -> None:
         self.parameters = parameters
         self.personality = personality = parameters.personality
+        self.rules: AutopilotRules = RULES[personality]
         self.engine = seat.engine
         self.blocks: Blocks = seat.engine.blocks(seat.lane)
         self.sensed, self.est = self.blocks.sensed, self.blocks.est

@@ -107,7 +107,7 @@ class HealthChecks:
     def check_arming(self) -> Result:
         state = self._state
         if state.armed:
-            return self._while_armed
+            return state.rules.arming_check_armed
         if state.boot_sequence.holds(state.age_ns):
             self._say_boot_reasons("PreArm", forced=False)
         else:
@@ -132,7 +132,7 @@ class HealthChecks:
         30 s."""
         state = self._state
         last_ns, quiet_ns = self._checked_ns, state.time_ns - self._displayed_ns
-        if state.personality != "ardupilot" or state.time_ns - last_ns < _CHECKED_EVERY_NS:
+        if not state.rules.tells_unready or state.time_ns - last_ns < _CHECKED_EVERY_NS:
             return
         self._checked_ns = state.time_ns
         if quiet_ns > (_AGAIN_NS if self._newly_unready else _DISPLAYED_EVERY_NS):
@@ -142,11 +142,6 @@ class HealthChecks:
         ready = not self._unready()
         self._newly_unready = self._newly_unready or (self._was_ready and not ready)
         self._was_ready = ready
-
-    @property
-    def _while_armed(self) -> Result:
-        """PX4 takes the command then, too, and has nothing to tell."""
-        return Result.ACCEPTED if self._state.personality == "px4" else Result.TEMPORARILY_REJECTED
 
     # -------------------------------------------------------------------------- in flight
 

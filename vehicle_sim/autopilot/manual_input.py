@@ -5,7 +5,7 @@ They act when they come: a gesture arms, a moved stick takes over, a switch chan
 
 from __future__ import annotations
 
-from vehicle_sim.autopilot.arming_commands import ArmingCommands
+from vehicle_sim.autopilot.arming_requests import ArmingRequests
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.manual.stick_gestures import Gesture, Gestures
 from vehicle_sim.autopilot.manual.sticks import Radio
@@ -23,7 +23,7 @@ class ManualInput:
         self,
         state: FlightState,
         radio: Radio,
-        arming: ArmingCommands,
+        arming: ArmingRequests,
         mode_changes: ModeChanges,
         transitions: Transitions,
     ) -> None:
@@ -57,9 +57,9 @@ class ManualInput:
 
     def _heed(self, wall_ns: int) -> None:
         state = self._state
-        if state.personality == "ardupilot":
+        if state.rules.mode_switch:
             number = self._gestures.mode(self._radio, wall_ns)
-            mode = None if number is None else by_number("ardupilot", number)
+            mode = None if number is None else by_number(state.personality, number)
             if mode is not None and mode is not state.mode:
                 self._mode_changes.change_mode(mode)
         hand = self._radio.sticks(wall_ns)
@@ -72,7 +72,7 @@ class ManualInput:
                 self._arming.disarm(False)
             case _:
                 pass
-        if state.personality == "px4" and self._gestures.takes_over(hand):
+        if state.rules.sticks_take_over and self._gestures.takes_over(hand):
             self._take_over()
         if state.armed:
             state.request_decision()

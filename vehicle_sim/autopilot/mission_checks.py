@@ -34,8 +34,9 @@ class MissionChecks:
         """There is one, and it may be flown."""
         if self._mission.empty or self._beyond_fence:
             return False
-        px4 = self._state.personality == "px4"
-        return self._too_far_m() is None and not (px4 and infeasible(self._mission.items))
+        if not self._state.rules.checks_mission_feasible:
+            return True
+        return self._too_far_m() is None and not infeasible(self._mission.items)
 
     def judge(self) -> None:
         """PX4's feasibility check: a mission out of bounds stays stored, and is not flown.
@@ -55,7 +56,8 @@ class MissionChecks:
     def _too_far_m(self) -> float | None:
         """From home to the first place of PX4's mission, if that is farther than it may be."""
         state = self._state
-        if state.personality != "px4" or state.parameters.get("MIS_DIST_1WP") <= 0.0:
+        feasibility = state.rules.checks_mission_feasible
+        if not feasibility or state.parameters.get("MIS_DIST_1WP") <= 0.0:
             return None
         home_ned = state.home_ned or (0.0, 0.0, 0.0)
         for item in self._mission.items:
@@ -68,7 +70,7 @@ class MissionChecks:
     def _out_of_bounds(self) -> int | None:
         """The first item of PX4's mission that lies outside the fence."""
         state = self._state
-        if state.personality != "px4" or self._geofence.idle:
+        if not state.rules.checks_mission_feasible or self._geofence.idle:
             return None
         home_ned = state.home_ned or (0.0, 0.0, 0.0)
         for item in self._mission.items[first_of(state.personality) :]:
@@ -85,7 +87,8 @@ class MissionChecks:
             return True
         if not self.passed:
             return False
-        if state.personality == "px4" or state.control.flying or self._mission.takes_off:
+        needs_take_off = state.rules.mission_needs_take_off and not state.control.flying
+        if not needs_take_off or self._mission.takes_off:
             return True
         state.say(2, "Auto: Missing Takeoff Cmd")
         return False
@@ -93,14 +96,16 @@ class MissionChecks:
     def has_flown(self, mode: Mode) -> bool:
         """In the air PX4 does not begin a mission that is over from the start."""
         flown = self._mission.finished and self._state.control.flying
-        return self._state.personality == "px4" and mode.behaviour is Behaviour.MISSION and flown
+        becomes_hold = self._state.rules.flown_mission_becomes_hold
+        return becomes_hold and mode.behaviour is Behaviour.MISSION and flown
 
     def say_take_off(self) -> None:
         """What PX4 says when its mission is going to leave the ground."""
         state = self._state
         mission = self._mission
         grounded = state.armed and not state.control.flying
-        if state.personality != "px4" or state.task is not mission or not grounded:
+        told = state.rules.tells_mission_take_off
+        if not told or state.task is not mission or not grounded:
             return
         beyond = mission.jump_beyond
         if beyond is not None:

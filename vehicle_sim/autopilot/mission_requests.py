@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vehicle_sim.autopilot.arming_commands import ArmingCommands
+from vehicle_sim.autopilot.arming_requests import ArmingRequests
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import PlanItem, Result
 from vehicle_sim.autopilot.mission import plan as plans
@@ -20,7 +20,7 @@ class MissionRequests:
         state: FlightState,
         mission: Mission,
         mission_checks: MissionChecks,
-        arming: ArmingCommands,
+        arming: ArmingRequests,
         mode_changes: ModeChanges,
         transitions: Transitions,
     ) -> None:
@@ -37,19 +37,19 @@ class MissionRequests:
     def load_plan(self, items: tuple[PlanItem, ...]) -> None:
         state = self._state
         self._mission.load(items)
-        if state.personality == "ardupilot" and items:
+        if state.rules.tells_uploads and items:
             state.say(6, "Flight plan received")
         self._mission_checks.judge()
         if state.task is self._mission:
             if not self._mission.empty:
                 self._mission.begin(state.look_around(), state.control.heading)
-            elif state.personality == "px4" or state.armed:
+            elif state.rules.no_mission_ends_mode or state.armed:
                 self._transitions.enter_kind("hold")
 
     def mission_start(self, first: int, last: int) -> Result:
         state = self._state
         mission = self._mission
-        if state.personality == "px4" and not self._mission_checks.passed:
+        if state.rules.mission_start_arms and not self._mission_checks.passed:
             state.say(2, "Mission start denied! No valid mission")
             return Result.DENIED
         if first > 0 and not mission.jump_to(first):
@@ -63,7 +63,7 @@ class MissionRequests:
             if not begun:
                 mission.announce_begin()  # by the command, after the mode has done so
             state.auto_armed = True
-            if state.personality == "px4":
+            if state.rules.mission_start_arms:
                 result = self._arming.arm(False)
         return result
 

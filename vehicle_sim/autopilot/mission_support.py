@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from vehicle_sim.autopilot.bounds import Bounds
-from vehicle_sim.autopilot.camera_commands import CameraCommands
+from vehicle_sim.autopilot.camera_requests import CameraRequests
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import Result, SpeedType, VehicleEvent
 from vehicle_sim.autopilot.mission.plan import Datum
-from vehicle_sim.autopilot.modes import MODES
 from vehicle_sim.autopilot.transitions import Transitions
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -16,7 +15,7 @@ class MissionSupport:
     """The `MissionVehicle` of `mission/mission_commands.py`."""
 
     def __init__(
-        self, state: FlightState, bounds: Bounds, camera: CameraCommands, transitions: Transitions
+        self, state: FlightState, bounds: Bounds, camera: CameraRequests, transitions: Transitions
     ) -> None:
         self._state = state
         self._bounds = bounds
@@ -51,8 +50,8 @@ class MissionSupport:
         return self._state.control.heading.turning
 
     def leave_for_return(self) -> bool:
-        if self._state.personality != "px4":
+        if not self._state.rules.mission_return_changes_mode:
             return False
         self._state.say(6, "Returning to launch")
-        self._transitions.enter(MODES["px4"]["AUTO.RTL"])
+        self._transitions.enter_kind("return")
         return True

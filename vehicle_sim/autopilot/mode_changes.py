@@ -19,7 +19,6 @@ from vehicle_sim.autopilot.modes import (
     refusal_words,
     unknown_mode_words,
 )
-from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.autopilot.tasks.guided import SetpointStream
 from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
 from vehicle_sim.autopilot.transitions import Transitions
@@ -45,18 +44,18 @@ class ModeChanges:
         self._transitions = transitions
         self._radio = radio
         self._stream = stream
-        self._not_now = RULES[state.personality].not_now
 
     def set_mode(self, base_mode: int, custom_mode: int) -> Result:
         state = self._state
         if not base_mode & Flag.CUSTOM_MODE_ENABLED:
             return Result.UNSUPPORTED
         mode = by_number(state.personality, custom_mode)
-        if mode is None and state.personality == "px4" and main_mode(custom_mode) != AUTO_MAIN_MODE:
+        takes_unknown = state.rules.takes_unknown_main_modes
+        if mode is None and takes_unknown and main_mode(custom_mode) != AUTO_MAIN_MODE:
             return Result.ACCEPTED  # as recorded: of main modes it looks at none that it lacks
         if mode is None:
             state.say(*unknown_mode_words(state.personality, custom_mode))
-            return self._not_now
+            return self._state.rules.not_now
         return self.change_mode(mode)
 
     def set_mode_kind(self, kind: str) -> Result:
@@ -72,7 +71,7 @@ class ModeChanges:
         if same and (mode.behaviour is not Behaviour.HOLD or self._leaves_the_ground):
             return Result.ACCEPTED
         if self._failsafe_actions.held_by_fence(mode):
-            return self._not_now
+            return self._state.rules.not_now
         starting = not state.armed and not state.boot_stage.position
         if mode.needs_position and not state.position_ok and not starting:
             return self._refuse(mode, "requires position")
@@ -96,14 +95,14 @@ class ModeChanges:
     def _lacks_sticks(self, mode: Mode) -> bool:
         """Armed, PX4 enters no mode that is flown by hand while there are no sticks."""
         state = self._state
-        by_hand = state.personality == "px4" and state.armed and mode.law is not None
-        return by_hand and self._radio.sticks(state.sense().wall_ns) is None
+        needed = state.rules.manual_modes_need_sticks and state.armed and mode.law is not None
+        return needed and self._radio.sticks(state.sense().wall_ns) is None
 
     def _goes_on_up(self, mode: Mode) -> Hold | None:
         """PX4's HOLD, asked for before the take-off has left the ground: up to its height."""
         state = self._state
         task = state.task
-        if state.personality != "px4" or not isinstance(task, TakeOff):
+        if state.rules.hold_ends_take_off or not isinstance(task, TakeOff):
             return None
         home_d = state.home_ned[2] if state.home_ned is not None else 0.0
         if state.control.flying and home_d - state.est.pos_d > _CLEAR_M:
@@ -120,7 +119,7 @@ class ModeChanges:
 
     def _refuse(self, mode: Mode, why: str) -> Result:
         self._state.say(*refusal_words(self._state.personality, mode.name, why))
-        return self._not_now
+        return self._state.rules.not_now
 
     def _ask_offboard(self, mode: Mode) -> Result:
         """A stream of more than 2 Hz is a must; the mode follows when it has lasted a second."""
@@ -138,7 +137,7 @@ class ModeChanges:
         state = self._state
         wall_ns = state.sense().wall_ns
         if self._stream.proven(wall_ns):
-            self._transitions.enter(MODES["px4"]["OFFBOARD"])
+            self._transitions.enter_kind("guided")
         elif not self._stream.alive(wall_ns):
             state.offboard_wanted = False
             state.say(2, "Switching to OFFBOARD is currently not available")

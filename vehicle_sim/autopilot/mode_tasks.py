@@ -51,7 +51,7 @@ class ModeTasks:
             case Behaviour.HOLD:
                 return Hold()
             case Behaviour.GUIDED:
-                if state.personality == "ardupilot":
+                if state.rules.guided_forgets_setpoints:
                     self._stream.forget()
                 return Guided(state.parameters, self._stream)
             case Behaviour.TAKEOFF:
@@ -59,7 +59,7 @@ class ModeTasks:
             case Behaviour.MISSION:
                 return self.mission
             case Behaviour.RETURN:
-                tell = self._bounds.tell_return if state.personality == "px4" else None
+                tell = self._bounds.tell_return if state.rules.tells_return else None
                 return Return(state.parameters, self._bounds.landing_site, tell)
             case Behaviour.LAND:
                 return Land(state.parameters)

@@ -8,6 +8,7 @@ from vehicle_sim.autopilot.control.flight_control import FlightControl
 from vehicle_sim.autopilot.control.gains import write_gains
 from vehicle_sim.autopilot.interface import SpeedType
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
+from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.trajectory import MotionLimits
 from vehicle_sim.engine.step import Blocks
@@ -57,8 +58,9 @@ class SpeedLimits:
             si(Quantity.ACCEL_UP_M_S2),
         )
         write_gains(self._parameters, self._blocks.flight, self._blocks.est, self._believed)
-        if self._parameters.personality == "ardupilot":
-            self._control.idle = self._parameters.get("MOT_SPIN_ARM")
+        idle_thrust = RULES[self._parameters.personality].idle_thrust
+        if idle_thrust is not None:
+            self._control.idle = self._parameters.get(idle_thrust)
         cruise = self._cruise_m_s
         if cruise is None:
             return limits

@@ -7,12 +7,11 @@ from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.mission.mission import Mission
 from vehicle_sim.autopilot.mission_checks import MissionChecks
-from vehicle_sim.autopilot.modes import MODES, Behaviour
+from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.autopilot.parameters.parameters import Quantity
 from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff, face
 from vehicle_sim.autopilot.transitions import Transitions
 
-_ARMING_DELAY_S = 2.0  # ArduCopter's ARMING_DELAY_SEC, by memory: its motors idle so long at first
 _ALIGNED_UP_M = 2.5  # EKF3_MAG_FINAL_RESET_ALT
 _STILL_M_S = 0.5  # no more than this up or down: it does not fall
 _TAKES_OFF_BY_ITSELF = 2  # AUTO_OPTIONS
@@ -52,14 +51,14 @@ class TaskFlight:
             if self._may_lift_off(task, s):
                 pilot.lift_off(s.pos_ned, s.heading_rad)
                 s.flying = True
-                if state.personality == "px4":
+                if state.rules.tells_land_detector:
                     state.say(6, "Takeoff detected")
                 state.auto_armed = True
             else:
                 pilot.rest()
                 self._disarm_when_due(s, regular)
                 return
-        if regular and state.personality == "ardupilot":
+        if regular and state.rules.aligns_yaw_in_flight:
             self._align_yaw(s)
         demand = task.update(s, pilot.heading)
         if state.task is not task:
@@ -97,13 +96,18 @@ class TaskFlight:
 
     def _may_lift_off(self, task: Task, s: Situation) -> bool:
         state = self._state
-        delay_s = _ARMING_DELAY_S if state.personality == "ardupilot" else 0.0
-        spool_up_ns = int((delay_s + state.parameters.si(Quantity.SPOOL_UP_S)) * 1e9)
+        spool_up_ns = int(
+            (state.rules.arming_delay_s + state.parameters.si(Quantity.SPOOL_UP_S)) * 1e9
+        )
         if s.time_ns - state.armed_ns < spool_up_ns:
             return False
         # ArduCopter's AUTO leaves the ground only once the mission was started in so many words.
-        waits = task is self._mission and state.personality == "ardupilot" and not state.auto_armed
-        if waits and not int(state.parameters.get("AUTO_OPTIONS")) & _TAKES_OFF_BY_ITSELF:
+        waits = state.rules.mission_waits_for_start and not state.auto_armed
+        if (
+            task is self._mission
+            and waits
+            and not int(state.parameters.get("AUTO_OPTIONS")) & _TAKES_OFF_BY_ITSELF
+        ):
             return False
         return task.lifts_off(s)
 
@@ -116,11 +120,11 @@ class TaskFlight:
         state.control.settle()
         state.auto_armed = False
         self._auto_disarm.on_ground(True, s.time_ns)
-        if state.personality == "px4":
+        if state.rules.tells_land_detector:
             state.say(6, "Landing detected")
         if state.task is self._mission:
             self._mission.touched_down()
-            if state.personality == "px4" and self._mission.finished:
+            if state.rules.holds_after_task and self._mission.finished:
                 state.say(6, "Mission finished, landed")
 
     def _move_on(self, task: Task, s: Situation) -> None:
@@ -129,19 +133,19 @@ class TaskFlight:
         After a take-off it holds the height where it is now.
         """
         state = self._state
-        if state.personality != "px4":
+        if not state.rules.holds_after_task:
             return
         if isinstance(task, TakeOff) or task is self._mission:
             # The climb's own end takes back nothing that was asked for meanwhile.
             wanted = state.offboard_wanted
             goes_on = isinstance(task, TakeOff) and state.parameters.get("COM_TAKEOFF_ACT") == 1
             if goes_on and self._mission_checks.passed:
-                self._transitions.enter(MODES["px4"]["AUTO.MISSION"])
+                self._transitions.enter_kind("mission")
                 return
             goal = task.target.pos_ned
             if isinstance(task, TakeOff) and goal is not None:
                 goal = (goal[0], goal[1], s.pos_ned[2])
             if task is self._mission:
                 state.say(6, "Mission finished, loitering")
-            self._transitions.enter(MODES["px4"]["AUTO.LOITER"], Hold(goal))
+            self._transitions.enter_kind("hold", Hold(goal))
             state.offboard_wanted = wanted

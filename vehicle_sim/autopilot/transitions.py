@@ -46,12 +46,12 @@ class Transitions:
         state.failsafe_active = False
         state.offboard_wanted = False
         state.paused = None
-        if state.personality == "ardupilot":
-            state.roi_ned = None  # ArduCopter's every mode begins with its own way to point
+        if state.rules.mode_ends_roi:
+            state.roi_ned = None
         state.task = task if task is not None else self._mode_tasks.task_of(mode)
         state.task.begin(state.look_around(), state.control.heading)
         state.request_decision()
-        if state.personality == "ardupilot" and self._geofence.breached:
+        if state.rules.tells_manual_recovery and self._geofence.breached:
             state.say(6, "Manual recovery started")
         if acting.on_its_own:
             return
@@ -78,7 +78,7 @@ class Transitions:
         state.cut_off_in_air = False
         state.yaw_aligned = False
         state.say(6, text)
-        if state.personality == "px4":
+        if state.rules.mode_back_after_disarming:
             before = state.mode_after_disarming
             if before is not state.mode or before.behaviour is Behaviour.HOLD:
                 # HOLD begins anew: what it was to fly to ends with the flight.
@@ -94,11 +94,11 @@ class Transitions:
         notice the fall: it says IN_AIR until it is told to land.
         """
         state = self._state
-        if state.personality == "ardupilot":
+        if not state.rules.termination_lasts:
             if state.armed:
-                self.disarm("Disarming motors")
+                self.disarm(state.rules.disarmed)
             else:
-                state.say(6, "Disarming motors")
+                state.say(6, state.rules.disarmed)
             return
         state.terminated = True
         state.cut_off_in_air = state.cut_off_in_air or state.control.flying

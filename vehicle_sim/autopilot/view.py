@@ -137,8 +137,8 @@ class View:
 
     def _satellites(self, heard: int) -> int:
         """PX4's simulated receiver says as many as its parameter."""
-        by_parameter = self._state.personality == "px4" and heard > 0
-        return int(self._state.parameters.get("SIM_GPS_USED")) if by_parameter else heard
+        used = self._state.rules.satellites
+        return heard if used is None or heard <= 0 else int(self._state.parameters.get(used))
 
     @property
     def landed(self) -> Landed:
@@ -166,7 +166,7 @@ class View:
             return 1  # BOOT
         if state.calibration.busy:
             return 2  # CALIBRATING
-        flying = state.armed if state.personality == "px4" else state.control.flying
+        flying = state.armed if state.rules.armed_is_active else state.control.flying
         return 4 if flying else 3  # ACTIVE, STANDBY
 
     @property
@@ -191,12 +191,9 @@ class View:
 
     @property
     def mav_type(self) -> int:
-        """That of a quadrotor, unless PX4's parameter says another."""
-        return (
-            int(self._state.parameters.get("MAV_TYPE"))
-            if self._state.personality == "px4"
-            else _QUADROTOR
-        )
+        """That of a quadrotor, unless a parameter says another."""
+        name = self._state.rules.mav_type
+        return _QUADROTOR if name is None else int(self._state.parameters.get(name))
 
     @property
     def motor_outputs(self) -> tuple[float, float, float, float]:

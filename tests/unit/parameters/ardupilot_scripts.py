@@ -315,7 +315,7 @@ def leader_height_m(setting: Setting) -> float:
         0, round(-35.363262e7), round(149.165237e7), 600_000, 30_000, 0, 0, 0, 0
     )
     served.send(told, system=3, component=1)
-    seen = flight.vehicle.leader.seen(flight.vehicle.state.sense().wall_ns)
+    seen = flight.vehicle.parts.leader.seen(flight.vehicle.state.sense().wall_ns)
     return inf if seen is None else -seen.pos_ned[2]
 
 

@@ -10,7 +10,7 @@ from vehicle_sim.autopilot.interface import ImageCaptured, Result
 from vehicle_sim.autopilot.parameters.parameters import Quantity
 
 
-class CameraCommands:
+class CameraRequests:
     """`fitted`: whether the vehicle has a camera at all."""
 
     def __init__(self, state: FlightState, fitted: bool) -> None:

@@ -12,13 +12,12 @@ from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.health_checks import HealthChecks
 from vehicle_sim.autopilot.interface import CommandDone, Result
 from vehicle_sim.autopilot.mission_checks import MissionChecks
-from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.autopilot.transitions import Transitions
 
 _ARM_DISARM, _MISSION_START = 400, 300  # MAV_CMD that arm
 
 
-class ArmingCommands:
+class ArmingRequests:
     """Answered at once, but for an arming that waits to be authorized."""
 
     def __init__(
@@ -35,7 +34,6 @@ class ArmingCommands:
         self._transitions = transitions
         self._auto_disarm = auto_disarm
         self._authorization = ArmAuthorization(state.parameters)
-        self._not_now = RULES[state.personality].not_now
 
     def restart(self) -> None:
         """As after power-up."""
@@ -48,18 +46,18 @@ class ArmingCommands:
         if state.terminated:
             state.say(2, "Preflight Fail: Flight termination active")
             return Result.TEMPORARILY_REJECTED
-        if state.calibration.busy and state.personality == "px4":
+        if state.calibration.busy and state.rules.calibration_denies_arming:
             state.say(2, "Transition denied: Init to Armed")
             return Result.TEMPORARILY_REJECTED
         checks = self._health_checks
         if checks.held_by_boot(force) or (not force and checks.say_against_arming(True)):
-            return self._not_now
-        if state.personality == "px4" and not force:
+            return self._state.rules.not_now
+        if state.rules.arm_authorization and not force:
             permission = self._authorization.ask(state.sense().wall_ns)
             self._tell()
             if permission is not Permission.GRANTED:
                 waits = permission is Permission.WAIT
-                return Result.IN_PROGRESS if waits else self._not_now
+                return Result.IN_PROGRESS if waits else self._state.rules.not_now
         self._start_motors()
         return Result.ACCEPTED
 
@@ -68,12 +66,10 @@ class ArmingCommands:
         if not state.armed:
             return Result.ACCEPTED
         if (state.control.flying or state.cut_off_in_air) and not force:
-            if state.personality == "px4":
-                state.say(2, "Disarming denied! Not landed")
-            return self._not_now
-        ardupilot = state.personality == "ardupilot"
-        text = "Disarming motors" if ardupilot else "Disarmed by external command"
-        self._transitions.disarm(text)
+            if state.rules.disarming_denied is not None:
+                state.say(2, state.rules.disarming_denied)
+            return self._state.rules.not_now
+        self._transitions.disarm(state.rules.disarmed)
         return Result.ACCEPTED
 
     def terminate(self, on: bool) -> Result:
@@ -81,9 +77,9 @@ class ArmingCommands:
         state = self._state
         if on:
             self._transitions.terminate()
-        elif state.personality == "ardupilot":
+        elif not state.rules.termination_lasts:
             return Result.FAILED
-        state.terminated = on and state.personality == "px4"
+        state.terminated = on and state.rules.termination_lasts
         return Result.ACCEPTED
 
     def _start_motors(self) -> None:
@@ -96,14 +92,13 @@ class ArmingCommands:
         state.task.begin(state.look_around(), state.control.heading)
         state.control.rest()
         state.request_decision()
-        ardupilot = state.personality == "ardupilot"
-        state.say(6, "Arming motors" if ardupilot else "Armed by external command")
+        state.say(6, state.rules.armed)
         self._mission_checks.say_take_off()
 
     # --------------------------------------------------------------- arm authorization
 
     def command_acked(self, command: int, result: int, param1: int, param2: int) -> None:
-        if self._state.personality == "px4" and command == ARM_AUTHORIZATION_REQUEST:
+        if self._state.rules.arm_authorization and command == ARM_AUTHORIZATION_REQUEST:
             wall_ns = self._state.sense().wall_ns
             permission = self._authorization.answered(result, param1, param2, wall_ns)
             self._settle(permission)
@@ -123,7 +118,7 @@ class ArmingCommands:
         granted = permission is Permission.GRANTED and not state.terminated
         if granted and not state.armed:
             self._start_motors()
-        result = Result.ACCEPTED if granted else self._not_now
+        result = Result.ACCEPTED if granted else self._state.rules.not_now
         for command in (_ARM_DISARM, _MISSION_START):
             state.emit(CommandDone(command, result))
         state.request_decision()

@@ -19,9 +19,8 @@ from vehicle_sim.autopilot.interface import (
 )
 from vehicle_sim.autopilot.mode_changes import ModeChanges
 from vehicle_sim.autopilot.mode_tasks import ModeTasks
-from vehicle_sim.autopilot.modes import MODES, Behaviour
+from vehicle_sim.autopilot.modes import KINDS, MODES, Behaviour
 from vehicle_sim.autopilot.parameters.parameters import Quantity
-from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.autopilot.tasks.guided import AnySetpoint, Guided, SetpointStream, is_sound
 from vehicle_sim.autopilot.tasks.tasks import Hold
 from vehicle_sim.autopilot.transitions import Transitions
@@ -30,7 +29,7 @@ from vehicle_sim.numerics.vectors import Vec3
 _LOWEST_GOAL_UP_M = 0.5
 
 
-class FlightCommands:
+class FlightRequests:
     """Take-off, goals, speeds, setpoints, home."""
 
     def __init__(
@@ -50,7 +49,6 @@ class FlightCommands:
         self._mode_changes = mode_changes
         self._transitions = transitions
         self._stream = stream
-        self._not_now = RULES[state.personality].not_now
 
     def take_off(self, up_above_home_m: float | None) -> Result:
         state = self._state
@@ -60,11 +58,12 @@ class FlightCommands:
         if not isfinite(up_m) or up_m < _LOWEST_GOAL_UP_M:
             return Result.DENIED
         if state.armed and state.control.flying:
-            return Result.FAILED if state.personality == "ardupilot" else Result.ACCEPTED
+            return state.rules.take_off_in_flight
         if not state.position_ok:
-            return self._not_now
-        if state.personality == "px4":
-            self._transitions.enter(MODES["px4"]["AUTO.TAKEOFF"], self._mode_tasks.take_off(up_m))
+            return self._state.rules.not_now
+        if state.rules.take_off_mode is not None:
+            mode = MODES[state.personality][state.rules.take_off_mode]
+            self._transitions.enter(mode, self._mode_tasks.take_off(up_m))
             return Result.ACCEPTED
         if not state.armed or not isinstance(state.task, Guided):
             return Result.FAILED
@@ -91,40 +90,49 @@ class FlightCommands:
         if pos_ned is not None and not all(map(isfinite, pos_ned)):
             return Result.DENIED
         if not state.position_ok:
-            return self._not_now
-        ardupilot = state.personality == "ardupilot"
-        guided = state.mode.behaviour is Behaviour.GUIDED
-        if ardupilot and not guided and not changes_mode:
+            return self._state.rules.not_now
+        by_hold = state.rules.repositions_by_hold
+        if not by_hold and state.mode.behaviour is not Behaviour.GUIDED and not changes_mode:
             return Result.DENIED
         if pos_ned is not None and self._bounds.fenced_off(pos_ned):
-            return Result.FAILED if ardupilot else Result.ACCEPTED
+            return state.rules.goal_beyond_fence
         goal = pos_ned if pos_ned is not None else state.look_around().stop_ned
         wanted = speed_m_s if speed_m_s is not None and speed_m_s > 0.0 else None
-        if not ardupilot:
-            # The speed is that of this way alone: DO_CHANGE_SPEED's holds again after it.
-            if wanted is not None:
-                wanted = min(wanted, state.parameters.si(Quantity.FASTEST_M_S))
-            task = Hold(goal, yaw_rad, wanted, lifts=not state.control.flying)
-            self._transitions.enter_kind("hold", task)
-            return Result.ACCEPTED
-        if wanted is not None:
-            self._state.change_speed(wanted)
-        if not guided and self._failsafe_actions.held_by_fence(MODES["ardupilot"]["GUIDED"]):
+        if by_hold:
+            return self._hold_at(goal, yaw_rad, wanted)
+        return self._guide_to(goal, yaw_rad, wanted)
+
+    def _hold_at(self, goal_ned: Vec3, yaw_rad: float | None, speed_m_s: float | None) -> Result:
+        """The speed is that of this way alone: DO_CHANGE_SPEED's holds again after it."""
+        state = self._state
+        if speed_m_s is not None:
+            speed_m_s = min(speed_m_s, state.parameters.si(Quantity.FASTEST_M_S))
+        task = Hold(goal_ned, yaw_rad, speed_m_s, lifts=not state.control.flying)
+        self._transitions.enter_kind("hold", task)
+        return Result.ACCEPTED
+
+    def _guide_to(self, goal_ned: Vec3, yaw_rad: float | None, speed_m_s: float | None) -> Result:
+        state = self._state
+        guided = state.mode.behaviour is Behaviour.GUIDED
+        if speed_m_s is not None:
+            state.change_speed(speed_m_s)
+        mode = MODES[state.personality][KINDS[state.personality]["guided"]]
+        if not guided and self._failsafe_actions.held_by_fence(mode):
             return Result.FAILED
         if not guided or not state.control.flying or not isinstance(state.task, Guided):
             # On the ground it drops a take-off that was asked for, and stays there.
-            self._transitions.enter_kind("guided")
+            self._transitions.enter(mode)
         if not state.control.flying:
             return Result.ACCEPTED
-        goal_setpoint = Setpoint(pos_ned=goal, yaw_rad=yaw_rad)
-        self._stream.heard(goal_setpoint, state.sense().wall_ns, state.time_ns)
+        goal = Setpoint(pos_ned=goal_ned, yaw_rad=yaw_rad)
+        self._stream.heard(goal, state.sense().wall_ns, state.time_ns)
         state.request_decision()
         return Result.ACCEPTED
 
     def pause(self) -> Result:
         """ArduCopter stops within AUTO or GUIDED; PX4 1.14 does not know the command."""
         state = self._state
-        if state.personality == "px4":
+        if not state.rules.pauses:
             return Result.UNSUPPORTED
         if state.paused is not None:
             return Result.ACCEPTED
@@ -140,7 +148,7 @@ class FlightCommands:
     def resume(self) -> Result:
         state = self._state
         task = state.paused
-        if state.personality == "px4":
+        if not state.rules.pauses:
             return Result.UNSUPPORTED
         if task is None:
             state.say(4, "Failed to resume")
@@ -152,7 +160,7 @@ class FlightCommands:
         """Metres per second; ArduCopter changes it in flight only."""
         if speed_m_s is not None and (not isfinite(speed_m_s) or speed_m_s <= 0.0):
             return Result.DENIED
-        if self._state.personality == "ardupilot" and not self._state.control.flying:
+        if not self._state.rules.changes_speed_on_ground and not self._state.control.flying:
             return Result.FAILED
         self._state.change_speed(speed_m_s, kind)
         return Result.ACCEPTED
@@ -185,7 +193,7 @@ class FlightCommands:
     def set_home(self, where: Geodetic | None) -> Result:
         state = self._state
         if state.origin is None:
-            return self._not_now
+            return self._state.rules.not_now
         if where is not None and not _on_earth(where):
             return Result.DENIED
         state.move_home(None if where is None else state.projection.to_local(where))
@@ -195,9 +203,9 @@ class FlightCommands:
         if setpoint.yaw_rad is not None or setpoint.yaw_rate_rad_s is not None:
             self._state.roi_ned = None
         goal = setpoint.pos_ned
-        ardupilot = self._state.personality == "ardupilot"
-        if ardupilot and goal is not None and self._bounds.fenced_off(goal):
-            return  # ArduCopter's GUIDED takes no goal outside its fence
+        bound = self._state.rules.setpoints_within_fence
+        if bound and goal is not None and self._bounds.fenced_off(goal):
+            return
         self._hear(setpoint)
 
     def set_attitude(self, setpoint: AttitudeSetpoint) -> None:

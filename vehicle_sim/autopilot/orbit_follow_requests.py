@@ -7,7 +7,6 @@ from math import isfinite
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import Geodetic, OrbitRequest, Result
 from vehicle_sim.autopilot.manual.sticks import Radio
-from vehicle_sim.autopilot.modes import MODES
 from vehicle_sim.autopilot.tasks.follow import Leader, Sighting
 from vehicle_sim.autopilot.tasks.orbit import Nose, Orbit, Round, px4_round
 from vehicle_sim.autopilot.transitions import Transitions
@@ -17,7 +16,7 @@ _DEFAULT_ORBIT_M = 1.0
 _DEFAULT_ORBIT_M_S = 1.0
 
 
-class TargetCommands:
+class OrbitFollowRequests:
     """What is flown round, and what is flown after."""
 
     def __init__(
@@ -30,7 +29,7 @@ class TargetCommands:
 
     def orbit(self, asked: OrbitRequest) -> Result:
         state = self._state
-        if state.personality != "px4":
+        if not state.rules.orbit_mode:
             return Result.UNSUPPORTED
         if not state.position_ok:
             return Result.TEMPORARILY_REJECTED
@@ -59,7 +58,7 @@ class TargetCommands:
             task.change(wanted, s)
         else:
             circle = Orbit(lambda s: wanted, state.parameters, self._radio)
-            self._transitions.enter(MODES["px4"]["POSCTL.ORBIT"], circle)
+            self._transitions.enter_kind("orbit", circle)
         state.request_decision()
         return Result.ACCEPTED
 
