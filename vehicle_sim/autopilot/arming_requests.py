@@ -66,10 +66,10 @@ class ArmingRequests:
         if not state.armed:
             return Result.ACCEPTED
         if (state.control.flying or state.cut_off_in_air) and not force:
-            if state.rules.disarming_denied is not None:
-                state.say(2, state.rules.disarming_denied)
+            if state.rules.disarming_denied_text is not None:
+                state.say(2, state.rules.disarming_denied_text)
             return self._state.rules.not_now
-        self._transitions.disarm(state.rules.disarmed)
+        self._transitions.disarm(state.rules.disarmed_text)
         return Result.ACCEPTED
 
     def terminate(self, on: bool) -> Result:
@@ -92,7 +92,7 @@ class ArmingRequests:
         state.task.begin(state.look_around(), state.control.heading)
         state.control.rest()
         state.request_decision()
-        state.say(6, state.rules.armed)
+        state.say(6, state.rules.armed_text)
         self._mission_checks.say_take_off()
 
     # --------------------------------------------------------------- arm authorization

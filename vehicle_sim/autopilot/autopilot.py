@@ -66,6 +66,7 @@ class Autopilot:
     def _forward(self, parts: Parts) -> None:
         """The methods of `Vehicle` that are those of a part."""
         self.wall, self.events = self.state.wall, self.state.events
+        self._decisions = parts.decisions
         self.live = parts.decisions.live
         self.gcs_heard = parts.failsafe_actions.gcs_heard
         arming = parts.arming
@@ -142,7 +143,7 @@ class Autopilot:
 
     @property
     def due_step(self) -> int:
-        return self.parts.decisions.due_step
+        return self._decisions.due_step
 
     @property
     def time_ns(self) -> int:

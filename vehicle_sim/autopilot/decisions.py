@@ -141,7 +141,7 @@ class Decisions:
         if state.home_ned is None and stage.home and state.origin is not None:
             state.home_ned = (0.0, 0.0, 0.0)
             if not state.boot_sequence.real:
-                state.say(6, state.rules.origin_found)
+                state.say(6, state.rules.origin_text)
             state.emit(HomeChanged())
         if state.boot_sequence.shows_prearm(state.age_ns) and not state.armed:
             self._health_checks.check_arming()

@@ -96,9 +96,9 @@ class Transitions:
         state = self._state
         if not state.rules.termination_lasts:
             if state.armed:
-                self.disarm(state.rules.disarmed)
+                self.disarm(state.rules.disarmed_text)
             else:
-                state.say(6, state.rules.disarmed)
+                state.say(6, state.rules.disarmed_text)
             return
         state.terminated = True
         state.cut_off_in_air = state.cut_off_in_air or state.control.flying
