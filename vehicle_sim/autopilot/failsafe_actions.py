@@ -8,9 +8,12 @@ inside, unless FENCE_OPTIONS allows it.
 
 from __future__ import annotations
 
-from math import ceil, inf
+from math import ceil
 
-from vehicle_sim.autopilot.control.demands import Situation, Task
+from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
+from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
+from vehicle_sim.autopilot.bounds import Bounds
+from vehicle_sim.autopilot.control.demands import Situation
 from vehicle_sim.autopilot.failsafes.failsafe import (
     OFFBOARD_LOSS,
     RANK,
@@ -19,149 +22,134 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
     Failsafe,
     activated,
 )
-from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, Strike
+from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Strike
+from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector
+from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.health_checks import HealthChecks
 from vehicle_sim.autopilot.modes import Mode
 from vehicle_sim.autopilot.parameters.parameters import Quantity
 from vehicle_sim.autopilot.tasks.descend import Descend
+from vehicle_sim.autopilot.tasks.guided import SetpointStream
 from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff
+from vehicle_sim.autopilot.transitions import Transitions
 from vehicle_sim.control_loops.flight import BY_RATES
 
 _WITHOUT = frozenset({Action.POSITION, Action.HOLD, Action.BRAKE, Action.RETURN, Action.LAND})
 _GRACE_COMES_BACK = 4.0
-_EMERGENCY = frozenset({Action.DESCEND, Action.DISARM, Action.TERMINATE})
 
 
-class FailsafeActions(HealthChecks):
+class FailsafeActions:
     """Failsafes, carried out."""
 
-    _grace_left_s: float
-    _grace_ns: int
-    _acting: Failsafe | None
-    _due_ns: int | None
-    _came_from: Mode | None
-    _overruled: Failsafe | None
-    _on_its_own: bool
-
-    def _restart(self) -> None:
-        super()._restart()
-        self._failsafe_checks.restart()
-        self._failure_detector.reset()
-        self._geofence.forget()
-        self._on_its_own = False
-        self._due_ns = None
-        self._grace_left_s = inf
-        self._grace_ns = self.time_ns
-        self._stand_down()
-
-    def _stand_down(self) -> None:
-        """Nothing is being done about anything."""
-        if self._due_ns is not None:  # what is left of the delay is left for the next one
-            self._grace_left_s = max(0.0, (self._due_ns - self.time_ns) * 1e-9)
-            self._grace_ns = self.time_ns
-        self._acting = None
-        self._due_ns = None
-        self._came_from = None
-        self._overruled = None
-
-    @property
-    def emergency(self) -> bool:
-        """What is being done is a last resort: MAV_STATE_EMERGENCY in place of CRITICAL."""
-        return self._acting is not None and self._acting.action in _EMERGENCY
+    def __init__(
+        self,
+        state: FlightState,
+        battery: BatteryMonitor,
+        bounds: Bounds,
+        health_checks: HealthChecks,
+        stream: SetpointStream,
+        acting: ActingFailsafe,
+        transitions: Transitions,
+        failsafe_checks: FailsafeChecks,
+        failure_detector: FailureDetector,
+    ) -> None:
+        self._state = state
+        self._battery = battery
+        self._bounds = bounds
+        self._health_checks = health_checks
+        self._stream = stream
+        self._acting = acting
+        self._transitions = transitions
+        self._failsafe_checks = failsafe_checks
+        self._failure_detector = failure_detector
 
     def gcs_heard(self, wall_ns: int) -> None:
         cleared = self._failsafe_checks.station_heard(wall_ns)
         if cleared is not None:
-            self._say(cleared.severity, cleared.text)
+            self._state.say(cleared.severity, cleared.text)
 
-    # ---------------------------------------------------------------- who is in command
-
-    def _enter(self, mode: Mode, task: Task | None = None) -> None:
-        super()._enter(mode, task)
-        if self.personality == "ardupilot" and self._geofence.breached:
-            self._say(6, "Manual recovery started")
-        if self._on_its_own:
-            return
-        if mode.may_arm:
-            # PX4 goes back to it with the disarming (UserModeIntention).
-            self._mode_after_disarming = mode
-        if self._acting is not None and self._acting.cause is Cause.FENCE:
-            self._geofence.taken_over(self.time_ns)
-        self._stand_down()
-
-    def _disarm(self, text: str) -> None:
-        super()._disarm(text)
-        self._stand_down()
-        self._failsafe_checks.reset()
-        self._failure_detector.reset()
-
-    def _held_by_fence(self, mode: Mode) -> bool:
+    def held_by_fence(self, mode: Mode) -> bool:
         """Whether ArduCopter refuses to leave what a breach led to, and says so."""
-        acting = self._acting
+        state = self._state
+        acting = self._acting.failsafe
         if (
-            self.personality == "px4"
+            not state.rules.fence_may_hold_mode
             or acting is None
             or acting.cause is not Cause.FENCE
-            or not self._geofence.breached
-            or not int(self.parameters.get("FENCE_OPTIONS")) & 1
+            or not self._bounds.geofence.breached
+            or not int(state.parameters.get("FENCE_OPTIONS")) & 1
         ):
             return False
-        self._say(4, f"Mode change to {mode.name} failed: in fence recovery")
+        state.say(4, f"Mode change to {mode.name} failed: in fence recovery")
         return True
 
     # --------------------------------------------------------------------- what it sees
 
-    def _guard(self, s: Situation) -> None:
+    def watch_armed(self, s: Situation) -> None:
         """Ten times a second while armed."""
-        crossing = self._look_at_fence(s)
+        state = self._state
+        crossing = self._bounds.crossing(s)
         strikes: list[Strike] = []
-        if not self._quiet(s, crossing):
-            strikes += self._failsafe_checks.check(self._see(s, crossing))
-        if not self._calm:
-            by_rates = self.blocks.flight.attitude == BY_RATES
-            strikes += self._failure_detector.check(self._posture(), s.flying, by_rates, s.time_ns)
+        if not self._health_checks.quiet(s, crossing):
+            strikes += self._failsafe_checks.check(self._health_checks.see(s, crossing))
+        if not self._health_checks.calm:
+            by_rates = state.blocks.flight.attitude == BY_RATES
+            posture = self._health_checks.posture()
+            strikes += self._failure_detector.check(posture, s.flying, by_rates, s.time_ns)
         for strike in sorted(strikes, key=_order):
             if isinstance(strike, Cleared):
-                self._relax(strike, s)
-            elif self._armed:
+                self._clear(strike, s)
+            elif state.armed:
                 self._strike(strike, s)
-        if self._due_ns is not None and s.time_ns >= self._due_ns and self._acting is not None:
-            self._due_ns = None
-            self._say(self._acting.severity, self._acting.text)
-            self._carry_out(self._acting.action)
+        due_ns, acting = self._acting.due_ns, self._acting.failsafe
+        if due_ns is not None and s.time_ns >= due_ns and acting is not None:
+            self._acting.due_ns = None
+            state.say(acting.severity, acting.text)
+            self._carry_out(acting.action)
 
-    def _watch_disarmed(self, s: Situation) -> None:
+    def watch_disarmed(self, s: Situation) -> None:
         """Ten times a second while disarmed: what is told then, and stands in the way of arming."""
         for struck in self._failsafe_checks.check_disarmed(
-            s.wall_ns, self.power, self._charge_seen
+            s.wall_ns, self._battery.power, self._battery.charge_seen
         ):
-            self._say(struck.severity, struck.text)
+            self._state.say(struck.severity, struck.text)
+
+    def watch_offboard(self, s: Situation) -> None:
+        state = self._state
+        if state.mode.name != "OFFBOARD":
+            return
+        loss_ns = int(state.parameters.si(Quantity.SETPOINT_LOSS_S) * 1e9)
+        if self._stream.age_ns(s.wall_ns) >= loss_ns:
+            action = OFFBOARD_LOSS[int(state.parameters.get("COM_OBL_RC_ACT"))]
+            text = activated(action, "no offboard signal")
+            self._strike(Failsafe(Cause.SETPOINTS, action, text, 2), s)
 
     # -------------------------------------------------------------------- what it does
 
     def _strike(self, struck: Failsafe, s: Situation) -> None:
         """Say it, and act if it is worse than what is being done already."""
-        acting = self._acting
+        state = self._state
+        acting = self._acting.failsafe
         worse = acting is None or RANK[struck.action] > RANK[acting.action]
         if struck.action is Action.WARN or not worse:
-            if struck.action is Action.WARN or self.personality != "px4":
-                self._say(struck.severity, struck.text)
+            if struck.action is Action.WARN or state.rules.tells_lesser_failsafes:
+                state.say(struck.severity, struck.text)
             return
         wait_s = self._grace_s(struck, s)
-        self._acting = struck
-        self._came_from = self._came_from or self._mode
-        self._overruled = acting
+        self._acting.failsafe = struck
+        self._acting.came_from = self._acting.came_from or state.mode
+        self._acting.overruled = acting
         if wait_s > 0.0:
-            self._due_ns = s.time_ns + int(wait_s * 1e9)
-            self._grace_left_s, self._grace_ns = 0.0, self._due_ns
-            self._say(struck.severity, f"{struck.text} in {ceil(wait_s):.0f} seconds")
-            climbing = self._task if isinstance(self._task, TakeOff) and not s.flying else None
+            self._acting.due_ns = s.time_ns + int(wait_s * 1e9)
+            self._acting.grace_left_s, self._acting.grace_ns = 0.0, self._acting.due_ns
+            state.say(struck.severity, f"{struck.text} in {ceil(wait_s):.0f} seconds")
+            climbing = state.task if isinstance(state.task, TakeOff) and not s.flying else None
             self._change(Action.HOLD)
             if climbing is not None:
-                self._task = Hold(climbing.target.pos_ned, lifts=True)
+                state.task = Hold(climbing.target.pos_ned, lifts=True)
         else:
-            self._due_ns = None
-            self._say(struck.severity, struck.text)
+            self._acting.due_ns = None
+            state.say(struck.severity, struck.text)
             self._carry_out(struck.action)
 
     def _grace_s(self, struck: Failsafe, s: Situation) -> float:
@@ -169,61 +157,54 @@ class FailsafeActions(HealthChecks):
         at_once = struck.action in (Action.DISARM, Action.TERMINATE) or not struck.delayed
         if (
             at_once
-            or self._acting is not None
-            or not (s.flying or self._task.lifts_off(s))
+            or self._acting.failsafe is not None
+            or not (s.flying or self._state.task.lifts_off(s))
             or self._failsafe_checks.position_lost
         ):
             return 0.0
         # A delay that was used comes back in four times the time that it lasted.
-        back_s = max(0, s.time_ns - self._grace_ns) * 1e-9 / _GRACE_COMES_BACK
-        return min(self._grace_left_s + back_s, self.parameters.get("COM_FAIL_ACT_T"))
+        back_s = max(0, s.time_ns - self._acting.grace_ns) * 1e-9 / _GRACE_COMES_BACK
+        return min(self._acting.grace_left_s + back_s, self._state.parameters.get("COM_FAIL_ACT_T"))
 
     def _carry_out(self, action: Action) -> None:
+        state = self._state
         match action:
             case Action.TERMINATE:
-                self._terminate()
+                self._transitions.terminate()
             case Action.DISARM:
-                self._disarm("Disarmed by failsafe")
-            case Action.RETURN | Action.LAND | Action.DESCEND if not self._pilot.flying:
-                self._disarm("Disarmed by failsafe")
+                self._transitions.disarm("Disarmed by failsafe")
+            case Action.RETURN | Action.LAND | Action.DESCEND if not state.control.flying:
+                self._transitions.disarm("Disarmed by failsafe")
             case _:
                 self._change(action)
-        self._failsafe_active = self._armed
+        state.failsafe_active = state.armed
 
     def _change(self, action: Action) -> None:
         """The mode for it; without a position what needs one becomes a descent."""
+        state = self._state
         if action is Action.DESCEND or (action in _WITHOUT and self._failsafe_checks.position_lost):
-            kind, task = "land", Descend(self.parameters)
+            kind, task = "land", Descend(state.parameters)
         else:
             kind, task = action.value, None
-        self._on_its_own = True
-        self._enter_kind(kind, task)
-        self._on_its_own = False
-        self._failsafe_active = self._armed
+        self._acting.on_its_own = True
+        self._transitions.enter_kind(kind, task)
+        self._acting.on_its_own = False
+        state.failsafe_active = state.armed
 
-    def _relax(self, cleared: Cleared, s: Situation) -> None:
+    def _clear(self, cleared: Cleared, s: Situation) -> None:
         """What triggered it has gone.  PX4 goes back to what it flew before it lost position."""
         if cleared.text:
-            self._say(cleared.severity, cleared.text)
-        acting, came_from = self._acting, self._came_from
-        if self.personality != "px4" or acting is None or acting.cause is not Cause.POSITION:
+            self._state.say(cleared.severity, cleared.text)
+        acting, came_from = self._acting.failsafe, self._acting.came_from
+        if not self._state.rules.mode_back_with_position or acting is None:
             return
-        if cleared.cause is not Cause.POSITION:
+        if acting.cause is not Cause.POSITION or cleared.cause is not Cause.POSITION:
             return
-        if self._overruled is not None:
-            self._acting, self._overruled = self._overruled, None
-            self._carry_out(self._acting.action)
+        if self._acting.overruled is not None:
+            self._acting.failsafe, self._acting.overruled = self._acting.overruled, None
+            self._carry_out(self._acting.failsafe.action)
         elif came_from is not None and s.flying:
-            self._enter(came_from)
-
-    def _watch_offboard(self, s: Situation) -> None:
-        if self._mode.name != "OFFBOARD":
-            return
-        loss_ns = int(self.parameters.si(Quantity.SETPOINT_LOSS_S) * 1e9)
-        if self._stream.age_ns(s.wall_ns) >= loss_ns:
-            action = OFFBOARD_LOSS[int(self.parameters.get("COM_OBL_RC_ACT"))]
-            text = activated(action, "no offboard signal")
-            self._strike(Failsafe(Cause.SETPOINTS, action, text, 2), s)
+            self._transitions.enter(came_from)
 
 
 def _order(strike: Strike) -> int:

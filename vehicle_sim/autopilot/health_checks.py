@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from math import acos, asin, atan2, sqrt
 
-from vehicle_sim.autopilot.bounds import Bounds
+from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
 from vehicle_sim.autopilot.control.demands import Situation
 from vehicle_sim.autopilot.failsafes.arming import Readiness, reasons
-from vehicle_sim.autopilot.failsafes.failsafe_checks import Seen
-from vehicle_sim.autopilot.failsafes.failure_detector import Posture
-from vehicle_sim.autopilot.fence.geofence import NOTHING, Crossing
+from vehicle_sim.autopilot.failsafes.failsafe_checks import FailsafeChecks, Seen
+from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector, Posture
+from vehicle_sim.autopilot.fence.geofence import NOTHING, Crossing, Geofence
+from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import AttitudeSetpoint, Power, Result
+from vehicle_sim.autopilot.manual.sticks import Radio
+from vehicle_sim.autopilot.mission_checks import MissionChecks
 from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.autopilot.tasks.descend import Descend
+from vehicle_sim.autopilot.tasks.guided import SetpointStream
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 
 _CHECKED_EVERY_NS = 1_000_000_000
@@ -20,28 +24,51 @@ _AGAIN_NS = 4_000_000_000
 _DISPLAYED_EVERY_NS = 30_000_000_000
 
 
-class HealthChecks(Bounds):
+class HealthChecks:
     """Looks, and decides nothing."""
 
-    def _restart(self) -> None:
-        super()._restart()
-        self._checked_ns = self._displayed_ns = self.time_ns
+    def __init__(
+        self,
+        state: FlightState,
+        battery: BatteryMonitor,
+        geofence: Geofence,
+        mission_checks: MissionChecks,
+        radio: Radio,
+        stream: SetpointStream,
+        failsafe_checks: FailsafeChecks,
+        failure_detector: FailureDetector,
+    ) -> None:
+        self._state = state
+        self._battery = battery
+        self._geofence = geofence
+        self._mission_checks = mission_checks
+        self._radio = radio
+        self._stream = stream
+        self._failsafe_checks = failsafe_checks
+        self._failure_detector = failure_detector
+        self.restart()
+
+    def restart(self) -> None:
+        """As after power-up."""
+        self._checked_ns = self._displayed_ns = self._state.time_ns
         self._was_ready = self._newly_unready = False
 
     # --------------------------------------------------------------------------- arming
 
-    def _against_arming(self) -> tuple[str, ...]:
+    def against_arming(self) -> tuple[str, ...]:
         """All that speaks against arming now, in the autopilot's words."""
-        s = self._sense()
-        est, sensed = self._est, self._sensed
-        posture = self._posture()
+        state = self._state
+        s = state.sense()
+        est, sensed = state.est, state.sensed
+        posture = self.posture()
+        has_mission = self._mission_checks.passed
         return reasons(
-            self.parameters,
+            state.parameters,
             Readiness(
-                mode=self._mode,
-                health=self.health,
-                power=self.power,
-                remaining=self._charge_seen,
+                mode=state.mode,
+                health=state.health,
+                power=self._battery.power,
+                remaining=self._battery.charge_seen,
                 gyro_bias_rad_s=max(
                     abs(est.gyro_bias_x), abs(est.gyro_bias_y), abs(est.gyro_bias_z)
                 ),
@@ -51,95 +78,93 @@ class HealthChecks(Bounds):
                 roll_rad=posture.roll_rad,
                 pitch_rad=posture.pitch_rad,
                 geofence=self._geofence,
-                has_mission=self._mission_ok,
-                mission_ok=self._mode.behaviour is not Behaviour.MISSION or self._mission_ok,
+                has_mission=has_mission,
+                mission_ok=state.mode.behaviour is not Behaviour.MISSION or has_mission,
                 setpoints=self._stream.alive(s.wall_ns),
                 sticks=self._radio.sticks(s.wall_ns) is not None,
                 sticks_lost=self._radio.lost(s.wall_ns),
                 station_lost=self._failsafe_checks.station_lost,
                 battery_failed=self._failsafe_checks.battery_failed,
-                calibration=self._calibration.against_arming,
+                calibration=state.calibration.against_arming,
             ),
         )
 
-    def _say_against_arming(self, asked_to_arm: bool) -> bool:
+    def say_against_arming(self, asked_to_arm: bool) -> bool:
         """Whether there is something, after telling it."""
-        against = self._against_arming() if asked_to_arm else self._unready()
+        against = self.against_arming() if asked_to_arm else self._unready()
         for reason in against:
             # ArduCopter's words begin with what it was asked for.
             head, colon, rest = reason.partition(": ")
             if asked_to_arm and head == "PreArm":
                 reason = f"Arm{colon}{rest}"
-            self._say(2, reason)
+            self._state.say(2, reason)
         return bool(against)
 
     def _unready(self) -> tuple[str, ...]:
         """What is against arming at any time; some of ArduCopter's checks are made only then."""
-        return tuple(why for why in self._against_arming() if not why.startswith("Arm: "))
+        return tuple(why for why in self.against_arming() if not why.startswith("Arm: "))
 
     def check_arming(self) -> Result:
-        if self._armed:
-            return self._while_armed
-        if self._boot_sequence.holds(self._age_ns):
+        state = self._state
+        if state.armed:
+            return state.rules.arming_check_armed
+        if state.boot_sequence.holds(state.age_ns):
             self._say_boot_reasons("PreArm", forced=False)
         else:
-            self._say_against_arming(False)
+            self.say_against_arming(False)
         return Result.ACCEPTED
 
-    def _held_by_boot(self, forced: bool) -> bool:
+    def held_by_boot(self, forced: bool) -> bool:
         """Whether it has not started up far enough to arm, after telling why."""
-        boot, age_ns = self._boot_sequence, self._age_ns
+        boot, age_ns = self._state.boot_sequence, self._state.age_ns
         if not (boot.holds_forced(age_ns) if forced else boot.holds(age_ns)):
             return False
         self._say_boot_reasons("Arm", forced)
         return True
 
     def _say_boot_reasons(self, checked_for: str, forced: bool) -> None:
-        for reason in self._boot_sequence.reasons(self._age_ns, self._mode, forced):
-            self._say(2, f"{checked_for}: {reason}")
+        state = self._state
+        for reason in state.boot_sequence.reasons(state.age_ns, state.mode, forced):
+            state.say(2, f"{checked_for}: {reason}")
 
-    def _display_failures(self) -> None:
+    def display_failures(self) -> None:
         """AP_Arming::update, once a second: what is against arming is told when it comes, and every
         30 s."""
-        last_ns, quiet_ns = self._checked_ns, self.time_ns - self._displayed_ns
-        if self.personality != "ardupilot" or self.time_ns - last_ns < _CHECKED_EVERY_NS:
+        state = self._state
+        last_ns, quiet_ns = self._checked_ns, state.time_ns - self._displayed_ns
+        if not state.rules.tells_unready or state.time_ns - last_ns < _CHECKED_EVERY_NS:
             return
-        self._checked_ns = self.time_ns
+        self._checked_ns = state.time_ns
         if quiet_ns > (_AGAIN_NS if self._newly_unready else _DISPLAYED_EVERY_NS):
             self._newly_unready = False
-            self._displayed_ns = self.time_ns
-            self._say_against_arming(False)
+            self._displayed_ns = state.time_ns
+            self.say_against_arming(False)
         ready = not self._unready()
         self._newly_unready = self._newly_unready or (self._was_ready and not ready)
         self._was_ready = ready
 
-    @property
-    def _while_armed(self) -> Result:
-        """PX4 takes the command then, too, and has nothing to tell."""
-        return Result.ACCEPTED if self.personality == "px4" else Result.TEMPORARILY_REJECTED
-
     # -------------------------------------------------------------------------- in flight
 
-    def _quiet(self, s: Situation, crossing: Crossing) -> bool:
+    def quiet(self, s: Situation, crossing: Crossing) -> bool:
         """Whether no failsafe's trigger can have come or gone."""
         lost = self._radio.lost(s.wall_ns)
         return crossing is NOTHING and self._failsafe_checks.quiet(
-            s.wall_ns, self._sensed, self._est, lost
+            s.wall_ns, self._state.sensed, self._state.est, lost
         )
 
-    def _see(self, s: Situation, crossing: Crossing) -> Seen:
-        sensed = self._sensed
-        volts = self._simulated_battery.volts(sensed.battery_v)
-        power = Power(volts, sensed.battery_a, sensed.battery_used_mah, 0)
+    def see(self, s: Situation, crossing: Crossing) -> Seen:
+        state = self._state
+        sensed = state.sensed
+        power = Power(self._battery.volts, sensed.battery_a, sensed.battery_used_mah, 0)
         return Seen(
             time_ns=s.time_ns,
             wall_ns=s.wall_ns,
-            mode=self._mode,
+            mode=state.mode,
             flying=s.flying,
             needs_position=self._needs_position,
             power=power,
-            remaining=self._charge_seen,
-            health=self.health,
+            remaining=self._battery.charge_seen,
+            health=state.health,
             sticks=self._radio.sticks(s.wall_ns) is not None,
             sticks_lost=self._radio.lost(s.wall_ns),
             crossing=crossing,
@@ -147,15 +172,17 @@ class HealthChecks(Bounds):
 
     @property
     def _needs_position(self) -> bool:
-        if isinstance(self._task, Descend):
+        state = self._state
+        if isinstance(state.task, Descend):
             return False
         if isinstance(self._stream.setpoint, AttitudeSetpoint):
-            return self._mode.behaviour is not Behaviour.GUIDED
-        return self._mode.needs_position or self._mode.behaviour is Behaviour.LAND
+            return state.mode.behaviour is not Behaviour.GUIDED
+        return state.mode.needs_position or state.mode.behaviour is Behaviour.LAND
 
     @property
-    def _calm(self) -> bool:
-        est, f, sensed = self._est, self.blocks.flight, self._sensed
+    def calm(self) -> bool:
+        state = self._state
+        est, f, sensed = state.est, state.blocks.flight, state.sensed
         return self._failure_detector.calm(
             1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy),
             1.0 - 2.0 * (f.sp_x * f.sp_x + f.sp_y * f.sp_y),
@@ -163,8 +190,9 @@ class HealthChecks(Bounds):
             min(sensed.esc_1, sensed.esc_2, sensed.esc_3, sensed.esc_4),
         )
 
-    def _posture(self) -> Posture:
-        est, f, sensed = self._est, self.blocks.flight, self._sensed
+    def posture(self) -> Posture:
+        state = self._state
+        est, f, sensed = state.est, state.blocks.flight, state.sensed
         w, x, y, z = est.qw, est.qx, est.qy, est.qz
         a, b, c, d = f.sp_w, f.sp_x, f.sp_y, f.sp_z
         up_is = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from math import pi
 
+from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
 from vehicle_sim.autopilot.control.flight_control import heading_of
-from vehicle_sim.autopilot.decisions import Decisions
+from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.health_checks import HealthChecks
 from vehicle_sim.autopilot.interface import (
+    AttitudeGoal,
     Estimate,
     Geodetic,
     GpsFix,
     Landed,
-    PlanItem,
+    Orbiting,
     Readings,
-    Target,
     Truth,
 )
-from vehicle_sim.autopilot.modes import Flag
+from vehicle_sim.autopilot.mission.mission import Mission
+from vehicle_sim.autopilot.modes import Behaviour, Flag
+from vehicle_sim.autopilot.tasks.orbit import Orbit
 from vehicle_sim.engine.step import state_bytes
 from vehicle_sim.engine.truth import motion_of
 from vehicle_sim.estimation.estimator import booted
@@ -26,22 +30,34 @@ _FALLING_M_S = 1.0
 _QUADROTOR = 2  # MAV_TYPE
 
 
-class View(Decisions):
-    """The read-only half of `Vehicle`."""
+class View:
+    """Reads, and changes nothing."""
 
-    _shown: Estimate | None = None
-    _shown_home: Vec3 | None = None
+    def __init__(
+        self,
+        state: FlightState,
+        health_checks: HealthChecks,
+        acting: ActingFailsafe,
+        mission: Mission,
+    ) -> None:
+        self._state = state
+        self._health_checks = health_checks
+        self._acting = acting
+        self._mission = mission
+        self._shown: Estimate | None = None
+        self._shown_home: Vec3 | None = None
 
-    def _restart(self) -> None:
-        super()._restart()
+    def restart(self) -> None:
+        """As after power-up."""
         self._shown = None
 
     @property
     def truth(self) -> Truth:
-        real = motion_of(self.blocks)
-        where = self._projection.to_geodetic(real.pos_ned)
+        state = self._state
+        real = motion_of(state.blocks)
+        where = state.projection.to_geodetic(real.pos_ned)
         return Truth(
-            time_s=self.time_ns / 1e9,
+            time_s=state.time_ns / 1e9,
             pos_ned=real.pos_ned,
             v_ned=real.v_ned,
             q_ned_from_frd=real.q_ned_from_frd,
@@ -49,21 +65,22 @@ class View(Decisions):
             lat_deg=where.lat_deg,
             lon_deg=where.lon_deg,
             alt_amsl_m=where.alt_amsl_m,
-            armed=self._armed,
-            mode=self._mode.name,
-            landed=not self._pilot.flying and real.touching,
+            armed=state.armed,
+            mode=state.mode.name,
+            landed=not state.control.flying and real.touching,
             battery=real.charge,
         )
 
     def state_bytes(self) -> bytes:
         """The whole numeric state; equal bytes are an equal flight."""
-        return state_bytes(self.blocks)
+        return state_bytes(self._state.blocks)
 
     @property
     def estimate(self) -> Estimate:
         """Made once a step, for all who ask: nothing of it changes in between but home."""
-        time_ns, home_ned = self.time_ns, self._home_ned
-        located = self._origin is not None
+        state = self._state
+        time_ns, home_ned = state.time_ns, state.home_ned
+        located = state.origin is not None
         shown = self._shown
         if (
             shown is not None
@@ -72,10 +89,10 @@ class View(Decisions):
             and self._shown_home is home_ned
         ):
             return shown
-        est, sensed = self._est, self._sensed
+        est, sensed = state.est, state.sensed
         pos_ned = (est.pos_n, est.pos_e, est.pos_d)
-        q = self._attitude
-        where = self._projection.to_geodetic(pos_ned)
+        q = state.attitude
+        where = state.projection.to_geodetic(pos_ned)
         home_d = home_ned[2] if home_ned is not None else 0.0
         heading = heading_of(q)
         self._shown_home = home_ned
@@ -97,14 +114,15 @@ class View(Decisions):
 
     @property
     def readings(self) -> Readings:
-        s = self._sensed
-        judged = self.health
-        where = self._projection.to_geodetic((s.gps_n, s.gps_e, s.gps_d))
+        state = self._state
+        s = state.sensed
+        judged = state.health
+        where = state.projection.to_geodetic((s.gps_n, s.gps_e, s.gps_d))
         return Readings(
             gyro_frd=(s.gyro_x, s.gyro_y, s.gyro_z),
             accel_frd=(s.accel_x, s.accel_y, s.accel_z),
             mag_frd=(s.mag_x, s.mag_y, s.mag_z),
-            pressure_alt_amsl_m=self._field.alt_amsl_m + s.baro_up_m,
+            pressure_alt_amsl_m=state.ground.alt_amsl_m + s.baro_up_m,
             gps=GpsFix(
                 judged.gps_fix,
                 self._satellites(judged.satellites),
@@ -119,109 +137,68 @@ class View(Decisions):
 
     def _satellites(self, heard: int) -> int:
         """PX4's simulated receiver says as many as its parameter."""
-        by_parameter = self.personality == "px4" and heard > 0
-        return int(self.parameters.get("SIM_GPS_USED")) if by_parameter else heard
-
-    @property
-    def target(self) -> Target:
-        return self._task.target
-
-    @property
-    def armed(self) -> bool:
-        return self._armed
+        used = self._state.rules.satellites
+        return heard if used is None or heard <= 0 else int(self._state.parameters.get(used))
 
     @property
     def landed(self) -> Landed:
-        if self._pilot.flying or self._cut_off_in_air:
-            return self._task.landed_word
-        falling = abs(self._est.vel_d) > _FALLING_M_S
+        state = self._state
+        if state.control.flying or state.cut_off_in_air:
+            return state.task.landed_word
+        falling = abs(state.est.vel_d) > _FALLING_M_S
         return Landed.IN_AIR if falling else Landed.ON_GROUND
 
     @property
-    def mode_name(self) -> str:
-        return self._mode.name
-
-    @property
-    def custom_mode(self) -> int:
-        return self._mode.custom_mode
-
-    @property
     def base_mode(self) -> int:
-        flags = self._mode.flags | (Flag.SAFETY_ARMED if self._armed else 0)
+        state = self._state
+        flags = state.mode.flags | (Flag.SAFETY_ARMED if state.armed else 0)
         # As recorded of ArduCopter: until it is initialised it says that it is guided, too.
-        return flags if self.boot_stage.initialised else flags | Flag.GUIDED_ENABLED
+        return flags if state.boot_stage.initialised else flags | Flag.GUIDED_ENABLED
 
     @property
     def system_status(self) -> int:
-        if self._terminated:
+        state = self._state
+        if state.terminated:
             return 8  # MAV_STATE_FLIGHT_TERMINATION
-        if self._failsafe_active:
-            return 6 if self.emergency else 5  # EMERGENCY, CRITICAL
+        if state.failsafe_active:
+            return 6 if self._acting.emergency else 5  # EMERGENCY, CRITICAL
         if not self._initialised:
             return 1  # BOOT
-        if self._calibration.busy:
+        if state.calibration.busy:
             return 2  # CALIBRATING
-        flying = self._armed if self.personality == "px4" else self._pilot.flying
+        flying = state.armed if state.rules.armed_is_active else state.control.flying
         return 4 if flying else 3  # ACTIVE, STANDBY
 
     @property
     def _initialised(self) -> bool:
-        real = self._boot_sequence.real
-        return self.boot_stage.initialised if real else booted(self._est)
-
-    @property
-    def origin(self) -> Geodetic | None:
-        return self._origin
+        state = self._state
+        real = state.boot_sequence.real
+        return state.boot_stage.initialised if real else booted(state.est)
 
     @property
     def home(self) -> Geodetic | None:
-        if self._home_ned is None:
+        state = self._state
+        if state.home_ned is None:
             return None
-        return self._projection.to_geodetic(self._home_ned)
-
-    @property
-    def home_pos_ned(self) -> Vec3 | None:
-        return self._home_ned
+        return state.projection.to_geodetic(state.home_ned)
 
     @property
     def armable(self) -> bool:
-        if self._terminated or self._boot_sequence.holds(self._age_ns):
+        state = self._state
+        if state.terminated or state.boot_sequence.holds(state.age_ns):
             return False
-        return not self._against_arming()
+        return not self._health_checks.against_arming()
 
     @property
     def mav_type(self) -> int:
-        """That of a quadrotor, unless PX4's parameter says another."""
-        return int(self.parameters.get("MAV_TYPE")) if self.personality == "px4" else _QUADROTOR
+        """That of a quadrotor, unless a parameter says another."""
+        name = self._state.rules.mav_type
+        return _QUADROTOR if name is None else int(self._state.parameters.get(name))
 
     @property
     def motor_outputs(self) -> tuple[float, float, float, float]:
-        f = self.blocks.flight
+        f = self._state.blocks.flight
         return (f.u1, f.u2, f.u3, f.u4)
-
-    @property
-    def wind_ned(self) -> Vec3 | None:
-        return self._airflow.wind_ned
-
-    @property
-    def vibration_m_s2(self) -> Vec3:
-        return self._airflow.vibration_m_s2
-
-    @property
-    def capturing(self) -> bool:
-        return self._camera.exposing
-
-    @property
-    def images_captured(self) -> int:
-        return self._camera.images
-
-    @property
-    def plan(self) -> tuple[PlanItem, ...]:
-        return self._mission.items
-
-    @property
-    def mission_current(self) -> int:
-        return self._mission.current
 
     @property
     def mission_state(self) -> int:
@@ -232,4 +209,24 @@ class View(Decisions):
             return 5  # COMPLETE
         if not mission.started:
             return 2  # NOT_STARTED
-        return 3 if self._task is mission and self._armed else 4  # ACTIVE, PAUSED
+        return 3 if self._state.task is mission and self._state.armed else 4  # ACTIVE, PAUSED
+
+    @property
+    def orbiting(self) -> Orbiting | None:
+        """What ORBIT_EXECUTION_STATUS tells; PX4's Orbit mode alone does."""
+        task = self._state.task
+        if isinstance(task, Orbit) and self._state.mode.behaviour is Behaviour.ORBIT:
+            return task.status
+        return None
+
+    @property
+    def attitude_goal(self) -> AttitudeGoal | None:
+        f = self._state.blocks.flight
+        if not f.flying:
+            return None
+        full_n = 4.0 * self._state.believed.thrust_max_n
+        return AttitudeGoal(
+            (f.sp_w, f.sp_x, f.sp_y, f.sp_z),
+            (f.rate_sp_x, f.rate_sp_y, f.rate_sp_z),
+            min(1.0, f.collective_n / full_n),
+        )

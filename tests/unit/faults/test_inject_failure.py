@@ -76,7 +76,7 @@ def test_each_failure_shows_in_the_vehicle_and_ok_ends_it(unit: Unit, kind: Type
             tuple(getattr(sensed, name) for name in sensed.__slots__ if "_off_" in name),
             (sensed.mag_lost, sensed.baro_lost, sensed.gps_lost, body.cells_lost),
             (body.health_1, body.health_2, body.health_3, body.health_4),
-            stage.vehicle._radio.deaf,
+            stage.vehicle.parts.radio.deaf,
         )
 
     sound = wrong()

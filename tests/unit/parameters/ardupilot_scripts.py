@@ -271,7 +271,7 @@ def leader_walks(
     vehicle = flight.vehicle
     for tick in range(round(seconds * 10)):
         place = (start[0] + 0.3 * tick, start[1], -10.0)
-        there = vehicle.datum().projection.to_geodetic(place)
+        there = vehicle.state.datum().projection.to_geodetic(place)
         v_ned = (3.0, 0.0, 0.0)
         vehicle.hear_leader(system, there, v_ned, radians(90.0), vehicle.time_ns)
         flight.fly(0.1)
@@ -315,7 +315,7 @@ def leader_height_m(setting: Setting) -> float:
         0, round(-35.363262e7), round(149.165237e7), 600_000, 30_000, 0, 0, 0, 0
     )
     served.send(told, system=3, component=1)
-    seen = flight.vehicle._leader.seen(flight.vehicle._sense().wall_ns)
+    seen = flight.vehicle.parts.leader.seen(flight.vehicle.state.sense().wall_ns)
     return inf if seen is None else -seen.pos_ned[2]
 
 

@@ -195,7 +195,7 @@ def leader_walks(flight: HandFlight, seconds: float, speed_m_s: float = 3.0) -> 
     vehicle = flight.vehicle
     for tick in range(round(seconds * 10)):
         place = (20.0 + speed_m_s * 0.1 * tick, 0.0, -2.0)
-        there = vehicle.datum().projection.to_geodetic(place)
+        there = vehicle.state.datum().projection.to_geodetic(place)
         vehicle.hear_leader(0, there, (speed_m_s, 0.0, 0.0), None, vehicle.time_ns)
         flight.fly(0.1)
 

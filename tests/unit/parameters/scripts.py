@@ -265,7 +265,7 @@ def reached_at_m(setting: Setting) -> float:
     """How far from its waypoint a mission calls it reached."""
     flight = setting.aloft()
     flies_plan(flight, (30.0, 0.0), (30.0, 30.0))
-    flight.fly(30.0, lambda: any(isinstance(e, MissionReached) for e in flight.vehicle._events))
+    flight.fly(30.0, lambda: any(isinstance(e, MissionReached) for e in flight.vehicle.events()))
     return flight.off((30.0, 0.0, -UP_M))
 
 

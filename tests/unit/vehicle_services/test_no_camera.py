@@ -93,6 +93,6 @@ def test_a_camera_cannot_be_streamed(personality: Personality) -> None:
 def test_a_mission_flies_on_without_its_pictures() -> None:
     """A mission asks the vehicle itself, not its services."""
     bench = bare("px4")
-    bench.autopilot.take_pictures(0.0, 3)
+    bench.autopilot.parts.mission_support.take_pictures(0.0, 3)
     bench.advance(10 * S)
     assert bench.autopilot.images_captured == 0

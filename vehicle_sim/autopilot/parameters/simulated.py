@@ -16,11 +16,11 @@ from vehicle_sim.plant.faults import (
     AccelBias,
     BaroFault,
     CellsLost,
-    Fault,
     GpsGlitch,
     GpsLost,
     GyroBias,
     MagFault,
+    ModelFault,
     MotorFault,
     RcLost,
     WindChange,
@@ -40,7 +40,7 @@ class _Group:
     """Parameters that make faults together; `make` is given where it is and what they say."""
 
     names: tuple[str, ...]
-    make: Callable[[float, tuple[float, ...]], tuple[Fault, ...]]
+    make: Callable[[float, tuple[float, ...]], tuple[ModelFault | RcLost, ...]]
 
 
 def _wind(from_deg: float, speed_m_s: float, gust_m_s: float) -> WindChange:
@@ -53,7 +53,7 @@ def _weakened(full_v: float) -> CellsLost:
     return CellsLost(_CELLS * max(0.0, 1.0 - full_v / _FULL_V))
 
 
-def _engines(failed: float, left: float) -> tuple[Fault, ...]:
+def _engines(failed: float, left: float) -> tuple[ModelFault | RcLost, ...]:
     mask = int(failed)
     return tuple(MotorFault(motor, left if mask >> motor - 1 & 1 else 1.0) for motor in _MOTORS)
 
@@ -148,7 +148,7 @@ class Simulated:
         groups = _GROUPS[parameters.personality]
         self._said = [tuple(map(parameters.designed, group.names)) for group in groups]
 
-    def news(self) -> Iterator[Fault]:
+    def news(self) -> Iterator[ModelFault | RcLost]:
         """What has changed since it was asked last; at first, since the defaults."""
         if self._version == self._parameters.version:
             return
