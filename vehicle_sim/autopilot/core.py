@@ -21,7 +21,7 @@ from vehicle_sim.autopilot.failsafes.arm_authorization import ArmAuthorization
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
 from vehicle_sim.autopilot.failsafes.failsafe_checks import FailsafeChecks
-from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector
+from vehicle_sim.autopilot.failsafes.failure_detector import FAILURE_DETECTORS
 from vehicle_sim.autopilot.failsafes.px4_failsafes import Px4Failsafes
 from vehicle_sim.autopilot.fence.geofence import Geofence
 from vehicle_sim.autopilot.fence.rally import Point
@@ -43,7 +43,7 @@ from vehicle_sim.autopilot.mission.plan import Datum
 from vehicle_sim.autopilot.modes import BOOT_MODE, KINDS, MODES, Behaviour, Mode, Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.parameters.simulated import SimulatedBattery
-from vehicle_sim.autopilot.tasks.follow import Follow, Leader
+from vehicle_sim.autopilot.tasks.follow import FOLLOW, Leader
 from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
 from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
 from vehicle_sim.autopilot.tasks.tasks import Hold, Land, Level, Return, TakeOff
@@ -111,7 +111,7 @@ class Core:
         self._failsafe_checks: FailsafeChecks = _FAILSAFE_CHECKS[personality](
             self.parameters, self._believed
         )
-        self._failure_detector = FailureDetector(self.parameters)
+        self._failure_detector = FAILURE_DETECTORS[personality](self.parameters)
         self._arm_authorization = ArmAuthorization(self.parameters)
         self._geofence = Geofence(self.parameters)
         self._rally: tuple[Point, ...] = ()
@@ -270,7 +270,7 @@ class Core:
             case Behaviour.CIRCLE:
                 return Orbit(ardupilot_circle(self.parameters), self.parameters)
             case Behaviour.FOLLOW:
-                return Follow(self.parameters, self._leader)
+                return FOLLOW[self.personality](self.parameters, self._leader)
             case _:
                 assert_never(mode.behaviour)
 

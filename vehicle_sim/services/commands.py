@@ -138,7 +138,7 @@ class Commands:
         profile = self._context.profile
         if order.command != Cmd.DO_REPOSITION:
             return Answer(Result.UNSUPPORTED_MAV_FRAME)
-        if profile.name == "px4":
+        if not profile.names_wrong_frame:
             return Answer(Result.UNSUPPORTED)
         text = f"Unknown mavlink coordinate frame {order.frame}"
         return Answer(Result.DENIED, (Send(None, status_text(profile, 6, text)),))

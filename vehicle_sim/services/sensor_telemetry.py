@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.autopilot.interface import GPS_HDOP, FenceState, Readings, Vehicle
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.services.profile import Profile
 from vehicle_sim.services.units import (
     INT16_MAX,
@@ -35,7 +37,7 @@ def _pressure_hpa(alt_amsl_m: float) -> float:
     return SEA_LEVEL_HPA * math.pow(max(0.0, 1.0 - alt_amsl_m / 44330.77), 5.25588)
 
 
-_PRESENT: Final = (
+_COPTER_PRESENT: Final = (
     Sensor.GYRO_3D
     | Sensor.ACCEL_3D
     | Sensor.MAG_3D
@@ -75,18 +77,36 @@ clients that look whether it is present take for a vehicle that does not say if 
 """
 
 
-def _told(fence: FenceState, profile: Profile) -> tuple[Sensor, Sensor, Sensor]:
+@dataclass(frozen=True, slots=True)
+class _Sensors:
+    """SYS_STATUS of a vehicle without a fence, with which nothing is wrong.
+
+    `starting`: it says less before there is a position.
+    """
+
+    present: Sensor
+    enabled: Sensor
+    healthy: Sensor
+    starting: bool
+
+
+_SENSORS: Final[dict[Personality, _Sensors]] = {
+    "px4": _Sensors(_PX4_PRESENT, _PX4_ENABLED, _PX4_HEALTHY, starting=True),
+    # ArduPilot's fence is healthy where there is none: MAVProxy, which does not look whether it is
+    # present, would say "fence breach".
+    "ardupilot": _Sensors(
+        _COPTER_PRESENT, _COPTER_PRESENT, _COPTER_PRESENT | Sensor.GEOFENCE, starting=False
+    ),
+}
+
+
+def _told(fence: FenceState, told: _Sensors) -> tuple[Sensor, Sensor, Sensor]:
     """Present, enabled and healthy while nothing is wrong but with the fence."""
-    px4 = profile.name == "px4"
-    here, on = (_PX4_PRESENT, _PX4_ENABLED) if px4 else (_PRESENT, _PRESENT)
-    present = here | Sensor.GEOFENCE if fence.present else here
-    enabled = on | Sensor.GEOFENCE if fence.enabled else on
-    if px4:
-        healthy = _PX4_HEALTHY | Sensor.GEOFENCE if fence.present else _PX4_HEALTHY
-    else:
-        # ArduPilot's fence is healthy where there is none: MAVProxy, which does not look whether
-        # it is present, would say "fence breach".
-        healthy = present | Sensor.GEOFENCE
+    present, enabled, healthy = told.present, told.enabled, told.healthy
+    if fence.present:
+        present, healthy = present | Sensor.GEOFENCE, healthy | Sensor.GEOFENCE
+    if fence.enabled:
+        enabled |= Sensor.GEOFENCE
     return present, enabled, healthy & ~Sensor.GEOFENCE if fence.breached else healthy
 
 
@@ -100,7 +120,8 @@ def _px4_starting(stage: BootStage) -> tuple[Sensor, Sensor, Sensor]:
 
 def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
     power, health = vehicle.power, vehicle.health
-    present, enabled, healthy = _told(vehicle.fence_state, profile)
+    told = _SENSORS[profile.name]
+    present, enabled, healthy = _told(vehicle.fence_state, told)
     # Clients take the bit of the GPS for "the global position is good".
     if not (health.gps_ok and health.position_ok):
         healthy &= ~Sensor.GPS
@@ -116,7 +137,7 @@ def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
         healthy &= ~Sensor.ABSOLUTE_PRESSURE
     if not (vehicle.armable or vehicle.armed):
         healthy &= ~Sensor.PREARM_CHECK
-    if profile.name == "px4" and not vehicle.boot_stage.position:
+    if told.starting and not vehicle.boot_stage.position:
         present, enabled, healthy = _px4_starting(vehicle.boot_stage)
     return m.SysStatus(
         onboard_control_sensors_present=present,

@@ -63,7 +63,7 @@ def altitude(vehicle: Vehicle, profile: Profile) -> m.Altitude | None:
 
 def wind(vehicle: Vehicle, profile: Profile) -> m.Wind | None:
     """ArduPilot's; `direction` is where the wind comes from."""
-    if vehicle.wind_ned is None or profile.name == "px4":
+    if vehicle.wind_ned is None or m.Wind in profile.untold:
         return None
     north, east, down = vehicle.wind_ned
     return m.Wind(math.degrees(math.atan2(-east, -north)), math.hypot(north, east), down)

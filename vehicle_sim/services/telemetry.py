@@ -23,10 +23,6 @@ Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
 INTO_THE_GROUND_M_S2: Final = 100.0
 IDLE_THRUST: Final = 0.001
 MITIGATE_NONE: Final = 1  # FENCE_MITIGATE
-VTOL_UNDEFINED: Final = 0  # MAV_VTOL_STATE
-VTOL_MC: Final = 3
-UNKNOWN_ATTITUDE: Final = (math.nan, math.nan, math.nan, math.nan)
-UNUSED_CHANNEL: Final = 65535
 RSSI_UNKNOWN: Final = 255
 
 
@@ -43,10 +39,9 @@ def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
 
 def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState | None:
     """ArduPilot calls a copter a VTOL that flies as a multicopter, once it knows where it is."""
-    if profile.name == "ardupilot" and vehicle.origin is None:
+    if profile.extended_state_needs_origin and vehicle.origin is None:
         return None
-    vtol_state = VTOL_MC if profile.name == "ardupilot" else VTOL_UNDEFINED
-    return m.ExtendedSysState(vtol_state=vtol_state, landed_state=vehicle.landed)
+    return m.ExtendedSysState(vtol_state=profile.vtol_state, landed_state=vehicle.landed)
 
 
 def attitude(vehicle: Vehicle, profile: Profile) -> m.Attitude:
@@ -107,7 +102,7 @@ def home_position(vehicle: Vehicle, profile: Profile) -> m.HomePosition | None:
     return m.HomePosition(
         *_geodetic(home),
         *pos_ned,
-        q=UNKNOWN_ATTITUDE if profile.name == "ardupilot" else (1.0, 0.0, 0.0, 0.0),
+        q=profile.home_attitude,
         approach_x=0.0,
         approach_y=0.0,
         approach_z=0.0,
@@ -134,7 +129,7 @@ def position_target_local_ned(
     vehicle: Vehicle, profile: Profile
 ) -> m.PositionTargetLocalNed | None:
     target = vehicle.target
-    if profile.name == "px4" and not vehicle.armed:
+    if profile.targets_while_disarmed and not vehicle.armed:
         return _standing(vehicle)
     ignored = PositionIgnore.ACCELERATION | PositionIgnore.YAW_RATE
     if target.pos_ned is None:
@@ -195,7 +190,7 @@ def position_target_global_int(
 
 def attitude_target(vehicle: Vehicle, profile: Profile) -> m.AttitudeTarget | None:
     goal = vehicle.attitude_goal
-    if goal is None and profile.name == "px4":
+    if goal is None and profile.targets_while_disarmed:
         half_rad = 0.5 * vehicle.estimate.heading_rad
         level = (math.cos(half_rad), 0.0, 0.0, math.sin(half_rad))
         return m.AttitudeTarget(
@@ -227,16 +222,15 @@ def rc_channels(vehicle: Vehicle, profile: Profile) -> m.RcChannels | None:
     """PX4 sends it only while a radio is heard; ArduPilot always.  The signal is unknown: 255."""
     channels = vehicle.channels_us
     count = max((number for number, us in enumerate(channels, start=1) if us), default=0)
-    if count == 0 and profile.name == "px4":
+    if count == 0 and not profile.channels_without_radio:
         return None
-    empty = UNUSED_CHANNEL if profile.name == "px4" else 0
-    filled = (us or empty for us in channels)
+    filled = (us or profile.unused_channel_us for us in channels)
     return m.RcChannels._make((boot_ms(vehicle), *filled, count, RSSI_UNKNOWN))
 
 
 def rc_channels_raw(vehicle: Vehicle, profile: Profile) -> m.RcChannelsRaw | None:
     """The first eight, from ArduPilot: only peers of MAVLink 1 are sent it (`channels.py`)."""
-    if profile.name != "ardupilot":
+    if m.RcChannelsRaw in profile.untold:
         return None
     return m.RcChannelsRaw._make((boot_ms(vehicle), *vehicle.channels_us[:8], 0, RSSI_UNKNOWN))
 
@@ -244,7 +238,7 @@ def rc_channels_raw(vehicle: Vehicle, profile: Profile) -> m.RcChannelsRaw | Non
 def manual_control(vehicle: Vehicle, profile: Profile) -> m.ManualControl | None:
     """PX4 tells the sticks that it flies by."""
     sticks = vehicle.sticks
-    if sticks is None or profile.name != "px4":
+    if sticks is None or m.ManualControl in profile.untold:
         return None
     roll, pitch, yaw, throttle = (round(1000.0 * part) for part in sticks)
     return m.ManualControl(x=pitch, y=roll, z=throttle, r=yaw, buttons=0, target=0)
@@ -253,7 +247,7 @@ def manual_control(vehicle: Vehicle, profile: Profile) -> m.ManualControl | None
 def fence_status(vehicle: Vehicle, profile: Profile) -> m.FenceStatus | None:
     """ArduPilot's alone, and only while its fence is on."""
     fence = vehicle.fence_state
-    if profile.name != "ardupilot" or not fence.present:
+    if m.FenceStatus in profile.untold or not fence.present:
         return None
     return m.FenceStatus(
         breach_time=fence.breach_ns // 1_000_000 & 0xFFFFFFFF,
