@@ -1,7 +1,8 @@
 """What PX4 and ArduCopter do differently, one field for each rule.
 
 A rule stands here when the same code flies both and only a value, an answer or a yes or no is
-different.  Where whole procedures differ there is a class for each, and the rule names the class.
+different.  Where whole procedures differ there is a function or a class for each of the two, in a
+dictionary by personality beside them.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ class AutopilotRules:
 
     not_now: Result
 
-    # Parameters, by the reference pages of both.
+    # Parameters.
     infinite_parameters: bool  # a parameter may be infinite
     cuts_parameters_to_fit: bool  # a fraction or too large a whole number is cut, not refused
     rate_limit_may_be_zero: bool  # 0 is a limit of the body rates; else it stands for none
@@ -79,7 +80,7 @@ class AutopilotRules:
     receiver_grace: str | None  # the parameter with how long after that the sticks are lost [s]
     arming_gesture: str  # the parameter that allows arming by the sticks; 0 = not
     gesture_disarms_from: int  # from this value of it on the sticks disarm, too
-    own_station: str | None  # the parameter with the one station that is obeyed by the sticks
+    own_station: str | None  # the parameter with whose sticks and heartbeats count, by system id
 
 
 RULES: Final[dict[Personality, AutopilotRules]] = {

@@ -10,84 +10,16 @@ from vehicle_sim.autopilot.firmware import FLIGHT_SW_VERSION, Firmware
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.numerics.vectors import Quat
+from vehicle_sim.services.message_requests import ARDUPILOT_REQUESTS, PX4_REQUESTS, Requests
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Capability, Cmd, DataStream, MissionResult, MissionType
 from vehicle_sim.wire.signing import PX4_UNSIGNED, RADIOS
 
 MESSAGE_INTERVAL_MIN_NS: Final = 5_000_000
-VIDEO_STREAM_INFORMATION: Final = 269
-GIMBAL_INFORMATION: Final = 280  # GIMBAL_MANAGER_INFORMATION
 
 
 def _hz(rates: dict[type[m.Message], float]) -> dict[int, int]:
     return {m.IDS[kind]: round(1e9 / rate) for kind, rate in rates.items()}
-
-
-@dataclass(frozen=True, slots=True)
-class Requests:
-    """REQUEST_MESSAGE: the results for what cannot be had, and for which messages they are.
-
-    `never`: built here for other ends, and not to be had from the real one.  `accepted`: the real
-    one takes the request for these and sends nothing.
-    """
-
-    unknown: Result
-    nothing_yet: Result
-    never: frozenset[int]
-    accepted: frozenset[int]
-
-
-_PX4_REQUESTS: Final = Requests(
-    Result.DENIED,
-    Result.DENIED,
-    never=frozenset(
-        m.IDS[kind]
-        for kind in (
-            m.MissionCurrent,
-            m.NavControllerOutput,
-            m.MessageInterval,
-            m.AvailableModes,
-            m.CurrentMode,
-            m.AvailableModesMonitor,
-            m.EkfStatusReport,
-            m.Hwstatus,
-            m.Meminfo,
-            m.PowerStatus,
-            m.AttitudeTarget,
-            m.PositionTargetLocalNed,
-            m.CurrentEventSequence,
-            m.EscInfo,
-            m.EscStatus,
-        )
-    ),
-    accepted=frozenset(),
-)
-_ARDUPILOT_REQUESTS: Final = Requests(
-    Result.FAILED,
-    Result.ACCEPTED,
-    never=frozenset(
-        m.IDS[kind]
-        for kind in (
-            m.Altitude,
-            m.EstimatorStatus,
-            m.WindCov,
-            m.ProtocolVersion,
-            m.OrbitExecutionStatus,
-            m.CurrentMode,
-            m.Hwstatus,
-            m.Timesync,
-            m.Ping,
-            m.Odometry,
-            m.UtmGlobalPosition,
-            m.ActuatorOutputStatus,
-            m.EscInfo,
-            m.EscStatus,
-            m.OpenDroneIdLocation,
-            m.OpenDroneIdSystem,
-        )
-    ),
-    accepted=frozenset({m.IDS[m.ParamValue], VIDEO_STREAM_INFORMATION, GIMBAL_INFORMATION}),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,7 +178,7 @@ PX4: Final = Profile(
     unsigned_allowed=PX4_UNSIGNED,
     camera=True,
     absent={},
-    requests=_PX4_REQUESTS,
+    requests=PX4_REQUESTS,
     untold=frozenset({m.RcChannelsRaw, m.FenceStatus, m.Wind}),
     vtol_state=0,  # UNDEFINED
     extended_state_needs_origin=False,
@@ -321,7 +253,7 @@ ARDUPILOT: Final = Profile(
     unsigned_allowed=RADIOS,
     camera=True,
     absent={},
-    requests=_ARDUPILOT_REQUESTS,
+    requests=ARDUPILOT_REQUESTS,
     untold=frozenset({m.ManualControl, m.ActuatorOutputStatus, m.EscStatus, m.EscInfo}),
     vtol_state=3,  # MC: a copter is a VTOL that flies as a multicopter
     extended_state_needs_origin=True,

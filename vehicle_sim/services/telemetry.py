@@ -14,6 +14,7 @@ from vehicle_sim.autopilot.interface import Geodetic, Vehicle
 from vehicle_sim.numerics.vectors import euler_rad
 from vehicle_sim.services import sensor_telemetry as sensors
 from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.sys_status import sys_status
 from vehicle_sim.services.units import boot_ms, clip_int16, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MavFrame, PositionIgnore
@@ -262,7 +263,7 @@ STATE: Final[dict[int, Builder]] = {
     m.IDS[kind]: builder
     for kind, builder in (
         (m.Heartbeat, heartbeat),
-        (m.SysStatus, sensors.sys_status),
+        (m.SysStatus, sys_status),
         (m.ExtendedSysState, extended_sys_state),
         (m.Attitude, attitude),
         (m.AttitudeQuaternion, attitude_quaternion),
