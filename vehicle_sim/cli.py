@@ -261,11 +261,16 @@ def main(
     )
 
 
+OWN_LINKS: Final[dict[str, Callable[[int], str]]] = {
+    "px4": lambda index: f"udpout://127.0.0.1:{14540 + index + (index >= 10)}",
+    "ardupilot": lambda index: f"tcpin://127.0.0.1:{5760 + 10 * index}",
+}
+"""px4: its API port, leaving out the ground station's 14550; ardupilot: its TCP port."""
+
+
 def own_link(autopilot: str, index: int) -> str:
-    """px4: its API port, leaving out the ground station's 14550; ardupilot: its TCP port."""
-    if autopilot == "px4":
-        return f"udpout://127.0.0.1:{14540 + index + (index >= 10)}"
-    return f"tcpin://127.0.0.1:{5760 + 10 * index}"
+    """The URL of a vehicle's own link, by its place in the fleet."""
+    return OWN_LINKS[autopilot](index)
 
 
 def place(home: tuple[float, float, float], index: int, count: int) -> tuple[float, float, float]:

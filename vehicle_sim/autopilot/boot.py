@@ -45,7 +45,7 @@ READY: Final = BootStage(
 
 @dataclass(frozen=True, slots=True)
 class _Times:
-    """When each part of a `BootStage` is there [s]; `armable` is when nothing refuses any more."""
+    """When each part of a `BootStage` is there [s], and what is said of it meanwhile."""
 
     initialised: float
     sensors: float
@@ -54,37 +54,17 @@ class _Times:
     origin: float
     home: float
     position: float
-    armable: float
+    armable: float  # nothing refuses any more
+    armable_by_force: float
+    texts: tuple[tuple[float, str], ...]  # when, and what, in order
+    prearm_shown: float | None  # what speaks against arming is said unasked; None = never
+    gives_reasons: bool  # says why it cannot be armed yet
 
 
-_TIMES: Final[dict[Personality, _Times]] = {
-    "px4": _Times(
-        initialised=0.0,
-        sensors=2.1,
-        gps=0.0,
-        attitude=6.4,
-        origin=1.1,
-        home=2.1,
-        position=8.15,
-        armable=8.7,
-    ),
-    "ardupilot": _Times(
-        initialised=2.5,
-        sensors=0.0,
-        gps=9.8,
-        attitude=5.9,
-        origin=20.0,
-        home=20.0,
-        position=41.4,
-        armable=23.0,
-    ),
-}
 _EKF_RUNS_S: Final = 4.4
 _ACCELS_CONSISTENT_S: Final = 13.0
-_PREARM_SHOWN_S: Final = 30.4
-"""ArduCopter says unasked, every 30 s, what speaks against arming."""
 
-_TEXTS: Final[tuple[tuple[float, str], ...]] = (
+_COPTER_TEXTS: Final[tuple[tuple[float, str], ...]] = (
     (2.0, "Barometer 1 calibration complete"),
     (2.0, "Barometer 2 calibration complete"),
     (2.5, "ArduPilot Ready"),
@@ -105,18 +85,46 @@ _TEXTS: Final[tuple[tuple[float, str], ...]] = (
     (41.4, "EKF3 IMU0 is using GPS"),
     (41.6, "EKF3 IMU1 is using GPS"),
 )
-"""ArduCopter's, in order; PX4 says all of it by EVENT."""
 
+_TIMES: Final[dict[Personality, _Times]] = {
+    "px4": _Times(
+        initialised=0.0,
+        sensors=2.1,
+        gps=0.0,
+        attitude=6.4,
+        origin=1.1,
+        home=2.1,
+        position=8.15,
+        armable=8.7,
+        armable_by_force=8.7,
+        texts=(),  # PX4 says all of it by EVENT
+        prearm_shown=None,
+        gives_reasons=False,
+    ),
+    "ardupilot": _Times(
+        initialised=2.5,
+        sensors=0.0,
+        gps=9.8,
+        attitude=5.9,
+        origin=20.0,
+        home=20.0,
+        position=41.4,
+        armable=23.0,
+        armable_by_force=_EKF_RUNS_S,
+        texts=_COPTER_TEXTS,
+        prearm_shown=30.4,  # and then every 30 s
+        gives_reasons=True,
+    ),
+}
 _AHRS_TYPE: Final = "AHRS: not using configured AHRS type"
 
 
 class BootSequence:
     """One vehicle's way from power-up to readiness.  Every time is its age since power-up."""
 
-    __slots__ = ("_personality", "_said", "_shown", "_times")
+    __slots__ = ("_said", "_shown", "_times")
 
     def __init__(self, personality: Personality, boot: Boot) -> None:
-        self._personality = personality
         self._times = _TIMES[personality] if boot == "real" else None
         self.restart()
 
@@ -147,17 +155,16 @@ class BootSequence:
     def texts(self, age_ns: int, alt_amsl_m: float) -> list[str]:
         """What is said now, at the place's height above mean sea level."""
         said: list[str] = []
-        if self._times is None or self._personality == "px4":
-            return said
-        while self._said < len(_TEXTS) and _TEXTS[self._said][0] * 1e9 <= age_ns:
-            said.append(_TEXTS[self._said][1].format(alt_amsl_m=alt_amsl_m))
+        texts = self._times.texts if self._times is not None else ()
+        while self._said < len(texts) and texts[self._said][0] * 1e9 <= age_ns:
+            said.append(texts[self._said][1].format(alt_amsl_m=alt_amsl_m))
             self._said += 1
         return said
 
     def shows_prearm(self, age_ns: int) -> bool:
         """Once: whether what speaks against arming is said now though nobody asked."""
-        due = self._times is not None and age_ns >= int(_PREARM_SHOWN_S * 1e9)
-        if self._shown or not due or self._personality == "px4":
+        shown_s = self._times.prearm_shown if self._times is not None else None
+        if self._shown or shown_s is None or age_ns < int(shown_s * 1e9):
             return False
         self._shown = True
         return True
@@ -168,13 +175,12 @@ class BootSequence:
 
     def holds_forced(self, age_ns: int) -> bool:
         """Not even by force: PX4 until it is ready, ArduCopter until its EKF runs."""
-        until_ns = int(_EKF_RUNS_S * 1e9)
-        return self.holds(age_ns) and (self._personality == "px4" or age_ns < until_ns)
+        return self._times is not None and age_ns < int(self._times.armable_by_force * 1e9)
 
     def reasons(self, age_ns: int, mode: Mode, forced: bool = False) -> list[str]:
         """While it `holds`: ArduCopter's words for it, without "Arm: ".  PX4 has none."""
         times = self._times
-        if times is None or self._personality == "px4":
+        if times is None or not times.gives_reasons:
             return []
         age_s = age_ns * 1e-9
         if age_s < times.initialised:

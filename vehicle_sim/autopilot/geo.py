@@ -6,10 +6,12 @@ millimetre; on the WGS84 ellipsoid instead they would be 2-3 m off per kilometre
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import acos, asin, atan2, cos, degrees, radians, sin, sqrt
-from typing import Protocol
+from typing import Final, Protocol
 
 from vehicle_sim.autopilot.interface import Geodetic
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.numerics.vectors import Vec3
 
 _PX4_EARTH_M = 6_371_000.0
@@ -93,8 +95,12 @@ def _wrap_e7(turn_e7: float) -> float:
     return turn_e7
 
 
-def projection(personality: str, origin: Geodetic) -> Projection:
-    """The projection that `personality` ("px4" or "ardupilot") uses about `origin`."""
-    if personality == "px4":
-        return AzimuthalEquidistant(origin)
-    return MeanLatitude(origin)
+_PROJECTIONS: Final[dict[Personality, Callable[[Geodetic], Projection]]] = {
+    "px4": AzimuthalEquidistant,
+    "ardupilot": MeanLatitude,
+}
+
+
+def projection(personality: Personality, origin: Geodetic) -> Projection:
+    """The projection that the autopilot uses about `origin`."""
+    return _PROJECTIONS[personality](origin)

@@ -11,7 +11,7 @@ from vehicle_sim.autopilot.manual.stick_tasks import StickFlight
 from vehicle_sim.autopilot.manual.sticks import Radio
 from vehicle_sim.autopilot.modes import Behaviour, Mode
 from vehicle_sim.autopilot.parameters.parameters import Quantity
-from vehicle_sim.autopilot.tasks.follow import Follow, Leader
+from vehicle_sim.autopilot.tasks.follow import FOLLOW, Leader
 from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
 from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
 from vehicle_sim.autopilot.tasks.tasks import Hold, Land, Level, Return, TakeOff
@@ -68,7 +68,7 @@ class ModeTasks:
             case Behaviour.CIRCLE:
                 return Orbit(ardupilot_circle(state.parameters), state.parameters)
             case Behaviour.FOLLOW:
-                return Follow(state.parameters, self._leader)
+                return FOLLOW[state.personality](state.parameters, self._leader)
             case _:
                 assert_never(mode.behaviour)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, IntFlag
 from typing import Literal, TypeAlias
@@ -189,7 +190,11 @@ _WILL_NOT: dict[Personality, tuple[int, str]] = {
     "px4": (2, "Switching to {mode} is currently not available"),
     "ardupilot": (4, "Mode change to {mode} failed: {why}"),
 }
-
+_NOT_FLOWN_HERE: dict[Personality, tuple[int, str]] = {
+    "px4": _NO_SUCH_MODE["px4"],
+    "ardupilot": _WILL_NOT["ardupilot"],
+}
+"""Of a mode that the real autopilot has, and this one has not."""
 
 COPTER_NAMES: dict[str, str] = {
     "STABILIZE": "Stabilize",
@@ -205,6 +210,12 @@ COPTER_NAMES: dict[str, str] = {
     "FOLLOW": "Follow",
 }
 """What ArduCopter's own texts call its modes: "Auto" as recorded, the others from memory."""
+
+_SPOKEN: dict[Personality, Callable[[str], str]] = {
+    "px4": lambda name: name.replace(".", "_"),
+    "ardupilot": lambda name: COPTER_NAMES.get(name, name),
+}
+"""A mode's name in a text."""
 
 
 def main_mode(custom_mode: int) -> int:
@@ -226,14 +237,14 @@ def by_number(personality: Personality, custom_mode: int) -> Mode | None:
 def unknown_mode_words(personality: Personality, custom_mode: int) -> tuple[int, str]:
     """MAV_SEVERITY and STATUSTEXT for a number that is no mode, or one that is not flown here."""
     name = REFUSED[personality].get(custom_mode)
-    if name is not None and personality == "ardupilot":
-        return refusal_words(personality, name, "init failed")
-    severity, text = _NO_SUCH_MODE[personality]
-    return severity, text.format(number=custom_mode)
+    if name is None:
+        severity, text = _NO_SUCH_MODE[personality]
+        return severity, text.format(number=custom_mode)
+    severity, text = _NOT_FLOWN_HERE[personality]
+    return severity, text.format(mode=_SPOKEN[personality](name), why="init failed")
 
 
 def refusal_words(personality: Personality, name: str, why: str) -> tuple[int, str]:
     """MAV_SEVERITY and STATUSTEXT for a mode that cannot be entered now."""
     severity, text = _WILL_NOT[personality]
-    mode = name.replace(".", "_") if personality == "px4" else COPTER_NAMES.get(name, name)
-    return severity, text.format(mode=mode, why=why)
+    return severity, text.format(mode=_SPOKEN[personality](name), why=why)

@@ -18,7 +18,7 @@ from vehicle_sim.autopilot.failsafe_actions import FailsafeActions
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
 from vehicle_sim.autopilot.failsafes.failsafe_checks import FailsafeChecks
-from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector
+from vehicle_sim.autopilot.failsafes.failure_detector import FAILURE_DETECTORS
 from vehicle_sim.autopilot.failsafes.px4_failsafes import Px4Failsafes
 from vehicle_sim.autopilot.fault_injection import FaultInjection
 from vehicle_sim.autopilot.flight_requests import FlightRequests
@@ -57,7 +57,7 @@ class Parts:
         self.stream = stream = SetpointStream()
         self.airflow = Airflow()
         self.failsafe_checks = _FAILSAFE_CHECKS[state.personality](parameters, state.believed)
-        self.failure_detector = FailureDetector(parameters)
+        self.failure_detector = FAILURE_DETECTORS[state.personality](parameters)
         self.acting = ActingFailsafe(state.time_ns)
         auto_disarm = AutoDisarm()
 

@@ -19,6 +19,8 @@ LOGS_MAX: Final = 40
 
 ROOTS: Final[dict[Personality, str]] = {"px4": "/fs/microsd/log", "ardupilot": "/APM/LOGS"}
 SUFFIXES: Final[dict[Personality, str]] = {"px4": ".ulg", "ardupilot": ".BIN"}
+NUMBERED: Final[dict[Personality, bool]] = {"px4": False, "ardupilot": True}
+"""Named by a number, all in one directory; else by the time, in a directory for each day."""
 LAST_LOG: Final = "LASTLOG.TXT"  # where ArduPilot keeps the number of its last log
 
 DAY_S: Final = 86_400
@@ -36,7 +38,7 @@ class LogDirectory:
 
     def __init__(self, store: Store, personality: Personality) -> None:
         self._store = store
-        self._personality = personality
+        self._numbered: Final = NUMBERED[personality]
         self._root: Final = ROOTS[personality]
         self._suffix: Final = SUFFIXES[personality]
         self._written_s: dict[str, int] = {}
@@ -100,7 +102,7 @@ class LogDirectory:
         found: list[tuple[str, int]] = []
         try:
             directories = [self._root]
-            if self._personality == "px4":
+            if not self._numbered:
                 directories = [
                     f"{self._root}/{entry.name}"
                     for entry in self._store.entries(self._root)
@@ -119,7 +121,7 @@ class LogDirectory:
 
     def _new_path(self, unix_s: int) -> str:
         taken = {path for path, _ in self._files()}
-        if self._personality == "ardupilot":
+        if self._numbered:
             number = 1 + max((_number(path) for path in taken), default=0)
             put(self._store, f"{self._root}/{LAST_LOG}", f"{number}\r\n".encode("ascii"))
             return f"{self._root}/{number:08d}{self._suffix}"

@@ -12,7 +12,7 @@ flights give equal bytes: the date comes from `unix_start_ns` and the vehicle's 
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -30,17 +30,42 @@ NEVER: Final = 1 << 62
 _ARMED, _UNTIL_DISARMED, _ALWAYS = 0, 1, 2  # SDLOG_MODE; -1 is never
 
 
-def _format_of(personality: Personality) -> Format:
-    """A writer of logs is loaded with the first log."""
-    match personality:
-        case "px4":
-            from vehicle_sim.flight_log.px4 import Px4Format
+def _px4_format() -> Format:
+    from vehicle_sim.flight_log.px4 import Px4Format
 
-            return Px4Format()
-        case "ardupilot":
-            from vehicle_sim.flight_log.ardupilot import ArdupilotFormat
+    return Px4Format()
 
-            return ArdupilotFormat()
+
+def _copter_format() -> Format:
+    from vehicle_sim.flight_log.ardupilot import ArdupilotFormat
+
+    return ArdupilotFormat()
+
+
+_FORMATS: Final[dict[Personality, Callable[[], Format]]] = {
+    "px4": _px4_format,
+    "ardupilot": _copter_format,
+}
+"""A writer of logs is loaded with the first log."""
+
+
+def _px4_wants(parameters: Parameters, armed: bool, has_armed: bool) -> bool:
+    mode = parameters.get("SDLOG_MODE")
+    if mode == _UNTIL_DISARMED:
+        return armed or not has_armed
+    return mode == _ALWAYS or (armed and mode == _ARMED)
+
+
+def _copter_wants(parameters: Parameters, armed: bool, has_armed: bool) -> bool:
+    get = parameters.get
+    return get("LOG_BACKEND_TYPE") != 0 and (armed or get("LOG_DISARMED") != 0)
+
+
+_WANTED: Final[dict[Personality, Callable[[Parameters, bool, bool], bool]]] = {
+    "px4": _px4_wants,
+    "ardupilot": _copter_wants,
+}
+"""Whether there is to be a log, by whether the vehicle is armed, and has been since power-up."""
 
 
 @dataclass(slots=True)
@@ -90,13 +115,8 @@ class Recorder:
     @property
     def _wanted(self) -> bool:
         """Whether there is to be a log now."""
-        get, armed = self._parameters.get, self._vehicle.armed
-        if self._parameters.personality == "ardupilot":
-            return get("LOG_BACKEND_TYPE") != 0 and (armed or get("LOG_DISARMED") != 0)
-        mode = get("SDLOG_MODE")
-        if mode == _UNTIL_DISARMED:
-            return armed or not self._has_armed
-        return mode == _ALWAYS or (armed and mode == _ARMED)
+        wanted = _WANTED[self._parameters.personality]
+        return wanted(self._parameters, self._vehicle.armed, self._has_armed)
 
     @property
     def due_ns(self) -> int:
@@ -182,7 +202,7 @@ class Recorder:
     def _begin(self, armed_us: int) -> _Log:
         status = self._status()
         now = self._snapshot(status, armed_us)
-        form = _format_of(self._parameters.personality)
+        form = _FORMATS[self._parameters.personality]()
         parameters = self._read_parameters()
         dt_us = max(1, self._vehicle.dt_ns // 1000)
         head = Head(self._system, self._version, dt_us, tuple(parameters.values()))

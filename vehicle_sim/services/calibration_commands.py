@@ -36,12 +36,7 @@ def _motor_test(context: CommandContext, order: Order) -> Answer:
 
 def _compass_by_yaw(context: CommandContext, order: Order) -> Answer:
     """FIXED_MAG_CAL_YAW: the compass is as good as before."""
-    if context.profile.name != "px4":
-        return Answer(Result.ACCEPTED)
-    told = (
-        (2, "Assuming vehicle is facing heading 0.0 degrees"),
-        (6, "Mag quick calibration finished"),
-    )
+    told = context.profile.compass_by_yaw_texts
     texts = (Send(None, status_text(context.profile, *each)) for each in told)
     return Answer(Result.ACCEPTED, tuple(texts))
 

@@ -142,7 +142,7 @@ class Commands:
         profile = self._context.profile
         if order.command != Cmd.DO_REPOSITION:
             return Answer(Result.UNSUPPORTED_MAV_FRAME)
-        if profile.name == "px4":
+        if not profile.names_wrong_frame:
             return Answer(Result.UNSUPPORTED)
         mode = by_number(profile.name, self._context.vehicle.custom_mode)
         guided = mode is not None and mode.name == "GUIDED"

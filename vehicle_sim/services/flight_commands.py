@@ -68,7 +68,7 @@ def _return(context: CommandContext, order: Order) -> Answer:
 
 def _with_text(context: CommandContext, result: Result, text: str) -> Answer:
     """PX4 says so to the command, not to the mode that follows from it."""
-    if context.profile.name != "px4" or result is not Result.ACCEPTED:
+    if not context.profile.names_command or result is not Result.ACCEPTED:
         return Answer(result)
     return Answer(result, (Send(None, status_text(context.profile, 6, text)),))
 
@@ -77,7 +77,7 @@ def _set_mode(context: CommandContext, order: Order) -> Answer:
     base, main, sub = (order.whole(value) for value in (order.p1, order.p2, order.p3))
     if base is None or main is None or not 0 <= base <= 0xFF or not 0 <= main <= 0xFFFF:
         raise RefusedError(Result.DENIED, "the mode is not a number")
-    if context.profile.name == "px4":
+    if context.profile.sub_modes:
         # HEARTBEAT.custom_mode holds PX4's main mode in its third byte, the sub mode in its fourth.
         main = (main & 0xFF) << 16 | ((sub or 0) & 0xFF) << 24
     return Answer(context.vehicle.set_mode(base, main))
@@ -90,10 +90,9 @@ def _reposition(context: CommandContext, order: Order) -> Answer:
     ArduCopter only where it is in that mode already, and never by COMMAND_LONG.
     """
     changes_mode = bool((order.whole(order.p2) or 0) & CHANGE_MODE)
-    if context.profile.name == "px4":
-        if not changes_mode:
-            raise RefusedError(Result.UNSUPPORTED, "without MAV_DO_REPOSITION_FLAGS_CHANGE_MODE")
-    elif order.frame is None:
+    if context.profile.reposition_needs_change_flag and not changes_mode:
+        raise RefusedError(Result.UNSUPPORTED, "without MAV_DO_REPOSITION_FLAGS_CHANGE_MODE")
+    if order.frame is None and not context.profile.reposition_by_long:
         raise RefusedError(Result.UNSUPPORTED, "ArduCopter takes it as COMMAND_INT only")
     estimate = context.vehicle.estimate
     target: Vec3 | None = None
@@ -149,7 +148,7 @@ def _pause_continue(context: CommandContext, order: Order) -> Answer:
 
 def _change_speed(context: CommandContext, order: Order) -> Answer:
     """PX4 1.14 ignores the type, and any value that is no speed restores its default."""
-    if context.profile.name == "px4":
+    if not context.profile.speed_by_type:
         speed_m_s = order.p2 if 0.0 < order.p2 <= FARTHEST else None
         return Answer(context.vehicle.change_speed(SpeedType.GROUND, speed_m_s))
     if not 0.0 < order.p2 <= FARTHEST or order.p1 not in tuple(SpeedType):
@@ -232,8 +231,7 @@ def _terminate(context: CommandContext, order: Order) -> Answer:
 def _reboot(context: CommandContext, order: Order) -> Answer:
     """ArduPilot does not know an autopilot that is to be left as it is."""
     if order.p1 == 0.0:
-        known = context.profile.name == "px4"
-        return Answer(Result.ACCEPTED if known else Result.UNSUPPORTED)
+        return Answer(context.profile.reboot_nothing)
     if order.p1 != 1.0:
         raise RefusedError(Result.DENIED, "it can only be rebooted (1)")
     return Answer(context.vehicle.reboot())
@@ -278,7 +276,7 @@ def _look_away(context: CommandContext, order: Order) -> Answer:
 
 def _old_roi(context: CommandContext, order: Order) -> Answer:
     """DO_SET_ROI: MAV_ROI 0 none, 3 a location; ArduCopter always takes it for a location."""
-    if order.p1 == ROI_LOCATION or context.profile.name == "ardupilot":
+    if order.p1 == ROI_LOCATION or context.profile.roi_is_location:
         if order.p5 == order.p6 == order.p7 == 0.0:
             return _look_away(context, order)
         return _look_at(context, order)
@@ -296,7 +294,7 @@ def _storage(context: CommandContext, order: Order) -> Answer:
 
     ArduPilot knows the reset alone.
     """
-    if context.profile.name == "ardupilot" and order.p1 != RESET_PARAMETERS:
+    if context.profile.storage_resets_only and order.p1 != RESET_PARAMETERS:
         raise RefusedError(Result.DENIED, "ArduPilot reads and writes no parameters")
     if context.vehicle.armed:
         raise RefusedError(Result.TEMPORARILY_REJECTED, "not while armed")

@@ -69,7 +69,7 @@ def _set_interval(context: CommandContext, order: Order) -> Answer:
     streams = context.streams[order.client.channel]
     if streams.set_interval(number, order.p2, context.vehicle.time_ns):
         return Answer(Result.ACCEPTED)
-    if context.profile.name == "px4":
+    if not context.profile.names_unknown_message:
         raise RefusedError(Result.FAILED, f"message {number} cannot be had at a rate")
     text = status_text(context.profile, 6, f"No ap_message for mavlink id ({number})")
     return Answer(Result.DENIED, (Send(None, text),))
@@ -86,7 +86,7 @@ def _sends(kind: type[m.Message]) -> Handler:
 
 def _protocol_version(context: CommandContext, order: Order) -> Answer:
     """REQUEST_PROTOCOL_VERSION: PX4 takes it, and sends the message to REQUEST_MESSAGE alone."""
-    if context.profile.name == "ardupilot":
+    if not context.profile.protocol_version_command:
         raise RefusedError(Result.UNSUPPORTED, "ArduPilot does not know the command")
     return Answer(Result.ACCEPTED)
 

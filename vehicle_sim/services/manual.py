@@ -57,8 +57,8 @@ def _other_vehicle(
     """ArduCopter's FOLL_ALT_TYPE 1 takes the height above the leader's home for one above ours."""
     alt_m = heard.alt * 1e-3
     home = vehicle.home
-    by_home = parameters.personality == "ardupilot" and parameters.get("FOLL_ALT_TYPE") == 1
-    if by_home and home is not None:
+    by_home = parameters.rules.leader_height_by_home
+    if by_home is not None and parameters.get(by_home) == 1 and home is not None:
         alt_m = home.alt_amsl_m + heard.relative_alt * 1e-3
     heading = None if heard.hdg == _NO_HEADING else math.radians(heard.hdg * 0.01)
     where = Geodetic(heard.lat * 1e-7, heard.lon * 1e-7, alt_m)
@@ -67,9 +67,8 @@ def _other_vehicle(
 
 
 def _is_pilot(parameters: Parameters, client: Client) -> bool:
-    if parameters.personality == "px4":
-        return True
-    return client.system == int(parameters.get("SYSID_MYGCS"))
+    own = parameters.rules.own_station
+    return own is None or client.system == int(parameters.get(own))
 
 
 def _follow_target(vehicle: Vehicle, client: Client, heard: m.FollowTarget, wall_ns: int) -> None:

@@ -125,9 +125,7 @@ class MissionServer:
         elif asked.seq == 0 and self._home_can_be_read(asked.mission_type):
             item = NOTHING
         else:
-            px4 = self._profile.name == "px4"
-            refused = MissionResult.ERROR if px4 else MissionResult.INVALID_SEQUENCE
-            return [ack(client, asked.mission_type, refused)]
+            return [ack(client, asked.mission_type, self._profile.no_such_item)]
         if not self._profile.home_is_item_0:
             item = as_px4_gives_back(item)
         elif asked.mission_type == MissionType.MISSION:

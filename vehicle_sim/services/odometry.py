@@ -104,7 +104,7 @@ def outputs_us(vehicle: Vehicle) -> tuple[int, int, int, int]:
 
 def actuator_output_status(vehicle: Vehicle, profile: Profile) -> m.ActuatorOutputStatus | None:
     """PX4's alone: pulses [us], and the number of the outputs where the dialect has their bits."""
-    if profile.name != "px4":
+    if m.ActuatorOutputStatus in profile.untold:
         return None
     pulses = [float(DISARMED_US)] * OUTPUTS
     if vehicle.armed:
@@ -116,7 +116,7 @@ def actuator_output_status(vehicle: Vehicle, profile: Profile) -> m.ActuatorOutp
 
 def esc_status(vehicle: Vehicle, profile: Profile) -> m.EscStatus | None:
     """The four motor controllers; PX4 sends it on request."""
-    if profile.name != "px4":
+    if m.EscStatus in profile.untold:
         return None
     outputs, power = vehicle.motor_outputs, vehicle.power
     together = sum(outputs)
@@ -131,7 +131,7 @@ def esc_status(vehicle: Vehicle, profile: Profile) -> m.EscStatus | None:
 
 
 def esc_info(vehicle: Vehicle, profile: Profile) -> m.EscInfo | None:
-    if profile.name != "px4":
+    if m.EscInfo in profile.untold:
         return None
     return m.EscInfo(
         usec(vehicle),

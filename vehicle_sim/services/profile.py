@@ -3,89 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import nan
 from typing import Final
 
 from vehicle_sim.autopilot.firmware import FLIGHT_SW_VERSION, Firmware
 from vehicle_sim.autopilot.interface import Result
-from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.modes import MODES, Personality
+from vehicle_sim.numerics.vectors import Quat
+from vehicle_sim.services.message_requests import ARDUPILOT_REQUESTS, PX4_REQUESTS, Requests
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import Capability, Cmd, DataStream, MissionType
+from vehicle_sim.wire.ids import Capability, Cmd, DataStream, MissionResult, MissionType
 from vehicle_sim.wire.signing import PX4_UNSIGNED, RADIOS
 
 MESSAGE_INTERVAL_MIN_NS: Final = 5_000_000
-VIDEO_STREAM_INFORMATION: Final = 269
-GIMBAL_INFORMATION: Final = 280  # GIMBAL_MANAGER_INFORMATION
 
 
 def _hz(rates: dict[type[m.Message], float]) -> dict[int, int]:
     return {m.IDS[kind]: round(1e9 / rate) for kind, rate in rates.items()}
-
-
-@dataclass(frozen=True, slots=True)
-class Requests:
-    """REQUEST_MESSAGE: the results for what cannot be had, and for which messages they are.
-
-    `never`: built here for other ends, and not to be had from the real one.  `accepted`: the real
-    one takes the request for these and sends nothing.
-    """
-
-    unknown: Result
-    nothing_yet: Result
-    never: frozenset[int]
-    accepted: frozenset[int]
-
-
-_PX4_REQUESTS: Final = Requests(
-    Result.DENIED,
-    Result.DENIED,
-    never=frozenset(
-        m.IDS[kind]
-        for kind in (
-            m.MissionCurrent,
-            m.NavControllerOutput,
-            m.MessageInterval,
-            m.AvailableModes,
-            m.CurrentMode,
-            m.AvailableModesMonitor,
-            m.EkfStatusReport,
-            m.Hwstatus,
-            m.Meminfo,
-            m.PowerStatus,
-            m.AttitudeTarget,
-            m.PositionTargetLocalNed,
-            m.CurrentEventSequence,
-            m.EscInfo,
-            m.EscStatus,
-        )
-    ),
-    accepted=frozenset(),
-)
-_ARDUPILOT_REQUESTS: Final = Requests(
-    Result.FAILED,
-    Result.ACCEPTED,
-    never=frozenset(
-        m.IDS[kind]
-        for kind in (
-            m.Altitude,
-            m.EstimatorStatus,
-            m.WindCov,
-            m.ProtocolVersion,
-            m.OrbitExecutionStatus,
-            m.CurrentMode,
-            m.Hwstatus,
-            m.Timesync,
-            m.Ping,
-            m.Odometry,
-            m.UtmGlobalPosition,
-            m.ActuatorOutputStatus,
-            m.EscInfo,
-            m.EscStatus,
-            m.OpenDroneIdLocation,
-            m.OpenDroneIdSystem,
-        )
-    ),
-    accepted=frozenset({m.IDS[m.ParamValue], VIDEO_STREAM_INFORMATION, GIMBAL_INFORMATION}),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +59,30 @@ class Profile:
     camera: bool  # there is one
     absent: dict[Cmd, Result]  # answers to commands for equipment that there is not
     requests: Requests  # what REQUEST_MESSAGE is answered
+    untold: frozenset[type[m.Message]]  # messages that it never sends
+    vtol_state: int  # MAV_VTOL_STATE
+    flies_to_places: frozenset[str]  # modes with a POSITION_TARGET_GLOBAL_INT
+    flies_to_places_in_air: frozenset[str]  # modes that have one only after the take-off
+    home_attitude: Quat  # HOME_POSITION.q
+    targets_while_disarmed: bool  # the controllers run on the ground too, and tell their targets
+    unused_channel_us: int  # RC_CHANNELS
+    channels_without_radio: bool  # RC_CHANNELS is sent though nothing is heard
+    events: bool  # the events interface; a text that is an event too ends with a TAB
+    tells_log_path: bool  # a STATUSTEXT when a log begins
+    no_such_item: MissionResult  # MISSION_REQUEST beyond the last
+    refuses_other_components: bool  # commands to one that there is not get an answer
+    protocol_version_command: bool  # REQUEST_PROTOCOL_VERSION is known
+    names_unknown_message: bool  # SET_MESSAGE_INTERVAL is DENIED with a text, else FAILED
+    names_wrong_frame: bool  # DO_REPOSITION is DENIED with a text, else UNSUPPORTED
+    names_command: bool  # a text for NAV_LAND and NAV_RETURN_TO_LAUNCH, not for the mode
+    sub_modes: bool  # DO_SET_MODE has a main and a sub mode
+    reposition_needs_change_flag: bool  # MAV_DO_REPOSITION_FLAGS_CHANGE_MODE
+    reposition_by_long: bool  # DO_REPOSITION as COMMAND_LONG too
+    speed_by_type: bool  # DO_CHANGE_SPEED looks at SPEED_TYPE, and refuses what is no speed
+    reboot_nothing: Result  # PREFLIGHT_REBOOT_SHUTDOWN with 0 for the autopilot
+    roi_is_location: bool  # DO_SET_ROI is taken for a location whatever its MAV_ROI says
+    storage_resets_only: bool  # PREFLIGHT_STORAGE neither reads nor writes
+    compass_by_yaw_texts: tuple[tuple[int, str], ...]  # FIXED_MAG_CAL_YAW: severity and text
 
 
 _COMMON: Final = (
@@ -221,7 +179,34 @@ PX4: Final = Profile(
     unsigned_allowed=PX4_UNSIGNED,
     camera=True,
     absent={},
-    requests=_PX4_REQUESTS,
+    requests=PX4_REQUESTS,
+    untold=frozenset({m.RcChannelsRaw, m.FenceStatus, m.Wind}),
+    vtol_state=0,  # UNDEFINED
+    flies_to_places=frozenset(name for name in MODES["px4"] if name.startswith("AUTO.")),
+    flies_to_places_in_air=frozenset(),
+    home_attitude=(1.0, 0.0, 0.0, 0.0),
+    targets_while_disarmed=True,
+    unused_channel_us=65535,
+    channels_without_radio=False,
+    events=True,
+    tells_log_path=True,
+    no_such_item=MissionResult.ERROR,
+    refuses_other_components=True,
+    protocol_version_command=True,
+    names_unknown_message=False,
+    names_wrong_frame=False,
+    names_command=True,
+    sub_modes=True,
+    reposition_needs_change_flag=True,
+    reposition_by_long=True,
+    speed_by_type=False,
+    reboot_nothing=Result.ACCEPTED,
+    roi_is_location=False,
+    storage_resets_only=False,
+    compass_by_yaw_texts=(
+        (2, "Assuming vehicle is facing heading 0.0 degrees"),
+        (6, "Mag quick calibration finished"),
+    ),
 )
 
 ARDUPILOT: Final = Profile(
@@ -270,7 +255,31 @@ ARDUPILOT: Final = Profile(
     unsigned_allowed=RADIOS,
     camera=True,
     absent={},
-    requests=_ARDUPILOT_REQUESTS,
+    requests=ARDUPILOT_REQUESTS,
+    untold=frozenset({m.ManualControl, m.ActuatorOutputStatus, m.EscStatus, m.EscInfo}),
+    vtol_state=3,  # MC: a copter is a VTOL that flies as a multicopter
+    flies_to_places=frozenset({"AUTO", "RTL"}),
+    flies_to_places_in_air=frozenset({"GUIDED"}),
+    home_attitude=(nan, nan, nan, nan),
+    targets_while_disarmed=False,
+    unused_channel_us=0,
+    channels_without_radio=True,
+    events=False,
+    tells_log_path=False,
+    no_such_item=MissionResult.INVALID_SEQUENCE,
+    refuses_other_components=False,
+    protocol_version_command=False,
+    names_unknown_message=True,
+    names_wrong_frame=True,
+    names_command=False,
+    sub_modes=False,
+    reposition_needs_change_flag=False,
+    reposition_by_long=False,
+    speed_by_type=True,
+    reboot_nothing=Result.UNSUPPORTED,
+    roi_is_location=True,
+    storage_resets_only=True,
+    compass_by_yaw_texts=(),
 )
 
 PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILOT}
@@ -289,7 +298,7 @@ def profile_of(personality: Personality, firmware: Firmware) -> Profile:
     profile = PROFILES[personality]
     return replace(
         profile,
-        banner=(_RELEASE[firmware], *profile.banner[1:]) if personality == "ardupilot" else (),
+        banner=(_RELEASE[firmware], *profile.banner[1:]) if profile.banner else (),
         flight_sw_version=FLIGHT_SW_VERSION[firmware],
         parameter_errors=firmware == "4.7",
     )
@@ -321,22 +330,29 @@ _NO_CAMERA: Final[dict[Personality, dict[Cmd, Result]]] = {
     },
 }
 """As the recorded autopilots, which had no camera, answered."""
+_NO_CAMERA_UNHEARD: Final[dict[Personality, frozenset[Cmd]]] = {
+    "px4": frozenset({Cmd.SET_CAMERA_MODE}),
+    "ardupilot": frozenset(),
+}
+_NO_CAMERA_ACCEPTED: Final[dict[Personality, frozenset[int]]] = {
+    "px4": frozenset(),
+    "ardupilot": _OF_CAMERA,
+}
 
 
 def without_camera(profile: Profile) -> Profile:
     """The same autopilot with no camera on board; PX4 does not even answer SET_CAMERA_MODE."""
-    px4 = profile.name == "px4"
     requests = profile.requests
     image = m.IDS[m.CameraImageCaptured]
     return replace(
         profile,
         camera=False,
         absent=_NO_CAMERA[profile.name],
-        unheard=profile.unheard | {Cmd.SET_CAMERA_MODE} if px4 else profile.unheard,
+        unheard=profile.unheard | _NO_CAMERA_UNHEARD[profile.name],
         requests=replace(
             requests,
             never=requests.never | {image} | CAMERA_MESSAGES[profile.name],
-            accepted=requests.accepted if px4 else requests.accepted | _OF_CAMERA,
+            accepted=requests.accepted | _NO_CAMERA_ACCEPTED[profile.name],
         ),
     )
 

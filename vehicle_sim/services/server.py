@@ -100,7 +100,7 @@ class VehicleServer:
         metadata = metadata_of(profile.name) if profile.component_metadata else None
         # Where nobody is told how far they have come, there are no events.
         told = m.IDS[m.CurrentEventSequence] in self._stream_sets.by_mode[LinkMode.NORMAL]
-        self._events = EventServer(vehicle, parameters, profile.name == "px4" and told)
+        self._events = EventServer(vehicle, parameters, profile.events and told)
         self._info = Info(
             vehicle,
             profile,
@@ -206,15 +206,15 @@ class VehicleServer:
 
     def _obeys(self, client: Client) -> bool:
         """ArduPilot's SYSID_ENFORCE: nobody but its own ground station is heard."""
-        if self._profile.name == "px4" or self._given.get("SYSID_ENFORCE") == 0:
+        own = self._given.rules.own_station
+        if own is None or self._given.get("SYSID_ENFORCE") == 0:
             return True
-        return client.system in (self.system, int(self._given.get("SYSID_MYGCS")))
+        return client.system in (self.system, int(self._given.get(own)))
 
     def _counts(self, client: Client) -> bool:
         """Whose heartbeats keep the station's failsafe away: ArduPilot's own station's alone."""
-        if self._profile.name == "px4":
-            return True
-        return client.system == int(self._given.get("SYSID_MYGCS"))
+        own = self._given.rules.own_station
+        return own is None or client.system == int(self._given.get(own))
 
     def _is_for_us(self, message: m.Message) -> bool:
         system = getattr(message, "target_system", 0)
@@ -236,7 +236,8 @@ class VehicleServer:
                     self._events.station_heard(wall_ns)
                 return []
             case m.CommandLong() | m.CommandInt():
-                if message.target_component not in (0, COMPONENT) and self._profile.name == "px4":
+                other = message.target_component not in (0, COMPONENT)
+                if other and self._profile.refuses_other_components:
                     return self._commands.refuse(client, message.command)
                 effects = self._commands.handle(client, sequence, message, wall_ns)
                 if message.command == Cmd.RUN_PREARM_CHECKS:
@@ -359,7 +360,7 @@ class VehicleServer:
         events = vehicle.events()
         effects = self._recorder.step(events)
         opened = self._recorder.opened()
-        if opened is not None and self._profile.name == "px4":
+        if opened is not None and self._profile.tells_log_path:
             events.append(StatusText(6, f"[logger] .{opened.removeprefix(PX4_STORAGE)}"))
         for event in events:
             effects += self._event(event)

@@ -63,7 +63,7 @@ def altitude(vehicle: Vehicle, profile: Profile) -> m.Altitude | None:
 
 def wind(vehicle: Vehicle, profile: Profile) -> m.Wind | None:
     """ArduPilot's; `direction` is where the wind comes from.  None is known yet: none is told."""
-    if profile.name == "px4":
+    if m.Wind in profile.untold:
         return None
     north, east, down = vehicle.wind_ned or (0.0, 0.0, 0.0)
     return m.Wind(math.degrees(math.atan2(-east, -north)), math.hypot(north, east), down)

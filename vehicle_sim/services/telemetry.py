@@ -15,6 +15,7 @@ from vehicle_sim.autopilot.modes import by_number
 from vehicle_sim.numerics.vectors import euler_rad
 from vehicle_sim.services import sensor_telemetry as sensors
 from vehicle_sim.services.profile import Profile
+from vehicle_sim.services.sys_status import sys_status
 from vehicle_sim.services.units import boot_ms, clip_int16, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MavFrame, PositionIgnore
@@ -24,10 +25,6 @@ Builder: TypeAlias = Callable[[Vehicle, Profile], m.Message | None]
 INTO_THE_GROUND_M_S2: Final = 100.0
 IDLE_THRUST: Final = 0.001
 MITIGATE_NONE: Final = 1  # FENCE_MITIGATE
-VTOL_UNDEFINED: Final = 0  # MAV_VTOL_STATE
-VTOL_MC: Final = 3
-UNKNOWN_ATTITUDE: Final = (math.nan, math.nan, math.nan, math.nan)
-UNUSED_CHANNEL: Final = 65535
 RSSI_UNKNOWN: Final = 255
 
 
@@ -44,8 +41,7 @@ def heartbeat(vehicle: Vehicle, profile: Profile) -> m.Heartbeat:
 
 def extended_sys_state(vehicle: Vehicle, profile: Profile) -> m.ExtendedSysState:
     """ArduPilot calls a copter a VTOL that flies as a multicopter."""
-    vtol_state = VTOL_MC if profile.name == "ardupilot" else VTOL_UNDEFINED
-    return m.ExtendedSysState(vtol_state=vtol_state, landed_state=vehicle.landed)
+    return m.ExtendedSysState(vtol_state=profile.vtol_state, landed_state=vehicle.landed)
 
 
 def attitude(vehicle: Vehicle, profile: Profile) -> m.Attitude:
@@ -106,7 +102,7 @@ def home_position(vehicle: Vehicle, profile: Profile) -> m.HomePosition | None:
     return m.HomePosition(
         *_geodetic(home),
         *pos_ned,
-        q=UNKNOWN_ATTITUDE if profile.name == "ardupilot" else (1.0, 0.0, 0.0, 0.0),
+        q=profile.home_attitude,
         approach_x=0.0,
         approach_y=0.0,
         approach_z=0.0,
@@ -133,7 +129,7 @@ def position_target_local_ned(
     vehicle: Vehicle, profile: Profile
 ) -> m.PositionTargetLocalNed | None:
     target = vehicle.target
-    if profile.name == "px4" and not vehicle.armed:
+    if profile.targets_while_disarmed and not vehicle.armed:
         return _standing(vehicle)
     ignored = PositionIgnore.ACCELERATION | PositionIgnore.YAW_RATE
     if target.pos_ned is None:
@@ -200,16 +196,14 @@ def _flies_to_a_place(vehicle: Vehicle, profile: Profile) -> bool:
     mode = by_number(profile.name, vehicle.custom_mode)
     if mode is None:
         return False
-    if profile.name == "px4":
-        return mode.name.startswith("AUTO.")
-    return mode.name in ("AUTO", "RTL") or (
-        mode.name == "GUIDED" and vehicle.landed is Landed.IN_AIR
-    )
+    if mode.name in profile.flies_to_places:
+        return True
+    return mode.name in profile.flies_to_places_in_air and vehicle.landed is Landed.IN_AIR
 
 
 def attitude_target(vehicle: Vehicle, profile: Profile) -> m.AttitudeTarget | None:
     goal = vehicle.attitude_goal
-    if goal is None and profile.name == "px4":
+    if goal is None and profile.targets_while_disarmed:
         half_rad = 0.5 * vehicle.estimate.heading_rad
         level = (math.cos(half_rad), 0.0, 0.0, math.sin(half_rad))
         return m.AttitudeTarget(
@@ -241,16 +235,15 @@ def rc_channels(vehicle: Vehicle, profile: Profile) -> m.RcChannels | None:
     """PX4 sends it only while a radio is heard; ArduPilot always.  The signal is unknown: 255."""
     channels = vehicle.channels_us
     count = max((number for number, us in enumerate(channels, start=1) if us), default=0)
-    if count == 0 and profile.name == "px4":
+    if count == 0 and not profile.channels_without_radio:
         return None
-    empty = UNUSED_CHANNEL if profile.name == "px4" else 0
-    filled = (us or empty for us in channels)
+    filled = (us or profile.unused_channel_us for us in channels)
     return m.RcChannels._make((boot_ms(vehicle), *filled, count, RSSI_UNKNOWN))
 
 
 def rc_channels_raw(vehicle: Vehicle, profile: Profile) -> m.RcChannelsRaw | None:
     """The first eight, from ArduPilot: only peers of MAVLink 1 are sent it (`channels.py`)."""
-    if profile.name != "ardupilot":
+    if m.RcChannelsRaw in profile.untold:
         return None
     return m.RcChannelsRaw._make((boot_ms(vehicle), *vehicle.channels_us[:8], 0, RSSI_UNKNOWN))
 
@@ -258,7 +251,7 @@ def rc_channels_raw(vehicle: Vehicle, profile: Profile) -> m.RcChannelsRaw | Non
 def manual_control(vehicle: Vehicle, profile: Profile) -> m.ManualControl | None:
     """PX4 tells the sticks that it flies by."""
     sticks = vehicle.sticks
-    if sticks is None or profile.name != "px4":
+    if sticks is None or m.ManualControl in profile.untold:
         return None
     roll, pitch, yaw, throttle = (round(1000.0 * part) for part in sticks)
     return m.ManualControl(x=pitch, y=roll, z=throttle, r=yaw, buttons=0, target=0)
@@ -267,7 +260,7 @@ def manual_control(vehicle: Vehicle, profile: Profile) -> m.ManualControl | None
 def fence_status(vehicle: Vehicle, profile: Profile) -> m.FenceStatus | None:
     """ArduPilot's alone, and only while its fence is on."""
     fence = vehicle.fence_state
-    if profile.name != "ardupilot" or not fence.present:
+    if m.FenceStatus in profile.untold or not fence.present:
         return None
     return m.FenceStatus(
         breach_time=fence.breach_ns // 1_000_000 & 0xFFFFFFFF,
@@ -282,7 +275,7 @@ STATE: Final[dict[int, Builder]] = {
     m.IDS[kind]: builder
     for kind, builder in (
         (m.Heartbeat, heartbeat),
-        (m.SysStatus, sensors.sys_status),
+        (m.SysStatus, sys_status),
         (m.ExtendedSysState, extended_sys_state),
         (m.Attitude, attitude),
         (m.AttitudeQuaternion, attitude_quaternion),

@@ -24,7 +24,7 @@ _FAILSAFE: Final = re.compile(r"Failsafe activated.*?(?: in (\d+) seconds)?")
 
 def worded(profile: Profile, text: str) -> str:
     """PX4 ends with a TAB each text that it also sends as an EVENT, for clients to tell."""
-    if profile.name != "px4":
+    if not profile.events:
         return text
     failsafe = _FAILSAFE.fullmatch(text)
     if failsafe is not None:

@@ -171,7 +171,9 @@ def test_only_ardupilot_minds_a_second_return_point() -> None:
 
 
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
-def test_a_fence_lies_where_the_vehicles_own_projection_puts_it(personality: str) -> None:
+def test_a_fence_lies_where_the_vehicles_own_projection_puts_it(
+    personality: Personality,
+) -> None:
     own = projection(personality, HOME)
     where = own.to_geodetic((40.0, -30.0, 0.0))
     x, y = round(where.lat_deg * 1e7), round(where.lon_deg * 1e7)

@@ -16,7 +16,7 @@ from tests.unit.parameters.probing import (
     where,
 )
 from vehicle_sim.autopilot.failsafes.failsafe import RANK, charge_of
-from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector, Posture
+from vehicle_sim.autopilot.failsafes.failure_detector import Posture, Px4FailureDetector
 from vehicle_sim.autopilot.fence.geofence import Geofence
 from vehicle_sim.autopilot.fence.rally import Point, landing_site
 from vehicle_sim.autopilot.interface import CommandSent, OrbitRequest, Power, Result, Setpoint
@@ -71,7 +71,7 @@ def upset_after_s(posture: Posture) -> Script:
     """How long after the start of an upset something is said; infinite = nothing."""
 
     def script(setting: Setting) -> object:
-        upsets = FailureDetector(setting.parameters())
+        upsets = Px4FailureDetector(setting.parameters())
         upsets.check(_LEVEL, True, False, 0)
         start = 10 * S
         for tick in range(150):
@@ -84,7 +84,7 @@ def upset_after_s(posture: Posture) -> Script:
 
 def upset_action(posture: Posture) -> Script:
     def script(setting: Setting) -> object:
-        upsets = FailureDetector(setting.parameters())
+        upsets = Px4FailureDetector(setting.parameters())
         upsets.check(_LEVEL, True, False, 0)
         struck = [*upsets.check(posture, True, False, 10 * S)]
         struck += upsets.check(posture, True, False, 12 * S)

@@ -10,6 +10,7 @@ from tests.unit.vehicle_services.fake_vehicle import FakeVehicle
 from vehicle_sim.autopilot.interface import FenceState
 from vehicle_sim.services import sensor_telemetry as build
 from vehicle_sim.services.profile import PROFILES, Profile
+from vehicle_sim.services.sys_status import sys_status
 from vehicle_sim.wire.ids import EkfFlag, EstimatorFlag, Sensor
 
 PX4, ARDUPILOT = PROFILES["px4"], PROFILES["ardupilot"]
@@ -26,7 +27,7 @@ def fake(**changes: object) -> FakeVehicle:
 
 def unhealthy(vehicle: FakeVehicle) -> Sensor:
     """Present, and said to be not healthy."""
-    status = build.sys_status(vehicle, ARDUPILOT)
+    status = sys_status(vehicle, ARDUPILOT)
     return Sensor(status.onboard_control_sensors_present & ~status.onboard_control_sensors_health)
 
 
@@ -57,12 +58,12 @@ def test_px4_tells_the_sensors_that_the_real_one_tells() -> None:
     """behaviour.json rank 3: present 0x0220002d, enabled 0x0221002d, of health 0x2220803f to
     0x3220803f; PREARM_CHECK (0x10000000) is present here, too."""
     vehicle = fake()
-    status = build.sys_status(vehicle, PX4)
+    status = sys_status(vehicle, PX4)
     assert status.onboard_control_sensors_present == 0x0220002D | Sensor.PREARM_CHECK
     assert status.onboard_control_sensors_enabled == 0x0221002D | Sensor.PREARM_CHECK
     assert status.onboard_control_sensors_health == 0x3220803F
     vehicle.armable = False
-    assert build.sys_status(vehicle, PX4).onboard_control_sensors_health == 0x2220803F
+    assert sys_status(vehicle, PX4).onboard_control_sensors_health == 0x2220803F
 
 
 @pytest.mark.parametrize(("profile", "healthy"), [(PX4, False), (ARDUPILOT, True)])
@@ -70,11 +71,11 @@ def test_a_fence_that_there_is_not_is_healthy(profile: Profile, healthy: bool) -
     """ArduPilot's `sys_status_failed`; MAVProxy says "fence breach" without the bit, as it does
     of a real PX4, which is recorded without it."""
     vehicle = fake()
-    status = build.sys_status(vehicle, profile)
+    status = sys_status(vehicle, profile)
     assert not status.onboard_control_sensors_present & Sensor.GEOFENCE
     assert bool(status.onboard_control_sensors_health & Sensor.GEOFENCE) is healthy
     vehicle.fence_state = FenceState(True, True, True, 1, 3, 0)
-    status = build.sys_status(vehicle, profile)
+    status = sys_status(vehicle, profile)
     assert not status.onboard_control_sensors_health & Sensor.GEOFENCE, "breached"
 
 

@@ -59,6 +59,17 @@ _RATES: dict[Personality, dict[str, str]] = {
         "ATC_RATE_Y_MAX": "yaw_rate_max_rad_s",
     },
 }
+_BOUNDS: dict[Personality, dict[str, str]] = {
+    "px4": {"MPC_JERK_AUTO": "jerk_m_s3", "MPC_XY_ERR_MAX": "lead_max_m"},
+    "ardupilot": {},
+}
+"""What a parameter says as it is; the designed bound where the autopilot has no such parameter."""
+_LEAN: dict[Personality, tuple[str, float]] = {
+    "px4": ("MPC_TILTMAX_AIR", 1.0),
+    "ardupilot": ("ANGLE_MAX", 0.01),
+}
+"""The largest lean, and its factor to degrees."""
+_NO_AID_US: dict[Personality, str | None] = {"px4": "EKF2_NOAID_TOUT", "ardupilot": None}
 # PX4: MPC_THR_MIN and LNDMC_LOW_T_THR (0.3, by memory) of the way from it to MPC_THR_HOVER, with
 # their defaults of 0.12 and 0.5.  ArduCopter's as the time from touch-down to disarming has it.
 _LAND_SHARE: dict[Personality, float] = {"px4": (0.12 + 0.3 * (0.5 - 0.12)) / 0.5, "ardupilot": 0.7}
@@ -73,15 +84,16 @@ def write_gains(parameters: Parameters, flight: Flight, est: Estimated, believed
     for name, field in _GAINS[parameters.personality].items():
         ratio = get(name) / parameters.designed(name)
         setattr(flight, field, ratio * getattr(designed, field))
-    px4 = parameters.personality == "px4"
+    rules = parameters.rules
     for name, field in _RATES[parameters.personality].items():
-        # ArduCopter's 0 is no limit of its own.
-        own = px4 or get(name) > 0.0
+        own = rules.rate_limit_may_be_zero or get(name) > 0.0
         setattr(flight, field, radians(get(name)) if own else getattr(designed, field))
-    lean_deg = get("MPC_TILTMAX_AIR") if px4 else 0.01 * get("ANGLE_MAX")
+    lean, to_deg = _LEAN[parameters.personality]
+    lean_deg = to_deg * get(lean)
     flight.tilt_max = tan(radians(min(lean_deg, _TILT_MOST_DEG)))
     flight.land_share = _LAND_SHARE[parameters.personality]
-    if px4:
-        flight.jerk_m_s3 = get("MPC_JERK_AUTO")
-        flight.lead_max_m = get("MPC_XY_ERR_MAX")
-        est.no_aid_s = 1e-6 * get("EKF2_NOAID_TOUT")
+    for name, field in _BOUNDS[parameters.personality].items():
+        setattr(flight, field, get(name))
+    no_aid_us = _NO_AID_US[parameters.personality]
+    if no_aid_us is not None:
+        est.no_aid_s = 1e-6 * get(no_aid_us)

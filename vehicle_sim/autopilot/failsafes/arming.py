@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos
 
@@ -9,7 +10,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import Charge, by_capacity, by_vol
 from vehicle_sim.autopilot.failsafes.px4_failsafes import NO_STATION, violation
 from vehicle_sim.autopilot.fence.geofence import BreachKind, Geofence, names
 from vehicle_sim.autopilot.interface import Power
-from vehicle_sim.autopilot.modes import COPTER_NAMES, Behaviour, Mode
+from vehicle_sim.autopilot.modes import COPTER_NAMES, Behaviour, Mode, Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.estimation.estimator import Health
 
@@ -65,9 +66,7 @@ def reasons(parameters: Parameters, ready: Readiness) -> tuple[str, ...]:
     PX4 1.14's health and arming checks; ArduCopter's AP_Arming_Copter, whose ARMING_CHECK was
     turned round into ARMING_SKIPCHK with 4.7.
     """
-    if parameters.personality == "px4":
-        return tuple(_px4(parameters, ready))
-    return tuple(_copter(parameters, ready))
+    return tuple(_REASONS[parameters.personality](parameters, ready))
 
 
 def _px4(parameters: Parameters, ready: Readiness) -> list[str]:
@@ -190,6 +189,12 @@ def _copter_battery(parameters: Parameters, power: Power) -> list[str]:
     return found
 
 
+_REASONS: dict[Personality, Callable[[Parameters, Readiness], list[str]]] = {
+    "px4": _px4,
+    "ardupilot": _copter,
+}
+
+
 class AutoDisarm:
     """Disarms an armed vehicle that has landed, or has never taken off.
 
@@ -211,15 +216,13 @@ class AutoDisarm:
         self._since_ns = now_ns
 
     def due(self, parameters: Parameters, own_landing: bool, now_ns: int) -> bool:
-        landed = self._flown and (parameters.personality == "px4" or own_landing)
+        landed = self._flown and (own_landing or parameters.rules.any_landing_disarms)
         limit_s = parameters.si(Quantity.DISARM_LANDED_S if landed else Quantity.DISARM_IDLE_S)
-        at_once = landed and parameters.personality == "ardupilot"
-        if limit_s < 0.0 or (limit_s == 0.0 and not at_once):
+        if limit_s <= 0.0:
             return False
         return now_ns - self._since_ns >= int(limit_s * 1e9)
 
     def words(self, parameters: Parameters) -> str:
         """The autopilot's STATUSTEXT for it."""
-        if parameters.personality == "ardupilot":
-            return "Disarming motors"
-        return "Disarmed by landing" if self._flown else "Disarmed by auto preflight disarming"
+        rules = parameters.rules
+        return rules.disarmed_after_landing if self._flown else rules.disarmed_unflown

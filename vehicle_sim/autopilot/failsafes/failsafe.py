@@ -6,6 +6,7 @@ carried out by `autopilot/failsafe_actions.py`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, IntEnum, auto
 
@@ -211,14 +212,26 @@ BATTERY: dict[Personality, dict[Charge, tuple[str, dict[int, Action]]]] = {
 
 def charge_of(parameters: Parameters, power: Power, remaining: float) -> Charge:
     """Where the battery stands by the personality's thresholds; `remaining` is 0..1."""
+    return _CHARGE_OF[parameters.personality](parameters, power, remaining)
+
+
+def _px4_charge(parameters: Parameters, power: Power, remaining: float) -> Charge:
     get = parameters.get
-    if parameters.personality == "px4":
-        if remaining < get("BAT_EMERGEN_THR"):
-            return Charge.EMERGENCY
-        if remaining < get("BAT_CRIT_THR"):
-            return Charge.CRITICAL
-        return Charge.LOW if remaining < get("BAT_LOW_THR") else Charge.FINE
+    if remaining < get("BAT_EMERGEN_THR"):
+        return Charge.EMERGENCY
+    if remaining < get("BAT_CRIT_THR"):
+        return Charge.CRITICAL
+    return Charge.LOW if remaining < get("BAT_LOW_THR") else Charge.FINE
+
+
+def _copter_charge(parameters: Parameters, power: Power, remaining: float) -> Charge:
     return max(by_voltage(parameters, power), by_capacity(parameters, power))
+
+
+_CHARGE_OF: dict[Personality, Callable[[Parameters, Power, float], Charge]] = {
+    "px4": _px4_charge,
+    "ardupilot": _copter_charge,
+}
 
 
 def _measured(parameters: Parameters) -> bool:

@@ -6,6 +6,7 @@ check and the thrust loss check.  All at 10 Hz in simulated time.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import cos, degrees, radians
@@ -18,6 +19,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
     Failsafe,
     activated,
 )
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 
 _TAKE_OFF_NS = 3_000_000_000  # PX4: so soon after arming an upset is a bad take-off
@@ -52,19 +54,10 @@ class Posture:
     thrust: tuple[float, float, float, float]
 
 
-class FailureDetector:
+class FailureDetector(ABC):
     """Remembers what has struck since arming."""
 
-    __slots__ = (
-        "_accel",
-        "_armed_ns",
-        "_calm_cos",
-        "_motors",
-        "_parameters",
-        "_struck",
-        "_timers",
-        "_version",
-    )
+    __slots__ = ("_armed_ns", "_calm_cos", "_parameters", "_struck", "_timers", "_version")
 
     def __init__(self, parameters: Parameters) -> None:
         self._parameters = parameters
@@ -75,9 +68,7 @@ class FailureDetector:
     def reset(self) -> None:
         """Disarmed."""
         self._armed_ns: int | None = None
-        self._accel = 0.0
         self._timers: dict[str, int] = {}  # since when something has been so
-        self._motors: set[int] = set()
         self._struck: set[str] = set()
 
     def calm(self, upright: float, wanted: float, asked_most: float, thrust_least: float) -> bool:
@@ -98,26 +89,20 @@ class FailureDetector:
             and thrust_least >= _DEAD_THRUST * asked_most
         )
 
+    @abstractmethod
     def _least_lean_deg(self) -> float:
         """No upset counts below this lean."""
-        if self._parameters.personality == "ardupilot":
-            return 0.5 * _CRASH_DEG
-        limits = [self._parameters.get(name) for name in ("FD_FAIL_R", "FD_FAIL_P")]
-        return min([limit for limit in limits if limit > 0.0], default=90.0)
 
     def check(self, posture: Posture, flying: bool, by_rates: bool, now_ns: int) -> list[Failsafe]:
         """What strikes now.  `by_rates`: flown by body rates, where any attitude is wanted."""
         if self._armed_ns is None:
             self._armed_ns = now_ns
-        if self._parameters.personality == "px4":
-            struck = [] if by_rates else [*self._attitude(posture, now_ns)]
-            return [*struck, *self._dead_motors(posture, now_ns)]
-        if not flying:
-            self._timers.clear()
-            return []
-        self._accel += _ACCEL_GAIN * (posture.accel_m_s2 - self._accel)
-        struck = [] if by_rates else [*self._crash(posture, now_ns)]
-        return [*struck, *self._thrust_loss(posture, now_ns)]
+        return self._find(posture, flying, by_rates, now_ns)
+
+    @abstractmethod
+    def _find(
+        self, posture: Posture, flying: bool, by_rates: bool, now_ns: int
+    ) -> list[Failsafe]: ...
 
     def _once(self, name: str, is_so: bool, now_ns: int, limit_ns: int) -> bool:
         """Whether `is_so` has now lasted for the limit, said once until it ends."""
@@ -131,7 +116,23 @@ class FailureDetector:
         self._struck.add(name)
         return new
 
-    # ---------------------------------------------------------------------------- PX4
+
+class Px4FailureDetector(FailureDetector):
+    """PX4's failure detector."""
+
+    __slots__ = ("_motors",)
+
+    def reset(self) -> None:
+        super().reset()
+        self._motors: set[int] = set()
+
+    def _least_lean_deg(self) -> float:
+        limits = [self._parameters.get(name) for name in ("FD_FAIL_R", "FD_FAIL_P")]
+        return min([limit for limit in limits if limit > 0.0], default=90.0)
+
+    def _find(self, posture: Posture, flying: bool, by_rates: bool, now_ns: int) -> list[Failsafe]:
+        struck = [] if by_rates else [*self._attitude(posture, now_ns)]
+        return [*struck, *self._dead_motors(posture, now_ns)]
 
     def _attitude(self, posture: Posture, now_ns: int) -> Iterator[Failsafe]:
         get = self._parameters.get
@@ -166,7 +167,26 @@ class FailureDetector:
                 delayed = action is not Action.TERMINATE
                 yield Failsafe(Cause.MOTOR, action, activated(action), 2, delayed)
 
-    # ------------------------------------------------------------------------- ArduCopter
+
+class CopterFailureDetector(FailureDetector):
+    """ArduCopter's crash check and thrust loss check."""
+
+    __slots__ = ("_accel",)
+
+    def reset(self) -> None:
+        super().reset()
+        self._accel = 0.0
+
+    def _least_lean_deg(self) -> float:
+        return 0.5 * _CRASH_DEG
+
+    def _find(self, posture: Posture, flying: bool, by_rates: bool, now_ns: int) -> list[Failsafe]:
+        if not flying:
+            self._timers.clear()
+            return []
+        self._accel += _ACCEL_GAIN * (posture.accel_m_s2 - self._accel)
+        struck = [] if by_rates else [*self._crash(posture, now_ns)]
+        return [*struck, *self._thrust_loss(posture, now_ns)]
 
     def _crash(self, posture: Posture, now_ns: int) -> Iterator[Failsafe]:
         off_deg = degrees(posture.off_rad)
@@ -192,3 +212,9 @@ class FailureDetector:
             motor = max(range(4), key=lambda number: posture.asked[number])
             text = f"Potential Thrust Loss ({motor + 1})"
             yield Failsafe(Cause.MOTOR, Action.WARN, text, 0)
+
+
+FAILURE_DETECTORS: dict[Personality, type[Px4FailureDetector | CopterFailureDetector]] = {
+    "px4": Px4FailureDetector,
+    "ardupilot": CopterFailureDetector,
+}

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntFlag
 from math import hypot, inf
 
 from vehicle_sim.autopilot.fence.zones import Fence
 from vehicle_sim.autopilot.interface import FenceState
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -57,31 +59,43 @@ class FenceLimits:
     predict: bool = False
 
 
-def limits_of(parameters: Parameters) -> FenceLimits:
-    """PX4 counts a distance of 0 as no limit; ArduCopter has a mask, and a switch for it all."""
+def _px4_limits(parameters: Parameters) -> FenceLimits:
+    """PX4 counts a distance of 0 as no limit."""
     get = parameters.get
-    if parameters.personality == "px4":
-        top_m, radius_m = get("GF_MAX_VER_DIST"), get("GF_MAX_HOR_DIST")
-        kinds = BreachKind.POLYGON
-        kinds |= BreachKind.ALT_MAX if top_m > 0.0 else BreachKind.NONE
-        kinds |= BreachKind.CIRCLE if radius_m > 0.0 else BreachKind.NONE
-        floor_m, margin_m, union = -inf, 0.0, True  # 1.14: one inclusion zone is enough
-        predict = get("GF_PREDICT") != 0
-    else:
-        kinds = BreachKind(int(get("FENCE_TYPE"))) if get("FENCE_ENABLE") != 0 else BreachKind.NONE
-        top_m, floor_m = get("FENCE_ALT_MAX"), get("FENCE_ALT_MIN")
-        radius_m, margin_m = get("FENCE_RADIUS"), get("FENCE_MARGIN")
-        union, predict = bool(int(get("FENCE_OPTIONS")) & 2), False
+    top_m, radius_m = get("GF_MAX_VER_DIST"), get("GF_MAX_HOR_DIST")
+    kinds = BreachKind.POLYGON
+    kinds |= BreachKind.ALT_MAX if top_m > 0.0 else BreachKind.NONE
+    kinds |= BreachKind.CIRCLE if radius_m > 0.0 else BreachKind.NONE
     return FenceLimits(
         kinds,
-        top_m if BreachKind.ALT_MAX in kinds else inf,
-        floor_m if BreachKind.ALT_MIN in kinds else -inf,
-        radius_m if BreachKind.CIRCLE in kinds else inf,
-        BreachKind.POLYGON in kinds,
-        margin_m,
-        union,
-        predict,
+        top_m if top_m > 0.0 else inf,
+        -inf,
+        radius_m if radius_m > 0.0 else inf,
+        zones=True,
+        union=True,  # 1.14: one inclusion zone is enough
+        predict=get("GF_PREDICT") != 0,
     )
+
+
+def _copter_limits(parameters: Parameters) -> FenceLimits:
+    """ArduCopter has a mask, and a switch for it all."""
+    get = parameters.get
+    kinds = BreachKind(int(get("FENCE_TYPE"))) if get("FENCE_ENABLE") != 0 else BreachKind.NONE
+    return FenceLimits(
+        kinds,
+        get("FENCE_ALT_MAX") if BreachKind.ALT_MAX in kinds else inf,
+        get("FENCE_ALT_MIN") if BreachKind.ALT_MIN in kinds else -inf,
+        get("FENCE_RADIUS") if BreachKind.CIRCLE in kinds else inf,
+        zones=BreachKind.POLYGON in kinds,
+        margin_m=get("FENCE_MARGIN"),
+        union=bool(int(get("FENCE_OPTIONS")) & 2),
+    )
+
+
+_LIMITS: dict[Personality, Callable[[Parameters], FenceLimits]] = {
+    "px4": _px4_limits,
+    "ardupilot": _copter_limits,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +157,7 @@ class Geofence:
     def limits(self) -> FenceLimits:
         if self._version != self._parameters.version:
             self._version = self._parameters.version
-            self._limits = limits_of(self._parameters)
+            self._limits = _LIMITS[self._parameters.personality](self._parameters)
             self._room_m = 0.0
             kinds = (
                 self._limits.kinds if self.fence.zones else self._limits.kinds & ~BreachKind.POLYGON
@@ -256,7 +270,7 @@ class Geofence:
 
     def taken_over(self, time_ns: int) -> None:
         """The operator flies out of a breach himself: no action for a while (ArduCopter)."""
-        if self.breached and self._parameters.personality == "ardupilot":
+        if self.breached and self._parameters.rules.pilot_suspends_fence:
             self._quiet_until_ns = time_ns + _RECOVERY_NS
 
     # --------------------------------------------------------------------------- report
@@ -265,9 +279,7 @@ class Geofence:
     def state(self) -> FenceState:
         limits = self.limits
         present = limits.kinds if self.fence.zones else limits.kinds & ~BreachKind.POLYGON
-        action = self._parameters.get(
-            "GF_ACTION" if self._parameters.personality == "px4" else "FENCE_ACTION"
-        )
+        action = self._parameters.get(self._parameters.rules.fence_action)
         kind = 3 if self.breached & (BreachKind.CIRCLE | BreachKind.POLYGON) else 0  # BOUNDARY
         if not kind and BreachKind.ALT_MAX in self.breached:
             kind = 2  # MAXALT
@@ -286,7 +298,7 @@ class Geofence:
         """What of ArduCopter's own settings contradicts itself, in AC_Fence's words."""
         limits = self.limits
         parameters = self._parameters
-        if parameters.personality != "ardupilot" or parameters.get("FENCE_ENABLE") == 0:
+        if not parameters.rules.checks_fence_settings or parameters.get("FENCE_ENABLE") == 0:
             return None
         if not limits.kinds:
             return "Fences enabled, but none selected"

@@ -9,6 +9,7 @@ from math import hypot, isfinite
 from vehicle_sim.autopilot.fence.zones import check_place, place_ne
 from vehicle_sim.autopilot.geo import Projection
 from vehicle_sim.autopilot.interface import Flaw, PlanItem, Refusal
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -73,11 +74,10 @@ def landing_site(
     height of the way, the landing goes down to the ground.  PX4 (RTL_TYPE 0): the nearest of
     home and all points; RTL_TYPE 1: the nearest that is not home.  Its altitude is the ground's.
     """
-    home = LandingSite(home_ned)
-    ardupilot = parameters.personality == "ardupilot"
-    known = [p for p in points if not ardupilot or allowed(p.north_m, p.east_m)]
+    inside_fence_only = parameters.rules.rally_inside_fence_only
+    known = [p for p in points if not inside_fence_only or allowed(p.north_m, p.east_m)]
     if not known:
-        return home
+        return LandingSite(home_ned)
 
     def off_m(point: Point) -> float:
         return hypot(point.north_m - pos_ned[0], point.east_m - pos_ned[1])
@@ -85,13 +85,39 @@ def landing_site(
     nearest = min(known, key=off_m)
     home_off_m = hypot(home_ned[0] - pos_ned[0], home_ned[1] - pos_ned[1])
     down = home_ned[2] - nearest.up_m if nearest.relative else origin_amsl_m - nearest.up_m
-    if ardupilot:
-        limit_m = 1000.0 * parameters.get("RALLY_LIMIT_KM")
-        if 0.0 < limit_m < off_m(nearest):
-            return home
-        if parameters.get("RALLY_INCL_HOME") != 0 and home_off_m <= off_m(nearest):
-            return home
-        return LandingSite((nearest.north_m, nearest.east_m, home_ned[2]), down)
-    if parameters.get("RTL_TYPE") == 0 and home_off_m <= off_m(nearest):
-        return home
+    site = _RALLY_SITES[parameters.personality]
+    return site(parameters, nearest, off_m(nearest), home_ned, home_off_m, down)
+
+
+def _px4_site(
+    parameters: Parameters,
+    nearest: Point,
+    off_m: float,
+    home_ned: Vec3,
+    home_off_m: float,
+    down: float,
+) -> LandingSite:
+    if parameters.get("RTL_TYPE") == 0 and home_off_m <= off_m:
+        return LandingSite(home_ned)
     return LandingSite((nearest.north_m, nearest.east_m, down))
+
+
+def _copter_site(
+    parameters: Parameters,
+    nearest: Point,
+    off_m: float,
+    home_ned: Vec3,
+    home_off_m: float,
+    down: float,
+) -> LandingSite:
+    too_far = 0.0 < 1000.0 * parameters.get("RALLY_LIMIT_KM") < off_m
+    if too_far or (parameters.get("RALLY_INCL_HOME") != 0 and home_off_m <= off_m):
+        return LandingSite(home_ned)
+    return LandingSite((nearest.north_m, nearest.east_m, home_ned[2]), down)
+
+
+_RALLY_SITES: dict[
+    Personality, Callable[[Parameters, Point, float, Vec3, float, float], LandingSite]
+] = {"px4": _px4_site, "ardupilot": _copter_site}
+"""Whether the return ends at the nearest point: how far off it is and how far home is, horizontally
+[m], and `down`, the height [m, NED] that the point says."""

@@ -17,6 +17,7 @@ from typing import TypeAlias
 from vehicle_sim.autopilot.geo import Projection
 from vehicle_sim.autopilot.interface import Flaw, Geodetic, PlanItem, Refusal
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.rules import RULES
 
 Vec2 = tuple[float, float]
 
@@ -135,7 +136,7 @@ def check(items: tuple[PlanItem, ...], personality: Personality) -> Refusal | No
             first = item
             left = int(item.p1) - 1
         returns += item.command == _RETURN_POINT
-        if returns > 1 and personality == "ardupilot":
+        if returns > 1 and RULES[personality].one_fence_return_point:
             return Refusal(item.seq, Flaw.WHOLE, "a second return point")
     if left > 0 and first is not None:
         why = f"the polygon lacks {left} of {first.p1:g} vertices"
@@ -150,8 +151,8 @@ def _item(item: PlanItem, personality: Personality) -> Refusal | None:
     refusal = check_place(item)
     if refusal is not None:
         return refusal
-    # PX4 takes any radius: a circle of 0, of less or of none has no inside.
-    if item.command in _CIRCLES and personality == "ardupilot" and not 0.0 < item.p1 < inf:
+    radius_needed = item.command in _CIRCLES and RULES[personality].fence_circle_needs_radius
+    if radius_needed and not 0.0 < item.p1 < inf:
         return Refusal(seq, Flaw.PARAM1, f"radius {item.p1:g} m")
     if item.command in _POLYGONS:
         whole = isfinite(item.p1) and item.p1 == int(item.p1)

@@ -7,10 +7,12 @@ cubic throttle through MOT_THST_HOVER).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
 
 from vehicle_sim.autopilot.manual.sticks import Sticks
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -64,29 +66,36 @@ class Feel:
 
 def feel_of(parameters: Parameters) -> Feel:
     """Read anew whenever a parameter changes."""
+    return _FEEL[parameters.personality](parameters)
+
+
+def _px4_feel(parameters: Parameters) -> Feel:
     get = parameters.get
-    if parameters.personality == "px4":
-        return Feel(
-            tilt_rad=get("MPC_MAN_TILT_MAX") * _DEG,
-            yaw_rad_s=get("MPC_MAN_Y_MAX") * _DEG,
-            rates_rad_s=(
-                get("MC_ACRO_R_MAX") * _DEG,
-                get("MC_ACRO_P_MAX") * _DEG,
-                get("MC_ACRO_Y_MAX") * _DEG,
-            ),
-            speed_m_s=min(get("MPC_VEL_MANUAL"), get("MPC_XY_VEL_MAX")),
-            accel_m_s2=parameters.si(Quantity.ACCEL_M_S2),
-            accel_down_m_s2=parameters.si(Quantity.ACCEL_VERTICAL_M_S2),
-            accel_up_m_s2=parameters.si(Quantity.ACCEL_UP_M_S2),
-            climb_m_s=get("MPC_Z_VEL_MAX_UP"),
-            descend_m_s=get("MPC_Z_VEL_MAX_DN"),
-            xy_dead=get("MPC_HOLD_DZ"),
-            xy_curve=get("MPC_XY_MAN_EXPO"),
-            climb_dead=get("MPC_HOLD_DZ"),
-            climb_curve=get("MPC_Z_MAN_EXPO"),
-            yaw_dead=get("MPC_HOLD_DZ"),
-            yaw_curve=get("MPC_YAW_EXPO"),
-        )
+    return Feel(
+        tilt_rad=get("MPC_MAN_TILT_MAX") * _DEG,
+        yaw_rad_s=get("MPC_MAN_Y_MAX") * _DEG,
+        rates_rad_s=(
+            get("MC_ACRO_R_MAX") * _DEG,
+            get("MC_ACRO_P_MAX") * _DEG,
+            get("MC_ACRO_Y_MAX") * _DEG,
+        ),
+        speed_m_s=min(get("MPC_VEL_MANUAL"), get("MPC_XY_VEL_MAX")),
+        accel_m_s2=parameters.si(Quantity.ACCEL_M_S2),
+        accel_down_m_s2=parameters.si(Quantity.ACCEL_VERTICAL_M_S2),
+        accel_up_m_s2=parameters.si(Quantity.ACCEL_UP_M_S2),
+        climb_m_s=get("MPC_Z_VEL_MAX_UP"),
+        descend_m_s=get("MPC_Z_VEL_MAX_DN"),
+        xy_dead=get("MPC_HOLD_DZ"),
+        xy_curve=get("MPC_XY_MAN_EXPO"),
+        climb_dead=get("MPC_HOLD_DZ"),
+        climb_curve=get("MPC_Z_MAN_EXPO"),
+        yaw_dead=get("MPC_HOLD_DZ"),
+        yaw_curve=get("MPC_YAW_EXPO"),
+    )
+
+
+def _copter_feel(parameters: Parameters) -> Feel:
+    get = parameters.get
     up_cm_s, down_cm_s = get("PILOT_SPEED_UP"), get("PILOT_SPEED_DN")
     rate_rad_s = get("ACRO_RP_RATE") * _DEG
     return Feel(
@@ -110,21 +119,37 @@ def feel_of(parameters: Parameters) -> Feel:
 
 def thrust_of(parameters: Parameters, sticks: Sticks) -> float:
     """The throttle stick as a part of full thrust; its middle hovers."""
+    return _THRUST[parameters.personality](parameters, sticks)
+
+
+def _px4_thrust(parameters: Parameters, sticks: Sticks) -> float:
     get = parameters.get
-    if parameters.personality == "px4":
-        middle = get("MPC_THR_HOVER")
-        climb = sticks.climb
-        if climb < 0.0:
-            return middle + climb * (middle - get("MPC_MANTHR_MIN"))
-        return middle + climb * (get("MPC_THR_MAX") - middle)
-    bend = min(1.0, max(-0.5, (0.5 - get("MOT_THST_HOVER")) / 0.375))
+    middle = get("MPC_THR_HOVER")
+    climb = sticks.climb
+    if climb < 0.0:
+        return middle + climb * (middle - get("MPC_MANTHR_MIN"))
+    return middle + climb * (get("MPC_THR_MAX") - middle)
+
+
+def _copter_thrust(parameters: Parameters, sticks: Sticks) -> float:
+    bend = min(1.0, max(-0.5, (0.5 - parameters.get("MOT_THST_HOVER")) / 0.375))
     part = sticks.throttle
     return part * (1.0 - bend) + bend * part * part * part
 
 
+_FEEL: dict[Personality, Callable[[Parameters], Feel]] = {
+    "px4": _px4_feel,
+    "ardupilot": _copter_feel,
+}
+_THRUST: dict[Personality, Callable[[Parameters, Sticks], float]] = {
+    "px4": _px4_thrust,
+    "ardupilot": _copter_thrust,
+}
+
+
 def hover_of(parameters: Parameters) -> float:
     """The thrust in the middle of the throttle stick."""
-    return parameters.get("MPC_THR_HOVER" if parameters.personality == "px4" else "MOT_THST_HOVER")
+    return parameters.get(parameters.rules.hover_thrust)
 
 
 def shaped(stick: float, dead: float, curve: float) -> float:

@@ -50,14 +50,13 @@ class Gestures:
         return way
 
     def _corner(self, hand: Sticks) -> Gesture | None:
-        personality = self._parameters.personality
-        px4 = personality == "px4"
-        allowed = int(self._parameters.get("MAN_ARM_GESTURE" if px4 else "ARMING_RUDDER"))
-        if not allowed or hand.throttle > _BOTTOM[personality] or abs(hand.yaw) < _CORNER:
+        rules, bottom = self._parameters.rules, _BOTTOM[self._parameters.personality]
+        allowed = int(self._parameters.get(rules.arming_gesture))
+        if not allowed or hand.throttle > bottom or abs(hand.yaw) < _CORNER:
             return None
         if hand.yaw > 0.0:
             return Gesture.ARM
-        return Gesture.DISARM if px4 or allowed > 1 else None
+        return Gesture.DISARM if allowed >= rules.gesture_disarms_from else None
 
     def takes_over(self, hand: Sticks) -> bool:
         """Moved farther than COM_RC_STICK_OV."""

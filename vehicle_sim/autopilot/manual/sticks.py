@@ -90,7 +90,7 @@ class Radio:
             return
         pitch, roll, yaw = (_axis(value) for value in (forward, right, clockwise))
         throttle = max(0, up) / _AXIS_MAX if up <= _AXIS_MAX else 0.0
-        if self._parameters.personality == "px4":
+        if not self._parameters.rules.joystick_overrides_channels:
             self._joystick = Sticks(roll, pitch, yaw, throttle)
             self._joystick_ns = wall_ns
             self._settle(_Source.JOYSTICK)
@@ -154,15 +154,15 @@ class Radio:
         """There were sticks, and now there are none: a matter for a failsafe."""
         if self._last is None:
             return False
-        if self._parameters.personality == "px4":
+        grace = self._parameters.rules.receiver_grace
+        if grace is None:
             return self.sticks(wall_ns) is None
-        # ArduCopter's receiver counts as lost RC_FS_TIMEOUT after the last override expired.
-        grace_ns = int(self._parameters.get("RC_FS_TIMEOUT") * _S_NS)
+        grace_ns = int(self._parameters.get(grace) * _S_NS)
         return self._radio(wall_ns - grace_ns) is None
 
     def sticks(self, wall_ns: int) -> Sticks | None:
         """The sticks in use, None when there are none now."""
-        if self._parameters.personality == "ardupilot":
+        if self._parameters.rules.joystick_overrides_channels:
             return self._radio(wall_ns)
         mode = int(self._parameters.get("COM_RC_IN_MODE"))
         for source in _SOURCES[mode]:
@@ -189,8 +189,7 @@ class Radio:
     @property
     def _lasts_ns(self) -> int | None:
         """How long a channel's value lasts; None = for ever."""
-        px4 = self._parameters.personality == "px4"
-        lasts_s = self._parameters.get("COM_RC_LOSS_T" if px4 else "RC_OVERRIDE_TIME")
+        lasts_s = self._parameters.get(self._parameters.rules.channel_lasts)
         return None if lasts_s < 0.0 else int(lasts_s * _S_NS)
 
     def _fresh(self, wall_ns: int) -> Sticks | None:
@@ -201,7 +200,7 @@ class Radio:
     def _radio(self, wall_ns: int) -> Sticks | None:
         """The sticks on the mapped channels; a channel without a value is a centred stick."""
         names = ("ROLL", "PITCH", "YAW", "THROTTLE")
-        prefix = "RC_MAP_" if self._parameters.personality == "px4" else "RCMAP_"
+        prefix = self._parameters.rules.channel_map
         numbers = [self._number(prefix + name) for name in names]
         roll, pitch, yaw, throttle = (
             self.channel_us(number, wall_ns) if number else 0 for number in numbers

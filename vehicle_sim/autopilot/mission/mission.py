@@ -24,7 +24,6 @@ from vehicle_sim.autopilot.mission.plan import (
     KINDS,
     Cmd,
     ItemKind,
-    first_of,
     has_height,
     has_place,
     place_of,
@@ -56,6 +55,7 @@ class Mission:
         "_next",
         "_parameters",
         "_repeats",
+        "_rules",
         "_texts",
         "_until_ns",
         "_vehicle",
@@ -68,8 +68,9 @@ class Mission:
     def __init__(self, parameters: Parameters, vehicle: MissionVehicle) -> None:
         self._parameters = parameters
         self._vehicle = vehicle
-        self._texts = ItemTexts(vehicle, told=parameters.personality == "ardupilot")
-        self._errands = MissionCommands(vehicle, reports=parameters.personality == "px4")
+        self._rules = parameters.rules
+        self._texts = ItemTexts(vehicle, told=self._rules.names_mission_items)
+        self._errands = MissionCommands(vehicle, reports=self._rules.commands_are_reached)
         self.load(())
 
     # ------------------------------------------------------------------------- the plan
@@ -95,13 +96,13 @@ class Mission:
 
     @property
     def empty(self) -> bool:
-        return len(self.items) <= first_of(self._parameters.personality)
+        return len(self.items) <= self._rules.first_mission_item
 
     def jump_to(self, seq: int) -> bool:
         """Make `seq` the current item; False where there is none."""
         if not 0 <= seq < len(self.items):
             return False
-        self.current = self._next = max(seq, first_of(self._parameters.personality))
+        self.current = self._next = max(seq, self._rules.first_mission_item)
         self.finished = False
         self._leg = None
         self._errands.drop()
@@ -114,8 +115,8 @@ class Mission:
     @property
     def takes_off(self) -> bool:
         """Whether the next flown item is a take-off; ArduCopter looks past delays for it."""
-        delays = self._parameters.personality == "ardupilot"
-        first = max(self.current, first_of(self._parameters.personality))
+        delays = self._rules.delays_before_take_off
+        first = max(self.current, self._rules.first_mission_item)
         for item in self.items[first : self._last + 1]:
             if KINDS[item.command] is ItemKind.FLOWN and not (delays and item.command == Cmd.DELAY):
                 return item.command == Cmd.TAKEOFF
@@ -137,7 +138,7 @@ class Mission:
         return up_m if item.command == Cmd.TAKEOFF else max(up_m, least_m)
 
     def _flown_from(self, index: int) -> PlanItem | None:
-        first = max(index, first_of(self._parameters.personality))
+        first = max(index, self._rules.first_mission_item)
         for item in self.items[first : self._last + 1]:
             if KINDS[item.command] is ItemKind.FLOWN:
                 return item
@@ -184,18 +185,16 @@ class Mission:
         return False
 
     def begin(self, s: Situation, turner: Turner) -> None:
-        starts_anew = self._parameters.personality == "ardupilot" and self._parameters.get(
-            "MIS_RESTART"
-        )
-        if self.finished or starts_anew:
+        restart = self._rules.mission_restart
+        if self.finished or (restart is not None and self._parameters.get(restart)):
             self.rewind()
         self.started = True
         self._until_ns = None
         # The item that was left begins anew; what was to be done on the way is not done twice.
         if self._leg is not None:
             self._next = self.current
-        self._next = max(self._next, first_of(self._parameters.personality))
-        self.current = max(self.current, first_of(self._parameters.personality))
+        self._next = max(self._next, self._rules.first_mission_item)
+        self.current = max(self.current, self._rules.first_mission_item)
         self._leg = None
         self.announce_begin()
         self._goal = s.stop_ned
@@ -274,7 +273,7 @@ class Mission:
             self._next = int(item.p1) if 0 <= item.p1 < len(self.items) else self._last + 1
             return
         self._next += 1
-        if self._parameters.personality == "px4":
+        if self._rules.tells_end_of_jumps:
             self._vehicle.emit(StatusText(6, "DO JUMP repetitions completed."))
 
     def announce_begin(self) -> None:
@@ -316,8 +315,7 @@ class Mission:
             case Cmd.TAKEOFF:
                 take_off = self._take_off(place[2])
                 take_off.begin(s, turner)
-                # PX4 climbs where it stands, then flies to the item; ArduCopter has no second part.
-                goes = self._parameters.personality == "px4" and has_place(item)
+                goes = self._rules.take_off_goes_to_place and has_place(item)
                 return Rise(take_off, Go(place, accept_m, 0.0) if goes else None)
             case Cmd.LOITER_TURNS:
                 circle = CircleTask(place, _radius(item), item.p1, not item.p3 < 0.0)
@@ -355,15 +353,16 @@ class Mission:
 
     def _set_heading(self, item: PlanItem, place: Vec3, s: Situation, turner: Turner) -> None:
         self._by_home = False
-        if self._parameters.personality == "px4":
+        nose = self._rules.nose_in_flight
+        if nose is not None and self._parameters.get(nose) == 0:
+            return
+        if self._rules.items_have_heading:
             if isfinite(item.p4):
                 turner.turn_to(radians(item.p4))
                 return
             if self._parameters.get("MPC_YAW_MODE") in _BY_HOME:
                 self._by_home = True
                 return
-        elif self._parameters.get("WP_YAW_BEHAVIOR") == 0:
-            return
         face(place, s, turner)
 
     def _mind_home(self, s: Situation, turner: Turner) -> None:
@@ -373,8 +372,8 @@ class Mission:
         face((n + there * (home_n - n), e + there * (home_e - e), d), s, turner)
 
     def _accept_m(self, item: PlanItem) -> float:
-        px4_waypoint = self._parameters.personality == "px4" and item.command == Cmd.WAYPOINT
-        if px4_waypoint and isfinite(item.p2) and item.p2 > 0.0:
+        own = self._rules.waypoints_have_radius and item.command == Cmd.WAYPOINT
+        if own and isfinite(item.p2) and item.p2 > 0.0:
             return item.p2
         return self._parameters.si(Quantity.ACCEPT_M)
 

@@ -9,6 +9,7 @@ from math import isfinite
 from vehicle_sim.autopilot.geo import Projection
 from vehicle_sim.autopilot.interface import Geodetic, PlanItem
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.rules import RULES, AutopilotRules
 from vehicle_sim.numerics.vectors import Vec3
 
 
@@ -129,14 +130,16 @@ class Datum:
     home_ned: Vec3
 
 
-def here_if_zero(personality: Personality) -> frozenset[int]:
-    """Items that are flown where the vehicle is, if they say 0, 0."""
-    return _HERE_IF_ZERO if personality == "px4" else _HERE_IF_ZERO_COPTER
+_HERE: dict[Personality, frozenset[int]] = {
+    "px4": _HERE_IF_ZERO,
+    "ardupilot": _HERE_IF_ZERO_COPTER,
+}
+"""Items that are flown where the vehicle is, if they say 0, 0."""
 
 
 def first_of(personality: Personality) -> int:
-    """The first item that is flown: ArduPilot keeps home at index 0."""
-    return 1 if personality == "ardupilot" else 0
+    """The first item that is flown."""
+    return RULES[personality].first_mission_item
 
 
 def check(items: tuple[PlanItem, ...], personality: Personality) -> tuple[int, str] | None:
@@ -159,30 +162,35 @@ def infeasible(items: tuple[PlanItem, ...]) -> bool:
 
 
 def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None:
-    if item.command not in KINDS or (item.command == Cmd.SPLINE and personality == "px4"):
+    rules = RULES[personality]
+    if item.command not in KINDS or (item.command == Cmd.SPLINE and not rules.flies_splines):
         return f"command {item.command} is not supported"
     if item.command in _PLACED:
         if item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED}:
             return f"frame {item.frame} is not supported"
-        if personality == "ardupilot" and not isfinite(item.z):
+        if rules.items_need_sound_place and not isfinite(item.z):
             return "the altitude is not a number"
         somewhere = item.frame != _LOCAL_NED and has_place(item)
-        if personality == "ardupilot" and somewhere and not _on_earth(item):
+        if rules.items_need_sound_place and somewhere and not _on_earth(item):
             return "the position is not on Earth"
-        if not has_place(item) and item.command not in here_if_zero(personality):
+        if not has_place(item) and item.command not in _HERE[personality]:
             return "the position is missing"
     elif item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED, _MISSION}:
         return f"frame {item.frame} is not supported"
-    elif item.command == Cmd.RETURN and personality == "px4" and item.frame in _GLOBAL | _RELATIVE:
+    elif (
+        item.command == Cmd.RETURN
+        and rules.return_refuses_place
+        and item.frame in _GLOBAL | _RELATIVE
+    ):
         return f"frame {item.frame} is not supported for a return"
-    return _why_not_values(item, count, personality)
+    return _why_not_values(item, count, rules)
 
 
-def _why_not_values(item: PlanItem, count: int, personality: Personality) -> str | None:
-    first = first_of(personality)
+def _why_not_values(item: PlanItem, count: int, rules: AutopilotRules) -> str | None:
     match item.command:
         case Cmd.JUMP:
-            if not isfinite(item.p1) or (personality == "ardupilot" and not 1 <= item.p1 < count):
+            there = rules.jumps_may_lead_beyond or 1 <= item.p1 < count
+            if not isfinite(item.p1) or not there:
                 return f"jump to item {item.p1:g}, which is not there"
             if not isfinite(item.p2) or item.p2 < -1:
                 return f"{item.p2:g} repetitions"
@@ -214,7 +222,7 @@ def _why_not_values(item: PlanItem, count: int, personality: Personality) -> str
             if not isfinite(item.p1):
                 return "the heading is not a number"
         case Cmd.FENCE_ENABLE:
-            if first == 0 and item.p1 != 0.0:
+            if rules.fence_always_on and item.p1 != 0.0:
                 return "this vehicle's geofence is always on"
             if item.p1 not in (0.0, 1.0, 2.0):
                 return f"fence enable {item.p1:g}"

@@ -18,6 +18,7 @@ from vehicle_sim.autopilot.firmware import Firmware, firmware_of
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.tables import RENAMED, TABLES, ParameterSpec, Renamed, listed
 from vehicle_sim.autopilot.parameters.tables.spec import LIMITS, StoredAs
+from vehicle_sim.autopilot.rules import RULES, AutopilotRules
 
 
 class ParameterError(ValueError):
@@ -164,12 +165,14 @@ class Parameters:
         "_stored",
         "firmware",
         "personality",
+        "rules",
         "version",
     )
 
     def __init__(self, personality: Personality, firmware: Firmware | None = None) -> None:
         """Of the usual firmware unless one is given.  Raises FirmwareError for another's."""
         self.personality = personality
+        self.rules: AutopilotRules = RULES[personality]
         self.firmware = firmware_of(personality, firmware)
         self._known = _known(personality, self.firmware)
         self._stored = self._known.stored.copy()
@@ -297,12 +300,13 @@ def _found(among: dict[str, _Thing], name: str) -> _Thing:
 
 def _fitted(personality: Personality, spec: ParameterSpec, value: float) -> float:
     """As the autopilot stores `value`.  Raises ParameterError for what it does not take."""
-    if isnan(value) or (personality == "ardupilot" and not isfinite(value)):
+    rules = RULES[personality]
+    if isnan(value) or not (rules.infinite_parameters or isfinite(value)):
         raise ParameterError(f"{spec.name}: {value} is not a number")
     if not spec.integer:
         return _float32(value)
     low, high = LIMITS[spec.stored_as]
-    if personality == "ardupilot":
+    if rules.cuts_parameters_to_fit:
         return float(int(min(max(value, low), high)))
     if not low <= value <= high or value != int(value):
         raise ParameterError(f"{spec.name}: {value:g} is not a whole number of 32 bits")

@@ -90,6 +90,15 @@ _GROUPS: dict[Personality, tuple[_Group, ...]] = {
 }
 
 
+_DRAIN: dict[Personality, tuple[str, ...]] = {
+    "px4": ("SIM_BAT_DRAIN", "SIM_BAT_MIN_PCT"),
+    "ardupilot": (),
+}
+"""What the simulated battery drains by, where the autopilot's simulation has such a battery."""
+_VOLTAGE: dict[Personality, str | None] = {"px4": None, "ardupilot": "SIM_BATT_VOLTAGE"}
+"""What sets the measured voltage."""
+
+
 class SimulatedBattery:
     """PX4's own simulated battery: by SIM_BAT_DRAIN seconds from full to empty while armed, and not
     below SIM_BAT_MIN_PCT; full again when disarmed.
@@ -107,7 +116,7 @@ class SimulatedBattery:
 
     def update(self, armed: bool, dt_s: float) -> None:
         """Of `dt_s` more seconds."""
-        if self._parameters.personality != "px4":
+        if not _DRAIN[self._parameters.personality]:
             return
         get = self._parameters.get
         least = 0.01 * get("SIM_BAT_MIN_PCT")
@@ -121,17 +130,16 @@ class SimulatedBattery:
 
     def volts(self, airframe_v: float) -> float:
         """What is measured: ArduCopter's SIM_BATT_VOLTAGE if it was changed; no load lowers it."""
-        if self._parameters.personality != "ardupilot":
+        name = _VOLTAGE[self._parameters.personality]
+        if name is None:
             return airframe_v
-        set_v = self._parameters.get("SIM_BATT_VOLTAGE")
-        return airframe_v if set_v == self._parameters.designed("SIM_BATT_VOLTAGE") else set_v
+        set_v = self._parameters.get(name)
+        return airframe_v if set_v == self._parameters.designed(name) else set_v
 
     @staticmethod
     def measured(parameters: Parameters) -> bool:
         """Whether it has taken the airframe's place."""
-        if parameters.personality != "px4":
-            return False
-        names = ("SIM_BAT_DRAIN", "SIM_BAT_MIN_PCT")
+        names = _DRAIN[parameters.personality]
         return any(parameters.get(name) != parameters.designed(name) for name in names)
 
 

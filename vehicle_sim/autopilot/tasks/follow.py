@@ -7,11 +7,13 @@ more: the follower stops where it is, and goes on when the leader speaks again.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import atan2, cos, exp, hypot, pi, radians, remainder, sin
 
 from vehicle_sim.autopilot.control.demands import Demand, FlyTo, Situation, Turner
 from vehicle_sim.autopilot.interface import Landed, Target
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.tasks import distance, face
 from vehicle_sim.control_loops.trajectory import slowed
@@ -45,7 +47,7 @@ class Leader:
 
     def heard(self, sighting: Sighting) -> None:
         """Another leader is heard only when the present one is silent."""
-        if self._parameters.personality == "ardupilot":
+        if self._parameters.rules.leader_by_id:
             wanted = int(self._parameters.get("FOLL_SYSID"))
             if wanted and sighting.system != wanted:
                 return
@@ -65,24 +67,19 @@ class Leader:
         return Sighting(seen.system, pos_ned, seen.v_ned, seen.heading_rad, seen.wall_ns)
 
 
-class Follow:
+class Follow(ABC):
     """Keeps its place by a leader; without one it stays where it stops."""
 
     landed_word = Landed.IN_AIR
     done = False
 
-    __slots__ = ("_angle_rad", "_course_rad", "_goal", "_hold", "_leader", "_offset_ned",
-                 "_parameters", "_time_ns", "_v_ned")  # fmt: skip
+    __slots__ = ("_goal", "_hold", "_leader", "_parameters", "_time_ns")
 
     def __init__(self, parameters: Parameters, leader: Leader) -> None:
         self._parameters = parameters
         self._leader = leader
         self._hold: Vec3 | None = None
         self._goal: Vec3 | None = None
-        self._v_ned: Vec3 = (0.0, 0.0, 0.0)
-        self._course_rad: float | None = None
-        self._angle_rad: float | None = None
-        self._offset_ned: Vec3 | None = None
         self._time_ns = 0
 
     @property
@@ -95,31 +92,50 @@ class Follow:
     def begin(self, s: Situation, turner: Turner) -> None:
         self._hold = s.stop_ned
         self._goal = None
-        self._angle_rad = self._offset_ned = None
         self._time_ns = s.time_ns
 
     def update(self, s: Situation, turner: Turner) -> Demand:
         dt_s = (s.time_ns - self._time_ns) * 1e-9
         self._time_ns = s.time_ns
         lead = self._leader.seen(s.wall_ns)
-        ardupilot = self._parameters.personality == "ardupilot"
-        if lead is not None and ardupilot:
-            far_m = self._parameters.get("FOLL_DIST_MAX")
-            lead = lead if distance(lead.pos_ned, s.pos_ned) <= far_m else None
-        if lead is None:
+        if lead is None or not self._near(lead, s):
             if self._goal is not None:
                 self._goal, self._hold = None, s.stop_ned
             return FlyTo(self._hold or s.stop_ned, s.limits)
-        goal = self._beside(lead, s) if ardupilot else self._behind(lead, s, dt_s)
-        self._goal = goal
+        self._goal, v_ned = self._place(lead, s, dt_s)
         self._point(lead, s, turner)
-        fastest_m_s = self._parameters.si(Quantity.FASTEST_M_S)
-        v_ned = slowed(lead.v_ned if ardupilot else self._v_ned, s.limits, fastest_m_s)
-        return FlyTo(goal, s.limits, v_ned, straight=False, since_ns=s.time_ns)
+        v_ned = slowed(v_ned, s.limits, self._parameters.si(Quantity.FASTEST_M_S))
+        return FlyTo(self._goal, s.limits, v_ned, straight=False, since_ns=s.time_ns)
 
-    # ------------------------------------------------------------------------------- px4
+    def _near(self, lead: Sighting, s: Situation) -> bool:
+        """Whether the leader is near enough to be followed."""
+        return True
 
-    def _behind(self, lead: Sighting, s: Situation, dt_s: float) -> Vec3:
+    @abstractmethod
+    def _place(self, lead: Sighting, s: Situation, dt_s: float) -> tuple[Vec3, Vec3]:
+        """Where to be now [m, NED], and how fast that place moves [m/s, NED]."""
+
+    def _point(self, lead: Sighting, s: Situation, turner: Turner) -> None:
+        """Turn the nose."""
+        face(lead.pos_ned, s, turner)
+
+
+class Px4Follow(Follow):
+    """AUTO.FOLLOW_TARGET: at an angle to the leader's course."""
+
+    __slots__ = ("_angle_rad", "_course_rad", "_v_ned")
+
+    def __init__(self, parameters: Parameters, leader: Leader) -> None:
+        super().__init__(parameters, leader)
+        self._v_ned: Vec3 = (0.0, 0.0, 0.0)
+        self._course_rad: float | None = None
+        self._angle_rad: float | None = None
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        super().begin(s, turner)
+        self._angle_rad = None
+
+    def _place(self, lead: Sighting, s: Situation, dt_s: float) -> tuple[Vec3, Vec3]:
         """FLW_TGT_DST from the leader, FLW_TGT_FA off its course, FLW_TGT_HT up.
 
         The place goes round the leader at FLW_TGT_MAX_VEL at most; FLW_TGT_RS smooths its speed.
@@ -148,15 +164,31 @@ class Follow:
         turn = remainder(wanted - self._angle_rad, 2.0 * pi)
         self._angle_rad += min(most, max(-most, turn))
         floor_d = lead.pos_ned[2] if above_leader else s.home_ned[2]
-        return (
+        goal = (
             lead.pos_ned[0] + away_m * cos(self._angle_rad),
             lead.pos_ned[1] + away_m * sin(self._angle_rad),
             floor_d - get("FLW_TGT_HT"),
         )
+        return goal, self._v_ned
 
-    # -------------------------------------------------------------------------- ardupilot
 
-    def _beside(self, lead: Sighting, s: Situation) -> Vec3:
+class CopterFollow(Follow):
+    """FOLLOW: at an offset from the leader."""
+
+    __slots__ = ("_offset_ned",)
+
+    def __init__(self, parameters: Parameters, leader: Leader) -> None:
+        super().__init__(parameters, leader)
+        self._offset_ned: Vec3 | None = None
+
+    def begin(self, s: Situation, turner: Turner) -> None:
+        super().begin(s, turner)
+        self._offset_ned = None
+
+    def _near(self, lead: Sighting, s: Situation) -> bool:
+        return distance(lead.pos_ned, s.pos_ned) <= self._parameters.get("FOLL_DIST_MAX")
+
+    def _place(self, lead: Sighting, s: Situation, dt_s: float) -> tuple[Vec3, Vec3]:
         """The leader's place and FOLL_OFS; without an offset the one at the beginning."""
         get = self._parameters.get
         x, y, z = get("FOLL_OFS_X"), get("FOLL_OFS_Y"), get("FOLL_OFS_Z")
@@ -169,15 +201,19 @@ class Follow:
         elif get("FOLL_OFS_TYPE") == 1 and lead.heading_rad is not None:
             c, sn = cos(lead.heading_rad), sin(lead.heading_rad)
             x, y = c * x - sn * y, sn * x + c * y
-        return (p[0] + x, p[1] + y, p[2] + z)
+        return (p[0] + x, p[1] + y, p[2] + z), lead.v_ned
 
     def _point(self, lead: Sighting, s: Situation, turner: Turner) -> None:
-        how = 1
-        if self._parameters.personality == "ardupilot":
-            how = int(self._parameters.get("FOLL_YAW_BEHAVE"))
+        how = int(self._parameters.get("FOLL_YAW_BEHAVE"))
         if how == 1:
             face(lead.pos_ned, s, turner)
         elif how == 2 and lead.heading_rad is not None:
             turner.turn_to(lead.heading_rad)
         elif how == 3 and hypot(s.v_ned[0], s.v_ned[1]) > _COURSE_M_S:
             turner.turn_to(atan2(s.v_ned[1], s.v_ned[0]))
+
+
+FOLLOW: dict[Personality, type[Px4Follow | CopterFollow]] = {
+    "px4": Px4Follow,
+    "ardupilot": CopterFollow,
+}

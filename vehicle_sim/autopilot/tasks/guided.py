@@ -24,7 +24,6 @@ from vehicle_sim.autopilot.control.demands import (
     Turner,
 )
 from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Setpoint, Target
-from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.tasks import TakeOff
 from vehicle_sim.control_loops.trajectory import MotionLimits, slowed
@@ -99,11 +98,11 @@ class Guided:
 
     done = True
 
-    __slots__ = ("_braking", "_hold", "_parameters", "_personality", "_stream", "_takeoff")
+    __slots__ = ("_braking", "_hold", "_parameters", "_rules", "_stream", "_takeoff")
 
     def __init__(self, parameters: Parameters, stream: SetpointStream) -> None:
         self._parameters = parameters
-        self._personality: Personality = parameters.personality
+        self._rules = parameters.rules
         self._stream = stream
         self._hold: Vec3 | None = None
         self._braking = False
@@ -135,7 +134,7 @@ class Guided:
     def lifts_off(self, s: Situation) -> bool:
         if self._takeoff is not None:
             return self._takeoff.lifts_off(s)
-        if self._personality == "ardupilot":
+        if not self._rules.setpoints_lift_off:
             return False
         setpoint = self._stream.setpoint
         match setpoint:
@@ -195,13 +194,13 @@ class Guided:
 
     @property
     def _thrust_is_climb(self) -> bool:
-        if self._personality == "px4":
+        if not self._rules.thrust_may_be_climb_rate:
             return False
         return not int(self._parameters.get("GUID_OPTIONS")) & _THRUST_AS_THRUST
 
     def _limits_of_velocity(self, s: Situation) -> MotionLimits:
         """PX4 flies what it is told, as far as it ever flies; not at its cruise speed."""
-        if self._personality == "ardupilot":
+        if not self._rules.setpoints_pass_cruise_speed:
             return s.limits
         return replace(
             s.limits,
@@ -211,7 +210,7 @@ class Guided:
         )
 
     def _timed_out(self, setpoint: AnySetpoint, wall_ns: int) -> bool:
-        if self._personality == "px4":
+        if not self._rules.brakes_after_last_setpoint:
             return False
         still = (None, STILL)
         if isinstance(setpoint, Setpoint) and setpoint.pos_ned and setpoint.v_ned in still:

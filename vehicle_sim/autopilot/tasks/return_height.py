@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import hypot, radians, tan
 
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -16,12 +18,10 @@ def return_up_m(parameters: Parameters, ground_ned: Vec3, from_ned: Vec3) -> flo
     """Metres above the ground that the return leads to; it never descends to get there."""
     away_m = hypot(from_ned[0] - ground_ned[0], from_ned[1] - ground_ned[1])
     up_m = ground_ned[2] - from_ned[2]
-    if parameters.personality == "px4":
-        return max(up_m, _px4(parameters, away_m))
-    return _copter(parameters, away_m, up_m)
+    return max(up_m, _RETURN_UP_M[parameters.personality](parameters, away_m, up_m))
 
 
-def _px4(parameters: Parameters, away_m: float) -> float:
+def _px4(parameters: Parameters, away_m: float, up_m: float) -> float:
     """RTL::calculate_return_alt_from_cone_half_angle."""
     top_m = parameters.si(Quantity.RETURN_UP_M)
     near_m = parameters.si(Quantity.ACCEPT_M)
@@ -43,4 +43,11 @@ def _copter(parameters: Parameters, away_m: float, up_m: float) -> float:
     slope = parameters.get("RTL_CONE_SLOPE")
     if slope < _FLATTEST:
         return top_m
-    return max(up_m, min(top_m, max(away_m * slope, up_m + _CLIMB_LEAST_M)))
+    return min(top_m, max(away_m * slope, up_m + _CLIMB_LEAST_M))
+
+
+_RETURN_UP_M: dict[Personality, Callable[[Parameters, float, float], float]] = {
+    "px4": _px4,
+    "ardupilot": _copter,
+}
+"""The return height by the distance from where it leads to, and by the height now [m]."""

@@ -10,7 +10,6 @@ from math import atan2, sqrt
 from vehicle_sim.autopilot.control.demands import Demand, FlyLevel, FlyTo, Situation, Turner
 from vehicle_sim.autopilot.fence.rally import LandingSite
 from vehicle_sim.autopilot.interface import Landed, Target
-from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.descent_rate import descent_m_s
 from vehicle_sim.autopilot.tasks.return_height import return_up_m
@@ -136,7 +135,7 @@ class TakeOff:
 
     def lifts_off(self, s: Situation) -> bool:
         get = self._parameters.get
-        if self._parameters.personality == "px4":
+        if self._parameters.rules.lifts_off_at_once:
             return True
         return self._run_s(s) >= get("TKOFF_SLEW_TIME") * get("MOT_THST_HOVER")
 
@@ -145,13 +144,14 @@ class TakeOff:
         self._ned = (where[0], where[1], self._goal_d)
 
     def update(self, s: Situation, turner: Turner) -> Demand:
-        px4 = self._parameters.personality == "px4"
-        near_m = self._parameters.get("NAV_MC_ALT_RAD") if px4 else _REACHED_M
+        near = self._parameters.rules.take_off_done_within
+        near_m = _REACHED_M if near is None else self._parameters.get(near)
         if not self._done and abs(s.pos_ned[2] - self._goal_d) < near_m:
             self._done = True
         climb_m_s = self._parameters.si(Quantity.TAKEOFF_CLIMB_M_S)
-        if px4:
-            ramp_s = self._parameters.get("MPC_TKO_RAMP_T")
+        ramp = self._parameters.rules.take_off_ramp
+        if ramp is not None:
+            ramp_s = self._parameters.get(ramp)
             gone_s = self._run_s(s)
             climb_m_s *= gone_s / ramp_s if gone_s < ramp_s else 1.0
         limits = s.limits
@@ -319,5 +319,5 @@ class Return:
 
     @property
     def _faces_home(self) -> bool:
-        personality: Personality = self._parameters.personality
-        return personality == "px4" or self._parameters.get("WP_YAW_BEHAVIOR") in (1, 3)
+        nose = self._parameters.rules.nose_in_flight
+        return nose is None or self._parameters.get(nose) in (1, 3)
