@@ -121,8 +121,8 @@ def test_arducopters_texts_come_in_the_recorded_order() -> None:
         # the flight, 12.50 s, after the change to GUIDED
         (14.5, "guided", ["Arm: Gyros inconsistent", "Arm: AHRS: waiting for home"]),
         # `behaviour.json`, "armable"
-        (25.0, "guided", ["PreArm: Need Position Estimate"]),
-        (41.0, "guided", ["PreArm: Need Position Estimate"]),
+        (25.0, "guided", ["Arm: Need Position Estimate"]),
+        (41.0, "guided", ["Arm: Need Position Estimate"]),
     ],
 )
 def test_arducopter_refuses_to_arm(at_s: float, mode: str, texts: list[str]) -> None:
@@ -157,11 +157,11 @@ def test_arducopter_says_prearm_for_the_command_that_only_checks() -> None:
 
 
 def test_arducopter_says_unasked_what_is_missing_after_30_s() -> None:
-    """The flight, GUIDED, 28.42 s."""
-    flight = booting("ardupilot", 25.0)
+    """The flight: GUIDED at 28.42 s, told at 30.4 s; it looks once a second."""
+    flight = booting("ardupilot", 28.4)
     assert flight.vehicle.set_mode_kind("guided") is Result.ACCEPTED
     at_s = first_time(flight, "PreArm: Need Position Estimate")
-    assert at_s == pytest.approx(30.4, abs=0.15)
+    assert at_s == pytest.approx(30.4, abs=0.5)
 
 
 def test_arducopter_is_healthy_at_23_s_for_who_does_not_ask_in_guided() -> None:
