@@ -87,10 +87,12 @@ class Bounds:
         )
 
     def tell_return(self, leg: str, down_m: float, ground_d: float) -> None:
-        """PX4's words for the legs of a return, in metres rounded up."""
+        """PX4's words for the legs of a return, in metres rounded up; disarmed only that it is on."""
         state = self._state
         if leg == "climb to":
             state.say(6, "RTL HOME activated")
+            if not state.armed:
+                return
             state.say(6, "RTL: landing at home position.")
         if leg == "land":
             state.say(6, "RTL: land at destination")

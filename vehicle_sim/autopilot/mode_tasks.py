@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import assert_never
 
 from vehicle_sim.autopilot.bounds import Bounds
@@ -9,8 +11,9 @@ from vehicle_sim.autopilot.control.demands import Task
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.manual.stick_tasks import StickFlight
 from vehicle_sim.autopilot.manual.sticks import Radio
-from vehicle_sim.autopilot.modes import Behaviour, Mode
+from vehicle_sim.autopilot.modes import Behaviour, Mode, StickLaw
 from vehicle_sim.autopilot.parameters.parameters import Quantity
+from vehicle_sim.autopilot.tasks.descend import SinkInPlace
 from vehicle_sim.autopilot.tasks.follow import FOLLOW, Leader
 from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
 from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
@@ -43,8 +46,7 @@ class ModeTasks:
     def task_of(self, mode: Mode) -> Task:
         state = self._state
         if mode.law is not None:
-            idle = Level if mode.behaviour is Behaviour.LEVEL else Hold
-            return StickFlight(mode.law, state.parameters, self._radio, idle)
+            return StickFlight(mode.law, state.parameters, self._radio, self._without_sticks(mode))
         match mode.behaviour:
             case Behaviour.LEVEL:
                 return Level()
@@ -71,6 +73,14 @@ class ModeTasks:
                 return FOLLOW[state.personality](state.parameters, self._leader)
             case _:
                 assert_never(mode.behaviour)
+
+    def _without_sticks(self, mode: Mode) -> Callable[[], Task]:
+        """Makes what a manual mode flies while there are no sticks."""
+        if mode.behaviour is Behaviour.LEVEL:
+            return Level
+        if mode.law is StickLaw.POSITION and self._state.rules.sinks_without_sticks:
+            return partial(SinkInPlace, self._state.parameters)
+        return Hold
 
     def take_off(self, up_m: float) -> TakeOff:
         state = self._state

@@ -56,6 +56,7 @@ class AutopilotRules:
     guided_forgets_setpoints: bool  # those that came before the mode was entered
     tells_return: bool  # a STATUSTEXT for each leg of a return
     mode_switch: bool  # a radio channel chooses the mode (FLTMODE_CH)
+    sinks_without_sticks: bool  # in its position mode, where a failsafe has put it there
     sticks_take_over: bool  # a moved stick ends an automatic flight (COM_RC_OVERRIDE)
     orbit_mode: bool  # DO_ORBIT is known
     take_off_mode: str | None  # the mode of NAV_TAKEOFF; None = it takes off in GUIDED
@@ -182,6 +183,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         guided_forgets_setpoints=False,
         tells_return=True,
         mode_switch=False,
+        sinks_without_sticks=True,
         sticks_take_over=True,
         orbit_mode=True,
         take_off_mode="AUTO.TAKEOFF",
@@ -297,6 +299,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         guided_forgets_setpoints=True,
         tells_return=False,
         mode_switch=True,
+        sinks_without_sticks=False,
         sticks_take_over=False,
         orbit_mode=False,
         take_off_mode=None,

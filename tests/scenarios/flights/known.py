@@ -14,7 +14,6 @@ SILENT: Final = (
 )
 NO_SENSOR: Final = "of a sensor, a terrain or a simulator that this vehicle does not have"
 LOGGER: Final = "the scenarios have it at every arming, this recording not at its only one"
-RETURN_TOLD: Final = "to mend: PX4 tells the legs of a return in the air alone"
 PERIODIC: Final = "what is against arming is told every 30 s; in another second here"
 VTOL: Final = "NAV_VTOL_TAKEOFF: a mode that is not flown here; ours is asked to hold, and to land"
 TAKE_OFF_AGAIN: Final = "to mend: a take-off in the air, to a height below, climbs MIS_TAKEOFF_ALT"
@@ -36,8 +35,6 @@ CLIMB: Final = "ours gathers speed more slowly; another airframe, or its jerk: n
 
 PX4: Final[dict[str, str]] = {
     "text '[logger] ./log/<date>.ulg': ours only": LOGGER,
-    "text 'RTL: landing at home position.': ours only": RETURN_TOLD,
-    "text 'RTL: climb to 33 m (1 m above destination)': ours only": RETURN_TOLD,
     "ack of 512 of message 395: ACCEPTED, ours DENIED": NOT_BUILT,
     "ack of 84: ACCEPTED, ours UNSUPPORTED": VTOL,
     "ack of 176: none, ours ACCEPTED": VTOL,
@@ -46,7 +43,7 @@ PX4: Final[dict[str, str]] = {
     "mode AUTO.VTOL_TAKEOFF: ours ORBIT": VTOL,
     "mode AUTO.VTOL_TAKEOFF lasts: ours then ORBIT": VTOL,
     "mode AUTO.VTOL_TAKEOFF: ours ORBIT and AUTO.LAND": VTOL,
-    "mode AUTO.VTOL_TAKEOFF lasts: ours then AUTO.LAND": VTOL,
+    "mode AUTO.VTOL_TAKEOFF lasts: ours then AUTO.LAND and AUTO.LOITER": VTOL,
     "mode AUTO.TAKEOFF lasts: ours then AUTO.TAKEOFF and AUTO.LOITER": SLOW_START,
     "mode AUTO.TAKEOFF: ours AUTO.LOITER": TAKE_OFF_AGAIN,
     "armed False: ours True": LATER_DOWN,
@@ -78,7 +75,6 @@ PX4: Final[dict[str, str]] = {
     "figure: take-off again, height kept": TAKE_OFF_AGAIN,
     "figure: OFFBOARD, fastest across": SETPOINTS,
     "figure: OFFBOARD, fastest descent": TAKE_OFF_AGAIN,
-    "figure: OFFBOARD lost, descent": OFFBOARD_LOST,
     "figure: orbit, speed": "not recorded which was asked for; ours: 1 m/s",
 }
 

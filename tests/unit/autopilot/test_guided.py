@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, inf, nan, pi, sin
+from math import cos, hypot, inf, nan, pi, sin
 
 import pytest
 
@@ -126,15 +126,24 @@ def test_the_heading_follows_yaw_and_yaw_rate(personality: Personality) -> None:
     assert flight.off((0.0, 0.0, -5.0)) < 0.4
 
 
-def test_offboard_loss_holds_position_after_the_parameters_second() -> None:
+def test_offboard_loss_without_sticks_comes_down_lands_and_disarms() -> None:
+    """behaviour.json: 1.0 s after the last setpoint, at 0.70 to 0.85 m/s; then OFFBOARD again."""
     flight = guided("px4")
     flight.stream(Setpoint(v_ned=(2.0, 0.0, 0.0)), 3.0)
     flight.fly(0.8)
     assert flight.vehicle.mode_name == "OFFBOARD"
     flight.fly(0.3)
     assert flight.vehicle.mode_name == "POSCTL"
-    flight.fly(4.0)
-    assert flight.speed_m_s < 0.25
+    assert flight.vehicle.base_mode == 209
+    assert flight.vehicle.system_status == 5
+    flight.fly(3.0)
+    north, east, down = flight.vehicle.truth.v_ned
+    assert hypot(north, east) < 0.3
+    assert 0.70 < down < 0.85
+    flight.fly(20.0, lambda: not flight.vehicle.armed)
+    assert flight.up_m < 0.1
+    flight.fly(0.2)
+    assert flight.vehicle.mode_name == "OFFBOARD"
 
 
 @pytest.mark.parametrize(
