@@ -35,7 +35,7 @@ class Bounds:
 
     def enable_fence(self, choice: int) -> Result:
         """ArduCopter's DO_FENCE_ENABLE, command or mission item; PX4 does not know it."""
-        if not self._state.rules.fence_command:
+        if self._state.rules.fence_always_on:
             return Result.UNSUPPORTED
         if choice not in (0, 1, 2):
             return Result.FAILED
@@ -87,7 +87,7 @@ class Bounds:
         )
 
     def tell_return(self, leg: str, down_m: float, ground_d: float) -> None:
-        """PX4's words for the legs of a return, in metres rounded up; disarmed only that it is on."""
+        """PX4's words for the legs of a return, in metres rounded up; disarmed only the first."""
         state = self._state
         if leg == "climb to":
             state.say(6, "RTL HOME activated")

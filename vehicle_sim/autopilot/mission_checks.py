@@ -10,7 +10,6 @@ from vehicle_sim.autopilot.mission.mission import Mission
 from vehicle_sim.autopilot.mission.plan import (
     KINDS,
     ItemKind,
-    first_of,
     has_place,
     infeasible,
     place_of,
@@ -73,7 +72,7 @@ class MissionChecks:
         if not state.rules.checks_mission_feasible or self._geofence.idle:
             return None
         home_ned = state.home_ned or (0.0, 0.0, 0.0)
-        for item in self._mission.items[first_of(state.personality) :]:
+        for item in self._mission.items[state.rules.first_mission_item :]:
             if KINDS[item.command] is not ItemKind.FLOWN or item.x in _PLACELESS:
                 continue
             if not self._geofence.allows(place_of(item, state.datum(), home_ned), home_ned):

@@ -76,8 +76,7 @@ def _px4(main: int, sub: int = 0) -> int:
 _C = Flag.CUSTOM_MODE_ENABLED
 _PX4_ACRO = int(_C | Flag.MANUAL_INPUT_ENABLED)
 _PX4_STICKS = int(_C | Flag.MANUAL_INPUT_ENABLED | Flag.STABILIZE_ENABLED)
-_PX4_OFFBOARD = int(_C | Flag.STABILIZE_ENABLED)
-_PX4_ORBIT = int(_C | Flag.STABILIZE_ENABLED | Flag.GUIDED_ENABLED)
+_PX4_STABLE = int(_C | Flag.STABILIZE_ENABLED)
 _PX4_AUTO = int(_C | Flag.AUTO_ENABLED | Flag.STABILIZE_ENABLED | Flag.GUIDED_ENABLED)
 _AP = int(_C | Flag.MANUAL_INPUT_ENABLED | Flag.STABILIZE_ENABLED)
 _AP_GUIDED = int(_AP | Flag.GUIDED_ENABLED)
@@ -92,10 +91,10 @@ PX4_MODES = (
     Mode("MANUAL",             _px4(1),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ANGLE, _ADV),
     Mode("ALTCTL",             _px4(2),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ALTITUDE),
     Mode("POSCTL",             _px4(3),    _B.HOLD,    _PX4_STICKS, True,  True,  _S.POSITION),
-    Mode("POSCTL.ORBIT",       _px4(3, 1), _B.ORBIT,   _PX4_ORBIT,  False, True,  None, _HID),
+    Mode("POSCTL.ORBIT",       _px4(3, 1), _B.ORBIT,   _PX4_STABLE, False, True,  None, _HID),
     Mode("ACRO",               _px4(5),    _B.LEVEL,   _PX4_ACRO,   True,  False, _S.RATES, _ADV),
     Mode("STABILIZED",         _px4(7),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ANGLE, _ADV),
-    Mode("OFFBOARD",           _px4(6),    _B.GUIDED,  _PX4_OFFBOARD, True, True, None, _ADV),
+    Mode("OFFBOARD",           _px4(6),    _B.GUIDED,  _PX4_STABLE, True, True, None, _ADV),
     Mode("AUTO.TAKEOFF",       _px4(4, 2), _B.TAKEOFF, _PX4_AUTO,   True,  True),
     Mode("AUTO.LOITER",        _px4(4, 3), _B.HOLD,    _PX4_AUTO,   True,  True),
     Mode("AUTO.MISSION",       _px4(4, 4), _B.MISSION, _PX4_AUTO,   True,  True),

@@ -82,7 +82,6 @@ class AutopilotRules:
     no_mission_ends_mode: bool  # the mission was cleared: its mode ends, also while disarmed
 
     # The parts of the autopilot: fence and failsafes.
-    fence_command: bool  # DO_FENCE_ENABLE is known
     goal_beyond_fence: Result  # the answer to a goal that the fence forbids
     tells_goal_beyond_fence: bool  # and flies there where GF_ACTION only warns
     setpoints_within_fence: bool  # setpoints with a goal beyond it are dropped
@@ -206,7 +205,6 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         tells_uploads=False,
         no_mission_ends_mode=True,
         # The parts of the autopilot: fence and failsafes.
-        fence_command=False,
         goal_beyond_fence=Result.ACCEPTED,
         tells_goal_beyond_fence=True,
         setpoints_within_fence=False,
@@ -322,7 +320,6 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         tells_uploads=True,
         no_mission_ends_mode=False,
         # The parts of the autopilot: fence and failsafes.
-        fence_command=True,
         goal_beyond_fence=Result.FAILED,
         tells_goal_beyond_fence=False,
         setpoints_within_fence=True,

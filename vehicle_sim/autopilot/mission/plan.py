@@ -137,15 +137,10 @@ _HERE: dict[Personality, frozenset[int]] = {
 """Items that are flown where the vehicle is, if they say 0, 0."""
 
 
-def first_of(personality: Personality) -> int:
-    """The first item that is flown."""
-    return RULES[personality].first_mission_item
-
-
 def check(items: tuple[PlanItem, ...], personality: Personality) -> tuple[int, str] | None:
     """(seq, why) of the first item that cannot be flown, None when all can."""
     for index, item in enumerate(items):
-        if index < first_of(personality):
+        if index < RULES[personality].first_mission_item:
             continue
         why = _why_not(item, len(items), personality)
         if why is not None:
