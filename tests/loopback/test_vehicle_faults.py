@@ -24,9 +24,11 @@ REQUEST_MESSAGE = 512
 
 
 @contextmanager
-def under_way(personality: Personality, seed: int = 1) -> Iterator[tuple[WatchedFlight, int]]:
+def under_way(
+    personality: Personality, seed: int = 1, params: dict[str, float] | None = None
+) -> Iterator[tuple[WatchedFlight, int]]:
     """On its way to a goal twelve metres to the east; the number of that request."""
-    flight = WatchedFlight(personality, seed=seed)
+    flight = WatchedFlight(personality, seed=seed, params=params)
     with flight.witness.listening(flight.policy):
         flight.hovering(6.0)
         flight.run(5.0)
@@ -105,7 +107,8 @@ def test_px4s_own_failsafe_comes_before_the_reset() -> None:
         assert "LANDING" in flight.states()
         assert flight.is_in(State.EXTERNAL)
         assert flight.session.gate.control is Control.NONE
-        assert math.dist(flight.truth_enu(), at_enu) < 5.0
+        # Without sticks PX4 comes down; what counts is that it does not follow the jump.
+        assert math.dist(flight.truth_enu()[:2], at_enu[:2]) < 5.0
 
 
 @both_personalities
@@ -157,7 +160,9 @@ def test_a_reboot_in_flight_is_the_end_of_the_flight_and_it_can_fly_again(
 def test_a_link_that_is_out_is_stale_then_no_vehicle_then_somebody_elses(
     personality: Personality,
 ) -> None:
-    with under_way(personality) as (flight, goal):
+    # As delivered PX4 would come down meanwhile, and be too low to be taken over.
+    holds = {"COM_OBL_RC_ACT": 5.0} if personality == "px4" else None
+    with under_way(personality, params=holds) as (flight, goal):
         fault = strike(flight, "link", out=True)
         flight.run(1.3)
         assert flight.is_in(State.STALE)
