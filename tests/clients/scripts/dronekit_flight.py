@@ -61,7 +61,6 @@ def version(vehicle):
     assert told.command_int
     assert told.ftp
     assert told.set_attitude_target
-    assert not told.terrain
     print(f"version {vehicle.version}, stable {vehicle.version.is_stable()}")
 
 
@@ -214,14 +213,20 @@ def fly_px4(vehicle):
     vehicle.wait_for_mode("TAKEOFF", timeout=10)
     until(lambda: vehicle.mode.name == "LOITER", "taken off")
     height_m = vehicle.location.global_relative_frame.alt
-    assert 2.0 < height_m < 3.0, height_m
+    assert 1.5 < height_m < 3.0, height_m  # of 2.5 m: its climb ends up to 0.8 m lower
     print(f"took off to {height_m:.1f} m")
-    # PX4 enters it only while there are sticks.
-    vehicle.send_mavlink(vehicle.message_factory.manual_control_encode(1, 0, 0, 500, 0, 0))
+
+    def with_sticks(condition):
+        """PX4 enters POSCTL only while there are sticks, and tells when they are lost."""
+        vehicle.send_mavlink(vehicle.message_factory.manual_control_encode(1, 0, 0, 500, 0, 0))
+        return condition()
+
+    with_sticks(lambda: True)
     vehicle.mode = VehicleMode("POSCTL")
-    vehicle.wait_for_mode("POSCTL", timeout=10)
+    until(lambda: with_sticks(lambda: vehicle.mode.name == "POSCTL"), "POSCTL")
     vehicle.mode = VehicleMode("LAND")
-    vehicle.wait_for_mode("LAND", timeout=10)
+    until(lambda: with_sticks(lambda: vehicle.mode.name == "LAND"), "LAND")
+    until(lambda: with_sticks(lambda: not vehicle.armed), "landed")
 
 
 logging.basicConfig(level=logging.WARNING, stream=sys.stderr)

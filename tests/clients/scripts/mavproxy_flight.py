@@ -86,7 +86,9 @@ def main(personality, url):
         prompt.wait("online system 1")
         prompt.wait(r"Received \d+ parameters")
         print("online")
-        prompt.do("link", r"link 1 OK \(.* 0 lost")
+        # PX4's EVENTs are not in MAVProxy's dialect: it counts each of them as lost.
+        lost = {"ardupilot": "0", "px4": r"\d{1,2}"}[personality]
+        prompt.do("link", rf"link 1 OK \(.* {lost} lost")
         prompt.do("version")
         prompt.do("status AUTOPILOT_VERSION", r"AUTOPILOT_VERSION \{capabilities : [1-9]\d+")
         parameters(prompt, personality)
@@ -95,7 +97,7 @@ def main(personality, url):
             fly_copter(prompt)
         else:
             fly_px4(prompt)
-        prompt.do("link", r"link 1 OK \(.* 0 lost")
+        prompt.do("link", rf"link 1 OK \(.* {lost} lost")
         files(prompt, personality)
         prompt.do("reboot", "PREFLIGHT_REBOOT_SHUTDOWN: ACCEPTED")
         time.sleep(1.5)
@@ -112,7 +114,7 @@ def parameters(prompt, personality):
     prompt.do(f"param show {name}", rf"{name} +{slower}\.0")
     prompt.do("param save all.parm", r"Saved \d+ parameters to all.parm")
     if personality == "ardupilot":
-        prompt.do("param diff", rf"{name} +{slower}\.0+ 500\.0+")
+        prompt.do("param diff", rf"{name} +{slower}\.0+ 1000\.0+")
         prompt.do(f"param revert {name}", "Reverted 1 parameters")
     else:
         prompt.do(f"param set {name} 5")
