@@ -26,7 +26,6 @@ def _hz(rates: dict[type[m.Message], float]) -> dict[int, int]:
 class Profile:
     name: Personality
     autopilot: int  # MAV_AUTOPILOT
-    vendor: str
     flight_sw_version: int
     capabilities: Capability
     intervals_ns: dict[int, int]  # message number -> what is sent unasked
@@ -102,7 +101,6 @@ _COMMON: Final = (
 PX4: Final = Profile(
     name="px4",
     autopilot=12,
-    vendor="PX4",
     flight_sw_version=FLIGHT_SW_VERSION["1.14"],
     capabilities=_COMMON | Capability.PARAM_ENCODE_BYTEWISE | Capability.SET_ACTUATOR_TARGET,
     intervals_ns=_hz(
@@ -212,7 +210,6 @@ PX4: Final = Profile(
 ARDUPILOT: Final = Profile(
     name="ardupilot",
     autopilot=3,
-    vendor="ArduPilot",
     flight_sw_version=FLIGHT_SW_VERSION["4.5"],
     capabilities=_COMMON
     | Capability.SET_POSITION_TARGET_GLOBAL_INT

@@ -131,8 +131,6 @@ def _frame1(data: bytes, at: int, size: int, counters: Counters) -> MavlinkFrame
 class Reassembler:
     """Cuts a byte stream at frame boundaries, so that a piece can be split like a datagram."""
 
-    LONGEST: Final = 12 + 255 + SIGNATURE_BYTES
-
     def __init__(self) -> None:
         self._held = b""
 
