@@ -15,7 +15,7 @@ from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.plant.sensors import MEMS, SensorGrade
 
 
-class Few:
+class ScalarEngine:
     """An engine in plain floats."""
 
     def __init__(
