@@ -32,7 +32,9 @@ class Target:
 
     `nearest` names, for parts of the packages, the tests that a mutant there has to face; without
     an entry it faces all that reach it.  Two parts whose tests fly the same vehicle would else
-    face each other's.  `skip` are files whose source text is not altered, each with the reason.  `deselect` are parts
+    face each other's.
+
+    `skip` are files whose source text is not altered, each with the reason.  `deselect` are parts
     of test ids that are left out; `slow` are such as run only when they are asked for.  `settings`
     are TOML files whose values are altered, where the package reads them with `Path.read_text`.
     """
@@ -91,8 +93,7 @@ TARGETS: Final = {
             tests=(
                 "tests/unit/failsafes",
                 "tests/unit/vehicle_services/test_arm_authorization.py",
-                "tests/unit/estimator/test_gates.py",
-                "tests/unit/estimator/test_estimator.py",
+                "tests/unit/estimator",
             ),
             nearest=(
                 (
@@ -104,6 +105,7 @@ TARGETS: Final = {
                 ),
                 ("vehicle_sim/estimation", ("tests/unit/estimator",)),
             ),
+            deselect=("test_many.py",),  # a batch is made of the source text, which is unaltered
         ),
     )
 }
