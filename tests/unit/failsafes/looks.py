@@ -28,6 +28,14 @@ WELL: Final = Health(
     dead_s=0.0, resets=0, vel_ratio=0.05, pos_ratio=0.05, height_ratio=0.05, mag_ratio=0.05,
 )  # fmt: skip
 FULL: Final = Power(16.6, 12.0, 100.0, 98)
+LOW_V: Final = replace(FULL, voltage_v=13.9)
+VOLTAGES: Final[dict[str, float]] = {"BATT_LOW_VOLT": 14.0, "BATT_CRT_VOLT": 13.0}
+CHARGES: Final[dict[str, float]] = {
+    "BATT_CAPACITY": 5000, "BATT_LOW_MAH": 1000, "BATT_CRT_MAH": 400,
+}  # fmt: skip
+"""ArduPilot's thresholds, of which `LOW_V` is below the first."""
+EKF_LIMIT: Final = Parameters("ardupilot").get("FS_EKF_THRESH")  # 0.8 as a float32
+BAD: Final = replace(WELL, mag_ratio=EKF_LIMIT, vel_ratio=EKF_LIMIT)
 
 _FAILSAFES: Final[dict[Personality, type[FailsafeChecks]]] = {
     "px4": Px4Failsafes,

@@ -12,9 +12,11 @@ from dataclasses import replace
 import pytest
 
 from tests.unit.failsafes.looks import (
+    CHARGES,
     FULL,
+    LOW_V,
     MS,
-    WELL,
+    VOLTAGES,
     Look,
     S,
     acts,
@@ -34,9 +36,6 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
 from vehicle_sim.autopilot.fence.geofence import BreachKind, Crossing
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.estimation.estimator import Health
-from vehicle_sim.plant.sensed import Sensed
 
 CIRCLE = BreachKind.CIRCLE
 NONE = BreachKind.NONE
@@ -248,10 +247,6 @@ def test_px4_disarmed_tells_each_time_that_its_battery_becomes_low() -> None:
     assert [told(part) for part in (0.2, 0.14, 0.13, 0.2, 0.14)] == [0, 1, 0, 0, 1]
 
 
-VOLTAGES = {"BATT_LOW_VOLT": 14.0, "BATT_CRT_VOLT": 13.0}
-CHARGES = {"BATT_CAPACITY": 5000, "BATT_LOW_MAH": 1000, "BATT_CRT_MAH": 400}
-
-
 @pytest.mark.parametrize(
     ("volts", "charge"),
     [(14.0, Charge.FINE), (13.9, Charge.LOW), (13.0, Charge.LOW), (12.9, Charge.CRITICAL)],
@@ -273,9 +268,6 @@ def test_ardupilots_thresholds_of_the_charge(used_mah: float, charge: Charge) ->
     unmeasured = parameters_of("ardupilot", CHARGES | {"BATT_MONITOR": 0})
     assert by_capacity(unmeasured, power) is Charge.FINE
     assert charge_of(parameters_of("ardupilot", CHARGES), power, 1.0) is charge
-
-
-LOW_V = replace(FULL, voltage_v=13.9)
 
 
 def test_ardupilots_low_voltage_counts_after_batt_low_timer() -> None:
@@ -360,212 +352,3 @@ def test_ardupilot_lands_more_than_100_m_outside() -> None:
     look = Look("ardupilot", {"FENCE_ACTION": 1})
     assert acts(look.sees(crossing=Crossing(CIRCLE, NONE, 100.0)), Cause.FENCE) == [Action.RETURN]
     assert acts(look.sees(crossing=Crossing(CIRCLE, NONE, 100.1)), Cause.FENCE) == [Action.LAND]
-
-
-# --------------------------------------------------------------------------------- position
-
-
-def test_px4_has_lost_its_position_beyond_com_pos_fs_eph() -> None:
-    """5 m, and descends; less than zero is no limit."""
-    look = Look("px4")
-    assert not look.sees(health=replace(WELL, accuracy_m=5.0))
-    assert acts(look.sees(health=replace(WELL, accuracy_m=5.1)), Cause.POSITION) == [Action.DESCEND]
-    assert look.checks.position_lost
-    assert not look.sees(), "once"
-    assert clears(look.sees(health=WELL), Cause.POSITION)
-    assert not look.checks.position_lost
-    look.parameters.set("COM_POS_FS_EPH", -1.0)
-    assert not look.sees(health=replace(WELL, accuracy_m=900.0))
-    lost = replace(WELL, position_ok=False)
-    assert acts(look.sees(health=lost), Cause.POSITION) == [Action.DESCEND]
-    assert not look.sees(needs_position=False)
-    assert look.checks.position_lost, "what is flown meanwhile needs none"
-
-
-@pytest.mark.parametrize(
-    ("mode", "sticks", "navl", "action"),
-    [
-        ("POSCTL", True, 0, Action.ALTITUDE),
-        ("POSCTL", True, 1, Action.DESCEND),
-        ("POSCTL", False, 0, Action.DESCEND),
-        ("AUTO.LOITER", True, 0, Action.DESCEND),
-    ],
-)
-def test_px4_keeps_its_height_by_hand_where_com_posctl_navl_is_0(
-    mode: str, sticks: bool, navl: int, action: Action
-) -> None:
-    look = Look("px4", {"COM_POSCTL_NAVL": navl})
-    struck = look.sees(
-        mode=look.modes[mode], sticks=sticks, health=replace(WELL, position_ok=False)
-    )
-    assert acts(struck, Cause.POSITION) == [action]
-
-
-def test_px4_does_not_mind_where_no_position_is_needed() -> None:
-    look = Look("px4")
-    assert not look.sees(needs_position=False, health=replace(WELL, position_ok=False))
-
-
-LIMIT = parameters_of("ardupilot").get("FS_EKF_THRESH")  # 0.8 as a float32
-BAD = replace(WELL, mag_ratio=LIMIT, vel_ratio=LIMIT)
-
-
-@pytest.mark.parametrize(
-    ("health", "bad"),
-    [
-        (replace(WELL, mag_ratio=2.0), False),
-        (replace(WELL, mag_ratio=2.0, vel_ratio=0.79), False),
-        (BAD, True),
-        (replace(WELL, pos_ratio=LIMIT, vel_ratio=LIMIT), True),
-        (replace(WELL, position_ok=False), True),
-    ],
-)
-def test_ardupilots_estimate_is_bad_where_two_of_three_variances_reach_fs_ekf_thresh(
-    health: Health, bad: bool
-) -> None:
-    """ekf_check.cpp: 0.8, ten times in a row."""
-    look = Look("ardupilot")
-    for _ in range(9):
-        assert not look.sees(health=health)
-    assert acts(look.sees(), Cause.POSITION) == ([Action.DESCEND] if bad else [])
-    assert look.checks.position_lost is bad
-
-
-def test_ardupilot_needs_as_many_good_checks_as_it_had_bad_ones() -> None:
-    look = Look("ardupilot")
-    for _ in range(9):
-        look.sees(health=BAD)
-    look.sees(health=WELL)
-    assert not look.sees(health=BAD), "8, then 9"
-    assert acts(look.sees(), Cause.POSITION)
-    for _ in range(5):
-        assert not look.sees(), "no more than ten are counted"
-    for _ in range(9):
-        assert not look.sees(health=WELL)
-    assert clears(look.sees(), Cause.POSITION)
-    assert not look.checks.position_lost
-    for _ in range(9):
-        assert not look.sees(health=BAD)
-    assert acts(look.sees(), Cause.POSITION)
-
-
-@pytest.mark.parametrize(
-    ("choice", "needs", "action"),
-    [
-        (0, True, []),
-        (1, True, [Action.DESCEND]),
-        (2, True, [Action.ALTITUDE]),
-        (3, True, [Action.DESCEND]),
-        (1, False, []),
-        (2, False, []),
-        (3, False, [Action.DESCEND]),
-    ],
-)
-def test_ardupilot_does_what_fs_ekf_action_says(
-    choice: int, needs: bool, action: list[Action]
-) -> None:
-    look = Look("ardupilot", {"FS_EKF_ACTION": choice})
-    for _ in range(9):
-        look.sees(health=BAD, needs_position=needs)
-    struck = look.sees()
-    assert warns(struck, Cause.POSITION)
-    assert acts(struck, Cause.POSITION) == action
-
-
-def test_ardupilot_does_not_look_at_the_estimate_with_fs_ekf_thresh_0() -> None:
-    look = Look("ardupilot", {"FS_EKF_THRESH": 0.0})
-    for _ in range(20):
-        assert not look.sees(health=BAD)
-
-
-# ---------------------------------------------------------------------------- the quick look
-
-
-def _good(look: Look) -> tuple[Sensed, Estimated]:
-    """Blocks in which nothing is wrong; the checks have looked once since arming."""
-    look.sees()
-    sensed = Sensed(battery_v=16.6, battery_a=0.0, battery_used_mah=100.0)
-    return sensed, Estimated(age_s=10.0, placed=True, accuracy_m=0.4)
-
-
-def _quiet(look: Look, sensed: Sensed, est: Estimated, sticks_lost: bool = False) -> bool:
-    return look.checks.quiet(look.seen.wall_ns, sensed, est, sticks_lost)
-
-
-@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
-def test_the_quick_look_sees_a_good_flight_and_each_thing_that_is_wrong(
-    personality: Personality,
-) -> None:
-    look = Look(personality)
-    sensed, est = _good(look)
-    assert _quiet(look, sensed, est)
-    assert not _quiet(look, sensed, est, sticks_lost=True)
-    est.dead_s = 5.0
-    assert not _quiet(look, sensed, est)
-    est.dead_s = 0.0
-    look.checks.station_heard(look.seen.wall_ns)
-    silent_ns = 10 * S if personality == "px4" else 5 * S
-    assert look.checks.quiet(look.seen.wall_ns + silent_ns - 1, sensed, est, False)
-    assert not look.checks.quiet(look.seen.wall_ns + silent_ns, sensed, est, False)
-    look.checks.reset()
-    assert not _quiet(look, sensed, est), "just armed"
-
-
-def test_the_quick_look_knows_px4s_thresholds() -> None:
-    look = Look("px4")
-    sensed, est = _good(look)
-    est.accuracy_m = 5.0
-    assert _quiet(look, sensed, est)
-    est.accuracy_m = 5.01
-    assert not _quiet(look, sensed, est)
-    look.parameters.set("COM_POS_FS_EPH", -1.0)
-    assert _quiet(look, sensed, est)
-    look.parameters.set("COM_POS_FS_EPH", 0.0)
-    assert not _quiet(look, sensed, est)
-    look.parameters.set("COM_POS_FS_EPH", 6.0)
-    # 15 % of a lithium-polymer cell's charge is 3.65 V at rest.
-    sensed.battery_v = 4 * 3.66
-    assert _quiet(look, sensed, est)
-    sensed.battery_v = 4 * 3.649
-    assert not _quiet(look, sensed, est)
-    sensed.battery_a = 4 * 0.02 / look.believed.resistance_ohm
-    assert _quiet(look, sensed, est), "under load it sags"
-    look.parameters.set("BAT1_CAPACITY", 5000.0)
-    assert not _quiet(look, sensed, est), "by the charge that was drawn, which takes a closer look"
-
-
-def test_the_quick_look_knows_ardupilots_thresholds() -> None:
-    look = Look("ardupilot", VOLTAGES | CHARGES)
-    sensed, est = _good(look)
-    assert _quiet(look, sensed, est)
-    sensed.battery_v = 13.99
-    assert not _quiet(look, sensed, est)
-    sensed.battery_v, sensed.battery_used_mah = 14.0, 4000.0
-    assert _quiet(look, sensed, est)
-    sensed.battery_used_mah = 4000.1
-    assert not _quiet(look, sensed, est)
-    sensed.battery_used_mah = 0.0
-    for name in ("vel_ratio", "pos_ratio", "mag_ratio"):
-        setattr(est, name, 0.79)
-        assert _quiet(look, sensed, est)
-        setattr(est, name, LIMIT)
-        assert not _quiet(look, sensed, est)
-        look.parameters.set("FS_EKF_THRESH", 0.0)
-        assert _quiet(look, sensed, est)
-        look.parameters.set("FS_EKF_THRESH", 0.8)
-        setattr(est, name, 0.0)
-    look.parameters.set("SIM_BATT_VOLTAGE", 15.0)
-    assert not _quiet(look, sensed, est), "what SIM_BATT_VOLTAGE says is not in the sensors"
-
-
-def test_the_quick_look_goes_on_looking_while_a_low_voltage_or_a_bad_estimate_is_counted() -> None:
-    look = Look("ardupilot", VOLTAGES)
-    sensed, est = _good(look)
-    look.sees(power=LOW_V)
-    assert not _quiet(look, sensed, est)
-    look.sees(power=FULL)
-    assert _quiet(look, sensed, est)
-    look.sees(health=BAD)
-    assert not _quiet(look, sensed, est)
-    look.sees(health=WELL)
-    assert _quiet(look, sensed, est)
