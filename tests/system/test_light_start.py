@@ -38,6 +38,11 @@ RARE = (
     "subprocess",
     "unittest",
     "logging",
+    "json",
+    "difflib",
+    "tempfile",
+    "zipfile",
+    "importlib.resources",
 )
 """What is loaded when it is asked for."""
 
