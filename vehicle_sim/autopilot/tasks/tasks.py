@@ -165,7 +165,8 @@ class TakeOff:
 
 
 class Land:
-    """Down, where the vehicle comes to rest (or at `where_ned`), slow near the ground.
+    """Down, where the vehicle comes to rest when this begins (or at `where_ned`), slow near the
+    ground.
 
     `rate` gives another rate of descent [m/s], the same at any height; `landed_word` is what is
     told meanwhile.
@@ -173,7 +174,7 @@ class Land:
 
     done = False
 
-    __slots__ = ("_parameters", "_rate", "_where_ned", "landed_word")
+    __slots__ = ("_given_ned", "_parameters", "_rate", "_where_ned", "landed_word")
 
     def __init__(
         self,
@@ -183,7 +184,7 @@ class Land:
         landed_word: Landed = Landed.LANDING,
     ) -> None:
         self._parameters = parameters
-        self._where_ned = where_ned
+        self._given_ned = self._where_ned = where_ned
         self._rate = rate
         self.landed_word = landed_word
 
@@ -195,8 +196,7 @@ class Land:
         return False
 
     def begin(self, s: Situation, turner: Turner) -> None:
-        if self._where_ned is None:
-            self._where_ned = s.stop_ned
+        self._where_ned = self._given_ned or s.stop_ned
 
     def update(self, s: Situation, turner: Turner) -> Demand:
         where = self._where_ned or s.stop_ned
