@@ -77,6 +77,12 @@ class Look:
             crossing=NOTHING,
         )
 
+    def position_lost(self) -> bool:
+        return self.checks.position_lost
+
+    def station_lost(self) -> bool:
+        return self.checks.station_lost
+
     def sees(self, **changes: object) -> list[Strike]:
         """What strikes and clears once these have changed; they stay."""
         self.seen = replace(self.seen, **changes)  # type: ignore[arg-type]  # as the test says

@@ -55,11 +55,11 @@ def test_a_station_is_lost_after_com_dl_loss_t_and_fs_gcs_timeout(
     assert not acts(look.sees(), Cause.STATION)
     assert not acts(look.after(silent_s * S - 1), Cause.STATION)
     assert acts(look.after(1), Cause.STATION)
-    assert look.checks.station_lost
+    assert look.station_lost()
     assert not acts(look.after(1), Cause.STATION), "once"
     assert look.checks.station_heard(look.seen.wall_ns) == look.checks.back_again
     assert look.checks.station_heard(look.seen.wall_ns) is None
-    assert not look.checks.station_lost
+    assert not look.station_lost()
     assert not acts(look.after(silent_s * S - 1), Cause.STATION)
     assert acts(look.after(1), Cause.STATION)
 

@@ -30,16 +30,16 @@ def test_px4_has_lost_its_position_beyond_com_pos_fs_eph() -> None:
     look = Look("px4")
     assert not look.sees(health=replace(WELL, accuracy_m=5.0))
     assert acts(look.sees(health=replace(WELL, accuracy_m=5.1)), Cause.POSITION) == [Action.DESCEND]
-    assert look.checks.position_lost
+    assert look.position_lost()
     assert not look.sees(), "once"
     assert clears(look.sees(health=WELL), Cause.POSITION)
-    assert not look.checks.position_lost
+    assert not look.position_lost()
     look.parameters.set("COM_POS_FS_EPH", -1.0)
     assert not look.sees(health=replace(WELL, accuracy_m=900.0))
     lost = replace(WELL, position_ok=False)
     assert acts(look.sees(health=lost), Cause.POSITION) == [Action.DESCEND]
     assert not look.sees(needs_position=False)
-    assert look.checks.position_lost, "what is flown meanwhile needs none"
+    assert look.position_lost(), "what is flown meanwhile needs none"
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_ardupilots_estimate_is_bad_where_two_of_three_variances_reach_fs_ekf_th
     for _ in range(9):
         assert not look.sees(health=health)
     assert acts(look.sees(), Cause.POSITION) == ([Action.DESCEND] if bad else [])
-    assert look.checks.position_lost is bad
+    assert look.position_lost() is bad
 
 
 def test_ardupilot_needs_as_many_good_checks_as_it_had_bad_ones() -> None:
@@ -99,7 +99,7 @@ def test_ardupilot_needs_as_many_good_checks_as_it_had_bad_ones() -> None:
     for _ in range(9):
         assert not look.sees(health=WELL)
     assert clears(look.sees(), Cause.POSITION)
-    assert not look.checks.position_lost
+    assert not look.position_lost()
     for _ in range(9):
         assert not look.sees(health=BAD)
     assert acts(look.sees(), Cause.POSITION)
