@@ -50,8 +50,8 @@ clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVS
 soak: $(TEST) ## the properties on new random examples, and what `test` has a share of as a whole
 	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios -n $(WORKERS)
 
-mutants: $(TEST) ## alter the gate in one place at a time: does a test notice?
-	$(BIN)/python -m tests.mutants
+mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? ARGS="vehicle --share 1/20" another part
+	$(BIN)/python -m tests.mutants $(ARGS)
 
 bench: $(TEST) ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -354,6 +355,7 @@ def _read(path: str) -> bytes:
 
 def run(options: Options) -> int:
     """The exit code."""
+    gc.disable()  # what is loaded and built from here on stays: there is nothing to collect
     from vehicle_sim.autopilot.parameters.parameters import ParameterError
     from vehicle_sim.shell.endpoints import EndpointError
     from vehicle_sim.shell.runtime import launch
@@ -370,6 +372,8 @@ def run(options: Options) -> int:
     except EndpointError as wrong:
         return _fail(f"{wrong}\n{_hint(wrong.cause)}", EXIT_ADDRESS)
     outlet = _outlet(options)
+    gc.freeze()
+    gc.enable()
     try:
         return _fly(options, opened, _launched(options, plan, opened), outlet)
     finally:

@@ -5,11 +5,10 @@ One protocol; the command line chooses.
 
 from __future__ import annotations
 
-import json
 import os
 import select
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Protocol
 
@@ -135,6 +134,12 @@ class Plain:
         pass
 
 
+def _json(value: Mapping[str, object]) -> str:
+    import json  # only under --control
+
+    return json.dumps(value)
+
+
 class Json(Plain):
     """The control line's other half: every line is one JSON object."""
 
@@ -143,11 +148,11 @@ class Json(Plain):
             {"system": contact.system, "urls": [str(url.other_end) for url in contact.urls]}
             for contact in launch.contacts
         ]
-        _print(json.dumps({"ready": told}))
+        _print(_json({"ready": told}))
 
     def log(self, line: Log) -> None:
         if LEVELS[line.level] >= self._threshold:
-            _print_if_read(json.dumps({"log": spelled(line)}))
+            _print_if_read(_json({"log": spelled(line)}))
 
     def answer(self, line: bytes) -> None:
         _print(line.decode().rstrip())

@@ -20,8 +20,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields
 from typing import NamedTuple
 
-from vehicle_sim.engine.few import Few
-from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.batch_engine import BatchEngine
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import DT_S, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.body import Body
@@ -42,9 +42,11 @@ class Timed(NamedTuple):
     step: Callable[[], object]
 
 
-def hovering(count: int, kind: type[Few] | type[Many]) -> Few | Many:
+def hovering(
+    count: int, kind: type[ScalarEngine] | type[BatchEngine]
+) -> ScalarEngine | BatchEngine:
     """Vehicles that hover by their estimates: one has risen, the others are its copies."""
-    first = Few(specs(1), load())
+    first = ScalarEngine(specs(1), load())
     blocks = first.blocks(0)
     for _ in range(round(ALIGNED_S / DT_S)):
         first.step()
@@ -68,7 +70,7 @@ def specs(count: int) -> list[VehicleSpec]:
 
 
 def ours() -> Timed:
-    return Timed("physics and control", hovering(1, Few).step)
+    return Timed("physics and control", hovering(1, ScalarEngine).step)
 
 
 def physics_only() -> Timed:
@@ -145,7 +147,7 @@ def one_vehicle(rounds: int, steps: int) -> None:
         print(f"  {timed.name:24} {best:7.2f} us{compared}")
 
 
-def fleet(count: int, kind: type[Few] | type[Many]) -> None:
+def fleet(count: int, kind: type[ScalarEngine] | type[BatchEngine]) -> None:
     engine = hovering(count, kind)
     steps = max(25, min(1_000, 50_000 // count))
     microseconds(engine.step, 5)
@@ -162,10 +164,10 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=2_500)
     asked = parser.parse_args()
     one_vehicle(asked.rounds, asked.steps)
-    print("fleets, one core: plain floats (Few) and numpy rows (Many)")
+    print("fleets, one core: plain floats (ScalarEngine) and numpy rows (BatchEngine)")
     for count in SIZES:
-        for kind in (Few, Many):
-            if kind is Many or count <= FEW_MOST:
+        for kind in (ScalarEngine, BatchEngine):
+            if kind is BatchEngine or count <= FEW_MOST:
                 fleet(count, kind)
 
 

@@ -16,7 +16,7 @@ from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.engine.engines import engine_for
+from vehicle_sim.engine.choose_engine import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.sensors import MEMS, SensorGrade

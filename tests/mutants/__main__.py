@@ -1,6 +1,8 @@
 """Alters the code under test one place at a time, and asks whether a test notices.
 
     python -m tests.mutants                      the gate, all of it
+    python -m tests.mutants vehicle              the vehicle's failsafes and estimator
+    python -m tests.mutants vehicle --share 3/20 the third of twenty parts, spread evenly
     python -m tests.mutants --list               say which mutants there are, run nothing
     python -m tests.mutants --only stopping.py   those whose key contains the word
     python -m tests.mutants --sample 200         so many, spread evenly
@@ -54,7 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(target: Target, options: argparse.Namespace) -> int:
     began = time.monotonic()
     mutants, enums = generate(target)
-    chosen = _chosen(mutants, options.only, options.sample)
+    chosen = _chosen(mutants, options)
     if options.list:
         for mutant in chosen:
             print(f"{mutant.where}: {mutant.kind}: {mutant.key}")
@@ -66,7 +68,7 @@ def _run(target: Target, options: argparse.Namespace) -> int:
         print(error, file=sys.stderr)
         return 2
     preload(base.imported)
-    chooser = Chooser(base, Uses(target.sources(), target.root))
+    chooser = Chooser(target, base, Uses(target.sources(), target.root))
     print(f"{len(chosen)} of {len(mutants)} mutants, {len(base.seconds)} tests", flush=True)
     results: list[Result] = []
     for result in judge(target, enums, chosen, chooser, options.workers):
@@ -85,12 +87,13 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         "python -m tests.mutants", formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.description = __doc__
-    parser.add_argument("--target", choices=sorted(TARGETS), default="gate")
+    parser.add_argument("target", choices=sorted(TARGETS), default="gate", nargs="?")
     parser.add_argument("--package", help="a folder to alter, in the place of the target's")
     parser.add_argument("--tests", help="with --package: the folder of its tests")
     parser.add_argument("--root", default=".", help="with --package: where both are")
     parser.add_argument("--only", default="", help="mutants whose key has this in it")
     parser.add_argument("--sample", type=int, help="so many of them, spread evenly")
+    parser.add_argument("--share", type=_share, help="K/N: every Nth of them, from the Kth on")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--slow", action="store_true", help="with the target's slow tests")
     parser.add_argument("--list", action="store_true", help="say which there are, run nothing")
@@ -105,11 +108,22 @@ def _target(options: argparse.Namespace) -> Target:
     return Target("other", (options.package,), (options.tests or "tests",), root=root)
 
 
-def _chosen(mutants: Sequence[Mutant], only: str, sample: int | None) -> list[Mutant]:
-    chosen = [mutant for mutant in mutants if only in mutant.key]
-    if sample is None or sample >= len(chosen):
+def _share(text: str) -> tuple[int, int]:
+    """`K/N`, K from 1 to N."""
+    which, _, of = text.partition("/")
+    if not (which.isdecimal() and of.isdecimal() and 1 <= int(which) <= int(of)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not K/N with K from 1 to N, as 1/20 is")
+    return int(which), int(of)
+
+
+def _chosen(mutants: Sequence[Mutant], options: argparse.Namespace) -> list[Mutant]:
+    chosen = [mutant for mutant in mutants if options.only in mutant.key]
+    if options.share is not None:
+        which, of = options.share
+        chosen = chosen[which - 1 :: of]
+    if options.sample is None or options.sample >= len(chosen):
         return chosen
-    return [chosen[i * len(chosen) // sample] for i in range(sample)]
+    return [chosen[i * len(chosen) // options.sample] for i in range(options.sample)]
 
 
 def _progress(results: Sequence[Result], of: int, began: float) -> None:

@@ -6,7 +6,7 @@ import importlib
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from types import FrameType
+from types import CodeType, FrameType
 from typing import TypeAlias
 
 from tests.mutants.loading import change_value
@@ -34,10 +34,11 @@ class _Watch:
         self._files = {str(p): p.relative_to(target.root).as_posix() for p in target.sources()}
         self._lines: set[tuple[str, int]] = set()
         self._cells: set[str] = set()
+        self._unseen: dict[CodeType, set[int]] = {}
 
     def watch(self, test: str) -> None:
         if test:
-            self._lines, self._cells = set(), set()
+            self._lines, self._cells, self._unseen = set(), set(), {}
             self.test = test
             sys.settrace(self._called)
             return
@@ -56,14 +57,25 @@ class _Watch:
         file = self._files.get(frame.f_code.co_filename)
         if file is None:
             return None
+        code = frame.f_code
+        known = self._unseen.get(code)
+        if known is not None and not known:
+            return None  # all of it has run: tracing it again would only take time
+        unseen = self._unseen.setdefault(code, _lines_within(code))
         lines = self._lines
 
         def line(frame: FrameType, event: str, arg: object) -> Tracer | None:
             if event == "line":
                 lines.add((file, frame.f_lineno))
+                unseen.discard(frame.f_lineno)
             return line
 
         return line
+
+
+def _lines_within(code: CodeType) -> set[int]:
+    """Those that tell that they run; that of the `def` is told as a call."""
+    return {line for _, _, line in code.co_lines() if line} - {code.co_firstlineno}
 
 
 class _Recorded(Mapping[object, object]):

@@ -118,11 +118,15 @@ def preload(names: Sequence[str]) -> None:
 class Chooser:
     """The tests that a mutant has to face, the quickest first."""
 
-    def __init__(self, base: Baseline, uses: Uses) -> None:
-        self._base, self._uses = base, uses
+    def __init__(self, target: Target, base: Baseline, uses: Uses) -> None:
+        self._target, self._base, self._uses = target, base, uses
         self._quickest = sorted(base.seconds, key=lambda test: (base.seconds[test], test))
 
     def tests_for(self, mutant: Mutant) -> list[str]:
+        near = self._target.tests_near(mutant.file)
+        return [test for test in self._reaching(mutant) if test.startswith(near)]
+
+    def _reaching(self, mutant: Mutant) -> list[str]:
         coverage = self._base.coverage
         if mutant.cells:
             places = [coverage.cells.get(cell, set()) for cell in mutant.cells]

@@ -30,6 +30,10 @@ class ValueTable:
 class Target:
     """Paths are relative to the project's root.
 
+    `nearest` names, for parts of the packages, the tests that a mutant there has to face; without
+    an entry it faces all that reach it.  Two parts whose tests fly the same vehicle would else
+    face each other's.
+
     `skip` are files whose source text is not altered, each with the reason.  `deselect` are parts
     of test ids that are left out; `slow` are such as run only when they are asked for.  `settings`
     are TOML files whose values are altered, where the package reads them with `Path.read_text`.
@@ -38,12 +42,20 @@ class Target:
     name: str
     packages: tuple[str, ...]
     tests: tuple[str, ...]
+    nearest: tuple[tuple[str, tuple[str, ...]], ...] = ()
     skip: tuple[tuple[str, str], ...] = ()
     deselect: tuple[str, ...] = ()
     slow: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
     tables: tuple[ValueTable, ...] = ()
     root: Path = ROOT
+
+    def tests_near(self, file: str) -> tuple[str, ...]:
+        """What the ids of the tests begin with that a mutant in this file has to face."""
+        for part, tests in self.nearest:
+            if file.startswith(part):
+                return tests
+        return self.tests
 
     def sources(self) -> list[Path]:
         """Every file whose text is altered, in the order of their names."""
@@ -74,6 +86,26 @@ TARGETS: Final = {
             slow=("tests/unit/gate/test_explore.py",),
             settings=("gcs/gate/policy/default.toml", "gcs/gate/policy/lab.toml"),
             tables=(ValueTable("gcs.gate.machine.table", "TABLE", "tests.mutants.gate_table"),),
+        ),
+        Target(
+            name="vehicle",
+            packages=("vehicle_sim/autopilot/failsafes", "vehicle_sim/estimation"),
+            tests=(
+                "tests/unit/failsafes",
+                "tests/unit/vehicle_services/test_arm_authorization.py",
+                "tests/unit/estimator",
+            ),
+            nearest=(
+                (
+                    "vehicle_sim/autopilot/failsafes",
+                    (
+                        "tests/unit/failsafes",
+                        "tests/unit/vehicle_services/test_arm_authorization.py",
+                    ),
+                ),
+                ("vehicle_sim/estimation", ("tests/unit/estimator",)),
+            ),
+            deselect=("test_many.py",),  # a batch is made of the source text, which is unaltered
         ),
     )
 }

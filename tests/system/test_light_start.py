@@ -25,7 +25,7 @@ OF_OTHERS = (
 RARE = (
     "vehicle_sim.live_page",
     "vehicle_sim.simulation.control_line",
-    "vehicle_sim.engine.many",
+    "vehicle_sim.engine.batch_engine",
     "vehicle_sim.flight_log.px4",
     "vehicle_sim.flight_log.ardupilot",
     "vehicle_sim.services.event_definitions",
@@ -38,6 +38,11 @@ RARE = (
     "subprocess",
     "unittest",
     "logging",
+    "json",
+    "difflib",
+    "tempfile",
+    "zipfile",
+    "importlib.resources",
 )
 """What is loaded when it is asked for."""
 

@@ -25,7 +25,7 @@ from vehicle_sim.autopilot.interface import (
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.parts import Parts
-from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import DT_NS, Seat, VehicleSpec, restart
 from vehicle_sim.estimation.estimator import Health
 from vehicle_sim.numerics.vectors import Vec3
@@ -55,7 +55,7 @@ class Autopilot:
     ) -> None:
         self.personality = personality
         self.parameters = parameters = params if params is not None else Parameters(personality)
-        seat = seat or Seat(Few([VehicleSpec(seed, index, home.lat_deg)], load()), 0)
+        seat = seat or Seat(ScalarEngine([VehicleSpec(seed, index, home.lat_deg)], load()), 0)
         self.engine = seat.engine
         self.state = state = FlightState(home, parameters, seat, boot)
         self.blocks = state.blocks

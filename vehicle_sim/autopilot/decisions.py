@@ -85,7 +85,7 @@ class Decisions:
         if turn == 0 or state.decision_requested:
             state.decision_requested = False
             self._decide(turn == 0)
-        if self._camera.camera.busy and turn % GUIDE_EVERY == 0:
+        if turn % GUIDE_EVERY == 0 and self._camera.camera.busy:
             self._camera.photograph()
 
     def _decide(self, regular: bool) -> None:

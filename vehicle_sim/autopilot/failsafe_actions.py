@@ -116,7 +116,7 @@ class FailsafeActions:
 
     def watch_offboard(self, s: Situation) -> None:
         state = self._state
-        if state.mode.name != "OFFBOARD":
+        if not state.mode.needs_stream:
             return
         loss_ns = int(state.parameters.si(Quantity.SETPOINT_LOSS_S) * 1e9)
         if self._stream.age_ns(s.wall_ns) >= loss_ns:

@@ -83,10 +83,10 @@ class ModeChanges:
             return Result.ACCEPTED
         if mode.behaviour is Behaviour.MISSION and not self._mission_checks.may_start():
             return self._refuse(mode, "init failed")
-        if mode.name == "FOLLOW" and not state.parameters.get("FOLL_ENABLE"):
-            state.say(4, "Set FOLL_ENABLE = 1")
+        if mode.enabled_by is not None and not state.parameters.get(mode.enabled_by):
+            state.say(4, f"Set {mode.enabled_by} = 1")
             return self._refuse(mode, "init failed")
-        if mode.name == "OFFBOARD" and state.armed:
+        if mode.needs_stream and state.armed:
             return self._ask_offboard(mode)
         self._transitions.enter(mode, self._goes_on_up(mode))
         self._mission_checks.say_take_off()

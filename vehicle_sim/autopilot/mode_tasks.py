@@ -9,11 +9,12 @@ from typing import assert_never
 from vehicle_sim.autopilot.bounds import Bounds
 from vehicle_sim.autopilot.control.demands import Task
 from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.interface import Landed
 from vehicle_sim.autopilot.manual.stick_tasks import StickFlight
 from vehicle_sim.autopilot.manual.sticks import Radio
 from vehicle_sim.autopilot.modes import Behaviour, Mode, StickLaw
 from vehicle_sim.autopilot.parameters.parameters import Quantity
-from vehicle_sim.autopilot.tasks.descend import SinkInPlace
+from vehicle_sim.autopilot.tasks.descent_rate import without_sticks_m_s
 from vehicle_sim.autopilot.tasks.follow import FOLLOW, Leader
 from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
 from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
@@ -79,7 +80,9 @@ class ModeTasks:
         if mode.behaviour is Behaviour.LEVEL:
             return Level
         if mode.law is StickLaw.POSITION and self._state.rules.sinks_without_sticks:
-            return partial(SinkInPlace, self._state.parameters)
+            return partial(
+                Land, self._state.parameters, rate=without_sticks_m_s, landed_word=Landed.IN_AIR
+            )
         return Hold
 
     def take_off(self, up_m: float) -> TakeOff:

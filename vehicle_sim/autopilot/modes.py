@@ -56,7 +56,11 @@ class Property(IntFlag):
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """`custom_mode` is HEARTBEAT's; `flags` is base_mode without the armed bit."""
+    """`custom_mode` is HEARTBEAT's; `flags` is base_mode without the armed bit.
+
+    `needs_stream`: it is entered, and kept, only while setpoints come.  `enabled_by` is the
+    parameter without which it is refused.
+    """
 
     name: str
     custom_mode: int
@@ -66,6 +70,8 @@ class Mode:
     needs_position: bool
     law: StickLaw | None = None
     properties: Property = Property.NONE
+    needs_stream: bool = False
+    enabled_by: str | None = None
 
 
 def _px4(main: int, sub: int = 0) -> int:
@@ -94,7 +100,8 @@ PX4_MODES = (
     Mode("POSCTL.ORBIT",       _px4(3, 1), _B.ORBIT,   _PX4_STABLE, False, True,  None, _HID),
     Mode("ACRO",               _px4(5),    _B.LEVEL,   _PX4_ACRO,   True,  False, _S.RATES, _ADV),
     Mode("STABILIZED",         _px4(7),    _B.LEVEL,   _PX4_STICKS, True,  False, _S.ANGLE, _ADV),
-    Mode("OFFBOARD",           _px4(6),    _B.GUIDED,  _PX4_STABLE, True, True, None, _ADV),
+    Mode("OFFBOARD",           _px4(6),    _B.GUIDED,  _PX4_STABLE, True,  True,  None, _ADV,
+         needs_stream=True),
     Mode("AUTO.TAKEOFF",       _px4(4, 2), _B.TAKEOFF, _PX4_AUTO,   True,  True),
     Mode("AUTO.LOITER",        _px4(4, 3), _B.HOLD,    _PX4_AUTO,   True,  True),
     Mode("AUTO.MISSION",       _px4(4, 4), _B.MISSION, _PX4_AUTO,   True,  True),
@@ -114,7 +121,7 @@ ARDUPILOT_MODES = (
     Mode("LAND",      9,  _B.LAND,    _AP_GUIDED, False, False),
     Mode("POSHOLD",   16, _B.HOLD,    _AP_GUIDED, True,  True,  _S.LEAN_AND_STAY),
     Mode("BRAKE",     17, _B.HOLD,    _AP_GUIDED, False, True),
-    Mode("FOLLOW",    23, _B.FOLLOW,  _AP_GUIDED, False, True),
+    Mode("FOLLOW",    23, _B.FOLLOW,  _AP_GUIDED, False, True,  enabled_by="FOLL_ENABLE"),
 )
 
 # Modes that clients know by number and that this vehicle does not fly.

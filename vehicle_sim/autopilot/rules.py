@@ -14,7 +14,7 @@ from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class AutopilotRules:
     """`not_now` is the answer to what its own checks refuse.
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from vehicle_sim.control_loops.believed import Believed
+from vehicle_sim.control_loops.believed import D_FILTER_S, Believed
 from vehicle_sim.control_loops.flight import BY_RATES, Flight
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.kernel import kernel
@@ -19,12 +19,7 @@ from vehicle_sim.numerics.kernel import kernel
 _RATE_SHARE = 0.55  # of 1 / motor lag
 _ATTITUDE_SHARE = 0.41  # of the rate gain
 _ATTITUDE_P_MAX = 12.0
-# Of a motor's thrust in hover, for each axis: a motor at 0.4 takes 0.15 and a centre of mass 2 cm
-# off its place 0.11; with more a vehicle that has lost a motor flies on, spinning, and bounces.
-_INTEGRAL_SHARE = 0.2
-_TUMBLE_RAD_S = 7.0  # 400 deg/s, where PX4's integrators take nothing up any more
-_D_FILTER_S = 0.0053  # 30 Hz, as PX4's IMU_DGYRO_CUTOFF
-_YAW_SHARE = 0.6  # of what hover can give: propellers turn a quadrotor weakly
+_TUMBLE_SQUARED = 7.0 * 7.0  # (400 deg/s)^2, where PX4's integrators take nothing up any more
 
 
 def tune(flight: Flight, believed: Believed) -> None:
@@ -65,22 +60,28 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     rate_z = f.rate_sp_z if by_rates else rate_z
 
     # The torque that it takes, as each motor's share of thrust over its lever.
-    err_x = rate_x - est.rate_x
-    err_y = rate_y - est.rate_y
+    is_x = est.rate_x
+    is_y = est.rate_y
+    err_x = rate_x - is_x
+    err_y = rate_y - is_y
     err_z = rate_z - est.rate_z
-    change_x = est.rate_x - f.rate_slow_x
-    change_y = est.rate_y - f.rate_slow_y
-    dt_s = believed.dt_s
-    follow = dt_s / (_D_FILTER_S + dt_s)
-    f.rate_slow_x += follow * change_x
-    f.rate_slow_y += follow * change_y
+    slow_x = f.rate_slow_x
+    slow_y = f.rate_slow_y
+    change_x = is_x - slow_x
+    change_y = is_y - slow_y
+    follow = believed.d_filter_part
+    f.rate_slow_x = slow_x + follow * change_x
+    f.rate_slow_y = slow_y + follow * change_y
     gain_x = f.kp_rate_roll * believed.roll_n_s2
     gain_y = f.kp_rate_pitch * believed.pitch_n_s2
     gain_z = f.kp_rate_yaw * believed.yaw_n_s2
-    roll = gain_x * (err_x - f.kd_rate_roll / _D_FILTER_S * change_x) + f.int_roll_n
-    pitch = gain_y * (err_y - f.kd_rate_pitch / _D_FILTER_S * change_y) + f.int_pitch_n
-    yaw = gain_z * err_z + f.int_yaw_n
-    most = _YAW_SHARE * believed.hover_n
+    int_roll_n = f.int_roll_n
+    int_pitch_n = f.int_pitch_n
+    int_yaw_n = f.int_yaw_n
+    roll = gain_x * (err_x - f.kd_rate_roll / D_FILTER_S * change_x) + int_roll_n
+    pitch = gain_y * (err_y - f.kd_rate_pitch / D_FILTER_S * change_y) + int_pitch_n
+    yaw = gain_z * err_z + int_yaw_n
+    most = believed.yaw_most_n
     weak = yaw > most or yaw < -most
     yaw = most if yaw > most else -most if yaw < -most else yaw
 
@@ -99,15 +100,15 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     flying = f.flying
     # Nothing is learnt in a tumble, nor while the motors cannot give what is asked, nor where the
     # ground may carry.
-    tumbles = err_x * err_x + err_y * err_y + err_z * err_z > _TUMBLE_RAD_S * _TUMBLE_RAD_S
+    tumbles = err_x * err_x + err_y * err_y + err_z * err_z > _TUMBLE_SQUARED
     learns = flying and top - low < full and f.still_s == 0.0 and not tumbles
-    learn_s = dt_s if learns else 0.0
-    most = _INTEGRAL_SHARE * believed.hover_n
-    kept = f.int_roll_n + f.ki_rate_roll * learn_s * gain_x * err_x
+    learn_s = believed.dt_s if learns else 0.0
+    most = believed.integral_most_n
+    kept = int_roll_n + f.ki_rate_roll * learn_s * gain_x * err_x
     f.int_roll_n = most if kept > most else -most if kept < -most else kept
-    kept = f.int_pitch_n + f.ki_rate_pitch * learn_s * gain_y * err_y
+    kept = int_pitch_n + f.ki_rate_pitch * learn_s * gain_y * err_y
     f.int_pitch_n = most if kept > most else -most if kept < -most else kept
-    kept = f.int_yaw_n + (0.0 if weak else f.ki_rate_yaw * learn_s * gain_z * err_z)
+    kept = int_yaw_n + (0.0 if weak else f.ki_rate_yaw * learn_s * gain_z * err_z)
     f.int_yaw_n = most if kept > most else -most if kept < -most else kept
     each = 0.25 * f.collective_n
     each = full - top if each + top > full else each

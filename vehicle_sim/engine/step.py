@@ -1,8 +1,8 @@
 """One step of a vehicle: body, sensors, estimator and controllers, and the blocks they run on.
 
 An engine owns the blocks of vehicles that share an airframe, and gives each vehicle a `Seat`
-at its own.  `Few` (`few.py`) runs the kernels in plain floats, vehicle by vehicle; `Many`
-(`many.py`, as it needs numpy) over all of them at once, to the same bytes.
+at its own.  `ScalarEngine` runs the kernels in plain floats, vehicle by vehicle; `BatchEngine`
+(which needs numpy) over all of them at once, to the same bytes.
 
 Vehicles do not meet: each has a local frame of its own, with its own start as the origin.
 """

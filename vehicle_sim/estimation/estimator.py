@@ -24,7 +24,14 @@ from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.sensed import Sensed
-from vehicle_sim.plant.sensors import BARO_AT, BARO_EVERY, GPS_EVERY, GPS_TAKEN_AT, MAG_EVERY
+from vehicle_sim.plant.sensors import (
+    BARO_AT,
+    BARO_EVERY,
+    GPS_EVERY,
+    GPS_TAKEN_AT,
+    MAG_EVERY,
+    SLOW_EVERY,
+)
 
 READY_S: Final = 0.48
 """A position is called good from this age on."""
@@ -88,6 +95,13 @@ def estimate(est: Estimated, sensed: Sensed, k: int) -> None:
     old = est.vel_d
     est.vel_d = new = old + acc_d * _DT_S
     est.pos_d += (old + new) * _HALF_S
+    if k % SLOW_EVERY == 0:
+        _correct(est, sensed, k)
+
+
+@kernel
+def _correct(est: Estimated, sensed: Sensed, k: int) -> None:
+    """By the sensors that do not answer in every step."""
     if k % MAG_EVERY == 0:
         hold_attitude(est, sensed)
     if k % BARO_EVERY == BARO_AT:

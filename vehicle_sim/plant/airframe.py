@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass, fields
-from difflib import get_close_matches
-from importlib import resources
 from math import inf
+from pathlib import Path
 from typing import Final, TypeVar
 
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
@@ -78,21 +77,22 @@ class Airframe:
 
 
 _Section = TypeVar("_Section", Hull, MotorSet, Gear, BatteryPack)
+# importlib.resources would load archives and temporary files at every start.
+_SHIPPED: Final = Path(__file__).with_name("airframes")
 _KEYS: Final = ("name", "body", "motors", "gear", "battery")
 
 
 def shipped() -> tuple[str, ...]:
     """The names that `load` knows, sorted."""
-    files = resources.files(__package__).joinpath("airframes").iterdir()
-    return tuple(sorted(file.name[:-5] for file in files if file.name.endswith(".toml")))
+    return tuple(sorted(file.stem for file in _SHIPPED.glob("*.toml")))
 
 
 def load(name: str = "s500") -> Airframe:
     """The shipped airframe `name`.  Raises AirframeError."""
     if name not in shipped():
         raise AirframeError(f"no airframe {name!r} is shipped; there are {', '.join(shipped())}")
-    file = resources.files(__package__).joinpath("airframes", f"{name}.toml")
-    return parse(file.read_text(encoding="utf-8"), f"{name}.toml")
+    file = _SHIPPED / f"{name}.toml"
+    return parse(file.read_text(encoding="utf-8"), file.name)
 
 
 def parse(text: str, where: str) -> Airframe:
@@ -135,6 +135,8 @@ def _section(document: dict[str, object], key: str, kind: type[_Section], where:
 
 
 def _perhaps(name: str, names: tuple[str, ...]) -> str:
+    from difflib import get_close_matches  # only for who writes an airframe
+
     near = get_close_matches(name, names, 1)
     return f"; did you mean {near[0]!r}?" if near else ""
 

@@ -6,7 +6,7 @@ from typing import Final
 
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.cells import cell_v
+from vehicle_sim.plant.cell_voltage import cell_v
 from vehicle_sim.plant.constants import Plant
 
 BATTERY_EVERY: Final = 25

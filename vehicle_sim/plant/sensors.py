@@ -12,10 +12,13 @@ from math import cos, radians, sin, sqrt
 from typing import Final
 
 from vehicle_sim.numerics.kernel import kernel
-from vehicle_sim.numerics.noise import key_of, mix64
+from vehicle_sim.numerics.noise import key_of
 from vehicle_sim.plant.battery import BATTERY_EVERY
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.sensed import Sensed
+
+SLOW_EVERY: Final = 5
+"""Steps: all that does not answer in every step answers in one that this divides."""
 
 MAG_EVERY: Final = 10
 BARO_EVERY: Final = 10
@@ -181,8 +184,12 @@ _FIRST_SOURCE: Final = 16  # noise sources below are the physics' and the faults
 
 @kernel
 def three(key: int, counter: int) -> tuple[float, float, float]:
-    """Three numbers of mean 0 and variance 1, each the sum of two uniforms, from one mixing."""
-    x = mix64((key + counter) & _MASK)
+    """Three numbers of mean 0 and variance 1, each the sum of two uniforms, from one mixing:
+    `mix64`, written out, as every step asks twice."""
+    x = (key + counter) & _MASK
+    x = ((x ^ (x >> 30)) * 0xBF58476D1CE4E5B9) & _MASK
+    x = ((x ^ (x >> 27)) * 0x94D049BB133111EB) & _MASK
+    x ^= x >> 31
     pairs = (x & _PAIRS) + ((x >> 10) & _PAIRS)
     return (
         (pairs & 0x7FF) * _UNIT - _MEAN,
@@ -217,33 +224,42 @@ def _within(value: float, top: float) -> float:
 def sense(sensed: Sensed, body: Body, grade: SensorGrade, k: int) -> None:
     """What the sensors say of `body` after step `k`."""
     counter = k * _GOLDEN & _MASK
-    qw, qx, qy, qz = body.qw, body.qx, body.qy, body.qz
+    # `_within`, written out: calls are dear where every step makes six of them.
     x, y, z = three(sensed.gyro_key, counter)
     white = grade.gyro_rad_s
-    sensed.gyro_x = _within(
-        body.rate_x + sensed.gyro_bias_x + sensed.gyro_off_x + x * white, _GYRO_MAX_RAD_S
-    )
-    sensed.gyro_y = _within(
-        body.rate_y + sensed.gyro_bias_y + sensed.gyro_off_y + y * white, _GYRO_MAX_RAD_S
-    )
-    sensed.gyro_z = _within(
-        body.rate_z + sensed.gyro_bias_z + sensed.gyro_off_z + z * white, _GYRO_MAX_RAD_S
-    )
-    f_x, f_y, f_z = to_body(qw, qx, qy, qz, body.sf_n, body.sf_e, body.sf_d)
+    top = _GYRO_MAX_RAD_S
+    x = body.rate_x + sensed.gyro_bias_x + sensed.gyro_off_x + x * white
+    x = x if x < top else top
+    sensed.gyro_x = x if x > -top else -top
+    y = body.rate_y + sensed.gyro_bias_y + sensed.gyro_off_y + y * white
+    y = y if y < top else top
+    sensed.gyro_y = y if y > -top else -top
+    z = body.rate_z + sensed.gyro_bias_z + sensed.gyro_off_z + z * white
+    z = z if z < top else top
+    sensed.gyro_z = z if z > -top else -top
+    f_x, f_y, f_z = to_body(body.qw, body.qx, body.qy, body.qz, body.sf_n, body.sf_e, body.sf_d)
     x, y, z = three(sensed.accel_key, counter)
     white = grade.accel_m_s2
-    sensed.accel_x = _within(
-        f_x + sensed.accel_bias_x + sensed.accel_off_x + x * white, _ACCEL_MAX_M_S2
-    )
-    sensed.accel_y = _within(
-        f_y + sensed.accel_bias_y + sensed.accel_off_y + y * white, _ACCEL_MAX_M_S2
-    )
-    sensed.accel_z = _within(
-        f_z + sensed.accel_bias_z + sensed.accel_off_z + z * white, _ACCEL_MAX_M_S2
-    )
+    top = _ACCEL_MAX_M_S2
+    x = f_x + sensed.accel_bias_x + sensed.accel_off_x + x * white
+    x = x if x < top else top
+    sensed.accel_x = x if x > -top else -top
+    y = f_y + sensed.accel_bias_y + sensed.accel_off_y + y * white
+    y = y if y < top else top
+    sensed.accel_y = y if y > -top else -top
+    z = f_z + sensed.accel_bias_z + sensed.accel_off_z + z * white
+    z = z if z < top else top
+    sensed.accel_z = z if z > -top else -top
     if grade.vibration_m_s2 > 0.0:
         _shake(sensed, body, grade, counter)
     sensed.mag_fresh = sensed.baro_fresh = sensed.gps_fresh = False
+    if k % SLOW_EVERY == 0:
+        _sense_slowly(sensed, body, grade, k, counter)
+
+
+@kernel
+def _sense_slowly(sensed: Sensed, body: Body, grade: SensorGrade, k: int, counter: int) -> None:
+    """Those that do not answer in every step."""
     if k % MAG_EVERY == 0:
         _feel_field(sensed, body, grade, counter)
     if k % BARO_EVERY == BARO_AT:

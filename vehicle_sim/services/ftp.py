@@ -9,11 +9,19 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from vehicle_sim.effects import Client, Effect, Note, Send
-from vehicle_sim.services.ftp_burst import Bursts
-from vehicle_sim.services.ftp_refusals import FtpRefusedError, reason
 from vehicle_sim.services.ftp_replies import Replies
-from vehicle_sim.services.ftp_sessions import Sessions
-from vehicle_sim.services.ftp_wire import DATA_MAX, Nak, Opcode, Reply, Request, pack, parse
+from vehicle_sim.services.ftp_sessions import Bursts, Sessions
+from vehicle_sim.services.ftp_wire import (
+    DATA_MAX,
+    FtpRefusedError,
+    Nak,
+    Opcode,
+    Reply,
+    Request,
+    pack,
+    parse,
+    reason,
+)
 from vehicle_sim.storage.store import Store, StoreError, StoreFault, crc32, crc32_of
 from vehicle_sim.storage.virtual_files import Tree, VirtualFiles
 from vehicle_sim.wire import messages as m

@@ -1,10 +1,12 @@
-"""FILE_TRANSFER_PROTOCOL's payload: opcodes, refusals, layout (MAVLink FTP, Payload Format)."""
+"""FILE_TRANSFER_PROTOCOL's payload: opcodes, layout (MAVLink FTP, Payload Format), refusals."""
 
 from __future__ import annotations
 
 import struct
 from enum import IntEnum
 from typing import Final, NamedTuple
+
+from vehicle_sim.storage.store import StoreError, StoreFault
 
 DATA_MAX: Final = 239
 _HEADER: Final = struct.Struct("<HBBBBBxI")
@@ -91,3 +93,29 @@ def pack(reply: Reply) -> bytes:
         reply.offset,
     )
     return header + reply.data
+
+
+NAKS: Final = {
+    StoreFault.NOT_FOUND: bytes((Nak.FILE_NOT_FOUND,)),
+    StoreFault.EXISTS: bytes((Nak.FILE_EXISTS,)),
+    StoreFault.PROTECTED: bytes((Nak.FILE_PROTECTED,)),
+    StoreFault.NO_SPACE: bytes((Nak.FAIL_ERRNO, 28)),
+    StoreFault.WRONG_KIND: bytes((Nak.FAIL_ERRNO, 21)),
+    StoreFault.NOT_EMPTY: bytes((Nak.FAIL_ERRNO, 39)),
+    StoreFault.BAD_PATH: bytes((Nak.FAIL_ERRNO, 22)),
+    StoreFault.BROKEN: bytes((Nak.FAIL_ERRNO, 5)),
+}
+"""The data of a NAK: Linux's errno where MAVLink has no word of its own."""
+
+
+class FtpRefusedError(Exception):
+    """A request gets this NAK."""
+
+    def __init__(self, nak: Nak) -> None:
+        super().__init__(nak.name)
+        self.nak: Final = nak
+
+
+def reason(refusal: FtpRefusedError | StoreError) -> bytes:
+    """The data of the NAK."""
+    return bytes((refusal.nak,)) if isinstance(refusal, FtpRefusedError) else NAKS[refusal.fault]

@@ -9,7 +9,6 @@ they say so, without bounds.
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import dataclass
 from functools import cache
@@ -86,6 +85,8 @@ def _uri(path: str) -> str:
 
 
 def _json(value: Json) -> bytes:
+    import json  # only when somebody asks for a file
+
     return json.dumps(value, separators=(",", ":")).encode("ascii")
 
 

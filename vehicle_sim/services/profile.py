@@ -22,7 +22,7 @@ def _hz(rates: dict[type[m.Message], float]) -> dict[int, int]:
     return {m.IDS[kind]: round(1e9 / rate) for kind, rate in rates.items()}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Profile:
     name: Personality
     autopilot: int  # MAV_AUTOPILOT

@@ -13,9 +13,9 @@ from tests.unit.autopilot.flight import HOMES
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.engine.engines import MANY_FROM, engine_for
-from vehicle_sim.engine.few import Few
-from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.batch_engine import BatchEngine
+from vehicle_sim.engine.choose_engine import BATCH_FROM, engine_for
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Engine, Seat, VehicleSpec, state_bytes
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
@@ -142,8 +142,8 @@ def fly(engine: Engine, count: int, nap_ns: int, end_ns: int) -> tuple[list[byte
     [(1, 12 * S), (8, 12 * S), pytest.param(40, 9 * S, marks=pytest.mark.soak)],
 )
 def test_few_and_many_fly_and_say_the_same_bytes(count: int, end_ns: int) -> None:
-    few, said_few = fly(Few(specs(count), load()), count, 20 * MS, end_ns)
-    many, said_many = fly(Many(specs(count), load()), count, 333 * MS, end_ns)
+    few, said_few = fly(ScalarEngine(specs(count), load()), count, 20 * MS, end_ns)
+    many, said_many = fly(BatchEngine(specs(count), load()), count, 333 * MS, end_ns)
     assert len(said_few) > 20_000
     assert few == many
     assert said_few == said_many
@@ -152,8 +152,8 @@ def test_few_and_many_fly_and_say_the_same_bytes(count: int, end_ns: int) -> Non
 
 def test_a_vehicle_flies_in_a_fleet_as_it_flies_alone() -> None:
     """The others are not there for it; only when it decides is shifted by its turn."""
-    alone = Few(specs(1), load())
-    fleet = Many(specs(30), load())
+    alone = ScalarEngine(specs(1), load())
+    fleet = BatchEngine(specs(30), load())
     for _ in range(1500):
         alone.step()
         fleet.step()
@@ -161,8 +161,8 @@ def test_a_vehicle_flies_in_a_fleet_as_it_flies_alone() -> None:
 
 
 def test_the_engine_is_chosen_by_the_size_of_the_fleet() -> None:
-    assert isinstance(engine_for(specs(1), load()), Few)
-    assert isinstance(engine_for(specs(MANY_FROM), load()), Many)
+    assert isinstance(engine_for(specs(1), load()), ScalarEngine)
+    assert isinstance(engine_for(specs(BATCH_FROM), load()), BatchEngine)
 
 
 def test_one_vehicle_needs_no_numpy() -> None:

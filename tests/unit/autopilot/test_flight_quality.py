@@ -25,7 +25,7 @@ from vehicle_sim.autopilot.control.flight_control import FlightControl
 from vehicle_sim.autopilot.interface import AttitudeSetpoint
 from vehicle_sim.control_loops.flight import Flight
 from vehicle_sim.control_loops.trajectory import MotionLimits
-from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import DT_S, VehicleSpec
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.vectors import Vec3
@@ -42,7 +42,7 @@ class Hand:
     """One engine of one vehicle, and a pilot without decisions."""
 
     def __init__(self, airframe: str, seed: int = 1) -> None:
-        self.engine = Few([VehicleSpec(seed, 0, 47.4)], load(airframe))
+        self.engine = ScalarEngine([VehicleSpec(seed, 0, 47.4)], load(airframe))
         blocks = self.engine.blocks(0)
         self.body, self.est, self.flight = blocks.body, blocks.est, blocks.flight
         self.pilot = FlightControl(self.flight, self.engine.believed.idle)

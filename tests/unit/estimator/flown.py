@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import degrees, hypot
 
 from vehicle_sim.control_loops.flight import AT_VELOCITY, TO
-from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Blocks, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.sensors import MEMS, SensorGrade
@@ -57,7 +57,7 @@ class Flown:
     """A vehicle of airframe `airframe`, on the ground until `lift_off`."""
 
     def __init__(self, seed: int = 1, airframe: str = "s500", grade: SensorGrade = MEMS) -> None:
-        self.engine = Few([VehicleSpec(seed, 0, 47.4)], load(airframe), grade)
+        self.engine = ScalarEngine([VehicleSpec(seed, 0, 47.4)], load(airframe), grade)
         self.blocks = self.engine.blocks(0)
         self.body = self.blocks.body
         self.sensed = self.blocks.sensed

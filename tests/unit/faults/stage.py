@@ -19,7 +19,7 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
@@ -71,7 +71,7 @@ class Stage:
         for name, value in parameters.items():
             given.set(name, value)
         home = HOMES[personality]
-        engine = Few([VehicleSpec(seed, 0, home.lat_deg)], load(airframe))
+        engine = ScalarEngine([VehicleSpec(seed, 0, home.lat_deg)], load(airframe))
         self.personality: Personality = personality
         self.vehicle = Autopilot(personality, home, seed, 0, given, Seat(engine, 0))
         server = VehicleServer(self.vehicle, PROFILES[personality], given, 1)

@@ -9,8 +9,8 @@ from tests.unit.faults.stage import BEAT, HOMES, MS, S, Stage, aloft
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.engine.few import Few
-from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.batch_engine import BatchEngine
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Engine, Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
@@ -102,21 +102,21 @@ def specs(count: int, seed: int = 3) -> list[VehicleSpec]:
 
 
 def test_batches_do_not_matter() -> None:
-    once = fly(Few(specs(2), load()), 2, 20 * MS)
+    once = fly(ScalarEngine(specs(2), load()), 2, 20 * MS)
     assert len(b"".join(once[0])) > 100_000
-    assert fly(Few(specs(2), load()), 2, 20 * MS) == once
-    assert fly(Few(specs(2), load()), 2, 3 * MS) == once
-    assert fly(Few(specs(2), load()), 2, 700 * MS) == once
+    assert fly(ScalarEngine(specs(2), load()), 2, 20 * MS) == once
+    assert fly(ScalarEngine(specs(2), load()), 2, 3 * MS) == once
+    assert fly(ScalarEngine(specs(2), load()), 2, 700 * MS) == once
 
 
 def test_many_fail_as_few_do() -> None:
-    few = fly(Few(specs(4), load()), 4, 20 * MS)
-    assert fly(Many(specs(4), load()), 4, 700 * MS) == few
+    few = fly(ScalarEngine(specs(4), load()), 4, 20 * MS)
+    assert fly(BatchEngine(specs(4), load()), 4, 700 * MS) == few
 
 
 def test_another_seed_is_another_flight() -> None:
-    said, states = fly(Few(specs(2), load()), 2, 700 * MS)
-    other_said, other_states = fly(Few(specs(2, 4), load()), 2, 700 * MS, seed=4)
+    said, states = fly(ScalarEngine(specs(2), load()), 2, 700 * MS)
+    other_said, other_states = fly(ScalarEngine(specs(2, 4), load()), 2, 700 * MS, seed=4)
     assert said != other_said
     assert set(states).isdisjoint(other_states)
 

@@ -12,7 +12,7 @@ import pytest
 from tests.unit.model.bodies import PLANTS, standing, state_bytes
 from vehicle_sim.numerics import noise
 from vehicle_sim.numerics.kernel import KERNELS
-from vehicle_sim.plant import battery, cells, ground, motors, quad, rigid_body, wind
+from vehicle_sim.plant import battery, cell_voltage, ground, motors, quad, rigid_body, wind
 from vehicle_sim.plant.quad import advance
 
 GOLDEN = {
@@ -22,7 +22,7 @@ GOLDEN = {
 """SHA-256 over the states of the flight below.  A change of the physics changes it, on purpose;
 a different machine or Python must not."""
 
-MODULES = [battery, cells, ground, motors, noise, quad, rigid_body, wind]
+MODULES = [battery, cell_voltage, ground, motors, noise, quad, rigid_body, wind]
 
 
 @pytest.mark.parametrize("name", PLANTS)

@@ -7,7 +7,7 @@ import pytest
 from tests.unit.model.bodies import PLANTS, hover_speed, standing
 from vehicle_sim.plant.battery import BATTERY_EVERY, FULL_CELL_V, drain, settle
 from vehicle_sim.plant.body import Body
-from vehicle_sim.plant.cells import cell_v
+from vehicle_sim.plant.cell_voltage import cell_v
 from vehicle_sim.plant.constants import Plant
 
 EVERY = pytest.mark.parametrize("plant", PLANTS.values(), ids=PLANTS)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.unit.model.bodies import PLANTS, airborne, hover_motors, hovering, run, standing
 from vehicle_sim.control_loops.believed import believed_of
-from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import DT_S, VehicleSpec
 from vehicle_sim.engine.truth import inject
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
@@ -136,7 +136,7 @@ def test_a_weak_battery_sags_more_and_is_empty_earlier(plant: Plant) -> None:
     ],
 )
 def test_the_autopilot_is_not_told(fault: ModelFault) -> None:
-    engine = Few([VehicleSpec(1, 0, 47.4)], load())
+    engine = ScalarEngine([VehicleSpec(1, 0, 47.4)], load())
     blocks = engine.blocks(0)
     before = (engine.believed, repr(blocks.sensed), repr(blocks.est), repr(blocks.flight))
     inject(fault, blocks)

@@ -16,7 +16,7 @@ from tests.unit.autopilot.flight import HOMES, Flight
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.engine.engines import engine_for
+from vehicle_sim.engine.choose_engine import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.body import Body

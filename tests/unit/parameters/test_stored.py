@@ -14,8 +14,8 @@ from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.engine.few import Few
-from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.batch_engine import BatchEngine
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.faults import WindChange
@@ -142,7 +142,7 @@ def test_a_reboot_does_not_end_what_the_simulation_was_told() -> None:
 
 
 def test_gains_reach_a_vehicle_in_a_fleet_as_they_reach_one_alone() -> None:
-    def flown(kind: type[Few] | type[Many]) -> bytes:
+    def flown(kind: type[ScalarEngine] | type[BatchEngine]) -> bytes:
         home = HOMES["px4"]
         specs = [VehicleSpec(1, index, home.lat_deg) for index in range(2)]
         engine = kind(specs, load())
@@ -165,4 +165,4 @@ def test_gains_reach_a_vehicle_in_a_fleet_as_they_reach_one_alone() -> None:
         assert states[0] != states[1]
         return b"".join(states)
 
-    assert flown(Few) == flown(Many)
+    assert flown(ScalarEngine) == flown(BatchEngine)

@@ -13,8 +13,8 @@ from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.decisions import phase_ns
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.engine.few import Few
-from vehicle_sim.engine.many import Many
+from vehicle_sim.engine.batch_engine import BatchEngine
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Engine, Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.services.profile import PROFILES
@@ -107,11 +107,11 @@ def framed_orders(index: int, personality: Personality) -> list[tuple[int, bytes
 
 
 def few(specs: Sequence[VehicleSpec]) -> Engine:
-    return Few(specs, load())
+    return ScalarEngine(specs, load())
 
 
 def many(specs: Sequence[VehicleSpec]) -> Engine:
-    return Many(specs, load())
+    return BatchEngine(specs, load())
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from vehicle_sim.control_loops.believed import Believed
-from vehicle_sim.plant.cells import CURVE
+from vehicle_sim.plant.cell_voltage import CURVE
 from vehicle_sim.plant.sensed import Sensed
 
 

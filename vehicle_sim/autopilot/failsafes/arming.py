@@ -82,7 +82,7 @@ def _px4(parameters: Parameters, ready: Readiness) -> list[str]:
             found.append(f"Preflight Fail: {sensor} 0 uncalibrated")
     if get("COM_ARM_MIS_REQ") == 1 and not ready.has_mission:
         found.append("Arming denied: no valid mission available")
-    if ready.mode.name == "OFFBOARD" and not ready.setpoints:
+    if ready.mode.needs_stream and not ready.setpoints:
         found.append("Arming denied: no offboard setpoints")
     if ready.mode.behaviour is Behaviour.MISSION and not ready.mission_ok:
         found.append("Arming denied: no valid mission available")
@@ -122,7 +122,8 @@ def _copter(parameters: Parameters, ready: Readiness) -> list[str]:
         # Before it has levelled nothing else is worth telling.
         return ["PreArm: AHRS: not healthy", "PreArm: Need Position Estimate"]
     found: list[str] = []
-    barred = ready.mode.name == "AUTO" and not int(get("AUTO_OPTIONS")) & _ARMS_IN_AUTO
+    in_auto = ready.mode.behaviour is Behaviour.MISSION
+    barred = in_auto and not int(get("AUTO_OPTIONS")) & _ARMS_IN_AUTO
     if barred or not ready.mode.may_arm:
         name = COPTER_NAMES.get(ready.mode.name, ready.mode.name)
         found.append(f"Arm: {name} mode not armable")

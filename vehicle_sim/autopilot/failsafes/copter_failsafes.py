@@ -11,20 +11,23 @@ from math import inf
 from vehicle_sim.autopilot.failsafes.failsafe import (
     BATTERY,
     BREACH,
+    CAPACITY,
     STATION_LOSS,
     STICKS_LOSS,
+    VOLTAGE,
     Action,
     Cause,
     Failsafe,
     by_capacity,
     by_voltage,
+    highest,
 )
 from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
 from vehicle_sim.autopilot.fence.geofence import names
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.estimation.estimator import position_ok
+from vehicle_sim.estimation.estimator import Health, position_ok
 from vehicle_sim.plant.sensed import Sensed
 
 _GIVE_UP_M = 100.0  # it lands at once when it is further outside than this
@@ -51,8 +54,8 @@ class CopterFailsafes(FailsafeChecks):
     def _learn(self) -> None:
         get = self._parameters.get
         simulated = get("SIM_BATT_VOLTAGE") != self._parameters.designed("SIM_BATT_VOLTAGE")
-        self._volt_least = max(get("BATT_LOW_VOLT"), get("BATT_CRT_VOLT")) if not simulated else inf
-        self._used_most_mah = get("BATT_CAPACITY") - max(get("BATT_LOW_MAH"), get("BATT_CRT_MAH"))
+        self._volt_least = inf if simulated else highest(self._parameters, VOLTAGE)
+        self._used_most_mah = get("BATT_CAPACITY") - highest(self._parameters, CAPACITY)
         self._ratio_most = get("FS_EKF_THRESH")
 
     def _well(self, sensed: Sensed, est: Estimated) -> bool:
@@ -60,14 +63,14 @@ class CopterFailsafes(FailsafeChecks):
             return False
         if sensed.battery_used_mah > self._used_most_mah:
             return False
-        most = self._ratio_most
-        return most <= 0.0 or (
-            self._bad_checks == 0
-            and est.vel_ratio < most
-            and est.pos_ratio < most
-            and est.mag_ratio < most
-            and position_ok(est)
+        return self._ratio_most <= 0.0 or (
+            self._bad_checks == 0 and self._variances_over(est) == 0 and position_ok(est)
         )
+
+    def _variances_over(self, of: Estimated | Health) -> int:
+        """How many of the three that ekf_check looks at reach FS_EKF_THRESH."""
+        most = self._ratio_most
+        return (of.mag_ratio >= most) + (of.vel_ratio >= most) + (of.pos_ratio >= most)
 
     def _begin(self, seen: Seen) -> Iterator[Strike]:
         """Its own checks before arming have let it pass; forced, it acts at once."""
@@ -156,14 +159,10 @@ class CopterFailsafes(FailsafeChecks):
         yield Failsafe(Cause.FENCE, action, f"{names(crossing.struck)} breached", 4)
 
     def _position(self, seen: Seen) -> Iterator[Strike]:
-        threshold = self._parameters.get("FS_EKF_THRESH")
-        if threshold <= 0.0:
+        if self._ratio_most <= 0.0:
             return
-        health = seen.health
-        over = sum(
-            ratio >= threshold for ratio in (health.mag_ratio, health.vel_ratio, health.pos_ratio)
-        )
-        step = 1 if over >= 2 or not health.position_ok else -1
+        bad = self._variances_over(seen.health) >= 2 or not seen.health.position_ok
+        step = 1 if bad else -1
         self._bad_checks = min(_EKF_CHECKS, max(0, self._bad_checks + step))
         if self.position_lost:
             if self._bad_checks == 0:

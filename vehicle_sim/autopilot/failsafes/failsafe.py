@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, IntEnum, auto
+from typing import TypeAlias
 
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Personality
@@ -210,18 +211,40 @@ BATTERY: dict[Personality, dict[Charge, tuple[str, dict[int, Action]]]] = {
 }
 
 
+Thresholds: TypeAlias = tuple[tuple[Charge, str], ...]
+"""Below which parameter's value the battery is how empty, the worst first."""
+
+REMAINING: Thresholds = (
+    (Charge.EMERGENCY, "BAT_EMERGEN_THR"),
+    (Charge.CRITICAL, "BAT_CRIT_THR"),
+    (Charge.LOW, "BAT_LOW_THR"),
+)
+"""PX4's, of the charge that is left (0..1)."""
+VOLTAGE: Thresholds = ((Charge.CRITICAL, "BATT_CRT_VOLT"), (Charge.LOW, "BATT_LOW_VOLT"))
+"""ArduPilot's, of the voltage; 0 = off."""
+CAPACITY: Thresholds = ((Charge.CRITICAL, "BATT_CRT_MAH"), (Charge.LOW, "BATT_LOW_MAH"))
+"""ArduPilot's, of the charge that is left [mAh]; 0 = off."""
+
+
+def highest(parameters: Parameters, thresholds: Thresholds) -> float:
+    """Down to this the battery is fine."""
+    return max(parameters.get(name) for _, name in thresholds)
+
+
+def _below(parameters: Parameters, thresholds: Thresholds, value: float) -> Charge:
+    for charge, name in thresholds:
+        if value < parameters.get(name):
+            return charge
+    return Charge.FINE
+
+
 def charge_of(parameters: Parameters, power: Power, remaining: float) -> Charge:
     """Where the battery stands by the personality's thresholds; `remaining` is 0..1."""
     return _CHARGE_OF[parameters.personality](parameters, power, remaining)
 
 
 def _px4_charge(parameters: Parameters, power: Power, remaining: float) -> Charge:
-    get = parameters.get
-    if remaining < get("BAT_EMERGEN_THR"):
-        return Charge.EMERGENCY
-    if remaining < get("BAT_CRIT_THR"):
-        return Charge.CRITICAL
-    return Charge.LOW if remaining < get("BAT_LOW_THR") else Charge.FINE
+    return _below(parameters, REMAINING, remaining)
 
 
 def _copter_charge(parameters: Parameters, power: Power, remaining: float) -> Charge:
@@ -239,19 +262,13 @@ def _measured(parameters: Parameters) -> bool:
 
 
 def by_voltage(parameters: Parameters, power: Power) -> Charge:
-    """ArduPilot's thresholds of the voltage, 0 = off."""
-    if not _measured(parameters):
-        return Charge.FINE
-    if power.voltage_v < parameters.get("BATT_CRT_VOLT"):
-        return Charge.CRITICAL
-    return Charge.LOW if power.voltage_v < parameters.get("BATT_LOW_VOLT") else Charge.FINE
+    """By ArduPilot's thresholds of the voltage."""
+    return _below(parameters, VOLTAGE, power.voltage_v) if _measured(parameters) else Charge.FINE
 
 
 def by_capacity(parameters: Parameters, power: Power) -> Charge:
-    """ArduPilot's thresholds of the charge left, 0 = off."""
+    """By ArduPilot's thresholds of the charge left."""
     if not _measured(parameters):
         return Charge.FINE
     left_mah = parameters.get("BATT_CAPACITY") - power.consumed_mah
-    if left_mah < parameters.get("BATT_CRT_MAH"):
-        return Charge.CRITICAL
-    return Charge.LOW if left_mah < parameters.get("BATT_LOW_MAH") else Charge.FINE
+    return _below(parameters, CAPACITY, left_mah)

@@ -56,7 +56,11 @@ Strike: TypeAlias = Failsafe | Cleared
 
 
 class FailsafeChecks(ABC):
-    """Remembers what has struck, so that each is told and acted on once."""
+    """Remembers what has struck, so that each is told and acted on once.
+
+    There are two looks at the same thresholds, which `_learn` takes from the parameters: `quiet`,
+    quick, at what is measured, and `check`, thorough, at what is made of it.
+    """
 
     __slots__ = (
         "_believed",
@@ -109,14 +113,21 @@ class FailsafeChecks(ABC):
         """
         if self._first or sticks_lost or self.sticks_lost or self.position_lost:
             return False
+        self._look_up()
+        return not self._silent(wall_ns) and self._well(sensed, est)
+
+    def _look_up(self) -> None:
+        """The thresholds, if a parameter has changed."""
         if self._version != self._parameters.version:
             self._version = self._parameters.version
             self._station_limit_ns = int(self._parameters.si(Quantity.STATION_LOSS_S) * 1e9)
             self._learn()
-        heard_ns = None if self.station_lost else self._station_ns
-        if heard_ns is not None and wall_ns - heard_ns >= self._station_limit_ns:
+
+    def _silent(self, wall_ns: int) -> bool:
+        """Whether a station that was there has been silent for too long, and nobody was told."""
+        if self._station_ns is None or self.station_lost:
             return False
-        return self._well(sensed, est)
+        return wall_ns - self._station_ns >= self._station_limit_ns
 
     @abstractmethod
     def _learn(self) -> None:
@@ -128,6 +139,7 @@ class FailsafeChecks(ABC):
 
     def check(self, seen: Seen) -> list[Strike]:
         """What strikes and what clears now, in no order of weight."""
+        self._look_up()
         begun: list[Strike] = []
         if self._first:
             self._first = False
@@ -162,6 +174,7 @@ class FailsafeChecks(ABC):
 
     def check_disarmed(self, wall_ns: int, power: Power, remaining: float) -> Iterator[Failsafe]:
         """What is only told, once each, while nothing can be done about it."""
+        self._look_up()
         if self._station_gone(wall_ns):
             yield from self._station_words()
         yield from self._battery_words(power, remaining)
@@ -175,9 +188,7 @@ class FailsafeChecks(ABC):
         """What is said of a low battery while disarmed."""
 
     def _station_gone(self, wall_ns: int) -> bool:
-        """Whether the silence has just become too long."""
-        if self._station_ns is None or self.station_lost:
-            return False
-        limit_ns = int(self._parameters.si(Quantity.STATION_LOSS_S) * 1e9)
-        self.station_lost = wall_ns - self._station_ns >= limit_ns
-        return self.station_lost
+        """Whether the silence has just become too long; from now on the station is lost."""
+        gone = self._silent(wall_ns)
+        self.station_lost = self.station_lost or gone
+        return gone

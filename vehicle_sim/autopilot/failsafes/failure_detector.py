@@ -25,6 +25,7 @@ from vehicle_sim.autopilot.parameters.parameters import Parameters
 _TAKE_OFF_NS = 3_000_000_000  # PX4: so soon after arming an upset is a bad take-off
 _BREAKER = 121212  # CBRK_FLIGHTTERM: no flight termination
 _DEAD_THRUST = 0.1  # of what was asked for
+_UPSETS = (("roll", "FD_FAIL_R"), ("pitch", "FD_FAIL_P"))
 
 _CRASH_DEG = 30.0
 _CRASH_M_S2 = 3.0
@@ -127,7 +128,7 @@ class Px4FailureDetector(FailureDetector):
         self._motors: set[int] = set()
 
     def _least_lean_deg(self) -> float:
-        limits = [self._parameters.get(name) for name in ("FD_FAIL_R", "FD_FAIL_P")]
+        limits = [self._parameters.get(name) for _, name in _UPSETS]
         return min([limit for limit in limits if limit > 0.0], default=90.0)
 
     def _find(self, posture: Posture, flying: bool, by_rates: bool, now_ns: int) -> list[Failsafe]:
@@ -136,8 +137,9 @@ class Px4FailureDetector(FailureDetector):
 
     def _attitude(self, posture: Posture, now_ns: int) -> Iterator[Failsafe]:
         get = self._parameters.get
-        axes = (("roll", posture.roll_rad, "FD_FAIL_R"), ("pitch", posture.pitch_rad, "FD_FAIL_P"))
-        for axis, angle_rad, name in axes:
+        for (axis, name), angle_rad in zip(
+            _UPSETS, (posture.roll_rad, posture.pitch_rad), strict=True
+        ):
             limit_deg = get(name)
             upset = limit_deg > 0.0 and abs(degrees(angle_rad)) > limit_deg
             if not self._once(axis, upset, now_ns, int(get(name + "_TTRI") * 1e9)):

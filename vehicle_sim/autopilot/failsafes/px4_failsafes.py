@@ -12,6 +12,7 @@ from vehicle_sim.autopilot.control.battery_charge import resting_v, voltage_of
 from vehicle_sim.autopilot.failsafes.failsafe import (
     BATTERY,
     BREACH,
+    REMAINING,
     STATION_LOSS,
     STICKS_LOSS,
     Action,
@@ -20,6 +21,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
     Failsafe,
     activated,
     charge_of,
+    highest,
 )
 from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
 from vehicle_sim.autopilot.interface import Power
@@ -61,10 +63,9 @@ class Px4Failsafes(FailsafeChecks):
 
     def _learn(self) -> None:
         get = self._parameters.get
-        names = ("BAT_LOW_THR", "BAT_CRIT_THR", "BAT_EMERGEN_THR")
         # With a capacity of its own it goes by the charge that was drawn, and not by the voltage.
         counted = get("BAT1_CAPACITY") > 0.0 or SimulatedBattery.measured(self._parameters)
-        least = max(get(name) for name in names)
+        least = highest(self._parameters, REMAINING)
         self._resting_least_v = inf if counted else voltage_of(least) + _ROUNDING_V
         worst_m = get("COM_POS_FS_EPH")
         self._eph_most_m = worst_m if worst_m >= 0.0 else inf
@@ -73,9 +74,11 @@ class Px4Failsafes(FailsafeChecks):
         return (
             not self._without_sticks
             and resting_v(sensed, self._believed) >= self._resting_least_v
-            and est.accuracy_m <= self._eph_most_m
-            and position_ok(est)
+            and not self._position_bad(position_ok(est), est.accuracy_m)
         )
+
+    def _position_bad(self, ok: bool, accuracy_m: float) -> bool:
+        return not ok or accuracy_m > self._eph_most_m
 
     def _begin(self, seen: Seen) -> Iterator[Strike]:
         self._without_sticks = seen.sticks_lost
@@ -142,9 +145,7 @@ class Px4Failsafes(FailsafeChecks):
         yield Failsafe(Cause.FENCE, action, activated(action), 2, delayed)
 
     def _position(self, seen: Seen) -> Iterator[Strike]:
-        worst_m = self._parameters.get("COM_POS_FS_EPH")
-        health = seen.health
-        bad = not health.position_ok or 0.0 <= worst_m < health.accuracy_m
+        bad = self._position_bad(seen.health.position_ok, seen.health.accuracy_m)
         was_lost, self.position_lost = self.position_lost, bad and seen.needs_position
         if was_lost and not bad:
             yield Cleared(Cause.POSITION)

@@ -1,4 +1,4 @@
-"""How fast a landing sinks, by its height."""
+"""How fast a landing sinks."""
 
 from __future__ import annotations
 
@@ -23,3 +23,12 @@ def descent_m_s(parameters: Parameters, up_m: float, usual_m_s: float) -> float:
     if up_m > low_m:
         return slow_m_s + (usual_m_s - slow_m_s) * (up_m - low_m) / (top_m - low_m)
     return slow_m_s
+
+
+def without_sticks_m_s(parameters: Parameters) -> float:
+    """Of PX4's position mode without sticks, which keeps its place and comes down to the ground.
+
+    Recorded with 0.70 to 0.85 m/s after OFFBOARD was lost (behaviour.json): half of
+    MPC_Z_VEL_MAX_DN.
+    """
+    return 0.5 * parameters.get("MPC_Z_VEL_MAX_DN")

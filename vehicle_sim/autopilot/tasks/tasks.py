@@ -165,16 +165,28 @@ class TakeOff:
 
 
 class Land:
-    """Down, where the vehicle comes to rest (or at `where_ned`), slow near the ground."""
+    """Down, where the vehicle comes to rest when this begins (or at `where_ned`), slow near the
+    ground.
 
-    landed_word = Landed.LANDING
+    `rate` gives another rate of descent [m/s], the same at any height; `landed_word` is what is
+    told meanwhile.
+    """
+
     done = False
 
-    __slots__ = ("_parameters", "_where_ned")
+    __slots__ = ("_given_ned", "_parameters", "_rate", "_where_ned", "landed_word")
 
-    def __init__(self, parameters: Parameters, where_ned: Vec3 | None = None) -> None:
+    def __init__(
+        self,
+        parameters: Parameters,
+        where_ned: Vec3 | None = None,
+        rate: Callable[[Parameters], float] | None = None,
+        landed_word: Landed = Landed.LANDING,
+    ) -> None:
         self._parameters = parameters
-        self._where_ned = where_ned
+        self._given_ned = self._where_ned = where_ned
+        self._rate = rate
+        self.landed_word = landed_word
 
     @property
     def target(self) -> Target:
@@ -184,13 +196,15 @@ class Land:
         return False
 
     def begin(self, s: Situation, turner: Turner) -> None:
-        if self._where_ned is None:
-            self._where_ned = s.stop_ned
+        self._where_ned = self._given_ned or s.stop_ned
 
     def update(self, s: Situation, turner: Turner) -> Demand:
         where = self._where_ned or s.stop_ned
-        up_m = s.home_ned[2] - s.pos_ned[2]
-        descend_m_s = descent_m_s(self._parameters, up_m, s.limits.descend_m_s)
+        if self._rate is not None:
+            descend_m_s = self._rate(self._parameters)
+        else:
+            up_m = s.home_ned[2] - s.pos_ned[2]
+            descend_m_s = descent_m_s(self._parameters, up_m, s.limits.descend_m_s)
         limits = replace(s.limits, descend_m_s=descend_m_s)
         below = (where[0], where[1], s.pos_ned[2] + _BELOW_GROUND_M)
         return FlyTo(below, limits, straight=False)

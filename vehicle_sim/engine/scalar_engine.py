@@ -15,7 +15,7 @@ from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.plant.sensors import MEMS, SensorGrade
 
 
-class Few:
+class ScalarEngine:
     """An engine in plain floats."""
 
     def __init__(
@@ -26,6 +26,8 @@ class Few:
         self._plant = plant_of(airframe, DT_S)
         self._grade = grade
         self._vehicles = [Blocks(Body(), Sensed(), Estimated(), Flight()) for _ in specs]
+        # What a step reads of them, in a form that costs a step nothing.
+        self._rows = [(each.body, each.sensed, each.est, each.flight) for each in self._vehicles]
         for blocks, spec in zip(self._vehicles, specs, strict=True):
             begin(blocks, spec, self._plant, self.believed, grade)
 
@@ -35,5 +37,5 @@ class Few:
     def step(self) -> None:
         self.k = k = self.k + 1
         plant, believed, grade = self._plant, self.believed, self._grade
-        for each in self._vehicles:
-            live(each.body, each.sensed, each.est, each.flight, plant, believed, grade, k)
+        for body, sensed, est, flight in self._rows:
+            live(body, sensed, est, flight, plant, believed, grade, k)

@@ -18,7 +18,7 @@ from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.plant.sensors import MEMS, SensorGrade
 
 
-class Many:
+class BatchEngine:
     """An engine over rows; see `step.Engine`."""
 
     def __init__(
