@@ -29,6 +29,7 @@ OUTSIDE: dict[tuple[Personality, str], dict[str, str]] = {
     },
     ("px4", "sih"): {
         "yaw 90 deg: to 85, s": _BLADES,
+        "yaw 90 deg: fastest, deg/s": _BLADES,
         "yaw 90 deg: overshoot, deg": _BLADES,
         "velocity 3 m/s: to 2.7, s": _SETTLED,
         "land from 10 m: to disarm, s": _ESTIMATE,
