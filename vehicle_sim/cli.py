@@ -16,6 +16,7 @@ from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
 
 if TYPE_CHECKING:
     from vehicle_sim.autopilot.boot import Boot
+    from vehicle_sim.autopilot.tasks.guided import Offboard
     from vehicle_sim.reporting import Launch, Reporter
     from vehicle_sim.shell.pacer import Redraw
     from vehicle_sim.shell.runtime import Opened, Plan, StreamChoice
@@ -44,6 +45,7 @@ class Options:
     firmware: Firmware
     boot: Boot
     camera: Literal["still", "none"]
+    offboard: Offboard
     operator_control: bool
     count: int
     airframe: str
@@ -106,6 +108,14 @@ class _BadFileError(Exception):
     default="still",
     show_default=True,
     help="One that takes pictures, or none, as on a bare autopilot.",
+)
+@click.option(
+    "--offboard",
+    type=click.Choice(["smooth", "real"]),
+    default="smooth",
+    show_default=True,
+    help="px4: how it flies setpoints, along a trajectory, or as the real one, which leans by "
+    "48 deg for a step of 10 m and flies half a metre too far.",
 )
 @click.option(
     "--operator-control",
@@ -197,6 +207,7 @@ def main(
     firmware: str | None,
     boot: Boot,
     camera: Literal["still", "none"],
+    offboard: Offboard,
     operator_control: bool,
     count: int,
     airframe: str,
@@ -237,6 +248,7 @@ def main(
                 firmware=played,
                 boot=boot,
                 camera=camera,
+                offboard=offboard,
                 operator_control=operator_control,
                 count=count,
                 airframe=airframe,
@@ -328,6 +340,7 @@ def plan_of(options: Options) -> Plan:
         firmware=options.firmware,
         boot=options.boot,
         camera=options.camera == "still",
+        offboard=options.offboard,
         operator_control=options.operator_control,
         airframe=options.airframe,
         vehicles=vehicles,

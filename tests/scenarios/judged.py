@@ -36,8 +36,9 @@ _J = Judgement
 JUDGED: Final = (
     # ------------------------------------------------------------------------------- PX4
     Judged("px4", "A[125]_", r"\d landed: .*", _J.AIRFRAME, "lifts off a second earlier"),
-    Judged("px4", "A3_", "6 landed: .*", _J.AIRFRAME, "is home from 10 m in one second, not four"),
     Judged("px4", "B[12]_", "text: RTL: .*", _J.AIRFRAME, "has come elsewhere by the same stick"),
+    Judged("px4", "B1_", "text: Disarmed by landing", _J.AIRFRAME, "comes down from 5 m, not 2"),
+    Judged("px4", "B2_", r"\d (mode|armed|landed): .*", _J.AIRFRAME, "comes down from 7 m, not 5"),
     Judged("px4", "B3_", "7 landed: .*", _J.AIRFRAME, "is down from 3 m already"),
     Judged("px4", "B3_", "text: Failsafe activated, .*", _J.AIRFRAME, "the delay that came back"
            " in a few seconds is rounded to another one"),

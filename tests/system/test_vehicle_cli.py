@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import socket
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -83,6 +85,22 @@ def test_it_tells_what_to_connect_to_and_ends_with_its_lifeline() -> None:
         until(lambda: len(lines) >= 2, "two lines", 10.0)
         assert lines[0].startswith("INFO vehicle1: px4 quadrotor at 47.397742, 8.545594")
         assert lines[1].endswith(f"connect with udpout://127.0.0.1:{port}\n")
+
+
+@pytest.mark.parametrize("lifeline", ["</dev/null", "<empty", "<&-"])
+def test_it_ends_at_once_with_a_lifeline_that_has_ended(lifeline: str, tmp_path: Path) -> None:
+    """`select` takes neither files nor /dev/null; with `<&-` there is no standard input at all."""
+    (tmp_path / "empty").touch()
+    process = subprocess.run(
+        ["sh", "-c", f'exec "$@" {lifeline}', "sh", *PROGRAM, "--port", "0", "--lifeline"],
+        capture_output=True,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        text=True,
+        timeout=20,
+        check=False,
+    )
+    assert (process.returncode, process.stderr) == (0, "")
 
 
 def test_pymavlinks_mavutil_is_not_loaded() -> None:

@@ -19,6 +19,7 @@ from vehicle_sim.autopilot.modes import BOOT_MODE, MODES, Mode
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.rules import RULES, AutopilotRules
 from vehicle_sim.autopilot.speed_limits import SpeedLimits
+from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.autopilot.tasks.tasks import Hold
 from vehicle_sim.control_loops.trajectory import stopping_point
 from vehicle_sim.engine.step import DT_NS, Blocks, Seat
@@ -34,7 +35,15 @@ class FlightState:
     `mode_after_disarming` the mode that PX4 goes back to.
     """
 
-    def __init__(self, ground: Geodetic, parameters: Parameters, seat: Seat, boot: Boot) -> None:
+    def __init__(
+        self,
+        ground: Geodetic,
+        parameters: Parameters,
+        seat: Seat,
+        boot: Boot,
+        offboard: Offboard,
+    ) -> None:
+        self.offboard: Offboard = offboard
         self.parameters = parameters
         self.personality = personality = parameters.personality
         self.rules: AutopilotRules = RULES[personality]
@@ -149,7 +158,7 @@ class FlightState:
         f = self.blocks.flight
         # Where the estimate has just jumped, the reference is still where it was before.
         sure = s.flying and f.resets == self.est.resets
-        s.stop_ned = stopping_point(f, s.limits) if sure else s.pos_ned
+        s.stop_ned = stopping_point(f, self.est, s.limits) if sure else s.pos_ned
         s.home_ned = self.home_ned or (0.0, 0.0, 0.0)
         return s
 

@@ -133,6 +133,10 @@ class AutopilotRules:
 
     # Flown from outside: OFFBOARD, GUIDED, and a leader that is followed.
     setpoints_lift_off: bool  # a setpoint that leads up starts the flight from the ground
+    jerk: str | None  # the parameter that shapes its own flights [m/s^3]
+    velocity_damping: str | None  # the parameter with the D-gain of its horizontal velocity loop
+    lands_by_velocity: bool  # without a height that it must be at
+    setpoints_fly_direct: bool  # to the position and velocity loops, without a trajectory
     setpoints_pass_cruise_speed: bool  # up to MPC_XY_VEL_MAX and its like, not the cruise speed
     thrust_may_be_climb_rate: bool  # SET_ATTITUDE_TARGET's, unless GUID_OPTIONS says thrust
     brakes_after_last_setpoint: bool  # GUID_TIMEOUT; PX4 leaves the mode instead
@@ -251,6 +255,10 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         disarmed_unflown="Disarmed by auto preflight disarming",
         # Flown from outside.
         setpoints_lift_off=True,
+        jerk="MPC_JERK_AUTO",
+        velocity_damping="MPC_XY_VEL_D_ACC",
+        lands_by_velocity=True,
+        setpoints_fly_direct=True,
         setpoints_pass_cruise_speed=True,
         thrust_may_be_climb_rate=False,
         brakes_after_last_setpoint=False,
@@ -366,6 +374,10 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         disarmed_unflown="Disarming motors",
         # Flown from outside.
         setpoints_lift_off=False,
+        jerk=None,
+        velocity_damping=None,
+        lands_by_velocity=False,
+        setpoints_fly_direct=False,
         setpoints_pass_cruise_speed=False,
         thrust_may_be_climb_rate=True,
         brakes_after_last_setpoint=True,

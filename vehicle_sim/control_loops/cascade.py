@@ -81,21 +81,31 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     roll = gain_x * (err_x - f.kd_rate_roll / D_FILTER_S * change_x) + int_roll_n
     pitch = gain_y * (err_y - f.kd_rate_pitch / D_FILTER_S * change_y) + int_pitch_n
     yaw = gain_z * err_z + int_yaw_n
+    # Yaw has what roll and pitch leave of the lower motors, as PX4's mixer has it, and some always.
+    each = 0.25 * f.collective_n
+    cross = pitch - roll  # motors 1 and 2
+    along = pitch + roll  # motors 3 and 4
+    most_cross = cross if cross > 0.0 else -cross
+    most_along = along if along > 0.0 else -along
+    tilt = most_cross if most_cross > most_along else most_along
     most = believed.yaw_most_n
+    room = each - tilt
+    room = room if room < believed.hover_n else believed.hover_n
+    most = most if most > room else room
     weak = yaw > most or yaw < -most
     yaw = most if yaw > most else -most if yaw < -most else yaw
 
-    t1 = pitch - roll + yaw
-    t2 = roll - pitch + yaw
-    t3 = pitch + roll - yaw
-    t4 = -pitch - roll - yaw
+    t1 = cross + yaw
+    t2 = yaw - cross
+    t3 = along - yaw
+    t4 = -along - yaw
     # Tilt has priority over height: where a motor would saturate, the collective gives way.
-    top = t1 if t1 > t2 else t2
-    top = t3 if t3 > top else top
-    top = t4 if t4 > top else top
-    low = t1 if t1 < t2 else t2
-    low = t3 if t3 < low else low
-    low = t4 if t4 < low else low
+    top = most_cross + yaw
+    other = most_along - yaw
+    top = top if top > other else other
+    low = yaw - most_cross
+    other = -yaw - most_along
+    low = low if low < other else other
     full = believed.thrust_max_n
     flying = f.flying
     # Nothing is learnt in a tumble, nor while the motors cannot give what is asked, nor where the
@@ -110,7 +120,6 @@ def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     f.int_pitch_n = most if kept > most else -most if kept < -most else kept
     kept = int_yaw_n + (0.0 if weak else f.ki_rate_yaw * learn_s * gain_z * err_z)
     f.int_yaw_n = most if kept > most else -most if kept < -most else kept
-    each = 0.25 * f.collective_n
     each = full - top if each + top > full else each
     each = -low if each + low < 0.0 else each
     # Thrust goes with the square of the speed; the battery's sag is made up for.

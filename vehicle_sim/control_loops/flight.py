@@ -31,6 +31,8 @@ class Flight:
     vertical: float = TO
     attitude: float = BY_MOTION
     straight: bool = False  # horizontal and vertical motion arrive together
+    height_free: bool = False  # a vertical velocity is flown, without a height to catch up with
+    direct: bool = False  # the loops fly what is asked as it is, without a reference that shapes it
     goal_n: float = 0.0
     goal_e: float = 0.0
     goal_d: float = 0.0
@@ -118,4 +120,5 @@ class Flight:
     land_share: float = 0.7  # of hover: with less in a descent it may stand on the ground
     tilt_max: float = 0.7  # tangent
     jerk_m_s3: float = 30.0
+    brakes_by_jerk: bool = False  # plans a stop with that jerk, as PX4's own flights do
     lead_max_m: float = 4.0  # so far ahead of the vehicle the reference stands and waits

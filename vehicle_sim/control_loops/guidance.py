@@ -17,6 +17,7 @@ from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.kernel import kernel
 
 _INTEGRAL_TILT = 0.7  # of the steepest tilt, for each axis
+_UNWIND = 2.0
 _LIFT_MIN_M_S2 = 0.3 * GRAVITY_M_S2
 _THRUST_LOW = 0.23  # of hover: below it the motors lose their authority over the attitude
 _THRUST_HIGH = 0.95  # of full: the rest is for the attitude
@@ -37,6 +38,7 @@ _LAND_THRUST = 0.7  # of hover, where a height at or below the ground is asked f
 _LAND_THRUST_UNASKED = 0.4
 _LAND_ASKED_M_S = 0.1
 _LAND_LAG_M = 0.2
+_LAND_LAG_M_S = 0.2
 
 
 @kernel
@@ -78,12 +80,6 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     full = 4.0 * believed.thrust_max_n
     low = _THRUST_LOW * GRAVITY_M_S2 * mass * load
     high = _THRUST_HIGH * full
-    gain = f.ki_vel_xy * dt_s
-    int_n = f.int_n + gain * err_n
-    int_e = f.int_e + gain * err_e
-    most = _INTEGRAL_TILT * f.tilt_max * GRAVITY_M_S2
-    int_n = most if int_n > most else -most if int_n < -most else int_n
-    int_e = most if int_e > most else -most if int_e < -most else int_e
     # Vertically up to what the thrust can give, and no further while it gives all or nothing.
     asked = f.collective_n
     upright = 1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy)
@@ -96,14 +92,14 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     int_d = most if int_d < most else int_d
     # What drag will take in still air is fed forward (Faessler et al., IEEE RA-L 3(2), 2018): else
     # the integrators learn it in a long flight, and give it back as an overshoot at its end.
-    n = f.ref_vel_n
-    e = f.ref_vel_e
+    n = 0.0 if f.direct else f.ref_vel_n
+    e = 0.0 if f.direct else f.ref_vel_e
     hover = sqrt(0.25 * GRAVITY_M_S2 * mass / believed.thrust_max_n)
     drag = 4.0 * hover * believed.rotor_drag_n_s_per_m
     drag = (drag + believed.drag_n_per_m2_s2 * sqrt(n * n + e * e)) / mass
     as_asked = f.horizontal >= ACCELERATE
-    a_n = f.acc_n if as_asked else f.ref_acc_n + f.kp_vel_xy * err_n + int_n + drag * n
-    a_e = f.acc_e if as_asked else f.ref_acc_e + f.kp_vel_xy * err_e + int_e + drag * e
+    a_n = f.acc_n if as_asked else f.ref_acc_n + f.kp_vel_xy * err_n + f.int_n + drag * n
+    a_e = f.acc_e if as_asked else f.ref_acc_e + f.kp_vel_xy * err_e + f.int_e + drag * e
     a_d = f.ref_acc_d + f.kp_vel_z * err_d + int_d
     a_d = f.acc_d if f.vertical >= ACCELERATE else a_d
 
@@ -112,9 +108,16 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     flat = sqrt(a_n * a_n + a_e * a_e)
     most = f.tilt_max * lift
     steep = flat > most
-    f.int_n = f.int_n if steep and int_n * err_n > 0.0 else int_n
-    f.int_e = f.int_e if steep and int_e * err_e > 0.0 else int_e
     scale = most / flat if steep else 1.0
+    # What the tilt does not give is taken from the integrators, as PX4 does (PositionControl.cpp,
+    # by memory; Rundqwist, Anti-reset windup for PID controllers, 1990).
+    back = 0.0 if as_asked or f.kp_vel_xy == 0.0 else _UNWIND * (1.0 - scale) / f.kp_vel_xy
+    gain = f.ki_vel_xy * dt_s
+    int_n = f.int_n + gain * (err_n - back * a_n)
+    int_e = f.int_e + gain * (err_e - back * a_e)
+    most = _INTEGRAL_TILT * f.tilt_max * GRAVITY_M_S2
+    f.int_n = most if int_n > most else -most if int_n < -most else int_n
+    f.int_e = most if int_e > most else -most if int_e < -most else int_e
     a_n = a_n * scale
     a_e = a_e * scale
     size = sqrt(a_n * a_n + a_e * a_e + lift * lift)
@@ -167,7 +170,8 @@ def feel_ground(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> N
     still_n = est.vel_n < slow and est.vel_n > -slow
     still_e = est.vel_e < slow and est.vel_e > -slow
     still = still_d and ((still_n and still_e) or not est.gps_used)
-    sinking = f.ref_d - est.pos_d > _LAND_LAG_M
+    by_velocity = f.direct or f.height_free
+    sinking = f.ref_vel_d > _LAND_LAG_M_S if by_velocity else f.ref_d - est.pos_d > _LAND_LAG_M
     share = _LAND_THRUST if f.ref_d > f.floor_d else _LAND_THRUST_UNASKED
     share = f.land_share if f.ref_vel_d > _LAND_ASKED_M_S else share
     light = f.collective_n < share * GRAVITY_M_S2 * believed.mass_kg * f.load

@@ -2,28 +2,36 @@
 
 The controller follows the reference; goals only pull at it.  So a step of the goal is a smooth
 flight, without a wound-up position error, and a brake is a goal at the stopping point.
+
+What is asked for directly (PX4's OFFBOARD) is not shaped: the reference is where the vehicle is,
+at the velocity that the position loop asks for or that was asked for, within the limits of speed.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import sqrt
+from typing import Final
 
 from vehicle_sim.control_loops.flight import ACCELERATE, AT_VELOCITY, TO, Flight
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.vectors import Vec3
 
+QUICK_M_S3: Final = 30.0
+"""The jerk of a vehicle that its autopilot does not limit: it is in the lag of its attitude."""
 _APPROACH_P = 1.5  # 1/s: near the goal the speed is proportional to the distance
 _SHARPNESS = 5.0  # 1/s: how fast the reference takes up a wanted velocity
 _LEAD_FREE = 0.175  # of the lead at which the reference waits: up to here it does not
 _FORGET_P = 1.0  # 1/s
+_UNWIND_SHARE = 0.7  # of the jerk takes the acceleration back as the velocity comes near
+_BRAKE_REACT_S = 0.6  # by memory: MissionBlock::calculate_breaking_stop, 0.6 of the jerk over it
 _BRAKE_SHARE = 0.6  # of the acceleration is planned for braking, the rest is for the lag
 
 
 @dataclass(frozen=True, slots=True)
 class MotionLimits:
-    """Speeds [m/s] and horizontal and vertical acceleration [m/s^2], all positive."""
+    """Speeds [m/s], horizontal and vertical acceleration [m/s^2], and jerk; all positive."""
 
     speed_m_s: float
     climb_m_s: float
@@ -31,6 +39,7 @@ class MotionLimits:
     accel_m_s2: float
     accel_vertical_m_s2: float  # downwards; upwards too where `accel_up_m_s2` is not given
     accel_up_m_s2: float | None = None
+    jerk_m_s3: float = QUICK_M_S3
 
     @property
     def lift_m_s2(self) -> float:
@@ -60,10 +69,25 @@ def approach_speed(distance_m: float, accel_m_s2: float) -> float:
     )
 
 
-def stopping_point(f: Flight, limits: MotionLimits) -> Vec3:
+@kernel
+def speed_by_jerk(distance_m: float, accel_m_s2: float, jerk_m_s3: float) -> float:
+    """PX4's speed at `distance_m` from a goal (`computeMaxSpeedFromDistance`, by memory): one that
+    it can still brake after the acceleration has been reversed at that jerk."""
+    half = 2.0 * accel_m_s2 * accel_m_s2 / jerk_m_s3
+    return sqrt(half * half + 2.0 * accel_m_s2 * distance_m) - half
+
+
+def stopping_point(f: Flight, est: Estimated, limits: MotionLimits) -> Vec3:
     """Where the reference stands still if it brakes from now on [m, NED]."""
     vn, ve, vd = f.ref_vel_n, f.ref_vel_e, f.ref_vel_d
+    if f.direct:
+        vn, ve, vd = est.vel_n, est.vel_e, est.vel_d
     flat = sqrt(vn * vn + ve * ve)
+    if f.brakes_by_jerk:
+        brake = limits.accel_vertical_m_s2 if vd > 0.0 else limits.lift_m_s2
+        lead = flat / (2.0 * limits.accel_m_s2) + _BRAKE_REACT_S
+        lead_d = abs(vd) / (2.0 * brake) + _BRAKE_REACT_S
+        return (f.ref_n + vn * lead, f.ref_e + ve * lead, f.ref_d + vd * lead_d)
     lead = flat / (2.0 * _BRAKE_SHARE * limits.accel_m_s2) + 0.5 / _APPROACH_P
     brake = limits.lift_m_s2 if vd > 0.0 else limits.accel_vertical_m_s2
     lead_d = abs(vd) / (2.0 * _BRAKE_SHARE * brake) + 0.5 / _APPROACH_P
@@ -103,11 +127,12 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     free_flat = f.horizontal >= ACCELERATE
     free_down = f.vertical >= ACCELERATE
     # After a jump of the estimate the reference begins anew where the vehicle is said to be.
-    jumped = f.resets != est.resets
+    direct = f.direct
+    anew = f.resets != est.resets or direct
     f.resets = est.resets
-    ref_n = est.pos_n if jumped else f.ref_n
-    ref_e = est.pos_e if jumped else f.ref_e
-    ref_d = est.pos_d if jumped else f.ref_d
+    ref_n = est.pos_n if anew else f.ref_n
+    ref_e = est.pos_e if anew else f.ref_e
+    ref_d = est.pos_d if anew or f.height_free else f.ref_d
 
     # Towards a goal: as fast as one can still stop there.
     dn = f.goal_n - ref_n
@@ -119,9 +144,23 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     accel = f.accel_m_s2
     accel_d = f.accel_vertical_m_s2
     accel_up = f.accel_up_m_s2
-    speed = approach_speed(flat, _BRAKE_SHARE * accel)
+    jerk = f.jerk_m_s3
+    slow = f.brakes_by_jerk
+    speed = (
+        f.kp_pos_xy * flat
+        if direct
+        else speed_by_jerk(flat, accel, jerk)
+        if slow
+        else approach_speed(flat, _BRAKE_SHARE * accel)
+    )
     speed = top if speed > top else speed
-    rise = approach_speed(drop, _BRAKE_SHARE * (accel_up if dd > 0.0 else accel_d))
+    rise = (
+        f.kp_pos_z * drop
+        if direct
+        else speed_by_jerk(drop, accel_d if dd > 0.0 else accel_up, jerk)
+        if slow
+        else approach_speed(drop, _BRAKE_SHARE * (accel_up if dd > 0.0 else accel_d))
+    )
     cap = f.descend_m_s if dd > 0.0 else f.climb_m_s
     rise = cap if rise > cap else rise
     # On a line the faster of the horizontal and the vertical motion waits for the slower.
@@ -150,21 +189,27 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     vn = f.ref_vel_n
     ve = f.ref_vel_e
     vd = f.ref_vel_d
+    turns = f.turn_rad_s != 0.0
     bend = f.turn_rad_s * f.turn_rad_s
     an = _SHARPNESS * (want_n - vn) - bend * (f.goal_n - f.centre_n)
     ae = _SHARPNESS * (want_e - ve) - bend * (f.goal_e - f.centre_e)
     ad = _SHARPNESS * (want_d - vd)
+    # No more than can be taken back, at the jerk, by the time the velocity is there.
+    unwind = 2.0 * _UNWIND_SHARE / _SHARPNESS * jerk
     size = sqrt(an * an + ae * ae)
-    scale = accel / size if size > accel else 1.0
+    most = sqrt(unwind * size) if size > unwind and not turns else size
+    most = accel if most > accel else most
+    scale = most / size if size > most else 1.0
     an = 0.0 if free_flat else an * scale
     ae = 0.0 if free_flat else ae * scale
+    ad = sqrt(unwind * ad) if ad > unwind else -sqrt(-unwind * ad) if -ad > unwind else ad
     ad = 0.0 if free_down else accel_d if ad > accel_d else -accel_up if ad < -accel_up else ad
     jn = an - f.ref_acc_n
     je = ae - f.ref_acc_e
     jd = ad - f.ref_acc_d
-    jerk = sqrt(jn * jn + je * je + jd * jd)
-    most = f.jerk_m_s3 * dt_s
-    scale = most / jerk if jerk > most else 1.0
+    size = sqrt(jn * jn + je * je + jd * jd)
+    most = jerk * dt_s
+    scale = most / size if size > most else 1.0
     an = 0.0 if free_flat else f.ref_acc_n + jn * scale
     ae = 0.0 if free_flat else f.ref_acc_e + je * scale
     ad = 0.0 if free_down else f.ref_acc_d + jd * scale
@@ -185,12 +230,14 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     # A demanded velocity is no demand to catch up: what was left behind is forgotten on the way.
     lost = _FORGET_P * dt_s if f.horizontal == AT_VELOCITY and ask > 0.0 else 0.0
     # Where the motion is not controlled the reference goes along, ready to take over.
+    free_flat = free_flat or direct
+    free_down = free_down or direct
     f.ref_n = est.pos_n if free_flat else ref_n + (vn + new_n) * half - lost * ln
     f.ref_e = est.pos_e if free_flat else ref_e + (ve + new_e) * half - lost * le
     f.ref_d = est.pos_d if free_down else ref_d + (vd + new_d) * half
-    f.ref_vel_n = est.vel_n if free_flat else new_n
-    f.ref_vel_e = est.vel_e if free_flat else new_e
-    f.ref_vel_d = est.vel_d if free_down else new_d
-    f.ref_acc_n = an
-    f.ref_acc_e = ae
-    f.ref_acc_d = ad
+    f.ref_vel_n = want_n if direct else est.vel_n if free_flat else new_n
+    f.ref_vel_e = want_e if direct else est.vel_e if free_flat else new_e
+    f.ref_vel_d = want_d if direct else est.vel_d if free_down else new_d
+    f.ref_acc_n = 0.0 if direct else an
+    f.ref_acc_e = 0.0 if direct else ae
+    f.ref_acc_d = 0.0 if direct else ad

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import socket
+import stat
 import sys
 import threading
 from typing import Protocol
@@ -19,7 +20,7 @@ class ParentPipe(Protocol):
 
 
 class Pipe:
-    """Where `select` takes any file."""
+    """A pipe, a socket or a terminal, where `select` takes it."""
 
     def fileno(self) -> int:
         return sys.stdin.fileno()
@@ -29,7 +30,10 @@ class Pipe:
 
 
 class Forwarded:
-    """Where `select` takes sockets only (Windows): a thread reads and passes it on."""
+    """What `select` does not take: a thread reads it and passes it on through a socket.
+
+    That is everything on Windows, and files, /dev/null among them, elsewhere.
+    """
 
     def __init__(self) -> None:
         self._ear, mouth = socket.socketpair()
@@ -43,10 +47,18 @@ class Forwarded:
 
 
 def _forward(mouth: socket.socket) -> None:
-    while data := os.read(sys.stdin.fileno(), 4096):
+    # Without a standard input (`<&-`) it has ended before it began.
+    while sys.stdin is not None and (data := os.read(sys.stdin.fileno(), 4096)):
         mouth.sendall(data)
     mouth.close()
 
 
 def standard_input() -> ParentPipe:
-    return Forwarded() if sys.platform == "win32" else Pipe()
+    return Pipe() if sys.platform != "win32" and _can_be_selected() else Forwarded()
+
+
+def _can_be_selected() -> bool:
+    if sys.stdin is None:
+        return False
+    kind = os.fstat(sys.stdin.fileno()).st_mode
+    return stat.S_ISFIFO(kind) or stat.S_ISSOCK(kind) or sys.stdin.isatty()

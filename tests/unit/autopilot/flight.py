@@ -6,6 +6,7 @@ from collections.abc import Callable
 from copy import deepcopy
 from functools import cache
 from math import nan, sqrt
+from pathlib import Path
 from typing import Self
 
 from vehicle_sim.autopilot.autopilot import Autopilot
@@ -20,8 +21,14 @@ from vehicle_sim.autopilot.interface import (
     VehicleEvent,
 )
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.autopilot.tasks.guided import Offboard
+from vehicle_sim.engine.few import Few
+from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.numerics.vectors import Vec3
+from vehicle_sim.plant.airframe import load, parse, shipped
 
+SIH = Path(__file__).with_name("sih.toml")
+"""The airframe with which the recorded PX4 flew its steps; not one that is shipped."""
 HOMES: dict[Personality, Geodetic] = {
     "px4": Geodetic(47.397742, 8.545594, 488.0),
     "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
@@ -31,8 +38,18 @@ HOMES: dict[Personality, Geodetic] = {
 class Flight:
     """One vehicle and its past events.  `fly(s)` lets simulated seconds pass."""
 
-    def __init__(self, personality: Personality, seed: int = 1, boot: Boot = "quick") -> None:
-        self.vehicle = Autopilot(personality, HOMES[personality], seed, boot=boot)
+    def __init__(
+        self,
+        personality: Personality,
+        seed: int = 1,
+        boot: Boot = "quick",
+        airframe: str = "s500",
+        offboard: Offboard = "smooth",
+    ) -> None:
+        home = HOMES[personality]
+        frame = load(airframe) if airframe in shipped() else parse(SIH.read_text(), SIH.name)
+        seat = Seat(Few([VehicleSpec(seed, 0, home.lat_deg)], frame), 0)
+        self.vehicle = Autopilot(personality, home, seed, seat=seat, boot=boot, offboard=offboard)
         self.personality: Personality = personality
         self.seen: list[VehicleEvent] = []
 

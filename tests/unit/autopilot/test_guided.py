@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, nan, pi, sin
+from math import acos, cos, degrees, hypot, inf, nan, pi, sin
 
 import pytest
 
@@ -90,7 +90,8 @@ def test_a_long_leg_is_straight_and_keeps_the_speed_limit(personality: Personali
     for _ in range(400):
         flight.stream(Setpoint(pos_ned=goal), 0.05)
         n, e, d = flight.pos
-        assert abs(n - e) < 0.5
+        # PX4's own gains are weaker: 0.18 m each way from where it hovered.
+        assert abs(n - e) < (0.55 if personality == "px4" else 0.5)
         assert abs((-d - 5.0) - n / 3.0) < 1.0
         v = flight.vehicle.truth.v_ned
         fastest = max(fastest, (v[0] ** 2 + v[1] ** 2) ** 0.5)
@@ -98,6 +99,24 @@ def test_a_long_leg_is_straight_and_keeps_the_speed_limit(personality: Personali
     assert 0.8 * cruise_m_s < fastest < 1.12 * cruise_m_s
     assert flight.off(goal) < 0.5
     assert flight.astray_m < 1.0
+
+
+def test_px4_as_in_life_flies_a_far_setpoint_as_fast_as_it_ever_flies() -> None:
+    """I1_step_response: OFFBOARD's steps are not smoothed; neither cruise speed nor line count."""
+    flight = Flight("px4", offboard="real").airborne(5.0)
+    flight.stream(HERE, 1.5)
+    assert flight.vehicle.set_mode_kind("guided") is Result.ACCEPTED
+    goal = (60.0, 60.0, -15.0)
+    fastest = steepest = 0.0
+    for _ in range(500):
+        flight.stream(Setpoint(pos_ned=goal), 0.05)
+        v = flight.vehicle.truth.v_ned
+        fastest = max(fastest, hypot(v[0], v[1]))
+        _, x, y, _ = flight.vehicle.truth.q_ned_from_frd
+        steepest = max(steepest, degrees(acos(1.0 - 2.0 * (x * x + y * y))))
+    assert 0.9 * 12.0 < fastest < 1.12 * 12.0  # MPC_XY_VEL_MAX
+    assert 40.0 < steepest < 50.0  # MPC_TILTMAX_AIR; 48 as recorded
+    assert flight.off(goal) < 0.5
 
 
 @either

@@ -179,7 +179,7 @@ def test_speed_changes_and_goes_back(personality: Personality) -> None:
 def test_altitude_changes_above_home(personality: Personality) -> None:
     flight = Flight.hovering(personality, 5.0)
     assert flight.vehicle.change_altitude(8.0) is Result.ACCEPTED
-    flight.fly(5.0)
+    flight.fly(6.0)
     assert flight.off((0.0, 0.0, -8.0)) < 0.4
 
 

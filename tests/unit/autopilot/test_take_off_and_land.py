@@ -79,7 +79,7 @@ def test_px4_takes_off_in_a_mode_of_its_own_then_loiters_up_to_nav_mc_alt_rad_lo
     assert flight.landed() is Landed.TAKEOFF
     flight.fly(5.0, lambda: flight.vehicle.mode_name == "AUTO.LOITER")
     assert flight.landed() is Landed.IN_AIR
-    flight.fly(3.0)
+    flight.fly(5.0)  # it comes near at 0.5 /s only, by MPC_JERK_AUTO
     assert 0.3 < 2.5 - flight.up_m < 0.8
     hovers_m = flight.up_m
     flight.fly(5.0)
@@ -92,7 +92,7 @@ def test_px4_asked_to_take_off_before_arming_leaves_with_the_arming() -> None:
     flight.fly(1.0)
     assert flight.up_m < 0.01
     flight.vehicle.arm(False)
-    flight.fly(8.0, lambda: flight.up_m > 2.6)
+    flight.fly(8.0, lambda: flight.up_m > 2.2)  # NAV_MC_ALT_RAD below the height
 
 
 def test_ardupilot_takes_off_armed_and_in_guided_only() -> None:
@@ -117,7 +117,8 @@ def test_a_repeated_take_off_has_no_second_effect(personality: Personality) -> N
     assert flight.vehicle.take_off(20.0) is answers[personality]
     flight.fly(3.0)
     assert flight.vehicle.mode_name == mode
-    assert flight.up_m == pytest.approx(3.0, abs=0.25)
+    # PX4's take-off ended within NAV_MC_ALT_RAD, which is 0.3 m here.
+    assert flight.up_m == pytest.approx(3.0, abs={"px4": 0.3, "ardupilot": 0.25}[personality])
 
 
 @either

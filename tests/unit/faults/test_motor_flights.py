@@ -149,7 +149,7 @@ def test_servo_output_tells_that_the_weak_motor_works_harder() -> None:
 
 @either
 def test_who_lies_on_its_back_does_not_arm(personality: Personality) -> None:
-    stage = aloft(personality, motor(2))
+    stage = aloft(personality, motor(3))
     stage.until(lambda: stage.up_m < 0.2, 8.0)
     stage.run(4.0)
     assert stage.command(400, 0, 21196) == 0

@@ -16,7 +16,9 @@ STILL: Vec3 = (0.0, 0.0, 0.0)
 class FlyTo:
     """To a goal [m, NED] that itself moves at `v_ned`; along a line where `straight`.
 
-    `since_ns`: when the goal was at `pos_ned`, for one that moves.
+    `since_ns`: when the goal was at `pos_ned`, for one that moves.  `direct`: as a step for the
+    position loop, within the limits of speed but not of acceleration.  `height_free`: vertically at
+    the velocity towards it, without a height that is to be caught up with.
     """
 
     pos_ned: Vec3
@@ -24,12 +26,15 @@ class FlyTo:
     v_ned: Vec3 = STILL
     straight: bool = True
     since_ns: int = 0
+    direct: bool = False
+    height_free: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class FlyVelocity:
     v_ned: Vec3
     limits: MotionLimits
+    direct: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +45,7 @@ class FlyAtHeight:
     v_e: float
     down_m: float
     limits: MotionLimits
+    direct: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,7 +34,7 @@ from vehicle_sim.control_loops.flight import (
     TO,
     Flight,
 )
-from vehicle_sim.control_loops.trajectory import MotionLimits
+from vehicle_sim.control_loops.trajectory import QUICK_M_S3, MotionLimits
 from vehicle_sim.numerics.vectors import Quat, Vec3
 
 LAND_S: Final[dict[Personality, float]] = {"px4": 1.0, "ardupilot": 0.6}
@@ -181,12 +181,19 @@ class FlightControl:
         f = self.flight
         f.attitude = BY_MOTION
         f.turn_rad_s = 0.0
-        f.straight = False
+        f.straight = f.height_free = False
+        direct = isinstance(demand, FlyTo | FlyVelocity | FlyAtHeight) and demand.direct
+        if f.direct and not direct:
+            f.ref_vel_n, f.ref_vel_e, f.ref_vel_d = s.v_ned
+        f.direct = direct
         match demand:
             case FlyTo():
                 self._go(TO, TO, _now(demand, s.time_ns), demand.v_ned)
                 f.straight = demand.straight
+                f.height_free = demand.height_free
                 self._limit(demand.limits)
+                if demand.v_ned != STILL:  # what moves the goal shapes its way
+                    f.jerk_m_s3 = QUICK_M_S3
             case FlyVelocity():
                 self._go(AT_VELOCITY, AT_VELOCITY, s.pos_ned, demand.v_ned)
                 self._limit(demand.limits)
@@ -197,6 +204,7 @@ class FlightControl:
             case FlyCircle():
                 self._circle(demand, going_on)
                 self._limit(demand.limits)
+                f.jerk_m_s3 = QUICK_M_S3
             case FlyAcceleration():
                 f.horizontal = f.vertical = ACCELERATE
                 f.acc_n, f.acc_e, f.acc_d = demand.a_ned
@@ -252,6 +260,8 @@ class FlightControl:
         f.accel_m_s2 = limits.accel_m_s2
         f.accel_vertical_m_s2 = limits.accel_vertical_m_s2
         f.accel_up_m_s2 = limits.lift_m_s2
+        f.jerk_m_s3 = limits.jerk_m_s3
+        f.brakes_by_jerk = limits.jerk_m_s3 < QUICK_M_S3
 
     def _fly_attitude(self, demand: FlyAttitude) -> None:
         f = self.flight

@@ -16,15 +16,8 @@ from vehicle_sim.estimation.estimated import Estimated
 
 _GAINS: dict[Personality, dict[str, str]] = {
     "px4": {
-        "MPC_XY_P": "kp_pos_xy",
-        "MPC_Z_P": "kp_pos_z",
-        "MPC_XY_VEL_P_ACC": "kp_vel_xy",
-        "MPC_XY_VEL_I_ACC": "ki_vel_xy",
-        "MPC_Z_VEL_P_ACC": "kp_vel_z",
-        "MPC_Z_VEL_I_ACC": "ki_vel_z",
         "MC_ROLL_P": "kp_roll",
         "MC_PITCH_P": "kp_pitch",
-        "MC_YAW_P": "kp_yaw",
         "MC_ROLLRATE_P": "kp_rate_roll",
         "MC_PITCHRATE_P": "kp_rate_pitch",
         "MC_YAWRATE_P": "kp_rate_yaw",
@@ -47,6 +40,17 @@ _GAINS: dict[Personality, dict[str, str]] = {
 }
 """Which designed gain each parameter scales: by value over default."""
 
+_YAW_RATE_GAINS: dict[Personality, tuple[float, float]] = {
+    "px4": (3.4, 0.5),
+    "ardupilot": (6.0, 0.3),
+}
+"""Proportional [1/s] and integral over proportional gain [1/s].
+
+PX4's are what fits the two recorded turns best (ATTITUDE in px4_step_responses.tlog from 68.4 s and
+904.1 s on: acceleration by the error of 2.8 times the angle that is left, 3.38 and 3.35), and
+MC_YAWRATE_I over MC_YAWRATE_P.
+"""
+
 _RATES: dict[Personality, dict[str, str]] = {
     "px4": {
         "MC_ROLLRATE_MAX": "roll_rate_max_rad_s",
@@ -60,7 +64,16 @@ _RATES: dict[Personality, dict[str, str]] = {
     },
 }
 _BOUNDS: dict[Personality, dict[str, str]] = {
-    "px4": {"MPC_JERK_AUTO": "jerk_m_s3", "MPC_XY_ERR_MAX": "lead_max_m"},
+    "px4": {
+        "MPC_XY_ERR_MAX": "lead_max_m",
+        "MPC_XY_P": "kp_pos_xy",
+        "MPC_Z_P": "kp_pos_z",
+        "MPC_XY_VEL_P_ACC": "kp_vel_xy",
+        "MPC_XY_VEL_I_ACC": "ki_vel_xy",
+        "MPC_Z_VEL_P_ACC": "kp_vel_z",
+        "MPC_Z_VEL_I_ACC": "ki_vel_z",
+        "MC_YAW_P": "kp_yaw",
+    },
     "ardupilot": {},
 }
 """What a parameter says as it is; the designed bound where the autopilot has no such parameter."""
@@ -81,6 +94,7 @@ def write_gains(parameters: Parameters, flight: Flight, est: Estimated, believed
     get = parameters.get
     designed = Flight()
     tune(designed, believed)
+    designed.kp_rate_yaw, flight.ki_rate_yaw = _YAW_RATE_GAINS[parameters.personality]
     for name, field in _GAINS[parameters.personality].items():
         ratio = get(name) / parameters.designed(name)
         setattr(flight, field, ratio * getattr(designed, field))
@@ -94,6 +108,11 @@ def write_gains(parameters: Parameters, flight: Flight, est: Estimated, believed
     flight.land_share = _LAND_SHARE[parameters.personality]
     for name, field in _BOUNDS[parameters.personality].items():
         setattr(flight, field, get(name))
+    # A derivative gain on the velocity takes back a part of every acceleration: it is as if the
+    # vehicle were heavier (PositionControl's acc = P error + I - D dv/dt).
+    heavier = 1.0 if rules.velocity_damping is None else 1.0 + get(rules.velocity_damping)
+    flight.kp_vel_xy /= heavier
+    flight.ki_vel_xy /= heavier
     no_aid_us = _NO_AID_US[parameters.personality]
     if no_aid_us is not None:
         est.no_aid_s = 1e-6 * get(no_aid_us)

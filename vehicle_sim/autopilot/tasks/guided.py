@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import isfinite
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from vehicle_sim.autopilot.control.axes import every_axis_is_given, fly_by_axes, is_partial
 from vehicle_sim.autopilot.control.demands import (
@@ -26,10 +26,12 @@ from vehicle_sim.autopilot.control.demands import (
 from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Setpoint, Target
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.tasks import TakeOff
-from vehicle_sim.control_loops.trajectory import MotionLimits, slowed
+from vehicle_sim.control_loops.trajectory import QUICK_M_S3, MotionLimits, slowed
 from vehicle_sim.numerics.vectors import Vec3
 
 AnySetpoint: TypeAlias = Setpoint | AttitudeSetpoint
+Offboard: TypeAlias = Literal["smooth", "real"]
+"""How PX4 flies setpoints: along a trajectory, or as the real one, to the loops as they are."""
 
 _ENTRY_GAP_NS = 500_000_000  # OFFBOARD wants more than 2 Hz
 _ENTRY_STREAM_NS = 1_000_000_000
@@ -98,9 +100,12 @@ class Guided:
 
     done = True
 
-    __slots__ = ("_braking", "_hold", "_parameters", "_rules", "_stream", "_takeoff")
+    __slots__ = ("_braking", "_direct", "_hold", "_parameters", "_rules", "_stream", "_takeoff")
 
-    def __init__(self, parameters: Parameters, stream: SetpointStream) -> None:
+    def __init__(
+        self, parameters: Parameters, stream: SetpointStream, offboard: Offboard = "smooth"
+    ) -> None:
+        self._direct = parameters.rules.setpoints_fly_direct and offboard == "real"
         self._parameters = parameters
         self._rules = parameters.rules
         self._stream = stream
@@ -185,9 +190,11 @@ class Guided:
             v_ned = slowed(setpoint.v_ned or STILL, top, fastest_m_s)
             # A goal with a velocity moves on by itself until the next setpoint comes.
             since_ns = self._stream.taken_ns if v_ned != STILL else 0
-            return FlyTo(setpoint.pos_ned, s.limits, v_ned, since_ns=since_ns)
+            limits = top if self._direct else replace(s.limits, jerk_m_s3=QUICK_M_S3)
+            direct = self._direct
+            return FlyTo(setpoint.pos_ned, limits, v_ned, since_ns=since_ns, direct=direct)
         if setpoint.v_ned is not None:
-            return FlyVelocity(setpoint.v_ned, self._limits_of_velocity(s))
+            return FlyVelocity(setpoint.v_ned, self._limits_of_velocity(s), self._direct)
         if setpoint.a_ned is not None:
             return FlyAcceleration(setpoint.a_ned)
         return FlyTo(self._hold or s.stop_ned, s.limits)
@@ -205,6 +212,7 @@ class Guided:
         return replace(
             s.limits,
             speed_m_s=self._parameters.get("MPC_XY_VEL_MAX"),
+            jerk_m_s3=QUICK_M_S3,
             climb_m_s=self._parameters.get("MPC_Z_VEL_MAX_UP"),
             descend_m_s=self._parameters.get("MPC_Z_VEL_MAX_DN"),
         )

@@ -13,6 +13,7 @@ from vehicle_sim.autopilot.interface import Landed, Target
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.descent_rate import descent_m_s
 from vehicle_sim.autopilot.tasks.return_height import return_up_m
+from vehicle_sim.control_loops.trajectory import QUICK_M_S3
 from vehicle_sim.numerics.vectors import Vec3
 
 _BELOW_GROUND_M = 1000.0
@@ -42,7 +43,7 @@ class Hold:
 
     done = True
 
-    __slots__ = ("_speed_m_s", "_yaw_rad", "goal_ned", "landed_word", "lifts")
+    __slots__ = ("_speed_m_s", "_stops", "_yaw_rad", "goal_ned", "landed_word", "lifts")
 
     def __init__(
         self,
@@ -53,6 +54,7 @@ class Hold:
         landed_word: Landed = Landed.IN_AIR,
     ) -> None:
         self.goal_ned = goal_ned
+        self._stops = goal_ned is None
         self.landed_word = landed_word
         self.lifts = lifts
         self._yaw_rad = yaw_rad
@@ -75,6 +77,8 @@ class Hold:
         limits = s.limits
         if self._speed_m_s is not None:
             limits = replace(limits, speed_m_s=self._speed_m_s)
+        if self._stops:  # where it comes to rest by itself; no such stop was recorded
+            limits = replace(limits, jerk_m_s3=QUICK_M_S3)
         return FlyTo(self.goal_ned or s.stop_ned, limits)
 
 
@@ -207,7 +211,8 @@ class Land:
             descend_m_s = descent_m_s(self._parameters, up_m, s.limits.descend_m_s)
         limits = replace(s.limits, descend_m_s=descend_m_s)
         below = (where[0], where[1], s.pos_ned[2] + _BELOW_GROUND_M)
-        return FlyTo(below, limits, straight=False)
+        free = self._parameters.rules.lands_by_velocity
+        return FlyTo(below, limits, straight=False, height_free=free)
 
 
 class _Leg(Enum):

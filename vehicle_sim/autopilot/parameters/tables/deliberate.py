@@ -11,10 +11,6 @@ from vehicle_sim.autopilot.modes import Personality
 
 DELIBERATE: dict[Personality, dict[str, tuple[float, str]]] = {
     "px4": {
-        "MPC_JERK_AUTO": (
-            30.0,
-            "one limit shapes every flight here, also OFFBOARD, which PX4 does not smooth",
-        ),
         "MPC_THR_HOVER": (0.43, "the thrust at which the simulated airframe hovers"),
         "MPC_XY_ERR_MAX": (4.0, "guidance waits for a vehicle left behind by so much, in a wind"),
         "SDLOG_MODE": (0.0, "logs from arming on: a log of every vehicle from boot fills memories"),
