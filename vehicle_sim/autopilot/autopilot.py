@@ -98,6 +98,8 @@ class Autopilot:
         self.check_rally, self.load_rally = bounds.check_rally, bounds.load_rally
         self.calibrate = parts.calibrations.calibrate
         self.calibration_position = parts.calibrations.calibration_position
+        self.calibrate_compass_by_yaw = parts.calibrations.calibrate_compass_by_yaw
+        self.log_download = parts.health_checks.log_download
         self.test_motor = parts.calibrations.test_motor
         self.state_bytes = parts.view.state_bytes
 

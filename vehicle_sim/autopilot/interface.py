@@ -536,6 +536,14 @@ class Vehicle(Protocol):
         """ACCELCAL_VEHICLE_POS: how the vehicle lies, as the station says."""
         ...
 
+    def calibrate_compass_by_yaw(self) -> Result:
+        """FIXED_MAG_CAL_YAW."""
+        ...
+
+    def log_download(self, running: bool) -> None:
+        """Somebody downloads a flight log now: ArduCopter does not arm meanwhile."""
+        ...
+
     def test_motor(self, seconds: float) -> Result:
         """DO_MOTOR_TEST."""
         ...

@@ -40,6 +40,7 @@ class AutopilotRules:
     tells_unready: bool  # what is against arming is told unasked (AP_Arming::update)
     arming_check_armed: Result  # the answer to RUN_PREARM_CHECKS while armed
     calibration_denies_arming: bool  # also forced arming
+    calibrated_compass_needs_reboot: bool  # FIXED_MAG_CAL_YAW: it does not arm before
     arm_authorization: bool  # another system may be asked before arming (COM_ARM_AUTH_*)
     armed_text: str  # what it says when it is armed by a command
     disarmed_text: str  # what it says when it is disarmed by a command
@@ -144,6 +145,7 @@ class AutopilotRules:
     channel_map: str  # begin of the parameters that say which channel is which stick
     channel_lasts: str  # the parameter with how long an overridden channel counts [s]
     receiver_grace: str | None  # the parameter with how long after that the sticks are lost [s]
+    receiver_silent: str | None  # the parameter that, if not 0, counts that from the last override
     arming_gesture: str  # the parameter that allows arming by the sticks; 0 = not
     gesture_disarms_from: int  # from this value of it on the sticks disarm, too
     own_station: str | None  # the parameter with whose sticks and heartbeats count, by system id
@@ -167,6 +169,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         tells_unready=False,
         arming_check_armed=Result.ACCEPTED,
         calibration_denies_arming=True,
+        calibrated_compass_needs_reboot=False,
         arm_authorization=True,
         armed_text="Armed by external command",
         disarmed_text="Disarmed by external command",
@@ -261,6 +264,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         channel_map="RC_MAP_",
         channel_lasts="COM_RC_LOSS_T",
         receiver_grace=None,
+        receiver_silent=None,
         arming_gesture="MAN_ARM_GESTURE",
         gesture_disarms_from=1,
         own_station=None,
@@ -282,6 +286,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         tells_unready=True,
         arming_check_armed=Result.TEMPORARILY_REJECTED,
         calibration_denies_arming=False,
+        calibrated_compass_needs_reboot=True,
         arm_authorization=False,
         armed_text="Arming motors",
         disarmed_text="Disarming motors",
@@ -376,6 +381,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         channel_map="RCMAP_",
         channel_lasts="RC_OVERRIDE_TIME",
         receiver_grace="RC_FS_TIMEOUT",
+        receiver_silent="SIM_RC_FAIL",
         arming_gesture="ARMING_RUDDER",
         gesture_disarms_from=2,
         own_station="SYSID_MYGCS",

@@ -312,6 +312,12 @@ class FakeVehicle:
     def calibrate(self, parameters: tuple[float, ...]) -> Result | None:
         return self._note("calibrate", parameters)
 
+    def calibrate_compass_by_yaw(self) -> Result:
+        return self._note("calibrate_compass_by_yaw")
+
+    def log_download(self, running: bool) -> None:
+        pass
+
     def calibration_position(self, position: float) -> Result:
         return self._note("calibration_position", position)
 

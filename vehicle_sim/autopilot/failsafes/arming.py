@@ -23,6 +23,8 @@ _INS = 1 << 4
 _RC = 1 << 6
 _VOLTAGE = 1 << 7
 _BATTERY = 1 << 8
+_LOGGING = 1 << 10
+_MISSION = 1 << 14
 
 _BIAS_SHARE = 0.75  # PX4 arms up to this part of the largest bias that its estimator may learn
 _GYRO_BIAS_RAD_S = 0.075  # a gyroscope that ArduCopter would not call calibrated
@@ -58,6 +60,7 @@ class Readiness:
     station_lost: bool
     battery_failed: bool  # its failsafe has struck since the start
     calibration: tuple[str, ...]  # what ArduCopter's calibrations have against arming
+    log_download: bool  # somebody downloads a flight log
 
 
 def reasons(parameters: Parameters, ready: Readiness) -> tuple[str, ...]:
@@ -161,6 +164,10 @@ def _copter(parameters: Parameters, ready: Readiness) -> list[str]:
         if ready.battery_failed:
             found.append("PreArm: Battery failsafe")
     found += [f"PreArm: {why}" for why in ready.calibration]
+    if asked(_LOGGING) and ready.log_download:
+        found.append("PreArm: Downloading logs")
+    if asked(_MISSION) and not ready.mission_ok:
+        found.append("PreArm: Mode requires mission")
     if get("FENCE_ENABLE") != 0:
         misfit = ready.geofence.misfit()
         if misfit is not None:

@@ -47,6 +47,7 @@ class Mission:
     __slots__ = (
         "_before_ned",
         "_by_home",
+        "_circle",
         "_errands",
         "_first_task",
         "_goal",
@@ -93,6 +94,7 @@ class Mission:
         self._first_task: TakeOff | None = None
         self._until_ns: int | None = None
         self._leg: Leg | None = None
+        self._circle: CircleTask | None = None
 
     @property
     def empty(self) -> bool:
@@ -236,6 +238,8 @@ class Mission:
         """To the next leg, if this one is over."""
         entry_m_s = 0.0
         if self._leg is not None:
+            if self._circle is not None:
+                self._texts.circling(self.items[self.current], self._circle.completed)
             if not self._leg.done(s):
                 return
             if isinstance(self._leg, Spline) and not self._leg.stops:
@@ -281,6 +285,7 @@ class Mission:
 
     def _start(self, item: PlanItem, s: Situation, turner: Turner, entry_m_s: float) -> None:
         self._texts.start(item)
+        self._circle = None
         if item.command == Cmd.RETURN:
             self._errands.work(s, self._goal)
             if self._vehicle.leave_for_return():
@@ -320,6 +325,7 @@ class Mission:
             case Cmd.LOITER_TURNS:
                 circle = CircleTask(place, _radius(item), item.p1, not item.p3 < 0.0)
                 circle.begin(s, turner)
+                self._circle = circle
                 return Whole(circle)
             case Cmd.LOITER_TO_ALT:
                 return GoToHeight(place, here[2])
