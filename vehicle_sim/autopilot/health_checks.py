@@ -87,6 +87,7 @@ class HealthChecks:
                 station_lost=self._failsafe_checks.station_lost,
                 battery_failed=self._failsafe_checks.battery_failed,
                 calibration=state.calibration.against_arming,
+                needs_terrain=self._mission_checks.needs_terrain,
                 log_download=self._log_download,
             ),
         )

@@ -118,6 +118,8 @@ class AutopilotRules:
     waypoints_have_radius: bool  # param 2 of a waypoint is its acceptance radius [m]
     nose_in_flight: str | None  # the parameter that says where the nose points; 0 = as it is
     flies_splines: bool  # NAV_SPLINE_WAYPOINT
+    terrain_items: bool  # heights above terrain are stored; without its data they are not flown
+    payload_item_lasts: str | None  # the parameter with how long DO_GRIPPER and DO_WINCH last [s]
     items_need_sound_place: bool  # an altitude that is no number, or no place on Earth, is refused
     return_refuses_place: bool  # a RETURN_TO_LAUNCH in a global frame is refused
     jumps_may_lead_beyond: bool  # DO_JUMP to an item that is not there is stored
@@ -240,6 +242,8 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         waypoints_have_radius=True,
         nose_in_flight=None,
         flies_splines=False,
+        terrain_items=False,
+        payload_item_lasts="MIS_PD_TO",
         items_need_sound_place=False,
         return_refuses_place=True,
         jumps_may_lead_beyond=True,
@@ -357,6 +361,8 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         waypoints_have_radius=False,
         nose_in_flight="WP_YAW_BEHAVIOR",
         flies_splines=True,
+        terrain_items=True,
+        payload_item_lasts=None,
         items_need_sound_place=True,
         return_refuses_place=False,
         jumps_may_lead_beyond=False,

@@ -168,6 +168,7 @@ PX4: Final = Profile(
             Cmd.DO_MOUNT_CONTROL,
             Cmd.DO_SET_CAM_TRIGG_DIST,
             Cmd.DO_GRIPPER,
+            Cmd.DO_WINCH,  # by memory
             Cmd.DO_MOUNT_CONTROL_QUAT,
             Cmd.PREFLIGHT_SET_SENSOR_OFFSETS,
             Cmd.PREFLIGHT_UAVCAN,
@@ -181,7 +182,7 @@ PX4: Final = Profile(
     camera=True,
     absent={},
     requests=PX4_REQUESTS,
-    untold=frozenset({m.RcChannelsRaw, m.FenceStatus, m.Wind}),
+    untold=frozenset({m.RcChannelsRaw, m.FenceStatus, m.Wind, m.RelayStatus}),
     vtol_state=0,  # UNDEFINED
     flies_to_places=frozenset(name for name in MODES["px4"] if name.startswith("AUTO.")),
     flies_to_places_in_air=frozenset(),

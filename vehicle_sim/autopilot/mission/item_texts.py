@@ -23,6 +23,18 @@ COPTER_ITEMS: dict[int, str] = {
     Cmd.CHANGE_SPEED: "ChangeSpeed",
     Cmd.SET_HOME: "SetHome",
     Cmd.ROI: "SetROI",
+    Cmd.GUIDED_ENABLE: "NavGuidedEnable",
+    Cmd.PAYLOAD_PLACE: "PayloadPlace",
+    Cmd.SET_RELAY: "SetRelay",
+    Cmd.REPEAT_RELAY: "RepeatRelay",
+    Cmd.SET_SERVO: "SetServo",
+    Cmd.REPEAT_SERVO: "RepeatServo",
+    Cmd.PARACHUTE: "Parachute",
+    Cmd.GRIPPER: "Gripper",
+    Cmd.AUX_FUNCTION: "AuxFunction",
+    Cmd.GUIDED_LIMITS: "GuidedLimits",
+    Cmd.JUMP_TAG: "Tag",
+    Cmd.WINCH: "Winch",
 }
 """What ArduCopter calls an item that it begins: "WP", "Takeoff", "RTL" and "SetROI" as recorded,
 the others from memory of AP_Mission."""
