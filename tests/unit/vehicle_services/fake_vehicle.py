@@ -93,6 +93,7 @@ class FakeVehicle:
         self.motor_outputs = (0.0, 0.0, 0.0, 0.0)
         self.servos_us: tuple[int, ...] = (0,) * 16
         self.relays = (1, 0)
+        self.downloads: list[bool] = []
         self.mission_current = 0
         self.mission_state = 1
         self.capturing = False
@@ -330,7 +331,7 @@ class FakeVehicle:
         return self._note("calibrate_compass_by_yaw")
 
     def log_download(self, running: bool) -> None:
-        pass
+        self.downloads.append(running)
 
     def calibration_position(self, position: float) -> Result:
         return self._note("calibration_position", position)

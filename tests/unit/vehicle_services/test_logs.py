@@ -394,8 +394,7 @@ def test_a_flight_is_listed_downloaded_and_erased_over_the_wire(personality: Per
 def test_the_vehicle_knows_of_a_download_until_it_has_ended() -> None:
     """ArduCopter does not arm meanwhile (J2_logs)."""
     aboard = Aboard("ardupilot", LOG)
-    told: list[bool] = []
-    aboard.vehicle.log_download = told.append  # type: ignore[method-assign]
+    told = aboard.vehicle.downloads
     aboard.listed()
     assert not any(told)
     aboard.data(1)
