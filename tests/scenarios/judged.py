@@ -60,15 +60,10 @@ JUDGED: Final = (
     Judged("ardupilot", "", "text: SIM Hit ground .*", _J.SIMULATOR, "SITL's own"),
     Judged("ardupilot", "B[58]_", r"\d (mode|landed): .*", _J.SIMULATOR,
            "SITL's receiver with a low throttle takes over; here no receiver is heard"),
-    Judged("ardupilot", "B7_", "text: Radio Failsafe Cleared", _J.NOT_BUILT,
-           "SIM_RC_FAIL makes it deaf to overrides, too"),
-    Judged("ardupilot", "C1_", "text: Mission: starting circle .*", _J.NOT_BUILT, "the text"),
     Judged("ardupilot", "C2_", "(4 landed: .*|text: Disarming motors)", _J.AIRFRAME,
            "is still coming down from the return"),
     Judged("ardupilot", "D2_", ".*", _J.SIMULATOR,
            "SITL's GPS is not healthy for a while after the gyroscopes were calibrated"),
-    Judged("ardupilot", "D3_", "text: PreArm: Compass calibrated .*", _J.NOT_BUILT,
-           "FIXED_MAG_CAL_YAW leaves no trace"),
     Judged("ardupilot", "D3_", "text: (ArduCopter|3d12|Frame).*", _J.AIRFRAME,
            "another build, board and frame"),
     Judged("ardupilot", "F2c_|F4_", "4 mode: .*", _J.NOT_BUILT,
@@ -80,8 +75,6 @@ JUDGED: Final = (
     Judged("ardupilot", "G8_", "8 landed: .*", _J.AIRFRAME, "is over its home already"),
     Judged("ardupilot", "H8_", "3 COMMAND_LONG .*", _J.SIMULATOR, "SITL dies of a NaN"),
     Judged("ardupilot", "I1_", "text: Disarming motors", _J.AIRFRAME, "is still coming down"),
-    Judged("ardupilot", "J2_", "text: .*", _J.UNTOLD, "requests for logs"),
-    Judged("ardupilot", "K1_", "text: .*", _J.UNTOLD, "requests for rates and messages"),
 )  # fmt: skip
 
 

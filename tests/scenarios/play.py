@@ -201,6 +201,10 @@ class _Player:
             return self._clear(int(words[-1]))
         if words[:2] == ["mission", "upload"]:
             return self._upload(step.items, int(words[-1]))
+        if words[0] == "LOG_REQUEST_LIST":
+            self._client.send(mavlink.MAVLink_log_request_list_message(1, 1, 0, 0xFFFF))
+        if words[0] == "LOG_REQUEST_DATA":  # the whole of the first one
+            self._client.send(mavlink.MAVLink_log_request_data_message(1, 1, 1, 0, 0xFFFFFFFF))
         if "silent" in step.sent:
             for client in self._sky.clients.values():
                 client.beats = False

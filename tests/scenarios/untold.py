@@ -1,8 +1,9 @@
 """What a recording's steps do not tell, and its texts and times do.
 
-The recorder sent some messages by itself: the take-off before a scenario's first step, an arming
-at the end, the mode HOLD at the start; and it let its heartbeat stop in places where the step says
-no more than `silent`, or nothing.
+The recorder sent some messages by itself, or tells of them in its figures: the take-off before a
+scenario's first step, an arming at the end, the mode HOLD at the start, requests for logs and
+rates; and it let its heartbeat stop in places where the step says no more than `silent`, or
+nothing.
 """
 
 from __future__ import annotations
@@ -49,7 +50,16 @@ UNTOLD: Final[dict[tuple[Personality, str], tuple[Step, ...]]] = {
         _arm(0.7),
         _long(0.8, "NAV_TAKEOFF", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 6.0),
     ),
+    ("ardupilot", "J2_logs"): (
+        Step(5.1, "LOG_REQUEST_LIST"),
+        Step(12.4, "LOG_REQUEST_LIST"),
+        *(Step(12.6 + 0.3 * k, "LOG_REQUEST_DATA") for k in range(28)),  # the real log took 8 s
+        Step(33.6, "LOG_REQUEST_LIST"),
+    ),
     ("ardupilot", "K1_small_services"): (
+        _long(28.5, "SET_MESSAGE_INTERVAL", 24.0, 100.0),
+        _long(39.25, "SET_MESSAGE_INTERVAL", 9999.0, 1e6),
+        _long(43.55, "SET_MESSAGE_INTERVAL", 4.0, 1e6),
         _long(50.2, "DO_SET_MODE", 1.0, 4.0),
         _arm(50.3),
     ),

@@ -100,7 +100,12 @@ class Autopilot:
         self.check_rally, self.load_rally = bounds.check_rally, bounds.load_rally
         self.calibrate = parts.calibrations.calibrate
         self.calibration_position = parts.calibrations.calibration_position
+        self.calibrate_compass_by_yaw = parts.calibrations.calibrate_compass_by_yaw
+        self.log_download = parts.health_checks.log_download
         self.test_motor = parts.calibrations.test_motor
+        outputs = parts.outputs
+        self.set_servo, self.repeat_servo = outputs.set_servo, outputs.repeat_servo
+        self.set_relay, self.repeat_relay = outputs.set_relay, outputs.repeat_relay
         self.state_bytes = parts.view.state_bytes
 
     # ------------------------------------------------------------------------- power-up
@@ -232,6 +237,14 @@ class Autopilot:
     @property
     def motor_outputs(self) -> tuple[float, float, float, float]:
         return self.parts.view.motor_outputs
+
+    @property
+    def servos_us(self) -> tuple[int, ...]:
+        return self.state.outputs.pulses_us
+
+    @property
+    def relays(self) -> tuple[int, int]:
+        return self.state.outputs.relays
 
     @property
     def wind_ned(self) -> Vec3 | None:

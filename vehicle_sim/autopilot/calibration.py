@@ -100,6 +100,7 @@ _AIRSPEED: Final = Procedure(
 _RADIO_OFF: Final = Procedure((Line(0.0, 6, "Calibration: Disabling RC input"),), 0.0)
 _TRIM: Final = Procedure((Line(0.4, 6, "trim cal done"),), 0.4, "trim")
 _RADIO: Final = "RC calibrating"
+_COMPASS: Final = "Compass calibrated requires reboot"
 _NOTHING: Final = Procedure((), 0.0)
 
 # By the number (1..7) and the value of the parameter that is not 0; the first one counts.
@@ -170,6 +171,11 @@ class Calibration:
         """ArduPilot's parameter 4: a station calibrates the sticks by itself, until it says 0."""
         others = tuple(why for why in self.against_arming if why != _RADIO)
         self.against_arming = (*others, _RADIO) if wanted > 0.0 else others
+
+    def compass_done(self) -> None:
+        """ArduPilot's FIXED_MAG_CAL_YAW: what was found counts from the next start on."""
+        others = tuple(why for why in self.against_arming if why != _COMPASS)
+        self.against_arming = (*others, _COMPASS)
 
     @property
     def listens(self) -> bool:

@@ -32,6 +32,11 @@ class CalibrationRequests:
             self._state.emit(event)
         return result
 
+    def calibrate_compass_by_yaw(self) -> Result:
+        if self._state.rules.calibrated_compass_needs_reboot:
+            self._state.calibration.compass_done()
+        return Result.ACCEPTED
+
     def test_motor(self, seconds: float) -> Result:
         state = self._state
         if state.armed:

@@ -95,6 +95,7 @@ class Decisions:
         self._arming.settle_overdue()
         if regular:
             self._boot()
+            state.outputs.update(state.time_ns)
             self._battery.update(state.armed, _DECIDE_EVERY * DT_NS * 1e-9)
             sensed = state.blocks.sensed
             rates_frd = (sensed.gyro_x, sensed.gyro_y, sensed.gyro_z)

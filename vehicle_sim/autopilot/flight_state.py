@@ -18,6 +18,7 @@ from vehicle_sim.autopilot.mission.plan import Datum
 from vehicle_sim.autopilot.modes import BOOT_MODE, MODES, Mode
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.rules import RULES, AutopilotRules
+from vehicle_sim.autopilot.servo_outputs import ServoOutputs
 from vehicle_sim.autopilot.speed_limits import SpeedLimits
 from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.autopilot.tasks.tasks import Hold
@@ -58,6 +59,7 @@ class FlightState:
         self.boot_sequence = BootSequence(personality, boot)
         self.decision_requested = False
         self.clock_off_ns = 0
+        self.outputs = ServoOutputs()
         self._wall_ns: int | None = None
         self._events: list[VehicleEvent] = []
         self._judged: tuple[int, Health] | None = None
@@ -82,6 +84,7 @@ class FlightState:
         self.paused: Task | None = None
         self.calibration = Calibration()
         self.limits.reset()
+        self.outputs.restart()
         self.mode: Mode = MODES[self.personality][BOOT_MODE[self.personality]]
         self.mode_after_disarming = self.mode
         self.roi_ned: Vec3 | None = None

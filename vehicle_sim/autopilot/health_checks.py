@@ -52,6 +52,7 @@ class HealthChecks:
         """As after power-up."""
         self._checked_ns = self._displayed_ns = self._state.time_ns
         self._was_ready = self._newly_unready = False
+        self._log_download = False
 
     # --------------------------------------------------------------------------- arming
 
@@ -86,8 +87,13 @@ class HealthChecks:
                 station_lost=self._failsafe_checks.station_lost,
                 battery_failed=self._failsafe_checks.battery_failed,
                 calibration=state.calibration.against_arming,
+                needs_terrain=self._mission_checks.needs_terrain,
+                log_download=self._log_download,
             ),
         )
+
+    def log_download(self, running: bool) -> None:
+        self._log_download = running
 
     def say_against_arming(self, asked_to_arm: bool) -> bool:
         """Whether there is something, after telling it."""

@@ -386,6 +386,16 @@ class Vehicle(Protocol):
         ...
 
     @property
+    def servos_us(self) -> tuple[int, ...]:
+        """What was set on the 16 servo outputs [us]; 0 = nothing."""
+        ...
+
+    @property
+    def relays(self) -> tuple[int, int]:
+        """Masks of the relays that are there, and of those that are on."""
+        ...
+
+    @property
     def wind_ned(self) -> Vec3 | None:
         """Where the air goes [m/s], as far as it can be felt; None = not known yet."""
         ...
@@ -527,6 +537,18 @@ class Vehicle(Protocol):
         """Motors off, or (px4) that state ended."""
         ...
 
+    def set_servo(self, servo: float, pulse_us: float) -> Result:
+        """DO_SET_SERVO: an output, counted from 1; FAILED where a motor has it."""
+        ...
+
+    def repeat_servo(
+        self, servo: float, pulse_us: float, count: float, period_s: float
+    ) -> Result: ...
+    def set_relay(self, relay: float, state: float) -> Result:
+        """DO_SET_RELAY, counted from 0: 1 = on, 0 = off."""
+        ...
+
+    def repeat_relay(self, relay: float, count: float, period_s: float) -> Result: ...
     def calibrate(self, parameters: tuple[float, ...]) -> Result | None:
         """PREFLIGHT_CALIBRATION's seven parameters.  None: PX4 answers nothing; IN_PROGRESS: the
         answer comes as `CommandDone`."""
@@ -534,6 +556,14 @@ class Vehicle(Protocol):
 
     def calibration_position(self, position: float) -> Result:
         """ACCELCAL_VEHICLE_POS: how the vehicle lies, as the station says."""
+        ...
+
+    def calibrate_compass_by_yaw(self) -> Result:
+        """FIXED_MAG_CAL_YAW."""
+        ...
+
+    def log_download(self, running: bool) -> None:
+        """Somebody downloads a flight log now: ArduCopter does not arm meanwhile."""
         ...
 
     def test_motor(self, seconds: float) -> Result:

@@ -10,6 +10,7 @@ from vehicle_sim.autopilot.mission.mission import Mission
 from vehicle_sim.autopilot.mission.plan import (
     KINDS,
     ItemKind,
+    by_terrain,
     has_place,
     infeasible,
     place_of,
@@ -36,6 +37,11 @@ class MissionChecks:
         if not self._state.rules.checks_mission_feasible:
             return True
         return self._too_far_m() is None and not infeasible(self._mission.items)
+
+    @property
+    def needs_terrain(self) -> bool:
+        """An item's height counts from the terrain; there are no terrain data on board."""
+        return any(by_terrain(item) for item in self._mission.items)
 
     def judge(self) -> None:
         """PX4's feasibility check: a mission out of bounds stays stored, and is not flown.

@@ -55,8 +55,6 @@ class MissionRequests:
         if first > 0 and not mission.jump_to(first):
             return Result.DENIED
         mission.limit(last)
-        if mission.empty and not state.armed:
-            state.say(2, "PreArm: Mode requires mission")
         begun = state.task is mission
         result = self._mode_changes.set_mode_kind("mission")
         if result is Result.ACCEPTED:

@@ -7,6 +7,7 @@ from vehicle_sim.autopilot.camera_requests import CameraRequests
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import Result, SpeedType, VehicleEvent
 from vehicle_sim.autopilot.mission.plan import Datum
+from vehicle_sim.autopilot.output_requests import OutputRequests
 from vehicle_sim.autopilot.transitions import Transitions
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -15,12 +16,18 @@ class MissionSupport:
     """The `MissionVehicle` of `mission/mission_commands.py`."""
 
     def __init__(
-        self, state: FlightState, bounds: Bounds, camera: CameraRequests, transitions: Transitions
+        self,
+        state: FlightState,
+        bounds: Bounds,
+        camera: CameraRequests,
+        outputs: OutputRequests,
+        transitions: Transitions,
     ) -> None:
         self._state = state
         self._bounds = bounds
         self._camera = camera
         self._transitions = transitions
+        self.actuate = outputs.actuate
 
     def emit(self, event: VehicleEvent) -> None:
         self._state.emit(event)
@@ -53,5 +60,11 @@ class MissionSupport:
         if not self._state.rules.mission_return_changes_mode:
             return False
         self._state.say(6, "Returning to launch")
+        self._transitions.enter_kind("return")
+        return True
+
+    def leave_without_terrain(self) -> bool:
+        """ArduCopter's failsafe_terrain_on_event, from memory: home, with a text."""
+        self._state.say(2, "Failsafe: Terrain data missing")
         self._transitions.enter_kind("return")
         return True

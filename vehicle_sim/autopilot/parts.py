@@ -34,6 +34,7 @@ from vehicle_sim.autopilot.mode_changes import ModeChanges
 from vehicle_sim.autopilot.mode_tasks import ModeTasks
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.orbit_follow_requests import OrbitFollowRequests
+from vehicle_sim.autopilot.output_requests import OutputRequests
 from vehicle_sim.autopilot.task_flight import TaskFlight
 from vehicle_sim.autopilot.tasks.follow import Leader
 from vehicle_sim.autopilot.tasks.guided import SetpointStream
@@ -74,7 +75,8 @@ class Parts:
             self.failsafe_checks,
             self.failure_detector,
         )
-        self.mission_support = MissionSupport(state, bounds, self.camera, transitions)
+        self.outputs = OutputRequests(state)
+        self.mission_support = MissionSupport(state, bounds, self.camera, self.outputs, transitions)
         self.mission = mode_tasks.mission = mission = Mission(parameters, self.mission_support)
         mission_checks = MissionChecks(state, bounds.geofence, mission)
         self.health_checks = HealthChecks(

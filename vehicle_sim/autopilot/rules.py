@@ -40,6 +40,7 @@ class AutopilotRules:
     tells_unready: bool  # what is against arming is told unasked (AP_Arming::update)
     arming_check_armed: Result  # the answer to RUN_PREARM_CHECKS while armed
     calibration_denies_arming: bool  # also forced arming
+    calibrated_compass_needs_reboot: bool  # FIXED_MAG_CAL_YAW: it does not arm before
     arm_authorization: bool  # another system may be asked before arming (COM_ARM_AUTH_*)
     armed_text: str  # what it says when it is armed by a command
     disarmed_text: str  # what it says when it is disarmed by a command
@@ -117,6 +118,8 @@ class AutopilotRules:
     waypoints_have_radius: bool  # param 2 of a waypoint is its acceptance radius [m]
     nose_in_flight: str | None  # the parameter that says where the nose points; 0 = as it is
     flies_splines: bool  # NAV_SPLINE_WAYPOINT
+    terrain_items: bool  # heights above terrain are stored; without its data they are not flown
+    payload_item_lasts: str | None  # the parameter with how long DO_GRIPPER and DO_WINCH last [s]
     items_need_sound_place: bool  # an altitude that is no number, or no place on Earth, is refused
     return_refuses_place: bool  # a RETURN_TO_LAUNCH in a global frame is refused
     jumps_may_lead_beyond: bool  # DO_JUMP to an item that is not there is stored
@@ -148,6 +151,7 @@ class AutopilotRules:
     channel_map: str  # begin of the parameters that say which channel is which stick
     channel_lasts: str  # the parameter with how long an overridden channel counts [s]
     receiver_grace: str | None  # the parameter with how long after that the sticks are lost [s]
+    receiver_silent: str | None  # the parameter that, if not 0, counts that from the last override
     arming_gesture: str  # the parameter that allows arming by the sticks; 0 = not
     gesture_disarms_from: int  # from this value of it on the sticks disarm, too
     own_station: str | None  # the parameter with whose sticks and heartbeats count, by system id
@@ -171,6 +175,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         tells_unready=False,
         arming_check_armed=Result.ACCEPTED,
         calibration_denies_arming=True,
+        calibrated_compass_needs_reboot=False,
         arm_authorization=True,
         armed_text="Armed by external command",
         disarmed_text="Disarmed by external command",
@@ -241,6 +246,8 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         waypoints_have_radius=True,
         nose_in_flight=None,
         flies_splines=False,
+        terrain_items=False,
+        payload_item_lasts="MIS_PD_TO",
         items_need_sound_place=False,
         return_refuses_place=True,
         jumps_may_lead_beyond=True,
@@ -269,6 +276,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         channel_map="RC_MAP_",
         channel_lasts="COM_RC_LOSS_T",
         receiver_grace=None,
+        receiver_silent=None,
         arming_gesture="MAN_ARM_GESTURE",
         gesture_disarms_from=1,
         own_station=None,
@@ -290,6 +298,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         tells_unready=True,
         arming_check_armed=Result.TEMPORARILY_REJECTED,
         calibration_denies_arming=False,
+        calibrated_compass_needs_reboot=True,
         arm_authorization=False,
         armed_text="Arming motors",
         disarmed_text="Disarming motors",
@@ -360,6 +369,8 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         waypoints_have_radius=False,
         nose_in_flight="WP_YAW_BEHAVIOR",
         flies_splines=True,
+        terrain_items=True,
+        payload_item_lasts=None,
         items_need_sound_place=True,
         return_refuses_place=False,
         jumps_may_lead_beyond=False,
@@ -388,6 +399,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         channel_map="RCMAP_",
         channel_lasts="RC_OVERRIDE_TIME",
         receiver_grace="RC_FS_TIMEOUT",
+        receiver_silent="SIM_RC_FAIL",
         arming_gesture="ARMING_RUDDER",
         gesture_disarms_from=2,
         own_station="SYSID_MYGCS",

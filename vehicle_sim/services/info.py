@@ -90,6 +90,7 @@ class Info:
         if operator_control is not None:
             self._own[m.IDS[m.ControlStatus]] = operator_control.status
         missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES[profile.name]
+        missing |= {m.IDS[kind] for kind in profile.untold}
         self.streamable: Final = (frozenset(BUILDERS) | frozenset(self._own)) - missing
 
     def build(self, number: int) -> m.Message | None:

@@ -25,6 +25,22 @@ def _fail(context: CommandContext, order: Order) -> Answer:
     return Answer(Result.FAILED)
 
 
+def _set_servo(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.set_servo(order.p1, order.p2))
+
+
+def _repeat_servo(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.repeat_servo(order.p1, order.p2, order.p3, order.p4))
+
+
+def _set_relay(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.set_relay(order.p1, order.p2))
+
+
+def _repeat_relay(context: CommandContext, order: Order) -> Answer:
+    return Answer(context.vehicle.repeat_relay(order.p1, order.p2, order.p3))
+
+
 def _shoot(context: CommandContext, order: Order) -> Answer:
     """DO_DIGICAM_CONTROL: p5 = 1 takes a picture; it is answered alike without one."""
     if order.p5 == 1.0:
@@ -43,15 +59,17 @@ def _banner(context: CommandContext, order: Order) -> Answer:
 
 
 _COPTER: Final = {
-    Cmd.DO_REPEAT_SERVO: _accept,
-    Cmd.DO_SET_RELAY: _accept,
-    Cmd.DO_SET_SERVO: _accept,
+    Cmd.DO_REPEAT_SERVO: _repeat_servo,
+    Cmd.DO_SET_RELAY: _set_relay,
+    Cmd.DO_REPEAT_RELAY: _repeat_relay,
+    Cmd.DO_SET_SERVO: _set_servo,
     Cmd.DO_SET_CAM_TRIGG_DIST: _accept,
     Cmd.DO_AUX_FUNCTION: _accept,
     Cmd.DO_DIGICAM_CONTROL: _shoot,
     Cmd.NAV_VTOL_TAKEOFF: _fail,
     Cmd.DO_MOUNT_CONTROL: _fail,
     Cmd.DO_GRIPPER: _fail,
+    Cmd.DO_WINCH: _fail,  # by memory: there is none (WINCH_TYPE 0)
     Cmd.DO_GIMBAL_MANAGER_PITCHYAW: _fail,
     Cmd.VIDEO_START_CAPTURE: _fail,
     Cmd.DO_SEND_BANNER: _banner,

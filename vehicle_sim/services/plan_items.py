@@ -12,16 +12,17 @@ from vehicle_sim.autopilot.interface import Geodetic, PlanItem
 from vehicle_sim.effects import Client
 from vehicle_sim.services.units import degrees_e7
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, Cmd, MavFrame
+from vehicle_sim.wire.ids import ABSOLUTE, RELATIVE, TERRAIN, Cmd, MavFrame
 
-_GLOBAL: Final = ABSOLUTE | RELATIVE
+_GLOBAL: Final = ABSOLUTE | RELATIVE | TERRAIN
 _LOCAL_SCALE: Final = 1e4
 _GLOBAL_SCALE: Final = 1e7
 _LAST_NAV: Final = 95  # MAV_CMD_NAV_LAST
 INT32_MAX: Final = 0x7FFFFFFF
 
 _DIGICAM: Final = frozenset({202, 203})  # DO_DIGICAM_CONFIGURE, _CONTROL: x and y are numbers
-_PLACELESS_NAVS: Final = frozenset({20, 93})  # NAV_RETURN_TO_LAUNCH, NAV_DELAY
+_PLACELESS_NAVS: Final = frozenset({20, 92, 93})
+"""NAV_RETURN_TO_LAUNCH, NAV_GUIDED_ENABLE, NAV_DELAY."""
 _PLACED_DOS: Final = frozenset({179, 189, 195, 201})
 """DO_SET_HOME, DO_LAND_START, DO_SET_ROI_LOCATION, DO_SET_ROI: all others have no place."""
 
@@ -36,9 +37,20 @@ _KEPT: Final[dict[int, tuple[bool, bool, bool, bool]]] = {
     31: (False, True, False, True),
     82: (True, False, False, False),
     177: (True, True, False, False),
+    92: (True, False, False, False),
+    94: (True, False, False, False),
+    181: (True, True, False, False),
+    182: (True, True, True, False),
+    183: (True, True, False, False),
     206: (True, False, True, False),
+    208: (True, False, False, False),
+    211: (True, True, False, False),
+    218: (True, True, False, False),
+    600: (True, False, False, False),
+    601: (True, True, False, False),
 }
-"""The parameters that ArduCopter stores, where it does not store all four."""
+"""The parameters that ArduCopter stores, where it does not store all four; of those that it was
+sent in C8_upload_item_kinds all came back, what is left out is from memory."""
 
 _TURNED: Final = frozenset({16, 17, 21, 22, 84, 85})
 """NAV_WAYPOINT, _LOITER_UNLIM, _LAND, _TAKEOFF and those of VTOLs: PX4 stores a heading of them."""
@@ -50,6 +62,7 @@ _DEG_PER_RAD: Final = 57.295776367187500
 _PLAIN: Final = {
     MavFrame.GLOBAL_INT: MavFrame.GLOBAL,
     MavFrame.GLOBAL_RELATIVE_ALT_INT: MavFrame.GLOBAL_RELATIVE_ALT,
+    MavFrame.GLOBAL_TERRAIN_ALT_INT: MavFrame.GLOBAL_TERRAIN_ALT,
 }
 _INT: Final = {plain: whole for whole, plain in _PLAIN.items()}
 

@@ -50,6 +50,7 @@ class Profile:
     offset_frames: bool  # LOCAL_OFFSET_NED, BODY_OFFSET_NED, position in BODY_NED
     whole_masks: bool  # any ignore bit of a vector ignores all three axes
     first_log: int  # number of the oldest log in a LOG_ENTRY
+    log_frame_ns: int  # between two LOG_DATA of 90 bytes
     logs_while_armed: bool  # logs are listed and sent in flight too
     component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
     unheard: frozenset[Cmd]  # commands that nobody on board answers
@@ -72,6 +73,7 @@ class Profile:
     refuses_other_components: bool  # commands to one that there is not get an answer
     protocol_version_command: bool  # REQUEST_PROTOCOL_VERSION is known
     names_unknown_message: bool  # SET_MESSAGE_INTERVAL is DENIED with a text, else FAILED
+    refuses_fast_streams: bool  # SET_MESSAGE_INTERVAL below FASTEST_US: DENIED with a text
     names_wrong_frame: bool  # DO_REPOSITION is DENIED with a text, else UNSUPPORTED
     names_command: bool  # a text for NAV_LAND and NAV_RETURN_TO_LAUNCH, not for the mode
     sub_modes: bool  # DO_SET_MODE has a main and a sub mode
@@ -156,6 +158,7 @@ PX4: Final = Profile(
     offset_frames=False,
     whole_masks=False,
     first_log=0,
+    log_frame_ns=250_000,
     logs_while_armed=True,
     component_metadata=True,
     unheard=frozenset(
@@ -165,6 +168,7 @@ PX4: Final = Profile(
             Cmd.DO_MOUNT_CONTROL,
             Cmd.DO_SET_CAM_TRIGG_DIST,
             Cmd.DO_GRIPPER,
+            Cmd.DO_WINCH,  # by memory
             Cmd.DO_MOUNT_CONTROL_QUAT,
             Cmd.PREFLIGHT_SET_SENSOR_OFFSETS,
             Cmd.PREFLIGHT_UAVCAN,
@@ -178,7 +182,7 @@ PX4: Final = Profile(
     camera=True,
     absent={},
     requests=PX4_REQUESTS,
-    untold=frozenset({m.RcChannelsRaw, m.FenceStatus, m.Wind}),
+    untold=frozenset({m.RcChannelsRaw, m.FenceStatus, m.Wind, m.RelayStatus}),
     vtol_state=0,  # UNDEFINED
     flies_to_places=frozenset(name for name in MODES["px4"] if name.startswith("AUTO.")),
     flies_to_places_in_air=frozenset(),
@@ -192,6 +196,7 @@ PX4: Final = Profile(
     refuses_other_components=True,
     protocol_version_command=True,
     names_unknown_message=False,
+    refuses_fast_streams=False,
     names_wrong_frame=False,
     names_command=True,
     sub_modes=True,
@@ -245,6 +250,7 @@ ARDUPILOT: Final = Profile(
     offset_frames=True,
     whole_masks=True,
     first_log=1,
+    log_frame_ns=612_000,
     logs_while_armed=False,
     component_metadata=False,
     unheard=frozenset(),
@@ -253,7 +259,7 @@ ARDUPILOT: Final = Profile(
     camera=True,
     absent={},
     requests=ARDUPILOT_REQUESTS,
-    untold=frozenset({m.ManualControl, m.ActuatorOutputStatus, m.EscStatus, m.EscInfo}),
+    untold=frozenset({m.ManualControl, m.ActuatorOutputStatus, m.EscStatus, m.EscInfo, m.Ping}),
     vtol_state=3,  # MC: a copter is a VTOL that flies as a multicopter
     flies_to_places=frozenset({"AUTO", "RTL"}),
     flies_to_places_in_air=frozenset({"GUIDED"}),
@@ -267,6 +273,7 @@ ARDUPILOT: Final = Profile(
     refuses_other_components=False,
     protocol_version_command=False,
     names_unknown_message=True,
+    refuses_fast_streams=False,
     names_wrong_frame=True,
     names_command=False,
     sub_modes=False,
@@ -291,13 +298,15 @@ _RELEASE: Final[dict[Firmware, str]] = {
 
 
 def profile_of(personality: Personality, firmware: Firmware) -> Profile:
-    """ArduPilot has PARAM_ERROR since 4.7 (MAVLink has it since September 2025)."""
+    """ArduPilot has PARAM_ERROR since 4.7 (MAVLink has it since September 2025), and refuses
+    streams that are too fast; 4.5 slows them down (the latter by memory)."""
     profile = PROFILES[personality]
     return replace(
         profile,
         banner=(_RELEASE[firmware], *profile.banner[1:]) if profile.banner else (),
         flight_sw_version=FLIGHT_SW_VERSION[firmware],
         parameter_errors=firmware == "4.7",
+        refuses_fast_streams=firmware == "4.7",
     )
 
 

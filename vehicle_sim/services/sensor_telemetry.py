@@ -142,8 +142,10 @@ def servo_output_raw(vehicle: Vehicle, profile: Profile) -> m.ServoOutputRaw:
     first, second, third, fourth = (
         round(1000.0 + 1000.0 * output) for output in vehicle.motor_outputs
     )
-    return m.ServoOutputRaw(
-        usec(vehicle) & 0xFFFFFFFF, first, second, third, fourth, 0, 0, 0, 0, port=0
+    others = vehicle.servos_us
+    time_us = usec(vehicle) & 0xFFFFFFFF
+    return m.ServoOutputRaw._make(
+        (time_us, first, second, third, fourth, *others[4:8], 0, *others[8:])
     )
 
 

@@ -104,6 +104,14 @@ def meminfo(vehicle: Vehicle, profile: Profile) -> m.Meminfo:
     return m.Meminfo(brkval=0, freemem=min(FREE_BYTES, UINT16_MAX), freemem32=FREE_BYTES)
 
 
+def relay_status(vehicle: Vehicle, profile: Profile) -> m.RelayStatus | None:
+    """ArduPilot's."""
+    if m.RelayStatus in profile.untold:
+        return None
+    present, on = vehicle.relays
+    return m.RelayStatus(vehicle.clock_ns // 1_000_000 & 0xFFFFFFFF, on, present)
+
+
 STATUS: Final[dict[int, Builder]] = {
     m.IDS[kind]: builder
     for kind, builder in (
@@ -115,5 +123,6 @@ STATUS: Final[dict[int, Builder]] = {
         (m.PowerStatus, power_status),
         (m.Hwstatus, hwstatus),
         (m.Meminfo, meminfo),
+        (m.RelayStatus, relay_status),
     )
 }

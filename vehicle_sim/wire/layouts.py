@@ -107,6 +107,7 @@ PACKINGS: Final[dict[int, Packing]] = {
     345: Packing("<hBB16sB", 21),
     360: Packing("<QfiifB", 25),
     375: Packing("<QI32f", 140, ((2, 32),)),
+    376: Packing("<IHH", 8),
     397: Packing("<II100s", 108),
     410: Packing("<IIHBBB40s", 53),
     411: Packing("<HB", 3),

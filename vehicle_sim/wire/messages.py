@@ -1178,6 +1178,14 @@ class ActuatorOutputStatus(NamedTuple):
     actuator: tuple[float, ...]
 
 
+class RelayStatus(NamedTuple):
+    """RELAY_STATUS (376)."""
+
+    time_boot_ms: int
+    on: int
+    present: int
+
+
 class ComponentMetadata(NamedTuple):
     """COMPONENT_METADATA (397)."""
 
@@ -1392,6 +1400,7 @@ Message: TypeAlias = (
     | ParamError
     | OrbitExecutionStatus
     | ActuatorOutputStatus
+    | RelayStatus
     | ComponentMetadata
     | Event
     | CurrentEventSequence
@@ -1495,6 +1504,7 @@ TYPES: Final[dict[int, type[Message]]] = {
     345: ParamError,
     360: OrbitExecutionStatus,
     375: ActuatorOutputStatus,
+    376: RelayStatus,
     397: ComponentMetadata,
     410: Event,
     411: CurrentEventSequence,

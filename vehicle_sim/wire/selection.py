@@ -109,5 +109,6 @@ MESSAGES: Final = (
     "OPEN_DRONE_ID_LOCATION",
     "OPEN_DRONE_ID_SYSTEM",
     "CONTROL_STATUS",
+    "RELAY_STATUS",
 )
 """Each gets a class.  What is not among them is checked for its CRC, counted and ignored."""

@@ -86,7 +86,6 @@ ARDUPILOT: Final[dict[str, str]] = {
     "text 'vehicle-sim': ours only": OWN_NAME,
     "text 'Frame: QUAD/X': ours only": OWN_NAME,
     "text 'SIM Hit ground at 2.447183 m/s': ours never": NO_SENSOR,
-    "text 'PreArm: Mode requires mission': ours only": "to mend: MISSION_START is quiet",
     **dict.fromkeys(
         (
             "text 'Barometer 1 calibration complete': ours only",

@@ -563,7 +563,11 @@ CASES: tuple[Case, ...] = (
         own.sensed("gps_d"),
     ),
     Case("SIM_MAG1_FAIL", {0: True, 1: False}, own.compass_heard),
-    Case("SIM_RC_FAIL", {0: True, 1: False}, own.sticks_heard),
+    Case(
+        "SIM_RC_FAIL",  # B7: 0.96 s after the last override
+        {0: pytest.approx(4.0, abs=0.25), 1: pytest.approx(1.0, abs=0.25)},
+        fly.seconds_until(own.sticks_then_silent("LOITER"), fly.leaves_mode("LOITER")),
+    ),
     Case(
         "SIM_WIND_DIR",
         {180.0: pytest.approx(8.0, abs=0.3), 0.0: pytest.approx(-8.0, abs=0.3)},

@@ -400,13 +400,6 @@ def fix(setting: Setting) -> int:
     return flight.vehicle.readings.gps.fix_type
 
 
-def sticks_heard(setting: Setting) -> bool:
-    flight = setting.at_home()
-    flight.fly(0.2)
-    flight.hold(0.3)
-    return flight.vehicle.sticks is not None
-
-
 def air_m_s(axis: int) -> Script:
     def script(setting: Setting) -> object:
         flight = setting.at_home()

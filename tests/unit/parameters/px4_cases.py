@@ -210,6 +210,11 @@ CASES: tuple[Case, ...] = (
         own.mission_result,
     ),
     Case(
+        "MIS_PD_TO",
+        {2.0: pytest.approx(2.0, abs=0.3), 5.0: pytest.approx(5.0, abs=0.3)},
+        own.payload_s,
+    ),
+    Case(
         "MIS_TAKEOFF_ALT",
         {2.5: pytest.approx(2.5, abs=0.3), 6.0: pytest.approx(6.0, abs=0.3)},
         fly.take_off_height_m,

@@ -263,6 +263,15 @@ def mission_result(setting: Setting) -> Result:
     return flight.vehicle.set_mode_kind("mission")
 
 
+def payload_s(setting: Setting) -> float:
+    """How long a mission waits at DO_GRIPPER."""
+    flight = setting.aloft()
+    vehicle = flight.vehicle
+    vehicle.load_plan((item(0, 211, frame=2, p1=1), item(1, 17, 5.0, 0.0, UP_M)))
+    vehicle.set_mode_kind("mission")
+    return fly.waits(flight, lambda _: None, lambda f: f.vehicle.mission_current == 1, 8.0)
+
+
 def nose_homewards(setting: Setting) -> float:
     """How much the nose points home on the way north-east: 1 = there, -1 = away from it."""
     flight = setting.aloft()

@@ -91,6 +91,9 @@ class FakeVehicle:
         self.armable = True
         self.fence_state = FenceState(False, False, False, 0, 0, 0)
         self.motor_outputs = (0.0, 0.0, 0.0, 0.0)
+        self.servos_us: tuple[int, ...] = (0,) * 16
+        self.relays = (1, 0)
+        self.downloads: list[bool] = []
         self.mission_current = 0
         self.mission_state = 1
         self.capturing = False
@@ -311,6 +314,24 @@ class FakeVehicle:
 
     def calibrate(self, parameters: tuple[float, ...]) -> Result | None:
         return self._note("calibrate", parameters)
+
+    def set_servo(self, servo: float, pulse_us: float) -> Result:
+        return self._note("set_servo", servo, pulse_us)
+
+    def repeat_servo(self, servo: float, pulse_us: float, count: float, period_s: float) -> Result:
+        return self._note("repeat_servo", servo, pulse_us, count, period_s)
+
+    def set_relay(self, relay: float, state: float) -> Result:
+        return self._note("set_relay", relay, state)
+
+    def repeat_relay(self, relay: float, count: float, period_s: float) -> Result:
+        return self._note("repeat_relay", relay, count, period_s)
+
+    def calibrate_compass_by_yaw(self) -> Result:
+        return self._note("calibrate_compass_by_yaw")
+
+    def log_download(self, running: bool) -> None:
+        self.downloads.append(running)
 
     def calibration_position(self, position: float) -> Result:
         return self._note("calibration_position", position)

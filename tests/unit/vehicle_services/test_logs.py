@@ -389,3 +389,15 @@ def test_a_flight_is_listed_downloaded_and_erased_over_the_wire(personality: Per
     bench.send(m.LogErase(1, 1))
     (entry,) = [e for e in bench.send(m.LogRequestList(0, 0xFFFF, 1, 1)) if is_entry(e)]
     assert entry == m.LogEntry(0, 0, 0, 0, 0)
+
+
+def test_the_vehicle_knows_of_a_download_until_it_has_ended() -> None:
+    """ArduCopter does not arm meanwhile (J2_logs)."""
+    aboard = Aboard("ardupilot", LOG)
+    told = aboard.vehicle.downloads
+    aboard.listed()
+    assert not any(told)
+    aboard.data(1)
+    assert told[-1]
+    aboard.end()
+    assert not told[-1]

@@ -242,11 +242,19 @@ def test_ardupilot_refuses_auto_without_a_take_off_while_armed_on_the_ground() -
 
 
 def test_ardupilot_without_a_mission_starts_none_when_armed() -> None:
-    """C4: disarmed ACCEPTED, "PreArm: Mode requires mission"; armed FAILED."""
+    """C4: disarmed ACCEPTED without a word; armed FAILED.
+
+    Its finding: in AUTO without a mission "PreArm: Mode requires mission", with the other checks.
+    """
     bench = on_the_ground("ardupilot")
+    bench.parameters.set("AUTO_OPTIONS", 3)
     heard = bench.send(long(300)) + bench.advance(S)
     assert acks(heard) == [(300, Result.ACCEPTED)]
-    assert bench.texts(heard) == ["PreArm: Mode requires mission"]
+    assert bench.texts(heard) == []
+    assert "PreArm: Mode requires mission" in bench.texts(bench.advance(35 * S))
+    heard = bench.send(ARM) + bench.advance(S // 10)
+    assert acks(heard) == [(400, Result.FAILED)]
+    assert bench.texts(heard) == ["Arm: Mode requires mission"]
     flying = in_the_air("ardupilot")
     assert flying.result(long(300)) == Result.FAILED
     assert flying.result(long(176, 1, 3)) == Result.FAILED
@@ -258,6 +266,51 @@ def test_px4_takes_the_mission_mode_without_a_mission_only_disarmed() -> None:
     assert bench.result(ARM, 0) == Result.ACCEPTED
     assert bench.result(long(176, 1, 4, 4), 0) == Result.TEMPORARILY_REJECTED
     assert in_the_air("px4").result(long(176, 1, 4, 4)) == Result.TEMPORARILY_REJECTED
+
+
+# ------------------------------------------------ what ArduCopter tells, D3, J2, K1, C1
+
+
+def test_a_compass_calibrated_by_its_yaw_needs_a_reboot_to_arm() -> None:
+    """D3: after FIXED_MAG_CAL_YAW "PreArm: Compass calibrated requires reboot"."""
+    bench = on_the_ground("ardupilot")
+    assert bench.result(long(Cmd.FIXED_MAG_CAL_YAW, 84), 0) == Result.ACCEPTED
+    heard = bench.send(long(Cmd.RUN_PREARM_CHECKS)) + bench.advance(MS * 100)
+    assert bench.texts(heard) == ["PreArm: Compass calibrated requires reboot"]
+    bench.mode("GUIDED")
+    assert bench.result(ARM) == Result.FAILED
+    bench.autopilot.reboot()
+    bench.advance(2 * S)
+    bench.mode("GUIDED")
+    assert bench.result(ARM) == Result.ACCEPTED
+
+
+def test_px4_arms_after_a_quick_calibration_of_the_compass() -> None:
+    bench = on_the_ground("px4")
+    assert bench.result(long(Cmd.FIXED_MAG_CAL_YAW, 84)) == Result.ACCEPTED
+    assert bench.result(ARM) == Result.ACCEPTED
+
+
+def test_ardupilot_does_not_arm_while_a_log_is_downloaded() -> None:
+    """J2: "PreArm: Downloading logs" while LOG_DATA comes."""
+    bench = on_the_ground("ardupilot")
+    bench.mode("GUIDED")
+    bench.autopilot.log_download(True)
+    heard = bench.send(ARM) + bench.advance(S // 10)
+    assert acks(heard) == [(400, Result.FAILED)]
+    assert bench.texts(heard) == ["Arm: Downloading logs"]
+    bench.autopilot.log_download(False)
+    assert bench.result(ARM) == Result.ACCEPTED
+
+
+def test_each_circle_of_a_mission_is_told_and_one_more() -> None:
+    """C1: LOITER_TURNS of 1: "starting circle 1/1" on it, "2/1" when it is flown."""
+    bench = in_the_air("ardupilot")
+    circle = PlanItem(1, 3, 18, 1.0, 0.0, 4.0, 0.0, 0, 0, 5.0, 1)
+    bench.autopilot.load_plan((HOME_ITEM, circle, item(2, 20)))
+    assert bench.result(long(300), 0) == Result.ACCEPTED
+    told = [text for text in bench.texts(bench.advance(60 * S)) if "circle" in text]
+    assert told == ["Mission: starting circle 1/1", "Mission: starting circle 2/1"]
 
 
 # --------------------------------------------------------- G station lost (vehicle.md 1)

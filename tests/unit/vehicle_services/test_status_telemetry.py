@@ -6,10 +6,11 @@ import math
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import Bench, long
+from tests.unit.vehicle_services.fake_vehicle import Bench, acks, long
 from vehicle_sim.autopilot.interface import AttitudeGoal, Target
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
+from vehicle_sim.wire.ids import Cmd
 
 
 def asked(bench: Bench, kind: type[m.Message]) -> m.Message | None:
@@ -109,3 +110,39 @@ def test_who_asks_for_the_modes_hears_from_then_on_whether_they_changed() -> Non
     after = bench.advance(15_000_000_000)
     assert len([each for each in after if isinstance(each, m.AvailableModesMonitor)]) == 3
     assert not [each for each in after if isinstance(each, m.CurrentMode)]
+
+
+def test_servo_outputs_and_relays_are_told() -> None:
+    """DO_SET_SERVO's output in SERVO_OUTPUT_RAW beside the motors; RELAY_STATUS's masks."""
+    bench = Bench("ardupilot")
+    bench.vehicle.servos_us = (0,) * 8 + (1900,) + (0,) * 7
+    bench.vehicle.relays = (1, 1)
+    told = bench.send(long(Cmd.REQUEST_MESSAGE, m.IDS[m.ServoOutputRaw]))
+    (servos,) = [each for each in told if isinstance(each, m.ServoOutputRaw)]
+    assert (servos.servo1_raw, servos.servo9_raw, servos.servo10_raw) == (1000, 1900, 0)
+    told = bench.send(long(Cmd.REQUEST_MESSAGE, m.IDS[m.RelayStatus]))
+    (relays,) = [each for each in told if isinstance(each, m.RelayStatus)]
+    assert (relays.present, relays.on) == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("command", "given", "call"),
+    [
+        (Cmd.DO_SET_SERVO, (9, 1500), ("set_servo", 9.0, 1500.0)),
+        (Cmd.DO_REPEAT_SERVO, (9, 1500, 2, 1), ("repeat_servo", 9.0, 1500.0, 2.0, 1.0)),
+        (Cmd.DO_SET_RELAY, (0, 1), ("set_relay", 0.0, 1.0)),
+        (Cmd.DO_REPEAT_RELAY, (0, 3, 1), ("repeat_relay", 0.0, 3.0, 1.0)),
+    ],
+)
+def test_commands_for_servos_and_relays_reach_them(
+    command: Cmd, given: tuple[float, ...], call: tuple[object, ...]
+) -> None:
+    bench = Bench("ardupilot")
+    assert acks(bench.send(long(command, *given))) == [(command, 0)]
+    assert bench.vehicle.calls[-1] == call
+
+
+def test_a_winch_that_there_is_not() -> None:
+    """From memory: FAILED by ArduCopter (WINCH_TYPE 0), no answer by PX4, as of its gripper."""
+    assert acks(Bench("ardupilot").send(long(Cmd.DO_WINCH, 1))) == [(42600, 4)]
+    assert acks(Bench("px4").send(long(Cmd.DO_WINCH, 1))) == []

@@ -209,3 +209,28 @@ def test_timesync_and_ping_are_echoed_to_the_asker_and_answers_are_not() -> None
     assert isinstance(pong, m.Ping)
     assert (pong.seq, pong.target_system, pong.target_component) == (4, 255, 190)
     assert bench.send(m.Ping(99, 4, 1, 1)) == []
+
+
+def test_ardupilot_4_7_refuses_a_rate_that_its_loop_cannot_keep() -> None:
+    """K1_small_services: 5000 us ACCEPTED; 100 us DENIED, with a text in two chunks."""
+    bench = Bench("ardupilot", firmware="4.7")
+    assert acks(bench.send(long(Cmd.SET_MESSAGE_INTERVAL, 24, 5000))) == [(511, 0)]
+    heard = bench.send(long(Cmd.SET_MESSAGE_INTERVAL, 24, 100))
+    assert acks(heard) == [(511, 2)]
+    assert [each.text.rstrip(b"\0") for each in heard if isinstance(each, m.Statustext)] == [
+        b"Requested rate for message ID 24 too fast. Increas",
+        b"e SCHED_LOOP_RATE",
+    ]
+    told = bench.send(long(Cmd.GET_MESSAGE_INTERVAL, 24))
+    assert [each.interval_us for each in told if isinstance(each, m.MessageInterval)] == [5000]
+
+
+@pytest.mark.parametrize("number", [4, 9999])
+def test_ardupilot_names_a_message_that_it_cannot_stream(number: int) -> None:
+    """K1_small_services: PING and 9999."""
+    bench = Bench("ardupilot")
+    heard = bench.send(long(Cmd.SET_MESSAGE_INTERVAL, number, 1e6))
+    assert acks(heard) == [(511, 2)]
+    (text,) = [each.text.rstrip(b"\0") for each in heard if isinstance(each, m.Statustext)]
+    assert text == b"No ap_message for mavlink id (%d)" % number
+    assert acks(bench.send(long(Cmd.GET_MESSAGE_INTERVAL, number))) == [(510, 4)]

@@ -20,9 +20,12 @@ _BARO = 1 << 1
 _COMPASS = 1 << 2
 _GPS = 1 << 3
 _INS = 1 << 4
+_PARAMETERS = 1 << 5
 _RC = 1 << 6
 _VOLTAGE = 1 << 7
 _BATTERY = 1 << 8
+_LOGGING = 1 << 10
+_MISSION = 1 << 14
 
 _BIAS_SHARE = 0.75  # PX4 arms up to this part of the largest bias that its estimator may learn
 _GYRO_BIAS_RAD_S = 0.075  # a gyroscope that ArduCopter would not call calibrated
@@ -58,6 +61,8 @@ class Readiness:
     station_lost: bool
     battery_failed: bool  # its failsafe has struck since the start
     calibration: tuple[str, ...]  # what ArduCopter's calibrations have against arming
+    needs_terrain: bool  # the mission has heights above terrain, of which nothing is known
+    log_download: bool  # somebody downloads a flight log
 
 
 def reasons(parameters: Parameters, ready: Readiness) -> tuple[str, ...]:
@@ -162,6 +167,12 @@ def _copter(parameters: Parameters, ready: Readiness) -> list[str]:
         if ready.battery_failed:
             found.append("PreArm: Battery failsafe")
     found += [f"PreArm: {why}" for why in ready.calibration]
+    if asked(_PARAMETERS) and ready.needs_terrain:
+        found.append("PreArm: waiting for terrain data")  # from memory
+    if asked(_LOGGING) and ready.log_download:
+        found.append("PreArm: Downloading logs")
+    if asked(_MISSION) and not ready.mission_ok:
+        found.append("PreArm: Mode requires mission")
     if get("FENCE_ENABLE") != 0:
         misfit = ready.geofence.misfit()
         if misfit is not None:

@@ -158,6 +158,11 @@ class Radio:
         if grace is None:
             return self.sticks(wall_ns) is None
         grace_ns = int(self._parameters.get(grace) * _S_NS)
+        silent = self._parameters.rules.receiver_silent
+        if silent is not None and self._parameters.get(silent) != 0.0:
+            # As recorded: with no receiver nothing new comes to be read after the last override.
+            newest_ns = max((at_ns for at_ns in self._heard_ns if at_ns is not None), default=None)
+            return newest_ns is None or wall_ns - newest_ns >= grace_ns
         return self._radio(wall_ns - grace_ns) is None
 
     def sticks(self, wall_ns: int) -> Sticks | None:

@@ -23,6 +23,18 @@ COPTER_ITEMS: dict[int, str] = {
     Cmd.CHANGE_SPEED: "ChangeSpeed",
     Cmd.SET_HOME: "SetHome",
     Cmd.ROI: "SetROI",
+    Cmd.GUIDED_ENABLE: "NavGuidedEnable",
+    Cmd.PAYLOAD_PLACE: "PayloadPlace",
+    Cmd.SET_RELAY: "SetRelay",
+    Cmd.REPEAT_RELAY: "RepeatRelay",
+    Cmd.SET_SERVO: "SetServo",
+    Cmd.REPEAT_SERVO: "RepeatServo",
+    Cmd.PARACHUTE: "Parachute",
+    Cmd.GRIPPER: "Gripper",
+    Cmd.AUX_FUNCTION: "AuxFunction",
+    Cmd.GUIDED_LIMITS: "GuidedLimits",
+    Cmd.JUMP_TAG: "Tag",
+    Cmd.WINCH: "Winch",
 }
 """What ArduCopter calls an item that it begins: "WP", "Takeoff", "RTL" and "SetROI" as recorded,
 the others from memory of AP_Mission."""
@@ -37,12 +49,13 @@ class ItemTexts:
     `told`: whether this autopilot says anything of them (PX4 does not).
     """
 
-    __slots__ = ("_named_up_to", "_told", "_vehicle")
+    __slots__ = ("_circles", "_named_up_to", "_told", "_vehicle")
 
     def __init__(self, vehicle: MissionVehicle, told: bool) -> None:
         self._vehicle = vehicle
         self._told = told
         self._named_up_to = -1
+        self._circles: int | None = None
 
     def begin(self, items: tuple[PlanItem, ...]) -> None:
         """A mission begins with the first of `items`: all up to the first flown one are named."""
@@ -54,10 +67,19 @@ class ItemTexts:
 
     def start(self, item: PlanItem) -> None:
         """An item begins."""
+        self._circles = None
         if item.seq > self._named_up_to:
             self._name(item)
         elif KINDS[item.command] is ItemKind.FLOWN:
             self._named_up_to = -1
+
+    def circling(self, item: PlanItem, completed: int | None) -> None:
+        """A whole circle of LOITER_TURNS is over, or the first begins (0); the last one, too, is
+        followed by the number of a next one, as recorded."""
+        if self._told and completed != self._circles and completed is not None:
+            text = f"Mission: starting circle {completed + 1}/{int(item.p1)}"
+            self._vehicle.emit(StatusText(_INFO, text))
+        self._circles = completed
 
     def reached(self, item: PlanItem) -> None:
         if self._told and item.command in _TOLD_WHEN_REACHED:

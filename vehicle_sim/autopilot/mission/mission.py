@@ -8,7 +8,7 @@ next leg is cut off, and goes on with the next update.
 
 from __future__ import annotations
 
-from math import inf, isfinite, radians
+from math import isfinite, radians
 
 from vehicle_sim.autopilot.control.demands import Demand, FlyTo, Situation, Turner
 from vehicle_sim.autopilot.interface import (
@@ -18,19 +18,23 @@ from vehicle_sim.autopilot.interface import (
     StatusText,
     Target,
 )
+from vehicle_sim.autopilot.mission.item_legs import PLACELESS, leg_of, seconds, waits_for_payload
 from vehicle_sim.autopilot.mission.item_texts import ItemTexts
+from vehicle_sim.autopilot.mission.jumps import JUMPS, Jumps
 from vehicle_sim.autopilot.mission.mission_commands import MissionCommands, MissionVehicle
 from vehicle_sim.autopilot.mission.plan import (
     KINDS,
     Cmd,
     ItemKind,
+    by_terrain,
     has_height,
     has_place,
     place_of,
 )
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.circle import CircleTask
-from vehicle_sim.autopilot.tasks.legs import Go, GoAndLand, GoToHeight, Leg, Rise, Whole
+from vehicle_sim.autopilot.tasks.guided_limits import GuidedLimits
+from vehicle_sim.autopilot.tasks.legs import Go, GoToHeight, Leg, Rise, Whole
 from vehicle_sim.autopilot.tasks.spline import Spline, curve
 from vehicle_sim.autopilot.tasks.tasks import Return, TakeOff, face
 from vehicle_sim.numerics.vectors import Vec3
@@ -47,14 +51,15 @@ class Mission:
     __slots__ = (
         "_before_ned",
         "_by_home",
+        "_circle",
         "_errands",
         "_first_task",
         "_goal",
+        "_jumps",
         "_last",
         "_leg",
         "_next",
         "_parameters",
-        "_repeats",
         "_rules",
         "_texts",
         "_until_ns",
@@ -71,6 +76,7 @@ class Mission:
         self._rules = parameters.rules
         self._texts = ItemTexts(vehicle, told=self._rules.names_mission_items)
         self._errands = MissionCommands(vehicle, reports=self._rules.commands_are_reached)
+        self._jumps = Jumps()
         self.load(())
 
     # ------------------------------------------------------------------------- the plan
@@ -85,7 +91,7 @@ class Mission:
         self.finished = False
         self.started = False
         self._last = len(self.items) - 1
-        self._repeats: dict[int, int] = {}
+        self._jumps.forget()
         self._errands.forget()
         self._by_home = False
         self._goal: Vec3 | None = None
@@ -93,6 +99,7 @@ class Mission:
         self._first_task: TakeOff | None = None
         self._until_ns: int | None = None
         self._leg: Leg | None = None
+        self._circle: CircleTask | None = None
 
     @property
     def empty(self) -> bool:
@@ -196,6 +203,7 @@ class Mission:
         self._next = max(self._next, self._rules.first_mission_item)
         self.current = max(self.current, self._rules.first_mission_item)
         self._leg = None
+        self._errands.guided_limits = GuidedLimits()
         self.announce_begin()
         self._goal = s.stop_ned
         self._before_ned = None
@@ -236,6 +244,8 @@ class Mission:
         """To the next leg, if this one is over."""
         entry_m_s = 0.0
         if self._leg is not None:
+            if self._circle is not None:
+                self._texts.circling(self.items[self.current], self._circle.completed)
             if not self._leg.done(s):
                 return
             if isinstance(self._leg, Spline) and not self._leg.stops:
@@ -247,11 +257,11 @@ class Mission:
                 return
             item = self.items[self._next]
             self.current = self._next
-            if KINDS[item.command] is ItemKind.FLOWN:
+            if KINDS[item.command] is ItemKind.FLOWN or waits_for_payload(item, self._rules):
                 self._next += 1
                 self._start(item, s, turner, entry_m_s)
                 return
-            if item.command == Cmd.JUMP:
+            if item.command in JUMPS:
                 self._jump(item)
             else:
                 self._errands.put(item)
@@ -266,14 +276,9 @@ class Mission:
         self._errands.drop()
 
     def _jump(self, item: PlanItem) -> None:
-        """PX4 may hold one that leads beyond its items: the mission ends there."""
-        done = self._repeats.get(item.seq, 0)
-        if item.p2 < 0 or done < item.p2:
-            self._repeats[item.seq] = done + 1
-            self._next = int(item.p1) if 0 <= item.p1 < len(self.items) else self._last + 1
-            return
-        self._next += 1
-        if self._rules.tells_end_of_jumps:
+        there = self._jumps.leads_to(item, self.items)
+        self._next = self._next + 1 if there is None else there
+        if there is None and self._rules.tells_end_of_jumps:
             self._vehicle.emit(StatusText(6, "DO JUMP repetitions completed."))
 
     def announce_begin(self) -> None:
@@ -281,6 +286,7 @@ class Mission:
 
     def _start(self, item: PlanItem, s: Situation, turner: Turner, entry_m_s: float) -> None:
         self._texts.start(item)
+        self._circle = None
         if item.command == Cmd.RETURN:
             self._errands.work(s, self._goal)
             if self._vehicle.leave_for_return():
@@ -294,11 +300,14 @@ class Mission:
             home.begin(s, turner)
             self._leg = Whole(home)
             return
+        if by_terrain(item) and self._vehicle.leave_without_terrain():
+            self._next = self.current
+            return
         here = self._goal if entry_m_s > 0.0 and self._goal is not None else s.stop_ned
         place = place_of(item, self._vehicle.datum(), here)
         self._leg = self._leg_of(item, place, here, s, turner, entry_m_s)
         self._before_ned, self._goal = here, self._leg.target.pos_ned
-        if item.command not in (Cmd.TAKEOFF, Cmd.DELAY):
+        if item.command not in PLACELESS:
             self._set_heading(item, place, s, turner)
 
     def _leg_of(
@@ -320,31 +329,31 @@ class Mission:
             case Cmd.LOITER_TURNS:
                 circle = CircleTask(place, _radius(item), item.p1, not item.p3 < 0.0)
                 circle.begin(s, turner)
+                self._circle = circle
                 return Whole(circle)
             case Cmd.LOITER_TO_ALT:
                 return GoToHeight(place, here[2])
-            case Cmd.LAND:
-                return GoAndLand(self._parameters, (place[0], place[1], s.stop_ned[2]))
             case Cmd.SPLINE:
                 after = self._after(item, place)
                 before = self._before_ned if entry_m_s > 0.0 else None
                 along = curve(here, place, before, after)
-                return Spline(along, entry_m_s, after is None, accept_m, _seconds(item))
-            case Cmd.DELAY:
-                return Go(self._goal or s.stop_ned, inf, item.p1)
-            case Cmd.LOITER_UNLIM:
-                return Go(place, accept_m, inf)
+                return Spline(along, entry_m_s, after is None, accept_m, seconds(item))
             case _:
-                return Go(place, accept_m, _seconds(item))
+                goal = self._goal or s.stop_ned
+                own = self._parameters
+                return leg_of(item, place, goal, s, own, accept_m, self._guided_limits)
+
+    def _guided_limits(self) -> GuidedLimits:
+        return self._errands.guided_limits
 
     def _after(self, item: PlanItem, place: Vec3) -> Vec3 | None:
         """Where a spline goes on to without a stop; None = it ends at rest."""
-        if _seconds(item) > 0.0 or self._next > self._last:
+        if seconds(item) > 0.0 or self._next > self._last:
             return None
         follower = self._flown_from(self._next)
         if follower is None or follower.command not in _THROUGH:
             return None
-        if any(each.command == Cmd.JUMP for each in self.items[self._next : follower.seq]):
+        if any(each.command in JUMPS for each in self.items[self._next : follower.seq]):
             return None
         return place_of(follower, self._vehicle.datum(), place)
 
@@ -383,11 +392,6 @@ class Mission:
         if self._leg is not None:
             return self._leg.update(s, turner)
         return FlyTo(self._goal or s.stop_ned, s.limits)
-
-
-def _seconds(item: PlanItem) -> float:
-    """How long to stay: param 1."""
-    return item.p1 if isfinite(item.p1) else 0.0
 
 
 def _radius(item: PlanItem) -> float:

@@ -20,6 +20,7 @@ from vehicle_sim.autopilot.interface import (
     VehicleEvent,
 )
 from vehicle_sim.autopilot.mission.plan import KINDS, Cmd, Datum, ItemKind, has_place, place_of
+from vehicle_sim.autopilot.tasks.guided_limits import GuidedLimits
 from vehicle_sim.autopilot.tasks.tasks import distance, face
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -36,6 +37,14 @@ class MissionVehicle(Protocol):
     def turn_nose(self, yaw_rad: float, rate_rad_s: float, direction: int) -> None: ...
     def nose_turns(self) -> bool: ...
     def enable_fence(self, choice: int) -> Result: ...
+    def actuate(self, item: PlanItem) -> None:
+        """Servos and relays."""
+        ...
+
+    def leave_without_terrain(self) -> bool:
+        """Give up an item whose height counts from the terrain, of which nothing is known."""
+        ...
+
     def leave_for_return(self) -> bool:
         """Change to the return mode; False where the personality returns within the mission."""
         ...
@@ -53,6 +62,7 @@ class MissionCommands:
         "_trigger_m",
         "_until_ns",
         "_vehicle",
+        "guided_limits",
     )
 
     def __init__(self, vehicle: MissionVehicle, reports: bool = False) -> None:
@@ -62,6 +72,7 @@ class MissionCommands:
         self.forget()
 
     def forget(self) -> None:
+        self.guided_limits = GuidedLimits()
         self._roi_ned: Vec3 | None = None
         self._trigger_m = 0.0
         self._last_shot_ned: Vec3 | None = None
@@ -136,6 +147,10 @@ class MissionCommands:
                 vehicle.move_home(None if here else place_of(item, vehicle.datum(), s.pos_ned))
             case Cmd.FENCE_ENABLE:
                 vehicle.enable_fence(int(item.p1))
+            case Cmd.SET_SERVO | Cmd.REPEAT_SERVO | Cmd.SET_RELAY | Cmd.REPEAT_RELAY:
+                vehicle.actuate(item)
+            case Cmd.GUIDED_LIMITS:
+                self.guided_limits = GuidedLimits(item.p1, item.p2, item.p3, item.p4)
             case Cmd.ROI_NONE:
                 self._roi_ned = None
             case Cmd.ROI_LOCATION | Cmd.ROI:

@@ -25,13 +25,19 @@ class Cmd:
     TAKEOFF = 22
     LOITER_TO_ALT = 31
     SPLINE = 82
+    GUIDED_ENABLE = 92
     DELAY = 93
+    PAYLOAD_PLACE = 94
     CONDITION_DELAY = 112
     CONDITION_DISTANCE = 114
     CONDITION_YAW = 115
     JUMP = 177
     CHANGE_SPEED = 178
     SET_HOME = 179
+    SET_RELAY = 181
+    REPEAT_RELAY = 182
+    SET_SERVO = 183
+    REPEAT_SERVO = 184
     LAND_START = 189
     ROI_LOCATION = 195
     ROI_NONE = 197
@@ -40,13 +46,20 @@ class Cmd:
     MOUNT_CONTROL = 205
     CAM_TRIGG_DIST = 206
     FENCE_ENABLE = 207
+    PARACHUTE = 208
+    GRIPPER = 211
+    AUX_FUNCTION = 218
+    GUIDED_LIMITS = 222
     SET_CAMERA_MODE = 530
+    JUMP_TAG = 600
+    DO_JUMP_TAG = 601
     SET_CAMERA_ZOOM = 531
     SET_CAMERA_FOCUS = 532
     GIMBAL_PITCHYAW = 1000
     IMAGE_START = 2000
     IMAGE_STOP = 2001
     FENCE_RETURN_POINT = 5000
+    WINCH = 42600
 
 
 class ItemKind(Enum):
@@ -70,6 +83,8 @@ KINDS: dict[int, ItemKind] = {
     Cmd.LOITER_TO_ALT: ItemKind.FLOWN,
     Cmd.SPLINE: ItemKind.FLOWN,
     Cmd.DELAY: ItemKind.FLOWN,
+    Cmd.GUIDED_ENABLE: ItemKind.FLOWN,
+    Cmd.PAYLOAD_PLACE: ItemKind.FLOWN,
     Cmd.CONDITION_DELAY: ItemKind.WAITED,
     Cmd.CONDITION_DISTANCE: ItemKind.WAITED,
     Cmd.CONDITION_YAW: ItemKind.WAITED,
@@ -85,6 +100,17 @@ KINDS: dict[int, ItemKind] = {
     Cmd.IMAGE_START: ItemKind.DONE,
     Cmd.IMAGE_STOP: ItemKind.DONE,
     Cmd.FENCE_ENABLE: ItemKind.DONE,
+    Cmd.SET_RELAY: ItemKind.DONE,
+    Cmd.REPEAT_RELAY: ItemKind.DONE,
+    Cmd.SET_SERVO: ItemKind.DONE,
+    Cmd.REPEAT_SERVO: ItemKind.DONE,
+    Cmd.PARACHUTE: ItemKind.DONE,
+    Cmd.GRIPPER: ItemKind.DONE,
+    Cmd.AUX_FUNCTION: ItemKind.DONE,
+    Cmd.GUIDED_LIMITS: ItemKind.DONE,
+    Cmd.JUMP_TAG: ItemKind.DONE,
+    Cmd.DO_JUMP_TAG: ItemKind.DONE,
+    Cmd.WINCH: ItemKind.DONE,
     Cmd.MOUNT_CONTROL: ItemKind.NOTHING,
     Cmd.SET_CAMERA_MODE: ItemKind.NOTHING,
     Cmd.SET_CAMERA_ZOOM: ItemKind.NOTHING,
@@ -92,6 +118,26 @@ KINDS: dict[int, ItemKind] = {
     Cmd.GIMBAL_PITCHYAW: ItemKind.NOTHING,
     Cmd.FENCE_RETURN_POINT: ItemKind.NOTHING,
 }
+
+_UNKNOWN: dict[Personality, frozenset[int]] = {
+    "px4": frozenset(
+        {
+            Cmd.GUIDED_ENABLE,
+            Cmd.PAYLOAD_PLACE,
+            Cmd.SET_RELAY,
+            Cmd.REPEAT_RELAY,
+            Cmd.SET_SERVO,
+            Cmd.REPEAT_SERVO,
+            Cmd.PARACHUTE,
+            Cmd.AUX_FUNCTION,
+            Cmd.GUIDED_LIMITS,
+            Cmd.JUMP_TAG,
+            Cmd.DO_JUMP_TAG,
+        }
+    ),
+    "ardupilot": frozenset(),
+}
+"""Items of `KINDS` that one of the two refuses at upload, as recorded (C8_upload_item_kinds)."""
 
 _PLACED = frozenset(
     {
@@ -103,17 +149,24 @@ _PLACED = frozenset(
         Cmd.LAND,
         Cmd.TAKEOFF,
         Cmd.SPLINE,
+        Cmd.PAYLOAD_PLACE,
         Cmd.ROI_LOCATION,
     }
 )
 _HERE_IF_ZERO = frozenset(
     {Cmd.LAND, Cmd.TAKEOFF, Cmd.LOITER_UNLIM, Cmd.LOITER_TIME, Cmd.LOITER_TO_ALT}
 )
-_HERE_IF_ZERO_COPTER = _HERE_IF_ZERO | {Cmd.WAYPOINT, Cmd.LOITER_TURNS, Cmd.SPLINE}
+_HERE_IF_ZERO_COPTER = _HERE_IF_ZERO | {
+    Cmd.WAYPOINT,
+    Cmd.LOITER_TURNS,
+    Cmd.SPLINE,
+    Cmd.PAYLOAD_PLACE,
+}
 _GROUND_SPEED = frozenset({0.0, 1.0})  # SPEED_TYPE: a multicopter has no other horizontal one
 
 _GLOBAL = frozenset({0, 5})  # MAV_FRAME_GLOBAL, _INT: metres above mean sea level
 _RELATIVE = frozenset({3, 6})  # MAV_FRAME_GLOBAL_RELATIVE_ALT, _INT: metres above home
+_TERRAIN = frozenset({10, 11})  # MAV_FRAME_GLOBAL_TERRAIN_ALT, _INT: metres above the terrain
 _LOCAL_NED = 1
 _MISSION = 2  # without coordinates
 _NO_PLACE = 0x7FFFFFFF
@@ -148,6 +201,11 @@ def check(items: tuple[PlanItem, ...], personality: Personality) -> tuple[int, s
     return None
 
 
+def by_terrain(item: PlanItem) -> bool:
+    """Its height counts from the terrain below it."""
+    return item.command in _PLACED and item.frame in _TERRAIN
+
+
 def infeasible(items: tuple[PlanItem, ...]) -> bool:
     """PX4 stores it, and does not fly it: it waits for a condition, takes off in between, or
     begins with a landing."""
@@ -158,10 +216,12 @@ def infeasible(items: tuple[PlanItem, ...]) -> bool:
 
 def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None:
     rules = RULES[personality]
-    if item.command not in KINDS or (item.command == Cmd.SPLINE and not rules.flies_splines):
+    frames = _GLOBAL | _RELATIVE | {_LOCAL_NED} | (_TERRAIN if rules.terrain_items else frozenset())
+    unknown = item.command not in KINDS or item.command in _UNKNOWN[personality]
+    if unknown or (item.command == Cmd.SPLINE and not rules.flies_splines):
         return f"command {item.command} is not supported"
     if item.command in _PLACED:
-        if item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED}:
+        if item.frame not in frames:
             return f"frame {item.frame} is not supported"
         if rules.items_need_sound_place and not isfinite(item.z):
             return "the altitude is not a number"
@@ -170,7 +230,7 @@ def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None
             return "the position is not on Earth"
         if not has_place(item) and item.command not in _HERE[personality]:
             return "the position is missing"
-    elif item.frame not in _GLOBAL | _RELATIVE | {_LOCAL_NED, _MISSION}:
+    elif item.frame not in frames | {_MISSION}:
         return f"frame {item.frame} is not supported"
     elif (
         item.command == Cmd.RETURN

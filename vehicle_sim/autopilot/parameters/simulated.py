@@ -22,7 +22,6 @@ from vehicle_sim.plant.faults import (
     MagFault,
     ModelFault,
     MotorFault,
-    RcLost,
     WindChange,
 )
 
@@ -40,7 +39,7 @@ class _Group:
     """Parameters that make faults together; `make` is given where it is and what they say."""
 
     names: tuple[str, ...]
-    make: Callable[[float, tuple[float, ...]], tuple[ModelFault | RcLost, ...]]
+    make: Callable[[float, tuple[float, ...]], tuple[ModelFault, ...]]
 
 
 def _wind(from_deg: float, speed_m_s: float, gust_m_s: float) -> WindChange:
@@ -53,7 +52,7 @@ def _weakened(full_v: float) -> CellsLost:
     return CellsLost(_CELLS * max(0.0, 1.0 - full_v / _FULL_V))
 
 
-def _engines(failed: float, left: float) -> tuple[ModelFault | RcLost, ...]:
+def _engines(failed: float, left: float) -> tuple[ModelFault, ...]:
     mask = int(failed)
     return tuple(MotorFault(motor, left if mask >> motor - 1 & 1 else 1.0) for motor in _MOTORS)
 
@@ -84,7 +83,6 @@ _GROUPS: dict[Personality, tuple[_Group, ...]] = {
             ),
         ),
         _Group(("SIM_MAG1_FAIL",), lambda _, v: (MagFault(lost=v[0] != 0.0),)),
-        _Group(("SIM_RC_FAIL",), lambda _, v: (RcLost(v[0] != 0.0),)),
         _Group(("SIM_WIND_DIR", "SIM_WIND_SPD", "SIM_WIND_TURB"), lambda _, v: (_wind(*v),)),
     ),
 }
@@ -156,7 +154,7 @@ class Simulated:
         groups = _GROUPS[parameters.personality]
         self._said = [tuple(map(parameters.designed, group.names)) for group in groups]
 
-    def news(self) -> Iterator[ModelFault | RcLost]:
+    def news(self) -> Iterator[ModelFault]:
         """What has changed since it was asked last; at first, since the defaults."""
         if self._version == self._parameters.version:
             return

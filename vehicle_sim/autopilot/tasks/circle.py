@@ -21,19 +21,24 @@ class CircleTask:
 
     landed_word = Landed.IN_AIR
 
-    __slots__ = ("_angle", "_centre", "_left_rad", "_radius", "_started", "_way")
+    __slots__ = ("_all_rad", "_angle", "_centre", "_left_rad", "_radius", "_started", "_way")
 
     def __init__(self, centre_ned: Vec3, radius_m: float, turns: float, clockwise: bool) -> None:
         self._centre = centre_ned
         self._radius = radius_m
         self._way = 1.0 if clockwise else -1.0
-        self._left_rad = turns * 2.0 * pi
+        self._all_rad = self._left_rad = turns * 2.0 * pi
         self._angle = 0.0
         self._started = False
 
     @property
     def done(self) -> bool:
         return self._left_rad <= 0.0
+
+    @property
+    def completed(self) -> int | None:
+        """Whole circles flown so far; None = it is not on the circle yet."""
+        return int((self._all_rad - self._left_rad) / (2.0 * pi)) if self._started else None
 
     @property
     def target(self) -> Target:

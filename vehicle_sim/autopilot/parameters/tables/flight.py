@@ -10,6 +10,8 @@ PX4 = (
     real("COM_SPOOLUP_TIME", 1.0,  0.0,  30.0,  "from arming to lift-off at least [s]"),
     real("MIS_DIST_1WP",     900., -1.0, 10000., "a mission's first waypoint farther from home is "
                                               "refused [m], 0 = any"),
+    real("MIS_PD_TO",        5.0,  0.0,  1e6,   "DO_GRIPPER and DO_WINCH in a mission are waited "
+                                                "for [s]"),
     real("MIS_TAKEOFF_ALT",  2.5,  0.5,  80.0,  "take-off height above home [m]"),
     real("MPC_ACC_DOWN_MAX", 3.0,  2.0,  15.0,  "vertical acceleration down [m/s^2]"),
     real("MPC_ACC_HOR",      3.0,  2.0,  15.0,  "horizontal acceleration [m/s^2]"),
