@@ -26,8 +26,8 @@ class Believed:
     voltage of the full battery.
 
     Of the four motors, each: `hover_n` is its thrust in hover, `roll_n_s2`, `pitch_n_s2` and
-    `yaw_n_s2` the change of its thrust for an angular acceleration [N per rad/s^2]; for yaw it
-    changes by `yaw_most_n` at the most, and by what an axis' integrator has learnt by
+    `yaw_n_s2` the change of its thrust for an angular acceleration [N per rad/s^2]; for yaw it may
+    always change by `yaw_most_n`, and by what an axis' integrator has learnt by
     `integral_most_n`.  `d_filter_part` is the D-term's filter's part of a new sample.
     """
 

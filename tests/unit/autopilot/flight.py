@@ -9,6 +9,8 @@ from math import nan, sqrt
 from pathlib import Path
 from typing import Self
 
+from vehicle_sim.engine.few import Few
+
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.interface import (
@@ -22,7 +24,6 @@ from vehicle_sim.autopilot.interface import (
 )
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.tasks.guided import Offboard
-from vehicle_sim.engine.few import Few
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.plant.airframe import load, parse, shipped

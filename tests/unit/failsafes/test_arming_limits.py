@@ -30,6 +30,7 @@ def against(
         gyro_bias_rad_s=0.001, accel_off_m_s2=0.05, roll_rad=0.0, pitch_rad=0.0,
         geofence=Geofence(parameters), mission_ok=True, has_mission=False, setpoints=False,
         sticks=False, sticks_lost=False, station_lost=False, battery_failed=False, calibration=(),
+        needs_terrain=False, log_download=False,
     )  # fmt: skip
     return reasons(parameters, replace(ready, **changes))  # type: ignore[arg-type]  # as asked
 
