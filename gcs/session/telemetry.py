@@ -55,6 +55,8 @@ class Telemetry:
     home: tuple[float, float, float] | None = None
     home_ned: Vec3 | None = None
     return_up_m: float | None = None
+    return_told: bool = False  # its return height is known, or it says that it has none
+    acceptance_m: float | None = None  # how near a waypoint it takes it as reached itself
 
     prearm_ok: bool | None = None
     battery_pct: float | None = None

@@ -19,11 +19,11 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.gate.states import Control
 from gcs.protocol.autopilot import autopilot_of
-from gcs.protocol.effects import Heard, Send
+from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
 from gcs.report import ParamItem, SetpointItem, StatusItem
-from gcs.session import discovery, teller
+from gcs.session import settings, teller
 from gcs.session.commands import Commands
 from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
@@ -33,6 +33,7 @@ from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
 from gcs.session.screen import lost_pct
 from gcs.session.setpoints import setpoint
+from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
 from gcs.session.updates import updates
 from gcs.session.work import CheckStart, Log, PlaceFence, ToGate, Work
@@ -78,6 +79,7 @@ class Vehicle:
         self._port = GatePort(policy, config.speedup, now_ns)
         self._commands = Commands(config.sysid, config.compid, config.speedup)
         self._discovery = Discovery(config)
+        self._settings = Settings(Address(config.sysid, config.compid))
         self._missions = Missions(config)
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
@@ -90,7 +92,7 @@ class Vehicle:
     @property
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
-        parts = (self._commands, self._discovery, self._missions)
+        parts = (self._commands, self._settings, self._missions)
         times = [part.deadline_ns for part in parts]
         return min((time for time in times if time is not None), default=None)
 
@@ -154,7 +156,7 @@ class Vehicle:
         if isinstance(message, m.CommandAck):
             work += self._commands.heard(heard, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
-            work += self._settings(self._discovery.heard(heard, telemetry, now_ns), telemetry)
+            work += self._learn(self._settings.heard(heard, telemetry, now_ns), telemetry)
         elif type(message) in MISSION_MESSAGES:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
@@ -197,25 +199,30 @@ class Vehicle:
         else:
             return []
         work.append(Log(Level.INFO, NODE, news))
-        work += self._settings(self._discovery.start(telemetry, now_ns), telemetry)
+        self._discovery.start()
+        work += self._learn(self._settings.start(telemetry, now_ns), telemetry)
         return work + self._ask_for_missing(telemetry, now_ns)
 
-    def _settings(self, found: Iterable[discovery.Found], telemetry: Telemetry) -> list[Work]:
+    def _learn(self, found: Iterable[settings.Found], telemetry: Telemetry) -> list[Work]:
+        """What the vehicle's own settings say."""
         work: list[Work] = []
         for item in found:
             match item:
                 case Send():
                     work.append(item)
-                case discovery.ParameterKnown(name, value):
+                case settings.ParameterKnown(name, value):
                     work.append(Record(ParamItem(telemetry.sysid, name, value)))
-                case discovery.SettingsKnown(weak, return_up_m):
+                case settings.ReturnHeightKnown(up_m):
+                    telemetry.return_up_m, telemetry.return_told = up_m, True
+                    if up_m is not None:
+                        work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
+                case settings.AcceptanceKnown(radius_m):
+                    telemetry.acceptance_m = radius_m
+                case settings.FailsafesKnown(weak):
                     text = "the vehicle's own failsafes: " + ("; ".join(weak) or "all on")
                     work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
                     if not weak:
                         work.append(Log(Level.INFO, NODE, text))
-                    if return_up_m is not None:
-                        telemetry.return_up_m = return_up_m
-                        work.append(ToGate(inputs.ReturnHeightSeen(return_up_m)))
         return work
 
     def _ask_for_missing(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
@@ -228,8 +235,7 @@ class Vehicle:
         """Some part's deadline has passed."""
         work = self._commands.wake(self.telemetry, now_ns)
         if self.telemetry is not None:
-            found = self._discovery.wake(self.telemetry, now_ns)
-            work += self._settings(found, self.telemetry)
+            work += self._learn(self._settings.wake(self.telemetry, now_ns), self.telemetry)
             work += self._missions.wake(self._view(self.telemetry), now_ns)
         return work
 

@@ -280,6 +280,7 @@ def settings(script: Script, **params: float) -> list[Work]:
     answered: list[Work] = []
     for name in ("NAV_DLL_ACT", "GF_ACTION", "COM_LOW_BAT_ACT"):
         answered += script.hear(wire.int_param(name, int(params.get(name, 2))))
+    answered += script.hear(wire.float_param("NAV_ACC_RAD", 2.0))
     answered += script.hear(wire.float_param("COM_OF_LOSS_T", 1.0))
     answered += script.hear(wire.int_param("COM_OBL_RC_ACT", 0))
     if "RTL_RETURN_ALT" in params:
@@ -315,6 +316,12 @@ def test_a_return_height_that_the_vehicle_does_not_have_is_not_known() -> None:
 
 def test_a_failsafe_that_is_off_is_a_condition_and_not_called_on() -> None:
     work = settings(Script(), GF_ACTION=0, RTL_RETURN_ALT=30.0)
+    assert weak(work) == [True]
+    assert not any("all on" in text for _, text in log(work))
+
+
+def test_what_an_autopilot_of_an_unknown_kind_does_by_itself_is_not_called_on() -> None:
+    work = Script().hear(wire.heartbeat(99))
     assert weak(work) == [True]
     assert not any("all on" in text for _, text in log(work))
 
