@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from gcs.gate.effects import CommandKind, Level, SendCommand
 from gcs.gate.inputs import CommandEnded
 from gcs.protocol.autopilot import CannotCommandError, WantedCommand, command_long_for
-from gcs.protocol.command import ACK_WAIT_NS, CommandClient
+from gcs.protocol.command import ACK_WAIT_NS, WORK_WAIT_NS, CommandClient
 from gcs.protocol.effects import (
     Address,
     CommandEffect,
@@ -21,6 +21,7 @@ from gcs.protocol.effects import (
     Withdraw,
 )
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import Log, ToGate, Work
 from gcs.wire.ids import Result
 from gcs.wire.messages import CommandLong
@@ -71,8 +72,11 @@ class _Repeat:
 class Commands:
     """All commands to one vehicle, each with exactly one answer for the gate."""
 
-    def __init__(self, sysid: int, compid: int, speedup: float = 1.0) -> None:
-        self._client = CommandClient(Address(sysid, compid), round(ACK_WAIT_NS * speedup))
+    def __init__(self, own: Address, times: Times) -> None:
+        waits = times.real_ns(ACK_WAIT_NS), times.real_ns(WORK_WAIT_NS)
+        self._client = CommandClient(own, *waits)
+        self._repeat_after_ns = times.real_ns(REPEAT_AFTER_NS)
+        self._own_command_ns = times.real_ns(OWN_COMMAND_NS)
         self._sent: dict[int, tuple[SendCommand, CommandLong]] = {}
         self._next_token = UNANSWERED_TOKEN + 1
         self._photo_seq = 0
@@ -114,7 +118,7 @@ class Commands:
 
     def send_own(self, command: CommandLong, now_ns: int) -> list[Work]:
         """A harmless command of the station itself (streams, origin)."""
-        submit = Submit(UNANSWERED_TOKEN, command, now_ns + OWN_COMMAND_NS)
+        submit = Submit(UNANSWERED_TOKEN, command, now_ns + self._own_command_ns)
         return self._work(self._client.handle(submit, now_ns), now_ns)
 
     def cancel(self, request_id: int, kind: CommandKind, now_ns: int) -> list[Work]:
@@ -144,13 +148,13 @@ class Commands:
     # ------------------------------------------------------------------------- repetition
 
     def _repeat_later(self, token: int, result: int, now_ns: int) -> None:
-        self._repeat = _Repeat(now_ns + REPEAT_AFTER_NS, token, result)
+        self._repeat = _Repeat(now_ns + self._repeat_after_ns, token, result)
 
     def _repeat_now(self, due: _Repeat, telemetry: Telemetry | None, now_ns: int) -> list[Work]:
         """Unless the vehicle itself still says that it would not arm, and there is time to wait."""
         wanted, _ = self._sent[due.token]
         unready = telemetry is not None and telemetry.prearm_ok is False
-        in_time = now_ns + REPEAT_AFTER_NS < wanted.deadline_ns
+        in_time = now_ns + self._repeat_after_ns < wanted.deadline_ns
         if wanted.kind is CommandKind.ARM and unready and in_time:
             self._repeat_later(due.token, due.result, now_ns)
             return []
@@ -198,7 +202,7 @@ class Commands:
         if token not in self._sent:
             return []
         wanted, _ = self._sent[token]
-        in_time = now_ns + REPEAT_AFTER_NS < wanted.deadline_ns
+        in_time = now_ns + self._repeat_after_ns < wanted.deadline_ns
         if wanted.kind in REPEATED and result is not None and result in NOT_YET and in_time:
             work = self._end_repeating()
             self._repeat_later(token, result, now_ns)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcs.config import StationConfig
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.wire.ids import Cmd, MsgId
 from gcs.wire.messages import CommandLong
 
@@ -36,8 +36,9 @@ ASK_AGAIN_NS = 2_000_000_000
 class Discovery:
     """All that is not there is asked for when a vehicle appears; then only what did not come."""
 
-    def __init__(self, config: StationConfig) -> None:
-        self._speedup = config.speedup
+    def __init__(self, times: Times) -> None:
+        self._speedup = times.speedup
+        self._ask_again_ns = times.real_ns(ASK_AGAIN_NS)
         self._asked_ns = 0
 
     def start(self) -> None:
@@ -47,7 +48,7 @@ class Discovery:
     def missing(self, telemetry: Telemetry, now_ns: int) -> Iterator[CommandLong]:
         """Commands that ask for what is not there: all at first, then what did not come."""
         first = self._asked_ns == 0
-        if not first and now_ns - self._asked_ns < ASK_AGAIN_NS:
+        if not first and now_ns - self._asked_ns < self._ask_again_ns:
             return
         self._asked_ns = now_ns
         if telemetry.origin is None:
@@ -57,7 +58,7 @@ class Discovery:
         if first:
             yield _request(telemetry, MsgId.AUTOPILOT_VERSION)
         for msgid, rate_hz in WANTED_HZ:
-            silent = now_ns - telemetry.landed_ns > ASK_AGAIN_NS
+            silent = now_ns - telemetry.landed_ns > self._ask_again_ns
             unknown = silent and msgid is MsgId.EXTENDED_SYS_STATE
             if first or telemetry.pos_ned is None or unknown:
                 yield _interval(telemetry, msgid, min(rate_hz * self._speedup, FASTEST_HZ))

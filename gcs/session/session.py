@@ -55,6 +55,7 @@ from gcs.session.screen import snapshot
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
 from gcs.session.ticks import Ticks
+from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import (
     AskGate,
@@ -84,10 +85,11 @@ class Session:
         config = setup.config
         self._setup = setup
         self._start_ns = now_ns
-        self._ticks = Ticks(now_ns, config.speedup)
+        self._times = Times(config.speedup)
+        self._ticks = Ticks(now_ns, self._times)
         count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
         self._links = Links(config.sysid, config.compid, count, streams, waiting)
-        self._vehicle = Vehicle(config, setup.policy, now_ns)
+        self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._requests = Requests()
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
@@ -248,12 +250,12 @@ class Session:
         work: list[Work] = [*self._links.heartbeat(), *self._vehicle.remind()]
         if self._vehicle.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)
-        if now_ns - self._other_station_ns > OTHER_STATION_NS:
+        if now_ns - self._other_station_ns > self._times.real_ns(OTHER_STATION_NS):
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
         return work + self._vehicle.second(now_ns)
 
     def _no_vehicle_yet(self, now_ns: int) -> list[Work]:
-        waited_s = (now_ns - self._start_ns) / 1e9
+        waited_s = self._times.real_s(now_ns - self._start_ns)
         if self._told_no_vehicle or waited_s < self._setup.config.connect_timeout_s:
             return []
         self._told_no_vehicle = True
@@ -313,7 +315,7 @@ class Session:
             return [trouble, *self._finish(ExitCode.REFUSED_BY_GATE, text)]
         if self._leaving_since_ns is None:
             return []
-        overdue = now_ns - self._leaving_since_ns >= LEAVING_NS
+        overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
         return self._finish(0, self._last_words()) if self.gate.settled or overdue else []
 
     def _finish(self, exit_code: int, sentence: str) -> list[Work]:

@@ -21,8 +21,9 @@ from gcs.protocol.effects import (
     Wake,
 )
 from gcs.protocol.parameter_names import names_of
-from gcs.protocol.parameters import ParamReader, decode_value
+from gcs.protocol.parameters import READ_WAIT_NS, ParamReader, decode_value
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.wire.ids import ParamType
 from gcs.wire.messages import ParamValue
 
@@ -101,8 +102,9 @@ Found: TypeAlias = Send | ParameterKnown | ReturnHeightKnown | AcceptanceKnown |
 class Settings:
     """Reads them once for each time that a vehicle appears, and follows what changes later."""
 
-    def __init__(self, own: Address) -> None:
+    def __init__(self, own: Address, times: Times) -> None:
         self._own = own
+        self._times = times
         self._reader: ParamReader | None = None
         self._scales: dict[str, tuple[str, float]] = {}
         """By every name that is asked for: the newest name, and what makes its unit."""
@@ -110,7 +112,7 @@ class Settings:
         self._silent: list[str] = []
         self._told: FailsafesKnown | None = None
         self._read_again_ns: int | None = None
-        self._pause_ns = READ_AGAIN_NS
+        self._pause_ns = 0
 
     @property
     def deadline_ns(self) -> int | None:
@@ -124,7 +126,7 @@ class Settings:
         names = [(newest, name) for newest in wanted for name in names_of(newest)]
         self._scales = {name.name: (newest, name.scale) for newest, name in names}
         self._values, self._told = {}, None
-        self._pause_ns = READ_AGAIN_NS
+        self._pause_ns = self._times.real_ns(READ_AGAIN_NS)
         none: list[Found] = [] if who in RETURN_HEIGHT else [ReturnHeightKnown(None)]
         return none + self._read(wanted, telemetry, now_ns)
 
@@ -164,6 +166,7 @@ class Settings:
             Address(telemetry.sysid, telemetry.compid),
             telemetry.autopilot.param_encoding,
             (tuple(name.name for name in names_of(newest)) for newest in wanted),
+            self._times.real_ns(READ_WAIT_NS),
         )
         return self._found(self._reader.start(now_ns), telemetry, now_ns)
 
@@ -185,7 +188,9 @@ class Settings:
                     self._reader = None
                     if self._silent:
                         self._read_again_ns = now_ns + self._pause_ns
-                        self._pause_ns = min(2 * self._pause_ns, LONGEST_READ_AGAIN_NS)
+                        self._pause_ns = min(
+                            2 * self._pause_ns, self._times.real_ns(LONGEST_READ_AGAIN_NS)
+                        )
                     out += self._summary(telemetry)
         return out
 

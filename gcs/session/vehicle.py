@@ -35,6 +35,7 @@ from gcs.session.screen import lost_pct
 from gcs.session.setpoints import setpoint
 from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.updates import updates
 from gcs.session.work import CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
@@ -42,8 +43,10 @@ from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MavAutopilot, MavType, Severity
 
-VEHICLE_GONE_NS = 3_500_000_000
 LINK_SILENT_NS = 2_000_000_000
+RESTART_SILENCE_NS = 500_000_000
+"""A frame that seems older than others, and comes after such a silence, is of a vehicle that
+restarted: on the way no frame is overtaken by that much."""
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
 
@@ -73,17 +76,20 @@ MISSION_MESSAGES: Final = frozenset(
 class Vehicle:
     """The vehicle that a session flies; `telemetry` is None until it is heard."""
 
-    def __init__(self, config: StationConfig, policy: Policy, now_ns: int) -> None:
+    def __init__(self, config: StationConfig, policy: Policy, times: Times, now_ns: int) -> None:
         self._config = config
+        self._times = times
         self._start_ns = now_ns
-        self._port = GatePort(policy, config.speedup, now_ns)
-        self._commands = Commands(config.sysid, config.compid, config.speedup)
-        self._discovery = Discovery(config)
-        self._settings = Settings(Address(config.sysid, config.compid))
-        self._missions = Missions(config)
+        own = Address(config.sysid, config.compid)
+        self._port = GatePort(times.policy(policy), now_ns)
+        self._commands = Commands(own, times)
+        self._discovery = Discovery(times)
+        self._settings = Settings(own, times)
+        self._missions = Missions(own, times)
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
-        self._gone_ns = round(VEHICLE_GONE_NS * config.speedup)
+        self._heard_ns: dict[tuple[int, int], int] = {}
+        self._gone_ns = round(self._port.policy.heartbeat_age_s * 1e9)
         self.telemetry: Telemetry | None = None
         self.losses = SequenceTracker()
 
@@ -129,15 +135,29 @@ class Vehicle:
         telemetry = self.telemetry
         if telemetry is None or frame.sysid != telemetry.sysid:
             return work
+        self._notice_restart(frame, now_ns)
         number = self.losses.number(frame.sysid, frame.compid, frame.seq)
         self.losses.seen(frame.sysid, frame.compid, frame.seq)
         telemetry.count_frame(now_ns)
         if frame.compid == telemetry.compid:
-            _choose_link(telemetry, link, now_ns)
+            self._choose_link(telemetry, link, now_ns)
         if message is not None and not self._overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
             work += self._heard(telemetry, heard, now_ns)
         return work
+
+    def _notice_restart(self, frame: Frame, now_ns: int) -> None:
+        sender = (frame.sysid, frame.compid)
+        heard_ns, self._heard_ns[sender] = self._heard_ns.get(sender, now_ns), now_ns
+        silent = now_ns - heard_ns > self._times.real_ns(RESTART_SILENCE_NS)
+        if silent and self.losses.late(*sender, frame.seq):
+            self.losses.restart(*sender)
+
+    def _choose_link(self, telemetry: Telemetry, link: int, now_ns: int) -> None:
+        """Answer where it is heard; another link takes over only once that one is silent."""
+        silent = now_ns - telemetry.link_ns > self._times.real_ns(LINK_SILENT_NS)
+        if link == telemetry.link or silent:
+            telemetry.link, telemetry.link_ns = link, now_ns
 
     def _overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
         """A state that is older than one of the same kind that has come: void."""
@@ -247,7 +267,9 @@ class Vehicle:
         work: list[Work] = []
         if now_ns - telemetry.heartbeat_ns <= self._gone_ns:
             work += self._ask_for_missing(telemetry, now_ns)
-        missing = telemetry.origin is None and now_ns - self._met_ns > ORIGIN_PATIENCE_NS
+        missing = telemetry.origin is None and now_ns - self._met_ns > self._times.real_ns(
+            ORIGIN_PATIENCE_NS
+        )
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
         work.append(condition(Condition.ORIGIN_MISSING, missing, text))
         status = StatusItem(
@@ -320,9 +342,3 @@ class Vehicle:
             return []
         hold = effects.SendCommand(0, CommandKind.HOLD, now_ns)
         return self._commands.send(hold, self.telemetry, now_ns)
-
-
-def _choose_link(telemetry: Telemetry, link: int, now_ns: int) -> None:
-    """Answer where it is heard; another link takes over only once that one is silent."""
-    if link == telemetry.link or now_ns - telemetry.link_ns > LINK_SILENT_NS:
-        telemetry.link, telemetry.link_ns = link, now_ns

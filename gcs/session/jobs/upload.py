@@ -86,7 +86,7 @@ class Upload(Job):
         before, self._waiting = self._waiting, None
         if before is not None or view.telemetry.return_told:
             return False
-        until_ns = now_ns + RETURN_HEIGHT_WAIT_NS
+        until_ns = now_ns + self.asked.times.real_ns(RETURN_HEIGHT_WAIT_NS)
         self._waiting = _Waiting(path, data, until_ns, now_ns + LOOK_NS)
         return True
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.config import StationConfig
 from gcs.session.discovery import Discovery
+from gcs.session.times import Times
 from gcs.wire.ids import Cmd, MsgId
 from gcs.wire.messages import CommandLong
 from tests.unit.session.vehicles import HOME, SECOND_NS, vehicle
@@ -16,7 +16,7 @@ class Script:
 
     def __init__(self) -> None:
         self.now_ns = SECOND_NS
-        self.discovery = Discovery(StationConfig())
+        self.discovery = Discovery(Times())
         self.telemetry = vehicle()
 
 
@@ -83,6 +83,6 @@ def test_a_landed_state_that_stops_coming_is_asked_for_again() -> None:
 def test_a_sped_up_vehicle_is_asked_for_positions_so_much_more_often_up_to_a_limit(
     speedup: float, hz: float
 ) -> None:
-    discovery = Discovery(StationConfig(speedup=speedup))
+    discovery = Discovery(Times(speedup))
     commands = list(discovery.missing(vehicle(), SECOND_NS))
     assert rates_hz(commands)[MsgId.LOCAL_POSITION_NED] == pytest.approx(hz, rel=1e-4)

@@ -17,6 +17,7 @@ from gcs.session.settings import (
     ReturnHeightKnown,
     Settings,
 )
+from gcs.session.times import Times
 from gcs.wire.messages import ParamError, ParamRequestRead, ParamValue
 from tests.unit.session.vehicles import SECOND_NS, vehicle
 
@@ -73,7 +74,7 @@ class Script:
     found: list[Found] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.settings = Settings(Address(255, 190))
+        self.settings = Settings(Address(255, 190), Times())
         self.telemetry = vehicle(self.autopilot)
 
     def start(self) -> None:

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
+from msgspec import structs
 
 from gcs.config import StationConfig
 from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.policy import Policy
 from gcs.protocol.effects import Send
+from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import Log, PlaceFence, ToGate, Work
 from gcs.wire.frame import Frame, split
@@ -24,9 +27,10 @@ from tests.unit.session.wire import MS_NS, SECOND_NS, START_NS, Message, Sender
 class Script:
     """One vehicle of the session, a clock, and senders for it and for others."""
 
-    def __init__(self, config: StationConfig | None = None) -> None:
+    def __init__(self, config: StationConfig | None = None, policy: Policy = DEFAULT) -> None:
         self.config = config or StationConfig()
-        self.vehicle = Vehicle(self.config, DEFAULT, START_NS)
+        self.policy = policy
+        self.vehicle = Vehicle(self.config, self.policy, Times(self.config.speedup), START_NS)
         self.now_ns = START_NS
         self.sender = Sender()
 
@@ -257,6 +261,29 @@ def test_a_sped_up_vehicle_is_away_after_as_much_real_time() -> None:
     assert not any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
     script.wait(36.0)
     assert any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
+
+
+def test_how_long_a_vehicle_may_be_silent_is_the_policy_s_affair() -> None:
+    """station.md, bug 14: 3.5 s whatever the policy's heartbeat_age_s said."""
+    script = Script(policy=structs.replace(DEFAULT, heartbeat_age_s=8.0))
+    script.hear(wire.heartbeat())
+    script.wait(7.9)
+    assert not any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
+    script.wait(8.1)
+    assert any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
+
+
+def test_after_a_quick_restart_its_reports_count_at_once() -> None:
+    """Its numbers begin anew: 100 heartbeats of an ArduPilot would have been taken for late."""
+    script = Script()
+    script.sender.seq = 99
+    script.hear(wire.heartbeat(armed=True))
+    script.wait(1.5)
+    script.sender.seq = 0
+    script.hear(wire.heartbeat(armed=False))
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.armed is False
+    assert len(gate_inputs(script.hear(wire.landed(wire.ON_GROUND)))) == 1
 
 
 def test_losses_are_counted_over_gaps_and_not_over_an_absence() -> None:
