@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from gcs.gate.effects import CommandKind, Level, SendCommand
 from gcs.gate.inputs import CommandEnded
+from gcs.gate.machine.sentences import result_word
 from gcs.protocol.autopilot import CannotCommandError, WantedCommand, command_long_for
 from gcs.protocol.command import ACK_WAIT_NS, WORK_WAIT_NS, CommandClient
 from gcs.protocol.effects import (
@@ -110,7 +111,7 @@ class Commands:
         self._next_token += 1
         self._sent[token] = wanted, command
         work = self._end_repeating()
-        if wanted.kind is CommandKind.ARM and not telemetry.prearm_ok:
+        if wanted.kind is CommandKind.ARM and telemetry.prearm_ok is False:
             self._repeat_later(token, Result.TEMPORARILY_REJECTED, now_ns)
             text = "the vehicle's pre-arm checks are not through: asking a little later"
             return [*work, _log(text)]
@@ -194,8 +195,8 @@ class Commands:
                     done = "" if percent is None else f", {percent} %"
                     work.append(_log(f"command {command} is in progress{done}"))
                 case LateAck(_, command, result, _):
-                    text = f"a late answer to command {command}: result {result}, not acted on"
-                    work.append(_log(text))
+                    what = f"a late answer to command {command}: {result_word(result)}"
+                    work.append(_log(f"{what}, not acted on"))
         return work
 
     def _finished(self, token: int, result: int | None, text: str, now_ns: int) -> list[Work]:
@@ -206,7 +207,7 @@ class Commands:
         if wanted.kind in REPEATED and result is not None and result in NOT_YET and in_time:
             work = self._end_repeating()
             self._repeat_later(token, result, now_ns)
-            not_ready = f"not ready for {wanted.kind.value} (result {result}): asking again"
+            not_ready = f"not ready for {wanted.kind.value} ({result_word(result)}): asking again"
             return [*work, _log(not_ready)]
         del self._sent[token]
         return [_answer(wanted, result, text)]

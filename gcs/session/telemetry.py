@@ -30,6 +30,7 @@ class Telemetry:
     heartbeat_ns: int = 0
     armed: bool | None = None
     mode_name: str = ""
+    custom_mode: int = 0
     landed: LandedState = LandedState.UNDEFINED
     landed_ns: int = 0
 

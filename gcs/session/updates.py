@@ -21,14 +21,11 @@ from gcs.session.gate_port import condition
 from gcs.session.telemetry import Telemetry, quat_from_euler
 from gcs.session.work import PlaceFence, ToGate
 from gcs.wire import messages as m
-from gcs.wire.ids import MavState, ModeFlag
+from gcs.wire.ids import MavState, ModeFlag, Sensor
 
 ORIGIN_DISAGREEMENT_M = 2.0
 MAX_PAIR_AGE_NS = 100_000_000
 CLOCK_STEP_BACK_MS = 1_000
-
-PREARM_CHECK = 0x1000_0000
-"""MAV_SYS_STATUS_PREARM_CHECK."""
 
 BATTERY_PCT = (
     (Condition.BATTERY_LOW, 15.0),
@@ -46,7 +43,7 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
             telemetry.heartbeat_ns = now_ns
             telemetry.armed = bool(message.base_mode & ModeFlag.SAFETY_ARMED)
             mode = mode_of(telemetry.autopilot, message.base_mode, message.custom_mode)
-            telemetry.mode_name = mode.name
+            telemetry.mode_name, telemetry.custom_mode = mode.name, message.custom_mode
             yield ToGate(inputs.HeartbeatSeen(telemetry.armed, mode.meaning, mode.name))
             failing = message.system_status in (MavState.CRITICAL, MavState.EMERGENCY)
             text = f"the vehicle says {MavState(message.system_status).name}" if failing else ""
@@ -140,8 +137,8 @@ def _delay_ns(time_boot_ms: int, telemetry: Telemetry, now_ns: int) -> int:
 
 def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Update]:
     """SYS_STATUS: battery, and whether the vehicle would arm."""
-    if message.onboard_control_sensors_present & PREARM_CHECK:
-        telemetry.prearm_ok = bool(message.onboard_control_sensors_health & PREARM_CHECK)
+    if message.onboard_control_sensors_present & Sensor.PREARM_CHECK:
+        telemetry.prearm_ok = bool(message.onboard_control_sensors_health & Sensor.PREARM_CHECK)
     if message.voltage_battery not in (0, 0xFFFF):
         telemetry.battery_v = message.voltage_battery / 1e3
     if message.battery_remaining < 0:

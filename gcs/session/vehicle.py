@@ -7,6 +7,7 @@ All that is per vehicle is here and in the parts that this composes; what is per
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Final, get_args
 
 from gcs import ipc
@@ -37,6 +38,7 @@ from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.updates import updates
+from gcs.session.words import Said, Words
 from gcs.session.work import CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
@@ -86,6 +88,8 @@ class Vehicle:
         self._discovery = Discovery(times)
         self._settings = Settings(own, times)
         self._missions = Missions(own, times)
+        self._words = Words(times)
+        self._arm_asked_ns = 0
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
         self._heard_ns: dict[tuple[int, int], int] = {}
@@ -98,7 +102,7 @@ class Vehicle:
     @property
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
-        parts = (self._commands, self._settings, self._missions)
+        parts = (self._commands, self._settings, self._missions, self._words)
         times = [part.deadline_ns for part in parts]
         return min((time for time in times if time is not None), default=None)
 
@@ -174,14 +178,15 @@ class Vehicle:
         work: list[Work] = []
         message = heard.message
         if isinstance(message, m.CommandAck):
-            work += self._commands.heard(heard, now_ns)
+            work += self._explained(self._commands.heard(heard, now_ns), telemetry, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += self._learn(self._settings.heard(heard, telemetry, now_ns), telemetry)
         elif type(message) in MISSION_MESSAGES:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
-            level = STATUSTEXT_LEVEL.get(Severity(message.severity & 7), Level.INFO)
-            work.append(Log(level, "vehicle", message.text))
+            work += _logged(self._words.text(heard.compid, message, now_ns))
+        elif isinstance(message, m.Event) and heard.compid == telemetry.compid:
+            self._words.event(message)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
             return work
         for update in updates(message, telemetry, now_ns):
@@ -190,6 +195,23 @@ class Vehicle:
                     work += self._missions.forget()
             work.append(update)
         return work
+
+    def _explained(self, work: list[Work], telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """The refusals of the vehicle among `work`, with the reasons that it gave."""
+        explained: list[Work] = []
+        for item in work:
+            match item:
+                case ToGate(inputs.CommandEnded(kind=kind, result=result) as ended) if result:
+                    words = self._words
+                    if kind is CommandKind.ARM:
+                        since_ns, mode = self._arm_asked_ns, telemetry.custom_mode
+                        text = words.reasons_not_to_arm(mode, since_ns, now_ns)
+                    else:
+                        text = words.reasons(now_ns)
+                    explained.append(ToGate(replace(ended, text=text)))
+                case _:
+                    explained.append(item)
+        return explained
 
     # ---------------------------------------------------------------------------- discovery
 
@@ -253,7 +275,7 @@ class Vehicle:
 
     def wake(self, now_ns: int) -> list[Work]:
         """Some part's deadline has passed."""
-        work = self._commands.wake(self.telemetry, now_ns)
+        work = self._commands.wake(self.telemetry, now_ns) + _logged(self._words.wake(now_ns))
         if self.telemetry is not None:
             work += self._learn(self._settings.wake(self.telemetry, now_ns), self.telemetry)
             work += self._missions.wake(self._view(self.telemetry), now_ns)
@@ -323,6 +345,8 @@ class Vehicle:
                 return [Send(message), Record(sent)]
             case effects.SendCommand():
                 assert self.telemetry is not None
+                if effect.kind is CommandKind.ARM:
+                    self._arm_asked_ns = now_ns
                 return self._commands.send(effect, self.telemetry, now_ns)
             case effects.CancelCommand(request_id, kind):
                 return self._commands.cancel(request_id, kind, now_ns)
@@ -342,3 +366,12 @@ class Vehicle:
             return []
         hold = effects.SendCommand(0, CommandKind.HOLD, now_ns)
         return self._commands.send(hold, self.telemetry, now_ns)
+
+
+def _logged(said: Iterable[Said]) -> list[Work]:
+    """The vehicle's texts as lines of the log, as severe as it says."""
+    work: list[Work] = []
+    for each in said:
+        level = STATUSTEXT_LEVEL[Severity(each.severity & 7)]
+        work.append(Log(level, "vehicle", each.text))
+    return work

@@ -44,6 +44,7 @@ class MsgId(IntEnum):
     STATUSTEXT = 253
     CAMERA_IMAGE_CAPTURED = 263
     PARAM_ERROR = 345
+    EVENT = 410
 
 
 class Cmd(IntEnum):
@@ -233,17 +234,54 @@ class MavType(IntEnum):
     HELICOPTER = 4
     ANTENNA_TRACKER = 5
     GCS = 6
+    AIRSHIP = 7
+    FREE_BALLOON = 8
+    ROCKET = 9
     GROUND_ROVER = 10
     SURFACE_BOAT = 11
     SUBMARINE = 12
     HEXAROTOR = 13
     OCTOROTOR = 14
     TRICOPTER = 15
+    FLAPPING_WING = 16
+    KITE = 17
     ONBOARD_CONTROLLER = 18
+    VTOL_DUOROTOR = 19
+    VTOL_QUADROTOR = 20
+    VTOL_TILTROTOR = 21
+    VTOL_RESERVED2 = 22
+    VTOL_RESERVED3 = 23
+    VTOL_RESERVED4 = 24
+    VTOL_RESERVED5 = 25
     GIMBAL = 26
     ADSB = 27
+    PARAFOIL = 28
     DODECAROTOR = 29
     CAMERA = 30
+    CHARGING_STATION = 31
+    FLARM = 32
+    SERVO = 33
+    ODID = 34
+    DECAROTOR = 35
+    BATTERY = 36
+    PARACHUTE = 37
+    LOG = 38
+    OSD = 39
+    IMU = 40
+    GPS = 41
+    WINCH = 42
+    GENERIC_MULTIROTOR = 43
+    ILLUMINATOR = 44
+    SPACECRAFT_ORBITER = 45
+    GROUND_QUADRUPED = 46
+    VTOL_GYRODYNE = 47
+    GRIPPER = 48
+
+
+class Sensor(IntEnum):
+    """MAV_SYS_STATUS_SENSOR: bits of SYS_STATUS.onboard_control_sensors_*."""
+
+    PREARM_CHECK = 268435456
 
 
 class Severity(IntEnum):

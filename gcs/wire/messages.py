@@ -384,6 +384,19 @@ class ParamError(Message, frozen=True, gc=False):
     error: int  # MAV_PARAM_ERROR
 
 
+class Event(Message, frozen=True, gc=False):
+    """EVENT (410): 53 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.EVENT
+    id: int
+    event_time_boot_ms: int
+    sequence: int
+    destination_component: int
+    destination_system: int
+    log_levels: int
+    arguments: tuple[int, ...]  # 40 values
+
+
 CLASSES: Mapping[int, type[Message]] = MappingProxyType(
     {cls.MSG_ID: cls for cls in Message.__subclasses__()}
 )

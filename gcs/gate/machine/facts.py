@@ -33,7 +33,7 @@ from gcs.gate.inputs import (
 from gcs.gate.machine.events import SAW, Event, event_of
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.progress import within_arrival
-from gcs.gate.machine.sentences import ASKED_FOR
+from gcs.gate.machine.sentences import ASKED_FOR, result_word
 from gcs.gate.machine.turn import Turn
 from gcs.gate.machine.verifying import refusal_of_what_is_flown
 from gcs.gate.refusal import Code, Refusal
@@ -265,7 +265,7 @@ def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
         silent = ended.kind is CommandKind.HOLD
         yield Occurrence(Event.HOLD_UNANSWERED if silent else Event.COMMAND_UNANSWERED)
     else:
-        sentence = f"the vehicle refused {asked_for} (result {ended.result}){said}"
+        sentence = f"the vehicle refused {asked_for} ({result_word(ended.result)}){said}"
         why = Refusal(Code.VEHICLE_REFUSED, sentence, (("result", float(ended.result)),))
         yield Occurrence(REFUSED_AS.get(ended.kind, Event.COMMAND_REFUSED), why)
 
