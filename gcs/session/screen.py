@@ -23,6 +23,8 @@ def snapshot(
     log_path: str,
     recording: bool,
     recorded_bytes: int,
+    vehicles: list[str],
+    listening: bool,
 ) -> ipc.Snapshot:
     """Everything a panel shows; what is not known is None, never a zero."""
     goal_ned = gate.active_goal_ned
@@ -37,6 +39,8 @@ def snapshot(
         log_path=log_path,
         recording=recording,
         recorded_mb=recorded_bytes / 1e6,
+        vehicles=vehicles,
+        listening=listening,
     )
     if telemetry is None:
         return without_vehicle

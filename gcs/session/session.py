@@ -261,7 +261,12 @@ class Session:
         self._told_no_vehicle = True
         where = ", ".join(self._setup.endpoints)
         hint = "is the vehicle running, and does it send to this address? (try: gcs fly --sim)"
+        heard = self._vehicle.heard_vehicles(now_ns)
+        wanted = self._setup.config.target_sysid
         text = f"no vehicle heard for {waited_s:.0f} s ({where})"
+        if heard and wanted:
+            text = f"vehicle {wanted} was not heard for {waited_s:.0f} s, but {', '.join(heard)}"
+            hint = "choose one of them with --vehicle"
         return [Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)), Log(Level.WARNING, NODE, text)]
 
     # -------------------------------------------------------------------------- operator
@@ -277,6 +282,12 @@ class Session:
                 return self._leave(reason, now_ns)
 
     def _ask(self, ask: ipc.Ask, now_ns: int) -> list[Work]:
+        refusal = self._vehicle.refusal(now_ns)
+        if refusal is not None:
+            request_id = self._requests.open(ask.id, ask.word)
+            text = f"{ask.word}: refused {refusal.code.value}: {refusal.sentence}"
+            log = Log(Level.WARNING, NODE, text)
+            return [Decide(request_id, Ruling.REFUSED, refusal), log]
         if ask.word in MISSION_WORDS:
             return self._ask_mission(ask, now_ns)
         telemetry = self._vehicle.telemetry
@@ -369,4 +380,6 @@ class Session:
             log_path=self._log_path,
             recording=self._recording,
             recorded_bytes=self._recorded_bytes,
+            vehicles=self._vehicle.heard_vehicles(now_ns),
+            listening=self._vehicle.listening(now_ns),
         )

@@ -120,7 +120,7 @@ class Settings:
 
     def start(self, telemetry: Telemetry, now_ns: int) -> list[Found]:
         """Begin to read all of them."""
-        who = telemetry.autopilot.name
+        who = _whose(telemetry)
         wanted = [table[who] for table in (RETURN_HEIGHT, ACCEPTANCE_RADIUS) if who in table]
         wanted += [failsafe.name for failsafe in FAILSAFES.get(who, ())]
         names = [(newest, name) for newest in wanted for name in names_of(newest)]
@@ -155,7 +155,7 @@ class Settings:
         newest, scale = self._scales[news.param_id]
         if self._values.get(newest) == float(value) * scale:
             return []
-        found = self._known(ParamRead(news.param_id, value, kind), telemetry.autopilot.name)
+        found = self._known(ParamRead(news.param_id, value, kind), _whose(telemetry))
         return found if self._reader is not None else [*found, *self._summary(telemetry)]
 
     def _read(self, wanted: list[str], telemetry: Telemetry, now_ns: int) -> list[Found]:
@@ -171,7 +171,7 @@ class Settings:
         return self._found(self._reader.start(now_ns), telemetry, now_ns)
 
     def _found(self, effects: list[ParamEffect], telemetry: Telemetry, now_ns: int) -> list[Found]:
-        who = telemetry.autopilot.name
+        who = _whose(telemetry)
         out: list[Found] = []
         for effect in effects:
             match effect:
@@ -208,7 +208,7 @@ class Settings:
 
     def _summary(self, telemetry: Telemetry) -> list[Found]:
         """What is weak, where that is news."""
-        told, self._told = self._told, FailsafesKnown(self._weak(telemetry.autopilot.name))
+        told, self._told = self._told, FailsafesKnown(self._weak(_whose(telemetry)))
         return [] if self._told == told else [self._told]
 
     def _weak(self, who: str) -> tuple[str, ...]:
@@ -222,3 +222,8 @@ class Settings:
             elif value < failsafe.weak_below:
                 weak.append(f"{failsafe.about}: off ({failsafe.name} = {value:g})")
         return tuple(weak)
+
+
+def _whose(telemetry: Telemetry) -> str:
+    """The autopilot whose settings are known here; of other vehicles none is."""
+    return telemetry.autopilot.name if telemetry.autopilot.commanded else ""

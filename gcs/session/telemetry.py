@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.states import LandedState
-from gcs.protocol.autopilot import Autopilot
+from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
+from gcs.wire.ids import MavAutopilot, MavType
 
 POSITION_RATE_WINDOW_NS = 2_000_000_000
 
@@ -25,6 +26,8 @@ class Telemetry:
     compid: int
     autopilot: Autopilot
     link: int
+    mav_autopilot: int = MavAutopilot.GENERIC
+    mav_type: int = MavType.QUADROTOR
     link_ns: int = 0
 
     heartbeat_ns: int = 0
@@ -73,8 +76,8 @@ class Telemetry:
 
     @property
     def label(self) -> str:
-        """Short name for a screen: ids and autopilot."""
-        return f"{self.sysid}/{self.compid} {self.autopilot.name} quadrotor"
+        """Short name for a screen: ids, autopilot and type."""
+        return f"{self.sysid}/{self.compid} {self.autopilot.name} {type_name(self.mav_type)}"
 
     def forget_place(self) -> None:
         """The vehicle restarted or was away: where its local frame lies is not known any more."""

@@ -39,7 +39,7 @@ Update: TypeAlias = ToGate | Record | PlaceFence
 def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[Update]:
     """Update `telemetry`; yield what the gate must hear and what the record wants of it."""
     match message:
-        case m.Heartbeat() if message.autopilot == telemetry.autopilot.mav_autopilot:
+        case m.Heartbeat() if message.autopilot == telemetry.mav_autopilot:
             telemetry.heartbeat_ns = now_ns
             telemetry.armed = bool(message.base_mode & ModeFlag.SAFETY_ARMED)
             mode = mode_of(telemetry.autopilot, message.base_mode, message.custom_mode)

@@ -17,7 +17,7 @@ from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
-from gcs.gate.refusal import Refusal
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control
 from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
@@ -32,6 +32,7 @@ from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
+from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
 from gcs.session.setpoints import setpoint
 from gcs.session.settings import Settings
@@ -81,6 +82,7 @@ class Vehicle:
     def __init__(self, config: StationConfig, policy: Policy, times: Times, now_ns: int) -> None:
         self._config = config
         self._times = times
+        self._gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self._start_ns = now_ns
         own = Address(config.sysid, config.compid)
         self._port = GatePort(times.policy(policy), now_ns)
@@ -89,11 +91,11 @@ class Vehicle:
         self._settings = Settings(own, times)
         self._missions = Missions(own, times)
         self._words = Words(times)
+        self._roster = Roster(config.target_sysid, times, self._gone_ns)
         self._arm_asked_ns = 0
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
         self._heard_ns: dict[tuple[int, int], int] = {}
-        self._gone_ns = round(self._port.policy.heartbeat_age_s * 1e9)
         self.telemetry: Telemetry | None = None
         self.losses = SequenceTracker()
 
@@ -219,13 +221,20 @@ class Vehicle:
         """Choose our vehicle: the first autopilot that is heard, or the one that was named."""
         if beat.type == MavType.GCS or beat.autopilot == MavAutopilot.INVALID:
             return []
-        wanted = self._config.target_sysid
-        if wanted not in (0, frame.sysid) or frame.compid != Component.AUTOPILOT1:
+        if frame.compid != Component.AUTOPILOT1:
             return []
-        telemetry = self.telemetry
         work: list[Work] = []
+        if self._roster.heard(frame.sysid, frame.compid, beat, now_ns):
+            names = ", ".join(self._roster.names(now_ns))
+            work.append(Log(Level.WARNING, NODE, f"several vehicles are heard: {names}"))
+        wanted = self._config.target_sysid
+        if wanted not in (0, frame.sysid):
+            return work
+        telemetry = self.telemetry
         if telemetry is None:
-            telemetry = Telemetry(frame.sysid, frame.compid, autopilot_of(beat.autopilot), link)
+            autopilot = autopilot_of(beat.autopilot, beat.type)
+            telemetry = Telemetry(frame.sysid, frame.compid, autopilot, link)
+            telemetry.mav_autopilot, telemetry.mav_type = beat.autopilot, beat.type
             telemetry.rx_window_start_ns = telemetry.link_ns = now_ns
             telemetry.position_age_ns = round(self._port.policy.position_age_s * 1e9)
             self._met_ns = now_ns
@@ -239,7 +248,7 @@ class Vehicle:
             work += self._missions.forget()
             work.append(PlaceFence())
         else:
-            return []
+            return work
         work.append(Log(Level.INFO, NODE, news))
         self._discovery.start()
         work += self._learn(self._settings.start(telemetry, now_ns), telemetry)
@@ -311,6 +320,24 @@ class Vehicle:
         return [] if self.telemetry is None else [*teller.reminder(self.gate, self.sysid)]
 
     # ----------------------------------------------------------------------------- requests
+
+    def refusal(self, now_ns: int) -> Refusal | None:
+        """Why nothing at all can be asked of it; None where the gate or a job is to answer."""
+        refusal = self._roster.refusal(now_ns)
+        telemetry = self.telemetry
+        if refusal is None and telemetry is not None and not telemetry.autopilot.commanded:
+            what = f"{telemetry.label} is watched and recorded"
+            sentence = f"this station flies multirotors with PX4 or ArduPilot only; {what}"
+            return Refusal(Code.UNSUPPORTED_VEHICLE, sentence)
+        return refusal
+
+    def heard_vehicles(self, now_ns: int) -> list[str]:
+        """The names of all that are heard."""
+        return self._roster.names(now_ns)
+
+    def listening(self, now_ns: int) -> bool:
+        """Whether it may still turn out that there are several; a vehicle of our own is alone."""
+        return self._config.sim is None and self._roster.listening(now_ns)
 
     def ask_mission(self, request_id: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""

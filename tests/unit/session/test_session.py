@@ -99,8 +99,10 @@ def test_an_input_that_is_no_frame_is_recorded_as_what_it_was() -> None:
 
 def test_a_stranger_s_frames_are_recorded_and_change_nothing() -> None:
     script = Script().hovering()
-    script.forget()
     stranger = Sender(sysid=7)
+    script.feed(Datagram(0, stranger.frame(wire.heartbeat())))
+    assert "several vehicles are heard: 1/1 px4 quadrotor, 7/1 px4" in told.log(script.told)
+    script.forget()
     before = script.session.gate.memory
     for message in (
         wire.heartbeat(armed=False, mode=wire.POSCTL),

@@ -13,6 +13,7 @@ from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Code
 from gcs.protocol.effects import Send
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
@@ -135,6 +136,78 @@ def test_a_vehicle_that_is_met_is_asked_for_its_origin_its_home_and_its_version(
         if isinstance(item, Send) and hasattr(item.message, "param_id")
     ]
     assert len(names) == 1
+
+
+def test_several_vehicles_are_named_and_none_is_meant() -> None:
+    """newcomer.md, 7: it flew the first one silently."""
+    script = Script()
+    script.hear(wire.heartbeat())
+    assert script.vehicle.listening(script.now_ns)
+    script.wait(0.9)
+    work = script.hear(wire.heartbeat(wire.ARDUPILOT), sender=Sender(2))
+    names = "1/1 px4 quadrotor, 2/1 ardupilot quadrotor"
+    assert log(work) == [(Level.WARNING, f"several vehicles are heard: {names}")]
+    refusal = script.vehicle.refusal(script.now_ns)
+    assert refusal is not None
+    assert refusal.code is Code.SEVERAL_VEHICLES
+    assert names in refusal.sentence
+    assert "--vehicle" in refusal.sentence
+    script.wait(0.4)
+    assert not script.vehicle.listening(script.now_ns)
+
+
+def test_a_vehicle_that_was_named_is_meant() -> None:
+    script = Script(StationConfig(target_sysid=2))
+    script.hear(wire.heartbeat())
+    script.hear(wire.heartbeat(), sender=Sender(2))
+    assert script.vehicle.refusal(script.now_ns) is None
+    assert not script.vehicle.listening(script.now_ns)
+    assert script.vehicle.heard_vehicles(script.now_ns) == [
+        "1/1 px4 quadrotor",
+        "2/1 px4 quadrotor",
+    ]
+
+
+def test_once_the_other_one_is_gone_it_is_clear_again() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    script.hear(wire.heartbeat(), sender=Sender(2))
+    for _ in range(4):
+        script.wait(1.0)
+        script.hear(wire.heartbeat())
+    assert script.vehicle.refusal(script.now_ns) is None
+
+
+def test_one_that_comes_later_does_not_keep_the_other_from_being_stopped() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    assert script.vehicle.refusal(script.now_ns) is None  # a request is let through
+    script.hear(wire.heartbeat(), sender=Sender(2))
+    assert script.vehicle.refusal(script.now_ns) is None
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "type_", "name"),
+    [
+        (wire.ARDUPILOT, 1, "1/1 ardupilot fixed wing"),
+        (wire.ARDUPILOT, 10, "1/1 ardupilot ground rover"),
+        (wire.PX4, 22, "1/1 px4 vtol reserved2"),
+        (99, 2, "1/1 of an unknown kind quadrotor"),
+    ],
+)
+def test_what_is_no_multirotor_is_shown_and_cannot_be_asked(
+    autopilot: int, type_: int, name: str
+) -> None:
+    script = Script()
+    work = script.hear(wire.heartbeat(autopilot, type_=type_))
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.label == name
+    assert [g for g in gate_inputs(work) if isinstance(g, inputs.HeartbeatSeen)]
+    refusal = script.vehicle.refusal(script.now_ns)
+    assert refusal is not None
+    assert refusal.code is Code.UNSUPPORTED_VEHICLE
+    assert "multirotors" in refusal.sentence
+    assert name in refusal.sentence
 
 
 # ----------------------------------------------------------------------------- its links
