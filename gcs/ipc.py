@@ -142,6 +142,8 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     yaw_deg: float | None = None
     position_age_s: float | None = None
     home_enu: Vec3 | None = None
+    gps: str = ""  # "3D fix, 10 satellites"
+    estimator: str = ""  # "ok", or what is wrong with the vehicle's position
     battery_pct: float | None = None
     battery_v: float | None = None
     heartbeat_age_s: float | None = None

@@ -21,7 +21,9 @@ WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
     (MsgId.GLOBAL_POSITION_INT, 5.0),
     (MsgId.SYS_STATUS, 2.0),
     (MsgId.MISSION_CURRENT, 2.0),
-    (MsgId.GPS_RAW_INT, 1.0),
+    (MsgId.GPS_RAW_INT, 2.0),
+    (MsgId.ESTIMATOR_STATUS, 2.0),  # PX4's
+    (MsgId.EKF_STATUS_REPORT, 2.0),  # ArduPilot's
     (MsgId.BATTERY_STATUS, 1.0),
     (MsgId.POSITION_TARGET_LOCAL_NED, 5.0),
 )

@@ -13,6 +13,7 @@ from gcs.gate.airspace.projection import Origin
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
+from gcs.session.position_health import Estimator, Gps, PositionHealth
 from gcs.wire.ids import MavAutopilot, MavType
 
 POSITION_RATE_WINDOW_NS = 2_000_000_000
@@ -62,6 +63,7 @@ class Telemetry:
     return_told: bool = False  # its return height is known, or it says that it has none
     acceptance_m: float | None = None  # how near a waypoint it takes it as reached itself
 
+    health: PositionHealth = field(default_factory=lambda: PositionHealth(Gps(), Estimator()))
     prearm_ok: bool | None = None
     battery_pct: float | None = None
     battery_v: float | None = None
@@ -84,6 +86,7 @@ class Telemetry:
         self.origin = self.home = self.home_ned = None
         self.quickest_ns = None
         self.landed = LandedState.UNDEFINED
+        self.health = PositionHealth(Gps(), Estimator())
 
     def count_frame(self, now_ns: int) -> None:
         """One more frame; the rate is renewed every two seconds."""

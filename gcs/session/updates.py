@@ -75,6 +75,12 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
                 yield from _home_in_local_frame(telemetry)
         case m.SysStatus():
             yield from _system_status(message, telemetry)
+        case m.GpsRawInt():
+            yield from telemetry.health.gps_raw(message, bool(telemetry.armed), now_ns)
+        case m.EstimatorStatus():
+            yield from telemetry.health.estimator_status(message, bool(telemetry.armed), now_ns)
+        case m.EkfStatusReport():
+            yield from telemetry.health.ekf_status(message, bool(telemetry.armed), now_ns)
         case m.CameraImageCaptured():
             yield ToGate(inputs.PhotoSeen(message.image_index, message.capture_result == 1))
         case m.CameraFeedback():
@@ -139,6 +145,7 @@ def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Updat
     """SYS_STATUS: battery, and whether the vehicle would arm."""
     if message.onboard_control_sensors_present & Sensor.PREARM_CHECK:
         telemetry.prearm_ok = bool(message.onboard_control_sensors_health & Sensor.PREARM_CHECK)
+    yield from telemetry.health.system_status(message, bool(telemetry.armed))
     if message.voltage_battery not in (0, 0xFFFF):
         telemetry.battery_v = message.voltage_battery / 1e3
     if message.battery_remaining < 0:

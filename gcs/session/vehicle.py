@@ -32,6 +32,7 @@ from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
+from gcs.session.position_health import GPS_SILENT_NS
 from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
 from gcs.session.setpoints import setpoint
@@ -298,6 +299,8 @@ class Vehicle:
         work: list[Work] = []
         if now_ns - telemetry.heartbeat_ns <= self._gone_ns:
             work += self._ask_for_missing(telemetry, now_ns)
+        if now_ns - telemetry.position_ns <= telemetry.position_age_ns:
+            work += telemetry.health.gps_silent(self._times.real_ns(GPS_SILENT_NS), now_ns)
         missing = telemetry.origin is None and now_ns - self._met_ns > self._times.real_ns(
             ORIGIN_PATIENCE_NS
         )

@@ -36,9 +36,12 @@ class MsgId(IntEnum):
     COMMAND_ACK = 77
     SET_POSITION_TARGET_LOCAL_NED = 84
     POSITION_TARGET_LOCAL_NED = 85
+    TIMESYNC = 111
     BATTERY_STATUS = 147
     AUTOPILOT_VERSION = 148
     CAMERA_FEEDBACK = 180
+    EKF_STATUS_REPORT = 193
+    ESTIMATOR_STATUS = 230
     HOME_POSITION = 242
     EXTENDED_SYS_STATE = 245
     STATUSTEXT = 253
@@ -278,9 +281,49 @@ class MavType(IntEnum):
     GRIPPER = 48
 
 
+class GpsFix(IntEnum):
+    """GPS_FIX_TYPE: GPS_RAW_INT.fix_type."""
+
+    FIX_TYPE_NO_GPS = 0
+    FIX_TYPE_NO_FIX = 1
+    FIX_TYPE_2D_FIX = 2
+    FIX_TYPE_3D_FIX = 3
+    FIX_TYPE_DGPS = 4
+    FIX_TYPE_RTK_FLOAT = 5
+    FIX_TYPE_RTK_FIXED = 6
+    FIX_TYPE_STATIC = 7
+    FIX_TYPE_PPP = 8
+
+
+class EstimatorFlag(IntEnum):
+    """ESTIMATOR_STATUS_FLAGS: bits of ESTIMATOR_STATUS.flags."""
+
+    ATTITUDE = 1
+    VELOCITY_HORIZ = 2
+    VELOCITY_VERT = 4
+    POS_HORIZ_REL = 8
+    POS_HORIZ_ABS = 16
+    POS_VERT_ABS = 32
+    POS_VERT_AGL = 64
+    CONST_POS_MODE = 128
+    PRED_POS_HORIZ_REL = 256
+    PRED_POS_HORIZ_ABS = 512
+    GPS_GLITCH = 1024
+    ACCEL_ERROR = 2048
+
+
+class EkfFlag(IntEnum):
+    """EKF_STATUS_FLAGS: bits of EKF_STATUS_REPORT.flags."""
+
+    UNINITIALIZED = 1024
+    GPS_GLITCHING = 32768
+
+
 class Sensor(IntEnum):
     """MAV_SYS_STATUS_SENSOR: bits of SYS_STATUS.onboard_control_sensors_*."""
 
+    SENSOR_GPS = 32
+    AHRS = 2097152
     PREARM_CHECK = 268435456
 
 

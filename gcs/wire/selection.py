@@ -37,11 +37,14 @@ MESSAGES = (
     "CAMERA_IMAGE_CAPTURED",
     "PARAM_ERROR",
     "EVENT",
+    "GPS_RAW_INT",
+    "ESTIMATOR_STATUS",
+    "EKF_STATUS_REPORT",
+    "TIMESYNC",
 )
 """Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
 
 IDS_ONLY = (
-    "GPS_RAW_INT",
     "POSITION_TARGET_LOCAL_NED",
     "BATTERY_STATUS",
     "AUTOPILOT_VERSION",
@@ -179,12 +182,26 @@ ENUMS = (
         ("GENERIC", "ARDUPILOTMEGA", "INVALID", "PX4"),
     ),
     EnumChoice("MavType", "MAV_TYPE", "MAV_TYPE_", "HEARTBEAT.type"),
+    EnumChoice("GpsFix", "GPS_FIX_TYPE", "GPS_", "GPS_RAW_INT.fix_type"),
+    EnumChoice(
+        "EstimatorFlag",
+        "ESTIMATOR_STATUS_FLAGS",
+        "ESTIMATOR_",
+        "bits of ESTIMATOR_STATUS.flags",
+    ),
+    EnumChoice(
+        "EkfFlag",
+        "EKF_STATUS_FLAGS",
+        "EKF_",
+        "bits of EKF_STATUS_REPORT.flags",
+        ("UNINITIALIZED", "GPS_GLITCHING"),
+    ),
     EnumChoice(
         "Sensor",
         "MAV_SYS_STATUS_SENSOR",
         "MAV_SYS_STATUS_",
         "bits of SYS_STATUS.onboard_control_sensors_*",
-        ("PREARM_CHECK",),
+        ("SENSOR_GPS", "AHRS", "PREARM_CHECK"),
     ),
     EnumChoice("Severity", "MAV_SEVERITY", "MAV_SEVERITY_", "STATUSTEXT.severity"),
     EnumChoice("ParamType", "MAV_PARAM_TYPE", "MAV_PARAM_TYPE_", "PARAM_VALUE.param_type"),
