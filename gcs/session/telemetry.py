@@ -13,6 +13,7 @@ from gcs.gate.airspace.projection import Origin
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
+from gcs.session.delay import Delay
 from gcs.session.position_health import Estimator, Gps, PositionHealth
 from gcs.wire.ids import MavAutopilot, MavType
 
@@ -44,8 +45,7 @@ class Telemetry:
     time_boot_ms: int = 0
     position_age_ns: int = 1_000_000_000
     restart_ms: int | None = None
-    quickest_ns: int | None = None
-    quickest_at_ns: int = 0
+    delay: Delay = field(default_factory=Delay)
 
     q_ned_from_frd: Quat = (1.0, 0.0, 0.0, 0.0)
     yaw_rad: float | None = None
@@ -84,7 +84,7 @@ class Telemetry:
     def forget_place(self) -> None:
         """The vehicle restarted or was away: where its local frame lies is not known any more."""
         self.origin = self.home = self.home_ned = None
-        self.quickest_ns = None
+        self.delay = Delay()
         self.landed = LandedState.UNDEFINED
         self.health = PositionHealth(Gps(), Estimator())
 

@@ -81,6 +81,8 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
             yield from telemetry.health.estimator_status(message, bool(telemetry.armed), now_ns)
         case m.EkfStatusReport():
             yield from telemetry.health.ekf_status(message, bool(telemetry.armed), now_ns)
+        case m.Timesync() if message.tc1:
+            telemetry.delay.answered(message.ts1, now_ns)
         case m.CameraImageCaptured():
             yield ToGate(inputs.PhotoSeen(message.image_index, message.capture_result == 1))
         case m.CameraFeedback():
@@ -108,7 +110,7 @@ def _local_position(
             return
         restarted = True
         telemetry.forget_place()
-    if _delay_ns(message.time_boot_ms, telemetry, now_ns) > telemetry.position_age_ns:
+    if telemetry.delay.of(message.time_boot_ms, now_ns) > telemetry.position_age_ns:
         # It comes so late that it was too old when it arrived; the age will tell.
         return
     telemetry.restart_ms = None
@@ -126,19 +128,6 @@ def _restarted(time_boot_ms: int, telemetry: Telemetry) -> bool:
         telemetry.restart_ms = first_ms
         return False
     return first_ms is not None and 0 < time_boot_ms - first_ms < CLOCK_STEP_BACK_MS
-
-
-def _delay_ns(time_boot_ms: int, telemetry: Telemetry, now_ns: int) -> int:
-    """How much later than the quickest sample this one came: the link's own queue.
-
-    The quickest is forgotten at 1 ms a second, more than any two clocks drift apart.
-    """
-    offset_ns = now_ns - time_boot_ms * 1_000_000
-    if telemetry.quickest_ns is None:
-        telemetry.quickest_ns, telemetry.quickest_at_ns = offset_ns, now_ns
-    allowed_ns = telemetry.quickest_ns + (now_ns - telemetry.quickest_at_ns) // 1000
-    telemetry.quickest_ns, telemetry.quickest_at_ns = min(offset_ns, allowed_ns), now_ns
-    return offset_ns - telemetry.quickest_ns
 
 
 def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Update]:

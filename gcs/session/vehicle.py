@@ -299,6 +299,8 @@ class Vehicle:
         work: list[Work] = []
         if now_ns - telemetry.heartbeat_ns <= self._gone_ns:
             work += self._ask_for_missing(telemetry, now_ns)
+        target = telemetry.sysid, telemetry.compid
+        work.append(Send(m.Timesync(0, telemetry.delay.ask(now_ns), *target)))
         if now_ns - telemetry.position_ns <= telemetry.position_age_ns:
             work += telemetry.health.gps_silent(self._times.real_ns(GPS_SILENT_NS), now_ns)
         missing = telemetry.origin is None and now_ns - self._met_ns > self._times.real_ns(
