@@ -115,6 +115,11 @@ class Session:
         return self._vehicle.gate
 
     @property
+    def nothing_heard(self) -> bool:
+        """No vehicle was heard, and none of our own was started: there is nothing to keep."""
+        return self._vehicle.telemetry is None and self._setup.config.sim is None
+
+    @property
     def telemetry(self) -> Telemetry | None:
         """The vehicle as it reports itself, None before one is heard."""
         return self._vehicle.telemetry

@@ -8,6 +8,7 @@ import pytest
 from msgspec import structs
 
 from gcs import ipc
+from gcs.config import SimConfig, StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.session.effects import Effect, Record
@@ -352,3 +353,12 @@ def test_a_vehicle_that_is_met_in_the_air_is_not_left_alone_for_where_it_is() ->
     script.run(0.1)
     (verdict,) = told.verdicts(script.told)
     assert verdict[:2] == (asked, "refused")
+
+
+def test_a_session_that_heard_a_vehicle_or_has_one_of_its_own_is_worth_keeping() -> None:
+    script = Script()
+    script.run(3.0)
+    assert script.session.nothing_heard
+    script.hear(wire.heartbeat())
+    assert not script.session.nothing_heard
+    assert not Script(config=StationConfig(sim=SimConfig())).session.nothing_heard
