@@ -101,6 +101,14 @@ class PositionHealth:
     gps: Gps
     estimator: Estimator
 
+    @property
+    def accuracy_h_m(self) -> float | None:
+        """Horizontal accuracy in steps of a decimetre, the estimator's where it tells one."""
+        accuracy_m = self.estimator.accuracy_m
+        if accuracy_m is None:
+            accuracy_m = self.gps.accuracy_m
+        return None if accuracy_m is None else math.ceil(accuracy_m * 10.0) / 10.0
+
     def gps_raw(self, message: GpsRawInt, armed: bool, now_ns: int) -> Iterator[ToGate]:
         gps = self.gps
         gps.fix_type, gps.seen_ns = message.fix_type, now_ns

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
+from gcs.gate.inputs import AccuracySeen
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
@@ -61,6 +62,7 @@ class Telemetry:
     home_ned: Vec3 | None = None
     return_up_m: float | None = None
     return_told: bool = False  # its return height is known, or it says that it has none
+    accuracy_told: AccuracySeen | None = None
     acceptance_m: float | None = None  # how near a waypoint it takes it as reached itself
 
     health: PositionHealth = field(default_factory=lambda: PositionHealth(Gps(), Estimator()))

@@ -197,7 +197,7 @@ class Vehicle:
                 case ToGate(inputs.PositionSeen(reset=True)):
                     work += self._missions.forget()
             work.append(update)
-        return work
+        return work + _accuracy(telemetry)
 
     def _explained(self, work: list[Work], telemetry: Telemetry, now_ns: int) -> list[Work]:
         """The refusals of the vehicle among `work`, with the reasons that it gave."""
@@ -270,6 +270,7 @@ class Vehicle:
                         work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
                 case settings.AcceptanceKnown(radius_m):
                     telemetry.acceptance_m = radius_m
+                    work += _accuracy(telemetry)
                 case settings.FailsafesKnown(weak):
                     text = "the vehicle's own failsafes: " + ("; ".join(weak) or "all on")
                     work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
@@ -398,6 +399,16 @@ class Vehicle:
             return []
         hold = effects.SendCommand(0, CommandKind.HOLD, now_ns)
         return self._commands.send(hold, self.telemetry, now_ns)
+
+
+def _accuracy(telemetry: Telemetry) -> list[Work]:
+    """How near to a goal is there, as far as the vehicle tells; where that is news to the gate."""
+    health, acceptance_m = telemetry.health, telemetry.acceptance_m
+    seen = inputs.AccuracySeen(health.accuracy_h_m, acceptance_m)
+    if seen == telemetry.accuracy_told:
+        return []
+    telemetry.accuracy_told = seen
+    return [ToGate(seen)]
 
 
 def _logged(said: Iterable[Said]) -> list[Work]:
