@@ -201,7 +201,7 @@ MULTIROTORS = frozenset(
     }
 )
 
-_BY_MAV_AUTOPILOT = {
+_BY_MAV_AUTOPILOT: Mapping[int, tuple[Autopilot, Autopilot]] = {
     MavAutopilot.PX4: (PX4, PX4_OTHER),
     MavAutopilot.ARDUPILOTMEGA: (ARDUPILOT, ARDUPILOT_OTHER),
 }

@@ -358,7 +358,8 @@ def test_a_vehicle_that_is_met_in_the_air_is_not_left_alone_for_where_it_is() ->
 def test_a_session_that_heard_a_vehicle_or_has_one_of_its_own_is_worth_keeping() -> None:
     script = Script()
     script.run(3.0)
-    assert script.session.nothing_heard
+    heard = [script.session.nothing_heard]
     script.hear(wire.heartbeat())
-    assert not script.session.nothing_heard
+    heard.append(script.session.nothing_heard)
+    assert heard == [True, False]
     assert not Script(config=StationConfig(sim=SimConfig())).session.nothing_heard

@@ -7,6 +7,7 @@ import struct
 import pytest
 
 from gcs.gate.machine.sentences import RESULTS
+from gcs.ipc import EndingEvent
 from gcs.protocol.px4_events import ALL_MODES, ARMING_SUMMARY, HEALTH_SUMMARY
 from gcs.session.times import Times
 from gcs.session.words import LOST, Said, Words
@@ -161,14 +162,14 @@ def test_a_refused_arm_tells_the_result_and_why() -> None:
     script.ask("arm")
     script.hear(wire.text(CRITICAL, "Arm: Battery failsafe"))
     script.hear(wire.ack(400, Result.DENIED))
-    (ended,) = told.events(script.told, told.ipc.EndingEvent)
+    (ended,) = told.events(script.told, EndingEvent)
     assert ended.sentence == "the vehicle refused arming (DENIED): Battery failsafe"
 
 
 def test_a_text_of_which_a_chunk_is_lost_is_logged_in_time() -> None:
     script = Script().met()
     script.forget()
-    chunk = wire.mavlink.MAVLink_statustext_message(CRITICAL, LONG[:50].encode(), 9, 0)
+    chunk = wire.text(CRITICAL, LONG[:50], id=9)
     script.hear(chunk)
     script.run(1.5)
     assert LONG[:50] + LOST in told.log(script.told)
