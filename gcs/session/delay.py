@@ -13,8 +13,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Final
 
+from gcs.session.times import Times
+
 TOGETHER_NS: Final = 250_000_000
 """A position so little older than an answer has come with it."""
+ASK_NS: Final = 1_000_000_000
+ASK_REAL_NS: Final = 100_000_000
+"""Between two questions: a second, but of a vehicle in a hurry no more than ten a real second."""
 ASKED_KEPT: Final = 5
 """An answer that comes later than so many questions tells nothing of now."""
 
@@ -23,11 +28,13 @@ ASKED_KEPT: Final = 5
 class Delay:
     """Of the positions of one vehicle; nanoseconds on our clock."""
 
+    times: Times = field(default_factory=Times)
     _quickest_ns: int | None = None
     _quickest_at_ns: int = 0
     _latest_ns: int = 0
     _latest_at_ns: int | None = None
     _asked_ns: list[int] = field(default_factory=list)
+    _last_asked_ns: int = 0
 
     def of(self, time_boot_ms: int, now_ns: int) -> int:
         """How much later than the quickest sample one with that stamp comes.
@@ -42,8 +49,15 @@ class Delay:
         self._latest_ns, self._latest_at_ns = offset_ns, now_ns
         return offset_ns - self._quickest_ns
 
+    @property
+    def ask_at_ns(self) -> int:
+        """When the next question is due."""
+        pause_ns = max(ASK_NS, self.times.real_ns(ASK_REAL_NS))
+        return self._last_asked_ns + pause_ns
+
     def ask(self, now_ns: int) -> int:
         """The question's time (TIMESYNC.ts1), which comes back in the answer."""
+        self._last_asked_ns = now_ns
         self._asked_ns = [*self._asked_ns[1 - ASKED_KEPT :], now_ns]
         return now_ns
 
@@ -53,7 +67,7 @@ class Delay:
             return
         self._asked_ns.remove(asked_ns)
         latest_at_ns = self._latest_at_ns
-        if latest_at_ns is None or now_ns - latest_at_ns > TOGETHER_NS:
+        if latest_at_ns is None or now_ns - latest_at_ns > self.times.real_ns(TOGETHER_NS):
             return
         assert self._quickest_ns is not None
         bound_ns = self._latest_ns - (now_ns - asked_ns)

@@ -86,7 +86,7 @@ class Telemetry:
     def forget_place(self) -> None:
         """The vehicle restarted or was away: where its local frame lies is not known any more."""
         self.origin = self.home = self.home_ned = None
-        self.delay = Delay()
+        self.delay = Delay(self.delay.times)
         self.landed = LandedState.UNDEFINED
         self.health = PositionHealth(Gps(), Estimator())
 

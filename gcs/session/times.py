@@ -14,9 +14,6 @@ from msgspec import structs
 
 from gcs.gate.policy.policy import ControlTimes, Policy
 
-POSITION_WAIT_S = 0.25
-"""Real seconds that positions may fail to come for, as when this machine or the other is busy."""
-
 
 @dataclass(frozen=True, slots=True)
 class Times:
@@ -35,10 +32,11 @@ class Times:
     def policy(self, policy: Policy) -> Policy:
         """`policy`, whose waits for heartbeats, answers, pictures and positions are real time."""
         times, faster = policy.control, self.speedup
+        no_less = max(1.0, faster)
         return structs.replace(
             policy,
             heartbeat_age_s=policy.heartbeat_age_s * faster,
-            position_age_s=max(policy.position_age_s, POSITION_WAIT_S * faster),
-            photo_timeout_s=max(policy.photo_timeout_s, policy.photo_timeout_s * faster),
+            position_age_s=policy.position_age_s * no_less,
+            photo_timeout_s=policy.photo_timeout_s * no_less,
             control=ControlTimes(times.stream_s * faster, times.timeout_s * faster),
         )

@@ -26,6 +26,7 @@ from gcs.protocol.transfer import PlanMessage
 from gcs.report import ParamItem, SetpointItem, StatusItem
 from gcs.session import settings, teller
 from gcs.session.commands import Commands
+from gcs.session.delay import Delay
 from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
 from gcs.session.gate_port import GatePort, condition
@@ -236,6 +237,7 @@ class Vehicle:
             autopilot = autopilot_of(beat.autopilot, beat.type)
             telemetry = Telemetry(frame.sysid, frame.compid, autopilot, link)
             telemetry.mav_autopilot, telemetry.mav_type = beat.autopilot, beat.type
+            telemetry.delay = Delay(self._times)
             telemetry.rx_window_start_ns = telemetry.link_ns = now_ns
             telemetry.position_age_ns = round(self._port.policy.position_age_s * 1e9)
             self._met_ns = now_ns
@@ -300,8 +302,9 @@ class Vehicle:
         work: list[Work] = []
         if now_ns - telemetry.heartbeat_ns <= self._gone_ns:
             work += self._ask_for_missing(telemetry, now_ns)
-        target = telemetry.sysid, telemetry.compid
-        work.append(Send(m.Timesync(0, telemetry.delay.ask(now_ns), *target)))
+        if now_ns >= telemetry.delay.ask_at_ns:
+            target = telemetry.sysid, telemetry.compid
+            work.append(Send(m.Timesync(0, telemetry.delay.ask(now_ns), *target)))
         if now_ns - telemetry.position_ns <= telemetry.position_age_ns:
             work += telemetry.health.gps_silent(self._times.real_ns(GPS_SILENT_NS), now_ns)
         missing = telemetry.origin is None and now_ns - self._met_ns > self._times.real_ns(
