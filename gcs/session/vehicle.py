@@ -55,6 +55,13 @@ restarted: on the way no frame is overtaken by that much."""
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
 
+REASON_WAIT_NS = 150_000_000
+"""How long a refusal waits for its reason: ArduPilot's text may leave a moment after its answer."""
+WAITS_FOR_REASONS: Final = frozenset(
+    {CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START_MISSION, CommandKind.SET_MODE}
+)
+"""What nobody is stopped by: no refused hold, landing or disarming waits for words."""
+
 NODE = "link"
 
 STATUSTEXT_LEVEL = {
@@ -95,6 +102,7 @@ class Vehicle:
         self._words = Words(times)
         self._roster = Roster(config.target_sysid, times, self._gone_ns)
         self._arm_asked_ns = 0
+        self._unexplained: tuple[tuple[int, inputs.CommandEnded], ...] = ()
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
         self._heard_ns: dict[tuple[int, int], int] = {}
@@ -108,6 +116,7 @@ class Vehicle:
         """When some part's wait is over; the gate itself lives on ticks."""
         parts = (self._commands, self._settings, self._missions, self._words)
         times = [part.deadline_ns for part in parts]
+        times += [due_ns for due_ns, _ in self._unexplained]
         return min((time for time in times if time is not None), default=None)
 
     @property
@@ -201,21 +210,35 @@ class Vehicle:
         return work + _accuracy(telemetry)
 
     def _explained(self, work: list[Work], telemetry: Telemetry, now_ns: int) -> list[Work]:
-        """The refusals of the vehicle among `work`, with the reasons that it gave."""
+        """The vehicle's refusals among `work` with its reasons, which may come after its answer."""
         explained: list[Work] = []
         for item in work:
             match item:
                 case ToGate(inputs.CommandEnded(kind=kind, result=result) as ended) if result:
-                    words = self._words
-                    if kind is CommandKind.ARM:
-                        since_ns, mode = self._arm_asked_ns, telemetry.custom_mode
-                        text = words.reasons_not_to_arm(mode, since_ns, now_ns)
+                    text = self._reasons(kind, telemetry, now_ns)
+                    if text or kind not in WAITS_FOR_REASONS:
+                        explained.append(ToGate(replace(ended, text=text)))
                     else:
-                        text = words.reasons(now_ns)
-                    explained.append(ToGate(replace(ended, text=text)))
+                        due_ns = now_ns + self._times.real_ns(REASON_WAIT_NS)
+                        self._unexplained = *self._unexplained, (due_ns, ended)
                 case _:
                     explained.append(item)
         return explained
+
+    def _explain_due(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """The refusals whose reasons were waited for."""
+        due = [ended for due_ns, ended in self._unexplained if now_ns >= due_ns]
+        self._unexplained = tuple(item for item in self._unexplained if now_ns < item[0])
+        return [
+            ToGate(replace(ended, text=self._reasons(ended.kind, telemetry, now_ns)))
+            for ended in due
+        ]
+
+    def _reasons(self, kind: CommandKind, telemetry: Telemetry, now_ns: int) -> str:
+        if kind is CommandKind.ARM:
+            mode = telemetry.custom_mode
+            return self._words.reasons_not_to_arm(mode, self._arm_asked_ns, now_ns)
+        return self._words.reasons(now_ns)
 
     # ---------------------------------------------------------------------------- discovery
 
@@ -290,6 +313,7 @@ class Vehicle:
         """Some part's deadline has passed."""
         work = self._commands.wake(self.telemetry, now_ns) + _logged(self._words.wake(now_ns))
         if self.telemetry is not None:
+            work += self._explain_due(self.telemetry, now_ns)
             work += self._learn(self._settings.wake(self.telemetry, now_ns), self.telemetry)
             work += self._missions.wake(self._view(self.telemetry), now_ns)
         return work
