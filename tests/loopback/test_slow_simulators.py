@@ -29,18 +29,21 @@ class SlowFlight(Flight):
 @pytest.mark.parametrize("rate", ["0.95", "0.8"])
 @pytest.mark.parametrize("personality", PERSONALITIES)
 def test_it_flies_and_is_never_stale(personality: Personality, rate: str) -> None:
-    flight = SlowFlight(personality, rate).hovering(3.0)
+    flight = SlowFlight(personality, rate).connected()
+    since_ns = flight.now_ns
+    flight.hovering(3.0)
     flight.run(20.0)
     assert flight.done(flight.goto(4.0, 0.0, 3.0)) == "complete"
     flight.do("land")
     flight.until(lambda: not flight.vehicle.armed)
-    assert "STALE" not in flight.states()
+    assert "STALE" not in flight.states(since_ns)
     assert flight.is_in(State.GROUNDED)
 
 
 def test_its_positions_in_a_long_queue_are_stale_all_the_same() -> None:
     flight = SlowFlight("px4", "0.8").hovering(3.0)
+    since_ns = flight.now_ns
     flight.down.weather = Weather(delay_s=(3.0, 3.0))
-    flight.until(lambda: "STALE" in flight.states(), 8.0)
+    flight.until(lambda: "STALE" in flight.states(since_ns), 8.0)
     flight.run(10.0)
     assert not flight.is_in(State.HOVERING)
