@@ -27,7 +27,6 @@ class StationConfig(msgspec.Struct, frozen=True):
     target_sysid: int = 0  # 0 = the first vehicle heard
     speedup: float = 1.0
     connect_timeout_s: float = 10.0
-    snapshots_hz: float = 10.0
     record: bool = True  # False: nothing is written, as for a short look at the vehicle
 
 

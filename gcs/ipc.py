@@ -132,6 +132,8 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     recorded_mb: float
     active_goal_enu: Vec3 | None = None
     vehicle: str = ""  # "1/1 px4 quadrotor"
+    vehicles: list[str] = []  # all that are heard on the links, this one among them
+    listening: bool = False  # others may still be heard: who asks should wait a moment
     mode: str = ""
     armed: bool | None = None
     landed: str = ""
@@ -140,6 +142,8 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     yaw_deg: float | None = None
     position_age_s: float | None = None
     home_enu: Vec3 | None = None
+    gps: str = ""  # "3D fix, 10 satellites"
+    estimator: str = ""  # "ok", or what is wrong with the vehicle's position
     battery_pct: float | None = None
     battery_v: float | None = None
     heartbeat_age_s: float | None = None

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, FiniteRange, with_options
+from gcs.cli.options import (
+    LINK,
+    LOG_DIR,
+    POLICY,
+    TIMEOUT,
+    UTF8,
+    VEHICLE,
+    FiniteRange,
+    with_options,
+)
 
 if TYPE_CHECKING:
     from gcs.config import StationConfig
@@ -44,7 +53,7 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
 
 
 @click.command(epilog=EPILOG)
-@with_options(LINK)
+@with_options(LINK, VEHICLE)
 @click.option("--sim", is_flag=True, help="Start a vehicle of our own, on a private port.")
 @click.option(
     "--autopilot",
@@ -81,6 +90,7 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
 def fly(
     ctx: click.Context,
     links: tuple[str, ...],
+    vehicle: int | None,
     sim: bool,
     autopilot: str,
     home: str,
@@ -104,10 +114,12 @@ def fly(
 
     if sim and links:
         raise click.UsageError("--sim starts a vehicle of its own: leave out --link")
-    config = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
+    if sim and vehicle is not None:
+        raise click.UsageError("--sim starts a vehicle of its own: leave out --vehicle")
+    config = station_config(links, policy, log_dir, name=name, timeout_s=timeout, vehicle=vehicle)
     if sim:
-        vehicle = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
-        config = msgspec.structs.replace(config, sim=vehicle, endpoints=[])
+        simulated = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
+        config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
     config = msgspec.structs.replace(config, speedup=speedup)
     if plain:
         level = 1 if verbose else 3 if quiet else 2

@@ -13,6 +13,7 @@ from gcs.cli.options import (
     POLICY,
     TIMEOUT,
     UTF8,
+    VEHICLE,
     Seconds,
     station_config,
     with_options,
@@ -35,7 +36,7 @@ WAIT = click.Option(
     metavar="S",
     help="Seconds to wait for the effect.",
 )
-LINK_OPTIONS = (LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON)
+LINK_OPTIONS = (LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON)
 
 
 @click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
@@ -44,6 +45,7 @@ LINK_OPTIONS = (LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON)
 def upload(
     file: str,
     links: tuple[str, ...],
+    vehicle: int | None,
     policy: str,
     log_dir: str,
     timeout: float,
@@ -54,7 +56,7 @@ def upload(
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)),)
-    _run(requests, links, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json)
 
 
 @click.command(epilog=f"Example: gcs mission download -o on_board.plan\n\n{EXITS}")
@@ -72,6 +74,7 @@ def download(
     output: str,
     force: bool,
     links: tuple[str, ...],
+    vehicle: int | None,
     policy: str,
     log_dir: str,
     timeout: float,
@@ -83,7 +86,7 @@ def download(
 
     _check_output(output, force)
     requests = (Ask(0, "mission_download", path=output),)
-    _run(requests, links, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json)
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -92,6 +95,7 @@ def download(
 def fly(
     file: str,
     links: tuple[str, ...],
+    vehicle: int | None,
     policy: str,
     log_dir: str,
     timeout: float,
@@ -102,13 +106,14 @@ def fly(
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
-    _run(requests, links, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json)
 
 
 @click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
 @with_options(*LINK_OPTIONS)
 def clear(
     links: tuple[str, ...],
+    vehicle: int | None,
     policy: str,
     log_dir: str,
     timeout: float,
@@ -118,7 +123,7 @@ def clear(
     """Remove the mission on board."""
     from gcs.ipc import Ask
 
-    _run((Ask(0, "mission_clear"),), links, policy, log_dir, timeout, wait, as_json)
+    _run((Ask(0, "mission_clear"),), links, vehicle, policy, log_dir, timeout, wait, as_json)
 
 
 def _check_output(output: str, force: bool) -> None:
@@ -154,6 +159,7 @@ def _readable(file: str) -> str:
 def _run(
     requests: tuple[Ask, ...],
     links: tuple[str, ...],
+    vehicle: int | None,
     policy: str,
     log_dir: str,
     timeout: float,
@@ -165,7 +171,9 @@ def _run(
 
     for request in requests:
         UTF8.convert(request.path, None, None)
-    setup = station_config(links, policy, log_dir, name="mission", timeout_s=timeout)
+    setup = station_config(
+        links, policy, log_dir, name="mission", timeout_s=timeout, vehicle=vehicle
+    )
     how = oneshot_session.OneShotConfig(timeout, wait, as_json, label(requests[0]))
     task = oneshot_session.sending(SendRequests(requests), wait)
     code = oneshot_session.run(setup, how, task)

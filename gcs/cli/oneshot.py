@@ -6,7 +6,17 @@ from functools import partial
 
 import click
 
-from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, Seconds, station_config
+from gcs.cli.options import (
+    AS_JSON,
+    LINK,
+    LOG_DIR,
+    POLICY,
+    TIMEOUT,
+    UTF8,
+    VEHICLE,
+    Seconds,
+    station_config,
+)
 from gcs.operator import line_parser, request_words
 
 EXITS = (
@@ -28,6 +38,7 @@ def _command(name: str) -> click.Command:
 
     def run_word(
         links: tuple[str, ...],
+        vehicle: int | None,
         policy: str,
         log_dir: str,
         timeout: float,
@@ -43,13 +54,15 @@ def _command(name: str) -> click.Command:
 
         from gcs.cli import oneshot_session
 
-        setup = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
+        setup = station_config(
+            links, policy, log_dir, name=name, timeout_s=timeout, vehicle=vehicle
+        )
         how = oneshot_session.OneShotConfig(timeout, wait, as_json, name)
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
-    options: list[click.Parameter] = [LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
+    options: list[click.Parameter] = [LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
     return click.Command(
         name,
         callback=run_word,
@@ -77,12 +90,19 @@ photo = _command("photo")
 
 
 def _status(
-    links: tuple[str, ...], policy: str, log_dir: str, timeout: float, as_json: bool
+    links: tuple[str, ...],
+    vehicle: int | None,
+    policy: str,
+    log_dir: str,
+    timeout: float,
+    as_json: bool,
 ) -> None:
     from gcs.cli import oneshot_session
     from gcs.cli.status import report
 
-    setup = station_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
+    setup = station_config(
+        links, policy, log_dir, name="status", timeout_s=timeout, vehicle=vehicle, record=False
+    )
     how = oneshot_session.OneShotConfig(timeout, 0.0, as_json, "status", cautions=True)
     code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)
@@ -91,7 +111,7 @@ def _status(
 status = click.Command(
     "status",
     callback=_status,
-    params=[LINK, POLICY, LOG_DIR, TIMEOUT, AS_JSON],
+    params=[LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, AS_JSON],
     help="What the vehicle reports: state, mode, position, battery, link.",
     epilog=f"Example: gcs status --json\n\n{EXITS}",
 )

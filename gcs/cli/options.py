@@ -80,6 +80,13 @@ TIMEOUT = click.Option(
     metavar="S",
     help="Seconds to wait for a vehicle to be heard.",
 )
+VEHICLE = click.Option(
+    ["--vehicle"],
+    type=click.IntRange(1, 255),
+    default=None,
+    metavar="SYSID",
+    help="Which vehicle, by its MAVLink system id, where several are heard.",
+)
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
 
 
@@ -120,6 +127,7 @@ def station_config(
     *,
     name: str,
     timeout_s: float,
+    vehicle: int | None = None,
     record: bool = True,
 ) -> StationConfig:
     """For a station that flies a vehicle which somebody else has started."""
@@ -129,5 +137,6 @@ def station_config(
         log_dir=log_dir,
         name=name,
         connect_timeout_s=timeout_s,
+        target_sysid=vehicle or 0,
         record=record,
     )

@@ -62,6 +62,7 @@ def rows(seen: ipc.Snapshot) -> list[tuple[str, str]]:
         ("velocity", f"{signed_enu(seen.v_enu)} m/s, {_speed(seen.v_enu)}"),
         ("heading", "-" if seen.yaw_deg is None else f"{whole_degrees(seen.yaw_deg)} deg"),
         ("home", f"{signed_enu(seen.home_enu)} m"),
+        ("gps", f"{seen.gps or '-'}, estimator {seen.estimator or '-'}"),
         ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
         ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),

@@ -25,6 +25,8 @@ class Condition(StrEnum):
     ORIGIN_MISMATCH = "origin_mismatch"
     ORIGIN_MISSING = "origin_missing"
     OTHER_STATION = "other_station"
+    GPS_LOST = "gps_lost"
+    ESTIMATOR_UNRELIABLE = "estimator_unreliable"
     VEHICLE_FAILSAFE_WEAK = "vehicle_failsafe_weak"
     VEHICLE_FAILSAFE_ACTIVE = "vehicle_failsafe_active"
     TICK_LATE = "tick_late"

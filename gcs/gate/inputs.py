@@ -72,6 +72,15 @@ class ReturnHeightSeen:
 
 
 @dataclass(frozen=True, slots=True)
+class AccuracySeen:
+    """How well the vehicle knows where it is, horizontally, and how near a waypoint it takes it as
+    reached itself (px4 NAV_ACC_RAD, ardupilot WP_RADIUS_M); metres, None: it does not say."""
+
+    accuracy_h_m: float | None
+    acceptance_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class VerifierChanged:
     """Home, origin, fence or autopilot became known or changed.
 
@@ -148,6 +157,7 @@ Input: TypeAlias = (
     | PositionSeen
     | HomeSeen
     | ReturnHeightSeen
+    | AccuracySeen
     | VerifierChanged
     | CommandEnded
     | PhotoSeen

@@ -80,6 +80,7 @@ _EXIT_CODE_OF_REFUSAL: dict[str, ExitCode] = {
     Code.NO_ANSWER: ExitCode.NOT_COMPLETED,
     Code.BAD_MISSION: ExitCode.BAD_FILE,
     Code.RECORDER_DOWN: ExitCode.RECORDER,
+    Code.SEVERAL_VEHICLES: ExitCode.USAGE,
     "BAD_REQUEST": ExitCode.USAGE,  # the session's code for what is no request at all
 }
 
@@ -151,6 +152,12 @@ class Dialogue:
         self.wait_until(self._position_known, timeout_s)
         if self.snapshot is None or not self.snapshot.vehicle:
             where = ", ".join(self.hello.endpoints) if self.hello else "the link"
+            if self.snapshot is not None and self.snapshot.vehicles:
+                raise ExitError(
+                    ExitCode.NO_VEHICLE,
+                    f"that vehicle was not heard within {timeout_s:g} s ({where})",
+                    f"heard: {', '.join(self.snapshot.vehicles)}; choose one with --vehicle",
+                )
             raise ExitError(
                 ExitCode.NO_VEHICLE,
                 f"no vehicle heard within {timeout_s:g} s ({where})",
@@ -250,7 +257,7 @@ class Dialogue:
     def _can_be_judged(self) -> bool:
         """Before that a vehicle on the ground and one in the air look alike to the gate."""
         seen = self.snapshot
-        if seen is None or seen.home_enu is None:
+        if seen is None or seen.home_enu is None or seen.listening:
             return False
         return seen.landed not in UNKNOWN_LANDED and seen.state != State.STALE.name
 

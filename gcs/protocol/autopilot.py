@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from types import MappingProxyType
 from typing import assert_never
@@ -16,7 +16,7 @@ from typing import assert_never
 from gcs.gate.effects import CommandKind
 from gcs.gate.states import FlightMode
 from gcs.protocol.effects import Address
-from gcs.wire.ids import Cmd, MavAutopilot, ModeFlag
+from gcs.wire.ids import Cmd, MavAutopilot, MavType, ModeFlag
 from gcs.wire.messages import CommandLong
 
 FORCE_DISARM = 21196.0
@@ -134,6 +134,8 @@ class Autopilot:
     """NAV_TAKEOFF's altitude is above mean sea level (px4), or above home (ardupilot)."""
     blank: float
     """What an unused position parameter is to be filled with."""
+    commanded: bool = True
+    """Whether this program knows how to command it; its reports are shown and recorded anyway."""
 
 
 PX4 = Autopilot(
@@ -170,15 +172,53 @@ GENERIC = Autopilot(
     mode_in_two_parts=False,
     takeoff_above_sea=False,
     blank=0.0,
+    commanded=False,
 )
 """An autopilot that we do not know: its reports are shown, every command to it is refused."""
 
-_BY_MAV_AUTOPILOT = {row.mav_autopilot: row for row in (PX4, ARDUPILOT, GENERIC)}
+_NO_MODES: Mapping[CommandKind, str] = MappingProxyType({})
+
+PX4_OTHER = replace(
+    PX4,
+    # px4_custom_mode.h is one for all of PX4's vehicles; what a mode does differs.
+    modes=tuple(replace(mode, meaning=_M.OTHER) for mode in _PX4_MODES),
+    mode_of_kind=_NO_MODES,
+    commanded=False,
+)
+ARDUPILOT_OTHER = replace(ARDUPILOT, modes=(), mode_of_kind=_NO_MODES, commanded=False)
+"""Fixed wings, rovers, boats, helicopters: ArduPlane's and Rover's modes have other numbers."""
+
+MULTIROTORS = frozenset(
+    {
+        MavType.QUADROTOR,
+        MavType.COAXIAL,
+        MavType.HEXAROTOR,
+        MavType.OCTOROTOR,
+        MavType.TRICOPTER,
+        MavType.DODECAROTOR,
+        MavType.DECAROTOR,
+        MavType.GENERIC_MULTIROTOR,
+    }
+)
+
+_BY_MAV_AUTOPILOT: Mapping[int, tuple[Autopilot, Autopilot]] = {
+    MavAutopilot.PX4: (PX4, PX4_OTHER),
+    MavAutopilot.ARDUPILOTMEGA: (ARDUPILOT, ARDUPILOT_OTHER),
+}
 
 
-def autopilot_of(mav_autopilot: int) -> Autopilot:
-    """The row for HEARTBEAT.autopilot, GENERIC if there is none."""
-    return _BY_MAV_AUTOPILOT.get(mav_autopilot, GENERIC)
+def autopilot_of(mav_autopilot: int, mav_type: int) -> Autopilot:
+    """The row for HEARTBEAT.autopilot and HEARTBEAT.type, GENERIC if there is none."""
+    multirotor, other = _BY_MAV_AUTOPILOT.get(mav_autopilot, (GENERIC, GENERIC))
+    return multirotor if mav_type in MULTIROTORS else other
+
+
+def type_name(mav_type: int) -> str:
+    """MAV_TYPE in words: "quadrotor", "fixed wing"."""
+    try:
+        return MavType(mav_type).name.lower().replace("_", " ")
+    except ValueError:
+        return f"vehicle of type {mav_type}"
 
 
 def mode_of(autopilot: Autopilot, base_mode: int, custom_mode: int) -> Mode:
@@ -202,8 +242,8 @@ def mode_named(autopilot: Autopilot, name: str) -> Mode | None:
 
 def command_long_for(autopilot: Autopilot, wanted: WantedCommand, target: Address) -> CommandLong:
     """`wanted` as this autopilot understands it.  Raises CannotCommandError."""
-    if not autopilot.modes:
-        raise CannotCommandError(f"the autopilot is {autopilot.name}: how to ask it is not known")
+    if not autopilot.commanded:
+        raise CannotCommandError("this station flies multirotors with PX4 or ArduPilot only")
     blank = autopilot.blank
     match wanted.kind:
         case CommandKind.HOLD | CommandKind.GUIDED:

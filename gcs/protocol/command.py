@@ -95,10 +95,13 @@ class _Ended:
 class CommandClient:
     """All commands of one ground station on one link, to whatever targets."""
 
-    def __init__(self, own: Address, ack_wait_ns: int = ACK_WAIT_NS) -> None:
+    def __init__(
+        self, own: Address, ack_wait_ns: int = ACK_WAIT_NS, work_wait_ns: int = WORK_WAIT_NS
+    ) -> None:
         """`own` is who we are: an ack that names somebody else is not ours."""
         self._own = own
         self._ack_wait_ns = ack_wait_ns
+        self._work_wait_ns = work_wait_ns
         self._flights: dict[_Key, _Flight] = {}
         self._queues: dict[_Key, deque[Submit]] = {}
         self._ended: dict[_Key, _Ended] = {}
@@ -220,7 +223,7 @@ class CommandClient:
                 return self._finish(key, ack.result, "", now_ns)
             case _Act.REPORT:
                 assert ack is not None
-                flight.wait_until_ns = now_ns + WORK_WAIT_NS
+                flight.wait_until_ns = now_ns + self._work_wait_ns
                 percent = None if ack.progress == PERCENT_UNKNOWN else ack.progress
                 return [InProgress(flight.submit.token, key[0], percent)]
             case _Act.REPEAT:
@@ -247,10 +250,14 @@ def _silence(flight: _Flight) -> str:
 
 
 def _try(flight: _Flight, now_ns: int, ack_wait_ns: int) -> Send:
-    """The next try; `confirmation` counts them where the message has room for it."""
+    """The next try; `confirmation` counts them where the message has room for it.
+
+    What is tried only once is waited for until its deadline: a slow answer is an answer.
+    """
     command = flight.submit.command
     if flight.sent and isinstance(command, CommandLong):
         command = msgspec.structs.replace(command, confirmation=flight.sent)
     flight.sent += 1
-    flight.wait_until_ns = now_ns + ack_wait_ns
+    only_try = flight.submit.tries == 1
+    flight.wait_until_ns = flight.submit.deadline_ns if only_try else now_ns + ack_wait_ns
     return Send(command)

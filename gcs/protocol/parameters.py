@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 import struct
 from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
 from gcs.protocol.autopilot import ParamEncoding
@@ -23,12 +25,8 @@ from gcs.protocol.effects import (
     Wake,
 )
 from gcs.wire.ids import ParamError, ParamType
-from gcs.wire.messages import (
-    Message,
-    ParamRequestRead,
-    ParamValue,
-)
 from gcs.wire.messages import ParamError as ParamErrorMessage
+from gcs.wire.messages import ParamRequestRead, ParamValue
 
 READ_WAIT_NS = 500_000_000
 READ_TRIES = 3
@@ -62,31 +60,39 @@ def decode_value(wire: float, type_: ParamType, encoding: ParamEncoding) -> int 
     return round(wire) if math.isfinite(wire) else wire
 
 
-def _answer(heard: Heard, own: Address, target: Address, name: str) -> Message | None:
-    """The PARAM_VALUE or PARAM_ERROR about `name`, if that is what was heard."""
-    if not target.includes(heard.sysid, heard.compid):
-        return None
-    match heard.message:
-        case ParamValue(param_id=about) if about == name:
-            return heard.message
-        case ParamErrorMessage(param_id=about, target_system=system, target_component=component):
-            to_us = Address(system, component).includes(own.sysid, own.compid)
-            return heard.message if about == name and to_us else None
-        case _:
-            return None
+@dataclass(slots=True)
+class _Wanted:
+    """A parameter that is to be read: the names that it may have, the next to ask for first."""
+
+    about: str
+    names: deque[str]
+    tries_left: int
 
 
 class ParamReader:
-    """Read `names`, one at a time; each ends as ParamRead or ParamAbsent, then ParamsDone comes."""
+    """Read each of `wanted`, one at a time; each ends as ParamRead or ParamAbsent, then ParamsDone
+    comes.
+
+    Each is a tuple of names, as versions of an autopilot differ: one that is answered is enough.  A
+    name that the vehicle says it does not have, or is silent about, is followed by the next one.
+    ParamAbsent tells the first name.  An answer counts whenever it comes before the end.
+    """
 
     def __init__(
-        self, own: Address, target: Address, encoding: ParamEncoding, names: tuple[str, ...]
+        self,
+        own: Address,
+        target: Address,
+        encoding: ParamEncoding,
+        wanted: Iterable[tuple[str, ...]],
+        wait_ns: int = READ_WAIT_NS,
     ) -> None:
         self._own = own
         self._target = target
         self._encoding = encoding
-        self._names = deque(names)
-        self._tries = 0
+        self._wait_ns = wait_ns
+        self._open = deque(
+            _Wanted(names[0], deque(names), READ_TRIES * len(names)) for names in wanted
+        )
         self.deadline_ns: int | None = None
         self.ended = False
 
@@ -102,49 +108,71 @@ class ParamReader:
             case Wake():
                 if self.deadline_ns is None or now_ns < self.deadline_ns:
                     return []
-                if self._tries < READ_TRIES:
-                    return self._ask(now_ns)
-                return [ParamAbsent(self._names[0], None), *self._next(now_ns)]
+                return self._silence(now_ns)
             case _:
                 assert_never(event)
 
     def _heard(self, heard: Heard, now_ns: int) -> list[ParamEffect]:
-        name = self._names[0]
-        match _answer(heard, self._own, self._target, name):
-            case ParamValue() as answer:
-                known = _read(answer, self._encoding)
-                return [known, *self._next(now_ns)]
-            case ParamErrorMessage(error=error):
-                return [ParamAbsent(name, _param_error(error)), *self._next(now_ns)]
+        if not self._target.includes(heard.sysid, heard.compid):
+            return []
+        match heard.message:
+            case ParamValue(param_id=name) as answer:
+                wanted = self._find(name)
+                return [] if wanted is None else self._end(wanted, self._read(answer), now_ns)
+            case ParamErrorMessage(param_id=name) as refused:
+                to = Address(refused.target_system, refused.target_component)
+                wanted = self._find(name)
+                if wanted is None or not to.includes(self._own.sysid, self._own.compid):
+                    return []
+                return self._no_such(wanted, name, _param_error(refused.error), now_ns)
             case _:
                 return []
 
-    def _next(self, now_ns: int) -> list[ParamEffect]:
-        self._names.popleft()
-        self._tries = 0
+    def _find(self, name: str) -> _Wanted | None:
+        return next((wanted for wanted in self._open if name in wanted.names), None)
+
+    def _no_such(
+        self, wanted: _Wanted, name: str, error: ParamError | int, now_ns: int
+    ) -> list[ParamEffect]:
+        wanted.names.remove(name)
+        if not wanted.names:
+            return self._end(wanted, ParamAbsent(wanted.about, error), now_ns)
+        return self._ask(now_ns) if wanted is self._open[0] else []
+
+    def _silence(self, now_ns: int) -> list[ParamEffect]:
+        wanted = self._open[0]
+        if not wanted.tries_left:
+            return self._end(wanted, ParamAbsent(wanted.about, None), now_ns)
+        wanted.names.rotate(-1)
         return self._ask(now_ns)
 
+    def _end(self, wanted: _Wanted, how: ParamRead | ParamAbsent, now_ns: int) -> list[ParamEffect]:
+        asked = wanted is self._open[0]
+        self._open.remove(wanted)
+        return [how, *self._ask(now_ns)] if asked else [how]
+
     def _ask(self, now_ns: int) -> list[ParamEffect]:
-        if not self._names:
+        if not self._open:
             self.ended = True
             self.deadline_ns = None
             return [ParamsDone()]
-        self._tries += 1
-        self.deadline_ns = now_ns + READ_WAIT_NS
+        wanted = self._open[0]
+        wanted.tries_left -= 1
+        self.deadline_ns = now_ns + self._wait_ns
         ask = ParamRequestRead(
             param_index=BY_NAME,
             target_system=self._target.sysid,
             target_component=self._target.compid,
-            param_id=self._names[0],
+            param_id=wanted.names[0],
         )
         return [Send(ask)]
 
-
-def _read(answer: ParamValue, encoding: ParamEncoding) -> ParamRead:
-    """A type that does not exist is taken for a float."""
-    known = answer.param_type in ParamType.__members__.values()
-    type_ = ParamType(answer.param_type) if known else ParamType.REAL32
-    return ParamRead(answer.param_id, decode_value(answer.param_value, type_, encoding), type_)
+    def _read(self, answer: ParamValue) -> ParamRead:
+        """A type that does not exist is taken for a float."""
+        known = answer.param_type in ParamType.__members__.values()
+        type_ = ParamType(answer.param_type) if known else ParamType.REAL32
+        value = decode_value(answer.param_value, type_, self._encoding)
+        return ParamRead(answer.param_id, value, type_)
 
 
 def _param_error(error: int) -> ParamError | int:

@@ -49,6 +49,11 @@ class SequenceTracker:
         step = (seq - count.last_seq) & 0xFF
         return count.last_number + (step if step < REORDERED else step - 256)
 
+    def late(self, sysid: int, compid: int, seq: int) -> bool:
+        """Whether `seq` was sent before a frame that has come, unless the sender began anew."""
+        count = self.senders.get((sysid, compid))
+        return count is not None and self.number(sysid, compid, seq) < count.last_number
+
     def seen(self, sysid: int, compid: int, seq: int) -> int:
         """Count a frame; how many were lost just before it (negative: one that was lost came)."""
         count = self.senders.get((sysid, compid))

@@ -190,6 +190,12 @@ class Recorder:
         self._finish()
         return self._file.failure is None and len(self.parts) == 1
 
+    def discard(self, now_ns: int) -> None:
+        """Close, and leave no file: there was nothing to record."""
+        self.close(now_ns)
+        self._leftovers += self.parts
+        self._remove_leftovers()
+
     # --------------------------------------------------------------------------- recording
 
     def _next_ns(self, now_ns: int) -> int:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from gcs.gate.effects import CommandKind, Level, SendCommand
 from gcs.gate.inputs import CommandEnded
+from gcs.gate.machine.sentences import result_word
 from gcs.protocol.autopilot import CannotCommandError, WantedCommand, command_long_for
-from gcs.protocol.command import ACK_WAIT_NS, CommandClient
+from gcs.protocol.command import ACK_WAIT_NS, WORK_WAIT_NS, CommandClient
 from gcs.protocol.effects import (
     Address,
     CommandEffect,
@@ -21,6 +22,7 @@ from gcs.protocol.effects import (
     Withdraw,
 )
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import Log, ToGate, Work
 from gcs.wire.ids import Result
 from gcs.wire.messages import CommandLong
@@ -71,8 +73,11 @@ class _Repeat:
 class Commands:
     """All commands to one vehicle, each with exactly one answer for the gate."""
 
-    def __init__(self, sysid: int, compid: int, speedup: float = 1.0) -> None:
-        self._client = CommandClient(Address(sysid, compid), round(ACK_WAIT_NS * speedup))
+    def __init__(self, own: Address, times: Times) -> None:
+        waits = times.real_ns(ACK_WAIT_NS), times.real_ns(WORK_WAIT_NS)
+        self._client = CommandClient(own, *waits)
+        self._repeat_after_ns = times.real_ns(REPEAT_AFTER_NS)
+        self._own_command_ns = times.real_ns(OWN_COMMAND_NS)
         self._sent: dict[int, tuple[SendCommand, CommandLong]] = {}
         self._next_token = UNANSWERED_TOKEN + 1
         self._photo_seq = 0
@@ -106,7 +111,7 @@ class Commands:
         self._next_token += 1
         self._sent[token] = wanted, command
         work = self._end_repeating()
-        if wanted.kind is CommandKind.ARM and not telemetry.prearm_ok:
+        if wanted.kind is CommandKind.ARM and telemetry.prearm_ok is False:
             self._repeat_later(token, Result.TEMPORARILY_REJECTED, now_ns)
             text = "the vehicle's pre-arm checks are not through: asking a little later"
             return [*work, _log(text)]
@@ -114,7 +119,7 @@ class Commands:
 
     def send_own(self, command: CommandLong, now_ns: int) -> list[Work]:
         """A harmless command of the station itself (streams, origin)."""
-        submit = Submit(UNANSWERED_TOKEN, command, now_ns + OWN_COMMAND_NS)
+        submit = Submit(UNANSWERED_TOKEN, command, now_ns + self._own_command_ns)
         return self._work(self._client.handle(submit, now_ns), now_ns)
 
     def cancel(self, request_id: int, kind: CommandKind, now_ns: int) -> list[Work]:
@@ -144,13 +149,13 @@ class Commands:
     # ------------------------------------------------------------------------- repetition
 
     def _repeat_later(self, token: int, result: int, now_ns: int) -> None:
-        self._repeat = _Repeat(now_ns + REPEAT_AFTER_NS, token, result)
+        self._repeat = _Repeat(now_ns + self._repeat_after_ns, token, result)
 
     def _repeat_now(self, due: _Repeat, telemetry: Telemetry | None, now_ns: int) -> list[Work]:
         """Unless the vehicle itself still says that it would not arm, and there is time to wait."""
         wanted, _ = self._sent[due.token]
         unready = telemetry is not None and telemetry.prearm_ok is False
-        in_time = now_ns + REPEAT_AFTER_NS < wanted.deadline_ns
+        in_time = now_ns + self._repeat_after_ns < wanted.deadline_ns
         if wanted.kind is CommandKind.ARM and unready and in_time:
             self._repeat_later(due.token, due.result, now_ns)
             return []
@@ -190,19 +195,19 @@ class Commands:
                     done = "" if percent is None else f", {percent} %"
                     work.append(_log(f"command {command} is in progress{done}"))
                 case LateAck(_, command, result, _):
-                    text = f"a late answer to command {command}: result {result}, not acted on"
-                    work.append(_log(text))
+                    what = f"a late answer to command {command}: {result_word(result)}"
+                    work.append(_log(f"{what}, not acted on"))
         return work
 
     def _finished(self, token: int, result: int | None, text: str, now_ns: int) -> list[Work]:
         if token not in self._sent:
             return []
         wanted, _ = self._sent[token]
-        in_time = now_ns + REPEAT_AFTER_NS < wanted.deadline_ns
+        in_time = now_ns + self._repeat_after_ns < wanted.deadline_ns
         if wanted.kind in REPEATED and result is not None and result in NOT_YET and in_time:
             work = self._end_repeating()
             self._repeat_later(token, result, now_ns)
-            not_ready = f"not ready for {wanted.kind.value} (result {result}): asking again"
+            not_ready = f"not ready for {wanted.kind.value} ({result_word(result)}): asking again"
             return [*work, _log(not_ready)]
         del self._sent[token]
         return [_answer(wanted, result, text)]

@@ -6,13 +6,11 @@ reaches the vehicle's motion on any other path.
 
 from __future__ import annotations
 
-from msgspec import structs
-
 from gcs.gate import effects, inputs
 from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
 from gcs.gate.condition import Condition
 from gcs.gate.machine.gate import Gate
-from gcs.gate.policy.policy import ControlTimes, Policy
+from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import State
@@ -24,8 +22,9 @@ from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence,
 class GatePort:
     """Before a vehicle is heard the gate is one that refuses everything: NO_VEHICLE."""
 
-    def __init__(self, policy: Policy, speedup: float, now_ns: int) -> None:
-        self.policy = on_wall_time(policy, speedup)
+    def __init__(self, policy: Policy, now_ns: int) -> None:
+        """`policy` is on the session's clock: see `Times.policy`."""
+        self.policy = policy
         self.gate = Gate(self.policy, "", now_ns)
         self.bad_start: Refusal | None = None
         """Why the vehicle's place at the start is outside the fence, once that is known."""
@@ -111,17 +110,3 @@ class GatePort:
 def condition(name: Condition, active: bool, text: str) -> ToGate:
     """Something is wrong, or no longer."""
     return ToGate(inputs.ConditionChanged(name, active, text))
-
-
-def on_wall_time(policy: Policy, speedup: float) -> Policy:
-    """Times that wait for the other side's heartbeat and answers do not shrink with a speed-up.
-
-    A sped-up vehicle still beats once in a real second and proves a stream in real time, so that
-    ordinary clients stay connected; on the session's clock that takes `speedup` times as long.
-    """
-    times = policy.control
-    return structs.replace(
-        policy,
-        heartbeat_age_s=policy.heartbeat_age_s * speedup,
-        control=ControlTimes(times.stream_s * speedup, times.timeout_s * speedup),
-    )

@@ -7,7 +7,6 @@ Everything that moves still goes through the gate.
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.config import StationConfig
 from gcs.gate.inputs import MissionLoaded, MissionSeen
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
@@ -23,6 +22,7 @@ from gcs.session.jobs.start import Start
 from gcs.session.jobs.upload import Upload
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import AskGate, ToGate, Work
 from gcs.wire.ids import MissionState
 from gcs.wire.messages import MissionCurrent, MissionItemReached
@@ -34,11 +34,11 @@ MISSION_WORDS = TRANSFER_WORDS | {"mission_start"}
 class Missions:
     """Takes the mission requests of one vehicle, and tells the gate how its mission goes."""
 
-    def __init__(self, config: StationConfig) -> None:
-        self._own = Address(config.sysid, config.compid)
+    def __init__(self, own: Address, times: Times) -> None:
+        self._own = own
+        self._times = times
         self._timing = Timing(
-            round(SPEC_TIMING.wait_ns * config.speedup),
-            round(SPEC_TIMING.item_wait_ns * config.speedup),
+            times.real_ns(SPEC_TIMING.wait_ns), times.real_ns(SPEC_TIMING.item_wait_ns)
         )
         self._job: Job | None = None
         self._on_board: OnBoard | None = None
@@ -71,7 +71,7 @@ class Missions:
         if refusal is not None:
             return [*refused(request_id, ask.word, refusal)]
         assert telemetry is not None
-        asked = Asked(request_id, ask.id, ask.word, self._own, self._timing)
+        asked = Asked(request_id, ask.id, ask.word, self._own, self._timing, self._times)
         job: Job
         match ask.word:
             case "mission_upload":

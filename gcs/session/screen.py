@@ -23,6 +23,8 @@ def snapshot(
     log_path: str,
     recording: bool,
     recorded_bytes: int,
+    vehicles: list[str],
+    listening: bool,
 ) -> ipc.Snapshot:
     """Everything a panel shows; what is not known is None, never a zero."""
     goal_ned = gate.active_goal_ned
@@ -37,6 +39,8 @@ def snapshot(
         log_path=log_path,
         recording=recording,
         recorded_mb=recorded_bytes / 1e6,
+        vehicles=vehicles,
+        listening=listening,
     )
     if telemetry is None:
         return without_vehicle
@@ -52,6 +56,8 @@ def snapshot(
         yaw_deg=None if telemetry.yaw_rad is None else math.degrees(telemetry.yaw_rad) % 360.0,
         position_age_s=(now_ns - telemetry.position_ns) / 1e9 if placed else None,
         home_enu=enu_from_ned(telemetry.home_ned) if telemetry.home_ned else None,
+        gps=telemetry.health.gps.words,
+        estimator=telemetry.health.estimator.words,
         battery_pct=telemetry.battery_pct,
         battery_v=telemetry.battery_v,
         heartbeat_age_s=(now_ns - telemetry.heartbeat_ns) / 1e9,

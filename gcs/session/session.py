@@ -55,6 +55,7 @@ from gcs.session.screen import snapshot
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
 from gcs.session.ticks import Ticks
+from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import (
     AskGate,
@@ -84,10 +85,11 @@ class Session:
         config = setup.config
         self._setup = setup
         self._start_ns = now_ns
-        self._ticks = Ticks(now_ns, config.speedup)
+        self._times = Times(config.speedup)
+        self._ticks = Ticks(now_ns, self._times)
         count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
         self._links = Links(config.sysid, config.compid, count, streams, waiting)
-        self._vehicle = Vehicle(config, setup.policy, now_ns)
+        self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._requests = Requests()
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
@@ -111,6 +113,11 @@ class Session:
     def gate(self) -> Gate:
         """To look at, not to handle."""
         return self._vehicle.gate
+
+    @property
+    def nothing_heard(self) -> bool:
+        """No vehicle was heard, and none of our own was started: there is nothing to keep."""
+        return self._vehicle.telemetry is None and self._setup.config.sim is None
 
     @property
     def telemetry(self) -> Telemetry | None:
@@ -248,18 +255,23 @@ class Session:
         work: list[Work] = [*self._links.heartbeat(), *self._vehicle.remind()]
         if self._vehicle.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)
-        if now_ns - self._other_station_ns > OTHER_STATION_NS:
+        if now_ns - self._other_station_ns > self._times.real_ns(OTHER_STATION_NS):
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
         return work + self._vehicle.second(now_ns)
 
     def _no_vehicle_yet(self, now_ns: int) -> list[Work]:
-        waited_s = (now_ns - self._start_ns) / 1e9
+        waited_s = self._times.real_s(now_ns - self._start_ns)
         if self._told_no_vehicle or waited_s < self._setup.config.connect_timeout_s:
             return []
         self._told_no_vehicle = True
         where = ", ".join(self._setup.endpoints)
         hint = "is the vehicle running, and does it send to this address? (try: gcs fly --sim)"
+        heard = self._vehicle.heard_vehicles(now_ns)
+        wanted = self._setup.config.target_sysid
         text = f"no vehicle heard for {waited_s:.0f} s ({where})"
+        if heard and wanted:
+            text = f"vehicle {wanted} was not heard for {waited_s:.0f} s, but {', '.join(heard)}"
+            hint = "choose one of them with --vehicle"
         return [Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)), Log(Level.WARNING, NODE, text)]
 
     # -------------------------------------------------------------------------- operator
@@ -275,6 +287,12 @@ class Session:
                 return self._leave(reason, now_ns)
 
     def _ask(self, ask: ipc.Ask, now_ns: int) -> list[Work]:
+        refusal = self._vehicle.refusal(now_ns)
+        if refusal is not None:
+            request_id = self._requests.open(ask.id, ask.word)
+            text = f"{ask.word}: refused {refusal.code.value}: {refusal.sentence}"
+            log = Log(Level.WARNING, NODE, text)
+            return [Decide(request_id, Ruling.REFUSED, refusal), log]
         if ask.word in MISSION_WORDS:
             return self._ask_mission(ask, now_ns)
         telemetry = self._vehicle.telemetry
@@ -313,7 +331,7 @@ class Session:
             return [trouble, *self._finish(ExitCode.REFUSED_BY_GATE, text)]
         if self._leaving_since_ns is None:
             return []
-        overdue = now_ns - self._leaving_since_ns >= LEAVING_NS
+        overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
         return self._finish(0, self._last_words()) if self.gate.settled or overdue else []
 
     def _finish(self, exit_code: int, sentence: str) -> list[Work]:
@@ -367,4 +385,6 @@ class Session:
             log_path=self._log_path,
             recording=self._recording,
             recorded_bytes=self._recorded_bytes,
+            vehicles=self._vehicle.heard_vehicles(now_ns),
+            listening=self._vehicle.listening(now_ns),
         )

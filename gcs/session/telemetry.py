@@ -10,9 +10,13 @@ from dataclasses import dataclass, field
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
+from gcs.gate.inputs import AccuracySeen
 from gcs.gate.states import LandedState
-from gcs.protocol.autopilot import Autopilot
+from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
+from gcs.session.delay import Delay
+from gcs.session.position_health import Estimator, Gps, PositionHealth
+from gcs.wire.ids import MavAutopilot, MavType
 
 POSITION_RATE_WINDOW_NS = 2_000_000_000
 
@@ -25,11 +29,14 @@ class Telemetry:
     compid: int
     autopilot: Autopilot
     link: int
+    mav_autopilot: int = MavAutopilot.GENERIC
+    mav_type: int = MavType.QUADROTOR
     link_ns: int = 0
 
     heartbeat_ns: int = 0
     armed: bool | None = None
     mode_name: str = ""
+    custom_mode: int = 0
     landed: LandedState = LandedState.UNDEFINED
     landed_ns: int = 0
 
@@ -39,8 +46,7 @@ class Telemetry:
     time_boot_ms: int = 0
     position_age_ns: int = 1_000_000_000
     restart_ms: int | None = None
-    quickest_ns: int | None = None
-    quickest_at_ns: int = 0
+    delay: Delay = field(default_factory=Delay)
 
     q_ned_from_frd: Quat = (1.0, 0.0, 0.0, 0.0)
     yaw_rad: float | None = None
@@ -55,7 +61,11 @@ class Telemetry:
     home: tuple[float, float, float] | None = None
     home_ned: Vec3 | None = None
     return_up_m: float | None = None
+    return_told: bool = False  # its return height is known, or it says that it has none
+    accuracy_told: AccuracySeen | None = None
+    acceptance_m: float | None = None  # how near a waypoint it takes it as reached itself
 
+    health: PositionHealth = field(default_factory=lambda: PositionHealth(Gps(), Estimator()))
     prearm_ok: bool | None = None
     battery_pct: float | None = None
     battery_v: float | None = None
@@ -70,14 +80,15 @@ class Telemetry:
 
     @property
     def label(self) -> str:
-        """Short name for a screen: ids and autopilot."""
-        return f"{self.sysid}/{self.compid} {self.autopilot.name} quadrotor"
+        """Short name for a screen: ids, autopilot and type."""
+        return f"{self.sysid}/{self.compid} {self.autopilot.name} {type_name(self.mav_type)}"
 
     def forget_place(self) -> None:
         """The vehicle restarted or was away: where its local frame lies is not known any more."""
         self.origin = self.home = self.home_ned = None
-        self.quickest_ns = None
+        self.delay = Delay(self.delay.times)
         self.landed = LandedState.UNDEFINED
+        self.health = PositionHealth(Gps(), Estimator())
 
     def count_frame(self, now_ns: int) -> None:
         """One more frame; the rate is renewed every two seconds."""

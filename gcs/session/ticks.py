@@ -6,11 +6,13 @@ from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.session.gate_port import condition
+from gcs.session.times import Times
 from gcs.session.work import Log, SecondDue, SnapshotDue, ToGate, Work
 
 TICK_NS = 50_000_000
 TICKS_A_SECOND = 20
 TICKS_A_SNAPSHOT = 2
+"""Of real time: ten snapshots a second, however fast the session's clock runs."""
 LATE_NS = 20_000_000
 """Of real time; a tick that comes later than this is logged."""
 VERY_LATE_NS = 250_000_000
@@ -22,9 +24,10 @@ NODE = "link"
 class Ticks:
     """What is due at a tick: the gate's, and every second and every second tick the session's."""
 
-    def __init__(self, start_ns: int, speedup: float) -> None:
+    def __init__(self, start_ns: int, times: Times) -> None:
         self.next_ns = start_ns + TICK_NS
-        self._speedup = speedup
+        self._times = times
+        self._ticks_a_snapshot = max(1, round(TICKS_A_SNAPSHOT * times.speedup))
         self._number = 0
         self._late_until_ns = 0
 
@@ -38,18 +41,18 @@ class Ticks:
         work += self._judge_lateness(lateness_ns, now_ns)
         if self._number % TICKS_A_SECOND == 0:
             work.append(SecondDue())
-        if self._number % TICKS_A_SNAPSHOT == 0:
+        if self._number % self._ticks_a_snapshot == 0:
             work.append(SnapshotDue())
         self._number += 1
         return work
 
     def _judge_lateness(self, lateness_ns: int, now_ns: int) -> list[Work]:
         """A late tick is logged; one so late that the stream had a gap is a condition for 10 s."""
-        text = f"a tick came {lateness_ns / 1e6 / self._speedup:.0f} ms late"
+        text = f"a tick came {self._times.real_s(lateness_ns) * 1e3:.0f} ms late"
         work: list[Work] = []
-        if lateness_ns > LATE_NS * self._speedup:
+        if lateness_ns > self._times.real_ns(LATE_NS):
             work.append(Log(Level.DEBUG, NODE, text))
-        if lateness_ns > VERY_LATE_NS * self._speedup:
+        if lateness_ns > self._times.real_ns(VERY_LATE_NS):
             self._late_until_ns = now_ns + LATE_SHOWN_NS
         late = now_ns < self._late_until_ns
         return [*work, condition(Condition.TICK_LATE, late, text)]

@@ -21,14 +21,11 @@ from gcs.session.gate_port import condition
 from gcs.session.telemetry import Telemetry, quat_from_euler
 from gcs.session.work import PlaceFence, ToGate
 from gcs.wire import messages as m
-from gcs.wire.ids import MavState, ModeFlag
+from gcs.wire.ids import MavState, ModeFlag, Sensor
 
 ORIGIN_DISAGREEMENT_M = 2.0
 MAX_PAIR_AGE_NS = 100_000_000
 CLOCK_STEP_BACK_MS = 1_000
-
-PREARM_CHECK = 0x1000_0000
-"""MAV_SYS_STATUS_PREARM_CHECK."""
 
 BATTERY_PCT = (
     (Condition.BATTERY_LOW, 15.0),
@@ -42,11 +39,11 @@ Update: TypeAlias = ToGate | Record | PlaceFence
 def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[Update]:
     """Update `telemetry`; yield what the gate must hear and what the record wants of it."""
     match message:
-        case m.Heartbeat() if message.autopilot == telemetry.autopilot.mav_autopilot:
+        case m.Heartbeat() if message.autopilot == telemetry.mav_autopilot:
             telemetry.heartbeat_ns = now_ns
             telemetry.armed = bool(message.base_mode & ModeFlag.SAFETY_ARMED)
             mode = mode_of(telemetry.autopilot, message.base_mode, message.custom_mode)
-            telemetry.mode_name = mode.name
+            telemetry.mode_name, telemetry.custom_mode = mode.name, message.custom_mode
             yield ToGate(inputs.HeartbeatSeen(telemetry.armed, mode.meaning, mode.name))
             failing = message.system_status in (MavState.CRITICAL, MavState.EMERGENCY)
             text = f"the vehicle says {MavState(message.system_status).name}" if failing else ""
@@ -78,6 +75,14 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
                 yield from _home_in_local_frame(telemetry)
         case m.SysStatus():
             yield from _system_status(message, telemetry)
+        case m.GpsRawInt():
+            yield from telemetry.health.gps_raw(message, bool(telemetry.armed), now_ns)
+        case m.EstimatorStatus():
+            yield from telemetry.health.estimator_status(message, bool(telemetry.armed), now_ns)
+        case m.EkfStatusReport():
+            yield from telemetry.health.ekf_status(message, bool(telemetry.armed), now_ns)
+        case m.Timesync() if message.tc1:
+            telemetry.delay.answered(message.ts1, now_ns)
         case m.CameraImageCaptured():
             yield ToGate(inputs.PhotoSeen(message.image_index, message.capture_result == 1))
         case m.CameraFeedback():
@@ -105,7 +110,7 @@ def _local_position(
             return
         restarted = True
         telemetry.forget_place()
-    if _delay_ns(message.time_boot_ms, telemetry, now_ns) > telemetry.position_age_ns:
+    if telemetry.delay.of(message.time_boot_ms, now_ns) > telemetry.position_age_ns:
         # It comes so late that it was too old when it arrived; the age will tell.
         return
     telemetry.restart_ms = None
@@ -125,23 +130,11 @@ def _restarted(time_boot_ms: int, telemetry: Telemetry) -> bool:
     return first_ms is not None and 0 < time_boot_ms - first_ms < CLOCK_STEP_BACK_MS
 
 
-def _delay_ns(time_boot_ms: int, telemetry: Telemetry, now_ns: int) -> int:
-    """How much later than the quickest sample this one came: the link's own queue.
-
-    The quickest is forgotten at 1 ms a second, more than any two clocks drift apart.
-    """
-    offset_ns = now_ns - time_boot_ms * 1_000_000
-    if telemetry.quickest_ns is None:
-        telemetry.quickest_ns, telemetry.quickest_at_ns = offset_ns, now_ns
-    allowed_ns = telemetry.quickest_ns + (now_ns - telemetry.quickest_at_ns) // 1000
-    telemetry.quickest_ns, telemetry.quickest_at_ns = min(offset_ns, allowed_ns), now_ns
-    return offset_ns - telemetry.quickest_ns
-
-
 def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Update]:
     """SYS_STATUS: battery, and whether the vehicle would arm."""
-    if message.onboard_control_sensors_present & PREARM_CHECK:
-        telemetry.prearm_ok = bool(message.onboard_control_sensors_health & PREARM_CHECK)
+    if message.onboard_control_sensors_present & Sensor.PREARM_CHECK:
+        telemetry.prearm_ok = bool(message.onboard_control_sensors_health & Sensor.PREARM_CHECK)
+    yield from telemetry.health.system_status(message, bool(telemetry.armed))
     if message.voltage_battery not in (0, 0xFFFF):
         telemetry.battery_v = message.voltage_battery / 1e3
     if message.battery_remaining < 0:

@@ -7,6 +7,7 @@ All that is per vehicle is here and in the parts that this composes; what is per
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Final, get_args
 
 from gcs import ipc
@@ -16,35 +17,50 @@ from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
-from gcs.gate.refusal import Refusal
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control
 from gcs.protocol.autopilot import autopilot_of
-from gcs.protocol.effects import Heard, Send
+from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
 from gcs.report import ParamItem, SetpointItem, StatusItem
-from gcs.session import discovery, teller
+from gcs.session import settings, teller
 from gcs.session.commands import Commands
+from gcs.session.delay import Delay
 from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
+from gcs.session.position_health import GPS_SILENT_NS
+from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
 from gcs.session.setpoints import setpoint
+from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.updates import updates
+from gcs.session.words import Said, Words
 from gcs.session.work import CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MavAutopilot, MavType, Severity
 
-VEHICLE_GONE_NS = 3_500_000_000
 LINK_SILENT_NS = 2_000_000_000
+RESTART_SILENCE_NS = 500_000_000
+"""A frame that seems older than others, and comes after such a silence, is of a vehicle that
+restarted: on the way no frame is overtaken by that much."""
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
+
+REASON_WAIT_NS = 150_000_000
+"""How long a refusal waits for its reason: ArduPilot's text may leave a moment after its answer."""
+WAITS_FOR_REASONS: Final = frozenset(
+    {CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START_MISSION, CommandKind.SET_MODE}
+)
+"""What nobody is stopped by: no refused hold, landing or disarming waits for words."""
 
 NODE = "link"
 
@@ -72,16 +88,24 @@ MISSION_MESSAGES: Final = frozenset(
 class Vehicle:
     """The vehicle that a session flies; `telemetry` is None until it is heard."""
 
-    def __init__(self, config: StationConfig, policy: Policy, now_ns: int) -> None:
+    def __init__(self, config: StationConfig, policy: Policy, times: Times, now_ns: int) -> None:
         self._config = config
+        self._times = times
+        self._gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self._start_ns = now_ns
-        self._port = GatePort(policy, config.speedup, now_ns)
-        self._commands = Commands(config.sysid, config.compid, config.speedup)
-        self._discovery = Discovery(config)
-        self._missions = Missions(config)
+        own = Address(config.sysid, config.compid)
+        self._port = GatePort(times.policy(policy), now_ns)
+        self._commands = Commands(own, times)
+        self._discovery = Discovery(times)
+        self._settings = Settings(own, times)
+        self._missions = Missions(own, times)
+        self._words = Words(times)
+        self._roster = Roster(config.target_sysid, times, self._gone_ns)
+        self._arm_asked_ns = 0
+        self._unexplained: tuple[tuple[int, inputs.CommandEnded], ...] = ()
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
-        self._gone_ns = round(VEHICLE_GONE_NS * config.speedup)
+        self._heard_ns: dict[tuple[int, int], int] = {}
         self.telemetry: Telemetry | None = None
         self.losses = SequenceTracker()
 
@@ -90,8 +114,9 @@ class Vehicle:
     @property
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
-        parts = (self._commands, self._discovery, self._missions)
+        parts = (self._commands, self._settings, self._missions, self._words)
         times = [part.deadline_ns for part in parts]
+        times += [due_ns for due_ns, _ in self._unexplained]
         return min((time for time in times if time is not None), default=None)
 
     @property
@@ -127,15 +152,29 @@ class Vehicle:
         telemetry = self.telemetry
         if telemetry is None or frame.sysid != telemetry.sysid:
             return work
+        self._notice_restart(frame, now_ns)
         number = self.losses.number(frame.sysid, frame.compid, frame.seq)
         self.losses.seen(frame.sysid, frame.compid, frame.seq)
         telemetry.count_frame(now_ns)
         if frame.compid == telemetry.compid:
-            _choose_link(telemetry, link, now_ns)
+            self._choose_link(telemetry, link, now_ns)
         if message is not None and not self._overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
             work += self._heard(telemetry, heard, now_ns)
         return work
+
+    def _notice_restart(self, frame: Frame, now_ns: int) -> None:
+        sender = (frame.sysid, frame.compid)
+        heard_ns, self._heard_ns[sender] = self._heard_ns.get(sender, now_ns), now_ns
+        silent = now_ns - heard_ns > self._times.real_ns(RESTART_SILENCE_NS)
+        if silent and self.losses.late(*sender, frame.seq):
+            self.losses.restart(*sender)
+
+    def _choose_link(self, telemetry: Telemetry, link: int, now_ns: int) -> None:
+        """Answer where it is heard; another link takes over only once that one is silent."""
+        silent = now_ns - telemetry.link_ns > self._times.real_ns(LINK_SILENT_NS)
+        if link == telemetry.link or silent:
+            telemetry.link, telemetry.link_ns = link, now_ns
 
     def _overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
         """A state that is older than one of the same kind that has come: void."""
@@ -152,14 +191,15 @@ class Vehicle:
         work: list[Work] = []
         message = heard.message
         if isinstance(message, m.CommandAck):
-            work += self._commands.heard(heard, now_ns)
+            work += self._explained(self._commands.heard(heard, now_ns), telemetry, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
-            work += self._settings(self._discovery.heard(heard, telemetry, now_ns), telemetry)
+            work += self._learn(self._settings.heard(heard, telemetry, now_ns), telemetry)
         elif type(message) in MISSION_MESSAGES:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
-            level = STATUSTEXT_LEVEL.get(Severity(message.severity & 7), Level.INFO)
-            work.append(Log(level, "vehicle", message.text))
+            work += _logged(self._words.text(heard.compid, message, now_ns))
+        elif isinstance(message, m.Event) and heard.compid == telemetry.compid:
+            self._words.event(message)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
             return work
         for update in updates(message, telemetry, now_ns):
@@ -167,7 +207,38 @@ class Vehicle:
                 case ToGate(inputs.PositionSeen(reset=True)):
                     work += self._missions.forget()
             work.append(update)
-        return work
+        return work + _accuracy(telemetry)
+
+    def _explained(self, work: list[Work], telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """The vehicle's refusals among `work` with its reasons, which may come after its answer."""
+        explained: list[Work] = []
+        for item in work:
+            match item:
+                case ToGate(inputs.CommandEnded(kind=kind, result=result) as ended) if result:
+                    text = self._reasons(kind, telemetry, now_ns)
+                    if text or kind not in WAITS_FOR_REASONS:
+                        explained.append(ToGate(replace(ended, text=text)))
+                    else:
+                        due_ns = now_ns + self._times.real_ns(REASON_WAIT_NS)
+                        self._unexplained = *self._unexplained, (due_ns, ended)
+                case _:
+                    explained.append(item)
+        return explained
+
+    def _explain_due(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """The refusals whose reasons were waited for."""
+        due = [ended for due_ns, ended in self._unexplained if now_ns >= due_ns]
+        self._unexplained = tuple(item for item in self._unexplained if now_ns < item[0])
+        return [
+            ToGate(replace(ended, text=self._reasons(ended.kind, telemetry, now_ns)))
+            for ended in due
+        ]
+
+    def _reasons(self, kind: CommandKind, telemetry: Telemetry, now_ns: int) -> str:
+        if kind is CommandKind.ARM:
+            mode = telemetry.custom_mode
+            return self._words.reasons_not_to_arm(mode, self._arm_asked_ns, now_ns)
+        return self._words.reasons(now_ns)
 
     # ---------------------------------------------------------------------------- discovery
 
@@ -175,13 +246,21 @@ class Vehicle:
         """Choose our vehicle: the first autopilot that is heard, or the one that was named."""
         if beat.type == MavType.GCS or beat.autopilot == MavAutopilot.INVALID:
             return []
-        wanted = self._config.target_sysid
-        if wanted not in (0, frame.sysid) or frame.compid != Component.AUTOPILOT1:
+        if frame.compid != Component.AUTOPILOT1:
             return []
-        telemetry = self.telemetry
         work: list[Work] = []
+        if self._roster.heard(frame.sysid, frame.compid, beat, now_ns):
+            names = ", ".join(self._roster.names(now_ns))
+            work.append(Log(Level.WARNING, NODE, f"several vehicles are heard: {names}"))
+        wanted = self._config.target_sysid
+        if wanted not in (0, frame.sysid):
+            return work
+        telemetry = self.telemetry
         if telemetry is None:
-            telemetry = Telemetry(frame.sysid, frame.compid, autopilot_of(beat.autopilot), link)
+            autopilot = autopilot_of(beat.autopilot, beat.type)
+            telemetry = Telemetry(frame.sysid, frame.compid, autopilot, link)
+            telemetry.mav_autopilot, telemetry.mav_type = beat.autopilot, beat.type
+            telemetry.delay = Delay(self._times)
             telemetry.rx_window_start_ns = telemetry.link_ns = now_ns
             telemetry.position_age_ns = round(self._port.policy.position_age_s * 1e9)
             self._met_ns = now_ns
@@ -195,27 +274,33 @@ class Vehicle:
             work += self._missions.forget()
             work.append(PlaceFence())
         else:
-            return []
+            return work
         work.append(Log(Level.INFO, NODE, news))
-        work += self._settings(self._discovery.start(telemetry, now_ns), telemetry)
+        self._discovery.start()
+        work += self._learn(self._settings.start(telemetry, now_ns), telemetry)
         return work + self._ask_for_missing(telemetry, now_ns)
 
-    def _settings(self, found: Iterable[discovery.Found], telemetry: Telemetry) -> list[Work]:
+    def _learn(self, found: Iterable[settings.Found], telemetry: Telemetry) -> list[Work]:
+        """What the vehicle's own settings say."""
         work: list[Work] = []
         for item in found:
             match item:
                 case Send():
                     work.append(item)
-                case discovery.ParameterKnown(name, value):
+                case settings.ParameterKnown(name, value):
                     work.append(Record(ParamItem(telemetry.sysid, name, value)))
-                case discovery.SettingsKnown(weak, return_up_m):
+                case settings.ReturnHeightKnown(up_m):
+                    telemetry.return_up_m, telemetry.return_told = up_m, True
+                    if up_m is not None:
+                        work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
+                case settings.AcceptanceKnown(radius_m):
+                    telemetry.acceptance_m = radius_m
+                    work += _accuracy(telemetry)
+                case settings.FailsafesKnown(weak):
                     text = "the vehicle's own failsafes: " + ("; ".join(weak) or "all on")
                     work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
                     if not weak:
                         work.append(Log(Level.INFO, NODE, text))
-                    if return_up_m is not None:
-                        telemetry.return_up_m = return_up_m
-                        work.append(ToGate(inputs.ReturnHeightSeen(return_up_m)))
         return work
 
     def _ask_for_missing(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
@@ -226,10 +311,10 @@ class Vehicle:
 
     def wake(self, now_ns: int) -> list[Work]:
         """Some part's deadline has passed."""
-        work = self._commands.wake(self.telemetry, now_ns)
+        work = self._commands.wake(self.telemetry, now_ns) + _logged(self._words.wake(now_ns))
         if self.telemetry is not None:
-            found = self._discovery.wake(self.telemetry, now_ns)
-            work += self._settings(found, self.telemetry)
+            work += self._explain_due(self.telemetry, now_ns)
+            work += self._learn(self._settings.wake(self.telemetry, now_ns), self.telemetry)
             work += self._missions.wake(self._view(self.telemetry), now_ns)
         return work
 
@@ -241,7 +326,14 @@ class Vehicle:
         work: list[Work] = []
         if now_ns - telemetry.heartbeat_ns <= self._gone_ns:
             work += self._ask_for_missing(telemetry, now_ns)
-        missing = telemetry.origin is None and now_ns - self._met_ns > ORIGIN_PATIENCE_NS
+        if now_ns >= telemetry.delay.ask_at_ns:
+            target = telemetry.sysid, telemetry.compid
+            work.append(Send(m.Timesync(0, telemetry.delay.ask(now_ns), *target)))
+        if now_ns - telemetry.position_ns <= telemetry.position_age_ns:
+            work += telemetry.health.gps_silent(self._times.real_ns(GPS_SILENT_NS), now_ns)
+        missing = telemetry.origin is None and now_ns - self._met_ns > self._times.real_ns(
+            ORIGIN_PATIENCE_NS
+        )
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
         work.append(condition(Condition.ORIGIN_MISSING, missing, text))
         status = StatusItem(
@@ -261,6 +353,24 @@ class Vehicle:
         return [] if self.telemetry is None else [*teller.reminder(self.gate, self.sysid)]
 
     # ----------------------------------------------------------------------------- requests
+
+    def refusal(self, now_ns: int) -> Refusal | None:
+        """Why nothing at all can be asked of it; None where the gate or a job is to answer."""
+        refusal = self._roster.refusal(now_ns)
+        telemetry = self.telemetry
+        if refusal is None and telemetry is not None and not telemetry.autopilot.commanded:
+            what = f"{telemetry.label} is watched and recorded"
+            sentence = f"this station flies multirotors with PX4 or ArduPilot only; {what}"
+            return Refusal(Code.UNSUPPORTED_VEHICLE, sentence)
+        return refusal
+
+    def heard_vehicles(self, now_ns: int) -> list[str]:
+        """The names of all that are heard."""
+        return self._roster.names(now_ns)
+
+    def listening(self, now_ns: int) -> bool:
+        """Whether it may still turn out that there are several; a vehicle of our own is alone."""
+        return self._config.sim is None and self._roster.listening(now_ns)
 
     def ask_mission(self, request_id: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""
@@ -295,6 +405,8 @@ class Vehicle:
                 return [Send(message), Record(sent)]
             case effects.SendCommand():
                 assert self.telemetry is not None
+                if effect.kind is CommandKind.ARM:
+                    self._arm_asked_ns = now_ns
                 return self._commands.send(effect, self.telemetry, now_ns)
             case effects.CancelCommand(request_id, kind):
                 return self._commands.cancel(request_id, kind, now_ns)
@@ -316,7 +428,20 @@ class Vehicle:
         return self._commands.send(hold, self.telemetry, now_ns)
 
 
-def _choose_link(telemetry: Telemetry, link: int, now_ns: int) -> None:
-    """Answer where it is heard; another link takes over only once that one is silent."""
-    if link == telemetry.link or now_ns - telemetry.link_ns > LINK_SILENT_NS:
-        telemetry.link, telemetry.link_ns = link, now_ns
+def _accuracy(telemetry: Telemetry) -> list[Work]:
+    """How near to a goal is there, as far as the vehicle tells; where that is news to the gate."""
+    health, acceptance_m = telemetry.health, telemetry.acceptance_m
+    seen = inputs.AccuracySeen(health.accuracy_h_m, acceptance_m)
+    if seen == telemetry.accuracy_told:
+        return []
+    telemetry.accuracy_told = seen
+    return [ToGate(seen)]
+
+
+def _logged(said: Iterable[Said]) -> list[Work]:
+    """The vehicle's texts as lines of the log, as severe as it says."""
+    work: list[Work] = []
+    for each in said:
+        level = STATUSTEXT_LEVEL[Severity(each.severity & 7)]
+        work.append(Log(level, "vehicle", each.text))
+    return work

@@ -65,3 +65,9 @@ class Recording:
         if self._whole is None:
             self._whole = self._recorder is None or self._recorder.close(now_ns)
         return self._whole
+
+    def discard(self, now_ns: int) -> None:
+        """Close, and leave no file; `path` is empty from now on."""
+        if self._recorder is not None and self._whole is None:
+            self._recorder.discard(now_ns)
+        self._recorder, self._whole = None, True

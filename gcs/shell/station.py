@@ -82,6 +82,8 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
         )
         operator = LineSource(sys.stdin.fileno())
         finish = Loop(session, clock, links, operator, screen, recording, signals, sim).run()
+        if session.nothing_heard:
+            recording.discard(clock.now_ns())
         whole = recording.close(clock.now_ns())
     exit_code = finish.exit_code or (0 if whole else ExitCode.RECORDER)
     screen.put(ipc.encode(ipc.Bye(exit_code, recording.path, finish.sentence)))

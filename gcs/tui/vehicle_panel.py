@@ -9,6 +9,7 @@ from rich.text import Text
 
 from gcs import ipc
 from gcs.enu_text import signed_enu
+from gcs.gate.condition import Condition
 from gcs.operator.event_text import whole_degrees
 from gcs.tui import look
 from gcs.tui.scene import Scene
@@ -19,7 +20,7 @@ LOW_BATTERY_PCT = 25.0
 
 
 def draw(scene: Scene) -> Text:
-    """Seven rows of 32 cells, and one for conditions that are not nominal."""
+    """Eight rows of 32 cells, and one for conditions that are not nominal."""
     seen = scene.snapshot
     panel = Text(no_wrap=True, end="")
     if seen is None or not seen.vehicle:
@@ -59,6 +60,7 @@ def _rows(seen: ipc.Snapshot) -> list[tuple[str, str, str]]:
             f"heard {_age(seen.heartbeat_age_s)}, sent {seen.setpoint_hz:.0f} Hz",
             _if(seen.heartbeat_age_s, OLD_HEARTBEAT_S),
         ),
+        ("gps", _position_health(seen), _position_health_style(seen)),
         *([("cond", ", ".join(seen.conditions), look.WARN)] if seen.conditions else []),
     ]
 
@@ -94,6 +96,18 @@ def _age(age_s: float | None) -> str:
 
 def _if(age_s: float | None, old_s: float) -> str:
     return look.PLAIN if age_s is not None and age_s <= old_s else look.BAD
+
+
+def _position_health(seen: ipc.Snapshot) -> str:
+    """The GPS and the estimator, in their words."""
+    if seen.estimator in ("", "ok"):
+        return f"{seen.gps or '-'}, EKF {seen.estimator or '-'}"
+    return f"EKF: {seen.estimator}"
+
+
+def _position_health_style(seen: ipc.Snapshot) -> str:
+    bad = seen.estimator not in ("", "ok") or Condition.GPS_LOST in seen.conditions
+    return look.BAD if bad else look.PLAIN
 
 
 def _battery(seen: ipc.Snapshot) -> str:

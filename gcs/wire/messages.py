@@ -79,6 +79,28 @@ class ParamValue(Message, frozen=True, gc=False):
     param_type: int  # MAV_PARAM_TYPE
 
 
+class GpsRawInt(Message, frozen=True, gc=False):
+    """GPS_RAW_INT (24): 30 bytes, 52 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.GPS_RAW_INT
+    time_usec: int  # us
+    lat: int  # degE7
+    lon: int  # degE7
+    alt: int  # mm
+    eph: int
+    epv: int
+    vel: int  # cm/s
+    cog: int  # cdeg
+    fix_type: int  # GPS_FIX_TYPE
+    satellites_visible: int
+    alt_ellipsoid: int = 0  # mm
+    h_acc: int = 0  # mm
+    v_acc: int = 0  # mm
+    vel_acc: int = 0  # mm/s
+    hdg_acc: int = 0  # degE5
+    yaw: int = 0  # cdeg
+
+
 class Attitude(Message, frozen=True, gc=False):
     """ATTITUDE (30): 28 bytes."""
 
@@ -301,6 +323,16 @@ class SetPositionTargetLocalNed(Message, frozen=True, gc=False):
     coordinate_frame: int  # MAV_FRAME
 
 
+class Timesync(Message, frozen=True, gc=False):
+    """TIMESYNC (111): 16 bytes, 18 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.TIMESYNC
+    tc1: int  # ns
+    ts1: int  # ns
+    target_system: int = 0
+    target_component: int = 0
+
+
 class CameraFeedback(Message, frozen=True, gc=False):
     """CAMERA_FEEDBACK (180): 45 bytes, 47 with extensions."""
 
@@ -319,6 +351,35 @@ class CameraFeedback(Message, frozen=True, gc=False):
     cam_idx: int
     flags: int  # CAMERA_FEEDBACK_FLAGS
     completed_captures: int = 0
+
+
+class EkfStatusReport(Message, frozen=True, gc=False):
+    """EKF_STATUS_REPORT (193): 22 bytes, 26 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.EKF_STATUS_REPORT
+    velocity_variance: float
+    pos_horiz_variance: float
+    pos_vert_variance: float
+    compass_variance: float
+    terrain_alt_variance: float
+    flags: int  # EKF_STATUS_FLAGS
+    airspeed_variance: float = 0.0
+
+
+class EstimatorStatus(Message, frozen=True, gc=False):
+    """ESTIMATOR_STATUS (230): 42 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.ESTIMATOR_STATUS
+    time_usec: int  # us
+    vel_ratio: float
+    pos_horiz_ratio: float
+    pos_vert_ratio: float
+    mag_ratio: float
+    hagl_ratio: float
+    tas_ratio: float
+    pos_horiz_accuracy: float  # m
+    pos_vert_accuracy: float  # m
+    flags: int  # ESTIMATOR_STATUS_FLAGS
 
 
 class HomePosition(Message, frozen=True, gc=False):
@@ -382,6 +443,19 @@ class ParamError(Message, frozen=True, gc=False):
     target_component: int
     param_id: str  # at most 16 bytes
     error: int  # MAV_PARAM_ERROR
+
+
+class Event(Message, frozen=True, gc=False):
+    """EVENT (410): 53 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.EVENT
+    id: int
+    event_time_boot_ms: int
+    sequence: int
+    destination_component: int
+    destination_system: int
+    log_levels: int
+    arguments: tuple[int, ...]  # 40 values
 
 
 CLASSES: Mapping[int, type[Message]] = MappingProxyType(

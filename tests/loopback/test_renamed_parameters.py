@@ -1,8 +1,6 @@
-"""What the station makes of an ArduCopter whose parameters have the names of 4.7."""
+"""What the station makes of an ArduCopter whose parameters have the names of 4.5, or of 4.7."""
 
 from __future__ import annotations
-
-import pytest
 
 from gcs.gate.states import State
 from tests.loopback.flight import Flight
@@ -18,9 +16,5 @@ def test_it_returns_with_the_names_of_4_5() -> None:
     returns(Flight("ardupilot", firmware="4.5"))
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="autopilots.md, defect 3 of the station: it asks for RTL_ALT; 4.7 has RTL_ALT_M",
-)
 def test_it_returns_with_the_names_of_4_7() -> None:
     returns(Flight("ardupilot", firmware="4.7"))

@@ -10,9 +10,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
+from msgspec import structs
 
 from gcs import ipc
 from gcs.gate.condition import Condition, Severity
+from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.policy import Policy
 from gcs.gate.states import Control, State
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.watched import WatchedFlight
@@ -26,10 +29,13 @@ REQUEST_MESSAGE = 512
 
 @contextmanager
 def under_way(
-    personality: Personality, seed: int = 1, params: dict[str, float] | None = None
+    personality: Personality,
+    seed: int = 1,
+    params: dict[str, float] | None = None,
+    policy: Policy = DEFAULT,
 ) -> Iterator[tuple[WatchedFlight, int]]:
     """On its way to a goal twelve metres to the east; the number of that request."""
-    flight = WatchedFlight(personality, seed=seed, params=params)
+    flight = WatchedFlight(personality, seed=seed, params=params, policy=policy)
     with flight.witness.listening(flight.policy):
         flight.hovering(6.0)
         flight.run(5.0)
@@ -70,6 +76,7 @@ def test_gps_lost_is_the_vehicles_landing_and_the_station_lets_it(
     twice until it stands, it is what a sound estimator drifts at most.
     """
     with under_way(personality, seed) as (flight, goal):
+        at_enu = flight.truth_enu()
         strike(flight, "gps_lost")
         struck_ns = flight.now_ns
         flight.run(7.0)
@@ -77,21 +84,37 @@ def test_gps_lost_is_the_vehicles_landing_and_the_station_lets_it(
         assert flight.session.gate.control is Control.NONE
         assert Condition.VEHICLE_FAILSAFE_ACTIVE in flight.conditions
         assert flight.session.gate.severity >= Severity.CAUTION
-        assert flight.outcome(goal) == "complete"
+        assert flight.outcome(goal) == "aborted SEVERITY"
+        assert Condition.GPS_LOST in flight.conditions
         since_ns = flight.now_ns
         flight.until(lambda: flight.is_in(State.GROUNDED), 60.0)
         assert flight.setpoints(since_ns) == [], "nobody steers a vehicle that steers itself"
         east_m, north_m, up_m = flight.truth_enu()
         blind_s = (flight.now_ns - struck_ns) / 1e9
         most_m = 0.5 * 3.0 * SensorGrade().accel_bias_m_s2 * blind_s**2
-        assert math.hypot(east_m - 12.0, north_m) < most_m
+        assert math.hypot(east_m - at_enu[0], north_m - at_enu[1]) < most_m
         assert blind_s < 25.0, "down from 6 m without hovering about"
         assert up_m < 0.1
 
 
-def test_a_large_glitch_is_an_estimator_reset_and_a_hold() -> None:
-    """ArduCopter says nothing itself: the station sees the position jump, and holds."""
+def test_a_large_glitch_is_a_hold_before_the_position_jumps() -> None:
+    """ArduCopter's estimator says that it does not believe its GPS; 4.5 to 6 s later it does."""
     with under_way("ardupilot") as (flight, goal):
+        assert flight.done(goal) == "complete"
+        at_enu = flight.truth_enu()
+        strike(flight, "gps_glitch", offset_ned_m=[60, 0, 0])
+        flight.run(2.0)
+        assert flight.is_in(State.HOLDING)
+        assert Condition.ESTIMATOR_UNRELIABLE in flight.conditions
+        assert flight.vehicle.mode_name == "BRAKE"
+        assert math.dist(flight.truth_enu(), at_enu) < 2.0
+
+
+def test_a_large_glitch_is_an_estimator_reset_and_a_hold() -> None:
+    """Where the policy lets the estimator's own doubt pass, the jump of the position is a hold."""
+    severities = {**DEFAULT.severities, Condition.ESTIMATOR_UNRELIABLE: Severity.CAUTION}
+    lenient = structs.replace(DEFAULT, severities=severities)
+    with under_way("ardupilot", policy=lenient) as (flight, goal):
         assert flight.done(goal) == "complete"
         at_enu = flight.truth_enu()
         struck_ns = flight.now_ns

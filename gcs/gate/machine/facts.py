@@ -14,6 +14,7 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Breach, Verifier
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import (
+    AccuracySeen,
     CommandEnded,
     ConditionChanged,
     HeartbeatSeen,
@@ -32,8 +33,8 @@ from gcs.gate.inputs import (
 )
 from gcs.gate.machine.events import SAW, Event, event_of
 from gcs.gate.machine.memory import SECOND_NS
-from gcs.gate.machine.progress import within_arrival
-from gcs.gate.machine.sentences import ASKED_FOR
+from gcs.gate.machine.progress import arrival_radius_h_m, within_arrival
+from gcs.gate.machine.sentences import ASKED_FOR, result_word
 from gcs.gate.machine.turn import Turn
 from gcs.gate.machine.verifying import refusal_of_what_is_flown
 from gcs.gate.refusal import Code, Refusal
@@ -90,6 +91,8 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             yield from _home(turn, pos_ned)
         case ReturnHeightSeen(up_m):
             memory.return_up_m = up_m
+        case AccuracySeen():
+            memory.arrival_h_m = arrival_radius_h_m(turn.policy.arrival, given)
         case VerifierChanged(verifier):
             yield from _verifier(turn, verifier)
         case PhotoSeen():
@@ -265,7 +268,7 @@ def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
         silent = ended.kind is CommandKind.HOLD
         yield Occurrence(Event.HOLD_UNANSWERED if silent else Event.COMMAND_UNANSWERED)
     else:
-        sentence = f"the vehicle refused {asked_for} (result {ended.result}){said}"
+        sentence = f"the vehicle refused {asked_for} ({result_word(ended.result)}){said}"
         why = Refusal(Code.VEHICLE_REFUSED, sentence, (("result", float(ended.result)),))
         yield Occurrence(REFUSED_AS.get(ended.kind, Event.COMMAND_REFUSED), why)
 

@@ -75,6 +75,7 @@ class Memory:
     pos_ns: int | None = None
     boot_ms: int = 0  # the vehicle's own time stamp of the last position
     home_ned: Vec3 | None = None
+    arrival_h_m: float | None = None  # how near beside a goal is there; None: the policy's radius
     return_up_m: float | None = None  # the vehicle's return height, above home
     verifier: Verifier | None = None
     conditions: tuple[tuple[Condition, str], ...] = ()

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from operator import sub
 
 from gcs.frames import Vec3
+from gcs.gate.inputs import AccuracySeen
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.turn import Turn
+from gcs.gate.policy.policy import Arrival
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import FlightMode
 
@@ -17,12 +20,32 @@ OVERSHOOT_M = 1.0
 """How far above its top, the arrival radius added, a climb may overshoot."""
 
 
+def arrival_radius_h_m(arrival: Arrival, seen: AccuracySeen) -> float | None:
+    """How near beside a goal counts as there, by what the vehicle says of its accuracy.
+
+    Never less than the policy's radius, nor more than its greatest one or than the vehicle's own
+    acceptance radius where that is greater.  None where the vehicle says nothing.
+    """
+    accuracy_m = seen.accuracy_h_m
+    if accuracy_m is None or not math.isfinite(accuracy_m) or accuracy_m < 0.0:
+        return None
+    most_m = arrival.max_radius_m
+    if seen.acceptance_m is not None and math.isfinite(seen.acceptance_m):
+        most_m = min(most_m, seen.acceptance_m)
+    return max(arrival.radius_m, min(arrival.radius_m + accuracy_m, most_m))
+
+
 def within_arrival(turn: Turn, goal_ned: Vec3) -> bool:
-    """Strictly inside the arrival radius, and slow enough where the policy asks for it."""
+    """Strictly inside the arrival radius, and slow enough where the policy asks for it.
+
+    With the vehicle's accuracy the sphere about the goal grows sideways: an ellipsoid.
+    """
     memory, arrival = turn.memory, turn.policy.arrival
     if memory.pos_ned is None or memory.v_ned is None:
         return False
-    near = math.dist(memory.pos_ned, goal_ned) < arrival.radius_m
+    narrower = arrival.radius_m / (memory.arrival_h_m or arrival.radius_m)
+    north_m, east_m, down_m = map(sub, memory.pos_ned, goal_ned)
+    near = math.hypot(north_m * narrower, east_m * narrower, down_m) < arrival.radius_m
     return near and (arrival.speed_m_s is None or math.hypot(*memory.v_ned) <= arrival.speed_m_s)
 
 

@@ -69,3 +69,23 @@ ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(
     }
 )
 """What a command asks for, for "the vehicle refused ..." and "No answer to the request for ..."."""
+
+RESULTS: Final[Mapping[int, str]] = MappingProxyType(
+    {
+        1: "TEMPORARILY_REJECTED",
+        2: "DENIED",
+        3: "UNSUPPORTED",
+        4: "FAILED",
+        6: "CANCELLED",
+        7: "COMMAND_LONG_ONLY",
+        8: "COMMAND_INT_ONLY",
+        9: "COMMAND_UNSUPPORTED_MAV_FRAME",
+        10: "NOT_IN_CONTROL",
+    }
+)
+"""MAV_RESULT, as an answer is told; ACCEPTED and IN_PROGRESS are told by what follows."""
+
+
+def result_word(result: int) -> str:
+    """MAV_RESULT in a word; a number that no standard knows as it came."""
+    return RESULTS.get(result, f"result {result}")

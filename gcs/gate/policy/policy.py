@@ -36,9 +36,14 @@ class _Section(Struct, frozen=True, forbid_unknown_fields=True):
 
 class Arrival(_Section, frozen=True):
     """A goal is reached nearer than `radius_m`, slower than `speed_m_s` (None: at any speed),
-    for `dwell_s` without a break."""
+    for `dwell_s` without a break.
+
+    Beside the goal, not above or below it, the radius grows by the horizontal accuracy that the
+    vehicle reports, up to its own acceptance radius and to `max_radius_m`.
+    """
 
     radius_m: FromHundredth
+    max_radius_m: FromHundredth
     speed_m_s: FromHundredth | None
     dwell_s: FromZero
 

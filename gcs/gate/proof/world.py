@@ -56,7 +56,7 @@ YARD: Final = structs.replace(
         ),
     ),
     fence_switchable=True,
-    arrival=Arrival(radius_m=0.5, speed_m_s=None, dwell_s=0.0),
+    arrival=Arrival(radius_m=0.5, max_radius_m=0.5, speed_m_s=None, dwell_s=0.0),
     jump_speed_m_s=1e12,
     takeoff=structs.replace(DEFAULT.takeoff, max_up_m=20.0),
     severities={condition: CONDITIONS.get(condition, Severity.CAUTION) for condition in Condition},

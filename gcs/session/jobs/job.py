@@ -35,6 +35,7 @@ from gcs.session.effects import Emit
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import Decide, Log, Work
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
@@ -72,6 +73,7 @@ class Asked:
     word: str
     own: Address
     timing: Timing
+    times: Times
 
 
 JobWork: TypeAlias = Work | OnBoardChanged
@@ -134,7 +136,7 @@ class Job(ABC):
     ) -> list[JobWork]:
         """Start a transfer of about `items` items, in place of the one before."""
         self._transfer = transfer
-        self._transfer_ends_ns = now_ns + JOB_NS + ITEM_NS * items
+        self._transfer_ends_ns = now_ns + self.asked.times.real_ns(JOB_NS + ITEM_NS * items)
         return self._follow(transfer.start(now_ns), view, now_ns)
 
     def stop_transfer(self) -> None:

@@ -6,6 +6,8 @@ back and compared in meaning.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 from gcs.gate.effects import Level, OutcomeKind
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
@@ -31,6 +33,20 @@ from gcs.session.plans import item_of, message_of, on_board, prepare
 from gcs.session.work import Log, ToGate
 from gcs.wire.messages import MissionItemInt
 
+RETURN_HEIGHT_WAIT_NS = 15_000_000_000
+"""How long a plan waits for the vehicle's return height, which a lossy link may lose many times."""
+LOOK_NS = 50_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class _Waiting:
+    """A plan that was read before the return height was known; how long it waits for that."""
+
+    path: str
+    data: bytes
+    until_ns: int
+    look_ns: int
+
 
 class Upload(Job):
     """A plan file, verified whole, brought on board and read back."""
@@ -38,6 +54,7 @@ class Upload(Job):
     def __init__(self, asked: Asked, path: str) -> None:
         super().__init__(asked)
         self._path = path
+        self._waiting: _Waiting | None = None
         self._plan: Plan | None = None
         self._sent: tuple[WireItem, ...] = ()
 
@@ -50,6 +67,28 @@ class Upload(Job):
         if news.data is None:
             return self.bad_file(f"{news.path}: {news.error}")
         return self._prepare(news.path, news.data, view, now_ns)
+
+    @property
+    def deadline_ns(self) -> int | None:
+        return self._waiting.look_ns if self._waiting else super().deadline_ns
+
+    def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        waiting = self._waiting
+        if waiting is None:
+            return super().wake(view, now_ns)
+        if view.telemetry.return_told or now_ns >= waiting.until_ns:
+            return self._prepare(waiting.path, waiting.data, view, now_ns)
+        self._waiting = replace(waiting, look_ns=now_ns + LOOK_NS)
+        return []
+
+    def _waits(self, path: str, data: bytes, view: VehicleView, now_ns: int) -> bool:
+        """Whether a return that could not be verified waits for the return height, and is to."""
+        before, self._waiting = self._waiting, None
+        if before is not None or view.telemetry.return_told:
+            return False
+        until_ns = now_ns + self.asked.times.real_ns(RETURN_HEIGHT_WAIT_NS)
+        self._waiting = _Waiting(path, data, until_ns, now_ns + LOOK_NS)
+        return True
 
     def _prepare(self, path: str, data: bytes, view: VehicleView, now_ns: int) -> list[JobWork]:
         """From bytes to a verified plan on its way, or to the reason why not."""
@@ -64,6 +103,9 @@ class Upload(Job):
         ]
         answer = verify(prepared.plan, view.policy, view.telemetry, now_ns)
         if isinstance(answer, Refusal):
+            blocked = answer.code is Code.RTL_BLOCKED
+            if blocked and self._waits(path, data, view, now_ns):
+                return []
             return work + self.refuse(answer)
         work += [Log(Level.WARNING, NODE, f"{path}: {text}") for text in answer.warnings]
         self._plan, self._sent = prepared.plan, prepared.sent

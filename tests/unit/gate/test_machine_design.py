@@ -233,7 +233,7 @@ class TestRefusedHold:
         script.answer(CommandKind.HOLD, 2, "not now")
         outcome = script.outcome(requested)
         assert (outcome.kind, outcome.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
-        assert outcome.sentence == "the vehicle refused hold mode (result 2): not now"
+        assert outcome.sentence == "the vehicle refused hold mode (DENIED): not now"
 
     @pytest.mark.parametrize("wanted", [Hold(), Abort()], ids=["hold", "abort"])
     @pytest.mark.parametrize("state", [State.MOVING, State.EXTERNAL], ids=lambda s: s.name)

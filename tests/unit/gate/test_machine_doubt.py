@@ -347,7 +347,7 @@ class TestWords:
         requested = script.ask(TakeControl())
         script.wait(1.1)
         script.answer(CommandKind.GUIDED, 4)
-        assert script.outcome(requested).sentence == "the vehicle refused guided mode (result 4)"
+        assert script.outcome(requested).sentence == "the vehicle refused guided mode (FAILED)"
 
     def test_a_hold_that_nobody_answers_is_told_once(self) -> None:
         script = in_state(State.MOVING)

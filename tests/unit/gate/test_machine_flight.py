@@ -79,7 +79,7 @@ class TestControl:
         outcome = script.outcome(requested)
         assert (outcome.kind, outcome.code) == (OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
         assert "no position" in outcome.sentence
-        assert "result 1" in outcome.sentence
+        assert "TEMPORARILY_REJECTED" in outcome.sentence
 
     def test_on_the_ground_control_is_complete_at_once(self) -> None:
         script = Script(policy("default")).connect()

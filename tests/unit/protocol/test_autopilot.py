@@ -22,7 +22,7 @@ from gcs.protocol.autopilot import (
 )
 from gcs.protocol.effects import Address
 from gcs.wire.codec import encode
-from gcs.wire.ids import Cmd, MavAutopilot
+from gcs.wire.ids import Cmd, MavAutopilot, MavType
 from gcs.wire.messages import CommandLong
 
 TARGET = Address(3, 1)
@@ -97,7 +97,7 @@ def test_there_is_a_command_for_every_kind(who: Autopilot, kind: CommandKind) ->
 
 @pytest.mark.parametrize("kind", CommandKind)
 def test_an_unknown_autopilot_is_asked_for_nothing(kind: CommandKind) -> None:
-    with pytest.raises(CannotCommandError, match="unknown kind"):
+    with pytest.raises(CannotCommandError, match="multirotors with PX4 or ArduPilot only"):
         command_long_for(GENERIC, WantedCommand(kind), TARGET)
 
 
@@ -151,6 +151,42 @@ def test_the_last_part_of_a_name_is_enough() -> None:
 
 
 def test_personalities_are_told_by_the_heartbeat() -> None:
-    assert autopilot_of(MavAutopilot.PX4) is PX4
-    assert autopilot_of(MavAutopilot.ARDUPILOTMEGA) is ARDUPILOT
-    assert autopilot_of(77) is GENERIC
+    assert autopilot_of(MavAutopilot.PX4, MavType.QUADROTOR) is PX4
+    assert autopilot_of(MavAutopilot.ARDUPILOTMEGA, MavType.HEXAROTOR) is ARDUPILOT
+    assert autopilot_of(77, MavType.QUADROTOR) is GENERIC
+
+
+@pytest.mark.parametrize("kind", list(CommandKind))
+@pytest.mark.parametrize(
+    ("mav_autopilot", "mav_type"),
+    [
+        (MavAutopilot.ARDUPILOTMEGA, MavType.FIXED_WING),
+        (MavAutopilot.ARDUPILOTMEGA, MavType.GROUND_ROVER),
+        (MavAutopilot.ARDUPILOTMEGA, MavType.SURFACE_BOAT),
+        (MavAutopilot.ARDUPILOTMEGA, MavType.HELICOPTER),
+        (MavAutopilot.PX4, MavType.FIXED_WING),
+        (MavAutopilot.PX4, MavType.VTOL_QUADROTOR),
+        (MavAutopilot.PX4, 250),
+    ],
+)
+def test_what_is_no_multirotor_is_never_asked_with_a_multirotor_s_numbers(
+    kind: CommandKind, mav_autopilot: int, mav_type: int
+) -> None:
+    """station.md, bug 3: HOLD left as mode 17, which is QSTABILIZE on a plane."""
+    autopilot = autopilot_of(mav_autopilot, mav_type)
+    with pytest.raises(CannotCommandError, match="multirotors"):
+        command_long_for(autopilot, WantedCommand(kind, ground_amsl_m=0.0), TARGET)
+
+
+@pytest.mark.parametrize("custom_mode", range(30))
+def test_a_plane_s_modes_are_not_read_as_a_copter_s(custom_mode: int) -> None:
+    """FBWA (5) was read as LOITER, ACRO (4) as GUIDED."""
+    plane = autopilot_of(MavAutopilot.ARDUPILOTMEGA, MavType.FIXED_WING)
+    mode = mode_of(plane, CUSTOM, custom_mode)
+    assert (mode.name, mode.meaning) == (f"MODE_{custom_mode}", FlightMode.OTHER)
+
+
+def test_px4_s_modes_have_one_name_and_a_plane_s_no_meaning() -> None:
+    plane = autopilot_of(MavAutopilot.PX4, MavType.FIXED_WING)
+    mode = mode_of(plane, CUSTOM, 0x0304_0000)
+    assert (mode.name, mode.meaning) == ("AUTO.LOITER", FlightMode.OTHER)

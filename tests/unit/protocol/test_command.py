@@ -134,8 +134,9 @@ def test_silence_ends_a_command_without_a_result() -> None:
 
 def test_what_must_not_be_done_twice_is_sent_once() -> None:
     station = Station()
-    station.submit(1, ARM, tries=1)
-    ended = station.wait(10 * ACK_WAIT_NS)
+    station.submit(1, ARM, deadline_ns=9 * ACK_WAIT_NS, tries=1)
+    assert station.wait(8 * ACK_WAIT_NS) == [], "its one try is waited for until the deadline"
+    ended = station.wait(2 * ACK_WAIT_NS)
     assert len(station.sent) == 1
     assert ended == [Finished(1, Cmd.COMPONENT_ARM_DISARM, None, "no answer to 1 try")]
 
@@ -150,7 +151,7 @@ def test_no_try_leaves_after_the_deadline() -> None:
 
 def test_an_answer_after_the_end_is_news_and_nothing_more() -> None:
     station = Station()
-    station.submit(1, ARM, tries=1)
+    station.submit(1, ARM, deadline_ns=ACK_WAIT_NS, tries=1)
     station.wait(ACK_WAIT_NS)
     late = station.ack(Cmd.COMPONENT_ARM_DISARM, Result.ACCEPTED)
     assert late == [LateAck(1, Cmd.COMPONENT_ARM_DISARM, Result.ACCEPTED, None)]

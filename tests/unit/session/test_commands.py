@@ -8,14 +8,16 @@ from gcs.gate.effects import CommandKind, SendCommand
 from gcs.gate.inputs import CommandEnded
 from gcs.gate.permit import issue
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
-from gcs.protocol.effects import Heard, Send
+from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.commands import Commands
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import Log, ToGate, Work
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong
 from tests.unit.session.vehicles import HOME, SECOND_NS, vehicle
 
+OWN = Address(255, 190)
 DEADLINE_NS = 5 * SECOND_NS
 
 
@@ -47,7 +49,7 @@ def answers(work: list[Work]) -> list[CommandEnded]:
 
 
 def test_not_yet_is_asked_again_until_it_is_yes() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     assert sent(arm(commands, told())) == 1
     (line,) = answer(commands, Result.TEMPORARILY_REJECTED, 1)
     assert isinstance(line, Log)
@@ -58,7 +60,7 @@ def test_not_yet_is_asked_again_until_it_is_yes() -> None:
 
 
 def test_not_yet_is_not_asked_again_past_the_deadline() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     arm(commands, told())
     now_ns, tries, ended = 0, 1, False
     while not ended:
@@ -73,7 +75,7 @@ def test_not_yet_is_not_asked_again_past_the_deadline() -> None:
 
 
 def test_a_no_is_a_no() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     arm(commands, told())
     ended = answer(commands, Result.DENIED, 1)
     assert answers(ended) == [CommandEnded(7, CommandKind.ARM, Result.DENIED)]
@@ -81,7 +83,7 @@ def test_a_no_is_a_no() -> None:
 
 
 def test_a_disarm_takes_back_the_arm_that_waits() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     arm(commands, told())
     answer(commands, Result.TEMPORARILY_REJECTED, 1)
     out = commands.send(SendCommand(8, CommandKind.DISARM, DEADLINE_NS), vehicle(), 2)
@@ -91,7 +93,7 @@ def test_a_disarm_takes_back_the_arm_that_waits() -> None:
 
 
 def test_silence_is_no_answer() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     arm(commands, told())
     out: list[Work] = []
     while commands.deadline_ns is not None:
@@ -101,7 +103,7 @@ def test_silence_is_no_answer() -> None:
 
 
 def test_a_vehicle_that_says_it_would_not_arm_is_not_asked_until_the_time_is_nearly_over() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     assert sent(arm(commands, told(prearm_ok=False))) == 0
     now_ns, tries = 0, 0
     while not tries:
@@ -111,15 +113,14 @@ def test_a_vehicle_that_says_it_would_not_arm_is_not_asked_until_the_time_is_nea
     assert DEADLINE_NS - SECOND_NS < now_ns < DEADLINE_NS
 
 
-def test_a_vehicle_that_says_nothing_of_its_checks_is_asked_a_little_later() -> None:
-    commands = Commands(255, 190)
-    assert sent(arm(commands, told(prearm_ok=None))) == 0
-    assert commands.deadline_ns is not None
-    assert sent(commands.wake(told(prearm_ok=None), commands.deadline_ns)) == 1
+def test_a_vehicle_that_says_nothing_of_its_checks_is_asked_at_once() -> None:
+    """PX4 1.14 never says that it has the bit (autopilots.md, defect 12): every arm waited."""
+    commands = Commands(OWN, Times())
+    assert sent(arm(commands, told(prearm_ok=None))) == 1
 
 
 def test_an_arm_that_waits_and_is_taken_back_is_not_asked_again() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     arm(commands, told())
     answer(commands, Result.TEMPORARILY_REJECTED, 1)
     assert commands.cancel(7, CommandKind.ARM, 2) == []
@@ -128,7 +129,7 @@ def test_an_arm_that_waits_and_is_taken_back_is_not_asked_again() -> None:
 
 
 def test_the_taking_back_of_another_request_s_arm_changes_nothing() -> None:
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     arm(commands, told())
     answer(commands, Result.TEMPORARILY_REJECTED, 1)
     commands.cancel(8, CommandKind.ARM, 2)
@@ -156,16 +157,27 @@ def test_a_climb_counts_from_where_the_vehicle_stands(
     )
     permit = issue(None, None, 0, "a test")
     wanted = SendCommand(7, CommandKind.TAKE_OFF, DEADLINE_NS, permit, up_m=10.0)
-    (climb,) = Commands(255, 190).send(wanted, telemetry, 0)
+    (climb,) = Commands(OWN, Times()).send(wanted, telemetry, 0)
     assert isinstance(climb, Send)
     assert isinstance(climb.message, CommandLong)
     assert climb.message.command == Cmd.NAV_TAKEOFF
     assert climb.message.param7 == pytest.approx(altitude_m)
 
 
+def test_a_picture_that_is_answered_late_is_answered() -> None:
+    """autopilots.md, defect 8: given up after half a second, on a link with a longer round trip."""
+    commands = Commands(OWN, Times())
+    commands.send(SendCommand(7, CommandKind.PHOTO, DEADLINE_NS), vehicle(), 0)
+    assert commands.deadline_ns == DEADLINE_NS
+    assert commands.wake(vehicle(), 4 * SECOND_NS) == []
+    taken = CommandAck(command=Cmd.IMAGE_START_CAPTURE, result=Result.ACCEPTED)
+    ended = commands.heard(Heard(1, 1, taken), 4 * SECOND_NS)
+    assert answers(ended) == [CommandEnded(7, CommandKind.PHOTO, Result.ACCEPTED)]
+
+
 def test_every_picture_has_a_number_of_its_own_and_one_try() -> None:
     """IMAGE_START_CAPTURE: param3 is how many, param4 the number that tells a repetition."""
-    commands = Commands(255, 190)
+    commands = Commands(OWN, Times())
     numbers = []
     for _ in range(2):
         photo = SendCommand(7, CommandKind.PHOTO, DEADLINE_NS)

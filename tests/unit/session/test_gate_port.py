@@ -16,7 +16,7 @@ from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.requests import GoTo, Land
 from gcs.gate.states import FlightMode, LandedState, State
 from gcs.protocol.autopilot import ARDUPILOT
-from gcs.session.gate_port import GatePort, condition, on_wall_time
+from gcs.session.gate_port import GatePort, condition
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
 from tests.unit.session import told
@@ -48,7 +48,7 @@ def grounded(port: GatePort, telemetry: Telemetry, now_ns: int = SECOND_NS) -> N
 
 
 def test_before_a_vehicle_is_heard_everything_is_refused() -> None:
-    port = GatePort(DEFAULT, 1.0, 0)
+    port = GatePort(DEFAULT, 0)
     assert port.gate.state is State.NO_VEHICLE
     work = port.handle(inputs.Requested(1, "operator", Land()), 0)
     (verdict,) = of(Verdict, work)
@@ -56,7 +56,7 @@ def test_before_a_vehicle_is_heard_everything_is_refused() -> None:
 
 
 def test_the_gate_s_answer_is_whole_before_anything_that_the_session_adds() -> None:
-    port = GatePort(DEFAULT, 1.0, 0)
+    port = GatePort(DEFAULT, 0)
     port.meet(vehicle(), 0)
     work = port.handle(inputs.HomeSeen((0.0, 0.0, 0.0)), SECOND_NS)
     assert work[-2:] == [GATE_ANSWERED, PlaceFence()]
@@ -65,7 +65,7 @@ def test_the_gate_s_answer_is_whole_before_anything_that_the_session_adds() -> N
 
 
 def test_a_new_vehicle_has_a_new_gate_and_what_was_wrong_still_is() -> None:
-    port = GatePort(DEFAULT, 1.0, 0)
+    port = GatePort(DEFAULT, 0)
     port.handle(inputs.ConditionChanged(Condition.RECORDER_FAILED, True, "disk full"), 0)
     work = port.meet(vehicle(ARDUPILOT), SECOND_NS)
     assert work == [condition(Condition.RECORDER_FAILED, True, "disk full")]
@@ -77,7 +77,7 @@ def test_a_new_vehicle_has_a_new_gate_and_what_was_wrong_still_is() -> None:
 
 
 def test_a_condition_reaches_the_gate_when_it_changes_and_only_then() -> None:
-    port = GatePort(DEFAULT, 1.0, 0)
+    port = GatePort(DEFAULT, 0)
     low = inputs.ConditionChanged(Condition.BATTERY_LOW, True, "14 % are left")
     over = inputs.ConditionChanged(Condition.BATTERY_LOW, False, "")
     assert port.handle(over, 0) == [GATE_ANSWERED]
@@ -90,19 +90,19 @@ def test_a_condition_reaches_the_gate_when_it_changes_and_only_then() -> None:
 def test_a_goal_s_verdict_carries_the_goal_and_the_numbers() -> None:
     request = GoTo((1.0, 2.0, -3.0))
     verdict = Verdict(7, "operator", request, Ruling.ACCEPTED, None, None, (("m", 1.5),))
-    (decide,) = GatePort(DEFAULT, 1.0, 0).tell(verdict, 1)
+    (decide,) = GatePort(DEFAULT, 0).tell(verdict, 1)
     assert decide == Decide(7, Ruling.ACCEPTED, None, (("m", 1.5),), (1.0, 2.0, -3.0))
 
 
 def test_another_request_s_verdict_has_no_goal() -> None:
     verdict = Verdict(7, "operator", Land(), Ruling.ACCEPTED, None, (9.0, 9.0, -9.0))
-    (decide,) = GatePort(DEFAULT, 1.0, 0).tell(verdict, 1)
+    (decide,) = GatePort(DEFAULT, 0).tell(verdict, 1)
     assert isinstance(decide, Decide)
     assert decide.goal_ned is None
 
 
 def test_what_the_gate_says_is_a_line_and_its_transition_is_told() -> None:
-    port = GatePort(DEFAULT, 1.0, 0)
+    port = GatePort(DEFAULT, 0)
     (line,) = port.tell(Say(Level.WARNING, "words"), 1)
     assert isinstance(line, Log)
     assert (line.level, line.text) == (Level.WARNING, "words")
@@ -124,11 +124,11 @@ def placed(port: GatePort, telemetry: Telemetry | None) -> inputs.VerifierChange
 
 
 def test_without_a_vehicle_there_is_no_place_for_a_fence() -> None:
-    assert GatePort(DEFAULT, 1.0, 0).place_fence(None) == []
+    assert GatePort(DEFAULT, 0).place_fence(None) == []
 
 
 def test_a_fence_around_home_stands_once_home_is_known() -> None:
-    port, telemetry = GatePort(DEFAULT, 1.0, 0), vehicle()
+    port, telemetry = GatePort(DEFAULT, 0), vehicle()
     assert placed(port, telemetry).verifier.zones == ()
     telemetry.home_ned = (10.0, 20.0, -2.0)
     (zone,) = placed(port, telemetry).verifier.zones
@@ -139,7 +139,7 @@ def test_a_fence_around_home_stands_once_home_is_known() -> None:
 
 
 def test_the_fence_is_shown_and_recorded_wherever_it_is_placed() -> None:
-    port, telemetry = GatePort(DEFAULT, 1.0, 0), vehicle()
+    port, telemetry = GatePort(DEFAULT, 0), vehicle()
     telemetry.home_ned, telemetry.origin = (0.0, 0.0, 0.0), HOME
     kinds = [type(item).__name__ for item in port.place_fence(telemetry)]
     assert sorted(kinds) == ["Emit", "Record", "ToGate"]
@@ -147,7 +147,7 @@ def test_the_fence_is_shown_and_recorded_wherever_it_is_placed() -> None:
 
 
 def test_a_fence_that_was_switched_off_stays_off_until_it_is_switched_on() -> None:
-    port, telemetry = GatePort(DEFAULT, 1.0, 0), vehicle()
+    port, telemetry = GatePort(DEFAULT, 0), vehicle()
     assert placed(port, telemetry).verifier.fence_on
     assert port.tell(SwitchedFence(False), 1) == [PlaceFence()]
     assert not placed(port, telemetry).verifier.fence_on
@@ -157,7 +157,7 @@ def test_a_fence_that_was_switched_off_stays_off_until_it_is_switched_on() -> No
 
 
 def test_after_an_estimator_reset_the_fence_is_placed_anew() -> None:
-    port, telemetry = GatePort(DEFAULT, 1.0, 0), vehicle()
+    port, telemetry = GatePort(DEFAULT, 0), vehicle()
     port.meet(telemetry, 0)
     jumped = inputs.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1, reset=True)
     assert PlaceFence() in port.handle(jumped, SECOND_NS)
@@ -172,7 +172,7 @@ def test_after_an_estimator_reset_the_fence_is_placed_anew() -> None:
 def test_a_vehicle_that_stands_outside_of_the_fence_is_a_bad_start(
     pos_ned: Vec3, bad: bool
 ) -> None:
-    port, telemetry = GatePort(LOCAL, 1.0, 0), vehicle()
+    port, telemetry = GatePort(LOCAL, 0), vehicle()
     grounded(port, telemetry)
     port.place_fence(telemetry)
     port.check_start(CheckStart(pos_ned))
@@ -180,7 +180,7 @@ def test_a_vehicle_that_stands_outside_of_the_fence_is_a_bad_start(
 
 
 def test_the_margin_is_for_goals_and_not_for_where_a_vehicle_stands() -> None:
-    port, telemetry = GatePort(LOCAL, 1.0, 0), vehicle()
+    port, telemetry = GatePort(LOCAL, 0), vehicle()
     grounded(port, telemetry)
     port.place_fence(telemetry)
     port.check_start(CheckStart((0.0, 19.9, 0.0)))
@@ -189,7 +189,7 @@ def test_the_margin_is_for_goals_and_not_for_where_a_vehicle_stands() -> None:
 
 
 def test_the_start_is_looked_at_once() -> None:
-    port, telemetry = GatePort(LOCAL, 1.0, 0), vehicle()
+    port, telemetry = GatePort(LOCAL, 0), vehicle()
     grounded(port, telemetry)
     port.place_fence(telemetry)
     port.check_start(CheckStart((0.0, 0.0, 0.0)))
@@ -200,7 +200,7 @@ def test_the_start_is_looked_at_once() -> None:
 
 
 def test_until_the_fence_stands_the_start_is_looked_at_again() -> None:
-    port, telemetry = GatePort(DEFAULT, 1.0, 0), vehicle()
+    port, telemetry = GatePort(DEFAULT, 0), vehicle()
     grounded(port, telemetry)
     port.place_fence(telemetry)
     port.check_start(CheckStart((0.0, 900.0, 0.0)))
@@ -212,7 +212,7 @@ def test_until_the_fence_stands_the_start_is_looked_at_again() -> None:
 
 
 def test_in_the_air_there_is_no_start() -> None:
-    port, telemetry = GatePort(LOCAL, 1.0, 0), vehicle()
+    port, telemetry = GatePort(LOCAL, 0), vehicle()
     grounded(port, telemetry)
     port.place_fence(telemetry)
     port.handle(inputs.HeartbeatSeen(True, FlightMode.OTHER, "POSCTL"), SECOND_NS)
@@ -220,15 +220,3 @@ def test_in_the_air_there_is_no_start() -> None:
     assert port.gate.state is State.EXTERNAL
     port.check_start(CheckStart((0.0, 90.0, 0.0)))
     assert port.bad_start is None
-
-
-# ------------------------------------------------------------------------------- speed-up
-
-
-def test_what_waits_for_the_other_side_s_answers_does_not_shrink_with_a_speed_up() -> None:
-    fast = on_wall_time(DEFAULT, 10.0)
-    assert fast.heartbeat_age_s == 10.0 * DEFAULT.heartbeat_age_s
-    assert fast.control.stream_s == 10.0 * DEFAULT.control.stream_s
-    assert fast.control.timeout_s == 10.0 * DEFAULT.control.timeout_s
-    same = structs.replace(fast, heartbeat_age_s=DEFAULT.heartbeat_age_s, control=DEFAULT.control)
-    assert same == DEFAULT

@@ -7,19 +7,19 @@ import json
 import pytest
 
 from gcs import ipc
-from gcs.config import StationConfig
 from gcs.gate.effects import Outcome, Ruling
 from gcs.gate.inputs import MissionLoaded, MissionSeen
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code
 from gcs.gate.requests import StartMission
 from gcs.gate.states import State
-from gcs.protocol.effects import Heard, Send
+from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.effects import ReadFile, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import AskGate, Decide, ToGate, Work
 from gcs.wire.messages import Message, MissionCurrent, MissionItemReached
 from tests.unit.plan import samples
@@ -43,7 +43,7 @@ class Script:
     """The missions of one px4, a board that keeps them, and a clock."""
 
     def __init__(self) -> None:
-        self.missions = Missions(StationConfig())
+        self.missions = Missions(Address(255, 190), Times())
         self.board = Board()
         self.telemetry: Telemetry | None = placed()
         self.state = State.GROUNDED

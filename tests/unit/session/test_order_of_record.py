@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+import pytest
+
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
+from gcs.protocol.autopilot import CannotCommandError
 from gcs.report import FsaItem
+from gcs.session import commands
 from gcs.session.effects import Record
 from gcs.session.inputs import Datagram, OperatorLine
 from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.wire.codec import FrameWriter
-from gcs.wire.messages import ExtendedSysState, Heartbeat, Message
+from gcs.wire.messages import CommandLong, ExtendedSysState, Heartbeat, Message
 from tests.unit.session.vehicles import SECOND_NS, position
 
-GENERIC_AUTOPILOT = 0
+PX4_AUTOPILOT = 12
 IN_AIR = 2
 
 
-def test_a_landing_that_cannot_be_asked_for_is_recorded_after_it_began() -> None:
-    """An autopilot of an unknown kind takes no commands: LANDING ends in the instant it begins."""
+def _cannot(*_: object) -> CommandLong:
+    raise CannotCommandError("not today")
+
+
+def test_a_landing_that_cannot_be_asked_for_is_recorded_after_it_began(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where a command cannot be put in the autopilot's words, LANDING ends as it begins."""
+    monkeypatch.setattr(commands, "command_long_for", _cannot)
     session = Session(Setup(StationConfig(), "test", DEFAULT, "", ("a link",), ""), now_ns=0)
     vehicle = FrameWriter(1, 1)
 
@@ -30,7 +41,7 @@ def test_a_landing_that_cannot_be_asked_for_is_recorded_after_it_began() -> None
         Heartbeat(
             custom_mode=0,
             type=2,
-            autopilot=GENERIC_AUTOPILOT,
+            autopilot=PX4_AUTOPILOT,
             base_mode=128,
             system_status=4,
             mavlink_version=3,

@@ -10,8 +10,10 @@ import pytest
 import gcs
 from gcs.gate.effects import CommandKind, SendCommand
 from gcs.gate.permit import Permit, issue
+from gcs.protocol.effects import Address
 from gcs.session.commands import NEEDS_PERMIT, Commands
 from gcs.session.setpoints import setpoint
+from gcs.session.times import Times
 from tests.unit.session.vehicles import SECOND_NS, vehicle
 
 PACKAGE = Path(gcs.__file__).parent
@@ -56,7 +58,7 @@ def test_a_setpoint_leaves_with_a_permit_of_now_and_not_with_an_old_one() -> Non
 @pytest.mark.parametrize("kind", [kind for kind in CommandKind if kind in NEEDS_PERMIT])
 def test_a_command_that_moves_needs_a_permit(kind: CommandKind) -> None:
     with pytest.raises(PermissionError):
-        Commands(255, 190).send(SendCommand(1, kind, SECOND_NS), vehicle(), 0)
+        Commands(Address(255, 190), Times()).send(SendCommand(1, kind, SECOND_NS), vehicle(), 0)
 
 
 def test_what_needs_no_permit_moves_nothing() -> None:

@@ -39,6 +39,8 @@ class Scene:
             log_path="logs/a.mcap",
             recording=True,
             recorded_bytes=1_500_000,
+            vehicles=["1/1 px4 quadrotor"],
+            listening=False,
         )
 
 

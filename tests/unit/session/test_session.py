@@ -8,6 +8,7 @@ import pytest
 from msgspec import structs
 
 from gcs import ipc
+from gcs.config import SimConfig, StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.session.effects import Effect, Record
@@ -99,8 +100,10 @@ def test_an_input_that_is_no_frame_is_recorded_as_what_it_was() -> None:
 
 def test_a_stranger_s_frames_are_recorded_and_change_nothing() -> None:
     script = Script().hovering()
-    script.forget()
     stranger = Sender(sysid=7)
+    script.feed(Datagram(0, stranger.frame(wire.heartbeat())))
+    assert "several vehicles are heard: 1/1 px4 quadrotor, 7/1 px4" in told.log(script.told)
+    script.forget()
     before = script.session.gate.memory
     for message in (
         wire.heartbeat(armed=False, mode=wire.POSCTL),
@@ -350,3 +353,13 @@ def test_a_vehicle_that_is_met_in_the_air_is_not_left_alone_for_where_it_is() ->
     script.run(0.1)
     (verdict,) = told.verdicts(script.told)
     assert verdict[:2] == (asked, "refused")
+
+
+def test_a_session_that_heard_a_vehicle_or_has_one_of_its_own_is_worth_keeping() -> None:
+    script = Script()
+    script.run(3.0)
+    heard = [script.session.nothing_heard]
+    script.hear(wire.heartbeat())
+    heard.append(script.session.nothing_heard)
+    assert heard == [True, False]
+    assert not Script(config=StationConfig(sim=SimConfig())).session.nothing_heard

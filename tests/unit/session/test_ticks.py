@@ -9,6 +9,7 @@ import pytest
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged, Tick
 from gcs.session.ticks import Ticks
+from gcs.session.times import Times
 from gcs.session.work import Log, SecondDue, SnapshotDue, ToGate, Work
 from tests.unit.session.vehicles import SECOND_NS
 
@@ -36,14 +37,14 @@ def on_time(ticks: Ticks, count: int) -> list[list[Work]]:
 
 
 def test_the_first_tick_is_one_period_after_the_start() -> None:
-    ticks = Ticks(START_NS, 1.0)
+    ticks = Ticks(START_NS, Times(1.0))
     assert ticks.next_ns == START_NS + TICK_NS
     assert ticks.wake(START_NS + TICK_NS - 1) == []
     assert gate_ticks(ticks.wake(START_NS + TICK_NS)) == [0]
 
 
 def test_every_tick_is_the_gate_s_every_second_one_shows_and_every_twentieth_is_a_second() -> None:
-    works = on_time(Ticks(START_NS, 1.0), 60)
+    works = on_time(Ticks(START_NS, Times(1.0)), 60)
     assert all(gate_ticks(work) == [0] for work in works)
     assert sum(SnapshotDue() in work for work in works) == 30
     seconds = [number for number, work in enumerate(works) if SecondDue() in work]
@@ -51,14 +52,14 @@ def test_every_tick_is_the_gate_s_every_second_one_shows_and_every_twentieth_is_
 
 
 def test_the_gate_is_asked_before_what_is_shown_of_it() -> None:
-    (work,) = on_time(Ticks(START_NS, 1.0), 1)
+    (work,) = on_time(Ticks(START_NS, Times(1.0)), 1)
     assert isinstance(work[0], ToGate)
     assert work[-2:] == [SecondDue(), SnapshotDue()]
 
 
 @pytest.mark.parametrize("late_ms", [1, 49, 50, 51, 1_000, 3_600_000])
 def test_however_late_it_is_it_is_one_tick_and_the_grid_stays(late_ms: int) -> None:
-    ticks = Ticks(START_NS, 1.0)
+    ticks = Ticks(START_NS, Times(1.0))
     now_ns = ticks.next_ns + late_ms * MS_NS
     assert gate_ticks(ticks.wake(now_ns)) == [late_ms * MS_NS]
     assert ticks.wake(now_ns) == []
@@ -68,14 +69,14 @@ def test_however_late_it_is_it_is_one_tick_and_the_grid_stays(late_ms: int) -> N
 
 @pytest.mark.parametrize(("late_ms", "told"), [(0, False), (5, False), (30, True), (130, True)])
 def test_what_is_later_than_a_good_kernel_makes_it_is_logged(late_ms: int, told: bool) -> None:
-    ticks = Ticks(START_NS, 1.0)
+    ticks = Ticks(START_NS, Times(1.0))
     work = ticks.wake(ticks.next_ns + late_ms * MS_NS)
     lines = [item.text for item in work if isinstance(item, Log)]
     assert lines == ([f"a tick came {late_ms} ms late"] if told else [])
 
 
 def test_a_gap_in_the_stream_is_a_condition_for_ten_seconds_after_the_last_one() -> None:
-    ticks = Ticks(START_NS, 1.0)
+    ticks = Ticks(START_NS, Times(1.0))
     assert late(ticks.wake(ticks.next_ns + 300 * MS_NS))
     on_time(ticks, 100)
     assert late(ticks.wake(ticks.next_ns + 300 * MS_NS))
@@ -85,6 +86,6 @@ def test_a_gap_in_the_stream_is_a_condition_for_ten_seconds_after_the_last_one()
 
 
 def test_sped_up_a_tick_is_late_after_as_much_real_time() -> None:
-    ticks = Ticks(START_NS, 10.0)
+    ticks = Ticks(START_NS, Times(10.0))
     assert not late(ticks.wake(ticks.next_ns + 2_400 * MS_NS))
     assert late(ticks.wake(ticks.next_ns + 2_600 * MS_NS))

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
+from msgspec import structs
 
 from gcs.config import StationConfig
 from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Code
 from gcs.protocol.effects import Send
+from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import Log, PlaceFence, ToGate, Work
 from gcs.wire.frame import Frame, split
@@ -24,9 +28,10 @@ from tests.unit.session.wire import MS_NS, SECOND_NS, START_NS, Message, Sender
 class Script:
     """One vehicle of the session, a clock, and senders for it and for others."""
 
-    def __init__(self, config: StationConfig | None = None) -> None:
+    def __init__(self, config: StationConfig | None = None, policy: Policy = DEFAULT) -> None:
         self.config = config or StationConfig()
-        self.vehicle = Vehicle(self.config, DEFAULT, START_NS)
+        self.policy = policy
+        self.vehicle = Vehicle(self.config, self.policy, Times(self.config.speedup), START_NS)
         self.now_ns = START_NS
         self.sender = Sender()
 
@@ -131,6 +136,78 @@ def test_a_vehicle_that_is_met_is_asked_for_its_origin_its_home_and_its_version(
         if isinstance(item, Send) and hasattr(item.message, "param_id")
     ]
     assert len(names) == 1
+
+
+def test_several_vehicles_are_named_and_none_is_meant() -> None:
+    """newcomer.md, 7: it flew the first one silently."""
+    script = Script()
+    script.hear(wire.heartbeat())
+    assert script.vehicle.listening(script.now_ns)
+    script.wait(0.9)
+    work = script.hear(wire.heartbeat(wire.ARDUPILOT), sender=Sender(2))
+    names = "1/1 px4 quadrotor, 2/1 ardupilot quadrotor"
+    assert log(work) == [(Level.WARNING, f"several vehicles are heard: {names}")]
+    refusal = script.vehicle.refusal(script.now_ns)
+    assert refusal is not None
+    assert refusal.code is Code.SEVERAL_VEHICLES
+    assert names in refusal.sentence
+    assert "--vehicle" in refusal.sentence
+    script.wait(0.4)
+    assert not script.vehicle.listening(script.now_ns)
+
+
+def test_a_vehicle_that_was_named_is_meant() -> None:
+    script = Script(StationConfig(target_sysid=2))
+    script.hear(wire.heartbeat())
+    script.hear(wire.heartbeat(), sender=Sender(2))
+    assert script.vehicle.refusal(script.now_ns) is None
+    assert not script.vehicle.listening(script.now_ns)
+    assert script.vehicle.heard_vehicles(script.now_ns) == [
+        "1/1 px4 quadrotor",
+        "2/1 px4 quadrotor",
+    ]
+
+
+def test_once_the_other_one_is_gone_it_is_clear_again() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    script.hear(wire.heartbeat(), sender=Sender(2))
+    for _ in range(4):
+        script.wait(1.0)
+        script.hear(wire.heartbeat())
+    assert script.vehicle.refusal(script.now_ns) is None
+
+
+def test_one_that_comes_later_does_not_keep_the_other_from_being_stopped() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    assert script.vehicle.refusal(script.now_ns) is None  # a request is let through
+    script.hear(wire.heartbeat(), sender=Sender(2))
+    assert script.vehicle.refusal(script.now_ns) is None
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "type_", "name"),
+    [
+        (wire.ARDUPILOT, 1, "1/1 ardupilot fixed wing"),
+        (wire.ARDUPILOT, 10, "1/1 ardupilot ground rover"),
+        (wire.PX4, 22, "1/1 px4 vtol reserved2"),
+        (99, 2, "1/1 of an unknown kind quadrotor"),
+    ],
+)
+def test_what_is_no_multirotor_is_shown_and_cannot_be_asked(
+    autopilot: int, type_: int, name: str
+) -> None:
+    script = Script()
+    work = script.hear(wire.heartbeat(autopilot, type_=type_))
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.label == name
+    assert [g for g in gate_inputs(work) if isinstance(g, inputs.HeartbeatSeen)]
+    refusal = script.vehicle.refusal(script.now_ns)
+    assert refusal is not None
+    assert refusal.code is Code.UNSUPPORTED_VEHICLE
+    assert "multirotors" in refusal.sentence
+    assert name in refusal.sentence
 
 
 # ----------------------------------------------------------------------------- its links
@@ -259,6 +336,29 @@ def test_a_sped_up_vehicle_is_away_after_as_much_real_time() -> None:
     assert any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
 
 
+def test_how_long_a_vehicle_may_be_silent_is_the_policy_s_affair() -> None:
+    """station.md, bug 14: 3.5 s whatever the policy's heartbeat_age_s said."""
+    script = Script(policy=structs.replace(DEFAULT, heartbeat_age_s=8.0))
+    script.hear(wire.heartbeat())
+    script.wait(7.9)
+    assert not any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
+    script.wait(8.1)
+    assert any("is back" in text for _, text in log(script.hear(wire.heartbeat())))
+
+
+def test_after_a_quick_restart_its_reports_count_at_once() -> None:
+    """Its numbers begin anew: 100 heartbeats of an ArduPilot would have been taken for late."""
+    script = Script()
+    script.sender.seq = 99
+    script.hear(wire.heartbeat(armed=True))
+    script.wait(1.5)
+    script.sender.seq = 0
+    script.hear(wire.heartbeat(armed=False))
+    assert script.vehicle.telemetry is not None
+    assert script.vehicle.telemetry.armed is False
+    assert len(gate_inputs(script.hear(wire.landed(wire.ON_GROUND)))) == 1
+
+
 def test_losses_are_counted_over_gaps_and_not_over_an_absence() -> None:
     script = Script()
     script.hear(wire.heartbeat())
@@ -280,6 +380,7 @@ def settings(script: Script, **params: float) -> list[Work]:
     answered: list[Work] = []
     for name in ("NAV_DLL_ACT", "GF_ACTION", "COM_LOW_BAT_ACT"):
         answered += script.hear(wire.int_param(name, int(params.get(name, 2))))
+    answered += script.hear(wire.float_param("NAV_ACC_RAD", 2.0))
     answered += script.hear(wire.float_param("COM_OF_LOSS_T", 1.0))
     answered += script.hear(wire.int_param("COM_OBL_RC_ACT", 0))
     if "RTL_RETURN_ALT" in params:
@@ -315,6 +416,12 @@ def test_a_return_height_that_the_vehicle_does_not_have_is_not_known() -> None:
 
 def test_a_failsafe_that_is_off_is_a_condition_and_not_called_on() -> None:
     work = settings(Script(), GF_ACTION=0, RTL_RETURN_ALT=30.0)
+    assert weak(work) == [True]
+    assert not any("all on" in text for _, text in log(work))
+
+
+def test_what_an_autopilot_of_an_unknown_kind_does_by_itself_is_not_called_on() -> None:
+    work = Script().hear(wire.heartbeat(99))
     assert weak(work) == [True]
     assert not any("all on" in text for _, text in log(work))
 

@@ -13,7 +13,7 @@ HOME = Origin(47.397742, 8.545594, 488.0)
 
 def vehicle(autopilot: Autopilot = PX4) -> Telemetry:
     """A vehicle that has only just been heard."""
-    return Telemetry(1, 1, autopilot, link=0)
+    return Telemetry(1, 1, autopilot, link=0, mav_autopilot=autopilot.mav_autopilot)
 
 
 def position(time_boot_ms: int, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> LocalPositionNed:

@@ -93,8 +93,8 @@ def ack(command: int, result: int = 0) -> Message:
     return mavlink.MAVLink_command_ack_message(command, result)
 
 
-def text(severity: int, words: str) -> Message:
-    return mavlink.MAVLink_statustext_message(severity, words.encode())
+def text(severity: int, words: str, id: int = 0, chunk_seq: int = 0) -> Message:
+    return mavlink.MAVLink_statustext_message(severity, words.encode(), id, chunk_seq)
 
 
 def int_param(name: str, value: int) -> Message:

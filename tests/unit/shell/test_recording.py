@@ -156,3 +156,13 @@ def test_without_a_recorder_there_is_nothing_to_wait_for_and_nothing_to_lose() -
     assert list(nothing.changes()) == []
     assert list(nothing.upkeep(START_NS)) == []
     assert nothing.close(START_NS)
+
+
+def test_a_record_of_nothing_leaves_no_file(recording: Recording, tmp_path: Path) -> None:
+    """newcomer.md, 25: each one-shot without a vehicle left one."""
+    recording.write(piece(1), START_NS)
+    assert list(tmp_path.glob("*.mcap"))
+    recording.discard(START_NS + 1)
+    assert list(tmp_path.glob("*.mcap")) == []
+    assert recording.path == ""
+    assert recording.close(START_NS + 2)

@@ -24,6 +24,7 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView
 from gcs.session.plans import OnBoard, Prepared, message_of, on_board, prepare
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import AskGate, Decide, ToGate
 from gcs.wire.ids import MissionResult
 from gcs.wire.messages import (
@@ -45,7 +46,7 @@ ANSWERABLE = (MissionCount, MissionItemInt, MissionRequestList, MissionRequestIn
 
 def asked(word: str) -> Asked:
     """Request 7 of the session, number 70 of its client."""
-    return Asked(7, 70, word, OWN, SPEC_TIMING)
+    return Asked(7, 70, word, OWN, SPEC_TIMING, Times())
 
 
 def placed(autopilot: Autopilot = PX4) -> Telemetry:
@@ -55,7 +56,7 @@ def placed(autopilot: Autopilot = PX4) -> Telemetry:
     telemetry.home = (HOME.lat_deg, HOME.lon_deg, HOME.alt_amsl_m)
     telemetry.home_ned = telemetry.pos_ned = (0.0, 0.0, 0.0)
     telemetry.position_ns = START_NS
-    telemetry.return_up_m = 30.0
+    telemetry.return_up_m, telemetry.return_told = 30.0, True
     return telemetry
 
 

@@ -1,0 +1,229 @@
+"""What the vehicle's own parameters say: its failsafes, its return height, when it has arrived.
+
+They are read when a vehicle appears, the return height first, because a return and a mission that
+ends in one wait for it.  What no answer comes to is asked for again until it is known or the
+vehicle says that it does not have it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+from gcs.protocol.effects import (
+    Address,
+    Heard,
+    ParamAbsent,
+    ParamEffect,
+    ParamRead,
+    ParamsDone,
+    Send,
+    Wake,
+)
+from gcs.protocol.parameter_names import names_of
+from gcs.protocol.parameters import READ_WAIT_NS, ParamReader, decode_value
+from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
+from gcs.wire.ids import ParamType
+from gcs.wire.messages import ParamValue
+
+PARAM_TYPES = frozenset(int(kind) for kind in ParamType)
+
+READ_AGAIN_NS = 1_000_000_000
+"""Wait before what no answer came to is asked for again; each has several tries a time."""
+LONGEST_READ_AGAIN_NS = 8_000_000_000
+"""The wait doubles up to this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failsafe:
+    """A parameter of the vehicle that says what it does without us; below `weak_below`: nothing."""
+
+    name: str
+    about: str
+    weak_below: float
+
+
+FAILSAFES: dict[str, tuple[Failsafe, ...]] = {
+    # PX4 parameter reference: 0 = disabled for the first three.
+    "px4": (
+        Failsafe("NAV_DLL_ACT", "ground-station loss", 1.0),
+        Failsafe("GF_ACTION", "geofence breach", 1.0),
+        Failsafe("COM_LOW_BAT_ACT", "low battery", 1.0),
+        Failsafe("COM_OF_LOSS_T", "offboard loss, seconds", 0.0),
+        Failsafe("COM_OBL_RC_ACT", "offboard loss, action", 0.0),
+    ),
+    # ArduCopter parameter list: 0 = disabled for each of these.
+    "ardupilot": (
+        Failsafe("FS_GCS_ENABLE", "ground-station loss", 1.0),
+        Failsafe("FENCE_ENABLE", "geofence breach", 1.0),
+        Failsafe("BATT_FS_LOW_ACT", "low battery", 1.0),
+    ),
+}
+
+RETURN_HEIGHT: Final = {"px4": "RTL_RETURN_ALT", "ardupilot": "RTL_ALT_M"}
+"""Metres above home, by its newest name."""
+ACCEPTANCE_RADIUS: Final = {"px4": "NAV_ACC_RAD", "ardupilot": "WP_RADIUS_M"}
+"""How near a waypoint counts as reached, metres, by its newest name."""
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterKnown:
+    """A parameter was read, under the name that the vehicle has for it."""
+
+    name: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnHeightKnown:
+    """The return height above home in metres; None: the vehicle says that it has none."""
+
+    up_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class AcceptanceKnown:
+    """How near a waypoint the vehicle itself takes it as reached, metres."""
+
+    radius_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class FailsafesKnown:
+    """Every failsafe was asked for: those that are off or not known, in words."""
+
+    weak: tuple[str, ...]
+
+
+Found: TypeAlias = Send | ParameterKnown | ReturnHeightKnown | AcceptanceKnown | FailsafesKnown
+
+
+class Settings:
+    """Reads them once for each time that a vehicle appears, and follows what changes later."""
+
+    def __init__(self, own: Address, times: Times) -> None:
+        self._own = own
+        self._times = times
+        self._reader: ParamReader | None = None
+        self._scales: dict[str, tuple[str, float]] = {}
+        """By every name that is asked for: the newest name, and what makes its unit."""
+        self._values: dict[str, float] = {}
+        self._silent: list[str] = []
+        self._told: FailsafesKnown | None = None
+        self._read_again_ns: int | None = None
+        self._pause_ns = 0
+
+    @property
+    def deadline_ns(self) -> int | None:
+        return self._reader.deadline_ns if self._reader else self._read_again_ns
+
+    def start(self, telemetry: Telemetry, now_ns: int) -> list[Found]:
+        """Begin to read all of them."""
+        who = _whose(telemetry)
+        wanted = [table[who] for table in (RETURN_HEIGHT, ACCEPTANCE_RADIUS) if who in table]
+        wanted += [failsafe.name for failsafe in FAILSAFES.get(who, ())]
+        names = [(newest, name) for newest in wanted for name in names_of(newest)]
+        self._scales = {name.name: (newest, name.scale) for newest, name in names}
+        self._values, self._told = {}, None
+        self._pause_ns = self._times.real_ns(READ_AGAIN_NS)
+        none: list[Found] = [] if who in RETURN_HEIGHT else [ReturnHeightKnown(None)]
+        return none + self._read(wanted, telemetry, now_ns)
+
+    def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Found]:
+        if self._reader is not None:
+            found = self._found(self._reader.handle(heard, now_ns), telemetry, now_ns)
+            if found:
+                return found
+        if isinstance(heard.message, ParamValue):
+            return self._changed(heard.message, telemetry, now_ns)
+        return []
+
+    def wake(self, telemetry: Telemetry, now_ns: int) -> list[Found]:
+        if self._reader is not None:
+            return self._found(self._reader.handle(Wake(), now_ns), telemetry, now_ns)
+        if self._read_again_ns is not None and now_ns >= self._read_again_ns:
+            return self._read(self._silent, telemetry, now_ns)
+        return []
+
+    def _changed(self, news: ParamValue, telemetry: Telemetry, now_ns: int) -> list[Found]:
+        """A parameter came unasked, as after another station set it: keep ours up to date."""
+        if news.param_id not in self._scales or news.param_type not in PARAM_TYPES:
+            return []
+        kind = ParamType(news.param_type)
+        value = decode_value(news.param_value, kind, telemetry.autopilot.param_encoding)
+        newest, scale = self._scales[news.param_id]
+        if self._values.get(newest) == float(value) * scale:
+            return []
+        found = self._known(ParamRead(news.param_id, value, kind), _whose(telemetry))
+        return found if self._reader is not None else [*found, *self._summary(telemetry)]
+
+    def _read(self, wanted: list[str], telemetry: Telemetry, now_ns: int) -> list[Found]:
+        self._silent = []
+        self._read_again_ns = None
+        self._reader = ParamReader(
+            self._own,
+            Address(telemetry.sysid, telemetry.compid),
+            telemetry.autopilot.param_encoding,
+            (tuple(name.name for name in names_of(newest)) for newest in wanted),
+            self._times.real_ns(READ_WAIT_NS),
+        )
+        return self._found(self._reader.start(now_ns), telemetry, now_ns)
+
+    def _found(self, effects: list[ParamEffect], telemetry: Telemetry, now_ns: int) -> list[Found]:
+        who = _whose(telemetry)
+        out: list[Found] = []
+        for effect in effects:
+            match effect:
+                case Send():
+                    out.append(effect)
+                case ParamRead():
+                    out += self._known(effect, who)
+                case ParamAbsent(name, None):
+                    self._silent.append(name)
+                case ParamAbsent(name):
+                    if name == RETURN_HEIGHT.get(who):
+                        out.append(ReturnHeightKnown(None))
+                case ParamsDone():
+                    self._reader = None
+                    if self._silent:
+                        self._read_again_ns = now_ns + self._pause_ns
+                        self._pause_ns = min(
+                            2 * self._pause_ns, self._times.real_ns(LONGEST_READ_AGAIN_NS)
+                        )
+                    out += self._summary(telemetry)
+        return out
+
+    def _known(self, read: ParamRead, who: str) -> list[Found]:
+        newest, scale = self._scales[read.name]
+        value = self._values[newest] = float(read.value) * scale
+        if newest in self._silent:
+            self._silent.remove(newest)
+        found: list[Found] = [ParameterKnown(read.name, float(read.value))]
+        if newest == RETURN_HEIGHT.get(who):
+            found.append(ReturnHeightKnown(value))
+        elif newest == ACCEPTANCE_RADIUS.get(who):
+            found.append(AcceptanceKnown(value))
+        return found
+
+    def _summary(self, telemetry: Telemetry) -> list[Found]:
+        """What is weak, where that is news."""
+        told, self._told = self._told, FailsafesKnown(self._weak(_whose(telemetry)))
+        return [] if self._told == told else [self._told]
+
+    def _weak(self, who: str) -> tuple[str, ...]:
+        if who not in FAILSAFES:
+            return ("not known: which parameters they have is not known here",)
+        weak = []
+        for failsafe in FAILSAFES[who]:
+            value = self._values.get(failsafe.name)
+            if value is None:
+                weak.append(f"{failsafe.about}: {failsafe.name} could not be read")
+            elif value < failsafe.weak_below:
+                weak.append(f"{failsafe.about}: off ({failsafe.name} = {value:g})")
+        return tuple(weak)
+
+
+def _whose(telemetry: Telemetry) -> str:
+    """The autopilot whose settings are known here; of other vehicles none is."""
+    return telemetry.autopilot.name if telemetry.autopilot.commanded else ""

@@ -1,0 +1,42 @@
+"""The session's clock and the other side's: every wait for an answer is made here, once.
+
+A session may run faster or slower than real time (`--speedup`), and so does its vehicle.  What the
+vehicle flies takes as long on the session's clock as on its own.  What crosses the link does not:
+an answer, a heartbeat or a lost datagram takes real time, and that is `speedup` times as long on
+the session's clock.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from msgspec import structs
+
+from gcs.gate.policy.policy import ControlTimes, Policy
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """`speedup` is how many times as fast as real time the session's clock runs."""
+
+    speedup: float = 1.0
+
+    def real_ns(self, ns: int) -> int:
+        """That many nanoseconds of real time, on the session's clock."""
+        return round(ns * self.speedup)
+
+    def real_s(self, session_ns: int) -> float:
+        """How many real seconds a span on the session's clock is."""
+        return session_ns / 1e9 / self.speedup
+
+    def policy(self, policy: Policy) -> Policy:
+        """`policy`, whose waits for heartbeats, answers, pictures and positions are real time."""
+        times, faster = policy.control, self.speedup
+        no_less = max(1.0, faster)
+        return structs.replace(
+            policy,
+            heartbeat_age_s=policy.heartbeat_age_s * faster,
+            position_age_s=policy.position_age_s * no_less,
+            photo_timeout_s=policy.photo_timeout_s * no_less,
+            control=ControlTimes(times.stream_s * faster, times.timeout_s * faster),
+        )
