@@ -72,6 +72,14 @@ class ReturnHeightSeen:
 
 
 @dataclass(frozen=True, slots=True)
+class ClimbEndSeen:
+    """How near the height of its take-off, in metres, the vehicle itself takes the climb to be
+    over (px4 NAV_MC_ALT_RAD): it may end that far below."""
+
+    within_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class VerifierChanged:
     """Home, origin, fence or autopilot became known or changed.
 
@@ -148,6 +156,7 @@ Input: TypeAlias = (
     | PositionSeen
     | HomeSeen
     | ReturnHeightSeen
+    | ClimbEndSeen
     | VerifierChanged
     | CommandEnded
     | PhotoSeen

@@ -134,6 +134,9 @@ class Autopilot:
     """NAV_TAKEOFF's altitude is above mean sea level (px4), or above home (ardupilot)."""
     blank: float
     """What an unused position parameter is to be filled with."""
+    climb_end: tuple[str, float] | None
+    """The parameter that says how far below its height, in metres, a take-off may be taken to be
+    over, and its default; None where the autopilot has none."""
 
 
 PX4 = Autopilot(
@@ -147,6 +150,7 @@ PX4 = Autopilot(
     mode_in_two_parts=True,
     takeoff_above_sea=True,
     blank=IGNORED,
+    climb_end=("NAV_MC_ALT_RAD", 0.8),
 )
 
 ARDUPILOT = Autopilot(
@@ -159,6 +163,7 @@ ARDUPILOT = Autopilot(
     mode_in_two_parts=False,
     takeoff_above_sea=False,
     blank=0.0,
+    climb_end=None,
 )
 
 GENERIC = Autopilot(
@@ -170,6 +175,7 @@ GENERIC = Autopilot(
     mode_in_two_parts=False,
     takeoff_above_sea=False,
     blank=0.0,
+    climb_end=None,
 )
 """An autopilot that we do not know: its reports are shown, every command to it is refused."""
 

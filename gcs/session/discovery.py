@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs.config import StationConfig
+from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import (
     Address,
     Heard,
@@ -93,10 +94,12 @@ class ParameterKnown:
 
 @dataclass(frozen=True, slots=True)
 class SettingsKnown:
-    """All of them were: what is weak, in words; the return height above home, if it is known."""
+    """All of them were: what is weak, in words; the return height above home, if it is known; how
+    near its height the vehicle ends a take-off."""
 
     weak: tuple[str, ...]
     return_up_m: float | None
+    climb_ends_within_m: float
 
 
 Found: TypeAlias = Send | ParameterKnown | SettingsKnown
@@ -126,6 +129,8 @@ class Discovery:
         names = [failsafe.name for failsafe in FAILSAFES.get(telemetry.autopilot.name, ())]
         if telemetry.autopilot.name in RETURN_HEIGHT:
             names.append(RETURN_HEIGHT[telemetry.autopilot.name][0])
+        if telemetry.autopilot.climb_end is not None:
+            names.append(telemetry.autopilot.climb_end[0])
         return self._read(names, telemetry, now_ns)
 
     def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Found]:
@@ -199,22 +204,24 @@ class Discovery:
                     self._reader = None
                     if self._unanswered:
                         self._read_again_ns = now_ns + READ_AGAIN_NS
-                    told, self._told = self._told, self._summary(telemetry.autopilot.name)
+                    told, self._told = self._told, self._summary(telemetry.autopilot)
                     if self._told != told:
                         out.append(self._told)
         return out
 
-    def _summary(self, autopilot: str) -> SettingsKnown:
+    def _summary(self, autopilot: Autopilot) -> SettingsKnown:
         weak = []
-        for failsafe in FAILSAFES.get(autopilot, ()):
+        for failsafe in FAILSAFES.get(autopilot.name, ()):
             value = self._values.get(failsafe.name)
             if value is None:
                 weak.append(f"{failsafe.about}: {failsafe.name} could not be read")
             elif value < failsafe.weak_below:
                 weak.append(f"{failsafe.about}: off ({failsafe.name} = {value:g})")
-        name, scale = RETURN_HEIGHT.get(autopilot, ("", 1.0))
+        name, scale = RETURN_HEIGHT.get(autopilot.name, ("", 1.0))
         height = self._values.get(name)
-        return SettingsKnown(tuple(weak), None if height is None else height * scale)
+        name, default_m = autopilot.climb_end or ("", 0.0)
+        within_m = self._values.get(name, default_m)
+        return SettingsKnown(tuple(weak), None if height is None else height * scale, within_m)
 
 
 def _request(telemetry: Telemetry, msgid: MsgId) -> CommandLong:

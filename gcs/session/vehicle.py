@@ -208,11 +208,12 @@ class Vehicle:
                     work.append(item)
                 case discovery.ParameterKnown(name, value):
                     work.append(Record(ParamItem(telemetry.sysid, name, value)))
-                case discovery.SettingsKnown(weak, return_up_m):
+                case discovery.SettingsKnown(weak, return_up_m, climb_ends_within_m):
                     text = "the vehicle's own failsafes: " + ("; ".join(weak) or "all on")
                     work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
                     if not weak:
                         work.append(Log(Level.INFO, NODE, text))
+                    work.append(ToGate(inputs.ClimbEndSeen(climb_ends_within_m)))
                     if return_up_m is not None:
                         telemetry.return_up_m = return_up_m
                         work.append(ToGate(inputs.ReturnHeightSeen(return_up_m)))

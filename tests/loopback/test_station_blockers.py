@@ -32,7 +32,6 @@ def expected(row: int, why: str) -> pytest.MarkDecorator:
     return pytest.mark.xfail(strict=True, reason=reason)
 
 
-@expected(1, "it takes a take-off that ended 0.5 m low for one that was ended by another")
 def test_a_take_off_that_ends_low_ends_at_the_height_that_was_asked_for() -> None:
     """The vehicle is put into AUTO.LOITER 0.5 m low, where PX4 ends its take-off."""
     flight = Flight("px4").connected()

@@ -52,12 +52,21 @@ def _fly_goal(turn: Turn) -> None:
     memory.pending = None
     turn.verdict(requested, Ruling.ACCEPTED, None)
     turn.end(End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED))
-    goal_ned = requested.request.goal_ned
     memory.task = Task(requested, Event.GOTO)
-    memory.goal = Goal(goal_ned, requested.request.yaw_rad, turn.evidence)
-    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal_ned) else None
+    _fly_to(turn, Goal(requested.request.goal_ned, requested.request.yaw_rad, turn.evidence))
+
+
+def _fly_to_top(turn: Turn) -> None:
+    """The climb ended within the vehicle's own tolerance: the rest is flown as a goal."""
+    _fly_to(turn, Goal(turn.memory.top_ned, None, turn.evidence))
+
+
+def _fly_to(turn: Turn, goal: Goal) -> None:
+    memory = turn.memory
+    memory.goal = goal
+    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal.pos_ned) else None
     assert memory.pos_ned is not None
-    turn.set_deadline(_flight_s(turn, memory.pos_ned, goal_ned))
+    turn.set_deadline(_flight_s(turn, memory.pos_ned, goal.pos_ned))
 
 
 def _flight_s(turn: Turn, pos_ned: Vec3, goal_ned: Vec3) -> float:
@@ -84,14 +93,23 @@ def _hold_at_goal(turn: Turn) -> None:
 
 
 def _take_control(turn: Turn) -> None:
-    """Send the verified present position as setpoint from now on, and command guided mode.
+    """Send the verified present position as setpoint from now on, and command guided mode."""
+    assert turn.memory.pos_ned is not None
+    _take_control_at(turn, turn.memory.pos_ned)
 
-    ardupilot is asked at once; px4 needs setpoints first, for the policy's time.
-    """
+
+def _take_control_at_top(turn: Turn) -> None:
+    """As `_take_control`, with the top of the climb as setpoint: the vehicle may end its climb
+    below it."""
+    _take_control_at(turn, turn.memory.top_ned)
+
+
+def _take_control_at(turn: Turn, hold_ned: Vec3) -> None:
+    """ardupilot is asked for guided mode at once; px4 needs setpoints first, for the policy's
+    time."""
     memory, times = turn.memory, turn.policy.control
-    assert memory.pos_ned is not None
     turn.cancel_commands()
-    memory.hold, memory.goal = Goal(memory.pos_ned, None, turn.evidence), None
+    memory.hold, memory.goal = Goal(hold_ned, None, turn.evidence), None
     memory.control = Control.TAKING
     # The first setpoint leaves with the next tick, not with the request.
     stream_s = 0.0 if memory.autopilot == "ardupilot" else times.stream_s + TICK_S
@@ -171,6 +189,8 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.REFUSE_GOAL: _refuse_goal,
         Action.HOLD_AT_GOAL: _hold_at_goal,
         Action.TAKE_CONTROL: _take_control,
+        Action.TAKE_CONTROL_AT_TOP: _take_control_at_top,
+        Action.FLY_TO_TOP: _fly_to_top,
         Action.ASK_GUIDED: _ask_guided,
         Action.GAIN_CONTROL: _gain_control,
         Action.RELEASE_CONTROL: _release_control,

@@ -26,7 +26,7 @@ AS_JUDGED: Final = End(OutcomeKind.ABORTED, judged=True)
 TAKEN_OVER: Final = End(OutcomeKind.TAKEN_OVER, Code.MODE_CHANGED)
 
 CONTROL_REGAINABLE: Final = (Guard.AIRBORNE, Guard.SEVERITY_PERMITS, Guard.POSITION_CLEARS)
-"""The conditions under which a take-off or a mission ends in HOVERING, under our control."""
+"""The conditions under which a mission ends in HOVERING, under our control."""
 
 cannot_happen: Final[Cell] = ()
 unchanged: Final = Branch()

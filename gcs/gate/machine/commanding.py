@@ -74,7 +74,8 @@ def take_off(turn: Turn) -> None:
     memory.control = Control.OURS
     memory.lifted = False
     memory.ground_down_m = memory.pos_ned[2]
-    memory.top_down_m = memory.pos_ned[2] - task.requested.request.up_m
+    north_m, east_m, down_m = memory.pos_ned
+    memory.top_ned = (north_m, east_m, down_m - task.requested.request.up_m)
     turn.set_deadline(turn.policy.takeoff.timeout_s)
     if memory.autopilot == "ardupilot" and memory.mode is not FlightMode.GUIDED:
         _command_after(turn, CommandKind.GUIDED, CommandKind.TAKE_OFF)

@@ -14,6 +14,7 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Breach, Verifier
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import (
+    ClimbEndSeen,
     CommandEnded,
     ConditionChanged,
     HeartbeatSeen,
@@ -90,6 +91,8 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             yield from _home(turn, pos_ned)
         case ReturnHeightSeen(up_m):
             memory.return_up_m = up_m
+        case ClimbEndSeen(within_m):
+            memory.climb_ends_within_m = within_m
         case VerifierChanged(verifier):
             yield from _verifier(turn, verifier)
         case PhotoSeen():

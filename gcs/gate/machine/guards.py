@@ -143,6 +143,7 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.TAKE_OFF_MAY_COME_LATE: _take_off_may_come_late,
         Guard.GUIDED_MAY_COME_LATE: lambda turn: turn.now_ns < turn.memory.guided_until_ns,
         Guard.TASK_IS_ARM: _task_in(Event.ARM),
+        Guard.TASK_IS_TAKE_OFF: _task_in(Event.TAKE_OFF),
         Guard.TASK_WAITS_FOR_MODE: lambda turn: (
             turn.memory.task is not None and turn.memory.task.waiting is not None
         ),
@@ -162,6 +163,8 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.CLIMB_ENDED_ELSEWHERE: progress.climb_ended_elsewhere,
         Guard.CLIMBS_TOO_HIGH: progress.climbs_too_high,
         Guard.POSITION_CLEARS: lambda turn: verifying.position(turn) is None,
+        Guard.POSITION_TOO_OLD: lambda turn: turn.stale,
+        Guard.TOP_CLEARS: lambda turn: verifying.top(turn) is None,
         Guard.RETURN_PATH_CLEARS: lambda turn: verifying.return_path(turn) is None,
         Guard.BLOCKED_RETURN_FORWARDED: lambda turn: turn.policy.rtl_blocked == "forward",
         Guard.BLOCKED_RETURN_LANDS: lambda turn: turn.policy.rtl_blocked == "land",

@@ -76,6 +76,7 @@ class Memory:
     boot_ms: int = 0  # the vehicle's own time stamp of the last position
     home_ned: Vec3 | None = None
     return_up_m: float | None = None  # the vehicle's return height, above home
+    climb_ends_within_m: float = 0.0  # how near its height the vehicle itself ends a climb
     verifier: Verifier | None = None
     conditions: tuple[tuple[Condition, str], ...] = ()
     mission_name: str = ""
@@ -101,7 +102,7 @@ class Memory:
     takeoff_until_ns: int = 0  # until then our own take-off command may still take effect
     ask_control_ns: int | None = None  # when GUIDED is to be commanded
     hold_again_ns: int | None = None  # when HOLD, not shown yet, is to be commanded again
-    top_down_m: float = 0.0  # local down of the height a take-off ends at
+    top_ned: Vec3 = (0.0, 0.0, 0.0)  # where the take-off that was verified ends
     lifted: bool = False  # it was reported in the air since the take-off or mission began
     force_asked_ns: int | None = None  # when a forced disarm was asked for the first time
 

@@ -35,11 +35,14 @@ def arrived(turn: Turn) -> bool:
 
 
 def at_height(turn: Turn) -> bool:
-    """The climb is over, at its top."""
+    """The climb is over, at its top, or as far below it as the vehicle itself ends a climb."""
+    memory, radius_m = turn.memory, turn.policy.arrival.radius_m
     above_m = _above_top_m(turn)
-    if not turn.memory.airborne or above_m is None:
+    if not memory.airborne or above_m is None:
         return False
-    return abs(above_m) < turn.policy.arrival.radius_m and (_shows_hold(turn) or _slow(turn))
+    if abs(above_m) < radius_m:
+        return _shows_hold(turn) or _slow(turn)
+    return -(radius_m + memory.climb_ends_within_m) < above_m < 0.0 and _shows_hold(turn)
 
 
 def climb_ended_elsewhere(turn: Turn) -> bool:
@@ -67,7 +70,7 @@ def _above_top_m(turn: Turn) -> float | None:
     memory = turn.memory
     if turn.stale or memory.pos_ned is None:
         return None
-    return memory.top_down_m - memory.pos_ned[2]
+    return memory.top_ned[2] - memory.pos_ned[2]
 
 
 def _slow(turn: Turn) -> bool:

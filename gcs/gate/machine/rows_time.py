@@ -8,7 +8,6 @@ from typing import Final
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.machine.cells import (
     COMPLETE,
-    CONTROL_REGAINABLE,
     DEADLINE_PASSED,
     NO_ANSWER,
     VEHICLE_REFUSED,
@@ -56,7 +55,11 @@ complete_if_arrived: Final = Branch(
     when=(Guard.ARRIVED,), ends=COMPLETE, do=(Action.HOLD_AT_GOAL,), to=HOVERING
 )
 climb: Final[Cell] = (
-    Branch(when=(Guard.AT_HEIGHT, *CONTROL_REGAINABLE), do=(Action.TAKE_CONTROL,), to=HOVERING),
+    Branch(
+        when=(Guard.AT_HEIGHT, Guard.SEVERITY_PERMITS, Guard.TOP_CLEARS),
+        do=(Action.TAKE_CONTROL_AT_TOP,),
+        to=HOVERING,
+    ),
     Branch(when=(Guard.AT_HEIGHT,), ends=TOO_CLOSE, do=(Action.HOLD,), to=HOLDING),
     Branch(
         when=(Guard.CLIMB_ENDED_ELSEWHERE,),

@@ -1,6 +1,6 @@
 """Questions to the verifier about what is asked for and what is flown.
 
-`position`, `climb`, `goal` and `return_path` return None where the verifier clears, else its
+`position`, `climb`, `top`, `goal` and `return_path` return None where the verifier clears, else its
 refusal.  Each leaves the numbers of the answer in the turn: as evidence where it clears, as the
 reason where it refuses; the verdict then carries them.
 """
@@ -36,6 +36,16 @@ def climb(turn: Turn) -> Refusal | None:
     if turn.stale or memory.pos_ned is None:
         return _keep(turn, _position_too_old())
     return _keep(turn, memory.verifier.takeoff(turn.requested.request.up_m, memory.pos_ned))
+
+
+def top(turn: Turn) -> Refusal | None:
+    """May the vehicle fly from where its climb ended to the top that was verified?"""
+    memory = turn.memory
+    if memory.verifier is None:
+        return _keep(turn, home_or_fence_unknown())
+    if turn.stale or memory.pos_ned is None or memory.v_ned is None:
+        return _keep(turn, _position_too_old())
+    return _keep(turn, memory.verifier.goal(memory.top_ned, None, memory.pos_ned, memory.v_ned))
 
 
 def goal(turn: Turn, request: GoTo) -> Refusal | None:
@@ -81,8 +91,7 @@ def refusal_of_what_is_flown(
         return None
     judged: Cleared | Refusal | None = None
     if memory.flown_state is State.TAKING_OFF:
-        top_ned = (*memory.pos_ned[:2], memory.top_down_m)
-        judged = verifier.hold_point(top_ned, STANDING, floor_applies=True)
+        judged = verifier.hold_point(memory.top_ned, STANDING, floor_applies=True)
     elif memory.flown_state is State.FLYING_MISSION:
         same = was is not None and (was.fence_on, len(was.zones)) == (True, len(verifier.zones))
         if verifier.fence_on and not same:

@@ -45,6 +45,7 @@ STEP_CHECKS: Final = (
     StepCheck(2, invariants_motion.flies_what_clears, (VerifierChanged,)),
     StepCheck(2, invariants_motion.holds_when_home_moves, (HomeSeen,)),
     StepCheck(2, invariants_motion.climbs_to_its_top, (Tick,)),
+    StepCheck(2, invariants_motion.ends_a_climb_at_its_top, (Outcome,)),
     StepCheck(3, invariants_request.answers_once),
     StepCheck(4, invariants_request.keeps_nothing_refused, (Verdict,)),
     StepCheck(4, invariants_request.takes_goals_where_it_hovers, (Requested,)),

@@ -25,7 +25,7 @@ from gcs.gate.requests import (
     TakeOff,
     TakePhoto,
 )
-from gcs.gate.states import State
+from gcs.gate.states import Control, State
 
 FLIES: Final = (GoTo, TakeControl, Resume, TakeOff, StartMission)
 MOVES: Final = (*FLIES, Arm, TakePhoto)
@@ -103,6 +103,7 @@ def aborts_at_once(edge: Edge) -> Iterator[str]:
 def stays_aborted(edge: Edge) -> Iterator[str]:
     """5: nothing but `resume` ends the hold, nothing but a verdict makes the vehicle move."""
     judged = any(isinstance(e, Verdict) and isinstance(e.request, GoTo) for e in edge.effects)
+    judged |= _goes_on_to_the_top(edge)
     for moved in edge.effects:
         if not isinstance(moved, Transition):
             continue
@@ -111,6 +112,14 @@ def stays_aborted(edge: Edge) -> Iterator[str]:
             yield f"HOLDING is left for {moved.after.name} without resume"
         if moved.after is State.MOVING and not judged and moved.before is not State.STALE:
             yield "MOVING begins without a verdict on a goal"
+
+
+def _goes_on_to_the_top(edge: Edge) -> bool:
+    """The rest of a take-off, of which the verdict was the take-off's own."""
+    task, goal = edge.before.task, edge.after.goal
+    climbs = task is not None and isinstance(task.requested.request, TakeOff)
+    taking = edge.before.control is Control.TAKING
+    return climbs and taking and goal is not None and goal.pos_ned == edge.before.top_ned
 
 
 def _commanded(memory: Memory) -> set[CommandKind]:

@@ -16,7 +16,7 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
-from gcs.gate.proof.world import ABOVE, EDGE, GOAL, TOP
+from gcs.gate.proof.world import ABOVE, EDGE, LOW, TOP
 from gcs.gate.states import FlightMode, State
 
 MODES_THAT_MATTER: Final = {
@@ -82,9 +82,9 @@ def _position(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     climbs = memory.flown_state is State.TAKING_OFF
     flown = memory.goal is not None
     return (
-        memory.pos_ned in (TOP, ABOVE) and memory.pos_ned if climbs else None,
+        memory.pos_ned in (TOP, LOW, ABOVE) and memory.pos_ned if climbs else None,
         memory.state in PLACES_THAT_MATTER and memory.pos_ned == EDGE,
-        flown and memory.pos_ned == GOAL,
+        memory.goal is not None and memory.pos_ned == memory.goal.pos_ned,
         flown and memory.within_since_ns is not None,
     )
 

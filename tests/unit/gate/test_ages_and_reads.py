@@ -421,7 +421,7 @@ class TestCommands:
         script.connect()
         script.heartbeat(FlightMode.GUIDED, armed=True)
         request_id = script.ask(TakeOff(5.0))
-        assert script.gate.memory.top_down_m == -12.0
+        assert script.gate.memory.top_ned == (3.0, 4.0, -12.0)
         assert not script.gate.memory.lifted
         assert script.gate.control is Control.OURS
         assert not script.ended(request_id)

@@ -205,7 +205,7 @@ def test_a_vehicle_that_was_lost_has_reported_as_little_as_one_never_heard() -> 
         verifier=lost.verifier,
         asked_until_ns=lost.asked_until_ns,
         takeoff_until_ns=lost.takeoff_until_ns,
-        top_down_m=lost.top_down_m,
+        top_ned=lost.top_ned,
     )
 
 

@@ -167,8 +167,10 @@ class TestTakeOff:
         assert not script.ended(requested)
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
+        assert (script.gate.state, script.gate.control) == (State.MOVING, Control.OURS)
+        script.wait(script.policy.arrival.dwell_s)
         assert script.outcome(requested).kind is OutcomeKind.COMPLETE
-        assert script.gate.control is Control.OURS
+        assert (script.gate.state, script.gate.control) == (State.HOVERING, Control.OURS)
 
     def test_the_hold_mode_of_an_old_heartbeat_is_not_the_end_of_the_climb(self) -> None:
         script = self.script()

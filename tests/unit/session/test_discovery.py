@@ -24,6 +24,7 @@ PX4_ON: dict[str, float | None] = {
     "COM_OF_LOSS_T": 1.0,
     "COM_OBL_RC_ACT": 0,
     "RTL_RETURN_ALT": 30.0,
+    "NAV_MC_ALT_RAD": 1.5,
 }
 ARDUPILOT_ON: dict[str, float | None] = {
     "FS_GCS_ENABLE": 1,
@@ -105,16 +106,19 @@ class Script:
 
 
 @pytest.mark.parametrize(
-    ("autopilot", "params", "return_up_m"),
-    [(PX4, PX4_ON, 30.0), (ARDUPILOT, ARDUPILOT_ON, 15.0)],  # RTL_ALT is centimetres
+    ("autopilot", "params", "return_up_m", "climb_ends_within_m"),
+    [(PX4, PX4_ON, 30.0, 1.5), (ARDUPILOT, ARDUPILOT_ON, 15.0, 0.0)],  # RTL_ALT is centimetres
 )
 def test_failsafes_that_are_on_are_no_weakness(
-    autopilot: Autopilot, params: dict[str, float | None], return_up_m: float
+    autopilot: Autopilot,
+    params: dict[str, float | None],
+    return_up_m: float,
+    climb_ends_within_m: float,
 ) -> None:
     script = Script(autopilot, params)
     script.start()
     assert sorted(script.asked) == sorted(params)
-    assert script.settings == [SettingsKnown((), return_up_m)]
+    assert script.settings == [SettingsKnown((), return_up_m, climb_ends_within_m)]
     known = {item.name: item.value for item in script.found if isinstance(item, ParameterKnown)}
     assert known == params
     assert script.discovery.deadline_ns is None
@@ -161,7 +165,7 @@ def test_silence_is_asked_again_and_again_until_it_is_over() -> None:
     assert len(script.settings) == 1  # nothing new was found
     script.params["GF_ACTION"] = 2
     script.run(10.0)
-    assert script.settings[-1] == SettingsKnown((), 30.0)
+    assert script.settings[-1] == SettingsKnown((), 30.0, 1.5)
     assert script.discovery.deadline_ns is None
 
 
