@@ -233,6 +233,7 @@ class Flight(Looks):
         self.do("arm")
         self.do("takeoff", up_m=up_m)
         assert self.state is State.HOVERING
+        self.run(0.01)  # what comes from here on is later than the end of the take-off
         return self
 
     def connected(self) -> Flight:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
+from gcs.frames import as_on_the_wire
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.turn import Turn
 from gcs.gate.requests import TakeOff
@@ -75,7 +76,8 @@ def take_off(turn: Turn) -> None:
     memory.lifted = False
     memory.ground_down_m = memory.pos_ned[2]
     north_m, east_m, down_m = memory.pos_ned
-    memory.top_ned = (north_m, east_m, down_m - task.requested.request.up_m)
+    top_down_m = as_on_the_wire(down_m - task.requested.request.up_m)
+    memory.top_ned = (north_m, east_m, top_down_m)
     turn.set_deadline(turn.policy.takeoff.timeout_s)
     if memory.autopilot == "ardupilot" and memory.mode is not FlightMode.GUIDED:
         _command_after(turn, CommandKind.GUIDED, CommandKind.TAKE_OFF)
