@@ -29,11 +29,18 @@ class Requested:
 
 @dataclass(frozen=True, slots=True)
 class HeartbeatSeen:
-    """HEARTBEAT of the vehicle.  `mode_name` is the autopilot's own name of the mode."""
+    """HEARTBEAT of the vehicle.  `mode_name` is the autopilot's own name of the mode; `failsafe`
+    says that a failsafe of the vehicle's own is active (MAV_STATE CRITICAL or EMERGENCY)."""
 
     armed: bool
     mode: FlightMode
     mode_name: str
+    failsafe: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MessageSeen:
+    """Any message of the vehicle's autopilot: a sign of life."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +159,7 @@ class Tick:
 Input: TypeAlias = (
     Requested
     | HeartbeatSeen
+    | MessageSeen
     | LandedSeen
     | PositionSeen
     | HomeSeen

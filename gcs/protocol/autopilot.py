@@ -125,8 +125,8 @@ class Autopilot:
     mav_autopilot: int
     """MAV_AUTOPILOT, HEARTBEAT.autopilot."""
     modes: tuple[Mode, ...]
-    mode_of_kind: Mapping[CommandKind, str]
-    """The modes that HOLD and GUIDED mean."""
+    mode_of_meaning: Mapping[FlightMode, str]
+    """The one mode of each meaning that this station sends, or that its command leads to."""
     param_encoding: ParamEncoding
     mode_in_two_parts: bool
     """DO_SET_MODE takes main and sub mode (px4), or custom_mode as it is (ardupilot)."""
@@ -143,8 +143,14 @@ PX4 = Autopilot(
     name="px4",
     mav_autopilot=MavAutopilot.PX4,
     modes=_PX4_MODES,
-    mode_of_kind=MappingProxyType(
-        {CommandKind.HOLD: "AUTO.LOITER", CommandKind.GUIDED: "OFFBOARD"}
+    mode_of_meaning=MappingProxyType(
+        {
+            _M.HOLD: "AUTO.LOITER",
+            _M.GUIDED: "OFFBOARD",
+            _M.MISSION: "AUTO.MISSION",
+            _M.RETURN: "AUTO.RTL",
+            _M.LAND: "AUTO.LAND",
+        }
     ),
     param_encoding=ParamEncoding.BYTEWISE,
     mode_in_two_parts=True,
@@ -158,7 +164,15 @@ ARDUPILOT = Autopilot(
     mav_autopilot=MavAutopilot.ARDUPILOTMEGA,
     modes=_ARDUCOPTER_MODES,
     # BRAKE, as LOITER obeys the sticks.
-    mode_of_kind=MappingProxyType({CommandKind.HOLD: "BRAKE", CommandKind.GUIDED: "GUIDED"}),
+    mode_of_meaning=MappingProxyType(
+        {
+            _M.HOLD: "BRAKE",
+            _M.GUIDED: "GUIDED",
+            _M.MISSION: "AUTO",
+            _M.RETURN: "RTL",
+            _M.LAND: "LAND",
+        }
+    ),
     param_encoding=ParamEncoding.CAST,
     mode_in_two_parts=False,
     takeoff_above_sea=False,
@@ -170,7 +184,7 @@ GENERIC = Autopilot(
     name="of an unknown kind",
     mav_autopilot=MavAutopilot.GENERIC,
     modes=(),
-    mode_of_kind=MappingProxyType({}),
+    mode_of_meaning=MappingProxyType({}),
     param_encoding=ParamEncoding.CAST,
     mode_in_two_parts=False,
     takeoff_above_sea=False,
@@ -212,8 +226,10 @@ def command_long_for(autopilot: Autopilot, wanted: WantedCommand, target: Addres
         raise CannotCommandError(f"the autopilot is {autopilot.name}: how to ask it is not known")
     blank = autopilot.blank
     match wanted.kind:
-        case CommandKind.HOLD | CommandKind.GUIDED:
-            return _set_mode(autopilot, autopilot.mode_of_kind[wanted.kind], target)
+        case CommandKind.HOLD:
+            return _set_mode(autopilot, autopilot.mode_of_meaning[_M.HOLD], target)
+        case CommandKind.GUIDED:
+            return _set_mode(autopilot, autopilot.mode_of_meaning[_M.GUIDED], target)
         case CommandKind.SET_MODE:
             return _set_mode(autopilot, wanted.mode_name, target)
         case CommandKind.ARM:

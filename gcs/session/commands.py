@@ -106,7 +106,7 @@ class Commands:
         self._next_token += 1
         self._sent[token] = wanted, command
         work = self._end_repeating()
-        if wanted.kind is CommandKind.ARM and not telemetry.prearm_ok:
+        if wanted.kind is CommandKind.ARM and telemetry.prearm_ok is False:
             self._repeat_later(token, Result.TEMPORARILY_REJECTED, now_ns)
             text = "the vehicle's pre-arm checks are not through: asking a little later"
             return [*work, _log(text)]

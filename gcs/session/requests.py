@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from gcs import ipc
 from gcs.frames import Vec3, as_on_the_wire, ned_from_enu
 from gcs.gate import requests
+from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import Autopilot, mode_named
 
 OPERATOR = "operator"
@@ -65,6 +66,9 @@ def request_of(ask: ipc.Ask, autopilot: Autopilot | None) -> requests.Request:
             if mode is None:
                 names = ", ".join(known.name for known in autopilot.modes) if autopilot else ""
                 raise BadAskError(f"no mode {ask.mode!r} here; there are: {names or 'none'}")
+            sent = autopilot.mode_of_meaning.get(mode.meaning, mode.name) if autopilot else ""
+            if sent != mode.name:
+                return requests.SetMode(mode.name, FlightMode.OTHER, instead=sent)
             return requests.SetMode(mode.name, mode.meaning)
         case _:
             raise BadAskError(f"no such request: {ask.word!r}")

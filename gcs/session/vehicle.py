@@ -17,7 +17,7 @@ from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
-from gcs.gate.states import Control
+from gcs.gate.states import Control, State
 from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Heard, Send
 from gcs.protocol.sequence import SequenceTracker
@@ -41,7 +41,8 @@ from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MavAutopilot, MavType, Severity
 
-VEHICLE_GONE_NS = 3_500_000_000
+ALIVE_EVERY_NS = 250_000_000
+"""How often the gate is told that something of the vehicle was heard."""
 LINK_SILENT_NS = 2_000_000_000
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
@@ -81,7 +82,7 @@ class Vehicle:
         self._missions = Missions(config)
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
-        self._gone_ns = round(VEHICLE_GONE_NS * config.speedup)
+        self._gone_ns = round(self._port.policy.heartbeat_age_s * 1e9)
         self.telemetry: Telemetry | None = None
         self.losses = SequenceTracker()
 
@@ -132,10 +133,24 @@ class Vehicle:
         telemetry.count_frame(now_ns)
         if frame.compid == telemetry.compid:
             _choose_link(telemetry, link, now_ns)
+            work += self._alive(telemetry, now_ns)
         if message is not None and not self._overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
             work += self._heard(telemetry, heard, now_ns)
         return work
+
+    def _alive(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """Any message is a sign of life; the gate hears of it a few times a second."""
+        telemetry.was_gone |= self._is_gone(telemetry, now_ns)
+        telemetry.heard_ns = now_ns
+        if now_ns - telemetry.alive_told_ns < ALIVE_EVERY_NS:
+            return []
+        telemetry.alive_told_ns = now_ns
+        return [ToGate(inputs.MessageSeen())]
+
+    def _is_gone(self, telemetry: Telemetry, now_ns: int) -> bool:
+        """It was silent for so long that the gate has lost it."""
+        return 0 < telemetry.heard_ns < now_ns - self._gone_ns
 
     def _overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
         """A state that is older than one of the same kind that has come: void."""
@@ -188,7 +203,10 @@ class Vehicle:
             self.telemetry = telemetry
             work += self._port.meet(telemetry, now_ns)
             news = f"vehicle {telemetry.label} on link {link}"
-        elif telemetry.sysid == frame.sysid and now_ns - telemetry.heartbeat_ns > self._gone_ns:
+        elif telemetry.sysid == frame.sysid and (
+            telemetry.was_gone or self._is_gone(telemetry, now_ns)
+        ):
+            telemetry.was_gone, telemetry.heard_ns = False, now_ns
             news = f"vehicle {telemetry.label} is back"
             telemetry.forget_place()
             self.losses.restart(frame.sysid, frame.compid)
@@ -240,7 +258,7 @@ class Vehicle:
         if telemetry is None:
             return []
         work: list[Work] = []
-        if now_ns - telemetry.heartbeat_ns <= self._gone_ns:
+        if not self._is_gone(telemetry, now_ns):
             work += self._ask_for_missing(telemetry, now_ns)
         missing = telemetry.origin is None and now_ns - self._met_ns > ORIGIN_PATIENCE_NS
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
@@ -310,8 +328,12 @@ class Vehicle:
                 return self._port.tell(effect, self.sysid)
 
     def hold_without_gate(self, now_ns: int) -> list[Work]:
-        """The last resort: HOLD, past a gate that may be broken, where control was ours."""
-        if self.telemetry is None or self.gate.control is Control.NONE:
+        """The last resort: HOLD, past a gate that may be broken, where control was ours.
+
+        A return or a landing goes on: it is the safer state.
+        """
+        comes_down = self.gate.state in (State.RETURNING, State.LANDING)
+        if self.telemetry is None or self.gate.control is Control.NONE or comes_down:
             return []
         hold = effects.SendCommand(0, CommandKind.HOLD, now_ns)
         return self._commands.send(hold, self.telemetry, now_ns)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
@@ -21,13 +22,26 @@ from gcs.gate.machine.rules import Action, End
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code
 from gcs.gate.requests import GoTo, SwitchFence
-from gcs.gate.states import Control, LandedState
+from gcs.gate.states import Control, LandedState, State
 
 TICK_S = 0.05
 """The time from one tick to the next: the session ticks at 20 Hz."""
 
 DISARM_WAIT_S = 3.0
 """How long a request that ends on the ground waits for the vehicle to be reported disarmed."""
+
+FLOWN: Final = frozenset(
+    {
+        State.TAKING_OFF,
+        State.HOVERING,
+        State.MOVING,
+        State.STREAMING,
+        State.TAKING_PICTURE,
+        State.FLYING_MISSION,
+        State.HOLDING,
+    }
+)
+"""Flown by us.  A return and a landing are the vehicle's own, and go on by themselves."""
 
 # ------------------------------------------------------------------------------------ goals
 
@@ -157,6 +171,8 @@ def _forget_interrupted(turn: Turn) -> None:
 def _forget_vehicle(turn: Turn) -> None:
     """The vehicle is not heard any more: forget its reports, but not that it was heard."""
     memory = turn.memory
+    memory.lost_in_flight = memory.flown_state in FLOWN
+    memory.failsafe = False
     memory.heard_ns = memory.pos_ns = None
     memory.pos_ned = memory.v_ned = None
     memory.armed = False
@@ -170,6 +186,24 @@ def _forget_vehicle(turn: Turn) -> None:
 
 def _await_disarm(turn: Turn) -> None:
     turn.set_deadline(DISARM_WAIT_S)
+
+
+def _await_landing(turn: Turn) -> None:
+    """It bounced: it has the time of a landing again."""
+    turn.set_deadline(turn.policy.land_timeout_s)
+
+
+def _await_position(turn: Turn) -> None:
+    """Arming waits for an estimator that starts."""
+    task = turn.memory.task
+    assert task is not None
+    turn.memory.task = replace(task, waiting=CommandKind.ARM)
+    turn.set_deadline(turn.policy.arm_timeout_s)
+    turn.say(Level.INFO, "no position yet (the estimator is starting): arming waits for one")
+
+
+def _drop_deadline(turn: Turn) -> None:
+    turn.set_deadline(None)
 
 
 def _note_lift_off(turn: Turn) -> None:
@@ -200,6 +234,7 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.TAKE_OFF: commanding.take_off,
         Action.SEND_WAITING: commanding.send_waiting,
         Action.LAND: commanding.land,
+        Action.LAND_MODE_ONLY: commanding.land_mode_only,
         Action.RETURN: commanding.return_home,
         Action.HOLD: holding.hold,
         Action.HOLD_ONCE: holding.hold_once,
@@ -217,6 +252,9 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.FORGET_VEHICLE: _forget_vehicle,
         Action.FORGET_INTERRUPTED: _forget_interrupted,
         Action.AWAIT_DISARM: _await_disarm,
+        Action.AWAIT_LANDING: _await_landing,
+        Action.AWAIT_POSITION: _await_position,
+        Action.DROP_DEADLINE: _drop_deadline,
         Action.NOTE_LIFT_OFF: _note_lift_off,
         Action.NOTE_FORCE_REQUEST: _note_force_request,
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from gcs.frames import Vec3
+from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
@@ -12,6 +13,9 @@ from gcs.gate.states import FlightMode
 
 CLIMB_ENDED_M_S = 0.3
 """Near its top a climb is over when the vehicle is slower than this: it overshoots no more."""
+
+HEIGHT_WITHIN_M = 0.2
+"""A take-off is complete so near the height that was asked for, whatever the arrival radius."""
 
 OVERSHOOT_M = 1.0
 """How far above its top, the arrival radius added, a climb may overshoot."""
@@ -29,9 +33,17 @@ def within_arrival(turn: Turn, goal_ned: Vec3) -> bool:
 def arrived(turn: Turn) -> bool:
     """Within the arrival radius for as long as the policy asks, by a fresh position."""
     since_ns = turn.memory.within_since_ns
-    if since_ns is None or turn.stale:
+    if since_ns is None or turn.stale or not _at_height_asked_for(turn):
         return False
     return turn.now_ns - since_ns >= round(turn.policy.arrival.dwell_s * SECOND_NS)
+
+
+def _at_height_asked_for(turn: Turn) -> bool:
+    """Of a take-off; another goal has no height of its own."""
+    task, above_m = turn.memory.task, _above_top_m(turn)
+    if task is None or task.kind is not Event.TAKE_OFF:
+        return True
+    return above_m is not None and abs(above_m) < HEIGHT_WITHIN_M
 
 
 def at_height(turn: Turn) -> bool:
@@ -42,7 +54,8 @@ def at_height(turn: Turn) -> bool:
         return False
     if abs(above_m) < radius_m:
         return _shows_hold(turn) or _slow(turn)
-    return -(radius_m + memory.climb_ends_within_m) < above_m < 0.0 and _shows_hold(turn)
+    ends_there = -(radius_m + memory.climb_ends_within_m) < above_m < 0.0
+    return ends_there and _shows_hold(turn) and _slow(turn)
 
 
 def climb_ended_elsewhere(turn: Turn) -> bool:

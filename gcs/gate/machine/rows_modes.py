@@ -57,7 +57,7 @@ complete_if_task_ends_held: Final = Branch(
 )
 confirm_hold_if_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,), do=(Action.CONFIRM_HOLD,))
 send_command_that_waited_for_mode: Final = Branch(
-    when=(Guard.TASK_WAITS_FOR_MODE,), do=(Action.STOP_AWAITING_MODE, Action.SEND_WAITING)
+    when=(Guard.TASK_WAITS,), do=(Action.CONFIRM_HOLD, Action.SEND_WAITING)
 )
 gain_control_if_taking_it: Final = Branch(
     when=(Guard.TAKING_CONTROL,), ends=COMPLETE, do=(Action.GAIN_CONTROL,)
@@ -86,8 +86,8 @@ hold_if_guided: Final = Branch(
 
 mode_confirmed: Final[Cell] = (
     complete_if_task_ends_held,
-    confirm_hold_if_awaited,
     send_command_that_waited_for_mode,
+    confirm_hold_if_awaited,
     stop_awaiting_mode,
 )
 mode_overdue_on_the_way_up: Final[Cell] = (

@@ -44,6 +44,7 @@ are the vehicle's own."""
 BRAKED: Final = FLOWN_BY_US | {State.RETURNING}
 """Where a predicted breach is braked: a landing ends by itself, a held vehicle brakes already."""
 
+HEIGHT_WITHIN_M: Final = 0.2
 HOME_MOVED_M: Final = 1.0
 OVERSHOOT_M: Final = 1.0
 SLACK_NS: Final = SECOND_NS // 5
@@ -156,7 +157,9 @@ def ends_a_climb_at_its_top(edge: Edge) -> Iterator[str]:
             continue
         if pos_ned is None or edge.stale:
             yield "a take-off is complete on a position too old"
-        elif math.dist(pos_ned, edge.before.top_ned) >= edge.policy.arrival.radius_m:
+        elif math.dist(pos_ned, edge.before.top_ned) >= edge.policy.arrival.radius_m or (
+            abs(pos_ned[2] - edge.before.top_ned[2]) >= HEIGHT_WITHIN_M
+        ):
             yield "a take-off is complete though its top is not reached"
 
 

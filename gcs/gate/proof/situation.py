@@ -69,7 +69,8 @@ def _machine(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
 def _reported(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     state, flies = memory.state, memory.flown_state
     return (
-        memory.heard_before if state is State.NO_VEHICLE else None,
+        (memory.heard_before, memory.lost_in_flight) if state is State.NO_VEHICLE else None,
+        memory.pos_ned is None,
         memory.armed,
         memory.mode if memory.mode in MODES_THAT_MATTER.get(flies, ()) else None,
         memory.climbed if flies is State.TAKING_OFF else None,
@@ -107,6 +108,7 @@ def _commands(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         tuple(unanswered),
         memory.asked_mode if awaited else None,
         memory.ask_control_ns is not None,
+        hold_again and memory.hold_requested,
         hold_again,
     )
 

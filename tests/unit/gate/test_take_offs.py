@@ -97,6 +97,17 @@ class TestTheEndOfTheClimb:
         script.wait(0.2)
         assert state_of(script) is State.TAKING_OFF
 
+    @pytest.mark.parametrize(("up", "how"), [(4.75, ""), (4.8125, "complete"), (5.25, "")])
+    def test_it_is_complete_within_a_fifth_of_a_metre_of_the_height(
+        self, up: float, how: str
+    ) -> None:
+        """The arrival radius is half a metre."""
+        script, request_id = self.climbed(4.25)
+        self.gained(script)
+        script.at(0.0, 0.0, up)
+        script.wait(1.0)
+        assert ended(script, request_id) == how
+
     def test_the_rest_has_the_deadline_of_a_goal(self) -> None:
         script, request_id = self.climbed(4.25)
         self.gained(script)

@@ -68,10 +68,10 @@ class TestEveryQuestion:
         ("question", "missing", "expected"),
         [
             ("position", "verifier", Code.NO_ORIGIN),
-            ("position", "pos_ned", Code.STALE),
+            ("position", "pos_ned", Code.NO_POSITION),
             ("position", "v_ned", Code.STALE),
             ("climb", "verifier", Code.NO_ORIGIN),
-            ("climb", "pos_ned", Code.STALE),
+            ("climb", "pos_ned", Code.NO_POSITION),
             ("goal", "verifier", Code.NO_ORIGIN),
             ("goal", "pos_ned", Code.NO_ORIGIN),
             ("goal", "v_ned", Code.NO_ORIGIN),
