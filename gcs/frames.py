@@ -8,6 +8,9 @@ gives the same bits (acceptance test L18).
 
 from __future__ import annotations
 
+import math
+import struct
+
 Vec3 = tuple[float, float, float]
 """Three metres (or metres per second) in the frame that the variable's name ends with."""
 
@@ -22,3 +25,15 @@ def enu_from_ned(v_ned: Vec3) -> Vec3:
     """North, east, down -> east, north, up.  Never yields -0.0."""
     north, east, down = v_ned
     return (east, north, 0.0 - down)
+
+
+def as_on_the_wire(value: float) -> float:
+    """Rounded to float32, as SET_POSITION_TARGET carries it: what is verified is what flies.
+
+    Infinity where the number is larger than that can be.
+    """
+    try:
+        rounded: float = struct.unpack("<f", struct.pack("<f", value))[0]
+    except OverflowError:
+        return math.inf
+    return rounded

@@ -29,11 +29,18 @@ class Requested:
 
 @dataclass(frozen=True, slots=True)
 class HeartbeatSeen:
-    """HEARTBEAT of the vehicle.  `mode_name` is the autopilot's own name of the mode."""
+    """HEARTBEAT of the vehicle.  `mode_name` is the autopilot's own name of the mode; `failsafe`
+    says that a failsafe of the vehicle's own is active (MAV_STATE CRITICAL or EMERGENCY)."""
 
     armed: bool
     mode: FlightMode
     mode_name: str
+    failsafe: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MessageSeen:
+    """Any message of the vehicle's autopilot: a sign of life."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +85,14 @@ class AccuracySeen:
 
     accuracy_h_m: float | None
     acceptance_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class ClimbEndSeen:
+    """How near the height of its take-off, in metres, the vehicle itself takes the climb to be
+    over (px4 NAV_MC_ALT_RAD): it may end that far below."""
+
+    within_m: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,11 +168,13 @@ class Tick:
 Input: TypeAlias = (
     Requested
     | HeartbeatSeen
+    | MessageSeen
     | LandedSeen
     | PositionSeen
     | HomeSeen
     | ReturnHeightSeen
     | AccuracySeen
+    | ClimbEndSeen
     | VerifierChanged
     | CommandEnded
     | PhotoSeen

@@ -85,10 +85,15 @@ class StartMission:
 @dataclass(frozen=True, slots=True)
 class SetMode:
     """Set a mode by the autopilot's own name.  It is treated as the request that means the same;
-    `meaning` OTHER is refused."""
+    `meaning` OTHER is refused.
+
+    `instead` is the mode that this station sends where `name` is another one of the same kind;
+    `meaning` is OTHER then.
+    """
 
     name: str
     meaning: FlightMode
+    instead: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -125,8 +125,8 @@ class Autopilot:
     mav_autopilot: int
     """MAV_AUTOPILOT, HEARTBEAT.autopilot."""
     modes: tuple[Mode, ...]
-    mode_of_kind: Mapping[CommandKind, str]
-    """The modes that HOLD and GUIDED mean."""
+    mode_of_meaning: Mapping[FlightMode, str]
+    """The one mode of each meaning that this station sends, or that its command leads to."""
     param_encoding: ParamEncoding
     mode_in_two_parts: bool
     """DO_SET_MODE takes main and sub mode (px4), or custom_mode as it is (ardupilot)."""
@@ -134,6 +134,8 @@ class Autopilot:
     """NAV_TAKEOFF's altitude is above mean sea level (px4), or above home (ardupilot)."""
     blank: float
     """What an unused position parameter is to be filled with."""
+    climb_ends_within_m: float = 0.0
+    """How far below its height the vehicle may end a take-off, before its parameter is read."""
     commanded: bool = True
     """Whether this program knows how to command it; its reports are shown and recorded anyway."""
 
@@ -142,13 +144,20 @@ PX4 = Autopilot(
     name="px4",
     mav_autopilot=MavAutopilot.PX4,
     modes=_PX4_MODES,
-    mode_of_kind=MappingProxyType(
-        {CommandKind.HOLD: "AUTO.LOITER", CommandKind.GUIDED: "OFFBOARD"}
+    mode_of_meaning=MappingProxyType(
+        {
+            _M.HOLD: "AUTO.LOITER",
+            _M.GUIDED: "OFFBOARD",
+            _M.MISSION: "AUTO.MISSION",
+            _M.RETURN: "AUTO.RTL",
+            _M.LAND: "AUTO.LAND",
+        }
     ),
     param_encoding=ParamEncoding.BYTEWISE,
     mode_in_two_parts=True,
     takeoff_above_sea=True,
     blank=IGNORED,
+    climb_ends_within_m=0.8,  # NAV_MC_ALT_RAD
 )
 
 ARDUPILOT = Autopilot(
@@ -156,7 +165,15 @@ ARDUPILOT = Autopilot(
     mav_autopilot=MavAutopilot.ARDUPILOTMEGA,
     modes=_ARDUCOPTER_MODES,
     # BRAKE, as LOITER obeys the sticks.
-    mode_of_kind=MappingProxyType({CommandKind.HOLD: "BRAKE", CommandKind.GUIDED: "GUIDED"}),
+    mode_of_meaning=MappingProxyType(
+        {
+            _M.HOLD: "BRAKE",
+            _M.GUIDED: "GUIDED",
+            _M.MISSION: "AUTO",
+            _M.RETURN: "RTL",
+            _M.LAND: "LAND",
+        }
+    ),
     param_encoding=ParamEncoding.CAST,
     mode_in_two_parts=False,
     takeoff_above_sea=False,
@@ -167,7 +184,7 @@ GENERIC = Autopilot(
     name="of an unknown kind",
     mav_autopilot=MavAutopilot.GENERIC,
     modes=(),
-    mode_of_kind=MappingProxyType({}),
+    mode_of_meaning=MappingProxyType({}),
     param_encoding=ParamEncoding.CAST,
     mode_in_two_parts=False,
     takeoff_above_sea=False,
@@ -176,16 +193,16 @@ GENERIC = Autopilot(
 )
 """An autopilot that we do not know: its reports are shown, every command to it is refused."""
 
-_NO_MODES: Mapping[CommandKind, str] = MappingProxyType({})
+_NO_MODES: Mapping[FlightMode, str] = MappingProxyType({})
 
 PX4_OTHER = replace(
     PX4,
     # px4_custom_mode.h is one for all of PX4's vehicles; what a mode does differs.
     modes=tuple(replace(mode, meaning=_M.OTHER) for mode in _PX4_MODES),
-    mode_of_kind=_NO_MODES,
+    mode_of_meaning=_NO_MODES,
     commanded=False,
 )
-ARDUPILOT_OTHER = replace(ARDUPILOT, modes=(), mode_of_kind=_NO_MODES, commanded=False)
+ARDUPILOT_OTHER = replace(ARDUPILOT, modes=(), mode_of_meaning=_NO_MODES, commanded=False)
 """Fixed wings, rovers, boats, helicopters: ArduPlane's and Rover's modes have other numbers."""
 
 MULTIROTORS = frozenset(
@@ -246,8 +263,10 @@ def command_long_for(autopilot: Autopilot, wanted: WantedCommand, target: Addres
         raise CannotCommandError("this station flies multirotors with PX4 or ArduPilot only")
     blank = autopilot.blank
     match wanted.kind:
-        case CommandKind.HOLD | CommandKind.GUIDED:
-            return _set_mode(autopilot, autopilot.mode_of_kind[wanted.kind], target)
+        case CommandKind.HOLD:
+            return _set_mode(autopilot, autopilot.mode_of_meaning[_M.HOLD], target)
+        case CommandKind.GUIDED:
+            return _set_mode(autopilot, autopilot.mode_of_meaning[_M.GUIDED], target)
         case CommandKind.SET_MODE:
             return _set_mode(autopilot, wanted.mode_name, target)
         case CommandKind.ARM:

@@ -37,7 +37,10 @@ class GatePort:
         before = self.gate
         self.gate = Gate(self.policy, telemetry.autopilot.name, now_ns)
         conditions = before.memory.conditions
-        return [ToGate(inputs.ConditionChanged(name, True, text)) for name, text in conditions]
+        return [
+            ToGate(inputs.ClimbEndSeen(telemetry.autopilot.climb_ends_within_m)),
+            *(ToGate(inputs.ConditionChanged(name, True, text)) for name, text in conditions),
+        ]
 
     def handle(self, given: inputs.Input, now_ns: int) -> list[Work]:
         """The gate's effects, then what the session owes itself after such an input."""

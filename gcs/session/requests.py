@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import struct
 from dataclasses import dataclass
 
 from gcs import ipc
-from gcs.frames import Vec3, ned_from_enu
+from gcs.frames import Vec3, as_on_the_wire, ned_from_enu
 from gcs.gate import requests
+from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import Autopilot, mode_named
 
 OPERATOR = "operator"
@@ -66,6 +66,9 @@ def request_of(ask: ipc.Ask, autopilot: Autopilot | None) -> requests.Request:
             if mode is None:
                 names = ", ".join(known.name for known in autopilot.modes) if autopilot else ""
                 raise BadAskError(f"no mode {ask.mode!r} here; there are: {names or 'none'}")
+            sent = autopilot.mode_of_meaning.get(mode.meaning, mode.name) if autopilot else ""
+            if sent != mode.name:
+                return requests.SetMode(mode.name, FlightMode.OTHER, instead=sent)
             return requests.SetMode(mode.name, mode.meaning)
         case _:
             raise BadAskError(f"no such request: {ask.word!r}")
@@ -80,15 +83,6 @@ def finite_or_nan(triple: ipc.Maybe3) -> Vec3:
 def heading_rad(yaw_deg: float) -> float:
     """Degrees of any number of turns -> -pi .. pi, as the wire carries it."""
     return as_on_the_wire(math.radians(math.remainder(yaw_deg, 360.0)))
-
-
-def as_on_the_wire(value: float) -> float:
-    """Rounded to float32, as SET_POSITION_TARGET carries it: what is verified is what flies."""
-    try:
-        rounded: float = struct.unpack("<f", struct.pack("<f", value))[0]
-    except OverflowError:
-        return math.inf
-    return rounded
 
 
 class Requests:

@@ -65,6 +65,10 @@ RETURN_HEIGHT: Final = {"px4": "RTL_RETURN_ALT", "ardupilot": "RTL_ALT_M"}
 """Metres above home, by its newest name."""
 ACCEPTANCE_RADIUS: Final = {"px4": "NAV_ACC_RAD", "ardupilot": "WP_RADIUS_M"}
 """How near a waypoint counts as reached, metres, by its newest name."""
+CLIMB_END: Final = {"px4": "NAV_MC_ALT_RAD"}
+"""How far below the height asked for a take-off may end, metres; ArduCopter has no such range."""
+READ_FIRST: Final = (RETURN_HEIGHT, CLIMB_END, ACCEPTANCE_RADIUS)
+"""What a flight waits for comes before the failsafes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,13 +94,22 @@ class AcceptanceKnown:
 
 
 @dataclass(frozen=True, slots=True)
+class ClimbEndKnown:
+    """How far below the height asked for the vehicle itself may end a take-off, metres."""
+
+    within_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class FailsafesKnown:
     """Every failsafe was asked for: those that are off or not known, in words."""
 
     weak: tuple[str, ...]
 
 
-Found: TypeAlias = Send | ParameterKnown | ReturnHeightKnown | AcceptanceKnown | FailsafesKnown
+Found: TypeAlias = (
+    Send | ParameterKnown | ReturnHeightKnown | AcceptanceKnown | ClimbEndKnown | FailsafesKnown
+)
 
 
 class Settings:
@@ -121,7 +134,7 @@ class Settings:
     def start(self, telemetry: Telemetry, now_ns: int) -> list[Found]:
         """Begin to read all of them."""
         who = _whose(telemetry)
-        wanted = [table[who] for table in (RETURN_HEIGHT, ACCEPTANCE_RADIUS) if who in table]
+        wanted = [table[who] for table in READ_FIRST if who in table]
         wanted += [failsafe.name for failsafe in FAILSAFES.get(who, ())]
         names = [(newest, name) for newest in wanted for name in names_of(newest)]
         self._scales = {name.name: (newest, name.scale) for newest, name in names}
@@ -204,6 +217,8 @@ class Settings:
             found.append(ReturnHeightKnown(value))
         elif newest == ACCEPTANCE_RADIUS.get(who):
             found.append(AcceptanceKnown(value))
+        elif newest == CLIMB_END.get(who):
+            found.append(ClimbEndKnown(value))
         return found
 
     def _summary(self, telemetry: Telemetry) -> list[Found]:

@@ -34,6 +34,12 @@ class Telemetry:
     link_ns: int = 0
 
     heartbeat_ns: int = 0
+    heard_ns: int = 0
+    """When any message of its autopilot came."""
+    was_gone: bool = False
+    """Something came after a silence in which it was lost, and no heartbeat yet."""
+    alive_told_ns: int = 0
+    """When the gate was told of that for the last time."""
     armed: bool | None = None
     mode_name: str = ""
     custom_mode: int = 0

@@ -44,8 +44,8 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
             telemetry.armed = bool(message.base_mode & ModeFlag.SAFETY_ARMED)
             mode = mode_of(telemetry.autopilot, message.base_mode, message.custom_mode)
             telemetry.mode_name, telemetry.custom_mode = mode.name, message.custom_mode
-            yield ToGate(inputs.HeartbeatSeen(telemetry.armed, mode.meaning, mode.name))
             failing = message.system_status in (MavState.CRITICAL, MavState.EMERGENCY)
+            yield ToGate(inputs.HeartbeatSeen(telemetry.armed, mode.meaning, mode.name, failing))
             text = f"the vehicle says {MavState(message.system_status).name}" if failing else ""
             yield condition(Condition.VEHICLE_FAILSAFE_ACTIVE, failing, text)
         case m.ExtendedSysState():

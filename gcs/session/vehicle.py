@@ -18,7 +18,7 @@ from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.states import Control
+from gcs.gate.states import Control, State
 from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
@@ -48,6 +48,8 @@ from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MavAutopilot, MavType, Severity
 
+ALIVE_EVERY_NS = 250_000_000
+"""How often the gate is told that something of the vehicle was heard."""
 LINK_SILENT_NS = 2_000_000_000
 RESTART_SILENCE_NS = 500_000_000
 """A frame that seems older than others, and comes after such a silence, is of a vehicle that
@@ -158,6 +160,7 @@ class Vehicle:
         telemetry.count_frame(now_ns)
         if frame.compid == telemetry.compid:
             self._choose_link(telemetry, link, now_ns)
+            work += self._alive(telemetry, now_ns)
         if message is not None and not self._overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
             work += self._heard(telemetry, heard, now_ns)
@@ -175,6 +178,19 @@ class Vehicle:
         silent = now_ns - telemetry.link_ns > self._times.real_ns(LINK_SILENT_NS)
         if link == telemetry.link or silent:
             telemetry.link, telemetry.link_ns = link, now_ns
+
+    def _alive(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """Any message is a sign of life; the gate hears of it a few times a second."""
+        telemetry.was_gone |= self._is_gone(telemetry, now_ns)
+        telemetry.heard_ns = now_ns
+        if now_ns - telemetry.alive_told_ns < ALIVE_EVERY_NS:
+            return []
+        telemetry.alive_told_ns = now_ns
+        return [ToGate(inputs.MessageSeen())]
+
+    def _is_gone(self, telemetry: Telemetry, now_ns: int) -> bool:
+        """It was silent for so long that the gate has lost it."""
+        return 0 < telemetry.heard_ns < now_ns - self._gone_ns
 
     def _overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
         """A state that is older than one of the same kind that has come: void."""
@@ -267,7 +283,10 @@ class Vehicle:
             self.telemetry = telemetry
             work += self._port.meet(telemetry, now_ns)
             news = f"vehicle {telemetry.label} on link {link}"
-        elif telemetry.sysid == frame.sysid and now_ns - telemetry.heartbeat_ns > self._gone_ns:
+        elif telemetry.sysid == frame.sysid and (
+            telemetry.was_gone or self._is_gone(telemetry, now_ns)
+        ):
+            telemetry.was_gone, telemetry.heard_ns = False, now_ns
             news = f"vehicle {telemetry.label} is back"
             telemetry.forget_place()
             self.losses.restart(frame.sysid, frame.compid)
@@ -296,6 +315,8 @@ class Vehicle:
                 case settings.AcceptanceKnown(radius_m):
                     telemetry.acceptance_m = radius_m
                     work += _accuracy(telemetry)
+                case settings.ClimbEndKnown(within_m):
+                    work.append(ToGate(inputs.ClimbEndSeen(within_m)))
                 case settings.FailsafesKnown(weak):
                     text = "the vehicle's own failsafes: " + ("; ".join(weak) or "all on")
                     work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
@@ -324,7 +345,7 @@ class Vehicle:
         if telemetry is None:
             return []
         work: list[Work] = []
-        if now_ns - telemetry.heartbeat_ns <= self._gone_ns:
+        if not self._is_gone(telemetry, now_ns):
             work += self._ask_for_missing(telemetry, now_ns)
         if now_ns >= telemetry.delay.ask_at_ns:
             target = telemetry.sysid, telemetry.compid
@@ -421,8 +442,12 @@ class Vehicle:
                 return self._port.tell(effect, self.sysid)
 
     def hold_without_gate(self, now_ns: int) -> list[Work]:
-        """The last resort: HOLD, past a gate that may be broken, where control was ours."""
-        if self.telemetry is None or self.gate.control is Control.NONE:
+        """The last resort: HOLD, past a gate that may be broken, where control was ours.
+
+        A return or a landing goes on: it is the safer state.
+        """
+        comes_down = self.gate.state in (State.RETURNING, State.LANDING)
+        if self.telemetry is None or self.gate.control is Control.NONE or comes_down:
             return []
         hold = effects.SendCommand(0, CommandKind.HOLD, now_ns)
         return self._commands.send(hold, self.telemetry, now_ns)

@@ -27,9 +27,6 @@ class SimProcess:
         words = [sys.executable, "-m", "vehicle_sim", "--lifeline"]
         words += ["--autopilot", sim.autopilot, "--seed", str(sim.seed)]
         words += ["--speedup", str(sim.speedup), "--link", f"udpout://127.0.0.1:{port}"]
-        if sim.autopilot == "px4":
-            # PX4 ends its climb up to 0.8 m lower, which the station calls another height.
-            words += ["--param", "NAV_MC_ALT_RAD=0.3"]
         if sim.home:
             words += ["--home", sim.home]
         # In a session of its own: a terminal that closes hangs up on all its programs at once, and

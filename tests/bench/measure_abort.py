@@ -23,7 +23,7 @@ from tests.system.programs import GCS
 from tests.system.station import tapped
 from tests.system.terminal import terminal
 from tests.system.typed_flight import take_off
-from tests.system.vehicle_program import EXACT_CLIMB, free_port, until, vehicle_sim
+from tests.system.vehicle_program import free_port, until, vehicle_sim
 from tests.system.wire_tap import Crossing, WireTap
 
 ABORTS = 50
@@ -61,7 +61,7 @@ def by_key(folder: str) -> list[float]:
         tap.connect(port)
         link = ("--link", f"udpin://127.0.0.1:{port}", "--log-dir", folder)
         with (
-            vehicle_sim(*EXACT_CLIMB, "--link", f"udpout://127.0.0.1:{tap.vehicle_port}"),
+            vehicle_sim("--link", f"udpout://127.0.0.1:{tap.vehicle_port}"),
             terminal(GCS, "fly", *link) as screen,
         ):
             take_off(screen)

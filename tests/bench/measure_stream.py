@@ -21,7 +21,7 @@ from tests.system.flight_log import only_log, times_ns, whole
 from tests.system.programs import GCS
 from tests.system.terminal import Terminal, terminal
 from tests.system.typed_flight import take_off
-from tests.system.vehicle_program import EXACT_CLIMB, free_port, vehicle_sim
+from tests.system.vehicle_program import free_port, vehicle_sim
 from tests.system.wire_tap import WireTap
 
 FLIGHT_S = 70.0
@@ -64,7 +64,7 @@ def main() -> None:
         tap.connect(port)
         link = ("--link", f"udpin://127.0.0.1:{port}", "--log-dir", folder)
         with (
-            vehicle_sim(*EXACT_CLIMB, "--link", f"udpout://127.0.0.1:{tap.vehicle_port}"),
+            vehicle_sim("--link", f"udpout://127.0.0.1:{tap.vehicle_port}"),
             terminal(GCS, "fly", *link) as screen,
         ):
             fly(screen)

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from tests.loopback.air import Weather
-from tests.loopback.flight import EXACT_CLIMB, HOMES, PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.flight import HOMES, PEER, PERSONALITIES, Flight, Personality
 from tests.loopback.looks import START_NS, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.parameters.parameters import Parameters
@@ -38,8 +38,6 @@ def lab_flight(personality: Personality, seed: int) -> Flight:
 def answers(personality: Personality, seed: int, given: list[Sent], wake_ms: int) -> list[bytes]:
     """Everything that a fresh vehicle says to `given`, lived in batches of `wake_ms`."""
     parameters = Parameters(personality)
-    for name, value in (EXACT_CLIMB if personality == "px4" else {}).items():
-        parameters.set(name, value)
     vehicle = Autopilot(personality, HOMES[personality], seed, params=parameters)
     server = VehicleServer(vehicle, PROFILES[personality], parameters, 1)
     world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)

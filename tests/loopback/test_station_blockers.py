@@ -1,6 +1,6 @@
-"""What stops the station on a real autopilot, and did not show on this vehicle.
+"""What stopped the station on a real autopilot, and did not show on a vehicle that was too kind.
 
-Each is an expected failure of the station, to be mended there, and names its row of autopilots.md,
+An expected failure is one of the station, to be mended there, and names its row of autopilots.md,
 "Defects of gcs".  That the vehicle does what was recorded is tested in tests/unit: real boot in
 test_real_boot.py, the mode after disarming in test_mode_after_disarming.py, altered items in
 test_altered_items.py.  Altered items of shipped missions are marked in test_missions.py.
@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.flight import Flight, Personality
+from tests.loopback.flight import PERSONALITIES, Flight, Personality
 
 TAKEOFF_ENDS_LOW_M = 0.5
 """NAV_MC_ALT_RAD, 0.8 m, is how much PX4 1.14 may leave; recorded were 0.3 to 0.7 m."""
@@ -32,7 +32,6 @@ def expected(row: int, why: str) -> pytest.MarkDecorator:
     return pytest.mark.xfail(strict=True, reason=reason)
 
 
-@expected(1, "it takes a take-off that ended 0.5 m low for one that was ended by another")
 def test_a_take_off_that_ends_low_ends_at_the_height_that_was_asked_for() -> None:
     """The vehicle is put into AUTO.LOITER 0.5 m low, where PX4 ends its take-off."""
     flight = Flight("px4").connected()
@@ -47,7 +46,6 @@ def test_a_take_off_that_ends_low_ends_at_the_height_that_was_asked_for() -> Non
     assert flight.truth_enu()[2] == pytest.approx(3.0, abs=0.3)
 
 
-@expected(2, "PX4 is in OFFBOARD again, and the station does not leave it before it arms")
 def test_it_flies_again_after_a_landing() -> None:
     flight = Flight("px4").hovering(3.0)
     flight.do("land")
@@ -57,7 +55,6 @@ def test_it_flies_again_after_a_landing() -> None:
     flight.do("arm")
 
 
-@expected(2, "a mode that is asked for on the ground is not sent")
 def test_a_mode_that_is_asked_for_on_the_ground_is_seen() -> None:
     flight = Flight("px4").hovering(3.0)
     flight.do("land")
@@ -75,16 +72,7 @@ def test_a_plan_whose_take_off_has_a_pitch_is_flown(tmp_path: Path) -> None:
     flight.do("mission_upload", path=str(path))
 
 
-@pytest.mark.parametrize(
-    "personality",
-    [
-        "px4",
-        pytest.param(
-            "ardupilot",
-            marks=expected(9, "without a position yet it refuses, where it could wait"),
-        ),
-    ],
-)
+@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_arm_waits_for_a_vehicle_that_starts_up(personality: Personality) -> None:
     """Asked 10 s after power-up."""
     flight = Flight(personality, boot="real")

@@ -47,11 +47,15 @@ def float32(pos_ned: Vec3) -> Vec3:
 
 
 class Witness:
-    """Every position that a verifier cleared, as float32, and whether the fence was on then."""
+    """Every position that a verifier cleared, as float32, and whether the fence was on then.
+
+    `stops` are those to stay at, `tops` those that a climb ends at.
+    """
 
     def __init__(self) -> None:
         self.cleared: dict[Vec3, bool] = {}
         self.stops: set[Vec3] = set()
+        self.tops: set[Vec3] = set()
 
     @contextmanager
     def listening(self, policy: Policy) -> Iterator[None]:
@@ -82,7 +86,10 @@ class Witness:
             return self._note(v, answer, pos_ned)
 
         def heard_climb(v: Verifier, up_m: float, pos_ned: Vec3) -> Any:
-            return self._note(v, climb(v, up_m, pos_ned), (*pos_ned[:2], pos_ned[2] - up_m))
+            answer, top_ned = climb(v, up_m, pos_ned), (*pos_ned[:2], pos_ned[2] - up_m)
+            if isinstance(answer, Cleared):
+                self.tops.add(float32(top_ned))
+            return self._note(v, answer, top_ned)
 
         def heard_stop(v: Verifier, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Any:
             breach = stop(v, pos_ned, v_ned, floor_applies=floor_applies)
@@ -177,7 +184,8 @@ class WatchedFlight(Flight):
         assert setpoint.frame == eyes.LOCAL_NED
         assert setpoint.type_mask in (eyes.POSITION_ONLY, eyes.POSITION_AND_YAW)
         held = pos_ned in self.witness.stops
-        assert held or pos_ned in self.goals, f"nobody verified {pos_ned}"
+        goes_to = self.goals | self.witness.tops
+        assert held or pos_ned in goes_to, f"nobody verified {pos_ned}"
         assert held or pos_ned not in self.abandoned, f"{pos_ned} was abandoned, and is flown"
         if self.witness.cleared[pos_ned]:
             assert self.inside(pos_ned, held), f"{pos_ned} is outside"

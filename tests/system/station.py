@@ -14,7 +14,7 @@ from gcs.operator.client import StationClient, StationEnded
 from gcs.operator.dialogue import Dialogue, TrackedRequest
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
-from tests.system.vehicle_program import EXACT_CLIMB, vehicle_sim
+from tests.system.vehicle_program import vehicle_sim
 from tests.system.wire_tap import WireTap
 
 WAIT_S = 30.0
@@ -133,6 +133,6 @@ def tapped(
     with tap or WireTap() as ear, station(config) as made:
         ear.connect(made.ports[0])
         url = f"udpout://127.0.0.1:{ear.vehicle_port}"
-        with vehicle_sim("--speedup", f"{speedup:g}", *EXACT_CLIMB, "--link", url):
+        with vehicle_sim("--speedup", f"{speedup:g}", "--link", url):
             made.connect()
             yield made, ear

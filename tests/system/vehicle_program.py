@@ -18,10 +18,6 @@ def free_port(kind: socket.SocketKind = socket.SOCK_DGRAM) -> int:
         return int(probe.getsockname()[1])
 
 
-EXACT_CLIMB = ("--param", "NAV_MC_ALT_RAD=0.3")
-"""For the station, which takes no lower end of a climb: tests/loopback/test_low_take_off.py."""
-
-
 @contextmanager
 def vehicle_sim(*arguments: str) -> Iterator[list[str]]:
     """The lines that it prints, as they come."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
@@ -21,13 +22,26 @@ from gcs.gate.machine.rules import Action, End
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code
 from gcs.gate.requests import GoTo, SwitchFence
-from gcs.gate.states import Control, LandedState
+from gcs.gate.states import Control, LandedState, State
 
 TICK_S = 0.05
 """The time from one tick to the next: the session ticks at 20 Hz."""
 
 DISARM_WAIT_S = 3.0
 """How long a request that ends on the ground waits for the vehicle to be reported disarmed."""
+
+FLOWN: Final = frozenset(
+    {
+        State.TAKING_OFF,
+        State.HOVERING,
+        State.MOVING,
+        State.STREAMING,
+        State.TAKING_PICTURE,
+        State.FLYING_MISSION,
+        State.HOLDING,
+    }
+)
+"""Flown by us.  A return and a landing are the vehicle's own, and go on by themselves."""
 
 # ------------------------------------------------------------------------------------ goals
 
@@ -52,12 +66,21 @@ def _fly_goal(turn: Turn) -> None:
     memory.pending = None
     turn.verdict(requested, Ruling.ACCEPTED, None)
     turn.end(End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED))
-    goal_ned = requested.request.goal_ned
     memory.task = Task(requested, Event.GOTO)
-    memory.goal = Goal(goal_ned, requested.request.yaw_rad, turn.evidence)
-    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal_ned) else None
+    _fly_to(turn, Goal(requested.request.goal_ned, requested.request.yaw_rad, turn.evidence))
+
+
+def _fly_to_top(turn: Turn) -> None:
+    """The climb ended within the vehicle's own tolerance: the rest is flown as a goal."""
+    _fly_to(turn, Goal(turn.memory.top_ned, None, turn.evidence))
+
+
+def _fly_to(turn: Turn, goal: Goal) -> None:
+    memory = turn.memory
+    memory.goal = goal
+    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal.pos_ned) else None
     assert memory.pos_ned is not None
-    turn.set_deadline(_flight_s(turn, memory.pos_ned, goal_ned))
+    turn.set_deadline(_flight_s(turn, memory.pos_ned, goal.pos_ned))
 
 
 def _flight_s(turn: Turn, pos_ned: Vec3, goal_ned: Vec3) -> float:
@@ -84,14 +107,23 @@ def _hold_at_goal(turn: Turn) -> None:
 
 
 def _take_control(turn: Turn) -> None:
-    """Send the verified present position as setpoint from now on, and command guided mode.
+    """Send the verified present position as setpoint from now on, and command guided mode."""
+    assert turn.memory.pos_ned is not None
+    _take_control_at(turn, turn.memory.pos_ned)
 
-    ardupilot is asked at once; px4 needs setpoints first, for the policy's time.
-    """
+
+def _take_control_at_top(turn: Turn) -> None:
+    """As `_take_control`, with the top of the climb as setpoint: the vehicle may end its climb
+    below it."""
+    _take_control_at(turn, turn.memory.top_ned)
+
+
+def _take_control_at(turn: Turn, hold_ned: Vec3) -> None:
+    """ardupilot is asked for guided mode at once; px4 needs setpoints first, for the policy's
+    time."""
     memory, times = turn.memory, turn.policy.control
-    assert memory.pos_ned is not None
     turn.cancel_commands()
-    memory.hold, memory.goal = Goal(memory.pos_ned, None, turn.evidence), None
+    memory.hold, memory.goal = Goal(hold_ned, None, turn.evidence), None
     memory.control = Control.TAKING
     # The first setpoint leaves with the next tick, not with the request.
     stream_s = 0.0 if memory.autopilot == "ardupilot" else times.stream_s + TICK_S
@@ -139,6 +171,8 @@ def _forget_interrupted(turn: Turn) -> None:
 def _forget_vehicle(turn: Turn) -> None:
     """The vehicle is not heard any more: forget its reports, but not that it was heard."""
     memory = turn.memory
+    memory.lost_in_flight = memory.flown_state in FLOWN
+    memory.failsafe = False
     memory.heard_ns = memory.pos_ns = None
     memory.pos_ned = memory.v_ned = None
     memory.armed = False
@@ -152,6 +186,24 @@ def _forget_vehicle(turn: Turn) -> None:
 
 def _await_disarm(turn: Turn) -> None:
     turn.set_deadline(DISARM_WAIT_S)
+
+
+def _await_landing(turn: Turn) -> None:
+    """It bounced: it has the time of a landing again."""
+    turn.set_deadline(turn.policy.land_timeout_s)
+
+
+def _await_position(turn: Turn) -> None:
+    """Arming waits for an estimator that starts."""
+    task = turn.memory.task
+    assert task is not None
+    turn.memory.task = replace(task, waiting=CommandKind.ARM)
+    turn.set_deadline(turn.policy.arm_timeout_s)
+    turn.say(Level.INFO, "no position yet (the estimator is starting): arming waits for one")
+
+
+def _drop_deadline(turn: Turn) -> None:
+    turn.set_deadline(None)
 
 
 def _note_lift_off(turn: Turn) -> None:
@@ -171,6 +223,8 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.REFUSE_GOAL: _refuse_goal,
         Action.HOLD_AT_GOAL: _hold_at_goal,
         Action.TAKE_CONTROL: _take_control,
+        Action.TAKE_CONTROL_AT_TOP: _take_control_at_top,
+        Action.FLY_TO_TOP: _fly_to_top,
         Action.ASK_GUIDED: _ask_guided,
         Action.GAIN_CONTROL: _gain_control,
         Action.RELEASE_CONTROL: _release_control,
@@ -180,6 +234,7 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.TAKE_OFF: commanding.take_off,
         Action.SEND_WAITING: commanding.send_waiting,
         Action.LAND: commanding.land,
+        Action.LAND_MODE_ONLY: commanding.land_mode_only,
         Action.RETURN: commanding.return_home,
         Action.HOLD: holding.hold,
         Action.HOLD_ONCE: holding.hold_once,
@@ -197,6 +252,9 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.FORGET_VEHICLE: _forget_vehicle,
         Action.FORGET_INTERRUPTED: _forget_interrupted,
         Action.AWAIT_DISARM: _await_disarm,
+        Action.AWAIT_LANDING: _await_landing,
+        Action.AWAIT_POSITION: _await_position,
+        Action.DROP_DEADLINE: _drop_deadline,
         Action.NOTE_LIFT_OFF: _note_lift_off,
         Action.NOTE_FORCE_REQUEST: _note_force_request,
     }

@@ -23,10 +23,13 @@ VEHICLE_REFUSED: Final = End(OutcomeKind.ABORTED, Code.VEHICLE_REFUSED)
 SEVERITY: Final = End(OutcomeKind.ABORTED, Code.SEVERITY)
 OPERATOR_LOST: Final = End(OutcomeKind.ABORTED, Code.OPERATOR_LOST)
 AS_JUDGED: Final = End(OutcomeKind.ABORTED, judged=True)
+LEFT_GOING_ON: Final = End(OutcomeKind.ABORTED, Code.OPERATOR_LOST, goes_on=True)
+LIFTED_OFF: Final = End(OutcomeKind.TAKEN_OVER, Code.IN_AIR)
+NO_POSITION: Final = End(OutcomeKind.TIMED_OUT, Code.NO_POSITION)
 TAKEN_OVER: Final = End(OutcomeKind.TAKEN_OVER, Code.MODE_CHANGED)
 
 CONTROL_REGAINABLE: Final = (Guard.AIRBORNE, Guard.SEVERITY_PERMITS, Guard.POSITION_CLEARS)
-"""The conditions under which a take-off or a mission ends in HOVERING, under our control."""
+"""The conditions under which a mission ends in HOVERING, under our control."""
 
 cannot_happen: Final[Cell] = ()
 unchanged: Final = Branch()
@@ -46,6 +49,16 @@ def end(outcome: End) -> Branch:
 
 hold_if_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,), do=(Action.HOLD,), to=HOLDING)
 """HOLD was commanded and is not shown: what is found to fly is held."""
+
+
+refuse_as_busy_if_in_control: Final = Branch(when=(Guard.IN_CONTROL,), refuse=Code.BUSY)
+busy_or_not_ours: Final[Cell] = (refuse_as_busy_if_in_control, refuse(Code.NOT_IN_CONTROL))
+"""In RETURNING and LANDING: whether we told the vehicle to, or it did by itself."""
+
+
+def end_if_task_is_arm(outcome: End) -> Branch:
+    """End a request to arm; the mode that it needed is asked for no more."""
+    return Branch(when=(Guard.TASK_IS_ARM,), ends=outcome, do=(Action.CONFIRM_HOLD,))
 
 
 def hold_and_end(outcome: End) -> Branch:

@@ -22,7 +22,8 @@ def _severity(turn: Turn) -> Refusal | None:
 def _recorder(turn: Turn) -> Refusal | None:
     failed = any(name is Condition.RECORDER_FAILED for name, _ in turn.memory.conditions)
     if turn.policy.arm_requires_recording and failed:
-        return Refusal(Code.RECORDER_DOWN, "nothing is recorded, and the policy wants it so")
+        sentence = "nothing is recorded, and the policy wants it so: arm_requires_recording = true"
+        return Refusal(Code.RECORDER_DOWN, sentence)
     return None
 
 

@@ -7,7 +7,9 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
+from gcs.frames import as_on_the_wire
 from gcs.gate.effects import CommandKind, Level
+from gcs.gate.machine.holding import repeat_hold
 from gcs.gate.machine.turn import Turn
 from gcs.gate.requests import TakeOff
 from gcs.gate.states import Control, FlightMode
@@ -15,13 +17,18 @@ from gcs.gate.states import Control, FlightMode
 ARM_FROM: Final[Mapping[str, tuple[frozenset[FlightMode], CommandKind]]] = MappingProxyType(
     {
         "px4": (
-            frozenset(FlightMode) - {FlightMode.LAND, FlightMode.RETURN, FlightMode.MISSION},
+            frozenset(FlightMode)
+            - {FlightMode.GUIDED, FlightMode.LAND, FlightMode.RETURN, FlightMode.MISSION},
             CommandKind.HOLD,
         ),
         "ardupilot": (frozenset({FlightMode.GUIDED}), CommandKind.GUIDED),
     }
 )
-"""For each autopilot the modes that it arms in, and the command that leads there from another."""
+"""For each autopilot the modes that it arms in, and the command that leads there from another.
+
+px4 is in OFFBOARD again once it disarms after a flight in it, and does not arm there without
+setpoints (recorded from PX4 1.14.3).
+"""
 
 
 def arm(turn: Turn) -> None:
@@ -40,7 +47,10 @@ def _command_after(turn: Turn, first: CommandKind, then: CommandKind) -> None:
     task = turn.memory.task
     assert task is not None
     turn.memory.task = replace(task, waiting=then)
-    turn.command(first, f"the vehicle does not {then.value.replace('_', ' ')} in its mode")
+    if first is CommandKind.HOLD:
+        repeat_hold(turn)
+    else:
+        turn.command(first, f"the vehicle does not {then.value.replace('_', ' ')} in its mode")
 
 
 def send_waiting(turn: Turn) -> None:
@@ -74,7 +84,9 @@ def take_off(turn: Turn) -> None:
     memory.control = Control.OURS
     memory.lifted = False
     memory.ground_down_m = memory.pos_ned[2]
-    memory.top_down_m = memory.pos_ned[2] - task.requested.request.up_m
+    north_m, east_m, down_m = memory.pos_ned
+    top_down_m = as_on_the_wire(down_m - task.requested.request.up_m)
+    memory.top_ned = (north_m, east_m, top_down_m)
     turn.set_deadline(turn.policy.takeoff.timeout_s)
     if memory.autopilot == "ardupilot" and memory.mode is not FlightMode.GUIDED:
         _command_after(turn, CommandKind.GUIDED, CommandKind.TAKE_OFF)
@@ -110,6 +122,12 @@ def land(turn: Turn) -> None:
     _fly_by_itself(
         turn, CommandKind.LAND, "landing in place is never refused", turn.policy.land_timeout_s
     )
+
+
+def land_mode_only(turn: Turn) -> None:
+    """Command landing to a vehicle that is not heard; control stays as it is."""
+    turn.set_deadline(turn.policy.land_timeout_s)
+    turn.command(CommandKind.LAND, "landing in place is never refused")
 
 
 def return_home(turn: Turn) -> None:

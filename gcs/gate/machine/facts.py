@@ -15,12 +15,14 @@ from gcs.gate.airspace.verifier import Breach, Verifier
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import (
     AccuracySeen,
+    ClimbEndSeen,
     CommandEnded,
     ConditionChanged,
     HeartbeatSeen,
     HomeSeen,
     Input,
     LandedSeen,
+    MessageSeen,
     MissionLoaded,
     MissionSeen,
     OperatorLost,
@@ -32,7 +34,7 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.events import SAW, Event, event_of
-from gcs.gate.machine.memory import SECOND_NS
+from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS
 from gcs.gate.machine.progress import arrival_radius_h_m, within_arrival
 from gcs.gate.machine.sentences import ASKED_FOR, result_word
 from gcs.gate.machine.turn import Turn
@@ -40,9 +42,6 @@ from gcs.gate.machine.verifying import refusal_of_what_is_flown
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import Control, LandedState, State
-
-HOME_MOVED_M = 1.0
-"""Home that moves further than this is another place; arming moves it by centimetres."""
 
 JUMP_LEAST_M = 0.5
 """A position that changes by less is no jump, however short the time between the samples."""
@@ -81,6 +80,9 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             yield Occurrence(event_of(given.request))
         case HeartbeatSeen():
             yield from _heartbeat(turn, given)
+        case MessageSeen():
+            if memory.heard_ns is not None:
+                memory.heard_ns = turn.now_ns
         case LandedSeen(landed):
             yield from _landed(turn, landed)
         case PositionSeen():
@@ -93,6 +95,8 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             memory.return_up_m = up_m
         case AccuracySeen():
             memory.arrival_h_m = arrival_radius_h_m(turn.policy.arrival, given)
+        case ClimbEndSeen(within_m):
+            memory.climb_ends_within_m = within_m
         case VerifierChanged(verifier):
             yield from _verifier(turn, verifier)
         case PhotoSeen():
@@ -120,7 +124,9 @@ def _heartbeat(turn: Turn, seen: HeartbeatSeen) -> Iterator[Occurrence]:
     was_armed, was_mode = memory.armed, memory.mode
     memory.heard_ns, memory.heard_before = turn.now_ns, True
     memory.armed, memory.mode, memory.mode_name = seen.armed, seen.mode, seen.mode_name
+    memory.failsafe = seen.failsafe
     if memory.state is State.NO_VEHICLE:
+        memory.lost_in_flight = False
         yield Occurrence(Event.VEHICLE_HEARD)
         return
     if seen.armed and not was_armed:

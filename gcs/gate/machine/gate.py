@@ -126,13 +126,16 @@ class Gate:
 
     @property
     def settled(self) -> bool:
-        """May the station leave?  The vehicle is seen holding, or is on the ground with no command
-        unanswered, or is not under our control."""
+        """May the station leave?  The vehicle is seen holding, returning or landing, or is on the
+        ground with no command unanswered, or is not under our control."""
         memory = self._turn.memory
-        if memory.state is State.GROUNDED:
-            return not memory.outstanding
+        if memory.state in (State.GROUNDED, State.NO_VEHICLE):
+            awaited = memory.hold_again_ns is not None and memory.state is State.NO_VEHICLE
+            return not (memory.outstanding or awaited)
         if memory.hold_again_ns is not None:
             return False
+        if memory.state in (State.RETURNING, State.LANDING):
+            return memory.asked_mode is None
         return memory.control is Control.NONE or (
             memory.state is State.HOLDING and memory.mode is FlightMode.HOLD
         )

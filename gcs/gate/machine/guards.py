@@ -110,6 +110,8 @@ def _guards_of_memory() -> dict[Guard, Callable[[Memory], bool]]:
     """The guards that need neither the time nor the policy."""
     return {
         Guard.HEARD_BEFORE: lambda m: m.heard_before,
+        Guard.LOST_IN_FLIGHT: lambda m: m.lost_in_flight,
+        Guard.NO_POSITION_YET: lambda m: m.pos_ned is None,
         Guard.AIRBORNE: lambda m: m.airborne,
         Guard.NOT_AIRBORNE: lambda m: not m.airborne,
         Guard.ON_GROUND: lambda m: m.on_ground,
@@ -122,6 +124,7 @@ def _guards_of_memory() -> dict[Guard, Callable[[Memory], bool]]:
         Guard.GOAL_PENDING: lambda m: m.pending is not None,
         Guard.GOAL_ACTIVE: lambda m: m.goal is not None,
         Guard.HOLD_AWAITED: lambda m: m.hold_again_ns is not None,
+        Guard.HOLD_REQUESTED: lambda m: m.hold_requested,
         Guard.MISSION_AT_LAST_ITEM: lambda m: m.mission_over,
         Guard.IN_GRACE: lambda m: m.grace_until_ns is not None,
         Guard.RETURNS_TO_STATE: lambda m: m.back_to is not None,
@@ -143,7 +146,8 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.TAKE_OFF_MAY_COME_LATE: _take_off_may_come_late,
         Guard.GUIDED_MAY_COME_LATE: lambda turn: turn.now_ns < turn.memory.guided_until_ns,
         Guard.TASK_IS_ARM: _task_in(Event.ARM),
-        Guard.TASK_WAITS_FOR_MODE: lambda turn: (
+        Guard.TASK_IS_TAKE_OFF: _task_in(Event.TAKE_OFF),
+        Guard.TASK_WAITS: lambda turn: (
             turn.memory.task is not None and turn.memory.task.waiting is not None
         ),
         Guard.TASK_ENDS_HELD: _task_ends_held,
@@ -162,6 +166,8 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.CLIMB_ENDED_ELSEWHERE: progress.climb_ended_elsewhere,
         Guard.CLIMBS_TOO_HIGH: progress.climbs_too_high,
         Guard.POSITION_CLEARS: lambda turn: verifying.position(turn) is None,
+        Guard.POSITION_TOO_OLD: lambda turn: turn.stale,
+        Guard.TOP_CLEARS: lambda turn: verifying.top(turn) is None,
         Guard.RETURN_PATH_CLEARS: lambda turn: verifying.return_path(turn) is None,
         Guard.BLOCKED_RETURN_FORWARDED: lambda turn: turn.policy.rtl_blocked == "forward",
         Guard.BLOCKED_RETURN_LANDS: lambda turn: turn.policy.rtl_blocked == "land",
@@ -170,7 +176,6 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.FORCE_DISARM_FORBIDDEN: lambda turn: not turn.policy.allow_force_disarm,
         Guard.FORCE_DISARM_UNCONFIRMED: _force_disarm_unconfirmed,
         Guard.SEVERITY_PERMITS: lambda turn: turn.severity < Severity.HOLD,
-        Guard.SEVERITY_DEMANDS_RETURN: lambda turn: turn.severity >= Severity.RETURN,
         Guard.MODE_AWAITED: _mode_awaited,
         Guard.MODE_FITS_STATE: _mode_fits_state,
         Guard.GRACE_OVER: _grace_over,

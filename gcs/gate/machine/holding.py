@@ -64,6 +64,7 @@ def confirm_hold(turn: Turn) -> None:
     """The heartbeat shows hold mode, or the hold is not needed any more: repeat it no more."""
     memory = turn.memory
     memory.hold_again_ns = memory.asked_mode = memory.silence_reported = None
+    memory.hold_requested = False
 
 
 def stop_awaiting_mode(turn: Turn) -> None:

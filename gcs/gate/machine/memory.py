@@ -24,6 +24,9 @@ CLIMBED_M = 0.5
 """A vehicle that is higher than this above the ground it stood on does not stand there, even if
 it reports so."""
 
+HOME_MOVED_M = 1.0
+"""Home that moves further than this is another place; arming moves it by centimetres."""
+
 GATE = 0
 """The request id of commands that the gate sends without a request: its own holds, landings and
 returns."""
@@ -43,7 +46,7 @@ class Task:
     """The accepted request that has no outcome yet.
 
     `deadline_ns` None: it may take as long as it takes.  `waiting` is a command that is sent as
-    soon as the vehicle shows the mode that it needs for it.
+    soon as the vehicle shows the mode that it needs for it; in STALE, as soon as it has a position.
     """
 
     requested: Requested
@@ -64,9 +67,11 @@ class Memory:
     # as reported
     heard_ns: int | None = None
     heard_before: bool = False
+    lost_in_flight: bool = False  # we flew it when it was heard last; a return or landing goes on
     armed: bool = False
     mode: FlightMode | None = None
     mode_name: str = ""
+    failsafe: bool = False  # one of the vehicle's own is active
     landed: LandedState = LandedState.UNDEFINED
     landed_ns: int | None = None
     ground_down_m: float | None = None  # local down of the ground that it stood on last
@@ -77,6 +82,7 @@ class Memory:
     home_ned: Vec3 | None = None
     arrival_h_m: float | None = None  # how near beside a goal is there; None: the policy's radius
     return_up_m: float | None = None  # the vehicle's return height, above home
+    climb_ends_within_m: float = 0.0  # how near its height the vehicle itself ends a climb
     verifier: Verifier | None = None
     conditions: tuple[tuple[Condition, str], ...] = ()
     mission_name: str = ""
@@ -102,7 +108,8 @@ class Memory:
     takeoff_until_ns: int = 0  # until then our own take-off command may still take effect
     ask_control_ns: int | None = None  # when GUIDED is to be commanded
     hold_again_ns: int | None = None  # when HOLD, not shown yet, is to be commanded again
-    top_down_m: float = 0.0  # local down of the height a take-off ends at
+    hold_requested: bool = False  # that HOLD was asked for, and is not the gate's own
+    top_ned: Vec3 = (0.0, 0.0, 0.0)  # where the take-off that was verified ends
     lifted: bool = False  # it was reported in the air since the take-off or mission began
     force_asked_ns: int | None = None  # when a forced disarm was asked for the first time
 

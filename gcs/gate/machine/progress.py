@@ -7,6 +7,7 @@ from operator import sub
 
 from gcs.frames import Vec3
 from gcs.gate.inputs import AccuracySeen
+from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.turn import Turn
 from gcs.gate.policy.policy import Arrival
@@ -15,6 +16,9 @@ from gcs.gate.states import FlightMode
 
 CLIMB_ENDED_M_S = 0.3
 """Near its top a climb is over when the vehicle is slower than this: it overshoots no more."""
+
+HEIGHT_WITHIN_M = 0.2
+"""A take-off is complete so near the height that was asked for, whatever the arrival radius."""
 
 OVERSHOOT_M = 1.0
 """How far above its top, the arrival radius added, a climb may overshoot."""
@@ -52,17 +56,29 @@ def within_arrival(turn: Turn, goal_ned: Vec3) -> bool:
 def arrived(turn: Turn) -> bool:
     """Within the arrival radius for as long as the policy asks, by a fresh position."""
     since_ns = turn.memory.within_since_ns
-    if since_ns is None or turn.stale:
+    if since_ns is None or turn.stale or not _at_height_asked_for(turn):
         return False
     return turn.now_ns - since_ns >= round(turn.policy.arrival.dwell_s * SECOND_NS)
 
 
+def _at_height_asked_for(turn: Turn) -> bool:
+    """Of a take-off; another goal has no height of its own."""
+    task, above_m = turn.memory.task, _above_top_m(turn)
+    if task is None or task.kind is not Event.TAKE_OFF:
+        return True
+    return above_m is not None and abs(above_m) < HEIGHT_WITHIN_M
+
+
 def at_height(turn: Turn) -> bool:
-    """The climb is over, at its top."""
+    """The climb is over, at its top, or as far below it as the vehicle itself ends a climb."""
+    memory, radius_m = turn.memory, turn.policy.arrival.radius_m
     above_m = _above_top_m(turn)
-    if not turn.memory.airborne or above_m is None:
+    if not memory.airborne or above_m is None:
         return False
-    return abs(above_m) < turn.policy.arrival.radius_m and (_shows_hold(turn) or _slow(turn))
+    if abs(above_m) < radius_m:
+        return _shows_hold(turn) or _slow(turn)
+    ends_there = -(radius_m + memory.climb_ends_within_m) < above_m < 0.0
+    return ends_there and _shows_hold(turn) and _slow(turn)
 
 
 def climb_ended_elsewhere(turn: Turn) -> bool:
@@ -90,7 +106,7 @@ def _above_top_m(turn: Turn) -> float | None:
     memory = turn.memory
     if turn.stale or memory.pos_ned is None:
         return None
-    return memory.top_down_m - memory.pos_ned[2]
+    return memory.top_ned[2] - memory.pos_ned[2]
 
 
 def _slow(turn: Turn) -> bool:

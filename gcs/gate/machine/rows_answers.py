@@ -42,7 +42,7 @@ from gcs.gate.machine.row import (
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Guard
+from gcs.gate.machine.rules import Action, Branch, Cell, Guard
 
 fly_goal: Final = Branch(do=(Action.FLY_GOAL,), to=MOVING)
 refuse_goal_and_move_on_if_goal_active: Final = Branch(
@@ -60,6 +60,20 @@ hold_mode_if_on_ground: Final = Branch(
 hold_mode: Final = Branch(ends=VEHICLE_REFUSED, do=(Action.HOLD_MODE_ONLY,))
 
 end_if_task_ends_held: Final = Branch(when=(Guard.TASK_ENDS_HELD,), ends=VEHICLE_REFUSED)
+end_if_task_waits: Final = Branch(
+    when=(Guard.TASK_WAITS,), ends=VEHICLE_REFUSED, do=(Action.CONFIRM_HOLD,)
+)
+end_if_task_ends_held_on_ground: Final = Branch(
+    when=(Guard.SURELY_ON_GROUND, Guard.TASK_ENDS_HELD),
+    ends=VEHICLE_REFUSED,
+    do=(Action.CONFIRM_HOLD,),
+)
+hold_refused_on_ground: Final[Cell] = (
+    end_if_task_waits,
+    end_if_task_ends_held_on_ground,
+    end_if_task_ends_held,
+    unchanged,
+)
 complete_if_photo_taken: Final = Branch(when=(Guard.PHOTO_TAKEN,), ends=COMPLETE, to=HOVERING)
 take_control_if_regainable: Final = Branch(
     when=CONTROL_REGAINABLE, do=(Action.TAKE_CONTROL,), to=HOVERING
@@ -86,7 +100,7 @@ ANSWER_ROWS: Final[Mapping[Event, Row]] = {
         during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
     ),
     Event.COMMAND_REFUSED: row(
-        during(NO_VEHICLE, then=unchanged),
+        during(NO_VEHICLE, then=end(VEHICLE_REFUSED)),
         during(STALE, then=(stop_stream_if(Guard.IN_GRACE, VEHICLE_REFUSED), end(VEHICLE_REFUSED))),
         during(GROUNDED, then=end(VEHICLE_REFUSED)),
         during(TAKING_OFF, then=(end_if_on_ground(VEHICLE_REFUSED), hold_and_end(VEHICLE_REFUSED))),
@@ -103,7 +117,7 @@ ANSWER_ROWS: Final[Mapping[Event, Row]] = {
         during(EXTERNAL, then=end(VEHICLE_REFUSED)),
     ),
     Event.COMMAND_UNANSWERED: row(
-        during(NO_VEHICLE, then=unchanged),
+        during(NO_VEHICLE, then=end(NO_ANSWER)),
         during(STALE, then=(stop_stream_if(Guard.IN_GRACE, NO_ANSWER), end(NO_ANSWER))),
         during(GROUNDED, then=end(NO_ANSWER)),
         during(TAKING_OFF, then=(end_if_on_ground(NO_ANSWER), hold_and_end(NO_ANSWER))),
@@ -136,7 +150,8 @@ ANSWER_ROWS: Final[Mapping[Event, Row]] = {
         during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
     ),
     Event.HOLD_REFUSED: row(
-        during(NO_VEHICLE, STALE, GROUNDED, then=(end_if_task_ends_held, unchanged)),
+        during(NO_VEHICLE, then=(end_if_task_ends_held, unchanged)),
+        during(STALE, GROUNDED, then=hold_refused_on_ground),
         during(TAKING_OFF, HOVERING, then=unchanged),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from typing import Final
 
 from gcs.gate.machine.cells import (
+    LEFT_GOING_ON,
     OPERATOR_LOST,
     SEVERITY,
     cannot_happen,
     disarm_if_on_ground,
     end,
+    end_if_task_is_arm,
     hold_and_end,
     stop_stream_if,
     unchanged,
@@ -39,7 +41,6 @@ from gcs.gate.machine.rules import Action, Branch, Cell, Guard
 
 # -------------------------------------------------------------------------------- severity
 
-end_if_task_is_arm: Final = Branch(when=(Guard.TASK_IS_ARM,), ends=SEVERITY)
 return_if_path_clears: Final = Branch(
     when=(Guard.RETURN_PATH_CLEARS,), ends=SEVERITY, do=(Action.RETURN,), to=RETURNING
 )
@@ -57,6 +58,12 @@ land_if_it_returns_to_state: Final = Branch(
     when=(Guard.RETURNS_TO_STATE,), ends=SEVERITY, do=(Action.LAND,), to=LANDING
 )
 
+stop_stream_or_end_arm: Final[Cell] = (
+    stop_stream_if(Guard.IN_GRACE, SEVERITY),
+    end_if_task_is_arm(SEVERITY),
+    unchanged,
+)
+
 return_or_hold: Final[Cell] = (
     return_if_path_clears,
     return_if_policy_forwards_it,
@@ -71,16 +78,21 @@ hold_mode_if_take_off_may_come_late: Final = Branch(
     ends=OPERATOR_LOST,
     do=(Action.HOLD_MODE_ONLY,),
 )
-unchanged_if_severity_demands_return: Final = Branch(when=(Guard.SEVERITY_DEMANDS_RETURN,))
-hold_if_in_control: Final = Branch(
-    when=(Guard.IN_CONTROL,), ends=OPERATOR_LOST, do=(Action.HOLD,), to=HOLDING
+# Whoever leaves does not cancel what comes down: it is the safer state.
+end_and_let_it_go_on: Final = end(LEFT_GOING_ON)
+unchanged_if_hold_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,))
+end_and_let_it_go_on_if_task_ends_landed: Final = Branch(
+    when=(Guard.TASK_ENDS_LANDED,), ends=LEFT_GOING_ON
+)
+hold_mode_if_lost_in_flight: Final = Branch(
+    when=(Guard.LOST_IN_FLIGHT,), ends=OPERATOR_LOST, do=(Action.HOLD_MODE_ONLY,)
 )
 
 FAILSAFE_ROWS: Final[Mapping[Event, Row]] = {
     Event.MUST_HOLD: row(
         during(NO_VEHICLE, then=unchanged),
-        during(STALE, then=(stop_stream_if(Guard.IN_GRACE, SEVERITY), unchanged)),
-        during(GROUNDED, then=(end_if_task_is_arm, unchanged)),
+        during(STALE, then=stop_stream_or_end_arm),
+        during(GROUNDED, then=(end_if_task_is_arm(SEVERITY), unchanged)),
         during(TAKING_OFF, then=(disarm_if_on_ground(SEVERITY), hold_and_end(SEVERITY))),
         during(HOVERING, then=hold_and_end(SEVERITY)),
         during(VERIFYING, then=cannot_happen),
@@ -90,8 +102,8 @@ FAILSAFE_ROWS: Final[Mapping[Event, Row]] = {
     ),
     Event.MUST_RETURN: row(
         during(NO_VEHICLE, then=unchanged),
-        during(STALE, then=(stop_stream_if(Guard.IN_GRACE, SEVERITY), unchanged)),
-        during(GROUNDED, then=(end_if_task_is_arm, unchanged)),
+        during(STALE, then=stop_stream_or_end_arm),
+        during(GROUNDED, then=(end_if_task_is_arm(SEVERITY), unchanged)),
         during(TAKING_OFF, then=(disarm_if_on_ground(SEVERITY), *return_or_hold)),
         during(HOVERING, then=return_or_hold),
         during(VERIFYING, then=cannot_happen),
@@ -110,8 +122,8 @@ FAILSAFE_ROWS: Final[Mapping[Event, Row]] = {
     ),
     Event.MUST_LAND: row(
         during(NO_VEHICLE, then=unchanged),
-        during(STALE, then=(land_if_it_returns_to_state, unchanged)),
-        during(GROUNDED, then=(end_if_task_is_arm, unchanged)),
+        during(STALE, then=(land_if_it_returns_to_state, end_if_task_is_arm(SEVERITY), unchanged)),
+        during(GROUNDED, then=(end_if_task_is_arm(SEVERITY), unchanged)),
         during(TAKING_OFF, then=(disarm_if_on_ground(SEVERITY), land)),
         during(HOVERING, then=land),
         during(VERIFYING, then=cannot_happen),
@@ -128,19 +140,30 @@ FAILSAFE_ROWS: Final[Mapping[Event, Row]] = {
         during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
     ),
     Event.OPERATOR_LOST: row(
-        during(NO_VEHICLE, then=unchanged),
-        during(STALE, then=(stop_stream_if(Guard.RETURNS_TO_STATE, OPERATOR_LOST), unchanged)),
+        during(
+            NO_VEHICLE,
+            then=(
+                unchanged_if_hold_awaited,
+                end_and_let_it_go_on_if_task_ends_landed,
+                hold_mode_if_lost_in_flight,
+                unchanged,
+            ),
+        ),
+        during(
+            STALE,
+            then=(
+                stop_stream_if(Guard.RETURNS_TO_STATE, OPERATOR_LOST),
+                end_if_task_is_arm(OPERATOR_LOST),
+                unchanged,
+            ),
+        ),
         during(GROUNDED, then=(hold_mode_if_take_off_may_come_late, end(OPERATOR_LOST))),
         during(TAKING_OFF, then=(disarm_if_on_ground(OPERATOR_LOST), hold_and_end(OPERATOR_LOST))),
         during(HOVERING, then=hold_and_end(OPERATOR_LOST)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, then=hold_and_end(OPERATOR_LOST)),
         during(FLYING_MISSION, then=hold_and_end(OPERATOR_LOST)),
-        during(
-            RETURNING,
-            LANDING,
-            then=(unchanged_if_severity_demands_return, hold_if_in_control, unchanged),
-        ),
+        during(RETURNING, LANDING, then=end_and_let_it_go_on),
         during(HOLDING, EXTERNAL, then=unchanged),
     ),
 }

@@ -8,6 +8,7 @@ from typing import Final
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.machine.cells import (
     COMPLETE,
+    LIFTED_OFF,
     STOPPED_BY_OPERATOR,
     TAKEN_OVER,
     cannot_happen,
@@ -74,9 +75,13 @@ lifted_off_from_ground: Final[Cell] = (
         to=HOLDING,
     ),
     hold_if_awaited,
-    Branch(when=(Guard.MISSION_GOES_ON,), to=FLYING_MISSION),
-    Branch(when=(Guard.MODE_LAND,), to=LANDING),
-    Branch(when=(Guard.MODE_RETURN,), to=RETURNING),
+    Branch(when=(Guard.MISSION_GOES_ON,), do=(Action.DROP_DEADLINE,), to=FLYING_MISSION),
+    Branch(when=(Guard.MODE_LAND, Guard.TASK_ENDS_LANDED), do=(Action.AWAIT_LANDING,), to=LANDING),
+    Branch(when=(Guard.MODE_LAND,), ends=LIFTED_OFF, to=LANDING),
+    Branch(
+        when=(Guard.MODE_RETURN, Guard.TASK_ENDS_LANDED), do=(Action.DROP_DEADLINE,), to=RETURNING
+    ),
+    Branch(when=(Guard.MODE_RETURN,), ends=LIFTED_OFF, to=RETURNING),
     release_and_end(TAKEN_OVER, EXTERNAL),
 )
 note_lift_off: Final = Branch(do=(Action.NOTE_LIFT_OFF,))

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from gcs.gate.machine.cells import (
+    AS_JUDGED,
     COMPLETE,
     CONTROL_REGAINABLE,
     NO_ANSWER,
@@ -56,10 +57,25 @@ complete_if_task_ends_held: Final = Branch(
 )
 confirm_hold_if_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,), do=(Action.CONFIRM_HOLD,))
 send_command_that_waited_for_mode: Final = Branch(
-    when=(Guard.TASK_WAITS_FOR_MODE,), do=(Action.STOP_AWAITING_MODE, Action.SEND_WAITING)
+    when=(Guard.TASK_WAITS,), do=(Action.CONFIRM_HOLD, Action.SEND_WAITING)
 )
 gain_control_if_taking_it: Final = Branch(
     when=(Guard.TAKING_CONTROL,), ends=COMPLETE, do=(Action.GAIN_CONTROL,)
+)
+fly_to_top_if_taking_off: Final = Branch(
+    when=(Guard.TAKING_CONTROL, Guard.TASK_IS_TAKE_OFF, Guard.TOP_CLEARS),
+    do=(Action.GAIN_CONTROL, Action.FLY_TO_TOP),
+    to=MOVING,
+)
+# The next heartbeat confirms the mode again, with a position that can be judged.
+unchanged_if_position_too_old: Final = Branch(
+    when=(Guard.TAKING_CONTROL, Guard.TASK_IS_TAKE_OFF, Guard.POSITION_TOO_OLD)
+)
+hold_if_taking_off: Final = Branch(
+    when=(Guard.TAKING_CONTROL, Guard.TASK_IS_TAKE_OFF),
+    ends=AS_JUDGED,
+    do=(Action.HOLD,),
+    to=HOLDING,
 )
 stop_awaiting_if_mode_fits_state: Final = Branch(
     when=(Guard.MODE_FITS_STATE,), do=(Action.STOP_AWAITING_MODE,)
@@ -70,8 +86,8 @@ hold_if_guided: Final = Branch(
 
 mode_confirmed: Final[Cell] = (
     complete_if_task_ends_held,
-    confirm_hold_if_awaited,
     send_command_that_waited_for_mode,
+    confirm_hold_if_awaited,
     stop_awaiting_mode,
 )
 mode_overdue_on_the_way_up: Final[Cell] = (
@@ -127,7 +143,16 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
         during(NO_VEHICLE, then=unchanged),
         during(STALE, then=(complete_if_task_ends_held, confirm_hold_if_awaited, unchanged)),
         during(GROUNDED, TAKING_OFF, then=mode_confirmed),
-        during(HOVERING, then=(gain_control_if_taking_it, stop_awaiting_mode)),
+        during(
+            HOVERING,
+            then=(
+                fly_to_top_if_taking_off,
+                unchanged_if_position_too_old,
+                hold_if_taking_off,
+                gain_control_if_taking_it,
+                stop_awaiting_mode,
+            ),
+        ),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, then=stop_awaiting_mode),
         during(FLYING_MISSION, RETURNING, LANDING, then=stop_awaiting_mode),

@@ -53,8 +53,27 @@ forget_vehicle: Final = Branch(
     do=(Action.RELEASE_CONTROL, Action.FORGET_VEHICLE),
     to=NO_VEHICLE,
 )
+# A hold that was asked for is commanded on, whether or not the vehicle is heard.
+forget_vehicle_and_repeat_hold_if_awaited: Final = Branch(
+    when=(Guard.HOLD_AWAITED, Guard.HOLD_REQUESTED),
+    ends=LINK_LOST,
+    do=(Action.RELEASE_CONTROL, Action.FORGET_VEHICLE, Action.REPEAT_HOLD),
+    to=NO_VEHICLE,
+)
+lose_vehicle: Final[Cell] = (forget_vehicle_and_repeat_hold_if_awaited, forget_vehicle)
+arm_if_it_waited_for_the_position: Final = Branch(
+    when=(
+        Guard.TASK_IS_ARM,
+        Guard.TASK_WAITS,
+        Guard.ON_GROUND,
+        Guard.SEVERITY_PERMITS,
+    ),
+    do=(Action.ARM,),
+    to=GROUNDED,
+)
 leave_stale: Final[Cell] = (
     Branch(when=(Guard.RETURNS_TO_STATE,), to=BACK),
+    arm_if_it_waited_for_the_position,
     Branch(when=(Guard.ON_GROUND,), to=GROUNDED),
     hold_if_awaited,
     Branch(when=(Guard.DISARMED,), to=GROUNDED),
@@ -63,6 +82,10 @@ leave_stale: Final[Cell] = (
     Branch(to=EXTERNAL),
 )
 start_grace: Final = Branch(do=(Action.START_GRACE,), to=STALE)
+stop_stream_if_grace_over_and_hold_awaited: Final = Branch(
+    when=(Guard.IN_GRACE, Guard.GRACE_OVER, Guard.HOLD_AWAITED, Guard.TASK_ENDS_HELD),
+    do=(Action.STOP_STREAM,),
+)
 hold_if_grace_over: Final = Branch(
     when=(Guard.IN_GRACE, Guard.GRACE_OVER),
     ends=POSITION_TOO_OLD,
@@ -93,10 +116,11 @@ POSITION_ROWS: Final[Mapping[Event, Row]] = {
     ),
     Event.VEHICLE_LOST: row(
         during(NO_VEHICLE, then=unchanged),
-        during(STALE, GROUNDED, TAKING_OFF, HOVERING, then=forget_vehicle),
+        during(GROUNDED, then=forget_vehicle),
+        during(STALE, TAKING_OFF, HOVERING, then=lose_vehicle),
         during(VERIFYING, then=cannot_happen),
-        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=forget_vehicle),
-        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=forget_vehicle),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=lose_vehicle),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=lose_vehicle),
     ),
     Event.POSITION: row(
         during(NO_VEHICLE, then=unchanged),
@@ -108,7 +132,10 @@ POSITION_ROWS: Final[Mapping[Event, Row]] = {
     ),
     Event.POSITION_AGED: row(
         during(NO_VEHICLE, then=unchanged),
-        during(STALE, then=(hold_if_grace_over, unchanged)),
+        during(
+            STALE,
+            then=(stop_stream_if_grace_over_and_hold_awaited, hold_if_grace_over, unchanged),
+        ),
         during(GROUNDED, then=to_stale),
         during(TAKING_OFF, HOVERING, then=start_grace),
         during(VERIFYING, then=cannot_happen),

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from gcs.gate.machine.cells import cannot_happen, complete_at_once, refuse
+from gcs.gate.machine.cells import busy_or_not_ours, cannot_happen, complete_at_once, refuse
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.row import (
     EXTERNAL,
@@ -39,6 +39,12 @@ refuse_while_goal_pending: Final = Branch(when=(Guard.GOAL_PENDING,), refuse=Cod
 refuse_while_task_under_way: Final = Branch(when=(Guard.TASK_UNDER_WAY,), refuse=Code.BUSY)
 refuse_unless_airborne: Final = Branch(when=(Guard.NOT_AIRBORNE,), refuse=Code.NOT_FLYING)
 
+resume_first: Final[Cell] = (
+    Branch(when=(Guard.POSITION_CLEARS,), refuse=Code.HOLDING),
+    refuse(Code.HOLDING),
+)
+"""Where the held position clears, and where it does not: the guard leaves the reason."""
+
 wait_for_tick: Final = Branch(needs=(Check.SEVERITY,), reply=Reply.PENDING)
 replace_goal_if_policy_allows: Final = Branch(
     when=(Guard.RETARGET_ALLOWED,), needs=(Check.SEVERITY,), reply=Reply.PENDING
@@ -50,6 +56,15 @@ take_control: Final = Branch(
     to=HOVERING,
 )
 complete_if_armed: Final = Branch(when=(Guard.ARMED,), reply=Reply.DONE)
+refuse_while_something_waits_for_a_position: Final = Branch(
+    when=(Guard.NO_POSITION_YET, Guard.TASK_UNDER_WAY), refuse=Code.BUSY
+)
+arm_when_there_is_a_position: Final = Branch(
+    when=(Guard.NO_POSITION_YET, Guard.ON_GROUND, Guard.DISARMED),
+    needs=(Check.SEVERITY, Check.RECORDER),
+    reply=Reply.ACCEPTED,
+    do=(Action.AWAIT_POSITION,),
+)
 arm: Final = Branch(needs=(Check.SEVERITY, Check.RECORDER), reply=Reply.ACCEPTED, do=(Action.ARM,))
 take_off: Final = Branch(
     needs=(Check.ARMED, Check.ON_GROUND, Check.SEVERITY, Check.CLIMB),
@@ -91,19 +106,19 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(VERIFYING, then=cannot_happen),
         during(MOVING, then=(replace_goal_if_policy_allows, refuse(Code.BUSY))),
         during(STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.BUSY)),
-        during(RETURNING, LANDING, then=refuse(Code.BUSY)),
-        during(HOLDING, then=refuse(Code.HOLDING)),
+        during(RETURNING, LANDING, then=busy_or_not_ours),
+        during(HOLDING, then=resume_first),
         during(EXTERNAL, then=refuse(Code.NOT_IN_CONTROL)),
     ),
     Event.CONTROL: row(
         during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
         during(STALE, then=refuse(Code.STALE)),
-        during(GROUNDED, then=complete_at_once),
+        during(GROUNDED, then=refuse(Code.NOT_FLYING)),
         during(TAKING_OFF, then=refuse(Code.BUSY)),
         during(HOVERING, then=(refuse_while_taking_control, complete_at_once)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=complete_at_once),
-        during(RETURNING, LANDING, then=refuse(Code.BUSY)),
+        during(RETURNING, LANDING, then=busy_or_not_ours),
         during(HOLDING, then=refuse(Code.HOLDING)),
         during(EXTERNAL, then=(refuse_unless_airborne, take_control)),
     ),
@@ -115,12 +130,19 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(HOVERING, then=(refuse_while_taking_control, complete_at_once)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.BUSY)),
-        during(RETURNING, LANDING, then=refuse(Code.BUSY)),
+        during(RETURNING, LANDING, then=busy_or_not_ours),
         during(HOLDING, EXTERNAL, then=(refuse_unless_airborne, take_control)),
     ),
     Event.ARM: row(
         during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
-        during(STALE, then=refuse(Code.STALE)),
+        during(
+            STALE,
+            then=(
+                refuse_while_something_waits_for_a_position,
+                arm_when_there_is_a_position,
+                refuse(Code.STALE),
+            ),
+        ),
         during(GROUNDED, then=(refuse_while_task_under_way, complete_if_armed, arm)),
         during(TAKING_OFF, HOVERING, then=refuse(Code.ALREADY_FLYING)),
         during(VERIFYING, then=cannot_happen),
@@ -146,7 +168,7 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(HOVERING, then=(refuse_while_taking_control, refuse_while_goal_pending, take_photo)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.BUSY)),
-        during(RETURNING, LANDING, then=refuse(Code.BUSY)),
+        during(RETURNING, LANDING, then=busy_or_not_ours),
         during(HOLDING, then=refuse(Code.HOLDING)),
         during(EXTERNAL, then=refuse(Code.NOT_IN_CONTROL)),
     ),
@@ -161,16 +183,16 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         ),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.BUSY)),
-        during(RETURNING, LANDING, then=refuse(Code.BUSY)),
+        during(RETURNING, LANDING, then=busy_or_not_ours),
         during(HOLDING, then=refuse(Code.HOLDING)),
         during(EXTERNAL, then=refuse(Code.NOT_IN_CONTROL)),
     ),
     Event.OTHER_MODE: row(
         during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
-        during(STALE, GROUNDED, TAKING_OFF, HOVERING, then=refuse(Code.POLICY)),
+        during(STALE, GROUNDED, TAKING_OFF, HOVERING, then=refuse(Code.UNSUPPORTED)),
         during(VERIFYING, then=cannot_happen),
-        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.POLICY)),
-        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=refuse(Code.POLICY)),
+        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.UNSUPPORTED)),
+        during(RETURNING, LANDING, HOLDING, EXTERNAL, then=refuse(Code.UNSUPPORTED)),
     ),
     Event.FENCE: row(
         during(NO_VEHICLE, STALE, GROUNDED, then=switch_fence),

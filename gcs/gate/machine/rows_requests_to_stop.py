@@ -79,6 +79,9 @@ force_disarm: Final[Cell] = (
 # ----------------------------------------------------------------------- landing and return
 
 land: Final = Branch(reply=Reply.ACCEPTED, do=(Action.LAND,), to=LANDING)
+land_mode_if_heard_before: Final = Branch(
+    when=(Guard.HEARD_BEFORE,), reply=Reply.ACCEPTED, do=(Action.LAND_MODE_ONLY,)
+)
 return_if_path_clears: Final = Branch(
     when=(Guard.RETURN_PATH_CLEARS,), reply=Reply.ACCEPTED, do=(Action.RETURN,), to=RETURNING
 )
@@ -111,6 +114,12 @@ return_home: Final[Cell] = (
 # --------------------------------------------------------------------------- hold and abort
 
 hold: Final = Branch(reply=Reply.ACCEPTED, ends=STOPPED_BY_OPERATOR, do=(Action.HOLD,), to=HOLDING)
+hold_mode_if_surely_on_ground: Final = Branch(
+    when=(Guard.SURELY_ON_GROUND,),
+    reply=Reply.ACCEPTED,
+    ends=STOPPED_BY_OPERATOR,
+    do=(Action.HOLD_MODE_ONLY,),
+)
 hold_mode_if_on_ground: Final = Branch(
     when=(Guard.ON_GROUND,),
     reply=Reply.ACCEPTED,
@@ -190,7 +199,7 @@ REQUEST_TO_STOP_ROWS: Final[Mapping[Event, Row]] = {
         during(RETURNING, LANDING, HOLDING, EXTERNAL, then=force_disarm),
     ),
     Event.LAND: row(
-        during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
+        during(NO_VEHICLE, then=(land_mode_if_heard_before, refuse(Code.NO_VEHICLE))),
         during(STALE, GROUNDED, then=(complete_if_surely_on_ground, land)),
         during(TAKING_OFF, HOVERING, then=land),
         during(VERIFYING, then=cannot_happen),
@@ -212,9 +221,9 @@ REQUEST_TO_STOP_ROWS: Final[Mapping[Event, Row]] = {
         during(HOLDING, EXTERNAL, then=return_home),
     ),
     Event.HOLD: row(
-        during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
-        during(STALE, then=(complete_if_surely_on_ground, stop_stream_and_hold)),
-        during(GROUNDED, then=(complete_if_surely_on_ground, hold_mode_if_on_ground, hold)),
+        during(NO_VEHICLE, then=(hold_mode_if_heard_before, refuse(Code.NO_VEHICLE))),
+        during(STALE, then=(hold_mode_if_surely_on_ground, stop_stream_and_hold)),
+        during(GROUNDED, then=(hold_mode_if_on_ground, hold)),
         during(TAKING_OFF, then=(hold_and_disarm_if_on_ground, hold)),
         during(HOVERING, then=hold),
         during(VERIFYING, then=cannot_happen),

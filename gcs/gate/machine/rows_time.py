@@ -8,9 +8,9 @@ from typing import Final
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.machine.cells import (
     COMPLETE,
-    CONTROL_REGAINABLE,
     DEADLINE_PASSED,
     NO_ANSWER,
+    NO_POSITION,
     VEHICLE_REFUSED,
     cannot_happen,
     end,
@@ -56,7 +56,11 @@ complete_if_arrived: Final = Branch(
     when=(Guard.ARRIVED,), ends=COMPLETE, do=(Action.HOLD_AT_GOAL,), to=HOVERING
 )
 climb: Final[Cell] = (
-    Branch(when=(Guard.AT_HEIGHT, *CONTROL_REGAINABLE), do=(Action.TAKE_CONTROL,), to=HOVERING),
+    Branch(
+        when=(Guard.AT_HEIGHT, Guard.SEVERITY_PERMITS, Guard.TOP_CLEARS),
+        do=(Action.TAKE_CONTROL_AT_TOP,),
+        to=HOVERING,
+    ),
     Branch(when=(Guard.AT_HEIGHT,), ends=TOO_CLOSE, do=(Action.HOLD,), to=HOLDING),
     Branch(
         when=(Guard.CLIMB_ENDED_ELSEWHERE,),
@@ -70,6 +74,15 @@ climb: Final[Cell] = (
 
 # -------------------------------------------------------------------------------- deadline
 
+end_if_arm_waits_for_position: Final = Branch(
+    when=(Guard.TASK_IS_ARM, Guard.TASK_WAITS), ends=NO_POSITION, do=(Action.CONFIRM_HOLD,)
+)
+end_if_task_waits: Final = Branch(
+    when=(Guard.TASK_WAITS,), ends=NO_ANSWER, do=(Action.CONFIRM_HOLD,)
+)
+complete_if_task_ends_landed_and_it_stands: Final = Branch(
+    when=(Guard.TASK_ENDS_LANDED, Guard.ON_GROUND), ends=COMPLETE
+)
 complete_if_task_ends_landed: Final = Branch(when=(Guard.TASK_ENDS_LANDED,), ends=COMPLETE)
 complete_if_on_ground: Final = Branch(
     when=(Guard.ON_GROUND,), ends=COMPLETE, do=(Action.RELEASE_CONTROL,), to=GROUNDED
@@ -100,13 +113,20 @@ TIME_ROWS: Final[Mapping[Event, Row]] = {
             STALE,
             then=(
                 stop_stream_if(Guard.IN_GRACE, DEADLINE_PASSED),
-                complete_if_task_ends_landed,
+                end_if_arm_waits_for_position,
+                complete_if_task_ends_landed_and_it_stands,
                 repeat_hold_if_awaited,
                 end(NO_ANSWER),
             ),
         ),
         during(
-            GROUNDED, then=(complete_if_task_ends_landed, repeat_hold_if_awaited, end(NO_ANSWER))
+            GROUNDED,
+            then=(
+                end_if_task_waits,
+                complete_if_task_ends_landed,
+                repeat_hold_if_awaited,
+                end(NO_ANSWER),
+            ),
         ),
         during(TAKING_OFF, then=(end_if_on_ground(DEADLINE_PASSED), hold_and_end(DEADLINE_PASSED))),
         during(HOVERING, then=(release_if_taking_control(NO_ANSWER), unchanged)),

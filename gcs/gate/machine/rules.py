@@ -20,6 +20,8 @@ class Guard(StrEnum):
     """A condition of a branch.  Evaluating it does not change the gate's memory."""
 
     HEARD_BEFORE = "a vehicle was heard before"
+    LOST_IN_FLIGHT = "we flew it when it was heard last"
+    NO_POSITION_YET = "it has told no position yet"
     AIRBORNE = "it flies"
     NOT_AIRBORNE = "it is not known to fly"
     ON_GROUND = "it stands on the ground"
@@ -33,7 +35,8 @@ class Guard(StrEnum):
     TAKING_CONTROL = "control is being taken"
     TASK_UNDER_WAY = "a request is under way"
     TASK_IS_ARM = "the request is to arm"
-    TASK_WAITS_FOR_MODE = "the request waited for this mode"
+    TASK_IS_TAKE_OFF = "the request is to take off"
+    TASK_WAITS = "the request's command waits for a mode or a position"
     TASK_ENDS_HELD = "the request is to hold or abort"
     TASK_ENDS_LANDED = "the request is to come down, and it stands"
     TASK_ENDS_DISARMED = "the request ends when disarmed"
@@ -47,6 +50,8 @@ class Guard(StrEnum):
     RETURNS_TO_FLIGHT = "a position too old interrupted its flight"
     OPERATOR_LOST = "the operator is lost"
     POSITION_CLEARS = "the present position clears"
+    POSITION_TOO_OLD = "the position is too old"
+    TOP_CLEARS = "the way to the top clears"
     RETURN_PATH_CLEARS = "the return path clears"
     BLOCKED_RETURN_FORWARDED = "policy forwards blocked returns"
     BLOCKED_RETURN_LANDS = "policy lands on blocked returns"
@@ -55,8 +60,8 @@ class Guard(StrEnum):
     FORCE_DISARM_FORBIDDEN = "policy forbids disarming in the air"
     FORCE_DISARM_UNCONFIRMED = "it was asked for only once"
     SEVERITY_PERMITS = "severity permits motion"
-    SEVERITY_DEMANDS_RETURN = "severity demands return or landing"
     HOLD_AWAITED = "hold is commanded and not shown yet"
+    HOLD_REQUESTED = "it was asked for"
     MODE_AWAITED = "a commanded mode is not shown yet"
     MODE_FITS_STATE = "the mode belongs to the state"
     MODE_GUIDED = "the mode is guided"
@@ -91,6 +96,8 @@ class Action(StrEnum):
     REFUSE_GOAL = "refuse the goal"
     HOLD_AT_GOAL = "hold at the goal"
     TAKE_CONTROL = "stream the present position"
+    TAKE_CONTROL_AT_TOP = "stream the top of the climb"
+    FLY_TO_TOP = "fly to the top of the climb"
     ASK_GUIDED = "command guided"
     GAIN_CONTROL = "control is ours"
     RELEASE_CONTROL = "let control go"
@@ -100,6 +107,7 @@ class Action(StrEnum):
     TAKE_OFF = "command take-off"
     SEND_WAITING = "send the command that waited"
     LAND = "command land"
+    LAND_MODE_ONLY = "command land unseen"
     RETURN = "command return"
     HOLD = "command hold"
     HOLD_ONCE = "command hold once"
@@ -117,6 +125,9 @@ class Action(StrEnum):
     FORGET_VEHICLE = "forget the vehicle"
     FORGET_INTERRUPTED = "forget what was interrupted"
     AWAIT_DISARM = "wait shortly for disarm"
+    AWAIT_LANDING = "wait for the landing again"
+    AWAIT_POSITION = "wait for a position"
+    DROP_DEADLINE = "let it take as long as it takes"
     NOTE_LIFT_OFF = "note the lift-off"
     NOTE_FORCE_REQUEST = "note the first asking"
 
@@ -167,11 +178,13 @@ class End:
     """The outcome of the request under way; a goal that is still pending is refused with the code.
 
     `judged` True: the code and the sentence are those of the refusal that caused the event.
+    `goes_on` True: nobody waits for it any more, and what it commanded goes on all the same.
     """
 
     kind: OutcomeKind
     code: Code | None = None
     judged: bool = False
+    goes_on: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,14 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
+from gcs.enu_text import place
 from gcs.gate.effects import CommandKind
-from gcs.gate.refusal import Code
+from gcs.gate.machine.events import Event, event_of
+from gcs.gate.machine.memory import Memory
+from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import Disarm, GoTo, Request, SetMode, SwitchFence
+from gcs.gate.states import FlightMode, State
 
 REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
     {
@@ -25,6 +31,7 @@ REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
         Code.IN_AIR: "the vehicle is not known to stand on the ground",
         Code.OPERATOR_LOST: "the operator is gone: only hold, land, abort and disarm are left",
         Code.POLICY: "the policy does not allow it",
+        Code.UNSUPPORTED: "this station does not send it",
         Code.RTL_BLOCKED: "the way home is not clear: land instead",
     }
 )
@@ -32,6 +39,8 @@ REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
 
 ENDED: Final[Mapping[Code, str]] = MappingProxyType(
     {
+        Code.IN_AIR: "the vehicle lifted off",
+        Code.NO_POSITION: "no position came in time (is the estimator still starting?)",
         Code.OPERATOR: "stopped by the operator",
         Code.OPERATOR_LOST: "the operator is lost",
         Code.SUPERSEDED: "a later request took its place",
@@ -52,6 +61,96 @@ ENDED: Final[Mapping[Code, str]] = MappingProxyType(
     }
 )
 """Why a request ended otherwise than complete."""
+
+NO_POSITION_YET: Final = Refusal(
+    Code.NO_POSITION, "the vehicle has no position yet (the estimator is starting)"
+)
+POSITION_TOO_OLD: Final = Refusal(Code.STALE, REFUSED[Code.STALE])
+
+
+def no_fresh_position(memory: Memory) -> Refusal:
+    """There never was a position, or the last one is too old."""
+    return NO_POSITION_YET if memory.pos_ned is None else POSITION_TOO_OLD
+
+
+def refusal_of(code: Code, request: Request, memory: Memory, policy: Policy) -> Refusal:
+    """The refusal of `request` with `code`, in the words for what stands in its way."""
+    if code is Code.STALE:
+        return no_fresh_position(memory)
+    sentence = REFUSED[code]
+    if code is Code.NO_VEHICLE and memory.heard_before:
+        sentence += " any more: hold, land and abort are sent to it all the same"
+    elif code is Code.NOT_IN_CONTROL and memory.state in (State.RETURNING, State.LANDING):
+        doing = "returns" if memory.state is State.RETURNING else "lands"
+        sentence = (
+            f"the vehicle {doing}, and not at our request: `hold` stops it, then `resume` takes "
+            "control"
+        )
+    elif code is Code.BUSY:
+        sentence += _what_is_under_way(request, memory, policy)
+    elif code is Code.POLICY:
+        sentence += _key_of_policy(request)
+    elif code is Code.NOT_FLYING and isinstance(request, SetMode):
+        sentence = f"{request.name} is not sent to a vehicle that stands on the ground"
+    elif code is Code.UNSUPPORTED and isinstance(request, SetMode):
+        sentence = _mode_not_sent(request)
+    return Refusal(code, sentence)
+
+
+def _what_is_under_way(request: Request, memory: Memory, policy: Policy) -> str:
+    flown = memory.goal or memory.hold
+    goal = "" if flown is None else f", goal {place(flown.pos_ned)}"
+    replace = isinstance(request, GoTo) and memory.state is State.MOVING
+    key = f' (policy: retarget = "{policy.retarget}")' if replace else ""
+    return f": {memory.state.name}{goal}{key}"
+
+
+def _key_of_policy(request: Request) -> str:
+    match request:
+        case SwitchFence():
+            return ": fence_switchable = false"
+        case Disarm():
+            return " in the air: allow_force_disarm = false"
+        case _:
+            return ""
+
+
+def _mode_not_sent(asked: SetMode) -> str:
+    if asked.instead:
+        return f"{asked.name} is never sent: this station sends {asked.instead} in its place"
+    if asked.meaning is FlightMode.TAKEOFF:
+        return f"{asked.name} is never sent: `takeoff` climbs to a height that is verified"
+    return (
+        f"{asked.name} is never sent, and no key of the policy allows it: this station sends the "
+        "modes for hold, control, mission, return and landing"
+    )
+
+
+def not_shown(request: Request, memory: Memory) -> bool:
+    """It is a mode by its name, and not the one that the vehicle is in."""
+    return isinstance(request, SetMode) and request.name != memory.mode_name
+
+
+_DONE: Final[Mapping[Event, str]] = MappingProxyType(
+    {
+        Event.CONTROL: "control is ours already",
+        Event.RESUME: "control is ours already",
+        Event.ARM: "the vehicle is armed already",
+        Event.DISARM: "the vehicle is disarmed already",
+        Event.FORCE_DISARM: "the vehicle is disarmed already",
+        Event.LAND: "the vehicle stands on the ground",
+        Event.RETURN: "the vehicle stands on the ground",
+        Event.ABORT: "the vehicle stands on the ground, disarmed",
+    }
+)
+
+
+def done_at_once(request: Request) -> str:
+    """What is so already, or was done at once."""
+    if isinstance(request, SwitchFence):
+        return f"the fence is {'on' if request.on else 'off'}"
+    return _DONE[event_of(request)]
+
 
 ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(
     {

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
-from gcs.enu_text import place
 from gcs.gate.airspace.verifier import Breach
 from gcs.gate.condition import Severity
 from gcs.gate.effects import (
@@ -29,10 +28,10 @@ from gcs.gate.inputs import Requested
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import GATE, SECOND_NS, Goal, Memory, Task
 from gcs.gate.machine.rules import End, Reply
-from gcs.gate.machine.sentences import ENDED, REFUSED
+from gcs.gate.machine.sentences import ENDED, done_at_once, not_shown, refusal_of
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.states import FlightMode
+from gcs.gate.states import Control, FlightMode
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +66,10 @@ MODE_OF: Final[Mapping[CommandKind, FlightMode]] = MappingProxyType(
     }
 )
 """The mode in which the heartbeat shows that a command took effect."""
+
+
+SAID: Final = frozenset({Code.SUPERSEDED, Code.OPERATOR, Code.OPERATOR_LOST, Code.FENCE_BREACH})
+"""Reasons for an end that are said where they come up."""
 
 
 class Turn:
@@ -138,11 +141,8 @@ class Turn:
         """Refuse the present request: for the reason `why` where there is one, else with the
         sentence for `code`."""
         assert self.requested is not None
-        flown = self.memory.goal or self.memory.hold
-        sentence = REFUSED.get(code, "it is not possible now")
-        if code is Code.BUSY and flown is not None:
-            sentence = f"{sentence}: {self.memory.state.name}, goal {place(flown.pos_ned)}"
-        self.verdict(self.requested, Ruling.REFUSED, self.why or Refusal(code, sentence))
+        refusal = self.why or refusal_of(code, self.requested.request, self.memory, self.policy)
+        self.verdict(self.requested, Ruling.REFUSED, refusal)
 
     # ------------------------------------------------------------------ tasks and outcomes
 
@@ -153,20 +153,22 @@ class Turn:
         """
         memory = self.memory
         assert self.requested is not None
+        if reply is Reply.DONE and not_shown(self.requested.request, memory):
+            self.refuse(Code.NOT_FLYING)
+            return
         if reply is Reply.PENDING:
             self.supersede_pending()
             memory.pending = self.requested
             return
         self.verdict(self.requested, Ruling.ACCEPTED, None)
         if reply is Reply.DONE:
-            self.out.append(
-                Outcome(
-                    self.requested.request_id, OutcomeKind.COMPLETE, None, "nothing is left to do"
-                )
-            )
+            done = done_at_once(self.requested.request)
+            request_id = self.requested.request_id
+            self.out.append(Outcome(request_id, OutcomeKind.COMPLETE, None, done))
             return
         self.supersede_pending()
         memory.hold_again_ns = None  # the new request takes the place of a hold, too
+        memory.hold_requested = kind in (Event.HOLD, Event.ABORT)
         self.end(ends or End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED))
         memory.task = Task(self.requested, kind)
 
@@ -188,17 +190,21 @@ class Turn:
         """Give the request under way its outcome, and cancel every command that was sent for it.
 
         A HOLD that is not shown yet outlives its request: it is commanded again when it is due.
-        Also refuses a pending go-to, unless the outcome is COMPLETE.
+        What `goes_on` outlives it whole.  Where we fly without a request, the reason is said.  Also
+        refuses a pending go-to, unless the outcome is COMPLETE.
         """
         memory = self.memory
         task, memory.task = memory.task, None
         why = self._why(end)
         if why is not None:
             self.refuse_pending(why)
-        hold_again_ns = memory.hold_again_ns
-        self.cancel_commands()
-        memory.hold_again_ns = hold_again_ns
+        if not end.goes_on:
+            hold_again_ns = memory.hold_again_ns
+            self.cancel_commands()
+            memory.hold_again_ns = hold_again_ns
         if task is None:
+            if why is not None and memory.control is not Control.NONE and why.code not in SAID:
+                self.say(Level.WARNING, why.sentence)
             return
         code, sentence = (None, "Complete") if why is None else (why.code, why.sentence)
         self.out.append(Outcome(task.requested.request_id, end.kind, code, sentence))
@@ -216,6 +222,11 @@ class Turn:
             return Refusal(end.code, self.why.sentence)
         if end.code is Code.SEVERITY:
             return Refusal(end.code, self.severity_sentence())
+        if end.code is Code.MODE_CHANGED and self.memory.failsafe:
+            sentence = f"a failsafe of the vehicle's own took over: {self.memory.mode_name}"
+            return Refusal(Code.VEHICLE_FAILSAFE, sentence)
+        if end.goes_on:
+            return Refusal(end.code, f"{ENDED[end.code]}; the vehicle goes on by itself")
         return Refusal(end.code, ENDED[end.code])
 
     def severity_sentence(self) -> str:

@@ -1,15 +1,21 @@
 """Questions to the verifier about what is asked for and what is flown.
 
-`position`, `climb`, `goal` and `return_path` return None where the verifier clears, else its
+`position`, `climb`, `top`, `goal` and `return_path` return None where the verifier clears, else its
 refusal.  Each leaves the numbers of the answer in the turn: as evidence where it clears, as the
 reason where it refuses; the verdict then carries them.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from gcs.frames import Vec3
 from gcs.gate.airspace.limits import STANDING
 from gcs.gate.airspace.verifier import Cleared, Verifier
-from gcs.gate.machine.memory import Memory
+from gcs.gate.airspace.zones import Zone
+from gcs.gate.geometry import Circle
+from gcs.gate.machine.memory import HOME_MOVED_M, Memory
+from gcs.gate.machine.sentences import no_fresh_position
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo, TakeOff
@@ -22,8 +28,21 @@ def position(turn: Turn) -> Refusal | None:
     if memory.verifier is None:
         return _keep(turn, home_or_fence_unknown())
     if turn.stale or memory.pos_ned is None or memory.v_ned is None:
-        return _keep(turn, _position_too_old())
-    return _keep(turn, memory.verifier.hold_point(memory.pos_ned, memory.v_ned, floor_applies=True))
+        return _keep(turn, no_fresh_position(memory))
+    judged = memory.verifier.hold_point(memory.pos_ned, memory.v_ned, floor_applies=True)
+    if isinstance(judged, Refusal) and memory.state in (State.HOLDING, State.EXTERNAL):
+        judged = replace(judged, sentence=f"{judged.sentence}; {_ways_out(turn, memory.pos_ned)}")
+    return _keep(turn, judged)
+
+
+def _ways_out(turn: Turn, pos_ned: Vec3) -> str:
+    """What is left to a vehicle that flies where it may not hover."""
+    memory, ways = turn.memory, ["land"]
+    if memory.verifier is not None and memory.home_ned and memory.return_up_m is not None:
+        blocked = memory.verifier.return_refusal(pos_ned, memory.home_ned, memory.return_up_m)
+        ways += ["rtl"] if blocked is None else []
+    ways += ["fence off"] if turn.policy.fence_switchable else []
+    return f"possible: {', '.join(ways)}"
 
 
 def climb(turn: Turn) -> Refusal | None:
@@ -34,8 +53,18 @@ def climb(turn: Turn) -> Refusal | None:
     if memory.verifier is None:
         return _keep(turn, home_or_fence_unknown())
     if turn.stale or memory.pos_ned is None:
-        return _keep(turn, _position_too_old())
+        return _keep(turn, no_fresh_position(memory))
     return _keep(turn, memory.verifier.takeoff(turn.requested.request.up_m, memory.pos_ned))
+
+
+def top(turn: Turn) -> Refusal | None:
+    """May the vehicle fly from where its climb ended to the top that was verified?"""
+    memory = turn.memory
+    if memory.verifier is None:
+        return _keep(turn, home_or_fence_unknown())
+    if turn.stale or memory.pos_ned is None or memory.v_ned is None:
+        return _keep(turn, no_fresh_position(memory))
+    return _keep(turn, memory.verifier.goal(memory.top_ned, None, memory.pos_ned, memory.v_ned))
 
 
 def goal(turn: Turn, request: GoTo) -> Refusal | None:
@@ -81,11 +110,9 @@ def refusal_of_what_is_flown(
         return None
     judged: Cleared | Refusal | None = None
     if memory.flown_state is State.TAKING_OFF:
-        top_ned = (*memory.pos_ned[:2], memory.top_down_m)
-        judged = verifier.hold_point(top_ned, STANDING, floor_applies=True)
+        judged = verifier.hold_point(memory.top_ned, STANDING, floor_applies=True)
     elif memory.flown_state is State.FLYING_MISSION:
-        same = was is not None and (was.fence_on, len(was.zones)) == (True, len(verifier.zones))
-        if verifier.fence_on and not same:
+        if verifier.fence_on and not (was is not None and _same_fence(was, verifier)):
             return Refusal(Code.BAD_MISSION, "the mission was not verified by this fence")
     elif memory.goal is not None:
         judged = verifier.goal(
@@ -100,8 +127,33 @@ def home_or_fence_unknown() -> Refusal:
     return Refusal(Code.NO_ORIGIN, "home and fence are not known yet")
 
 
-def _position_too_old() -> Refusal:
-    return Refusal(Code.STALE, "the vehicle's position is too old")
+def _same_fence(was: Verifier, now: Verifier) -> bool:
+    """Both on, with the same zones in the same places: a home that moves by less than
+    `HOME_MOVED_M`, as it does when the vehicle arms, moves them by as little."""
+    return (
+        was.fence_on
+        and len(was.zones) == len(now.zones)
+        and all(map(_same_zone, was.zones, now.zones))
+    )
+
+
+def _same_zone(was: Zone, now: Zone) -> bool:
+    numbers, others = _numbers(was), _numbers(now)
+    return (was.name, was.inclusion, type(was.shape), len(numbers)) == (
+        now.name,
+        now.inclusion,
+        type(now.shape),
+        len(others),
+    ) and all(a == b or abs(a - b) <= HOME_MOVED_M for a, b in zip(numbers, others, strict=True))
+
+
+def _numbers(zone: Zone) -> tuple[float, ...]:
+    shape: tuple[float, ...]
+    if isinstance(zone.shape, Circle):
+        shape = (*zone.shape.centre_en, zone.shape.radius_m)
+    else:
+        shape = tuple(x for corner in zone.shape.corners_en for x in corner)
+    return (*shape, zone.floor_up_m, zone.ceiling_up_m)
 
 
 def _keep(turn: Turn, judged: Cleared | Refusal) -> Refusal | None:

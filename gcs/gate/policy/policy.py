@@ -113,6 +113,7 @@ class Policy(_Section, frozen=True):
     deadline_factor: FromOne
     deadline_min_s: FromTenth
     takeoff: TakeOffLimits
+    arm_timeout_s: FromOne
     land_timeout_s: FromOne
     photo_timeout_s: FromTenth
     control: ControlTimes

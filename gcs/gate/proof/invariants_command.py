@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from gcs.gate.effects import CommandKind, Say, SendCommand
+from gcs.gate.effects import CommandKind, Say, SendCommand, Transition
 from gcs.gate.inputs import CommandEnded, HeartbeatSeen, LandedSeen, Tick
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
@@ -35,6 +35,38 @@ def ends_what_it_commands(edge: Edge) -> Iterator[str]:
             yield f"{sent.kind.value} has no deadline that holds"
         if sent.kind in RISKY and edge.after.task is None and not edge.accepted:
             yield f"{sent.kind.value} is sent though nobody asks for it"
+
+
+def arms_on_a_fresh_position(edge: Edge) -> Iterator[str]:
+    """7: arming is commanded where there is a fresh position, whenever it was asked for."""
+    if CommandKind.ARM not in edge.commands:
+        return
+    age_ns = edge.after.position_age_ns(edge.now_ns)
+    waits = edge.before.task is not None and edge.before.task.waiting is CommandKind.ARM
+    fresh = age_ns is not None and age_ns <= edge.policy.position_age_s * SECOND_NS
+    if not fresh and not (waits and isinstance(edge.given, HeartbeatSeen)):
+        yield "arming is commanded without a fresh position"
+
+
+def lets_down_what_comes_down(edge: Edge) -> Iterator[str]:
+    """Whoever leaves cancels no return and no landing."""
+    comes_down = edge.before.state in (State.RETURNING, State.LANDING)
+    if not comes_down or edge.after.state is State.NO_VEHICLE:
+        return
+    if edge.after.state is not edge.before.state or edge.commands:
+        yield f"the operator leaves, and {edge.before.state.name} does not go on"
+    if edge.before.outstanding != edge.after.outstanding:
+        yield f"the operator leaves, and what {edge.before.state.name} needs is asked for no more"
+
+
+def loses_only_what_is_silent(edge: Edge) -> Iterator[str]:
+    """7: any message of the vehicle is a sign of life."""
+    lost = any(e.after is State.NO_VEHICLE for e in edge.effects if isinstance(e, Transition))
+    heard_ns = edge.before.heard_ns
+    if lost and heard_ns is not None:
+        silent_ns = edge.now_ns - heard_ns
+        if silent_ns < edge.policy.heartbeat_age_s * SECOND_NS:
+            yield "a vehicle is lost that was heard a moment ago"
 
 
 def acts_on_no_late_answer(edge: Edge) -> Iterator[str]:
@@ -88,24 +120,34 @@ def holds_until_it_is_shown(edge: Edge) -> Iterator[str]:
 
 
 def _held_once(edge: Edge) -> bool:
-    """Something else is commanded after it; or it is the mode that arming needs; or control could
-    not be taken, and nobody asked for a hold."""
+    """Something else is commanded after it; or control could not be taken, and nobody asked for a
+    hold."""
     if not INSTEAD.isdisjoint(edge.commands):
         return True
-    task = edge.after.task
-    prepares = task is not None and task.waiting is CommandKind.ARM
-    return prepares or (edge.after.state is State.EXTERNAL and edge.request is None)
+    return edge.after.state is State.EXTERNAL and edge.request is None
+
+
+def _prepared(memory: Memory) -> bool:
+    """The hold is the mode that a request to arm needs, and ends with that request."""
+    return memory.task is not None and memory.task.waiting is CommandKind.ARM
 
 
 def _hold_is_over(edge: Edge) -> bool:
-    """The heartbeat shows it; or it flies no more, or nobody hears it; or something else was
-    commanded in its place."""
+    """The heartbeat shows it; or it flies no more; or something else was commanded in its place.
+
+    A hold that was asked for goes on where the vehicle is not heard any more, unless it stood.
+    """
     given, after = edge.given, edge.after
     if isinstance(given, HeartbeatSeen) and (given.mode is FlightMode.HOLD or not given.armed):
         return True
     if isinstance(given, LandedSeen) and given.landed is LandedState.ON_GROUND:
         return True
-    if after.state is State.NO_VEHICLE and edge.before.state is not State.NO_VEHICLE:
+    before = edge.before
+    asked = before.task is not None and isinstance(before.task.requested.request, Hold | Abort)
+    lost = after.state is State.NO_VEHICLE and before.state is not State.NO_VEHICLE
+    if lost and (before.state is State.GROUNDED or not (asked or before.hold_requested)):
+        return True
+    if _prepared(before) and (after.task is None or before.outstanding != after.outstanding):
         return True
     if not INSTEAD.isdisjoint(edge.commands):
         return True

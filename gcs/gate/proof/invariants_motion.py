@@ -14,8 +14,8 @@ from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge, severity_of
 from gcs.gate.refusal import Refusal
-from gcs.gate.requests import GoTo
-from gcs.gate.states import Control, LandedState, State
+from gcs.gate.requests import GoTo, TakeOff
+from gcs.gate.states import Control, FlightMode, LandedState, State
 
 STREAMING_STATES: Final = frozenset(
     {
@@ -44,6 +44,7 @@ are the vehicle's own."""
 BRAKED: Final = FLOWN_BY_US | {State.RETURNING}
 """Where a predicted breach is braked: a landing ends by itself, a held vehicle brakes already."""
 
+HEIGHT_WITHIN_M: Final = 0.2
 HOME_MOVED_M: Final = 1.0
 OVERSHOOT_M: Final = 1.0
 SLACK_NS: Final = SECOND_NS // 5
@@ -125,17 +126,41 @@ def holds_when_home_moves(edge: Edge) -> Iterator[str]:
 
 
 def climbs_to_its_top(edge: Edge) -> Iterator[str]:
-    """2: the climb that was verified ends at its top."""
+    """2: the climb that was verified ends at its top, or where the vehicle itself ends it; the
+    rest of it is flown to that top."""
     before, after = edge.before, edge.after
     climbs = before.state is State.TAKING_OFF and isinstance(edge.given, Tick)
     if not climbs or before.pos_ned is None or edge.stale:
         return
-    above_m = before.top_down_m - before.pos_ned[2]
+    above_m = before.top_ned[2] - before.pos_ned[2]
     radius_m = edge.policy.arrival.radius_m
-    if after.state is State.HOVERING and abs(above_m) >= radius_m:
-        yield f"a climb is over {above_m:.1f} m above its top"
+    if after.state is State.HOVERING:
+        if after.hold is None or after.hold.pos_ned != before.top_ned:
+            yield "a climb is over, and its top is not held"
+        if not -radius_m - before.climb_ends_within_m < above_m < radius_m:
+            yield f"a climb is over {above_m:.1f} m above its top"
+        elif above_m <= -radius_m and before.mode is not FlightMode.HOLD:
+            yield f"a climb is over {-above_m:.1f} m below its top, which the vehicle does not show"
     if after.state is State.TAKING_OFF and above_m > radius_m + OVERSHOOT_M:
         yield f"a climb goes on {above_m:.1f} m above its top"
+
+
+def ends_a_climb_at_its_top(edge: Edge) -> Iterator[str]:
+    """2: a take-off is complete at its top, and on a fresh position."""
+    task, pos_ned = edge.before.task, edge.after.pos_ned
+    if task is None or not isinstance(task.requested.request, TakeOff):
+        return
+    for effect in edge.effects:
+        if not isinstance(effect, Outcome) or effect.kind is not OutcomeKind.COMPLETE:
+            continue
+        if effect.request_id != task.requested.request_id:
+            continue
+        if pos_ned is None or edge.stale:
+            yield "a take-off is complete on a position too old"
+        elif math.dist(pos_ned, edge.before.top_ned) >= edge.policy.arrival.radius_m or (
+            abs(pos_ned[2] - edge.before.top_ned[2]) >= HEIGHT_WITHIN_M
+        ):
+            yield "a take-off is complete though its top is not reached"
 
 
 def brakes_for_a_breach(edge: Edge) -> Iterator[str]:

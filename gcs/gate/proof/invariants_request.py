@@ -25,7 +25,7 @@ from gcs.gate.requests import (
     TakeOff,
     TakePhoto,
 )
-from gcs.gate.states import State
+from gcs.gate.states import Control, State
 
 FLIES: Final = (GoTo, TakeControl, Resume, TakeOff, StartMission)
 MOVES: Final = (*FLIES, Arm, TakePhoto)
@@ -103,6 +103,7 @@ def aborts_at_once(edge: Edge) -> Iterator[str]:
 def stays_aborted(edge: Edge) -> Iterator[str]:
     """5: nothing but `resume` ends the hold, nothing but a verdict makes the vehicle move."""
     judged = any(isinstance(e, Verdict) and isinstance(e.request, GoTo) for e in edge.effects)
+    judged |= _goes_on_to_the_top(edge)
     for moved in edge.effects:
         if not isinstance(moved, Transition):
             continue
@@ -111,6 +112,14 @@ def stays_aborted(edge: Edge) -> Iterator[str]:
             yield f"HOLDING is left for {moved.after.name} without resume"
         if moved.after is State.MOVING and not judged and moved.before is not State.STALE:
             yield "MOVING begins without a verdict on a goal"
+
+
+def _goes_on_to_the_top(edge: Edge) -> bool:
+    """The rest of a take-off, of which the verdict was the take-off's own."""
+    task, goal = edge.before.task, edge.after.goal
+    climbs = task is not None and isinstance(task.requested.request, TakeOff)
+    taking = edge.before.control is Control.TAKING
+    return climbs and taking and goal is not None and goal.pos_ned == edge.before.top_ned
 
 
 def _commanded(memory: Memory) -> set[CommandKind]:
@@ -124,7 +133,8 @@ def accepts_what_is_known_to_be_safe(edge: Edge) -> Iterator[str]:
         return
     if not edge.commands and (after.task is None or before.task == after.task):
         return  # nothing was left to do
-    if edge.stale or before.state is State.NO_VEHICLE:
+    waits = isinstance(edge.request, Arm) and before.pos_ned is None and not edge.commands
+    if (edge.stale and not waits) or before.state is State.NO_VEHICLE:
         yield f"{edge.request} is accepted on a position too old"
     if isinstance(edge.request, FLIES) and before.verifier is None:
         yield f"{edge.request} is accepted though home and fence are not known"
@@ -145,11 +155,20 @@ def hears_an_operator_that_is_there(edge: Edge) -> Iterator[str]:
         yield f"{edge.request} is heard though the operator is lost"
 
 
+def _stops_what_is_not_heard(edge: Edge) -> Iterator[str]:
+    """10: hold, abort and landing go out to a vehicle that was heard once."""
+    if not isinstance(edge.request, Hold | Abort | Land) or not edge.before.heard_before:
+        return
+    if not edge.accepted or edge.commands == []:
+        yield f"{edge.request} is not sent to a vehicle that is not heard any more"
+
+
 def never_refuses_to_stop(edge: Edge) -> Iterator[str]:
     """10: hold, landing in place and disarming on the ground are never refused, and a return
     only for its path."""
     before, request = edge.before, edge.request
     if State.NO_VEHICLE in (before.state, edge.after.state):
+        yield from _stops_what_is_not_heard(edge)
         return
     stops = {CommandKind.HOLD, CommandKind.LAND, CommandKind.RETURN} & set(edge.commands)
     stop = isinstance(request, Hold | Land | ReturnHome) and edge.accepted

@@ -16,7 +16,7 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
-from gcs.gate.proof.world import ABOVE, EDGE, GOAL, TOP
+from gcs.gate.proof.world import ABOVE, EDGE, LOW, TOP
 from gcs.gate.states import FlightMode, State
 
 MODES_THAT_MATTER: Final = {
@@ -69,7 +69,8 @@ def _machine(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
 def _reported(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     state, flies = memory.state, memory.flown_state
     return (
-        memory.heard_before if state is State.NO_VEHICLE else None,
+        (memory.heard_before, memory.lost_in_flight) if state is State.NO_VEHICLE else None,
+        memory.pos_ned is None,
         memory.armed,
         memory.mode if memory.mode in MODES_THAT_MATTER.get(flies, ()) else None,
         memory.climbed if flies is State.TAKING_OFF else None,
@@ -82,9 +83,9 @@ def _position(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     climbs = memory.flown_state is State.TAKING_OFF
     flown = memory.goal is not None
     return (
-        memory.pos_ned in (TOP, ABOVE) and memory.pos_ned if climbs else None,
+        memory.pos_ned in (TOP, LOW, ABOVE) and memory.pos_ned if climbs else None,
         memory.state in PLACES_THAT_MATTER and memory.pos_ned == EDGE,
-        flown and memory.pos_ned == GOAL,
+        memory.goal is not None and memory.pos_ned == memory.goal.pos_ned,
         flown and memory.within_since_ns is not None,
     )
 
@@ -107,6 +108,7 @@ def _commands(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         tuple(unanswered),
         memory.asked_mode if awaited else None,
         memory.ask_control_ns is not None,
+        hold_again and memory.hold_requested,
         hold_again,
     )
 

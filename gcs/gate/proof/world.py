@@ -28,6 +28,7 @@ GOAL: Final[Vec3] = (3.0, 0.0, -5.0)
 EDGE: Final[Vec3] = (18.0, 0.0, -5.0)
 DASH: Final[Vec3] = (8.0, 0.0, 0.0)
 TOP: Final[Vec3] = (0.0, 0.0, -10.0)
+LOW: Final[Vec3] = (0.0, 0.0, -9.25)
 ABOVE: Final[Vec3] = (0.0, 0.0, -14.0)
 OUTSIDE: Final[Vec3] = (50.0, 0.0, -5.0)
 NOWHERE: Final[Vec3] = (float("nan"), 0.0, -5.0)
@@ -69,12 +70,17 @@ ELSEWHERE: Final = Zone("elsewhere", True, Circle((200.0, 0.0), 20.0), 0.0, 30.0
 
 @dataclass(frozen=True)
 class World:
-    """What does not change during an exploration.  `return_up_m` is the vehicle's own."""
+    """What does not change during an exploration.  `return_up_m` and `climb_ends_within_m` are the
+    vehicle's own."""
 
     policy: Policy
     verifier: Verifier
     return_up_m: float
+    climb_ends_within_m: float
 
 
-def world(policy: Policy, autopilot: str, return_up_m: float) -> World:
-    return World(policy, verifier_for(policy, autopilot, HOME, None), return_up_m)
+def world(
+    policy: Policy, autopilot: str, return_up_m: float, climb_ends_within_m: float = 0.0
+) -> World:
+    verifier = verifier_for(policy, autopilot, HOME, None)
+    return World(policy, verifier, return_up_m, climb_ends_within_m)

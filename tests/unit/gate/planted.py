@@ -408,4 +408,75 @@ FAULTS = [
         7,
         "ask: control",
     ),
+    # --------------------------------------------------------------------------- take-off
+    planted(
+        "a take-off is complete where the vehicle ends its climb",
+        State.HOVERING,
+        Event.MODE_CONFIRMED,
+        without(State.HOVERING, Event.MODE_CONFIRMED, Guard.TASK_IS_TAKE_OFF),
+        2,
+        "guided mode",
+    ),
+    planted(
+        "the place where the climb ended is held, and not its top",
+        State.TAKING_OFF,
+        Event.TICK,
+        tuple(
+            replace(branch, do=(Action.TAKE_CONTROL,))
+            if Action.TAKE_CONTROL_AT_TOP in branch.do
+            else branch
+            for branch in TABLE[State.TAKING_OFF, Event.TICK]
+        ),
+        2,
+        "tick",
+    ),
+    # ----------------------------------------------------------- who is not heard, who leaves
+    planted(
+        "arming does not wait for a position",
+        State.STALE,
+        Event.ARM,
+        (Branch(reply=Reply.ACCEPTED, do=(Action.ARM,)),),
+        7,
+        "ask: arm",
+    ),
+    planted(
+        "a vehicle is lost with its position",
+        State.GROUNDED,
+        Event.POSITION_AGED,
+        (Branch(do=(Action.RELEASE_CONTROL, Action.FORGET_VEHICLE), to=State.NO_VEHICLE),),
+        7,
+        "wait: position too old",
+    ),
+    planted(
+        "a landing is not asked of a vehicle that is not heard any more",
+        State.NO_VEHICLE,
+        Event.LAND,
+        (Branch(refuse=Code.NO_VEHICLE),),
+        10,
+        "ask: land",
+    ),
+    planted(
+        "a hold that was asked for ends with the link",
+        State.HOLDING,
+        Event.VEHICLE_LOST,
+        without(State.HOLDING, Event.VEHICLE_LOST, Guard.HOLD_AWAITED),
+        0,
+        "wait: vehicle lost",
+    ),
+    planted(
+        "whoever leaves cancels a return",
+        State.RETURNING,
+        Event.OPERATOR_LOST,
+        TABLE[State.HOVERING, Event.OPERATOR_LOST],
+        0,
+        "operator lost",
+    ),
+    planted(
+        "a landing that is not shown yet is asked for no more when the operator leaves",
+        State.LANDING,
+        Event.OPERATOR_LOST,
+        (Branch(ends=End(OutcomeKind.ABORTED, Code.OPERATOR_LOST)),),
+        0,
+        "operator lost",
+    ),
 ]

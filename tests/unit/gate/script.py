@@ -25,6 +25,7 @@ from gcs.gate.effects import (
     Verdict,
 )
 from gcs.gate.inputs import (
+    ClimbEndSeen,
     CommandEnded,
     HeartbeatSeen,
     HomeSeen,
@@ -98,6 +99,7 @@ class Script:
         )
         self.feed(HomeSeen((0.0, 0.0, 0.0)))
         self.feed(ReturnHeightSeen(1.5))
+        self.feed(ClimbEndSeen(0.8 if self.autopilot == "px4" else 0.0))
         self.feed(VerifierChanged(verifier))
 
     def ask(self, request: Request, source: str = "keyboard") -> int:

@@ -8,7 +8,7 @@ from gcs.gate.effects import CommandKind
 from gcs.gate.inputs import (
     MissionLoaded,
 )
-from gcs.gate.requests import Abort, Disarm, Hold, Land, StartMission
+from gcs.gate.requests import Abort, Disarm, Hold, Land, Request, ReturnHome, StartMission
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
     FLIGHT,
@@ -24,7 +24,7 @@ from tests.unit.gate.reactions import (
     take_off,
 )
 from tests.unit.gate.script import Script, policy
-from tests.unit.gate.situations import lead_to
+from tests.unit.gate.situations import UP, lead_to
 
 
 class TestArmedAndDisarmed:
@@ -210,10 +210,35 @@ class TestLandedAndAirborne:
         lead_to(State.GROUNDED, script)
         script.heartbeat(mode)
         request_id = script.ask(Disarm())
-        how = "taken over MODE_CHANGED" if after is State.EXTERNAL else ""
+        how = "taken over MODE_CHANGED" if after is State.EXTERNAL else "taken over IN_AIR"
         assert reaction(script, request_id, lambda s: s.land_state(self.AIR)) == Reaction(
             after, Control.NONE, [], how
         )
+
+    @pytest.mark.parametrize(
+        ("asked", "mode", "after"),
+        [
+            (Land(), FlightMode.LAND, State.LANDING),
+            (ReturnHome(), FlightMode.LAND, State.LANDING),
+            (ReturnHome(), FlightMode.RETURN, State.RETURNING),
+        ],
+    )
+    def test_a_landing_that_bounces_goes_on(
+        self, asked: Request, mode: FlightMode, after: State
+    ) -> None:
+        """station.md, bug 11: it timed out three seconds later."""
+        script = Script(policy("default")).take_control(UP)
+        request_id = script.ask(asked)
+        script.heartbeat(mode)
+        script.land_state(LandedState.ON_GROUND)
+        assert state_of(script) is State.GROUNDED
+        script.wait(1.0)
+        script.land_state(self.AIR)
+        script.wait(10.0)
+        assert (state_of(script), ended(script, request_id)) == (after, "")
+        script.land_state(LandedState.ON_GROUND)
+        script.heartbeat(armed=False)
+        assert (state_of(script), ended(script, request_id)) == (State.GROUNDED, "complete")
 
     def test_our_own_take_off_that_comes_late_is_held(self) -> None:
         script = Script(policy("default"))

@@ -4,14 +4,28 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.gate.effects import CommandKind
+from gcs.gate.effects import CancelCommand, CommandKind
 from gcs.gate.inputs import (
     HomeSeen,
+    Input,
+    LandedSeen,
+    MessageSeen,
     MissionLoaded,
+    OperatorLost,
     VerifierChanged,
 )
+from gcs.gate.machine.memory import GATE
 from gcs.gate.refusal import Code
-from gcs.gate.requests import Abort, Hold, Resume, StartMission, TakeControl
+from gcs.gate.requests import (
+    Abort,
+    Hold,
+    Land,
+    Request,
+    Resume,
+    SetMode,
+    StartMission,
+    TakeControl,
+)
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
     HEARD,
@@ -45,8 +59,130 @@ class TestContact:
         assert ended(script, request_id) == "aborted LINK_LOST"
         memory = script.gate.memory
         assert (memory.armed, memory.mode, memory.landed) == (False, None, LandedState.UNDEFINED)
-        assert memory.outstanding == ()
+        held = [(GATE, CommandKind.HOLD)] if state is State.HOLDING else []
+        assert list(memory.outstanding) == held
         assert not streams(script)
+
+    def test_a_hold_that_was_asked_for_is_asked_for_until_it_is_shown(self) -> None:
+        script, request_id = flight(State.HOLDING)
+        script.reports_heartbeat = script.reports_position = False
+        script.wait(4.0)
+        assert (state_of(script), ended(script, request_id)) == (
+            State.NO_VEHICLE,
+            "aborted LINK_LOST",
+        )
+        script.forget()
+        script.wait(5.0)
+        assert script.commands() == [CommandKind.HOLD] * 5
+        script.reports_heartbeat = script.reports_position = True
+        script.heartbeat(FlightMode.GUIDED)
+        script.land_state(LandedState.IN_AIR)
+        script.tick()
+        assert state_of(script) is State.HOLDING
+        script.heartbeat(FlightMode.HOLD)
+        script.forget()
+        script.wait(3.0)
+        assert script.commands() == []
+
+    @pytest.mark.parametrize("given", [MessageSeen(), LandedSeen(LandedState.IN_AIR)])
+    def test_any_message_is_a_sign_of_life(self, given: Input) -> None:
+        """autopilots.md 7: without its heartbeats a vehicle was lost that told all else."""
+        script, request_id = flight(State.MOVING)
+        script.reports_heartbeat = False
+        for _ in range(5):
+            script.wait(1.0)
+            script.feed(MessageSeen())
+        script.feed(given)
+        assert (state_of(script), ended(script, request_id)) == (State.MOVING, "")
+
+    def test_a_message_of_a_vehicle_that_was_lost_tells_no_mode(self) -> None:
+        script = Script(policy("default"))
+        script.feed(MessageSeen())
+        assert state_of(script) is State.NO_VEHICLE
+        script, _ = flight(State.NO_VEHICLE)
+        script.feed(MessageSeen())
+        assert state_of(script) is State.NO_VEHICLE
+
+    @pytest.mark.parametrize(
+        ("asked", "kind"),
+        [
+            (Hold(), CommandKind.HOLD),
+            (Abort(), CommandKind.HOLD),
+            (Land(), CommandKind.LAND),
+            (SetMode("AUTO.LOITER", FlightMode.HOLD), CommandKind.HOLD),
+        ],
+    )
+    def test_a_stop_goes_out_to_a_vehicle_that_was_heard_once(
+        self, asked: Request, kind: CommandKind
+    ) -> None:
+        script = Script(policy("default")).take_control(UP)
+        script.reports_heartbeat = script.reports_position = False
+        script.wait(4.0)
+        script.forget()
+        request_id = script.ask(asked)
+        assert (script.commands(), ended(script, request_id)) == ([kind], "")
+        fresh = Script(policy("default"))
+        assert fresh.refusal(fresh.ask(asked)) is Code.NO_VEHICLE
+
+    @pytest.mark.parametrize("result", [None, 2])
+    def test_a_landing_that_is_not_heard_of_is_told(self, result: int | None) -> None:
+        script = Script(policy("default")).take_control(UP)
+        script.reports_heartbeat = script.reports_position = False
+        script.wait(4.0)
+        request_id = script.ask(Land())
+        script.answer(CommandKind.LAND, result)
+        wanted = "timed out NO_ANSWER" if result is None else "aborted VEHICLE_REFUSED"
+        assert ended(script, request_id) == wanted
+
+    def test_a_landing_that_was_not_heard_of_is_complete_where_it_is_seen(self) -> None:
+        script = Script(policy("default")).take_control(UP)
+        script.reports_heartbeat = script.reports_position = False
+        script.wait(4.0)
+        request_id = script.ask(Land())
+        script.answer(CommandKind.LAND, 0)
+        script.reports_heartbeat = script.reports_position = True
+        script.heartbeat(FlightMode.LAND)
+        script.land_state(LandedState.IN_AIR)
+        script.wait(10.0)
+        assert (state_of(script), ended(script, request_id)) == (State.LANDING, "")
+        script.land_state(LandedState.ON_GROUND)
+        script.heartbeat(armed=False)
+        assert ended(script, request_id) == "complete"
+
+    @pytest.mark.parametrize(
+        ("state", "sent"),
+        [
+            (State.MOVING, [CommandKind.HOLD]),
+            (State.FLYING_MISSION, [CommandKind.HOLD]),
+            (State.RETURNING, []),
+            (State.LANDING, []),
+            (State.EXTERNAL, []),
+            (State.GROUNDED, []),
+        ],
+    )
+    def test_who_quits_holds_what_we_flew_when_it_was_heard_last(
+        self, state: State, sent: list[CommandKind]
+    ) -> None:
+        script, _ = flight(state)
+        script.heartbeat()
+        script.reports_heartbeat = False
+        script.wait(4.0)
+        assert state_of(script) is State.NO_VEHICLE
+        script.forget()
+        script.feed(OperatorLost("quit"))
+        assert (script.commands(), script.gate.settled) == (sent, sent == [])
+
+    def test_who_quits_does_not_take_back_the_landing_of_what_is_not_heard(self) -> None:
+        script = Script(policy("default")).take_control(UP)
+        script.reports_heartbeat = script.reports_position = False
+        script.wait(4.0)
+        request_id = script.ask(Land())
+        script.forget()
+        script.feed(OperatorLost("quit"))
+        assert script.commands() == []
+        assert ended(script, request_id) == "aborted OPERATOR_LOST"
+        assert script.all(CancelCommand) == []
+        assert not script.gate.settled
 
     def test_so_it_is_where_the_position_went_first(self) -> None:
         script, request_id = flight(State.MOVING)
@@ -123,8 +259,9 @@ class TestOldPosition:
         sent_before = script.commands().count(CommandKind.HOLD)
         script.forget()
         script.wait(0.4)
-        assert ended(script, request_id) == "aborted STALE"
-        assert CommandKind.HOLD in script.commands()
+        # A hold that was asked for goes on until it is seen.
+        assert ended(script, request_id) == ("" if state is State.HOLDING else "aborted STALE")
+        assert state is State.HOLDING or CommandKind.HOLD in script.commands()
         assert sent_before == 0 or state is State.HOLDING
         assert not streams(script)
         assert (state_of(script), script.gate.control) == (State.STALE, Control.OURS)

@@ -202,10 +202,12 @@ def test_a_vehicle_that_was_lost_has_reported_as_little_as_one_never_heard() -> 
         boot_ms=lost.boot_ms,
         home_ned=lost.home_ned,
         return_up_m=lost.return_up_m,
+        climb_ends_within_m=lost.climb_ends_within_m,
+        lost_in_flight=True,
         verifier=lost.verifier,
         asked_until_ns=lost.asked_until_ns,
         takeoff_until_ns=lost.takeoff_until_ns,
-        top_down_m=lost.top_down_m,
+        top_ned=lost.top_ned,
     )
 
 

@@ -24,7 +24,7 @@ from gcs.gate.states import Control, State
 from tests.unit.gate.planted import FAULTS, Planted
 from tests.unit.gate.unreached import UNREACHED
 
-PX4 = world(YARD, "px4", return_up_m=10.0)
+PX4 = world(YARD, "px4", return_up_m=10.0, climb_ends_within_m=0.8)
 ARDUPILOT = world(
     replace(
         YARD,

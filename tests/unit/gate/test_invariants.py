@@ -15,6 +15,7 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import verifier_for
 from gcs.gate.effects import Outcome, Ruling, SendSetpoint, SwitchedFence, Verdict
 from gcs.gate.inputs import (
+    ClimbEndSeen,
     HeartbeatSeen,
     HomeSeen,
     Input,
@@ -62,10 +63,11 @@ class Run:
     def __post_init__(self) -> None:
         self.gate = Gate(self.policy, self.autopilot, self.now_ns, self.table)
         self.verifier = verifier_for(self.policy, self.autopilot, HOME, None)
-        self.world = World(self.policy, self.verifier, 10.0)
+        self.world = World(self.policy, self.verifier, 10.0, 0.8)
         for told in (
             HomeSeen(HOME),
             ReturnHeightSeen(10.0),
+            ClimbEndSeen(0.8),
             VerifierChanged(self.verifier),
             MissionLoaded("square", 4),
         ):

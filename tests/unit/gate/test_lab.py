@@ -291,7 +291,7 @@ def test_no_acceptance_without_a_position() -> None:
     script.land_state(LandedState.IN_AIR)
     script.place()
     for request in (GoTo((0.0, 0.0, -1.0)), TakeControl(), TakeOff(1.0)):
-        assert script.refusal(script.ask(request)) is Code.STALE
+        assert script.refusal(script.ask(request)) is Code.NO_POSITION
 
 
 def test_arrival_by_the_expert_rules_waits_for_speed_and_dwell() -> None:

@@ -34,7 +34,7 @@ class TestStanding:
         script.heartbeat(armed=False)
         assert state_of(script) is State.GROUNDED
         script.forget()
-        assert ended(script, script.ask(Hold())) == "complete"
+        assert ended(script, script.ask(Land())) == "complete"
         assert script.commands() == []
 
     def test_a_mission_mode_without_our_mission_is_somebody_elses_flight(self) -> None:

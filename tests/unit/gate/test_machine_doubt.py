@@ -139,7 +139,7 @@ class TestLandedState:
         assert script.commands() == [CommandKind.HOLD]
         assert not script.ended(requested)
 
-    @pytest.mark.parametrize("wanted", [Hold(), Land(), ReturnHome()], ids=["hold", "land", "rtl"])
+    @pytest.mark.parametrize("wanted", [Land(), ReturnHome()], ids=["land", "rtl"])
     def test_what_is_reported_to_stand_has_nothing_left_to_do(self, wanted: Request) -> None:
         script = armed()
         assert script.outcome(script.ask(wanted)).kind is OutcomeKind.COMPLETE

@@ -81,10 +81,9 @@ class TestControl:
         assert "no position" in outcome.sentence
         assert "TEMPORARILY_REJECTED" in outcome.sentence
 
-    def test_on_the_ground_control_is_complete_at_once(self) -> None:
+    def test_on_the_ground_there_is_no_control_to_take(self) -> None:
         script = Script(policy("default")).connect()
-        requested = script.ask(TakeControl())
-        assert script.outcome(requested).kind is OutcomeKind.COMPLETE
+        assert script.refusal(script.ask(TakeControl())) is Code.NOT_FLYING
         assert script.gate.control is Control.NONE
 
     def test_a_mode_that_we_did_not_command_takes_the_vehicle_over(self) -> None:
@@ -167,8 +166,10 @@ class TestTakeOff:
         assert not script.ended(requested)
         script.wait(1.1)
         script.heartbeat(FlightMode.GUIDED)
+        assert (script.gate.state, script.gate.control) == (State.MOVING, Control.OURS)
+        script.wait(script.policy.arrival.dwell_s)
         assert script.outcome(requested).kind is OutcomeKind.COMPLETE
-        assert script.gate.control is Control.OURS
+        assert (script.gate.state, script.gate.control) == (State.HOVERING, Control.OURS)
 
     def test_the_hold_mode_of_an_old_heartbeat_is_not_the_end_of_the_climb(self) -> None:
         script = self.script()
@@ -404,7 +405,7 @@ class TestPictureAndMission:
         requested = script.ask(SetMode("AUTO.LAND", FlightMode.LAND))
         assert script.verdict(requested).ruling is Ruling.ACCEPTED
         assert script.commands() == [CommandKind.LAND]
-        assert script.refusal(script.ask(SetMode("ACRO", FlightMode.OTHER))) is Code.POLICY
+        assert script.refusal(script.ask(SetMode("ACRO", FlightMode.OTHER))) is Code.UNSUPPORTED
 
     def test_a_goal_that_takes_too_long_is_held_and_timed_out(self) -> None:
         script = in_state(State.HOVERING)

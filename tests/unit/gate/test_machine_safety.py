@@ -19,7 +19,7 @@ from gcs.gate.inputs import (
 )
 from gcs.gate.machine.gate import Gate
 from gcs.gate.refusal import Code
-from gcs.gate.requests import Abort, Arm, TakeOff
+from gcs.gate.requests import Abort, Arm, Land, Request, ReturnHome, TakeOff
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP, lead_to
@@ -33,6 +33,7 @@ FLOWN = [
     State.RETURNING,
     State.LANDING,
 ]
+HELD_WHEN_LEFT = FLOWN[:5]
 
 
 def in_state(state: State, **severities: Severity) -> Script:
@@ -240,7 +241,7 @@ class TestSeverity:
 
 
 class TestOperatorLost:
-    @pytest.mark.parametrize("state", FLOWN, ids=lambda s: s.name)
+    @pytest.mark.parametrize("state", HELD_WHEN_LEFT, ids=lambda s: s.name)
     def test_what_we_fly_is_held_and_then_may_be_left(self, state: State) -> None:
         script = in_state(state)
         script.feed(OperatorLost("quit"))
@@ -256,6 +257,26 @@ class TestOperatorLost:
         script.feed(OperatorLost("quit"))
         assert not script.commands()
         assert script.gate.settled
+
+    @pytest.mark.parametrize("state", [State.RETURNING, State.LANDING], ids=lambda s: s.name)
+    def test_what_comes_down_goes_on_and_may_be_left(self, state: State) -> None:
+        """newcomer.md 8: leaving a return put the vehicle into hold."""
+        script = in_state(state)
+        script.feed(OperatorLost("quit"))
+        assert script.gate.state is state
+        assert script.commands() == []
+        assert script.gate.settled
+
+    @pytest.mark.parametrize("request_", [ReturnHome(), Land()])
+    def test_a_return_that_is_not_shown_yet_is_asked_for_on(self, request_: Request) -> None:
+        script = in_state(State.HOVERING)
+        requested = script.ask(request_)
+        script.forget()
+        script.feed(OperatorLost("quit"))
+        assert script.outcome(requested).code is Code.OPERATOR_LOST
+        assert script.outcome(requested).sentence.endswith("the vehicle goes on by itself")
+        assert script.all(CancelCommand) == []
+        assert not script.gate.settled
 
     def test_a_landing_that_severity_demands_goes_on(self) -> None:
         script = in_state(State.HOVERING, battery_critical=Severity.LAND)

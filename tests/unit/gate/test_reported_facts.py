@@ -18,7 +18,7 @@ from gcs.gate.inputs import (
     PhotoSeen,
     PositionSeen,
 )
-from gcs.gate.requests import Abort, Disarm, Hold, TakeControl
+from gcs.gate.requests import Abort, Disarm, Hold, Land, TakeControl
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
     STILL,
@@ -147,8 +147,8 @@ class TestStanding:
         script.wait(1.0)
         script.reports_landed = False
         script.feed(PositionSeen((3.0, 4.0, -7.0 - up), STILL, script.now_ns // MS + 200))
-        hold = script.ask(Hold())
-        assert script.ended(hold) is stands
+        landing = script.ask(Land())
+        assert script.ended(landing) is stands
 
     def test_each_report_that_it_stands_is_of_where_it_is_now(self) -> None:
         script = Script(policy("default"))
@@ -156,9 +156,9 @@ class TestStanding:
         script.at(0.0, 0.0, 0.45)
         script.land_state(LandedState.ON_GROUND)
         script.at(0.0, 0.0, 0.9)
-        assert script.ended(script.ask(Hold()))
+        assert script.ended(script.ask(Land()))
         script.at(0.0, 0.0, 1.0)
-        assert not script.ended(script.ask(Hold()))
+        assert not script.ended(script.ask(Land()))
 
     def test_but_not_during_a_take_off(self) -> None:
         """px4 says ON_GROUND for up to a second into a climb."""
@@ -197,7 +197,7 @@ class TestStanding:
         lead_to(State.GROUNDED, script)
         script.land_state(LandedState.UNDEFINED)
         assert state_of(script) is State.GROUNDED
-        assert not script.ended(script.ask(Hold()))
+        assert not script.ended(script.ask(Land()))
 
     def test_what_is_reported_again_is_nothing_new(self) -> None:
         script, request_id = flight(State.MOVING)
@@ -211,14 +211,14 @@ class TestStanding:
         script.land_state(LandedState.ON_GROUND)
         script.at(0.0, 0.0, 40.0)
         assert state_of(script) is State.GROUNDED
-        assert script.ended(script.ask(Hold()))
+        assert script.ended(script.ask(Land()))
 
     def test_after_a_jump_heights_of_before_say_nothing(self) -> None:
         script = Script(policy("default"))
         lead_to(State.GROUNDED, script)
         script.reports_landed = False
         script.feed(PositionSeen((0.0, 0.0, -40.0), STILL, 1, reset=True))
-        assert script.ended(script.ask(Hold()))
+        assert script.ended(script.ask(Land()))
 
 
 class TestHome:

@@ -64,7 +64,7 @@ def each(code: str, *names: str) -> dict[str, str]:
     return dict.fromkeys(names, code)
 
 
-ALWAYS = each("POLICY", "other mode", "fence switch")
+ALWAYS = {**each("UNSUPPORTED", "other mode"), **each("POLICY", "fence switch")}
 IN_FLIGHT = each("ALREADY_FLYING", "arm", "take off")
 BUSY = each("BUSY", "goto", "resume", "photo", "mission")
 DONE = "DONE"
@@ -77,9 +77,9 @@ REFUSED: dict[State, dict[str, str]] = {
         **ALWAYS,
     },
     State.GROUNDED: {
-        **each("NOT_FLYING", "goto", "resume", "photo"),
+        **each("NOT_FLYING", "goto", "control", "resume", "photo"),
         **each("BUSY", "arm", "take off", "mission"),
-        **each(DONE, "control", "return"),
+        **each(DONE, "return"),
         **ALWAYS,
     },
     State.TAKING_OFF: {**BUSY, **IN_FLIGHT, "control": "BUSY", **ALWAYS},

@@ -17,7 +17,6 @@ from gcs.gate.requests import (
     Land,
     Request,
     ReturnHome,
-    TakeControl,
 )
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
@@ -102,7 +101,7 @@ class TestHoldAndAbort:
         assert script.refusal(script.ask(wanted)) is Code.NO_VEHICLE
         assert not script.commands()
 
-    @pytest.mark.parametrize("wanted", [Hold(), Land(), Disarm(), Disarm(force=True)])
+    @pytest.mark.parametrize("wanted", [Disarm(), Disarm(force=True), ReturnHome()])
     def test_nor_of_somebody_who_is_lost(self, wanted: Request) -> None:
         script, request_id = flight(State.NO_VEHICLE)
         assert script.refusal(script.ask(wanted)) is Code.NO_VEHICLE
@@ -124,12 +123,12 @@ class TestOnTheGround:
 
     @pytest.mark.parametrize(
         "wanted",
-        [Disarm(), Disarm(force=True), Abort(), Hold(), Land(), ReturnHome(), TakeControl()],
+        [Disarm(), Disarm(force=True), Abort(), Land(), ReturnHome()],
     )
     def test_disarmed_there_is_nothing_left_to_do(self, wanted: Request) -> None:
         assert self.complete(Script(policy("default")).connect(), wanted)
 
-    @pytest.mark.parametrize("wanted", [Hold(), Land(), ReturnHome(), Arm()])
+    @pytest.mark.parametrize("wanted", [Land(), ReturnHome(), Arm()])
     def test_armed_it_stands_all_the_same(self, wanted: Request) -> None:
         script = self.armed()
         assert self.complete(script, wanted)
@@ -263,7 +262,7 @@ class TestStandingWithAnOldPosition:
         script.forget()
         return script
 
-    @pytest.mark.parametrize("wanted", [Hold(), Land(), ReturnHome()])
+    @pytest.mark.parametrize("wanted", [Land(), ReturnHome()])
     def test_there_is_nothing_left_to_do(self, wanted: Request) -> None:
         script = self.script()
         asked = script.ask(wanted)

@@ -6,9 +6,18 @@ import pytest
 
 from gcs.gate.effects import CommandKind, SendCommand
 from gcs.gate.requests import Hold, Land, TakeOff
-from gcs.gate.states import FlightMode, LandedState, State
-from tests.unit.gate.reactions import HELD, Reaction, ended, reaction, remember, state_of, take_off
-from tests.unit.gate.script import Script, policy
+from gcs.gate.states import Control, FlightMode, LandedState, State
+from tests.unit.gate.reactions import (
+    HELD,
+    Reaction,
+    elsewhere,
+    ended,
+    reaction,
+    remember,
+    state_of,
+    take_off,
+)
+from tests.unit.gate.script import SECOND, Script, policy
 
 
 class TestCommandAndHeight:
@@ -42,6 +51,89 @@ class TestCommandAndHeight:
         script.heartbeat(FlightMode.HOLD)
         script.tick()
         assert "m above the height asked for" in script.outcome(request_id).sentence
+
+
+class TestTheEndOfTheClimb:
+    """PX4's own tolerance is 0.8 m, the policy's arrival radius 0.5 m."""
+
+    def climbed(self, up: float, autopilot: str = "px4") -> tuple[Script, int]:
+        """A take-off to 5 m that the vehicle ends `up` metres high, two metres off its place."""
+        script = Script(policy("default"), autopilot)
+        request_id = take_off(script, 5.0)
+        script.land_state(LandedState.TAKEOFF)
+        script.at(2.0, 0.0, up, (0.0, 0.0, 1.0))
+        script.land_state(LandedState.IN_AIR)
+        script.v_ned = (0.0, 0.0, 0.0)
+        script.heartbeat(FlightMode.HOLD if autopilot == "px4" else FlightMode.GUIDED)
+        script.tick()
+        return script, request_id
+
+    def gained(self, script: Script) -> None:
+        script.wait(1.1)
+        script.heartbeat(FlightMode.GUIDED)
+
+    @pytest.mark.parametrize("up", [3.75, 4.25, 4.75, 5.25])
+    def test_the_top_that_was_verified_is_streamed_and_flown_to(self, up: float) -> None:
+        script, request_id = self.climbed(up)
+        assert script.gate.hold_goal_ned == (0.0, 0.0, -5.0)
+        self.gained(script)
+        assert {place for _, place in script.setpoints()} == {(0.0, 0.0, 5.0)}
+        assert (state_of(script), ended(script, request_id)) == (State.MOVING, "")
+        script.at(0.0, 0.0, 5.0)
+        script.wait(1.0)
+        assert (state_of(script), ended(script, request_id)) == (State.HOVERING, "complete")
+        assert script.gate.hold_goal_ned == (0.0, 0.0, -5.0)
+
+    @pytest.mark.parametrize(("up", "autopilot"), [(3.5, "px4"), (4.25, "ardupilot")])
+    def test_a_climb_that_ended_further_below_is_not_over(self, up: float, autopilot: str) -> None:
+        script, _ = self.climbed(up, autopilot)
+        assert state_of(script) is not State.HOVERING
+
+    def test_a_vehicle_that_does_not_show_the_end_climbs_on(self) -> None:
+        script, _ = self.climbed(3.5)
+        remember(script, state=State.TAKING_OFF, mode=FlightMode.TAKEOFF)
+        script.mode = FlightMode.TAKEOFF
+        script.at(0.0, 0.0, 4.25)
+        script.wait(0.2)
+        assert state_of(script) is State.TAKING_OFF
+
+    @pytest.mark.parametrize(("up", "how"), [(4.75, ""), (4.8125, "complete"), (5.25, "")])
+    def test_it_is_complete_within_a_fifth_of_a_metre_of_the_height(
+        self, up: float, how: str
+    ) -> None:
+        """The arrival radius is half a metre."""
+        script, request_id = self.climbed(4.25)
+        self.gained(script)
+        script.at(0.0, 0.0, up)
+        script.wait(1.0)
+        assert ended(script, request_id) == how
+
+    def test_the_rest_has_the_deadline_of_a_goal(self) -> None:
+        script, request_id = self.climbed(4.25)
+        self.gained(script)
+        script.wait(script.policy.deadline_min_s + 0.1)
+        assert state_of(script) is State.HOLDING
+        assert ended(script, request_id) == "timed out DEADLINE"
+
+    def test_a_top_that_clears_no_more_is_not_flown_to(self) -> None:
+        script, request_id = self.climbed(4.25)
+        script.wait(1.1)
+        remember(script, verifier=elsewhere(script))
+        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.GUIDED)) == Reaction(
+            *HELD, "aborted OUTSIDE_FENCE"
+        )
+
+    def test_guided_mode_that_is_shown_while_the_position_is_too_old_waits_for_a_fresh_one(
+        self,
+    ) -> None:
+        script, request_id = self.climbed(4.25)
+        script.wait(1.1)
+        script.now_ns += round(1.1 * SECOND)
+        script.heartbeat(FlightMode.GUIDED)
+        assert (state_of(script), script.gate.control) == (State.HOVERING, Control.TAKING)
+        script.position()
+        script.heartbeat(FlightMode.GUIDED)
+        assert (state_of(script), ended(script, request_id)) == (State.MOVING, "")
 
 
 class TestWhetherItStands:

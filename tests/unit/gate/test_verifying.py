@@ -68,10 +68,10 @@ class TestEveryQuestion:
         ("question", "missing", "expected"),
         [
             ("position", "verifier", Code.NO_ORIGIN),
-            ("position", "pos_ned", Code.STALE),
+            ("position", "pos_ned", Code.NO_POSITION),
             ("position", "v_ned", Code.STALE),
             ("climb", "verifier", Code.NO_ORIGIN),
-            ("climb", "pos_ned", Code.STALE),
+            ("climb", "pos_ned", Code.NO_POSITION),
             ("goal", "verifier", Code.NO_ORIGIN),
             ("goal", "pos_ned", Code.NO_ORIGIN),
             ("goal", "v_ned", Code.NO_ORIGIN),
@@ -121,7 +121,7 @@ class TestWhatIsFlown:
     def test_the_top_of_a_take_off_is_above_the_floor(
         self, up_m: float, expected: Code | None
     ) -> None:
-        assert self.refusal(State.TAKING_OFF, self.LOFT, top_down_m=-up_m) is expected
+        assert self.refusal(State.TAKING_OFF, self.LOFT, top_ned=at(3, 4, up_m)) is expected
 
     @pytest.mark.parametrize(("up_m", "expected"), [(8.0, None), (4.5, Code.OUTSIDE_FENCE)])
     def test_so_is_the_place_that_is_held(self, up_m: float, expected: Code | None) -> None:

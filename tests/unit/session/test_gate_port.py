@@ -68,7 +68,10 @@ def test_a_new_vehicle_has_a_new_gate_and_what_was_wrong_still_is() -> None:
     port = GatePort(DEFAULT, 0)
     port.handle(inputs.ConditionChanged(Condition.RECORDER_FAILED, True, "disk full"), 0)
     work = port.meet(vehicle(ARDUPILOT), SECOND_NS)
-    assert work == [condition(Condition.RECORDER_FAILED, True, "disk full")]
+    assert work == [
+        ToGate(inputs.ClimbEndSeen(0.0)),
+        condition(Condition.RECORDER_FAILED, True, "disk full"),
+    ]
     assert port.gate.memory.autopilot == "ardupilot"
     assert list(port.gate.conditions) == []
     for item in of(ToGate, work):

@@ -7,10 +7,11 @@ import math
 import pytest
 
 from gcs import ipc
+from gcs.frames import as_on_the_wire
 from gcs.gate.requests import Abort, GoTo, SetMode, TakeOff
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4
-from gcs.session.requests import BadAskError, Requests, as_on_the_wire, heading_rad, request_of
+from gcs.session.requests import BadAskError, Requests, heading_rad, request_of
 
 
 def test_a_goal_is_turned_into_ned_once() -> None:

@@ -11,6 +11,7 @@ from gcs.protocol.autopilot import ARDUPILOT, GENERIC, PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.settings import (
     AcceptanceKnown,
+    ClimbEndKnown,
     FailsafesKnown,
     Found,
     ParameterKnown,
@@ -31,6 +32,7 @@ PX4_ON: dict[str, float | None] = {
     "COM_OBL_RC_ACT": 0,
     "RTL_RETURN_ALT": 30.0,
     "NAV_ACC_RAD": 2.0,
+    "NAV_MC_ALT_RAD": 1.5,
 }
 ARDUPILOT_ON: dict[str, float | None] = {
     "FS_GCS_ENABLE": 1,
@@ -120,6 +122,15 @@ class Script:
     @property
     def return_up_m(self) -> list[float | None]:
         return [item.up_m for item in self.found if isinstance(item, ReturnHeightKnown)]
+
+
+def test_how_low_a_take_off_may_end_is_read() -> None:
+    """PX4 alone has the parameter (1.14 reference: NAV_MC_ALT_RAD, default 0.8 m)."""
+    px4, copter = Script(PX4, PX4_ON), Script(ARDUPILOT, ARDUPILOT_4_7)
+    px4.start()
+    copter.start()
+    assert [item.within_m for item in px4.found if isinstance(item, ClimbEndKnown)] == [1.5]
+    assert not any(isinstance(item, ClimbEndKnown) for item in copter.found)
 
 
 # ------------------------------------------------------------------------- the failsafes
@@ -225,7 +236,7 @@ def test_silence_is_asked_again_and_again_until_it_is_over() -> None:
     assert len(script.weak) == 1  # nothing new was found
     script.params["GF_ACTION"] = 2
     script.run(10.0)
-    assert not script.weak[-1]
+    assert script.weak[1:] == [()]
     assert script.settings.deadline_ns is None
 
 

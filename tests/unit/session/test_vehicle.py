@@ -387,6 +387,7 @@ def settings(script: Script, **params: float) -> list[Work]:
         answered += script.hear(wire.float_param("RTL_RETURN_ALT", params["RTL_RETURN_ALT"]))
     else:
         answered += script.hear(wire.no_param("RTL_RETURN_ALT"))
+    answered += script.hear(wire.float_param("NAV_MC_ALT_RAD", params.get("NAV_MC_ALT_RAD", 0.8)))
     return [*work, *answered]
 
 
@@ -412,6 +413,13 @@ def test_a_return_height_that_the_vehicle_does_not_have_is_not_known() -> None:
     assert not any(isinstance(given, inputs.ReturnHeightSeen) for given in gate_inputs(work))
     assert script.vehicle.telemetry is not None
     assert script.vehicle.telemetry.return_up_m is None
+
+
+def test_the_gate_is_told_how_near_its_height_the_vehicle_ends_a_climb() -> None:
+    """PX4's own 0.8 m at first, then what the vehicle says."""
+    work = settings(Script(), NAV_MC_ALT_RAD=2.5)
+    within_m = [g.within_m for g in gate_inputs(work) if isinstance(g, inputs.ClimbEndSeen)]
+    assert within_m == [0.8, 2.5]
 
 
 def test_a_failsafe_that_is_off_is_a_condition_and_not_called_on() -> None:
