@@ -46,6 +46,8 @@ class Code(StrEnum):
     MODE_CHANGED = "MODE_CHANGED"
     SUPERSEDED = "SUPERSEDED"
     LINK_LOST = "LINK_LOST"
+    OTHER_OPERATOR = "OTHER_OPERATOR"
+    NOT_RUNNING = "NOT_RUNNING"
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ from gcs.session.inputs import (
     OperatorNoise,
     RecorderChanged,
     RecorderGrew,
+    SignalCame,
     SimGone,
     SimLine,
     Wake,
@@ -280,7 +281,7 @@ def test_what_a_link_tells_of_itself_follows_what_it_brought(rig: Rig) -> None:
 def test_the_operator_s_lines_are_commands(rig: Rig) -> None:
     asked = ipc.Ask(1, "land")
     rig.run(lambda: rig.type(ipc.encode(asked) + ipc.encode(ipc.Leave())))
-    assert rig.core.inputs[:2] == [OperatorLine(asked), OperatorLine(ipc.Leave())]
+    assert rig.core.inputs[:2] == [OperatorLine(1, asked), OperatorLine(1, ipc.Leave())]
 
 
 @pytest.mark.parametrize(
@@ -292,7 +293,7 @@ def test_a_line_that_is_no_command_is_told_with_its_beginning(rig: Rig, line: st
     noise, next_one = rig.core.inputs[:2]
     assert isinstance(noise, OperatorNoise)
     assert repr(data[:200]) in noise.text
-    assert next_one == OperatorLine(ipc.Ask(1, "land"))
+    assert next_one == OperatorLine(1, ipc.Ask(1, "land"))
     assert rig.core.faults == []
 
 
@@ -304,8 +305,8 @@ def test_the_end_of_the_command_stream_is_told_once_after_its_last_line(rig: Rig
         lambda: rig.advance(50),
     )
     assert rig.core.inputs[:3] == [
-        OperatorLine(ipc.Ask(1, "land")),
-        OperatorGone("the command stream ended"),
+        OperatorLine(1, ipc.Ask(1, "land")),
+        OperatorGone(1, "the command stream ended"),
         Wake(),
     ]
 
@@ -314,12 +315,12 @@ def test_a_screen_that_nobody_reads_is_an_operator_who_is_gone_and_told_once(rig
     rig.core.answers[FIRST] = [trouble("is anybody there?")]
     rig.run(rig.look_away, lambda: rig.links[0].bring(b"first"), rig.hang_up, lambda: None)
     gone = [given for given in rig.core.inputs if isinstance(given, OperatorGone)]
-    assert gone == [OperatorGone("nobody reads the link's output")]
+    assert gone == [OperatorGone(1, "nobody reads the link's output")]
 
 
 def test_a_signal_is_an_operator_who_is_gone_by_its_name(rig: Rig) -> None:
     rig.run(lambda: rig.signals.bring("SIGTERM"))
-    assert rig.core.inputs[0] == OperatorGone("SIGTERM")
+    assert rig.core.inputs[0] == SignalCame("SIGTERM")
 
 
 # ---------------------------------------------------------------------- recorder, vehicle
