@@ -11,6 +11,7 @@ from gcs.cli.options import (
     LINK,
     LOG_DIR,
     POLICY,
+    TAKE,
     TIMEOUT,
     UTF8,
     Seconds,
@@ -35,7 +36,7 @@ WAIT = click.Option(
     metavar="S",
     help="Seconds to wait for the effect.",
 )
-LINK_OPTIONS = (LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON)
+LINK_OPTIONS = (LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
 
 
 @click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
@@ -49,12 +50,13 @@ def upload(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Verify a mission file, send it to the vehicle, read it back and compare."""
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)),)
-    _run(requests, links, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, policy, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission download -o on_board.plan\n\n{EXITS}")
@@ -77,13 +79,14 @@ def download(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Read the mission on board into a file."""
     from gcs.ipc import Ask
 
     _check_output(output, force)
     requests = (Ask(0, "mission_download", path=output),)
-    _run(requests, links, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, policy, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -97,12 +100,13 @@ def fly(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Upload a mission file, then start it and wait for its end."""
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
-    _run(requests, links, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, policy, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
@@ -114,11 +118,12 @@ def clear(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Remove the mission on board."""
     from gcs.ipc import Ask
 
-    _run((Ask(0, "mission_clear"),), links, policy, log_dir, timeout, wait, as_json)
+    _run((Ask(0, "mission_clear"),), links, policy, log_dir, timeout, wait, as_json, take)
 
 
 def _check_output(output: str, force: bool) -> None:
@@ -159,14 +164,19 @@ def _run(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     from gcs.cli import oneshot_session
+    from gcs.cli.running import station_for
     from gcs.operator.request_words import SendRequests, label
 
     for request in requests:
         UTF8.convert(request.path, None, None)
     setup = station_config(links, policy, log_dir, name="mission", timeout_s=timeout)
-    how = oneshot_session.OneShotConfig(timeout, wait, as_json, label(requests[0]))
+    found = station_for(links)
+    what = label(requests[0])
+    take = take and found is not None
+    how = oneshot_session.OneShotConfig(timeout, wait, as_json, what, take=take)
     task = oneshot_session.sending(SendRequests(requests), wait)
-    code = oneshot_session.run(setup, how, task)
+    code = oneshot_session.run(setup, how, task, found)
     click.get_current_context().exit(code)

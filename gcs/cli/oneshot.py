@@ -6,7 +6,17 @@ from functools import partial
 
 import click
 
-from gcs.cli.options import AS_JSON, LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, Seconds, station_config
+from gcs.cli.options import (
+    AS_JSON,
+    LINK,
+    LOG_DIR,
+    POLICY,
+    TAKE,
+    TIMEOUT,
+    UTF8,
+    Seconds,
+    station_config,
+)
 from gcs.operator import line_parser, request_words
 
 EXITS = (
@@ -33,6 +43,7 @@ def _command(name: str) -> click.Command:
         timeout: float,
         wait: float,
         as_json: bool,
+        take: bool = False,
         arguments: tuple[str, ...] = (),
     ) -> None:
         try:
@@ -42,14 +53,22 @@ def _command(name: str) -> click.Command:
         assert isinstance(action, request_words.SendRequests)
 
         from gcs.cli import oneshot_session
+        from gcs.cli.running import station_for
 
         setup = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
-        how = oneshot_session.OneShotConfig(timeout, wait, as_json, name)
-        code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
+        stops = all(request.word in request_words.STOPS for request in action.requests)
+        found = station_for(links, anywhere=stops)
+        at_once = stops and found is not None
+        how = oneshot_session.OneShotConfig(
+            timeout, wait, as_json, name, take=take and found is not None, at_once=at_once
+        )
+        code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait), found)
         click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
     options: list[click.Parameter] = [LINK, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
+    if name not in request_words.STOPS:
+        options.append(TAKE)
     return click.Command(
         name,
         callback=run_word,
@@ -80,11 +99,13 @@ def _status(
     links: tuple[str, ...], policy: str, log_dir: str, timeout: float, as_json: bool
 ) -> None:
     from gcs.cli import oneshot_session
+    from gcs.cli.running import station_for
     from gcs.cli.status import report
 
     setup = station_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
     how = oneshot_session.OneShotConfig(timeout, 0.0, as_json, "status", cautions=True)
-    code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
+    found = station_for(links, anywhere=True)
+    code = oneshot_session.run(setup, how, partial(report, as_json=as_json), found)
     click.get_current_context().exit(code)
 
 

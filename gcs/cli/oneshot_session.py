@@ -10,8 +10,10 @@ import msgspec
 
 from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
+from gcs.cli.running import joined_station
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
+from gcs.ipc import Ask
 from gcs.operator import event_text
 from gcs.operator.client import StationClient
 from gcs.operator.dialogue import (
@@ -25,6 +27,7 @@ from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.interrupts import Interrupts
 from gcs.operator.request_words import NEEDS_CONTROL, SendRequests
 from gcs.operator.warning_filter import WARNING, WarningFilter
+from gcs.shell.stations import Description
 
 Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
 """What to do once a vehicle is heard.  It clears the display before it prints anything itself."""
@@ -34,7 +37,8 @@ Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
 class OneShotConfig:
     """`wait_s` limits the wait for the outcome, `timeout_s` that for a vehicle; seconds.
 
-    `cautions`: show what is always wrong with this vehicle, too.
+    `cautions`: show what is always wrong with this vehicle, too.  `take`: take control over from
+    another operator.  `at_once`: do not wait to hear how the vehicle is, the station knows.
     """
 
     timeout_s: float
@@ -42,12 +46,21 @@ class OneShotConfig:
     as_json: bool
     what: str
     cautions: bool = False
+    take: bool = False
+    at_once: bool = False
 
 
-def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
-    """Do it with a station of our own; returns the exit code."""
+def run(
+    setup: StationConfig, how: OneShotConfig, task: Task, found: Description | None = None
+) -> int:
+    """Do it through the running station that was `found`, else with one of our own; returns the
+    exit code."""
     with Interrupts() as interrupts:
-        return run_over(StationClient.start(setup), interrupts, how, task)
+        if found is None:
+            return run_over(StationClient.start(setup), interrupts, how, task)
+        joined = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
+        click.echo(f"gcs: through the running station of process {found.pid}", err=True)
+        return run_over(joined, interrupts, how, task)
 
 
 def run_over(
@@ -67,7 +80,12 @@ def run_over(
 
         dialogue = Dialogue(connection, interrupts, on_event)
         try:
-            dialogue.wait_for_vehicle(how.timeout_s)
+            if not how.at_once:
+                dialogue.wait_for_vehicle(how.timeout_s)
+            if how.take:
+                taken = dialogue.wait_settled(dialogue.send(Ask(0, "station_take")))
+                if not taken.completed:
+                    return _left(dialogue, taken.exit_code)
             code = task(dialogue, display)
         except Interrupted:
             ended = dialogue.leave("interrupted")
@@ -78,8 +96,13 @@ def run_over(
         except ExitError:
             dialogue.leave("failed")
             raise
-        ended = dialogue.leave("done")
-        return code or exit_code_of(ended)
+        return _left(dialogue, code)
+
+
+def _left(dialogue: Dialogue, code: int) -> int:
+    """Leave in good order; the exit code, which the station may have one for if we have none."""
+    ended = dialogue.leave("done")
+    return code or exit_code_of(ended)
 
 
 def sending(action: SendRequests, wait_s: float) -> Task:

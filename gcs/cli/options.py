@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -80,6 +81,11 @@ TIMEOUT = click.Option(
     metavar="S",
     help="Seconds to wait for a vehicle to be heard.",
 )
+TAKE = click.Option(
+    ["--take"],
+    is_flag=True,
+    help="Where another operator is in control of the running station, take it over; it is told.",
+)
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
 
 
@@ -130,4 +136,5 @@ def station_config(
         name=name,
         connect_timeout_s=timeout_s,
         record=record,
+        operator=f"gcs {name}, pid {os.getpid()}",
     )

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.session.clients import FIRST
+from gcs.session.effects import EVERYONE
 from gcs.session.inputs import (
     Input,
     OperatorGone,
@@ -46,12 +47,12 @@ NAME_LETTERS = 80
 class Connection:
     """One client: what it said and is still to be handed on, what waits for it."""
 
-    def __init__(self, sock: socket.socket, number: int, now_s: float) -> None:
+    def __init__(self, sock: socket.socket, now_s: float) -> None:
         sock.setblocking(False)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
         self._socket = sock
-        self.number = number
-        self.joined = False
+        self.number = 0
+        """The client's, once it has joined."""
         self.closing = False
         """Its good-bye is queued: nothing more is read, and it is closed once that is sent."""
         self.since_s = self.heard_s = now_s
@@ -66,6 +67,10 @@ class Connection:
 
     def fileno(self) -> int:
         return self._socket.fileno()
+
+    @property
+    def joined(self) -> bool:
+        return self.number != 0
 
     @property
     def waiting(self) -> bool:
@@ -116,8 +121,7 @@ class Connection:
             except BlockingIOError:
                 return
             except OSError:
-                self.ended = True
-                self._queue.clear()
+                self.give_up()
                 return
             self._taken_s = now_s
             self._queued_bytes -= sent
@@ -125,6 +129,13 @@ class Connection:
                 self._queue[0] = line[sent:]
                 return
             self._queue.popleft()
+
+    def give_up(self) -> None:
+        """Nothing more is handed on or sent."""
+        self.ended = True
+        self.lines.clear()
+        self._queue.clear()
+        self._queued_bytes = 0
 
     def overdue(self, now_s: float) -> str:
         """Why its patience with us, or ours with it, is over; empty if it is not."""
@@ -153,7 +164,7 @@ class ClientSockets:
         self._token = token
         self._now_s = now_s
         self._next = FIRST + 1
-        self._connections: dict[int, Connection] = {}
+        self._connections: list[Connection] = []
 
     def fileno(self) -> int:
         return self._listener.fileno()
@@ -161,18 +172,18 @@ class ClientSockets:
     @property
     def sources(self) -> list[ClientSockets | Connection]:
         """What `select` should watch for reading."""
-        connections = self._connections.values()
-        return [self, *(each for each in connections if not each.closing and not each.lines)]
+        ready = (each for each in self._connections if not each.closing and not each.lines)
+        return [self, *ready]
 
     @property
     def sinks(self) -> list[Connection]:
         """What `select` should watch for writing."""
-        return [each for each in self._connections.values() if each.waiting]
+        return [each for each in self._connections if each.waiting]
 
     @property
     def busy(self) -> bool:
         """Whether lines that were read still wait for their turn."""
-        return any(each.lines and not each.closing for each in self._connections.values())
+        return any(each.lines and not each.closing for each in self._connections)
 
     # ----------------------------------------------------------------------------- turn
 
@@ -184,7 +195,7 @@ class ClientSockets:
         now_s = self._now_s()
         if self in readable:
             yield from self._accept(now_s)
-        for connection in list(self._connections.values()):
+        for connection in list(self._connections):
             if connection in writable:
                 connection.flush(now_s)
             why = connection.overdue(now_s)
@@ -206,13 +217,12 @@ class ClientSockets:
                 return
             if len(self._connections) >= MAX_CLIENTS:
                 yield from self._drop(self._least_needed(), "too many operators: you were silent")
-            self._connections[self._next] = Connection(sock, self._next, now_s)
-            self._next += 1
+            self._connections.append(Connection(sock, now_s))
 
     def _least_needed(self) -> Connection:
         """Who makes room, so that a stop finds its way in: who has not joined, then who has been
         silent longest."""
-        return min(self._connections.values(), key=lambda each: (each.joined, each.heard_s))
+        return min(self._connections, key=lambda each: (each.joined, each.heard_s))
 
     def _hand_on(self, connection: Connection) -> Iterator[Input]:
         for _ in range(MAX_LINES_A_TURN):
@@ -237,7 +247,7 @@ class ClientSockets:
         elif not hmac.compare_digest(command.token.encode(), self._token.encode()):
             yield from self._drop(connection, "the token is not this station's")
         else:
-            connection.joined = True
+            connection.number, self._next = self._next, self._next + 1
             name = command.name[:NAME_LETTERS]
             yield OperatorJoined(connection.number, name, command.hold_on_leave)
 
@@ -258,8 +268,9 @@ class ClientSockets:
         yield from self._forget(connection, why)
 
     def _forget(self, connection: Connection, why: str) -> Iterator[Input]:
-        if self._connections.pop(connection.number, None) is None:
+        if connection not in self._connections:
             return
+        self._connections.remove(connection)
         connection.close()
         connection.lines.clear()
         if connection.joined:
@@ -268,26 +279,21 @@ class ClientSockets:
     # ---------------------------------------------------------------------------- tell
 
     def tell(self, line: bytes, client: int, *, droppable: bool, last: bool) -> None:
-        """Queue an event's line for one client, or for all that have joined (0).
+        """Queue an event's line for one client, or for all that have joined (`EVERYONE`).
 
         `last`: it is the client's good-bye; the connection closes once it is sent.
         """
-        told = self._connections.values() if client == 0 else self._known(client)
-        for connection in told:
-            if not connection.joined or connection.closing:
+        for connection in self._connections:
+            mine = client in (EVERYONE, connection.number)
+            if not mine or not connection.joined or connection.closing or connection.ended:
                 continue
             if connection.put(line, self._now_s(), droppable=droppable):
-                connection.ended = True
-                connection.lines.clear()
+                connection.give_up()
             connection.closing = last
-
-    def _known(self, client: int) -> list[Connection]:
-        connection = self._connections.get(client)
-        return [] if connection is None else [connection]
 
     def close(self) -> None:
         """Everything; what is queued goes as far as the sockets take it at once."""
-        for connection in self._connections.values():
+        for connection in self._connections:
             connection.flush(self._now_s())
             connection.close()
         self._connections.clear()

@@ -49,9 +49,9 @@ def folder_of(environment: Mapping[str, str] = os.environ) -> Path:
     """Where this user's stations are; it need not exist."""
     if sys.platform == "win32":
         return Path(environment.get("LOCALAPPDATA") or tempfile.gettempdir()) / "mavgate"
-    runtime = environment.get("XDG_RUNTIME_DIR")
-    if runtime:
-        return Path(runtime) / "mavgate"
+    runtime = Path(environment.get("XDG_RUNTIME_DIR") or os.devnull)
+    if runtime.is_dir():
+        return runtime / "mavgate"
     return Path(tempfile.gettempdir()) / f"mavgate-{os.getuid()}"
 
 
