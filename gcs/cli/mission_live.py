@@ -167,16 +167,13 @@ def _run(
     take: bool,
 ) -> None:
     from gcs.cli import oneshot_session
-    from gcs.cli.running import station_for
     from gcs.operator.request_words import SendRequests, label
 
     for request in requests:
         UTF8.convert(request.path, None, None)
     setup = station_config(links, policy, log_dir, name="mission", timeout_s=timeout)
-    found = station_for(links)
     what = label(requests[0])
-    take = take and found is not None
     how = oneshot_session.OneShotConfig(timeout, wait, as_json, what, take=take)
     task = oneshot_session.sending(SendRequests(requests), wait)
-    code = oneshot_session.run(setup, how, task, found)
+    code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

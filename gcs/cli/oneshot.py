@@ -53,16 +53,14 @@ def _command(name: str) -> click.Command:
         assert isinstance(action, request_words.SendRequests)
 
         from gcs.cli import oneshot_session
-        from gcs.cli.running import station_for
 
         setup = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
         stops = all(request.word in request_words.STOPS for request in action.requests)
-        found = station_for(links, anywhere=stops)
-        at_once = stops and found is not None
+        anywhere = stops and not links
         how = oneshot_session.OneShotConfig(
-            timeout, wait, as_json, name, take=take and found is not None, at_once=at_once
+            timeout, wait, as_json, name, anywhere=anywhere, take=take, stops=stops
         )
-        code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait), found)
+        code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
@@ -99,13 +97,13 @@ def _status(
     links: tuple[str, ...], policy: str, log_dir: str, timeout: float, as_json: bool
 ) -> None:
     from gcs.cli import oneshot_session
-    from gcs.cli.running import station_for
     from gcs.cli.status import report
 
     setup = station_config(links, policy, log_dir, name="status", timeout_s=timeout, record=False)
-    how = oneshot_session.OneShotConfig(timeout, 0.0, as_json, "status", cautions=True)
-    found = station_for(links, anywhere=True)
-    code = oneshot_session.run(setup, how, partial(report, as_json=as_json), found)
+    how = oneshot_session.OneShotConfig(
+        timeout, 0.0, as_json, "status", cautions=True, anywhere=not links
+    )
+    code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)
 
 

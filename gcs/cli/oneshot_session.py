@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import click
 import msgspec
 
 from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
-from gcs.cli.running import joined_station
+from gcs.cli.running import joined_station, station_for
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.ipc import Ask
@@ -37,8 +37,11 @@ Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
 class OneShotConfig:
     """`wait_s` limits the wait for the outcome, `timeout_s` that for a vehicle; seconds.
 
-    `cautions`: show what is always wrong with this vehicle, too.  `take`: take control over from
-    another operator.  `at_once`: do not wait to hear how the vehicle is, the station knows.
+    `cautions`: show what is always wrong with this vehicle, too.
+
+    Through a running station: `anywhere` says that the only one that runs will do, whatever its
+    link is; `take`, to take control over from another operator; `stops`, that nothing is to delay
+    it.  `at_once`: do not wait to hear how the vehicle is, the station knows.
     """
 
     timeout_s: float
@@ -46,21 +49,29 @@ class OneShotConfig:
     as_json: bool
     what: str
     cautions: bool = False
+    anywhere: bool = False
     take: bool = False
+    stops: bool = False
     at_once: bool = False
 
 
-def run(
-    setup: StationConfig, how: OneShotConfig, task: Task, found: Description | None = None
-) -> int:
-    """Do it through the running station that was `found`, else with one of our own; returns the
-    exit code."""
+def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
+    """Do it through the running station that has one of the links open, else with a station of our
+    own; returns the exit code."""
+    found = station_for(setup.endpoints, anywhere=how.anywhere)
+    if found is not None:
+        return run_through(found, how, task)
+    how = replace(how, take=False)
     with Interrupts() as interrupts:
-        if found is None:
-            return run_over(StationClient.start(setup), interrupts, how, task)
+        return run_over(StationClient.start(setup), interrupts, how, task)
+
+
+def run_through(found: Description, how: OneShotConfig, task: Task) -> int:
+    """Do it through a running station, which goes on."""
+    with Interrupts() as interrupts:
         joined = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
         click.echo(f"gcs: through the running station of process {found.pid}", err=True)
-        return run_over(joined, interrupts, how, task)
+        return run_over(joined, interrupts, replace(how, at_once=how.stops), task)
 
 
 def run_over(

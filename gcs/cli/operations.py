@@ -77,14 +77,13 @@ def stop(ctx: click.Context, number: int, as_json: bool) -> None:
     """Stop an operation that is under way: an abort, by anyone."""
     from gcs.cli import oneshot_session
     from gcs.cli.running import the_station
-    from gcs.config import StationConfig
     from gcs.ipc import Ask
     from gcs.operator.request_words import SendRequests
 
     action = SendRequests((Ask(0, "abort", operation=number),))
-    how = oneshot_session.OneShotConfig(10.0, 60.0, as_json, "operations stop", at_once=True)
+    how = oneshot_session.OneShotConfig(10.0, 60.0, as_json, "operations stop", stops=True)
     task = oneshot_session.sending(action, 60.0)
-    ctx.exit(oneshot_session.run(StationConfig(), how, task, the_station(ctx.obj)))
+    ctx.exit(oneshot_session.run_through(the_station(ctx.obj), how, task))
 
 
 def _view(links: tuple[str, ...]) -> OperationsView:

@@ -14,13 +14,13 @@ HINT = "gcs stations lists them; name one by its link with --link"
 
 
 def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description | None:
-    """The running station that has one of `links` open, or the default link where none is given.
+    """The running station that has one of `links` open.
 
-    `anywhere`: without a link the only station that runs will do, whatever its link is.  Raises
+    `anywhere`: if none has, the only one that runs will do, whatever its link is.  Raises
     ExitError if there are several then.
     """
-    found = station_on(links or [DEFAULT_LINK])
-    if found is not None or links or not anywhere:
+    found = station_on(links)
+    if found is not None or not anywhere:
         return found
     everywhere = running_stations()
     if len(everywhere) > 1:
@@ -30,8 +30,10 @@ def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description 
 
 
 def the_station(links: Sequence[str]) -> Description:
-    """The same for a command that needs one.  Raises ExitError with NO_VEHICLE if none runs."""
-    found = station_for(links, anywhere=True)
+    """The same for a command that needs one; without a link the default one's, or the only one.
+
+    Raises ExitError with NO_VEHICLE if none runs."""
+    found = station_for(links or [DEFAULT_LINK], anywhere=not links)
     if found is None:
         where = f" on {', '.join(links)}" if links else ""
         hint = "start one with gcs fly; gcs stations lists those that run"

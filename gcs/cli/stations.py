@@ -54,14 +54,10 @@ def end(ctx: click.Context, links: tuple[str, ...], take: bool, as_json: bool) -
     """End a station; a vehicle that it flies is told to hold first."""
     from gcs.cli import oneshot_session
     from gcs.cli.running import the_station
-    from gcs.config import StationConfig
     from gcs.ipc import Ask
     from gcs.operator.request_words import SendRequests
 
-    found = the_station(links)
     action = SendRequests((Ask(0, "station_end"),))
-    how = oneshot_session.OneShotConfig(
-        10.0, 10.0, as_json, "stations end", take=take, at_once=True
-    )
+    how = oneshot_session.OneShotConfig(10.0, 10.0, as_json, "stations end", take=take, stops=True)
     task = oneshot_session.sending(action, 10.0)
-    ctx.exit(oneshot_session.run(StationConfig(), how, task, found))
+    ctx.exit(oneshot_session.run_through(the_station(links), how, task))

@@ -11,7 +11,7 @@ import hmac
 import socket
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
@@ -187,7 +187,7 @@ class ClientSockets:
 
     # ----------------------------------------------------------------------------- turn
 
-    def turn(self, readable: list[object], writable: list[object]) -> Iterator[Input]:
+    def turn(self, readable: Sequence[object], writable: Sequence[object]) -> Iterator[Input]:
         """Do what a turn of the loop has for the clients; what the session is to hear of them.
 
         A generator, so that whoever takes the inputs can do what is more urgent between two.

@@ -34,8 +34,8 @@ class Bench:
         end.sendall(b"".join(lines))
         return end
 
-    def joined(self, name: str = "a test", **rest: bool) -> socket.socket:
-        end = self.connect(ipc.encode(ipc.Join(name, **rest)))
+    def joined(self) -> socket.socket:
+        end = self.connect(ipc.encode(ipc.Join("a test")))
         self.turns()
         return end
 
