@@ -82,7 +82,7 @@ def test_others_look_and_stop_and_leave_no_trace(tmp_path: Path) -> None:
         assert gcs("operations", "stop", str(number)).returncode == ExitCode.REFUSED_BY_GATE
         landed = gcs("land")
         assert (landed.returncode, landed.stdout) == (0, "land: complete\n")
-        operator.fly("arm")
+        assert operator.send("hold").verdict is not None, "the first operator is where it was"
         operator.leave()
     assert gcs("stations").stdout == "no station is running\n"
 
@@ -94,7 +94,10 @@ def test_a_one_shot_that_takes_over_moves_the_vehicle_and_gives_the_station_back
         operator.fly("arm", "takeoff 2")
         (found,) = listed("stations")
         moved = gcs("goto", "2", "0", "2", "--take", "--link", found["endpoints"][0])
-        assert (moved.returncode, moved.stdout) == (0, "goto 2 0 2: complete\n")
+        assert (moved.returncode, moved.stdout) == (
+            0,
+            "station take: complete\ngoto 2 0 2: complete\n",
+        )
         operator.until(lambda: operator.said("taken over from operator 1"), "being told")
         operator.fly("goto 0 0 2")
         assert not operator.said("HOLDING")
