@@ -344,6 +344,11 @@ class Station:
                 self.hello = event
             case ipc.Snapshot():
                 self.latest = event
+            case ipc.StateEvent() if self.latest is not None:
+                # What a request that has just ended led to is known before the next snapshot.
+                self.latest = msgspec.structs.replace(
+                    self.latest, state=event.after, control=event.control, severity=event.severity
+                )
             case ipc.Operators():
                 self._operators = event
             case ipc.VerdictEvent() if event.id in self._operations:

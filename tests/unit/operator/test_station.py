@@ -140,6 +140,13 @@ def test_an_abort_in_another_thread_ends_the_goto_that_is_waited_for() -> None:
     assert [(each.state, each.code) for each in raised] == [("aborted", "OPERATOR")]
 
 
+def test_the_state_is_the_one_that_a_request_led_to_before_any_snapshot() -> None:
+    station, _ = flying()
+    assert station.state == "HOVERING"
+    station.hold()
+    assert station.state == "HOLDING"
+
+
 def test_one_operation_is_stopped_by_its_number() -> None:
     station, way = flying()
     flight = station.goto(3.0, 0.0, 2.0, wait=False)
