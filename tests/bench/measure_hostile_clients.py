@@ -14,7 +14,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from itertools import pairwise
 from pathlib import Path
 
 from gcs import ipc
@@ -22,25 +21,14 @@ from gcs.operator.joined import JoinedStation
 from gcs.shell import stations
 from gcs.shell.stations import Description
 from tests.bench.measure_abort import Stopwatch
-from tests.bench.measure_stream import is_setpoint
-from tests.system.station import tapped
-from tests.system.vehicle_program import until
+from tests.system.hostile_clients import MODULE, intervals_ms, resident_kb
+from tests.system.station import Station, tapped
 from tests.system.wire_tap import WireTap
 
 CLIENTS = 1_000
-QUIET_S = 20.0
-
-
-def intervals_ms(tap: WireTap, begin_ns: int, end_ns: int) -> list[float]:
-    """Sorted, of the setpoints that passed in that time."""
-    passed = [c.at_ns for c in tap.to_vehicle if begin_ns <= c.at_ns <= end_ns]
-    at_ns = [c.at_ns for c in tap.to_vehicle if c.at_ns in set(passed) and is_setpoint(c.data)]
-    return sorted((after - before) / 1e6 for before, after in pairwise(at_ns))
-
-
-def resident_kb(pid: int) -> int:
-    status = Path(f"/proc/{pid}/status").read_text()
-    return int(status.partition("VmRSS:")[2].split()[0])
+ABORTS = 20
+HOLD_MODE = "AUTO.LOITER"
+QUIET_S = 10.0
 
 
 def tell(name: str, found: Sequence[float]) -> None:
@@ -51,11 +39,16 @@ def tell(name: str, found: Sequence[float]) -> None:
     )
 
 
-def abort_over(described: Description) -> JoinedStation:
-    """Join as `gcs abort` does, and ask at once."""
+def abort_ms(watch: Stopwatch, described: Description, operator: Station) -> float:
+    """Join as `gcs abort` does, ask at once; from the word to the bytes on the wire."""
     joined = JoinedStation.join(described, "measure", hold_on_leave=False)
-    joined.send(ipc.Ask(1, "abort"))
-    return joined
+    took_ms = watch.latency_ms(lambda: joined.send(ipc.Ask(1, "abort")))
+    seen = operator.dialogue
+    operator.until(lambda: seen.snapshot is not None and seen.snapshot.mode == HOLD_MODE, "a hold")
+    joined.send(ipc.Leave("done"))
+    joined.close()
+    operator.fly("resume")
+    return took_ms
 
 
 def main(count: int) -> None:
@@ -72,7 +65,7 @@ def main(count: int) -> None:
             operator.dialogue.wait_until(lambda: False, QUIET_S)
             begin_ns = time.monotonic_ns()
             before_kb = most_kb = resident_kb(described.pid)
-            words = [sys.executable, "-m", "tests.system.hostile_clients"]
+            words = [sys.executable, "-m", MODULE]
             crowd = subprocess.Popen([*words, described.socket_path, str(count), "1"])
             while crowd.poll() is None:
                 operator.dialogue.wait_until(lambda: False, 0.2)
@@ -82,17 +75,11 @@ def main(count: int) -> None:
             tell("crowded", intervals_ms(tap, begin_ns, end_ns))
             print(f"{count} clients in {(end_ns - begin_ns) / 1e9:.0f} s")
             print(f"memory: {before_kb} kB before, at most {most_kb} kB")
-            crowd = subprocess.Popen([*words, described.socket_path, "60", "2"])
-            took: list[float] = []
-            for _ in range(5):
-                until(lambda: crowd.poll() is None, "a crowd")
-                joined: list[JoinedStation] = []
-                took.append(watch.latency_ms(lambda: joined.append(abort_over(described))))  # noqa: B023
-                operator.dialogue.wait_until(lambda: operator.said("HOLDING"), 2.0)
-                operator.fly("resume")
-                joined[0].close()
+            crowd = subprocess.Popen([*words, described.socket_path, "100000", "2"])
+            took = [abort_ms(watch, described, operator) for _ in range(ABORTS)]
+            crowd.terminate()
             crowd.wait()
-            print(f"abort from another program meanwhile: worst of 5 {max(took):.1f} ms")
+            print(f"abort from another program meanwhile: worst of {ABORTS} {max(took):.1f} ms")
             operator.leave()
     print(f"load {os.getloadavg()[0]:.2f}")
 

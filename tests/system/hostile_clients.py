@@ -7,6 +7,8 @@ had their turn, and prints how many there were of each kind.
 from __future__ import annotations
 
 import collections
+import itertools
+import json
 import random
 import select
 import socket
@@ -14,9 +16,14 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from gcs import ipc
+from gcs.wire.frame import Frame, split
+from gcs.wire.ids import MsgId
+from tests.system.wire_tap import WireTap
 
+MODULE = "tests.system.hostile_clients"
 AT_ONCE = 24
 LONGEST_S = 1.5
 PIECE_BYTES = 65_536
@@ -128,13 +135,32 @@ class Crowd:
         self.there = [each for each in self.there if each.ends_s >= now_s]
 
 
+def intervals_ms(tap: WireTap, begin_ns: int, end_ns: int) -> list[float]:
+    """Between the setpoints that passed in that time, sorted."""
+    passed = [c for c in list(tap.to_vehicle) if begin_ns <= c.at_ns <= end_ns]
+    at_ns = [crossing.at_ns for crossing in passed if _is_setpoint(crossing.data)]
+    return sorted((after - before) / 1e6 for before, after in itertools.pairwise(at_ns))
+
+
+def _is_setpoint(data: bytes) -> bool:
+    """Of a datagram of ours, which is one frame."""
+    (frame,) = split(data)
+    return isinstance(frame, Frame) and frame.msgid == MsgId.SET_POSITION_TARGET_LOCAL_NED
+
+
+def resident_kb(pid: int) -> int:
+    """Memory of a process; Linux only."""
+    status = Path(f"/proc/{pid}/status").read_text()
+    return int(status.partition("VmRSS:")[2].split()[0])
+
+
 def main(path: str, count: int, seed: int) -> None:
     crowd = Crowd(path, random.Random(seed))
     while crowd.counts.total() < count or crowd.there:
         if len(crowd.there) < AT_ONCE and crowd.counts.total() < count:
             crowd.come()
         crowd.turn()
-    print(dict(crowd.counts))
+    print(json.dumps(crowd.counts))
 
 
 if __name__ == "__main__":
