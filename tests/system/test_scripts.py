@@ -38,6 +38,18 @@ def test_each_script_has_its_test_and_its_line_in_the_table() -> None:
     assert all(f"| [{name}]({name}) |" in table for name in TESTED)
 
 
+def test_the_readmes_example_of_the_library_runs_as_it_stands(tmp_path: Path) -> None:
+    readme = (SCRIPTS.parents[1] / "README.md").read_text(encoding="utf-8")
+    _, begin, rest = readme.partition("<!-- example: library -->\n```python\n")
+    code, end, _ = rest.partition("```\n<!-- end of example -->")
+    assert begin
+    assert end
+    (tmp_path / "example.py").write_text(code, encoding="utf-8")
+    refusal, place = run(str(tmp_path / "example.py"), folder=tmp_path)
+    assert refusal.startswith("OUTSIDE_FENCE {'outside_m': 350.")
+    assert place.endswith((" 100", " 99"))
+
+
 def test_the_square_flies_its_corners_and_is_refused_the_fifth(tmp_path: Path) -> None:
     *corners, refusal, end = run("square.py", folder=tmp_path)
     assert len(corners) == 4
