@@ -37,6 +37,8 @@ from gcs.session.work import (
 from gcs.wire.frame import Frame
 
 NODE = "link"
+LOGGED_LETTERS = 40
+"""Of a word that may be anything; all operators read the log."""
 STATION_WORDS = frozenset({"station_take", "station_end"})
 
 
@@ -77,10 +79,19 @@ class Operators:
         work: list[Work] = []
         for client in self._clients.farewells(settled, now_ns):
             self._subscriptions.forget(client)
-            sentence = words if client == self._clients.in_control else "the station goes on"
+            sentence = words if client == self._clients.in_control else self._goes_on()
             work.append(Emit(ipc.Bye(0, log_path, sentence, goes_on=True), client))
             work += self._clients.gone(client)
         return work
+
+    def _goes_on(self) -> str:
+        """What the station does on, for one that leaves it."""
+        running = ", ".join(
+            f"operation {each.id} ({each.asked.word})"
+            for each in self._operations.listed()
+            if each.ended_ns is None
+        )
+        return "the station goes on" + (f", with {running}" if running else "")
 
     def _leave(self, client: int, reason: str, now_ns: int) -> list[Work]:
         if client == FIRST and not self._keep:
@@ -97,6 +108,8 @@ class Operators:
             case ipc.Ask():
                 return self._ask(client, command, autopilot)
             case ipc.Pending(goal_enu, _):
+                if client != self._clients.in_control:
+                    return []  # who only looks cannot send it
                 text = f"Keyboard: {plain_enu(goal_enu)}"
                 return [Log(Level.INFO, "keyboard_manager", text)]
             case ipc.Leave(reason):
@@ -151,7 +164,7 @@ class Operators:
 
     @staticmethod
     def _refuse(request_id: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
-        text = f"{ask.word}: refused {refusal.code.value}: {refusal.sentence}"
+        text = f"{ask.word[:LOGGED_LETTERS]}: refused {refusal.code.value}: {refusal.sentence}"
         return [Decide(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)]
 
     # ---------------------------------------------------------------------------- answers

@@ -24,7 +24,7 @@ from gcs.report import (
     InputItem,
 )
 from gcs.session import teller
-from gcs.session.clients import LEAVING_NS
+from gcs.session.clients import FIRST, LEAVING_NS
 from gcs.session.effects import Effect, Emit, Finish, Record
 from gcs.session.gate_port import condition
 from gcs.session.inputs import (
@@ -135,15 +135,20 @@ class Session:
         """Handling `given` raised an exception, which is a bug of ours: keep the vehicle safe.
 
         Bytes or words that we cannot take are dropped, logged and recorded.  Where it happens on
-        the clock, or again and again, the vehicle is told to hold and the station ends.
+        the clock, or again and again, the vehicle is told to hold and the station ends.  An
+        operator who has joined loses the connection instead: nobody's words end the station.
         """
         self._queue.drop()
-        self._faults += 1
+        visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
+        self._faults += not visitor
         text = f"internal error: {report.splitlines()[-1]}"
         work: list[Work] = [
             Record(InputItem.of("Fault", report)),
             Log(Level.FATAL, NODE, text),
         ]
+        if isinstance(given, OperatorJoined | OperatorLine) and visitor:
+            bye = ipc.Bye(ExitCode.BUG, "", "an internal error of the station", goes_on=True)
+            work.append(Emit(bye, given.client))
         if isinstance(given, Wake) or self._faults > MAX_FAULTS:
             self._finished = True
             hold = self._vehicle.hold_without_gate(now_ns)
