@@ -1,3 +1,48 @@
-"""A MAVLink ground station that sends no command it cannot justify."""
+"""A MAVLink ground station that sends no command it cannot justify.
+
+As a Python library it flies through the same station process as the command line::
+
+    import gcs
+
+    with gcs.connect(sim=True) as station:
+        station.arm()
+        station.takeoff(2)
+        station.goto(3, 0, 2)
+        station.land()
+
+`gcs.connect` joins the station that has the link open already, if one runs; what it returns is in
+`gcs/operator/station.py`, what is raised in `gcs/operator/failures.py`.  Nothing of it is loaded
+before it is asked for.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gcs.operator.connect import connect
+    from gcs.operator.failures import CannotConnect, Disconnected, GcsError, NotCompleted, Refused
+    from gcs.operator.station import Operation, Station
 
 __version__ = "0.1.0"
+_HOME = {
+    "connect": "connect",
+    "Operation": "station",
+    "Station": "station",
+}
+__all__ = [
+    "CannotConnect",
+    "Disconnected",
+    "GcsError",
+    "NotCompleted",
+    "Operation",
+    "Refused",
+    "Station",
+    "connect",
+]
+
+
+def __getattr__(name: str) -> object:
+    """The library's names, loaded when one is used: every start of `gcs` imports this module."""
+    if name in __all__:
+        return getattr(import_module(f"gcs.operator.{_HOME.get(name, 'failures')}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

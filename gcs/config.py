@@ -27,6 +27,8 @@ class StationConfig(msgspec.Struct, frozen=True):
     target_sysid: int = 0  # 0 = the first vehicle heard
     speedup: float = 1.0
     connect_timeout_s: float = 10.0
+    operator: str = "first operator"  # its name, for the others who look at the station
+    keep: bool = False  # the station lives on when the operator who started it leaves
     record: bool = True  # False: nothing is written, as for a short look at the vehicle
 
 

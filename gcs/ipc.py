@@ -1,10 +1,16 @@
-"""What a station and its operator say to each other: JSON, one object a line.
+"""What a station and its operators say to each other: JSON, one object a line.
 
-The operator (TUI, `--plain`, a one-shot command) writes `Command` lines to the station's standard
-input and reads `Event` lines from its standard output.  The operator's frame is ENU, metres;
-angles are degrees, clockwise from north; everything is converted once, in the session.  Both
-unions are tagged by `type`; a line that does not decode is answered with a `Trouble` event.
-What the record keeps too is a struct of `gcs/report.py`, or is made of one.
+An operator's program (TUI, `--plain`, a one-shot command, a script) writes `Command` lines and
+reads `Event` lines: the one that started the station through its standard input and output, any
+other one through the station's local socket (`gcs/shell/stations.py` finds it), where its first
+line is a `Join`.  The operator's frame is ENU, metres; angles are degrees, clockwise from north;
+everything is converted once, in the session.  Both unions are tagged by `type`; a line that does
+not decode is answered with a `Trouble` event.  What the record keeps too is a struct of
+`gcs/report.py`, or is made of one.
+
+Answers (`VerdictEvent`, `EndingEvent`, `ProgressEvent`, `OperationList`, `MessageEvent`) go to the
+operator who asked; all else goes to all.  `docs/json.md` is this module as a page; `SCHEMA` counts
+up when a field or a meaning that is there changes, not when something is added.
 
 The words of requests and their arguments are one table (`gcs/operator/request_words.py`): typed
 lines and one-shot commands alike become `Ask`.
@@ -21,6 +27,9 @@ from gcs.frames import Vec3 as Vec3
 from gcs.report import FenceShape as FenceShape
 from gcs.report import LogEvent as LogEvent
 
+SCHEMA = 1
+"""Version of everything here.  A reader must pass over types and fields that it does not know."""
+
 Maybe3 = tuple[float | None, float | None, float | None]
 """JSON has no NaN: what was typed as nan or inf travels as null and is refused by the gate."""
 
@@ -29,7 +38,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     """One request.  `id` is the client's own number and comes back in every answer.
 
     `word` is one of: control arm disarm takeoff goto land rtl hold abort resume photo mode
-    fence mission_start mission_upload mission_download mission_clear.
+    fence mission_start mission_upload mission_download mission_clear station_take station_end.
     """
 
     id: int
@@ -41,6 +50,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     force: bool = False  # disarm
     on: bool = True  # fence
     path: str = ""  # mission_upload: file to read; mission_download: where to write
+    operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
 
 
 class Pending(msgspec.Struct, frozen=True, tag="pending", tag_field="type"):
@@ -56,7 +66,35 @@ class Leave(msgspec.Struct, frozen=True, tag="leave", tag_field="type"):
     reason: str = "quit"
 
 
-Command: TypeAlias = Ask | Pending | Leave
+class Join(msgspec.Struct, frozen=True, tag="join", tag_field="type"):
+    """The first line on a station's socket, within 2 s: who comes.
+
+    `hold_on_leave`: an operator who is in control when it leaves wants the vehicle held.  False
+    is for one-shot commands, which leave the vehicle as it is; one that is lost is held anyway.
+    """
+
+    name: str  # what other operators are told: "gcs attach, pid 4711"
+    schema: int = SCHEMA
+    token: str = ""  # from the station's description; needed where the socket is a TCP port
+    hold_on_leave: bool = True
+
+
+class Subscribe(msgspec.Struct, frozen=True, tag="subscribe", tag_field="type"):
+    """From now on tell me of these MAVLink messages of the vehicle, in place of those before.
+
+    Each comes as a `MessageEvent` when it is heard, at most ten times a second.
+    """
+
+    messages: list[str]  # names as in the dialect: "BATTERY_STATUS"
+
+
+class ListOperations(msgspec.Struct, frozen=True, tag="list_operations", tag_field="type"):
+    """Asks for an `OperationList`; `id` comes back in it."""
+
+    id: int
+
+
+Command: TypeAlias = Ask | Pending | Leave | Join | Subscribe | ListOperations
 
 
 class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):
@@ -67,6 +105,26 @@ class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):
     endpoints: list[str]
     policy: str
     fence: list[FenceShape] = []
+    schema: int = SCHEMA
+    client: int = 1  # the number that the station knows this operator by; 1 has started it
+
+
+class OperatorInfo(msgspec.Struct, frozen=True):
+    """One operator's program that is connected."""
+
+    client: int
+    name: str
+
+
+class Operators(msgspec.Struct, frozen=True, tag="operators", tag_field="type"):
+    """Who is connected, and who is in control of the station; told whenever that changes.
+
+    Only the operator in control can ask for everything.  The others look, and may ask for abort,
+    hold, land, rtl and disarm, and for `station_take`.
+    """
+
+    operators: list[OperatorInfo]
+    in_control: int  # client number; 0 = nobody: the first who asks for something gets it
 
 
 class Fences(msgspec.Struct, frozen=True, tag="fences", tag_field="type"):
@@ -86,6 +144,7 @@ class VerdictEvent(msgspec.Struct, frozen=True, tag="verdict", tag_field="type")
     zone: str = ""
     numbers: dict[str, float | None] = {}
     goal_enu: Maybe3 | None = None
+    operation: int = 0  # the station's own number of this request
 
 
 class EndingEvent(msgspec.Struct, frozen=True, tag="ending", tag_field="type"):
@@ -96,6 +155,43 @@ class EndingEvent(msgspec.Struct, frozen=True, tag="ending", tag_field="type"):
     ended: str  # complete | aborted | superseded | timed out | taken over
     code: str = ""
     sentence: str = ""
+
+
+class Operation(msgspec.Struct, frozen=True, tag="operation", tag_field="type"):
+    """An accepted request of any operator: told when it is accepted and when it has ended.
+
+    `state` is running, or how it ended: complete, aborted, superseded, timed out, taken over.
+    """
+
+    id: int  # the station's own number, the same for all operators
+    asked: Ask
+    client: int
+    operator: str
+    since_ns: int
+    state: str = "running"
+    code: str = ""
+    sentence: str = ""
+    ended_ns: int | None = None
+
+
+class OperationList(msgspec.Struct, frozen=True, tag="operations", tag_field="type"):
+    """Every operation that is running, and the latest that have ended, the oldest first."""
+
+    id: int
+    operations: list[Operation]
+
+
+class MessageEvent(msgspec.Struct, frozen=True, tag="message", tag_field="type"):
+    """A MAVLink message of the vehicle that was subscribed to; dropped when the reader is slow.
+
+    `fields` are as on the wire, with the dialect's names and units; arrays are lists.
+    """
+
+    name: str
+    time_ns: int
+    sysid: int
+    compid: int
+    fields: dict[str, int | float | str | list[int | float | str] | None]
 
 
 class ProgressEvent(msgspec.Struct, frozen=True, tag="progress", tag_field="type"):
@@ -165,19 +261,24 @@ class Trouble(msgspec.Struct, frozen=True, tag="trouble", tag_field="type"):
 
 
 class Bye(msgspec.Struct, frozen=True, tag="bye", tag_field="type"):
-    """Last event: the station has ended, the log is closed."""
+    """Last event: the station has ended and the log is closed, or this operator has left it."""
 
     exit_code: int
     log_path: str
     sentence: str
+    goes_on: bool = False  # the station lives on without this operator
 
 
 Event: TypeAlias = (
     Hello
+    | Operators
     | Fences
     | VerdictEvent
     | EndingEvent
+    | Operation
+    | OperationList
     | ProgressEvent
+    | MessageEvent
     | StateEvent
     | LogEvent
     | Snapshot

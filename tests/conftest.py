@@ -11,6 +11,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+import tempfile
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -59,6 +60,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         config.hook.pytest_deselected(items=left)
     flown = [item for item in items if item not in left]
     items[:] = sorted(flown, key=lambda item: turn(item.nodeid))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _stations_of_its_own() -> Iterator[None]:
+    """No test finds a station that this user runs, nor one of another worker's tests."""
+    with (
+        tempfile.TemporaryDirectory(prefix="gcs-") as folder,
+        pytest.MonkeyPatch.context() as patch,
+    ):
+        patch.setenv("XDG_RUNTIME_DIR", folder)
+        yield
 
 
 def pytest_collection_finish() -> None:

@@ -81,6 +81,9 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
 @click.option(
     "--name", type=UTF8, default="flight", show_default=True, help="Goes into the log's file name."
 )
+@click.option(
+    "--keep", is_flag=True, help="The link lives on when this operator leaves; see gcs stations."
+)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
@@ -100,6 +103,7 @@ def fly(
     log_dir: str,
     timeout: float,
     name: str,
+    keep: bool,
     plain: bool,
     as_json: bool,
     strict: bool,
@@ -107,6 +111,8 @@ def fly(
     quiet: bool,
 ) -> None:
     """Fly by keyboard: keys change a pending goal, Enter sends it through the gate."""
+    import os
+
     import msgspec
 
     from gcs.cli.options import station_config
@@ -120,7 +126,8 @@ def fly(
     if sim:
         simulated = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
         config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
-    config = msgspec.structs.replace(config, speedup=speedup)
+    operator = f"gcs fly, pid {os.getpid()}"
+    config = msgspec.structs.replace(config, speedup=speedup, keep=keep, operator=operator)
     if plain:
         level = 1 if verbose else 3 if quiet else 2
         ctx.exit(_fly_plain(config, min_level=level, as_json=as_json, strict=strict))
@@ -138,7 +145,8 @@ def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: 
         return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
 
 
-def _fly_keyboard(config: StationConfig) -> int:
+def needs_a_terminal() -> None:
+    """Raises UsageError where the screen has none."""
     import sys
 
     from gcs.cli.plain import stdin_is_a_terminal
@@ -146,6 +154,9 @@ def _fly_keyboard(config: StationConfig) -> int:
     if not (stdin_is_a_terminal() and sys.stdout.isatty() and sys.stderr.isatty()):
         raise click.UsageError("the keyboard station needs a terminal; use --plain on a pipe")
 
+
+def _fly_keyboard(config: StationConfig) -> int:
+    needs_a_terminal()
     from gcs.operator.client import StationClient
     from gcs.tui.app import FlyApp
     from gcs.tui.result import print_result, until_hello

@@ -49,6 +49,11 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "mode": Entry("gcs.cli.oneshot:mode", "Ask for a flight mode by the autopilot's name."),
         "photo": Entry("gcs.cli.oneshot:photo", "Take a picture."),
     },
+    "A station that runs": {
+        "stations": Entry("gcs.cli.stations:stations", "The running stations of this user."),
+        "attach": Entry("gcs.cli.attach:attach", "A second screen, or --plain lines, on one."),
+        "operations": Entry("gcs.cli.operations:operations", "What is under way; wait, stop."),
+    },
     "Files": {
         "mission": Entry(
             "gcs.cli.mission:mission",

@@ -11,6 +11,7 @@ from gcs.cli.options import (
     LINK,
     LOG_DIR,
     POLICY,
+    TAKE,
     TIMEOUT,
     UTF8,
     VEHICLE,
@@ -36,7 +37,7 @@ WAIT = click.Option(
     metavar="S",
     help="Seconds to wait for the effect.",
 )
-LINK_OPTIONS = (LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON)
+LINK_OPTIONS = (LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
 
 
 @click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
@@ -51,12 +52,13 @@ def upload(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Verify a mission file, send it to the vehicle, read it back and compare."""
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)),)
-    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission download -o on_board.plan\n\n{EXITS}")
@@ -80,13 +82,14 @@ def download(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Read the mission on board into a file."""
     from gcs.ipc import Ask
 
     _check_output(output, force)
     requests = (Ask(0, "mission_download", path=output),)
-    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -101,12 +104,13 @@ def fly(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Upload a mission file, then start it and wait for its end."""
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
-    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json)
+    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
@@ -119,11 +123,12 @@ def clear(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     """Remove the mission on board."""
     from gcs.ipc import Ask
 
-    _run((Ask(0, "mission_clear"),), links, vehicle, policy, log_dir, timeout, wait, as_json)
+    _run((Ask(0, "mission_clear"),), links, vehicle, policy, log_dir, timeout, wait, as_json, take)
 
 
 def _check_output(output: str, force: bool) -> None:
@@ -165,6 +170,7 @@ def _run(
     timeout: float,
     wait: float,
     as_json: bool,
+    take: bool,
 ) -> None:
     from gcs.cli import oneshot_session
     from gcs.operator.request_words import SendRequests, label
@@ -174,7 +180,8 @@ def _run(
     setup = station_config(
         links, policy, log_dir, name="mission", timeout_s=timeout, vehicle=vehicle
     )
-    how = oneshot_session.OneShotConfig(timeout, wait, as_json, label(requests[0]))
+    what = label(requests[0])
+    how = oneshot_session.OneShotConfig(timeout, wait, as_json, what, take=take)
     task = oneshot_session.sending(SendRequests(requests), wait)
     code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

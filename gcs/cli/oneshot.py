@@ -11,6 +11,7 @@ from gcs.cli.options import (
     LINK,
     LOG_DIR,
     POLICY,
+    TAKE,
     TIMEOUT,
     UTF8,
     VEHICLE,
@@ -44,6 +45,7 @@ def _command(name: str) -> click.Command:
         timeout: float,
         wait: float,
         as_json: bool,
+        take: bool = False,
         arguments: tuple[str, ...] = (),
     ) -> None:
         try:
@@ -57,12 +59,18 @@ def _command(name: str) -> click.Command:
         setup = station_config(
             links, policy, log_dir, name=name, timeout_s=timeout, vehicle=vehicle
         )
-        how = oneshot_session.OneShotConfig(timeout, wait, as_json, name)
+        stops = all(request.word in request_words.STOPS for request in action.requests)
+        anywhere = stops and not links
+        how = oneshot_session.OneShotConfig(
+            timeout, wait, as_json, name, anywhere=anywhere, take=take, stops=stops
+        )
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
     options: list[click.Parameter] = [LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
+    if name not in request_words.STOPS:
+        options.append(TAKE)
     return click.Command(
         name,
         callback=run_word,
@@ -103,7 +111,9 @@ def _status(
     setup = station_config(
         links, policy, log_dir, name="status", timeout_s=timeout, vehicle=vehicle, record=False
     )
-    how = oneshot_session.OneShotConfig(timeout, 0.0, as_json, "status", cautions=True)
+    how = oneshot_session.OneShotConfig(
+        timeout, 0.0, as_json, "status", cautions=True, anywhere=not links
+    )
     code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)
 

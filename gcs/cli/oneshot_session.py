@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import click
 import msgspec
 
 from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
+from gcs.cli.running import joined_station, station_for
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
+from gcs.ipc import Ask
 from gcs.operator import event_text
 from gcs.operator.client import StationClient
 from gcs.operator.dialogue import (
@@ -25,6 +27,7 @@ from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.interrupts import Interrupts
 from gcs.operator.request_words import NEEDS_CONTROL, SendRequests
 from gcs.operator.warning_filter import WARNING, WarningFilter
+from gcs.shell.stations import Description
 
 Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
 """What to do once a vehicle is heard.  It clears the display before it prints anything itself."""
@@ -35,6 +38,10 @@ class OneShotConfig:
     """`wait_s` limits the wait for the outcome, `timeout_s` that for a vehicle; seconds.
 
     `cautions`: show what is always wrong with this vehicle, too.
+
+    Through a running station: `anywhere` says that the only one that runs will do, whatever its
+    link is; `take`, to take control over from another operator; `stops`, that nothing is to delay
+    it.  `at_once`: do not wait to hear how the vehicle is, the station knows.
     """
 
     timeout_s: float
@@ -42,12 +49,29 @@ class OneShotConfig:
     as_json: bool
     what: str
     cautions: bool = False
+    anywhere: bool = False
+    take: bool = False
+    stops: bool = False
+    at_once: bool = False
 
 
 def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
-    """Do it with a station of our own; returns the exit code."""
+    """Do it through the running station that has one of the links open, else with a station of our
+    own; returns the exit code."""
+    found = station_for(setup.endpoints, anywhere=how.anywhere)
+    if found is not None:
+        return run_through(found, how, task)
+    how = replace(how, take=False)
     with Interrupts() as interrupts:
         return run_over(StationClient.start(setup), interrupts, how, task)
+
+
+def run_through(found: Description, how: OneShotConfig, task: Task) -> int:
+    """Do it through a running station, which goes on."""
+    with Interrupts() as interrupts:
+        joined = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
+        click.echo(f"gcs: through the running station of process {found.pid}", err=True)
+        return run_over(joined, interrupts, replace(how, at_once=how.stops), task)
 
 
 def run_over(
@@ -67,7 +91,12 @@ def run_over(
 
         dialogue = Dialogue(connection, interrupts, on_event)
         try:
-            dialogue.wait_for_vehicle(how.timeout_s)
+            if not how.at_once:
+                dialogue.wait_for_vehicle(how.timeout_s)
+            if how.take:
+                taken = dialogue.wait_settled(dialogue.send(Ask(0, "station_take")))
+                if not taken.completed:
+                    return _left(dialogue, taken.exit_code)
             code = task(dialogue, display)
         except Interrupted:
             ended = dialogue.leave("interrupted")
@@ -78,8 +107,13 @@ def run_over(
         except ExitError:
             dialogue.leave("failed")
             raise
-        ended = dialogue.leave("done")
-        return code or exit_code_of(ended)
+        return _left(dialogue, code)
+
+
+def _left(dialogue: Dialogue, code: int) -> int:
+    """Leave in good order; the exit code, which the station may have one for if we have none."""
+    ended = dialogue.leave("done")
+    return code or exit_code_of(ended)
 
 
 def sending(action: SendRequests, wait_s: float) -> Task:

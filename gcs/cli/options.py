@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -87,6 +88,11 @@ VEHICLE = click.Option(
     metavar="SYSID",
     help="Which vehicle, by its MAVLink system id, where several are heard.",
 )
+TAKE = click.Option(
+    ["--take"],
+    is_flag=True,
+    help="Where another operator is in control of the running station, take it over; it is told.",
+)
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
 
 
@@ -139,4 +145,5 @@ def station_config(
         connect_timeout_s=timeout_s,
         target_sysid=vehicle or 0,
         record=record,
+        operator=f"gcs {name}, pid {os.getpid()}",
     )

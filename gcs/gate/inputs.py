@@ -153,9 +153,13 @@ class ConditionChanged:
 @dataclass(frozen=True, slots=True)
 class OperatorLost:
     """The operator left, or is not connected any more.  Where we control a flying vehicle, the
-    gate holds it."""
+    gate holds it.
+
+    `for_good`: nobody comes after it, and only what stops the vehicle is accepted from then on.
+    """
 
     reason: str
+    for_good: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,11 +61,13 @@ class StationClient:
     station knows that the operator is lost.
     """
 
-    def __init__(self, process: subprocess.Popen[bytes]) -> None:
+    def __init__(self, process: subprocess.Popen[bytes], *, keep: bool = False) -> None:
+        """`keep`: the station lives on without us (`StationConfig.keep`)."""
         assert process.stdin is not None
         assert process.stdout is not None
         assert process.stderr is not None
         self._process = process
+        self._keep = keep
         self._stdin = process.stdin
         self._stdout, self._stderr = process.stdout, process.stderr
         self._events = LineSource(process.stdout.fileno())
@@ -85,7 +87,7 @@ class StationClient:
         process = subprocess.Popen(
             words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
-        return cls(process)
+        return cls(process, keep=setup.keep)
 
     @property
     def pid(self) -> int:
@@ -131,10 +133,15 @@ class StationClient:
         self._listener.start()
 
     def close(self) -> StationEnded:
-        """Wait for the process to end; send it a SIGTERM, then kill it, if it does not."""
+        """Wait for the process to end; send it a SIGTERM, then kill it, if it does not.
+
+        One that is kept is left alone.
+        """
         with self._send_lock, contextlib.suppress(OSError):
             self._stdin.close()
-        if not self._wait_for_end(TERMINATE_WAIT_S):
+        if self._keep and self._process.poll() is None:
+            self._process.returncode = 0  # nobody is to wait for it any more
+        elif not self._wait_for_end(TERMINATE_WAIT_S):
             self._process.terminate()
             if not self._wait_for_end(TERMINATE_WAIT_S):
                 self._process.kill()
@@ -177,8 +184,9 @@ class StationClient:
                 self._bye = event
             events.append(event)
         if self._events.ended:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(TERMINATE_WAIT_S)
+            if self._bye is None or not self._bye.goes_on:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    self._process.wait(TERMINATE_WAIT_S)
             while not self._errors.ended and select.select([self._errors], [], [], 0.0)[0]:
                 self._read_errors()
             self._ended = True

@@ -268,6 +268,8 @@ def unexpected_end(ended: StationEnded, trouble: ipc.Trouble | None) -> ExitErro
         return ExitError(trouble.exit_code, trouble.text, trouble.hint)
     if ended.bye is not None:
         return ExitError(ended.bye.exit_code or ExitCode.BUG, ended.bye.sentence)
+    if ended.exit_code is None:
+        return ExitError(ExitCode.NOT_COMPLETED, "the connection to the station was lost")
     code, tail = ended.exit_code, ended.stderr_tail
     return ExitError(
         ExitCode.BUG,

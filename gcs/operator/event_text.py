@@ -5,6 +5,7 @@ from __future__ import annotations
 from gcs import ipc
 from gcs.enu_text import signed_enu
 from gcs.gate.refusal import Code
+from gcs.operator import request_words
 from gcs.operator.errors import error_lines
 
 LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
@@ -70,3 +71,16 @@ def state_line(seen: ipc.Snapshot | None) -> str:
         f"state: {seen.state}, control {seen.control}, severity {seen.severity}, "
         f"at {signed_enu(seen.pos_enu)} m, mode {seen.mode or '-'}, {armed}, battery {battery} %"
     )
+
+
+def operation_line(operation: ipc.Operation, now_ns: int) -> str:
+    """`7  goto 3 0 2: running for 12 s, asked by operator 1 (gcs fly, pid 4711)`."""
+    who = f"operator {operation.client} ({operation.operator})"
+    until_ns = now_ns if operation.ended_ns is None else operation.ended_ns
+    how = f"{operation.state} {operation.code}".rstrip()
+    why = reason(operation.state, operation.code, operation.sentence)
+    text = f"{how}: {why}" if why else how
+    lasted_s = max(0.0, (until_ns - operation.since_ns) / 1e9)
+    told = "for" if operation.ended_ns is None else "after"
+    label = request_words.label(operation.asked)
+    return f"{operation.id:>3}  {label}: {text}, {told} {lasted_s:.0f} s, asked by {who}"

@@ -13,6 +13,8 @@ from typing import TypeAlias
 
 from gcs.ipc import Ask
 
+STOPS = frozenset({"abort", "hold", "land", "rtl"})
+"""Requests (`Ask.word`) that make the vehicle safer: nothing is to delay them."""
 NEEDS_CONTROL = frozenset({"goto", "photo", "mission_start"})
 """Requests (`Ask.word`) that the gate refuses while somebody else flies the vehicle."""
 
@@ -192,6 +194,20 @@ WORDS: tuple[Word, ...] = (
         _send("mission_clear"),
     ),
     Word(
+        "station take",
+        (),
+        "take control over from the operator who has it; it is told",
+        "station take",
+        _send("station_take"),
+    ),
+    Word(
+        "station end",
+        (),
+        "end the station, also one that is kept; a vehicle we fly is told to hold",
+        "station end",
+        _send("station_end"),
+    ),
+    Word(
         "wait",
         (Argument("SECONDS", ArgumentKind.SECONDS),),
         "do nothing for so many seconds of flight",
@@ -207,7 +223,7 @@ WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
 
 def label(request: Ask) -> str:
     """A request as an operator would type it: the table read backwards."""
-    name = request.word.replace("mission_", "mission ")
+    name = request.word.replace("mission_", "mission ").replace("station_", "station ")
     parts: list[str] = [name]
     if request.word == "takeoff":
         parts.append(_shown(request.up_m))

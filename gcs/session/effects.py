@@ -12,6 +12,9 @@ import msgspec
 from gcs import ipc
 from gcs.report import RecordItem
 
+EVERYONE = 0
+"""In place of a client's number: all operators are told."""
+
 
 class Transmit(msgspec.Struct, frozen=True, gc=False):
     """Put these bytes on link number `link`."""
@@ -25,9 +28,10 @@ class Record(msgspec.Struct, frozen=True, gc=False):
 
 
 class Emit(msgspec.Struct, frozen=True, gc=False):
-    """Tell the operator."""
+    """Tell one operator's program, or all of them.  Its `Bye` is the last that a client is told."""
 
     event: ipc.Event
+    client: int = EVERYONE
 
 
 class ReadFile(msgspec.Struct, frozen=True, gc=False):

@@ -14,6 +14,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import State
+from gcs.report import FenceShape
 from gcs.session import teller
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
@@ -95,6 +96,11 @@ class GatePort:
             ToGate(inputs.VerifierChanged(verifier)),
             *teller.fence(verifier.zones, telemetry.origin),
         ]
+
+    @property
+    def fence_shapes(self) -> list[FenceShape]:
+        """For drawing; empty before it is placed."""
+        return [] if self._verifier is None else teller.shapes(self._verifier.zones)
 
     def check_start(self, at: CheckStart) -> None:
         """Once, on the ground: is the vehicle inside?  If not, the policy is for elsewhere.

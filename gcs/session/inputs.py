@@ -26,24 +26,46 @@ class LinkEvent:
 
 
 @dataclass(frozen=True, slots=True)
-class OperatorLine:
-    """A command from the operator, already decoded."""
+class OperatorJoined:
+    """Another operator's program connected to the station's socket, under a new client number.
 
+    `hold_on_leave`: see `ipc.Join`.
+    """
+
+    client: int
+    name: str
+    hold_on_leave: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class OperatorLine:
+    """A command from one operator's program, already decoded."""
+
+    client: int
     command: ipc.Command
 
 
 @dataclass(frozen=True, slots=True)
 class OperatorNoise:
-    """A line from the operator that is no command."""
+    """A line from an operator's program that is no command."""
 
+    client: int
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class OperatorGone:
-    """The command stream ended, or a signal asked the link to go."""
+    """An operator's command stream ended, or nobody reads what it is told."""
 
+    client: int
     reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class SignalCame:
+    """The station's process was signalled to go (SIGTERM), or its terminal closed (SIGHUP)."""
+
+    name: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,9 +124,11 @@ class Wake:
 
 OtherInput: TypeAlias = (
     LinkEvent
+    | OperatorJoined
     | OperatorLine
     | OperatorNoise
     | OperatorGone
+    | SignalCame
     | FileRead
     | FileWritten
     | RecorderChanged

@@ -139,6 +139,12 @@ class Missions:
         self._on_board = None
         return [ToGate(MissionLoaded("", 0))]
 
+    def stop(self, request_id: int) -> list[Work]:
+        """Whoever asked for the transfer `request_id`, somebody stops it, if it is under way."""
+        if self._job is None or self._job.asked.request_id != request_id:
+            return []
+        return self._follow(self._job.stop())
+
     def leave(self) -> list[Work]:
         """The session ends: the job under way ends with it."""
         self._left = True

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from gcs import ipc
 from gcs.gate.effects import Level
-from gcs.report import AttachmentItem, InputItem, LogEvent, MetadataItem
+from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem
+from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.inputs import FileRead, OtherInput, RecorderGrew
 from gcs.session.setup import Setup
@@ -23,13 +26,20 @@ def introduction(setup: Setup) -> list[Effect]:
         ("seed", str(config.sim.seed) if config.sim else ""),
     )
     policy = setup.policy_text.encode()
-    hello = ipc.Hello(setup.version, setup.log_path, list(setup.endpoints), setup.policy.name)
     return [
         Record(MetadataItem("mavgate", values)),
         Record(AttachmentItem("policy.toml", "application/toml", policy)),
         Record(InputItem.of("Setup", config)),
-        Emit(hello),
+        Emit(hello(setup, setup.log_path), FIRST),
     ]
+
+
+def hello(
+    setup: Setup, log_path: str, fence: Iterable[FenceShape] = (), client: int = FIRST
+) -> ipc.Hello:
+    """The first event that an operator's program is told."""
+    endpoints, policy = list(setup.endpoints), setup.policy.name
+    return ipc.Hello(setup.version, log_path, endpoints, policy, list(fence), client=client)
 
 
 def recorded(given: OtherInput) -> list[Effect]:

@@ -11,16 +11,22 @@ from gcs.gate import requests
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import Autopilot, mode_named
 
-OPERATOR = "operator"
-
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """One request in the words that it was made in."""
+    """One request in the words that it was made in, and which operator (`client`) made it."""
 
-    client_id: int
-    word: str
-    source: str = OPERATOR
+    ask: ipc.Ask
+    client: int = 1
+
+    @property
+    def word(self) -> str:
+        return self.ask.word
+
+    @property
+    def source(self) -> str:
+        """Who asks, for the gate and the record."""
+        return "operator" if self.client == 1 else f"operator {self.client}"
 
 
 class BadAskError(ValueError):
@@ -92,10 +98,10 @@ class Requests:
         self._next_id = 1
         self._asked: dict[int, Asked] = {}
 
-    def open(self, client_id: int, word: str, source: str = OPERATOR) -> int:
+    def open(self, ask: ipc.Ask, client: int) -> int:
         request_id = self._next_id
         self._next_id += 1
-        self._asked[request_id] = Asked(client_id, word, source)
+        self._asked[request_id] = Asked(ask, client)
         return request_id
 
     def get(self, request_id: int) -> Asked:

@@ -10,16 +10,12 @@ from __future__ import annotations
 from typing import assert_never
 
 from gcs import ipc
-from gcs.enu_text import plain_enu
 from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.condition import Condition
-from gcs.gate.effects import Level, Ruling
+from gcs.gate.effects import Level
 from gcs.gate.machine.gate import Gate
-from gcs.gate.requests import SetMode
-from gcs.gate.states import FlightMode
-from gcs.protocol.autopilot import GENERIC
 from gcs.protocol.effects import Send
 from gcs.report import (
     Direction,
@@ -28,6 +24,7 @@ from gcs.report import (
     InputItem,
 )
 from gcs.session import teller
+from gcs.session.clients import FIRST, LEAVING_NS
 from gcs.session.effects import Effect, Emit, Finish, Record
 from gcs.session.gate_port import condition
 from gcs.session.inputs import (
@@ -37,20 +34,21 @@ from gcs.session.inputs import (
     Input,
     LinkEvent,
     OperatorGone,
+    OperatorJoined,
     OperatorLine,
     OperatorNoise,
     OtherInput,
     RecorderChanged,
     RecorderGrew,
+    SignalCame,
     SimGone,
     SimLine,
     Wake,
 )
 from gcs.session.links import Links
-from gcs.session.missions import MISSION_WORDS
+from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
-from gcs.session.recorded import introduction, recorded, sim_line
-from gcs.session.requests import BadAskError, Requests, request_of
+from gcs.session.recorded import hello, introduction, recorded, sim_line
 from gcs.session.screen import snapshot
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
@@ -59,18 +57,21 @@ from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import (
     AskGate,
+    AskMission,
     CheckStart,
     Decide,
+    EndSession,
     Log,
     PlaceFence,
     SecondDue,
     SnapshotDue,
+    StopTransfer,
+    Tell,
     ToGate,
     Work,
 )
 from gcs.wire.frame import Frame, Garbage
 
-LEAVING_NS = 3_000_000_000
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
 
@@ -79,7 +80,7 @@ MAX_FAULTS = 10
 
 
 class Session:
-    """One operator, one vehicle, any number of links; from the first byte to `Finish`."""
+    """Any number of operators and links, one vehicle; from the first byte to `Finish`."""
 
     def __init__(self, setup: Setup, now_ns: int) -> None:
         config = setup.config
@@ -90,7 +91,7 @@ class Session:
         count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
         self._links = Links(config.sysid, config.compid, count, streams, waiting)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
-        self._requests = Requests()
+        self._operators = Operators(setup)
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
@@ -141,15 +142,20 @@ class Session:
         """Handling `given` raised an exception, which is a bug of ours: keep the vehicle safe.
 
         Bytes or words that we cannot take are dropped, logged and recorded.  Where it happens on
-        the clock, or again and again, the vehicle is told to hold and the station ends.
+        the clock, or again and again, the vehicle is told to hold and the station ends.  An
+        operator who has joined loses the connection instead: nobody's words end the station.
         """
         self._queue.drop()
-        self._faults += 1
+        visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
+        self._faults += not visitor
         text = f"internal error: {report.splitlines()[-1]}"
         work: list[Work] = [
             Record(InputItem.of("Fault", report)),
             Log(Level.FATAL, NODE, text),
         ]
+        if isinstance(given, OperatorJoined | OperatorLine) and visitor:
+            bye = ipc.Bye(ExitCode.BUG, "", "an internal error of the station", goes_on=True)
+            work.append(Emit(bye, given.client))
         if isinstance(given, Wake) or self._faults > MAX_FAULTS:
             self._finished = True
             hold = self._vehicle.hold_without_gate(now_ns)
@@ -165,12 +171,19 @@ class Session:
         match given:
             case Wake():
                 return self._vehicle.wake(now_ns) + self._ticks.wake(now_ns)
-            case OperatorLine(command):
-                return self._operator(command, now_ns)
-            case OperatorNoise(text):
-                return [Emit(ipc.Trouble(f"not a command: {text}"))]
-            case OperatorGone(reason):
-                return self._leave(reason, now_ns)
+            case OperatorJoined():
+                return self._welcome(given, now_ns)
+            case OperatorLine(client, command):
+                telemetry = self._vehicle.telemetry
+                autopilot = telemetry.autopilot if telemetry else None
+                no_vehicle = self._vehicle.refusal(now_ns)
+                return self._operators.line(client, command, autopilot, no_vehicle, now_ns)
+            case OperatorNoise(client, text):
+                return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
+            case OperatorGone(client, reason):
+                return self._operators.lost(client, reason)
+            case SignalCame(name):
+                return self._operators.signalled(name)
             case LinkEvent(_, text, trouble):
                 return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
             case FileRead() | FileWritten():
@@ -194,9 +207,8 @@ class Session:
             case Send(message):
                 telemetry = self._vehicle.telemetry
                 return [] if telemetry is None else [*self._links.send(telemetry.link, message)]
-            case gate_effects.Outcome(request_id):
-                asked = self._requests.close(request_id)
-                return [*teller.outcome(item, asked, self._vehicle.sysid)]
+            case gate_effects.Outcome():
+                return self._operators.outcome(item, self._vehicle.sysid, now_ns)
             case (
                 gate_effects.SendSetpoint()
                 | gate_effects.SendCommand()
@@ -211,15 +223,18 @@ class Session:
                 return self._vehicle.carry_out(item, now_ns)
             case Log():
                 return [*teller.log(item, now_ns)]
-            case AskGate(request_id, request):
-                asked = self._requests.get(request_id)
-                given = gate_inputs.Requested(request_id, asked.source, request)
-                return [teller.requested(asked, request), ToGate(given)]
-            case Decide(request_id, ruling):
-                over = ruling is not Ruling.ACCEPTED
-                requests = self._requests
-                asked = requests.close(request_id) if over else requests.get(request_id)
-                return [*teller.verdict(item, asked, self._vehicle.sysid)]
+            case AskGate():
+                return self._operators.asked_of_gate(item)
+            case AskMission(request_id, ask):
+                return self._vehicle.ask_mission(request_id, ask, now_ns)
+            case StopTransfer(request_id):
+                return self._vehicle.stop_transfer(request_id)
+            case Decide():
+                return self._operators.verdict(item, self._vehicle.sysid, now_ns)
+            case Tell():
+                return self._operators.tell(item)
+            case EndSession(reason):
+                return self._end(reason, now_ns)
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
@@ -246,7 +261,10 @@ class Session:
             self._other_station_ns = now_ns
             text = f"another station on link {link} calls itself {frame.sysid}/{frame.compid}"
             return [condition(Condition.OTHER_STATION, True, text)]
-        return self._vehicle.frame(link, frame, now_ns)
+        work = self._vehicle.frame(link, frame, now_ns)
+        if frame.sysid == self._vehicle.sysid:
+            work += self._operators.heard(frame, now_ns)
+        return work
 
     # ------------------------------------------------------------------------------ time
 
@@ -276,41 +294,18 @@ class Session:
 
     # -------------------------------------------------------------------------- operator
 
-    def _operator(self, command: ipc.Command, now_ns: int) -> list[Work]:
-        match command:
-            case ipc.Ask():
-                return self._ask(command, now_ns)
-            case ipc.Pending(goal_enu, _):
-                text = f"Keyboard: {plain_enu(goal_enu)}"
-                return [Log(Level.INFO, "keyboard_manager", text)]
-            case ipc.Leave(reason):
-                return self._leave(reason, now_ns)
-
-    def _ask(self, ask: ipc.Ask, now_ns: int) -> list[Work]:
-        refusal = self._vehicle.refusal(now_ns)
-        if refusal is not None:
-            request_id = self._requests.open(ask.id, ask.word)
-            text = f"{ask.word}: refused {refusal.code.value}: {refusal.sentence}"
-            log = Log(Level.WARNING, NODE, text)
-            return [Decide(request_id, Ruling.REFUSED, refusal), log]
-        if ask.word in MISSION_WORDS:
-            return self._ask_mission(ask, now_ns)
-        telemetry = self._vehicle.telemetry
-        try:
-            request = request_of(ask, telemetry.autopilot if telemetry else GENERIC)
-        except BadAskError as error:
-            return [Emit(ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error)))]
-        if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
-            # The mission mode by its name is a mission start, and is verified like one.
-            return self._ask_mission(ask, now_ns)
-        return [AskGate(self._requests.open(ask.id, ask.word), request)]
-
-    def _ask_mission(self, ask: ipc.Ask, now_ns: int) -> list[Work]:
-        return self._vehicle.ask_mission(self._requests.open(ask.id, ask.word), ask, now_ns)
+    def _welcome(self, joined: OperatorJoined, now_ns: int) -> list[Work]:
+        """What everybody else knows already, for one that has just joined."""
+        client, fence = joined.client, self._vehicle.fence_shapes
+        return [
+            Emit(hello(self._setup, self._log_path, fence, client), client),
+            Emit(self._snapshot(now_ns), client),
+            *self._operators.join(client, joined.name, joined.hold_on_leave),
+        ]
 
     # --------------------------------------------------------------------------- leaving
 
-    def _leave(self, reason: str, now_ns: int) -> list[Work]:
+    def _end(self, reason: str, now_ns: int) -> list[Work]:
         """Hold where we fly, wait until that is seen (at most 3 s), then finish."""
         if self._leaving_since_ns is not None:
             return []
@@ -330,9 +325,14 @@ class Session:
             trouble = Emit(ipc.Trouble(text, hint, ExitCode.REFUSED_BY_GATE))
             return [trouble, *self._finish(ExitCode.REFUSED_BY_GATE, text)]
         if self._leaving_since_ns is None:
-            return []
+            return self._farewells(now_ns) if self._operators.anyone_leaves else []
         overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
         return self._finish(0, self._last_words()) if self.gate.settled or overdue else []
+
+    def _farewells(self, now_ns: int) -> list[Work]:
+        """To those who leave a station that lives on."""
+        settled, words = self.gate.settled, self._last_words()
+        return self._operators.farewells(settled, words, self._log_path, now_ns)
 
     def _finish(self, exit_code: int, sentence: str) -> list[Work]:
         self._finished = True

@@ -56,7 +56,7 @@ def verdict(told: Decide, asked: Asked, sysid: int) -> list[Effect]:
         numbers=dict(refusal.numbers if refusal else told.evidence),
     )
     event = ipc.VerdictEvent(
-        asked.client_id,
+        asked.ask.id,
         item.word,
         item.outcome,
         item.code,
@@ -64,8 +64,9 @@ def verdict(told: Decide, asked: Asked, sysid: int) -> list[Effect]:
         item.zone,
         item.numbers,
         item.goal.enu if item.goal else None,
+        told.request_id,
     )
-    return [Emit(event), Record(item)]
+    return [Emit(event, asked.client), Record(item)]
 
 
 def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
@@ -83,8 +84,8 @@ def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
         goal=None,
         numbers={},
     )
-    event = ipc.EndingEvent(asked.client_id, item.word, item.outcome, item.code, item.sentence)
-    return [Emit(event), Record(item)]
+    event = ipc.EndingEvent(asked.ask.id, item.word, item.outcome, item.code, item.sentence)
+    return [Emit(event, asked.client), Record(item)]
 
 
 def transition(told: effects.Transition, goal_ned: Vec3 | None, sysid: int) -> list[Effect]:
@@ -123,6 +124,11 @@ def fence(zones: Iterable[Zone], origin: Origin | None) -> list[Effect]:
     where = None if origin is None else (origin.lat_deg, origin.lon_deg, origin.alt_amsl_m)
     item = FenceItem([_shape(zone) for zone in zones], where)
     return [Record(item), Emit(ipc.Fences(item.zones))]
+
+
+def shapes(zones: Iterable[Zone]) -> list[FenceShape]:
+    """The zones as an operator that has just joined is told of them."""
+    return [_shape(zone) for zone in zones]
 
 
 def _point(pos_ned: Vec3 | None) -> PointEnu | None:

@@ -23,7 +23,7 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
-from gcs.report import ParamItem, SetpointItem, StatusItem
+from gcs.report import FenceShape, ParamItem, SetpointItem, StatusItem
 from gcs.session import settings, teller
 from gcs.session.commands import Commands
 from gcs.session.delay import Delay
@@ -135,6 +135,11 @@ class Vehicle:
     def sysid(self) -> int:
         """0 before it is heard."""
         return self.telemetry.sysid if self.telemetry else 0
+
+    @property
+    def fence_shapes(self) -> list[FenceShape]:
+        """The fence as the verifier stands on it; empty before it is placed."""
+        return self._port.fence_shapes
 
     @property
     def mission_total(self) -> int | None:
@@ -402,6 +407,10 @@ class Vehicle:
         if self.telemetry is None:
             return []
         return self._missions.file(news, self._view(self.telemetry), now_ns)
+
+    def stop_transfer(self, request_id: int) -> list[Work]:
+        """End the mission transfer of that request; nothing where none is under way."""
+        return self._missions.stop(request_id)
 
     def leave(self) -> list[Work]:
         """The session ends: a mission job that is under way ends with it."""

@@ -10,6 +10,7 @@ from typing import Final, TypeAlias
 
 import msgspec
 
+from gcs import ipc
 from gcs.frames import Vec3
 from gcs.gate import effects as gate_effects
 from gcs.gate import inputs as gate_inputs
@@ -58,6 +59,32 @@ class Log(msgspec.Struct, frozen=True, gc=False):
     text: str
 
 
+class Tell(msgspec.Struct, frozen=True, gc=False):
+    """An event for the operator who made the request `request_id`, which is not over yet."""
+
+    request_id: int
+    event: ipc.Event
+
+
+class AskMission(msgspec.Struct, frozen=True, gc=False):
+    """The request that was opened as `request_id`, about missions: for the vehicle's jobs."""
+
+    request_id: int
+    ask: ipc.Ask
+
+
+class StopTransfer(msgspec.Struct, frozen=True, gc=False):
+    """The mission transfer that was opened as `request_id` is to end, if it is under way."""
+
+    request_id: int
+
+
+class EndSession(msgspec.Struct, frozen=True, gc=False):
+    """The station is to be left: the vehicle is seen safe first."""
+
+    reason: str
+
+
 class PlaceFence(msgspec.Struct, frozen=True, gc=False):
     """Home or origin became known or moved: the fence is to be placed anew."""
 
@@ -84,6 +111,10 @@ Work: TypeAlias = (
     | AskGate
     | Decide
     | Log
+    | Tell
+    | AskMission
+    | StopTransfer
+    | EndSession
     | SecondDue
     | SnapshotDue
     | PlaceFence

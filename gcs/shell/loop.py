@@ -15,7 +15,17 @@ from typing import Protocol
 
 from gcs import ipc
 from gcs.resources import MissionNotFoundError, find
-from gcs.session.effects import Effect, Emit, Finish, ReadFile, Record, Transmit, WriteFile
+from gcs.session.clients import FIRST
+from gcs.session.effects import (
+    EVERYONE,
+    Effect,
+    Emit,
+    Finish,
+    ReadFile,
+    Record,
+    Transmit,
+    WriteFile,
+)
 from gcs.session.inputs import (
     Datagram,
     FileRead,
@@ -25,10 +35,12 @@ from gcs.session.inputs import (
     OperatorGone,
     OperatorLine,
     OperatorNoise,
+    SignalCame,
     SimGone,
     SimLine,
     Wake,
 )
+from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import Recording
@@ -68,7 +80,11 @@ class Loop:
         recording: Recording,
         signals: SignalSource,
         sim: SimProcess | None,
+        clients: ClientSockets | None = None,
+        on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
     ) -> None:
+        """`operator` and `screen` are the pipes of the operator who started the station, `clients`
+        everybody else.  `on_snapshot` is called with each one, and must not wait."""
         self._core = core
         self._clock = clock
         self._links = links
@@ -77,6 +93,8 @@ class Loop:
         self._recording = recording
         self._signals = signals
         self._sim = sim
+        self._clients = clients
+        self._on_snapshot = on_snapshot
         self._operator_open = True
         self._sim_open = sim is not None
         self._finish: Finish | None = None
@@ -99,29 +117,35 @@ class Loop:
         self._read_links(readable)
         if self._signals in readable:
             for name in self._signals.read():
-                self._feed(OperatorGone(name))
+                self._feed(SignalCame(name))
         if self._operator_open and self._operator in readable:
             self._read_operator()
         if self._sim_open and self._sim is not None and self._sim.lines in readable:
             self._read_sim(self._sim)
         if self._screen.broken and self._operator_open:
             self._operator_open = False
-            self._feed(OperatorGone("nobody reads the link's output"))
+            self._feed(OperatorGone(FIRST, "nobody reads the link's output"))
         self._wake_if_due()
+        self._read_clients(readable, writable)
         for change in self._recording.upkeep(self._clock.now_ns()):
             self._feed(change)
 
-    def _wait(self) -> tuple[list[Source], list[LineSink]]:
+    def _wait(self) -> tuple[list[Source], list[Source]]:
         sources: list[Source] = [link for link in self._links if link.fileno() >= 0]
         sources.append(self._signals)
         if self._operator_open:
             sources.append(self._operator)
         if self._sim_open and self._sim is not None:
             sources.append(self._sim.lines)
-        sinks = [self._screen] if self._screen.waiting else []
+        sinks: list[Source] = [self._screen] if self._screen.waiting else []
+        if self._clients is not None:
+            sources += self._clients.sources
+            sinks += self._clients.sinks
         deadlines = [self._core.deadline_ns, self._recording.deadline_ns]
         deadlines += [link.deadline_ns for link in self._links if link.deadline_ns is not None]
         wait_s = self._clock.seconds_until(min(deadlines))
+        if self._clients is not None and self._clients.busy:
+            wait_s = 0.0
         readable, writable, _ = select.select(sources, sinks, [], wait_s)
         return readable, writable
 
@@ -146,12 +170,20 @@ class Loop:
             try:
                 command = ipc.decode_command(line)
             except (ValueError, RecursionError) as error:
-                self._feed(OperatorNoise(f"{error}: {line[:200]!r}"))
+                self._feed(OperatorNoise(FIRST, f"{error}: {line[:200]!r}"))
             else:
-                self._feed(OperatorLine(command))
+                self._feed(OperatorLine(FIRST, command))
         if self._operator.ended:
             self._operator_open = False
-            self._feed(OperatorGone("the command stream ended"))
+            self._feed(OperatorGone(FIRST, "the command stream ended"))
+
+    def _read_clients(self, readable: list[Source], writable: list[Source]) -> None:
+        """Whatever they send, and however much of it: the grid's deadline is met between lines."""
+        if self._clients is None:
+            return
+        for given in self._clients.turn(readable, writable):
+            self._feed(given)
+            self._wake_if_due()
 
     def _read_sim(self, sim: SimProcess) -> None:
         for line in sim.lines.read():
@@ -203,12 +235,8 @@ class Loop:
                 self._links[link].send(data)
             case Record(item):
                 self._recording.write(item, now_ns)
-            case Emit(event):
-                line = ipc.encode(event)
-                put: Callable[[bytes], None] = self._screen.put
-                if isinstance(event, ipc.Snapshot):
-                    put = self._screen.offer
-                put(line)
+            case Emit(event, client):
+                self._emit(event, client)
             case ReadFile(token, path):
                 return _read(token, path)
             case WriteFile(token, path, data):
@@ -216,6 +244,22 @@ class Loop:
             case Finish():
                 self._finish = effect
         return None
+
+    def _emit(self, event: ipc.Event, client: int) -> None:
+        """One line, to whom it is for; what comes again anyway may be dropped on the way."""
+        line = ipc.encode(event)
+        droppable = isinstance(event, ipc.Snapshot | ipc.MessageEvent)
+        last = isinstance(event, ipc.Bye)
+        if isinstance(event, ipc.Snapshot):
+            self._on_snapshot(event)
+        if client in (EVERYONE, FIRST):
+            put: Callable[[bytes], None] = self._screen.offer if droppable else self._screen.put
+            put(line)
+            if last:
+                self._operator_open = False
+                self._screen.hang_up()
+        if client != FIRST and self._clients is not None:
+            self._clients.tell(line, client, droppable=droppable, last=last)
 
 
 def _read(token: int, path: str) -> FileRead:

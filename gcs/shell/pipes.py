@@ -86,6 +86,7 @@ class LineSink:
         self._queued_bytes = 0
         self.broken = False
         self.dropped = 0
+        self._hanging_up = False
         self._changed = threading.Condition()
         self._thread: threading.Thread | None = None
         if sys.platform == "win32":
@@ -93,6 +94,14 @@ class LineSink:
             self._thread.start()
         else:
             os.set_blocking(fd, False)
+
+    def hang_up(self) -> None:
+        """The reader sees the end of file once it has read what is queued."""
+        with self._changed:
+            self._hanging_up = True
+            if not self._queue:
+                self._end_file()
+            self._changed.notify_all()
 
     @property
     def waiting(self) -> bool:
@@ -110,7 +119,7 @@ class LineSink:
             self.put(line)
 
     def put(self, line: bytes) -> None:
-        if self.broken:
+        if self.broken or self._hanging_up:
             return
         if self._queued_bytes + len(line) > MAX_QUEUED_BYTES:
             with self._changed:
@@ -162,6 +171,15 @@ class LineSink:
             self._queue[0] = self._queue[0][size:]
         else:
             self._queue.popleft()
+        if self._hanging_up and not self._queue:
+            self._end_file()
+
+    def _end_file(self) -> None:
+        """The descriptor stays what it is for this process: the null device takes its place."""
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, self._fd)
+        os.close(null)
+        self.broken = True
 
     def _break(self) -> None:
         """Nobody reads; what is queued is for nobody."""

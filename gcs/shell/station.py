@@ -8,8 +8,9 @@ Speaks JSON lines with its operator (`gcs.ipc`) and writes nothing else to stand
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gcs import __version__, config, ipc
@@ -18,16 +19,20 @@ from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import Policy
 from gcs.policy_file import PolicyFileError, load_policy
 from gcs.record.writer import Recorder, RecorderError
+from gcs.session.effects import EVERYONE
 from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.shell import sockets
+from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.endpoints import EndpointError, parse_endpoint
+from gcs.shell.local_socket import LocalSocket
 from gcs.shell.loop import Loop
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
+from gcs.shell.stations import Unsafe
 
 DRAIN_WAIT_S = 5.0
 """How long the last events wait for an operator's program that does not read them at once."""
@@ -67,6 +72,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
         if setup.sim is not None:
             sim = SimProcess(setup.sim, links[0].port)
             opened.callback(sim.stop)
+        local, clients = _open_local_socket(setup, links, recording, screen, opened)
         session = Session(
             Setup(
                 config=setup,
@@ -81,12 +87,26 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
             clock.now_ns(),
         )
         operator = LineSource(sys.stdin.fileno())
-        finish = Loop(session, clock, links, operator, screen, recording, signals, sim).run()
+        finish = Loop(
+            session,
+            clock,
+            links,
+            operator,
+            screen,
+            recording,
+            signals,
+            sim,
+            clients,
+            local.describe if local else lambda _: None,
+        ).run()
         if session.nothing_heard:
             recording.discard(clock.now_ns())
         whole = recording.close(clock.now_ns())
-    exit_code = finish.exit_code or (0 if whole else ExitCode.RECORDER)
-    screen.put(ipc.encode(ipc.Bye(exit_code, recording.path, finish.sentence)))
+        exit_code = finish.exit_code or (0 if whole else ExitCode.RECORDER)
+        bye = ipc.encode(ipc.Bye(exit_code, recording.path, finish.sentence))
+        if clients is not None:
+            clients.tell(bye, EVERYONE, droppable=False, last=True)
+    screen.put(bye)
     return exit_code
 
 
@@ -119,6 +139,27 @@ def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
         opened.callback(link.close)
         links.append(link)
     return links
+
+
+def _open_local_socket(
+    setup: StationConfig,
+    links: Sequence[sockets.Link],
+    recording: Recording,
+    screen: LineSink,
+    opened: ExitStack,
+) -> tuple[LocalSocket | None, ClientSockets | None]:
+    """The way in for other operators.  A station that cannot have one flies without it."""
+    endpoints = [str(replace(link.endpoint, port=link.port)) for link in links]
+    try:
+        local = LocalSocket(endpoints, recording.path, keep=setup.keep)
+    except (OSError, Unsafe) as error:
+        text = f"no other terminal can reach this station: {error}"
+        screen.put(ipc.encode(ipc.Trouble(text, "")))
+        return None, None
+    clients = ClientSockets(local.listener, local.description.token)
+    opened.callback(clients.close)
+    opened.callback(local.close)
+    return local, clients
 
 
 def _open_recording(setup: StationConfig, clock: Clock) -> Recording:

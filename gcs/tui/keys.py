@@ -76,6 +76,7 @@ SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
     (
         "Station",
         (
+            Key(("o",), "o", "request('station_take')", "take over from another operator"),
             Key(("plus", "equals_sign"), "+", "zoom(-1)", "map: closer"),
             Key(("minus",), "-", "zoom(1)", "map: farther"),
             Key(("z",), "z", "fit", "map: fit by itself"),

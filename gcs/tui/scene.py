@@ -97,6 +97,8 @@ class Scene:
                 self._show_answer(self.label(event), event.ended, event.code, event.sentence)
             case ipc.ProgressEvent():
                 self.progress = event
+            case ipc.Operators() | ipc.Operation() | ipc.OperationList() | ipc.MessageEvent():
+                pass
             case ipc.LogEvent() | ipc.Trouble() | ipc.Bye():
                 pass
 

@@ -15,37 +15,25 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from pymavlink.dialects.v20 import all as dialect
-
 from gcs import ipc
 from gcs.operator.dialogue import TrackedRequest
 from tests.system.programs import GCS
+from tests.system.second_program import HoldWatch
 from tests.system.station import tapped
 from tests.system.terminal import terminal
 from tests.system.typed_flight import take_off
 from tests.system.vehicle_program import free_port, until, vehicle_sim
-from tests.system.wire_tap import Crossing, WireTap
+from tests.system.wire_tap import WireTap
 
 ABORTS = 50
-PX4_AUTO, PX4_LOITER = 4, 3
 
 _rng = random.Random(1)
 
 
-class HoldWatch:
-    """Notes when a command to hold passes."""
+class Stopwatch(HoldWatch):
+    """How long it takes from an abort to the hold command."""
 
-    def __init__(self) -> None:
-        self.passed_ns: list[int] = []
-
-    def hear(self, crossing: Crossing) -> None:
-        message = dialect.MAVLink(None).parse_char(crossing.data)
-        if message is not None and message.get_type() == "COMMAND_LONG":
-            asked = (message.command, message.param2, message.param3)
-            if asked == (dialect.MAV_CMD_DO_SET_MODE, PX4_AUTO, PX4_LOITER):
-                self.passed_ns.append(crossing.at_ns)
-
-    def latency_ms(self, abort: Callable[[], None]) -> float:
+    def latency_ms(self, abort: Callable[[], object]) -> float:
         time.sleep(_rng.uniform(0.0, 0.2))
         known = len(self.passed_ns)
         start_ns = time.monotonic_ns()
@@ -55,7 +43,7 @@ class HoldWatch:
 
 
 def by_key(folder: str) -> list[float]:
-    watch, port = HoldWatch(), free_port()
+    watch, port = Stopwatch(), free_port()
     found = []
     with WireTap(watch.hear) as tap:
         tap.connect(port)
@@ -76,7 +64,7 @@ def by_key(folder: str) -> list[float]:
 
 
 def by_line(folder: Path) -> list[float]:
-    watch = HoldWatch()
+    watch = Stopwatch()
     found = []
     with tapped(folder, tap=WireTap(watch.hear)) as (operator, _):
         operator.fly("arm", "takeoff 1.5")

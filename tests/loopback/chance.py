@@ -105,8 +105,8 @@ def _unknown(flight: WatchedFlight, dice: random.Random) -> None:
 
 
 def _pending(flight: WatchedFlight, dice: random.Random) -> None:
-    flight.feed(inputs.OperatorLine(ipc.Pending((dice.uniform(-9.0, 9.0), 0.0, 0.5))))
-    flight.feed(inputs.OperatorNoise("{"))
+    flight.feed(inputs.OperatorLine(1, ipc.Pending((dice.uniform(-9.0, 9.0), 0.0, 0.5))))
+    flight.feed(inputs.OperatorNoise(1, "{"))
 
 
 def _dropout(flight: WatchedFlight, dice: random.Random) -> None:
@@ -204,7 +204,7 @@ def flown(index: int, seconds: float = 20.0) -> WatchedFlight:
             if dice.random() < 0.005:
                 break
             flight.run(dice.choice((0.0, 0.02, 0.2, 0.7, 1.5, 3.0)))
-        flight.feed(inputs.OperatorGone("the flight is over"))
+        flight.feed(inputs.OperatorGone(1, "the flight is over"))
         flight.run(4.0)
     return flight
 

@@ -208,7 +208,7 @@ class Flight(Looks):
             mode=mode,
             path=path,
         )
-        self.feed(inputs.OperatorLine(ask))
+        self.feed(inputs.OperatorLine(1, ask))
         return ask_id
 
     def goto(self, east_m: float, north_m: float, up_m: float) -> int:

@@ -102,7 +102,7 @@ def test_the_operator_is_lost_in_flight(personality: Personality) -> None:
     goal = flight.goto(20.0, 0.0, 3.0)
     flight.run(2.0)
     left_ns = flight.now_ns
-    flight.feed(inputs.OperatorGone("the command stream ended"))
+    flight.feed(inputs.OperatorGone(1, "the command stream ended"))
     flight.run(3.5)
     assert flight.finish is not None
     assert flight.finish.exit_code == 0
@@ -117,7 +117,7 @@ def test_the_operator_is_lost_and_the_link_with_him() -> None:
     flight = Flight().hovering(3.0)
     flight.up.weather = Weather(loss=1.0)
     left_ns = flight.now_ns
-    flight.feed(inputs.OperatorGone("killed"))
+    flight.feed(inputs.OperatorGone(1, "killed"))
     flight.run(4.0)
     assert flight.finish is not None
     assert "not seen to hold" in flight.finish.sentence
@@ -129,7 +129,7 @@ def test_the_operator_is_lost_and_the_link_with_him() -> None:
 
 def test_leaving_a_vehicle_on_the_ground_is_at_once() -> None:
     flight = Flight().connected()
-    flight.feed(inputs.OperatorGone("quit"))
+    flight.feed(inputs.OperatorGone(1, "quit"))
     assert flight.finish is not None
     assert flight.finish.sentence == "the vehicle is on the ground"
     assert flight.finish.exit_code == 0

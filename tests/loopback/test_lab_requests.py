@@ -52,7 +52,7 @@ def test_L02_movement_keys_send_nothing_and_log_one_line_a_change() -> None:
     quiet.run(0.1)
     since_ns = typing.now_ns
     for goal_enu in pending:
-        typing.feed(inputs.OperatorLine(ipc.Pending(goal_enu)))
+        typing.feed(inputs.OperatorLine(1, ipc.Pending(goal_enu)))
         typing.run(0.3)
         quiet.run(0.3)
     assert typing.lines("keyboard_manager", since_ns) == [

@@ -9,6 +9,7 @@ import pytest
 from gcs import ipc
 from gcs.gate.states import State
 from gcs.session import inputs
+from gcs.session.clients import FIRST
 from gcs.wire.frame import Frame, split
 from tests.loopback.air import Weather
 from tests.loopback.flight import PERSONALITIES, Flight, Personality, lab_policy
@@ -18,7 +19,7 @@ both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 DO_SET_MODE, LAND = 176, 21
 HOLD_MODE = {"px4": "AUTO.LOITER", "ardupilot": "BRAKE"}
 RETURN_MODE = {"px4": "AUTO.RTL", "ardupilot": "RTL"}
-LEAVE = inputs.OperatorLine(ipc.Leave("quit"))
+LEAVE = inputs.OperatorLine(FIRST, ipc.Leave("quit"))
 
 
 class WithoutHeartbeats(Flight):

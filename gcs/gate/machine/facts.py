@@ -109,9 +109,9 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             yield Occurrence(Event.MISSION_FINISHED if finished else Event.MISSION_ITEM)
         case ConditionChanged():
             _condition(turn, given)
-        case OperatorLost(reason):
+        case OperatorLost(reason, for_good):
             turn.say(Level.INFO, f"The operator leaves: {reason}")
-            memory.operator_lost = True
+            memory.operator_lost |= for_good
             yield Occurrence(Event.OPERATOR_LOST)
         case Tick():
             return

@@ -360,6 +360,7 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "home moves, and back": _home_moves,
         "fence moves, and back": _fence_moves,
         "operator lost": _input(OperatorLost("explorer")),
+        "operator leaves": _input(OperatorLost("explorer", for_good=False)),
         "wait: position too old": _until(_stale_ns, told=False),
         "wait: landed too old": _until(_landed_old_ns, landed=False),
         "wait: grace": _until(lambda _, memory: memory.grace_until_ns, told=False),

@@ -10,7 +10,7 @@ from gcs.plan.errors import PlanError
 from gcs.plan.wire import from_wire
 from gcs.plan.writer import write
 from gcs.protocol.mission import MissionDownload
-from gcs.session.effects import Emit, WriteFile
+from gcs.session.effects import WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import (
     Asked,
@@ -20,6 +20,7 @@ from gcs.session.jobs.job import (
 )
 from gcs.session.paths import autopilot_name
 from gcs.session.plans import item_of
+from gcs.session.work import Tell
 from gcs.wire.messages import MissionItemInt
 
 
@@ -55,5 +56,5 @@ class Download(Job):
         if not news.error:
             return self.end(OutcomeKind.COMPLETE, None, f"written to {news.path}")
         text = f"{news.path}: {news.error}"
-        trouble = Emit(ipc.Trouble(text, "", ExitCode.BAD_FILE))
+        trouble = Tell(self.asked.request_id, ipc.Trouble(text, "", ExitCode.BAD_FILE))
         return [trouble, *self.end(OutcomeKind.ABORTED, Code.BAD_MISSION, text)]

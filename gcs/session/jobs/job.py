@@ -31,12 +31,11 @@ from gcs.protocol.effects import (
 )
 from gcs.protocol.mission import MissionClear, MissionDownload, MissionUpload
 from gcs.protocol.transfer import Timing
-from gcs.session.effects import Emit
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
-from gcs.session.work import Decide, Log, Work
+from gcs.session.work import Decide, Log, Tell, Work
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
 
@@ -118,6 +117,10 @@ class Job(ABC):
         """The session ends: what is under way ends with it, and is told so."""
         return self.end(OutcomeKind.ABORTED, Code.OPERATOR_LOST, LEFT)
 
+    def stop(self) -> list[JobWork]:
+        """An operator stops it."""
+        return self.end(OutcomeKind.ABORTED, Code.OPERATOR, "stopped by an operator")
+
     def heard(self, heard: Heard, view: VehicleView, now_ns: int) -> list[JobWork]:
         if self._transfer is None:
             return []
@@ -161,7 +164,8 @@ class Job(ABC):
                     work.append(effect)
                 case TransferProgress(done, total):
                     client_id, what = self.asked.client_id, self.progress_of()
-                    work.append(Emit(ipc.ProgressEvent(client_id, what, done, total, "items")))
+                    progress = ipc.ProgressEvent(client_id, what, done, total, "items")
+                    work.append(Tell(self.asked.request_id, progress))
                 case TransferDone(_, items):
                     work += self.done(items, view, now_ns)
                 case TransferFailed(_, result, text):
@@ -178,7 +182,7 @@ class Job(ABC):
         return [*refused(self.asked.request_id, self.asked.word, refusal)]
 
     def bad_file(self, text: str, hint: str = "") -> list[JobWork]:
-        trouble = Emit(ipc.Trouble(text, hint, ExitCode.BAD_FILE))
+        trouble = Tell(self.asked.request_id, ipc.Trouble(text, hint, ExitCode.BAD_FILE))
         return [trouble, *self.refuse(Refusal(Code.BAD_MISSION, text))]
 
     def end(self, kind: OutcomeKind, code: Code | None, sentence: str) -> list[JobWork]:

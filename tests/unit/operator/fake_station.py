@@ -70,6 +70,8 @@ class FakeStation:
                 return [self._log(f"Keyboard: {goal_enu}")]
             case ipc.Ask():
                 return self._asked(command, now_s)
+            case ipc.Join() | ipc.Subscribe() | ipc.ListOperations():
+                return []
 
     def tick(self, now_s: float) -> list[ipc.Event]:
         self.time_s = now_s

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import msgspec
+
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.frames import Vec3
@@ -66,8 +68,8 @@ class Script:
         frames = [self.sender.frame(message, mavlink1=mavlink1) for message in messages]
         return [effect for raw in frames for effect in self.feed(Datagram(link, raw))]
 
-    def say(self, command: ipc.Command) -> list[Effect]:
-        return self.feed(OperatorLine(command))
+    def say(self, command: ipc.Command, client: int = 1) -> list[Effect]:
+        return self.feed(OperatorLine(client, command))
 
     def ask(
         self,
@@ -77,10 +79,13 @@ class Script:
         goal_enu: ipc.Maybe3 | None = None,
         path: str = "",
         mode: str = "",
+        client: int = 1,
+        operation: int = 0,
     ) -> int:
         """One request; its number."""
         self._last_id += 1
-        self.say(ipc.Ask(self._last_id, word, goal_enu, up_m=up_m, path=path, mode=mode))
+        ask = ipc.Ask(self._last_id, word, goal_enu, up_m=up_m, path=path, mode=mode)
+        self.say(msgspec.structs.replace(ask, operation=operation), client)
         return self._last_id
 
     def report(self, link: int = 0) -> list[Effect]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from gcs import ipc
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.gate.policy.parse import DEFAULT
@@ -67,6 +68,15 @@ def test_after_a_fault_that_ends_nothing_the_flight_goes_on() -> None:
     script.forget()
     script.run(1.0)
     assert len(script.sent("SET_POSITION_TARGET_LOCAL_NED")) == 20
+
+
+def test_no_words_of_an_operator_who_joined_end_the_station(session: Session) -> None:
+    for _ in range(2 * MAX_FAULTS):
+        line = inputs.OperatorLine(2, ipc.Ask(1, "land"))
+        effects = session.fault(line, "ValueError: bad", 1)
+        assert not finished(effects)
+        told = [e.event for e in effects if isinstance(e, Emit) and e.client == 2]
+        assert isinstance(told[-1], ipc.Bye), "its connection ends"
 
 
 def test_fault_upon_fault_ends_the_session(session: Session) -> None:

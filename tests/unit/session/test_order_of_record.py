@@ -51,7 +51,7 @@ def test_a_landing_that_cannot_be_asked_for_is_recorded_after_it_began(
     hear(position(1000, z=-5.0))
     assert session.gate.state.name == "EXTERNAL"
 
-    effects = session.handle(OperatorLine(ipc.Ask(1, "land")), SECOND_NS + 1)
+    effects = session.handle(OperatorLine(1, ipc.Ask(1, "land")), SECOND_NS + 1)
     items = [effect.item for effect in effects if isinstance(effect, Record)]
     moves = [(item.before, item.state) for item in items if isinstance(item, FsaItem)]
     assert moves == [("EXTERNAL", "LANDING"), ("LANDING", "HOLDING")]

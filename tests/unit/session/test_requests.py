@@ -64,8 +64,9 @@ def test_a_mode_is_named_as_its_autopilot_names_it() -> None:
 
 def test_a_request_is_known_until_it_is_over() -> None:
     requests = Requests()
-    first, second = requests.open(10, "arm"), requests.open(11, "land")
+    first, second = requests.open(ipc.Ask(10, "arm"), 1), requests.open(ipc.Ask(10, "land"), 2)
     assert first != second
-    assert requests.close(first).client_id == 10
+    assert requests.close(first).ask.id == 10
+    assert requests.get(second).source == "operator 2"
     assert requests.open_count == 1
     assert request_of(ipc.Ask(1, "abort"), PX4) == Abort()

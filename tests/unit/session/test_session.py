@@ -233,7 +233,7 @@ def test_the_mission_mode_by_its_name_is_a_mission_start_and_needs_a_mission() -
 def test_a_line_that_is_no_command_is_answered_and_nothing_is_done() -> None:
     script = Script().met()
     script.forget()
-    effects = script.feed(OperatorNoise("bad: b'xyz'"))
+    effects = script.feed(OperatorNoise(1, "bad: b'xyz'"))
     assert [trouble.text for trouble in told.troubles(effects)] == ["not a command: bad: b'xyz'"]
     assert script.sent() == []
 

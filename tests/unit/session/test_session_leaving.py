@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from gcs import ipc
-from gcs.session.inputs import FileRead, Input, OperatorGone, OperatorLine
+from gcs.session.inputs import FileRead, Input, OperatorGone, OperatorLine, SignalCame
 from tests.unit.session import told, wire
 from tests.unit.session.plans import BOX
 from tests.unit.session.station import Script, is_finish, is_frame
 from tests.unit.session.wire import SECOND_NS
 
 DO_SET_MODE = 176
-LEAVE = OperatorLine(ipc.Leave("quit"))
+LEAVE = OperatorLine(1, ipc.Leave("quit"))
 
 
 def holds(script: Script) -> list[int]:
@@ -28,7 +28,7 @@ def holds(script: Script) -> list[int]:
     ]
 
 
-@pytest.mark.parametrize("goes", [LEAVE, OperatorGone("SIGTERM"), OperatorGone("end of file")])
+@pytest.mark.parametrize("goes", [LEAVE, SignalCame("SIGTERM"), OperatorGone(1, "end of file")])
 def test_whoever_leaves_a_vehicle_that_we_fly_it_is_told_to_hold_at_once(goes: Input) -> None:
     script = Script().hovering()
     script.forget()
@@ -67,7 +67,7 @@ def test_leaving_once_more_does_not_make_it_longer() -> None:
     left_ns = script.now_ns
     script.feed(LEAVE)
     script.run(2.9)
-    script.feed(OperatorGone("the command stream ended"))
+    script.feed(OperatorGone(1, "the command stream ended"))
     script.run(1.0)
     (finished_ns,) = script.times_ns(is_finish)
     assert finished_ns - left_ns <= 3 * SECOND_NS + 50_000_000
@@ -140,7 +140,7 @@ def test_while_leaving_no_mission_job_begins() -> None:
 def test_the_session_ends_once() -> None:
     script = Script().met()
     script.feed(LEAVE)
-    script.feed(OperatorGone("SIGHUP"))
+    script.feed(SignalCame("SIGHUP"))
     script.run(5.0)
     assert len(told.finishes(script.told)) == 1
 

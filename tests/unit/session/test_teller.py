@@ -21,7 +21,7 @@ from gcs.session.effects import Effect, Emit, Record
 from gcs.session.requests import Asked
 from gcs.session.work import Decide, Log
 
-ASKED = Asked(client_id=3, word="goto", source="operator")
+ASKED = Asked(ipc.Ask(3, "goto"))
 NOW_NS = 1_700_000_000_000_000_000
 
 
@@ -44,7 +44,7 @@ def test_a_refusal_is_told_with_its_numbers_in_the_operators_frame() -> None:
         [
             '{"type":"verdict","id":3,"word":"goto","outcome":"refused","code":"OUTSIDE_FENCE",'
             '"sentence":"350 m outside","zone":"home","numbers":{"distance_m":350.0},'
-            '"goal_enu":[500.0,0.0,2.0]}'
+            '"goal_enu":[500.0,0.0,2.0],"operation":7}'
         ],
         [
             '{"vehicle":1,"request_id":7,"source":"operator","word":"goto","phase":"verdict",'
@@ -66,7 +66,7 @@ def test_a_goal_that_is_no_number_is_null() -> None:
 def test_an_acceptance_has_its_evidence_and_a_request_without_a_goal_none() -> None:
     decide = Decide(7, Ruling.ACCEPTED, evidence=(("stop_m", 1.5),))
     (line,), (message,) = told(teller.verdict(decide, ASKED, 1))
-    assert '"numbers":{"stop_m":1.5},"goal_enu":null}' in line
+    assert '"numbers":{"stop_m":1.5},"goal_enu":null,"operation":7}' in line
     assert '"code":"","sentence":"","zone":"","numbers":{"stop_m":1.5}}' in message
     assert "goal" not in message
 

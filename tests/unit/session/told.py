@@ -10,6 +10,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from gcs import ipc
 from gcs.session.effects import Emit, Finish, ReadFile, Record, WriteFile
+from gcs.session.work import Tell
 
 E = TypeVar("E")
 Told: TypeAlias = Iterable[object]
@@ -20,7 +21,7 @@ INFO, WARNING, ERROR, FATAL = 2, 3, 4, 5
 
 def events(effects: Told, kind: type[E]) -> list[E]:
     """What the operator's screen is told, of one kind."""
-    told = (effect.event for effect in effects if isinstance(effect, Emit))
+    told = (effect.event for effect in effects if isinstance(effect, Emit | Tell))
     return [event for event in told if isinstance(event, kind)]
 
 

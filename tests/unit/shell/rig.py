@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from gcs import ipc
 from gcs.session.effects import Effect, Finish, Record
 from gcs.session.inputs import Input, RecorderChanged, RecorderGrew, Wake
+from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.endpoints import Endpoint, Kind
 from gcs.shell.loop import Loop
@@ -205,7 +206,12 @@ class PaperSim(SimProcess):
 class Rig:
     """One loop, and the other end of everything that it holds."""
 
-    def __init__(self, links: int = 2) -> None:
+    def __init__(
+        self,
+        links: int = 2,
+        clients: ClientSockets | None = None,
+        on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
+    ) -> None:
         self.clock, self.core, self.recording = PaperClock(), PaperCore(), PaperRecording()
         self.links = [PaperLink() for _ in range(links)]
         self.signals = PaperSignals()
@@ -224,6 +230,8 @@ class Rig:
             self.recording,
             self.signals,
             PaperSim(sim_fd),
+            clients,
+            on_snapshot,
         )
 
     def run(self, *steps: Step) -> Finish:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+import socket
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -15,16 +16,19 @@ from gcs.session.inputs import (
     Datagram,
     FileRead,
     FileWritten,
+    Input,
     LinkEvent,
     OperatorGone,
     OperatorLine,
     OperatorNoise,
     RecorderChanged,
     RecorderGrew,
+    SignalCame,
     SimGone,
     SimLine,
     Wake,
 )
+from gcs.shell.client_sockets import ClientSockets, Connection
 from gcs.shell.loop import MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
 from tests.unit.shell.rig import DONE, EXIT_BUG, MS, START_NS, TICK_NS, Rig, recorded
 
@@ -280,7 +284,7 @@ def test_what_a_link_tells_of_itself_follows_what_it_brought(rig: Rig) -> None:
 def test_the_operator_s_lines_are_commands(rig: Rig) -> None:
     asked = ipc.Ask(1, "land")
     rig.run(lambda: rig.type(ipc.encode(asked) + ipc.encode(ipc.Leave())))
-    assert rig.core.inputs[:2] == [OperatorLine(asked), OperatorLine(ipc.Leave())]
+    assert rig.core.inputs[:2] == [OperatorLine(1, asked), OperatorLine(1, ipc.Leave())]
 
 
 @pytest.mark.parametrize(
@@ -292,7 +296,7 @@ def test_a_line_that_is_no_command_is_told_with_its_beginning(rig: Rig, line: st
     noise, next_one = rig.core.inputs[:2]
     assert isinstance(noise, OperatorNoise)
     assert repr(data[:200]) in noise.text
-    assert next_one == OperatorLine(ipc.Ask(1, "land"))
+    assert next_one == OperatorLine(1, ipc.Ask(1, "land"))
     assert rig.core.faults == []
 
 
@@ -304,8 +308,8 @@ def test_the_end_of_the_command_stream_is_told_once_after_its_last_line(rig: Rig
         lambda: rig.advance(50),
     )
     assert rig.core.inputs[:3] == [
-        OperatorLine(ipc.Ask(1, "land")),
-        OperatorGone("the command stream ended"),
+        OperatorLine(1, ipc.Ask(1, "land")),
+        OperatorGone(1, "the command stream ended"),
         Wake(),
     ]
 
@@ -314,12 +318,12 @@ def test_a_screen_that_nobody_reads_is_an_operator_who_is_gone_and_told_once(rig
     rig.core.answers[FIRST] = [trouble("is anybody there?")]
     rig.run(rig.look_away, lambda: rig.links[0].bring(b"first"), rig.hang_up, lambda: None)
     gone = [given for given in rig.core.inputs if isinstance(given, OperatorGone)]
-    assert gone == [OperatorGone("nobody reads the link's output")]
+    assert gone == [OperatorGone(1, "nobody reads the link's output")]
 
 
 def test_a_signal_is_an_operator_who_is_gone_by_its_name(rig: Rig) -> None:
     rig.run(lambda: rig.signals.bring("SIGTERM"))
-    assert rig.core.inputs[0] == OperatorGone("SIGTERM")
+    assert rig.core.inputs[0] == SignalCame("SIGTERM")
 
 
 # ---------------------------------------------------------------------- recorder, vehicle
@@ -355,3 +359,105 @@ def test_an_event_on_the_pipe_is_one_line_of_json(rig: Rig) -> None:
     rig.run(lambda: rig.links[0].bring(b"first"))
     (event,) = rig.events()
     assert json.loads(ipc.encode(event))["text"] == "a\nb"
+
+
+# --------------------------------------------------------------------- further operators
+
+
+class PaperClients(ClientSockets):
+    """Connections of the test's making: what they bring, and what they are told."""
+
+    def __init__(self) -> None:
+        self._near, self._far = socket.socketpair()
+        self.brings: list[Input] = []
+        self.told: list[tuple[str, int, bool, bool]] = []
+
+    def fileno(self) -> int:
+        return self._near.fileno()
+
+    @property
+    def sources(self) -> list[ClientSockets | Connection]:
+        return [self]
+
+    @property
+    def sinks(self) -> list[Connection]:
+        return []
+
+    @property
+    def busy(self) -> bool:
+        return False
+
+    def turn(self, readable: Sequence[object], writable: Sequence[object]) -> Iterator[Input]:
+        while self.brings:
+            yield self.brings.pop(0)
+
+    def tell(self, line: bytes, client: int, *, droppable: bool, last: bool) -> None:
+        self.told.append((type(ipc.decode_event(line)).__name__, client, droppable, last))
+
+    def close(self) -> None:
+        self._near.close()
+        self._far.close()
+
+
+@pytest.fixture
+def clients() -> Iterator[PaperClients]:
+    made = PaperClients()
+    yield made
+    made.close()
+
+
+def test_an_event_goes_to_whom_it_is_for(clients: PaperClients) -> None:
+    rig = Rig(clients=clients)
+    snapshot = ipc.Snapshot(0, "", "", "", [], 0.0, "", False, 0.0)
+    rig.core.answers[FIRST] = [
+        Emit(ipc.Trouble("for all")),
+        Emit(ipc.Trouble("for the first"), 1),
+        Emit(ipc.Trouble("for another"), 2),
+        Emit(snapshot),
+        Emit(ipc.Bye(0, "", "", goes_on=True), 2),
+    ]
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    assert texts(rig.events()) == ["for all", "for the first"]
+    assert clients.told == [
+        ("Trouble", 0, False, False),
+        ("Trouble", 2, False, False),
+        ("Snapshot", 0, True, False),
+        ("Bye", 2, False, True),
+    ]
+    rig.close()
+
+
+def test_between_two_lines_of_others_the_deadline_is_met(clients: PaperClients) -> None:
+    rig = Rig(clients=clients)
+    lines = [OperatorLine(2, ipc.Ask(number, "land")) for number in range(3)]
+    rig.core.does[lines[0]] = lambda: rig.advance(60)
+    clients.brings = [*lines]
+    rig.run(lambda: None)
+    assert rig.core.inputs[:4] == [lines[0], Wake(), lines[1], lines[2]]
+    rig.close()
+
+
+def test_the_first_operator_s_good_bye_ends_its_pipe_and_not_the_loop(
+    clients: PaperClients,
+) -> None:
+    rig = Rig(clients=clients)
+    rig.core.answers[FIRST] = [
+        Emit(ipc.Bye(0, "", "kept", goes_on=True), 1),
+        Emit(ipc.Trouble("for those who stay")),
+    ]
+    rig.run(lambda: rig.links[0].bring(b"first"), rig.hang_up, lambda: rig.advance(50))
+    (bye,) = rig.events()
+    assert isinstance(bye, ipc.Bye)
+    assert not any(isinstance(given, OperatorGone) for given in rig.core.inputs)
+    assert ("Trouble", 0, False, False) in clients.told
+    rig.close()
+
+
+def test_every_snapshot_is_shown_to_whoever_describes_the_station(clients: PaperClients) -> None:
+    seen: list[ipc.Snapshot] = []
+    rig = Rig(clients=clients, on_snapshot=seen.append)
+    snapshot = ipc.Snapshot(0, "", "", "", [], 0.0, "", False, 0.0)
+    rig.core.answers[FIRST] = [Emit(snapshot), Emit(snapshot, 2)]
+    rig.run(lambda: rig.links[0].bring(b"first"))
+    assert seen == [snapshot, snapshot]
+    rig.close()

@@ -1,0 +1,63 @@
+"""`gcs attach`: another screen, or another console, on a station that runs."""
+
+from __future__ import annotations
+
+import click
+
+from gcs.cli.options import LINK, TAKE, TIMEOUT, with_options
+
+EPILOG = """\
+Examples:
+
+\b
+  gcs attach
+  gcs attach --take
+  echo abort | gcs attach --plain
+
+Without --take it looks on, and may abort, hold, land and return home; everything else is refused
+with the name of the operator who is in control. `station take` takes over later. Leaving it does
+not end the station.
+"""
+
+
+@click.command(epilog=EPILOG)
+@with_options(LINK, TAKE, TIMEOUT)
+@click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
+@click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
+@click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
+@click.pass_context
+def attach(
+    ctx: click.Context,
+    links: tuple[str, ...],
+    take: bool,
+    timeout: float,
+    plain: bool,
+    as_json: bool,
+    strict: bool,
+) -> None:
+    """Open a second screen on a running station."""
+    from gcs.cli.running import joined_station, the_station
+    from gcs.ipc import Ask
+
+    found = the_station(links)
+    if not plain:
+        from gcs.cli.fly import needs_a_terminal
+
+        needs_a_terminal()
+    station = joined_station(found, "gcs attach")
+    if take:
+        station.send(Ask(0, "station_take"))
+    if plain:
+        from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
+        from gcs.operator.interrupts import Interrupts
+
+        how = PlainConfig(timeout, 2, as_json, strict)
+        with Interrupts() as interrupts:
+            console = Plain(station, interrupts, how, to_stdout, to_stderr)
+            ctx.exit(console.run(stdin_input()))
+    from gcs.tui.app import FlyApp
+    from gcs.tui.result import print_result, until_hello
+
+    app = FlyApp(station, until_hello(station))
+    app.run()
+    ctx.exit(print_result(app.result, lambda line: click.echo(line, err=True)))

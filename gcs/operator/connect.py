@@ -1,0 +1,141 @@
+"""`gcs.connect`: a station for a Python program, one that runs already or one of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcs import ipc
+from gcs.config import SimConfig, StationConfig
+from gcs.exit_codes import ExitCode
+from gcs.gate.states import LandedState, State
+from gcs.operator import joined
+from gcs.operator.client import StationClient
+from gcs.operator.failures import CannotConnect, Disconnected
+from gcs.operator.station import Station
+from gcs.resources import policy_path
+from gcs.shell.stations import Description
+
+DEFAULT_LINK = "udpin://127.0.0.1:14550"
+SETTLE_WAIT_S = 3.0
+START_WAIT_S = 30.0
+
+
+def connect(
+    link: str | Sequence[str] | None = None,
+    *,
+    sim: bool = False,
+    policy: str = "default",
+    take_control: bool = False,
+    keep: bool = False,
+    autopilot: str = "px4",
+    speedup: float = 1.0,
+    log_dir: str = "logs",
+    name: str = "script",
+    timeout_s: float = 10.0,
+) -> Station:
+    """A station for the vehicle on `link`, one URL or several, as of `gcs fly --link`.
+
+    Joins the station that has the link open, if one runs on this machine: then another operator
+    may be in control, and `take_control` takes it over, which is told there.  Otherwise it starts
+    one, with this `policy` (default, lab or a file), that records into `log_dir` and ends when
+    this program leaves, unless it is to `keep`.  Without a link: the station on the default link,
+    else the only one that runs, else one of its own.  `sim`: one of its own with a vehicle of its
+    own, which speaks like `autopilot`, `speedup` times as fast as real time.
+
+    Waits `timeout_s` for a vehicle to be heard.  Raises CannotConnect.
+    """
+    if sim and link is not None:
+        raise CannotConnect(
+            "sim=True starts a vehicle of its own", "leave out the link", ExitCode.USAGE
+        )
+    links = [link] if isinstance(link, str) else list(link or ())
+    found = None if sim else _running(links)
+    if found is not None:
+        return _join(found, name, take_control, timeout_s)
+    vehicle = SimConfig(autopilot=autopilot, speedup=speedup) if sim else None
+    setup = StationConfig(
+        endpoints=[] if sim else links or [DEFAULT_LINK],
+        sim=vehicle,
+        policy_path=_policy_file(policy),
+        log_dir=log_dir,
+        name=name,
+        speedup=speedup,
+        connect_timeout_s=timeout_s,
+        operator=f"Python {name}",
+        keep=keep,
+    )
+    station = Station(StationClient.start(setup))
+    try:
+        _wait_for_vehicle(station, timeout_s)
+    except BaseException:
+        station.close()
+        raise
+    return station
+
+
+def _running(links: Sequence[str]) -> Description | None:
+    found = joined.station_on(links or [DEFAULT_LINK])
+    if found is not None or links:
+        return found
+    everywhere = joined.running_stations()
+    return everywhere[0] if len(everywhere) == 1 else None
+
+
+def _join(found: Description, name: str, take_control: bool, timeout_s: float) -> Station:
+    """It knows the vehicle, if there is one: nothing is waited for but its greeting."""
+    try:
+        station = Station(joined.JoinedStation.join(found, f"Python {name}"))
+    except OSError as error:
+        raise CannotConnect(f"the station of process {found.pid} takes no connection") from error
+    try:
+        station.wait_until(lambda: station.latest is not None, timeout_s)
+        if take_control:
+            station.take_control()
+    except Disconnected as error:
+        station.close()
+        raise CannotConnect(str(error)) from error
+    except BaseException:
+        station.close()
+        raise
+    return station
+
+
+def _wait_for_vehicle(station: Station, timeout_s: float) -> None:
+    """Until a vehicle is heard whose place is known; a little longer for all of it."""
+    try:
+        station.wait_until(lambda: station.hello is not None, START_WAIT_S)
+        station.wait_until(lambda: _placed(station.latest), timeout_s)
+        if station.latest is None or not station.latest.vehicle:
+            where = ", ".join(station.hello.endpoints) if station.hello else "the link"
+            raise CannotConnect(
+                f"no vehicle heard within {timeout_s:g} s ({where})",
+                "start one with `vehicle-sim`, use sim=True, or name the link",
+            )
+        station.wait_until(lambda: _judged(station.latest), SETTLE_WAIT_S)
+    except Disconnected as error:
+        trouble = station.trouble
+        if trouble is None or not trouble.exit_code:
+            raise CannotConnect(str(error), exit_code=ExitCode.BUG) from error
+        raise CannotConnect(trouble.text, trouble.hint, trouble.exit_code) from error
+
+
+def _placed(seen: ipc.Snapshot | None) -> bool:
+    return seen is not None and bool(seen.vehicle) and seen.pos_enu is not None
+
+
+def _judged(seen: ipc.Snapshot | None) -> bool:
+    """Before that a vehicle on the ground and one in the air look alike to the gate."""
+    if seen is None or seen.home_enu is None or seen.state == State.STALE.name:
+        return False
+    return seen.landed not in ("", LandedState.UNDEFINED.name)
+
+
+def _policy_file(policy: str) -> str:
+    """As the station is told it: empty for the built-in default."""
+    if policy == "default":
+        return ""
+    path = policy_path(policy)
+    if not path.is_file():
+        hint = "or one of: default, lab"
+        raise CannotConnect(f"{policy}: no such policy file", hint, ExitCode.BAD_FILE)
+    return str(path)

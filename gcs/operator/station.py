@@ -1,0 +1,372 @@
+"""The Python library: a station as an object, with one method a request.
+
+`connect.py` starts a station process or joins one that runs; a thread reads its events.  A method
+that asks for something returns when it is complete, or raises `Refused` or `NotCompleted`.  With
+`wait=False` it returns as soon as the request is accepted, and the `Operation` that it returns can
+be waited for or stopped.  Every method may be called from any thread: an `abort` in one ends the
+`goto` that another waits for.
+
+Places are metres east, north and up of the vehicle's local origin, headings degrees clockwise from
+north, times seconds.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from types import TracebackType
+from typing import Protocol
+
+import msgspec
+
+from gcs import ipc
+from gcs.frames import Vec3
+from gcs.operator.client import StationEnded, StationEvent
+from gcs.operator.dialogue import unexpected_end
+from gcs.operator.failures import Disconnected, NotCompleted, Refused
+from gcs.operator.request_words import label
+
+TELEMETRY_WAIT_S = 3.0
+ANSWER_WAIT_S = 10.0
+KEPT_EVENTS = 10_000
+"""Of an `events()` that is not read; the oldest are forgotten."""
+
+
+class Connection(Protocol):
+    """What this needs of the way to a station."""
+
+    def send(self, command: ipc.Command) -> bool: ...
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None: ...
+    def close(self) -> StationEnded: ...
+
+
+class Operation:
+    """An accepted request, which may still be under way."""
+
+    def __init__(self, station: Station, ask: ipc.Ask) -> None:
+        self._station = station
+        self.asked = ask
+        self._verdict: ipc.VerdictEvent | None = None
+        self._ending: ipc.EndingEvent | None = None
+
+    @property
+    def id(self) -> int:
+        """The station's number of it, as `gcs operations` shows it."""
+        return 0 if self._verdict is None else self._verdict.operation
+
+    @property
+    def state(self) -> str:
+        """running, complete, aborted, superseded, timed out or taken over."""
+        return "running" if self._ending is None else self._ending.ended
+
+    def wait(self, timeout_s: float | None = None) -> Operation:
+        """Until it is complete.  Raises NotCompleted, Disconnected."""
+        self._station.wait_until(lambda: self._ending is not None, timeout_s)
+        ending = self._ending
+        if ending is None:
+            text = f"{label(self.asked)} is still under way after {timeout_s:g} s"
+            raise NotCompleted("running", "", text)
+        if ending.ended != "complete":
+            raise NotCompleted(ending.ended, ending.code, ending.sentence)
+        return self
+
+    def stop(self) -> None:
+        """Abort it, if it is still under way; if it is not, nothing else is stopped instead.
+
+        Raises Refused with NOT_RUNNING, NotCompleted, Disconnected.
+        """
+        self._station.request(ipc.Ask(0, "abort", operation=self.id))
+
+    def __repr__(self) -> str:
+        return f"<Operation {self.id} {label(self.asked)}: {self.state}>"
+
+
+class Station:
+    """A connected station.  Made by `connect`; a `with` block leaves it at its end.
+
+    Leaving a station of one's own ends it: a vehicle that it flies is held first.  A station that
+    was joined goes on; if this program was in control of it, the vehicle is held.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._changed = threading.Condition()
+        self._numbers = itertools.count(1)
+        self._operations: dict[int, Operation] = {}
+        self.hello: ipc.Hello | None = None
+        self.latest: ipc.Snapshot | None = None
+        """As `snapshot`, but None before the first one."""
+        self._operators: ipc.Operators | None = None
+        self._subscribed: dict[str, None] = {}
+        self._messages: dict[str, Mapping[str, object]] = {}
+        self._unknown_messages = ""
+        self._readers: list[deque[ipc.Event]] = []
+        self.trouble: ipc.Trouble | None = None
+        self._ended: StationEnded | None = None
+        self._left = False
+        connection.listen(self._heard)
+
+    def __enter__(self) -> Station:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Leave; a second time does nothing."""
+        if self._left:
+            return
+        self._left = True
+        self._connection.send(ipc.Leave("the program ends"))
+        self._connection.close()
+
+    # --------------------------------------------------------------------------- requests
+
+    def control(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Take control of a vehicle that flies without the station, and hover."""
+        return self.request(ipc.Ask(0, "control"), wait, timeout_s)
+
+    def arm(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        return self.request(ipc.Ask(0, "arm"), wait, timeout_s)
+
+    def disarm(
+        self, *, force: bool = False, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Stop the motors on the ground; `force` in the air too, where the policy allows it."""
+        return self.request(ipc.Ask(0, "disarm", force=force), wait, timeout_s)
+
+    def takeoff(
+        self, up_m: float, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Climb to `up_m` metres above the take-off point and hover."""
+        return self.request(ipc.Ask(0, "takeoff", up_m=_finite(up_m)), wait, timeout_s)
+
+    def goto(
+        self,
+        east_m: float,
+        north_m: float,
+        up_m: float,
+        yaw_deg: float | None = None,
+        *,
+        wait: bool = True,
+        timeout_s: float | None = None,
+    ) -> Operation:
+        """Fly straight there and hover."""
+        goal = (_finite(east_m), _finite(north_m), _finite(up_m))
+        return self.request(ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw_deg), wait, timeout_s)
+
+    def fly(self, path: str, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Upload a mission file (or a shipped mission by its name), then start it."""
+        self.upload(path)
+        return self.start_mission(wait=wait, timeout_s=timeout_s)
+
+    def upload(self, path: str, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Verify a mission file, send it to the vehicle and read it back."""
+        return self.request(ipc.Ask(0, "mission_upload", path=path), wait, timeout_s)
+
+    def start_mission(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Fly the mission on board."""
+        return self.request(ipc.Ask(0, "mission_start"), wait, timeout_s)
+
+    def land(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Land where it is."""
+        return self.request(ipc.Ask(0, "land"), wait, timeout_s)
+
+    def rtl(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Return to home and land."""
+        return self.request(ipc.Ask(0, "rtl"), wait, timeout_s)
+
+    def hold(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Stop and hold, in the vehicle's own hold mode."""
+        return self.request(ipc.Ask(0, "hold"), wait, timeout_s)
+
+    def abort(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Stop now and forget the goal; whoever is in control, and whatever is waited for."""
+        return self.request(ipc.Ask(0, "abort"), wait, timeout_s)
+
+    def resume(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """After a hold: hover under the station's control."""
+        return self.request(ipc.Ask(0, "resume"), wait, timeout_s)
+
+    def photo(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        return self.request(ipc.Ask(0, "photo"), wait, timeout_s)
+
+    def mode(
+        self, mode_name: str, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Ask for a flight mode by the autopilot's own name."""
+        return self.request(ipc.Ask(0, "mode", mode=mode_name), wait, timeout_s)
+
+    def take_control(self) -> None:
+        """Be the operator in control of this station, in place of whoever is; all are told."""
+        self.request(ipc.Ask(0, "station_take"))
+
+    # --------------------------------------------------------------------------- reports
+
+    @property
+    def snapshot(self) -> ipc.Snapshot:
+        """The latest of everything that a screen shows; ten times a second.
+
+        Raises Disconnected.
+        """
+        self.wait_until(lambda: self.latest is not None, ANSWER_WAIT_S)
+        if self.latest is None:
+            raise Disconnected("the station tells nothing")
+        return self.latest
+
+    @property
+    def state(self) -> str:
+        """The gate's state: GROUNDED, HOVERING, MOVING, ... (`gcs.gate.states.State`)."""
+        return self.snapshot.state
+
+    @property
+    def position_enu(self) -> Vec3 | None:
+        """Metres east, north, up; None while it is not known."""
+        return self.snapshot.pos_enu
+
+    @property
+    def armed(self) -> bool | None:
+        return self.snapshot.armed
+
+    @property
+    def log_path(self) -> str:
+        """The record of this flight."""
+        return self.snapshot.log_path
+
+    @property
+    def in_control(self) -> bool:
+        """Whether this program is the operator in control of the station."""
+        hello, operators = self.hello, self._operators
+        if hello is None:
+            return False
+        return hello.client == (1 if operators is None else operators.in_control)
+
+    def telemetry(self, message: str, timeout_s: float = TELEMETRY_WAIT_S) -> Mapping[str, object]:
+        """The latest fields of a MAVLink message of the vehicle, such as "BATTERY_STATUS".
+
+        The first call for a message subscribes to it and waits until it is heard.  Raises
+        ValueError for a name that no message has, TimeoutError if it is not heard in time.
+        """
+        with self._changed:
+            if message not in self._messages:
+                self._unknown_messages = ""
+                self._subscribed[message] = None
+                self._connection.send(ipc.Subscribe([*self._subscribed]))
+        self.wait_until(
+            lambda: message in self._messages or bool(self._unknown_messages), timeout_s
+        )
+        with self._changed:
+            if message in self._messages:
+                return self._messages[message]
+            if self._unknown_messages:
+                del self._subscribed[message]
+                raise ValueError(self._unknown_messages)
+        raise TimeoutError(f"no {message} was heard within {timeout_s:g} s")
+
+    def events(self) -> Iterator[ipc.Event]:
+        """Everything that the station tells from now on (`gcs.ipc`), until it ends or is left."""
+        reader: deque[ipc.Event] = deque(maxlen=KEPT_EVENTS)
+        with self._changed:
+            self._readers.append(reader)
+        return self._read(reader)
+
+    # ------------------------------------------------------------------------- internals
+
+    def _read(self, reader: deque[ipc.Event]) -> Iterator[ipc.Event]:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: reader or self._ended is not None or self._left)
+                if not reader:
+                    return
+                event = reader.popleft()
+            yield event
+
+    def request(self, ask: ipc.Ask, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Send it; return once it is complete, or with `wait=False` accepted."""
+        deadline_s = None if timeout_s is None else time.monotonic() + timeout_s
+        with self._changed:
+            number = next(self._numbers)
+            operation = self._operations[number] = Operation(
+                self, msgspec.structs.replace(ask, id=number)
+            )
+        if not self._connection.send(operation.asked):
+            raise self._end()
+        self.wait_until(lambda: operation._verdict is not None, timeout_s)
+        verdict = operation._verdict
+        if verdict is None:
+            raise NotCompleted("running", "", f"{label(ask)}: no verdict after {timeout_s:g} s")
+        if verdict.outcome == "refused":
+            raise Refused(verdict.code, verdict.sentence, verdict.numbers)
+        if verdict.outcome != "accepted":
+            raise NotCompleted(verdict.outcome, verdict.code, verdict.sentence)
+        if not wait:
+            return operation
+        left_s = None if deadline_s is None else max(0.0, deadline_s - time.monotonic())
+        return operation.wait(left_s)
+
+    def wait_until(self, done: Callable[[], bool], timeout_s: float | None) -> None:
+        """Until `done()`, or the time is over.  Raises Disconnected."""
+        with self._changed:
+            self._changed.wait_for(lambda: done() or self._ended is not None, timeout_s)
+            if not done() and self._ended is not None:
+                raise self._end()
+
+    def _end(self) -> Disconnected:
+        if self._left:
+            return Disconnected("this program has left the station")
+        if self._ended is None:
+            return Disconnected("the connection to the station was lost")
+        return Disconnected(str(unexpected_end(self._ended, self.trouble)))
+
+    def _heard(self, event: StationEvent) -> None:
+        """In the reader's thread."""
+        with self._changed:
+            if isinstance(event, StationEnded):
+                self._ended = event
+            else:
+                self._note(event)
+                for reader in self._readers:
+                    reader.append(event)
+            self._changed.notify_all()
+
+    def _note(self, event: ipc.Event) -> None:
+        match event:
+            case ipc.Hello():
+                self.hello = event
+            case ipc.Snapshot():
+                self.latest = event
+            case ipc.StateEvent() if self.latest is not None:
+                # What a request that has just ended led to is known before the next snapshot.
+                self.latest = msgspec.structs.replace(
+                    self.latest, state=event.after, control=event.control, severity=event.severity
+                )
+            case ipc.Operators():
+                self._operators = event
+            case ipc.VerdictEvent() if event.id in self._operations:
+                self._operations[event.id]._verdict = event
+                if event.outcome != "accepted":
+                    del self._operations[event.id]
+            case ipc.EndingEvent() if event.id in self._operations:
+                self._operations.pop(event.id)._ending = event
+            case ipc.MessageEvent():
+                self._messages[event.name] = event.fields
+            case ipc.Trouble():
+                self.trouble = event
+                if event.text.startswith("no such MAVLink message"):
+                    self._unknown_messages = event.text
+            case _:
+                pass
+
+
+def _finite(metres: float) -> float | None:
+    """JSON has no NaN: null stands for it, and the gate refuses it by name."""
+    return float(metres) if math.isfinite(metres) else None

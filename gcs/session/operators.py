@@ -1,0 +1,218 @@
+"""What operators' programs say, and what they are told: all of the session that is per client.
+
+Who is in control is `clients.py`, the numbers of requests `requests.py`, what became of accepted
+ones `operations.py`, who is told of which messages `subscriptions.py`.  This composes them and
+returns work for the rest of the session.
+"""
+
+from __future__ import annotations
+
+from gcs import ipc
+from gcs.enu_text import plain_enu
+from gcs.gate import inputs as gate_inputs
+from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import Abort, SetMode
+from gcs.gate.states import FlightMode
+from gcs.protocol.autopilot import GENERIC, Autopilot
+from gcs.session import teller
+from gcs.session.clients import FIRST, Clients
+from gcs.session.effects import Emit
+from gcs.session.missions import MISSION_WORDS, TRANSFER_WORDS
+from gcs.session.operations import Operations
+from gcs.session.requests import BadAskError, Requests, request_of
+from gcs.session.setup import Setup
+from gcs.session.subscriptions import Subscriptions
+from gcs.session.work import (
+    AskGate,
+    AskMission,
+    Decide,
+    EndSession,
+    Log,
+    StopTransfer,
+    Tell,
+    ToGate,
+    Work,
+)
+from gcs.wire.frame import Frame
+
+NODE = "link"
+LOGGED_LETTERS = 40
+"""Of a word that may be anything; all operators read the log."""
+STATION_WORDS = frozenset({"station_take", "station_end"})
+
+
+class Operators:
+    """Everybody who talks with this station."""
+
+    def __init__(self, setup: Setup) -> None:
+        self._keep = setup.config.keep
+        self._clients = Clients(setup.config.operator)
+        self._requests = Requests()
+        self._operations = Operations()
+        self._subscriptions = Subscriptions(setup.config.speedup)
+
+    # ----------------------------------------------------------------------- come and go
+
+    def join(self, client: int, name: str, hold_on_leave: bool) -> list[Work]:
+        return self._clients.join(client, name, hold_on_leave)
+
+    def lost(self, client: int, reason: str) -> list[Work]:
+        """Its connection has ended.  The station lives as long as its first operator, unless it
+        is to be kept."""
+        self._subscriptions.forget(client)
+        if client == FIRST and not self._keep:
+            return [EndSession(reason)]
+        return self._clients.lost(client, reason)
+
+    def signalled(self, name: str) -> list[Work]:
+        """A kept station outlives the terminal of its first operator."""
+        return self.lost(FIRST, name) if name == "SIGHUP" else [EndSession(name)]
+
+    @property
+    def anyone_leaves(self) -> bool:
+        """Whether somebody waits for its good-bye."""
+        return self._clients.anyone_leaves
+
+    def farewells(self, settled: bool, words: str, log_path: str, now_ns: int) -> list[Work]:
+        """Good-bye to those who leave a station that lives on; `words` say how the vehicle is."""
+        work: list[Work] = []
+        for client in self._clients.farewells(settled, now_ns):
+            self._subscriptions.forget(client)
+            sentence = words if client == self._clients.in_control else self._goes_on()
+            work.append(Emit(ipc.Bye(0, log_path, sentence, goes_on=True), client))
+            work += self._clients.gone(client)
+        return work
+
+    def _goes_on(self) -> str:
+        """What the station does on, for one that leaves it."""
+        running = ", ".join(
+            f"operation {each.id} ({each.asked.word})"
+            for each in self._operations.listed()
+            if each.ended_ns is None
+        )
+        return "the station goes on" + (f", with {running}" if running else "")
+
+    def _leave(self, client: int, reason: str, now_ns: int) -> list[Work]:
+        if client == FIRST and not self._keep:
+            return [EndSession(reason)]
+        return self._clients.leave(client, now_ns)
+
+    # ------------------------------------------------------------------------------ lines
+
+    def line(
+        self,
+        client: int,
+        command: ipc.Command,
+        autopilot: Autopilot | None,
+        no_vehicle: Refusal | None,
+        now_ns: int,
+    ) -> list[Work]:
+        """One command; `autopilot` is the vehicle's, None before one is heard; `no_vehicle` says
+        why nothing can be asked of any, such as several that are heard."""
+        match command:
+            case ipc.Ask():
+                return self._ask(client, command, autopilot, no_vehicle)
+            case ipc.Pending(goal_enu, _):
+                if client != self._clients.in_control:
+                    return []  # who only looks cannot send it
+                text = f"Keyboard: {plain_enu(goal_enu)}"
+                return [Log(Level.INFO, "keyboard_manager", text)]
+            case ipc.Leave(reason):
+                return self._leave(client, reason, now_ns)
+            case ipc.Subscribe(names):
+                return [*self._subscriptions.subscribe(client, names)]
+            case ipc.ListOperations(number):
+                return [Emit(ipc.OperationList(number, self._operations.listed()), client)]
+            case ipc.Join():
+                return [Emit(ipc.Trouble("this connection has joined already"), client)]
+
+    def _ask(
+        self,
+        client: int,
+        ask: ipc.Ask,
+        autopilot: Autopilot | None,
+        no_vehicle: Refusal | None,
+    ) -> list[Work]:
+        refusal = self._clients.refusal(client, ask)
+        if refusal is not None:
+            return self._refuse(self._requests.open(ask, client), ask, refusal)
+        given = self._clients.give_where_free(client, ask)
+        if ask.word in STATION_WORDS:
+            return given + self._ask_station(client, ask)
+        if ask.operation:
+            return given + self._ask_stop(client, ask)
+        if no_vehicle is not None:
+            return given + self._refuse(self._requests.open(ask, client), ask, no_vehicle)
+        if ask.word in MISSION_WORDS:
+            return [*given, AskMission(self._requests.open(ask, client), ask)]
+        try:
+            request = request_of(ask, autopilot or GENERIC)
+        except BadAskError as error:
+            refused = ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
+            return [*given, Emit(refused, client)]
+        request_id = self._requests.open(ask, client)
+        if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
+            # The mission mode by its name is a mission start, and is verified like one.
+            return [*given, AskMission(request_id, ask)]
+        return [*given, AskGate(request_id, request)]
+
+    def _ask_station(self, client: int, ask: ipc.Ask) -> list[Work]:
+        """What is asked of the station, not of the vehicle, is done at once."""
+        done = _done(self._requests.open(ask, client), "")
+        if ask.word == "station_take":
+            return [*self._clients.take(client), *done]
+        return [*done, EndSession(f"operator {client} ended the station")]
+
+    def _ask_stop(self, client: int, ask: ipc.Ask) -> list[Work]:
+        """An abort of one operation: nothing else is stopped in its place if that has ended."""
+        request_id = self._requests.open(ask, client)
+        operation = self._operations.get(ask.operation)
+        if ask.word != "abort" or operation is None or operation.ended_ns is not None:
+            ended = "is not known" if operation is None else f"has ended: {operation.state}"
+            refusal = Refusal(Code.NOT_RUNNING, f"operation {ask.operation} {ended}")
+            return self._refuse(request_id, ask, refusal)
+        if operation.asked.word in TRANSFER_WORDS:
+            return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
+        return [AskGate(request_id, Abort())]
+
+    @staticmethod
+    def _refuse(request_id: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
+        text = f"{ask.word[:LOGGED_LETTERS]}: refused {refusal.code.value}: {refusal.sentence}"
+        return [Decide(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)]
+
+    # ---------------------------------------------------------------------------- answers
+
+    def asked_of_gate(self, asked: AskGate) -> list[Work]:
+        """The gate's input for a request, and the line that says so."""
+        made = self._requests.get(asked.request_id)
+        given = gate_inputs.Requested(asked.request_id, made.source, asked.request)
+        return [teller.requested(made, asked.request), ToGate(given)]
+
+    def verdict(self, told: Decide, sysid: int, now_ns: int) -> list[Work]:
+        """To the operator who asked; an accepted request is an operation, which all are told."""
+        request_id, requests = told.request_id, self._requests
+        if told.ruling is not Ruling.ACCEPTED:
+            return [*teller.verdict(told, requests.close(request_id), sysid)]
+        asked = requests.get(request_id)
+        name = self._clients.name(asked.client)
+        begun = self._operations.begin(request_id, asked.ask, asked.client, name, now_ns)
+        return [*teller.verdict(told, asked, sysid), Emit(begun)]
+
+    def outcome(self, told: Outcome, sysid: int, now_ns: int) -> list[Work]:
+        """The same, of how it ended."""
+        asked = self._requests.close(told.request_id)
+        ended = self._operations.end(told, now_ns)
+        return [*teller.outcome(told, asked, sysid), Emit(ended)]
+
+    def tell(self, told: Tell) -> list[Work]:
+        return [Emit(told.event, self._requests.get(told.request_id).client)]
+
+    def heard(self, frame: Frame, now_ns: int) -> list[Work]:
+        """A good frame of the vehicle, for those who subscribed to such messages."""
+        return [*self._subscriptions.heard(frame, now_ns)]
+
+
+def _done(request_id: int, sentence: str) -> list[Work]:
+    complete = Outcome(request_id, OutcomeKind.COMPLETE, None, sentence or "complete")
+    return [Decide(request_id, Ruling.ACCEPTED), complete]

@@ -1,0 +1,91 @@
+"""Every script in missions/scripts runs as it stands, from a folder that is not its own."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.system.flight_log import only_log, whole
+from tests.system.station import simulated
+from tests.system.vehicle_program import free_port, vehicle_sim
+
+pytestmark = pytest.mark.system
+
+SCRIPTS = Path(__file__).parents[2] / "missions" / "scripts"
+TESTED = {"square.py", "fly_plan.py", "watch_battery.py", "stop.py"}
+
+
+def run(name: str, *arguments: str, folder: Path) -> list[str]:
+    """The lines that it prints; its log is in `folder`."""
+    ended = subprocess.run(
+        [sys.executable, str(SCRIPTS / name), *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=180,
+        check=False,
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+    return ended.stdout.splitlines()
+
+
+def test_each_script_has_its_test_and_its_line_in_the_table() -> None:
+    assert {path.name for path in SCRIPTS.glob("*.py")} == TESTED
+    table = (SCRIPTS / "README.md").read_text()
+    assert all(f"| [{name}]({name}) |" in table for name in TESTED)
+
+
+def test_the_readmes_example_of_the_library_runs_as_it_stands(tmp_path: Path) -> None:
+    readme = (SCRIPTS.parents[1] / "README.md").read_text(encoding="utf-8")
+    _, begin, rest = readme.partition("<!-- example: library -->\n```python\n")
+    code, end, _ = rest.partition("```\n<!-- end of example -->")
+    assert begin
+    assert end
+    (tmp_path / "example.py").write_text(code, encoding="utf-8")
+    refusal, place = run(str(tmp_path / "example.py"), folder=tmp_path)
+    assert refusal.startswith("OUTSIDE_FENCE {'outside_m': 350.")
+    assert place.endswith((" 100", " 99"))
+
+
+def test_the_square_flies_its_corners_and_is_refused_the_fifth(tmp_path: Path) -> None:
+    *corners, refusal, end = run("square.py", folder=tmp_path)
+    assert len(corners) == 4
+    assert refusal.startswith("OUTSIDE_FENCE {'outside_m': 350.")
+    assert end.startswith("GROUNDED logs/")
+    assert whole(only_log(tmp_path / "logs")).states[-1].state == "GROUNDED"
+
+
+def test_the_square_flies_on_a_vehicle_of_others(tmp_path: Path) -> None:
+    port = free_port()
+    with vehicle_sim("--link", f"udpout://127.0.0.1:{port}"):
+        *_, end = run("square.py", f"udpin://127.0.0.1:{port}", folder=tmp_path)
+    assert end.startswith("GROUNDED ")
+
+
+def test_a_plan_is_flown_with_its_events(tmp_path: Path) -> None:
+    lines = run("fly_plan.py", "square", folder=tmp_path)
+    assert "state GROUNDED -> FLYING_MISSION" in lines
+    assert any(line.startswith("mission_upload ") for line in lines)
+    assert whole(only_log(tmp_path / "logs")).states[-1].state == "GROUNDED"
+
+
+def test_a_goto_is_stopped_by_what_telemetry_says(tmp_path: Path) -> None:
+    lines = run("watch_battery.py", "101", folder=tmp_path)
+    assert lines[0].startswith("100 % left at ")
+    assert lines[-1] == "turning round"
+
+
+def test_another_program_stops_what_a_station_flies(tmp_path: Path) -> None:
+    with simulated(tmp_path) as operator:
+        operator.fly("arm", "takeoff 3")
+        goto = operator.send("goto 100 0 3")
+        before, after = run("stop.py", folder=tmp_path)
+        assert before.startswith("MOVING at ")
+        assert after.startswith("HOLDING at ")
+        operator.until(lambda: goto.settled, "its ending")
+        assert goto.outcome is not None
+        assert (goto.outcome.ended, goto.outcome.code) == ("aborted", "OPERATOR")
+        operator.leave()

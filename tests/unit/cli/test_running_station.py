@@ -1,0 +1,141 @@
+"""Commands on a station that runs: through it, at once where they stop, and listed."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from gcs import ipc
+from gcs.cli import oneshot_session, running
+from gcs.cli.oneshot_session import OneShotConfig, sending
+from gcs.config import StationConfig
+from gcs.exit_codes import ExitCode
+from gcs.operator import joined
+from gcs.operator.client import StationClient
+from gcs.operator.event_text import operation_line
+from gcs.operator.line_parser import parse_line
+from gcs.operator.request_words import SendRequests
+from gcs.shell.stations import Description
+from tests.unit.cli.command_line import gcs
+from tests.unit.operator.fake_station import FakeConnection, FakeStation
+
+FOUND = Description(
+    4711, 1, ["udpin://127.0.0.1:47001"], token="secret", vehicle="1/1 px4 quadrotor"
+)
+
+
+@pytest.fixture
+def found(monkeypatch: pytest.MonkeyPatch) -> list[Description]:
+    """The stations that run."""
+    there = [FOUND]
+    monkeypatch.setattr(joined, "running_stations", lambda: there)
+    monkeypatch.setattr(running, "running_stations", lambda: there)
+    return there
+
+
+@pytest.fixture
+def connection(monkeypatch: pytest.MonkeyPatch, found: list[Description]) -> FakeConnection:
+    """What joining the station gives; starting one of its own fails the test."""
+    fake = FakeConnection(FakeStation("airborne"))
+
+    def refuse(*_: object) -> None:
+        raise AssertionError("a station of its own was started")
+
+    monkeypatch.setattr(oneshot_session, "joined_station", lambda *_, **__: fake)
+    monkeypatch.setattr(StationClient, "start", refuse)
+    return fake
+
+
+def run(
+    line: str, how: OneShotConfig, links: tuple[str, ...] = ("udpin://127.0.0.1:47001",)
+) -> int:
+    parsed = parse_line(line)
+    assert parsed is not None
+    assert isinstance(parsed.action, SendRequests)
+    task = sending(parsed.action, how.wait_s)
+    return oneshot_session.run(StationConfig(endpoints=list(links)), how, task)
+
+
+def words(connection: FakeConnection) -> list[str]:
+    return [sent.word for sent in connection.sent if isinstance(sent, ipc.Ask)]
+
+
+def test_a_command_on_a_link_that_a_station_has_goes_through_that_station(
+    connection: FakeConnection, capsys: pytest.CaptureFixture[str]
+) -> None:
+    how = OneShotConfig(10.0, 60.0, as_json=False, what="goto 3 0 2")
+    assert run("goto 3 0 2", how) == ExitCode.DONE
+    assert words(connection) == ["control", "goto"]
+    shown = capsys.readouterr()
+    assert "goto 3 0 2: complete" in shown.out
+    assert "gcs: through the running station of process 4711" in shown.err
+    assert connection.sent[-1] == ipc.Leave("done")
+
+
+def test_a_stop_waits_for_nothing_that_the_station_knows(connection: FakeConnection) -> None:
+    connection.station = FakeStation("silent")
+    how = OneShotConfig(10.0, 60.0, as_json=False, what="abort", stops=True)
+    run("abort", how)
+    assert connection.asked_at_s[0] == 0.0
+
+
+def test_control_is_taken_over_only_when_that_is_asked_for(connection: FakeConnection) -> None:
+    how = OneShotConfig(10.0, 60.0, as_json=False, what="land", take=True)
+    run("land", how)
+    assert words(connection)[0] == "station_take"
+
+
+def test_the_only_station_will_do_for_a_stop_without_a_link_and_for_nothing_else(
+    connection: FakeConnection,
+) -> None:
+    default = ("udpin://127.0.0.1:14550",)
+    stop = OneShotConfig(10.0, 60.0, as_json=False, what="abort", stops=True, anywhere=True)
+    assert run("abort", stop, default) == ExitCode.DONE
+    goto = OneShotConfig(10.0, 60.0, as_json=False, what="goto")
+    with pytest.raises(AssertionError, match="of its own"):
+        run("goto 1 0 2", goto, default)
+
+
+def test_stations_are_listed_without_their_tokens(found: list[Description]) -> None:
+    (shown,) = json.loads(gcs("stations", "--json").output)
+    assert (shown["pid"], shown["token"]) == (4711, "")
+    assert "4711  1/1 px4 quadrotor, since " in gcs("stations").output
+    found.clear()
+    assert gcs("stations").output == "no station is running\n"
+
+
+@pytest.mark.parametrize("command", [["attach", "--plain"], ["operations"], ["stations", "end"]])
+def test_where_none_runs_that_is_said(command: list[str], found: list[Description]) -> None:
+    found.clear()
+    ended = gcs(*command)
+    assert ended.exit_code == ExitCode.NO_VEHICLE
+    assert "no station is running" in ended.output
+    assert "gcs fly" in ended.output
+
+
+def test_of_several_one_must_be_named(found: list[Description]) -> None:
+    found.append(Description(4712, 1, ["udpin://127.0.0.1:47002"]))
+    ended = gcs("abort")
+    assert ended.exit_code == ExitCode.USAGE
+    assert "4711 (1/1 px4 quadrotor) on udpin://127.0.0.1:47001" in ended.output
+    assert "--link" in ended.output
+
+
+@pytest.mark.parametrize(
+    ("state", "code", "sentence", "ended_s", "line"),
+    [
+        ("running", "", "", None, "running, for 12 s"),
+        ("complete", "", "complete", 3, "complete, after 3 s"),
+        ("aborted", "OPERATOR", "stopped by the operator", 3, None),
+    ],
+)
+def test_an_operation_is_one_line(
+    state: str, code: str, sentence: str, ended_s: int | None, line: str | None
+) -> None:
+    ended_ns = None if ended_s is None else ended_s * 10**9
+    ask = ipc.Ask(1, "goto", goal_enu=(3.0, 0.0, 2.0))
+    operation = ipc.Operation(7, ask, 2, "gcs fly, pid 1", 0, state, code, sentence, ended_ns)
+    expected = line or "aborted OPERATOR: stopped by the operator, after 3 s"
+    who = "asked by operator 2 (gcs fly, pid 1)"
+    assert operation_line(operation, 12 * 10**9) == f"  7  goto 3 0 2: {expected}, {who}"
