@@ -19,8 +19,11 @@ Examples:
   gcs fly --link udpin://127.0.0.1:14550 --policy lab
   printf 'arm\\ntakeoff 2\\ngoto 3 0 2\\nland\\n' | gcs fly --sim --plain
 
-With --plain, answers go to standard output and the log to standard error. The next line is read
-when the one before has its ending or its refusal; a line that ends in & is not waited for. The
+With --plain, answers go to standard output and the log to standard error; `help` lists the words.
+A line is done when the one before has its ending or its refusal; a line that ends in & is not
+waited for. `abort` never waits: it acts as soon as it is read, and the lines before it that have
+not begun are dropped, in a script too. On a terminal `hold`, `land`, `rtl` and `quit` (and the end
+of the input) do the same; in a script they stand in line, unless they begin with ! (`!hold`). The
 exit code is 0 when the session ended in order, whatever was refused; with --strict it is 6 when
 something was refused and 8 when something accepted was not completed. A line that cannot be
 understood is passed over and makes it 2.
@@ -116,14 +119,14 @@ def fly(
 
 
 def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
-    from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
+    from gcs.cli.plain import Plain, PlainConfig, stdin_lines, to_stderr, to_stdout
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 
     how = PlainConfig(config.connect_timeout_s, min_level, as_json, strict, config.speedup)
     with Interrupts() as interrupts:
         station = StationClient.start(config)
-        return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
+        return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_lines())
 
 
 def _fly_keyboard(config: StationConfig) -> int:

@@ -36,7 +36,7 @@ def _command(name: str) -> click.Command:
         arguments: tuple[str, ...] = (),
     ) -> None:
         try:
-            action = line_parser.parse_arguments(word, arguments, finite=True)
+            action = line_parser.parse_arguments(word, arguments)
         except line_parser.LineError as error:
             raise click.UsageError(f"{error.sentence}\n  hint: {error.hint}") from None
         assert isinstance(action, request_words.SendRequests)

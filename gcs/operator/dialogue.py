@@ -101,6 +101,7 @@ class Dialogue:
         self._interrupts = interrupts
         self._on_event = on_event
         self._leaving = False
+        self._watched: tuple[Readable, Callable[[], None]] | None = None
         self._requests: dict[int, TrackedRequest] = {}
         self.hello: ipc.Hello | None = None
         self.snapshot: ipc.Snapshot | None = None
@@ -109,28 +110,33 @@ class Dialogue:
 
     # ------------------------------------------------------------------------- waiting
 
-    def wait_until(
-        self,
-        done: Callable[[], bool],
-        timeout_s: float | None = None,
-        also: Sequence[Readable] = (),
-    ) -> list[Readable]:
-        """Read events until `done()`, the time is over, or one of `also` is readable."""
+    def watch(self, source: Readable, on_ready: Callable[[], None]) -> None:
+        """Call `on_ready` whenever `source` is readable, whatever is being waited for.
+
+        Until `unwatch`, or until this operator leaves.  What it raises ends the waiting.
+        """
+        self._watched = (source, on_ready)
+
+    def unwatch(self) -> None:
+        self._watched = None
+
+    def wait_until(self, done: Callable[[], bool], timeout_s: float | None = None) -> None:
+        """Read events until `done()`, or the time is over."""
         start_s = self._connection.now_s()
         while not done():
             left_s = POLL_S
             if timeout_s is not None:
                 left_s = min(left_s, timeout_s - (self._connection.now_s() - start_s))
                 if left_s <= 0:
-                    break
-            ready = self.poll(left_s, also)
-            if ready:
-                return ready
-        return []
+                    return
+            self.poll(left_s)
 
-    def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> list[Readable]:
-        """Read what events there are, waiting at most `timeout_s`; which of `also` is readable."""
-        polled = self._connection.poll(timeout_s, (*also, self._interrupts))
+    def poll(self, timeout_s: float) -> None:
+        """Read what events there are, waiting at most `timeout_s`."""
+        sources: list[Readable] = [self._interrupts]
+        if self._watched is not None:
+            sources.append(self._watched[0])
+        polled = self._connection.poll(timeout_s, sources)
         for event in polled.events:
             if isinstance(event, StationEnded):
                 self.ended = event
@@ -140,7 +146,8 @@ class Dialogue:
             raise unexpected_end(self.ended, self.trouble)
         if self._interrupts.name and not self._leaving:
             raise Interrupted(self._interrupts.name)
-        return [source for source in polled.ready if source is not self._interrupts]
+        if self._watched is not None and self._watched[0] in polled.ready:
+            self._watched[1]()
 
     def wait_for_vehicle(self, timeout_s: float) -> ipc.Snapshot:
         """Wait for a vehicle with a position, a home and a landed state.
@@ -177,8 +184,13 @@ class Dialogue:
         self.wait_until(lambda: tracked.settled, timeout_s)
         return tracked
 
-    def send_in_turn(self, requests: Sequence[ipc.Ask], label: str = "") -> list[TrackedRequest]:
-        """Send one after the other, each when the one before is complete.
+    def send_in_turn(
+        self,
+        requests: Sequence[ipc.Ask],
+        label: str = "",
+        go_on: Callable[[], bool] = lambda: True,
+    ) -> list[TrackedRequest]:
+        """Send one after the other, each when the one before is complete, while `go_on()`.
 
         `label` is of all together; two requests are told apart by labels of their own.
         """
@@ -186,7 +198,7 @@ class Dialogue:
         for request in requests:
             tracked = self.send(request, label if len(requests) == 1 else "")
             done.append(self.wait_settled(tracked))
-            if not tracked.completed:
+            if not (tracked.completed and go_on()):
                 break
         return done
 
@@ -212,6 +224,7 @@ class Dialogue:
         A second Ctrl-C ends the waiting.
         """
         self._leaving = True
+        self.unwatch()
         self._interrupts.forget()
         if self.ended is None:
             self._connection.send(ipc.Leave(reason))
