@@ -5,8 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
-from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, UTF8, FiniteRange, with_options
+from gcs.cli.options import (
+    LINK,
+    LOG_DIR,
+    POLICY,
+    FiniteRange,
+    RecordName,
+    Seconds,
+    Seed,
+    with_options,
+)
+from gcs.operator.number_text import read_number
 
 if TYPE_CHECKING:
     from gcs.config import StationConfig
@@ -30,12 +41,15 @@ understood is passed over and makes it 2.
 """
 
 
+PLAIN_TIMEOUT_S = 10.0
+
+
 def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
     """LAT,LON,ALT, looked at before anything is started."""
     if not text:
         return text
     try:
-        lat_deg, lon_deg, alt_m = (float(part) for part in text.split(","))
+        lat_deg, lon_deg, alt_m = (read_number(part) for part in text.split(","))
     except ValueError:
         raise click.BadParameter(f"{text!r} is not as in 47.397742,8.545594,488") from None
     if not (abs(lat_deg) < 90.0 and abs(lon_deg) <= 180.0 and -500.0 <= alt_m <= 9000.0):
@@ -63,17 +77,30 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
     metavar="LAT,LON,ALT",
     help="Where the --sim vehicle stands: degrees, degrees, metres above mean sea level.",
 )
-@click.option("--seed", default=1, show_default=True, help="Seed of the --sim vehicle.")
+@click.option(
+    "--seed", type=Seed(), default=1, show_default=True, help="Seed of the --sim vehicle."
+)
 @click.option(
     "--speedup",
     type=FiniteRange(min=0, max=200, min_open=True),
     default=1.0,
     show_default=True,
-    help="Times real time, for vehicle and ground station.",
+    help="Times real time, for the --sim vehicle and the ground station.",
 )
-@with_options(POLICY, LOG_DIR, TIMEOUT)
+@with_options(POLICY, LOG_DIR)
 @click.option(
-    "--name", type=UTF8, default="flight", show_default=True, help="Goes into the log's file name."
+    "--timeout",
+    type=Seconds(),
+    metavar="S",
+    help="Seconds to wait for a vehicle to be heard.  [default: with --plain 10; at the keyboard "
+    "as long as you like]",
+)
+@click.option(
+    "--name",
+    type=RecordName(),
+    default="flight",
+    show_default=True,
+    help="Goes into the log's file name.",
 )
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
@@ -91,7 +118,7 @@ def fly(
     speedup: float,
     policy: str,
     log_dir: str,
-    timeout: float,
+    timeout: float | None,
     name: str,
     plain: bool,
     as_json: bool,
@@ -107,7 +134,9 @@ def fly(
 
     if sim and links:
         raise click.UsageError("--sim starts a vehicle of its own: leave out --link")
-    config = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
+    if not sim:
+        _refuse_options_of_the_sim(ctx)
+    config = station_config(links, policy, log_dir, name=name, timeout_s=timeout or PLAIN_TIMEOUT_S)
     if sim:
         vehicle = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
         config = msgspec.structs.replace(config, sim=vehicle, endpoints=[])
@@ -115,7 +144,7 @@ def fly(
     if plain:
         level = 1 if verbose else 3 if quiet else 2
         ctx.exit(_fly_plain(config, min_level=level, as_json=as_json, strict=strict))
-    ctx.exit(_fly_keyboard(config))
+    ctx.exit(_fly_keyboard(config, timeout))
 
 
 def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
@@ -129,7 +158,14 @@ def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: 
         return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_lines())
 
 
-def _fly_keyboard(config: StationConfig) -> int:
+def _refuse_options_of_the_sim(ctx: click.Context) -> None:
+    """They say what our own vehicle is to be; another one is as it is."""
+    for name in ("autopilot", "home", "seed", "speedup"):
+        if ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:
+            raise click.UsageError(f"--{name} is for the vehicle of --sim: add --sim, or leave it")
+
+
+def _fly_keyboard(config: StationConfig, timeout_s: float | None) -> int:
     import sys
 
     from gcs.cli.plain import stdin_is_a_terminal

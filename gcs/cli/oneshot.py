@@ -44,7 +44,8 @@ def _command(name: str) -> click.Command:
         from gcs.cli import oneshot_session
 
         setup = station_config(links, policy, log_dir, name=name, timeout_s=timeout)
-        how = oneshot_session.OneShotConfig(timeout, wait, as_json, name)
+        placed = name not in ("abort", "hold")
+        how = oneshot_session.OneShotConfig(timeout, wait, as_json, name, placed=placed)
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
 

@@ -34,7 +34,8 @@ Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
 class OneShotConfig:
     """`wait_s` limits the wait for the outcome, `timeout_s` that for a vehicle; seconds.
 
-    `cautions`: show what is always wrong with this vehicle, too.
+    `cautions`: show what is always wrong with this vehicle, too.  `placed`: wait for its position,
+    which a stop needs not.
     """
 
     timeout_s: float
@@ -42,6 +43,7 @@ class OneShotConfig:
     as_json: bool
     what: str
     cautions: bool = False
+    placed: bool = True
 
 
 def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
@@ -67,7 +69,10 @@ def run_over(
 
         dialogue = Dialogue(connection, interrupts, on_event)
         try:
-            dialogue.wait_for_vehicle(how.timeout_s)
+            if how.placed:
+                dialogue.wait_for_vehicle(how.timeout_s)
+            else:
+                dialogue.wait_until_heard(how.timeout_s)
             code = task(dialogue, display)
         except Interrupted:
             ended = dialogue.leave("interrupted")

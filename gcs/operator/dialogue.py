@@ -21,6 +21,8 @@ from gcs.operator.client import Polled, Readable, StationEnded
 from gcs.operator.errors import ExitError, Interrupted
 
 LEAVE_WAIT_S = 20.0
+START_WAIT_S = 60.0
+"""A busy machine takes seconds to start a process, and a name server to answer."""
 SETTLE_WAIT_S = 3.0
 POLL_S = 0.5
 UNKNOWN_LANDED = ("", LandedState.UNDEFINED.name)
@@ -152,10 +154,34 @@ class Dialogue:
     def wait_for_vehicle(self, timeout_s: float) -> ipc.Snapshot:
         """Wait for a vehicle with a position, a home and a landed state.
 
+        The time counts from the station's first word: until then it opens its links, or fails to.
         Raises ExitError with NO_VEHICLE if none is heard.  A vehicle that was heard but is not
         complete in time is returned as it is: the gate knows best what it can still do.
         """
+        self._wait_for_hello()
         self.wait_until(self._position_known, timeout_s)
+        seen = self._heard(timeout_s)
+        self.wait_until(self._can_be_judged, SETTLE_WAIT_S)
+        return self.snapshot or seen
+
+    def wait_until_heard(self, timeout_s: float) -> ipc.Snapshot:
+        """Wait for the first word of a vehicle, for what may be asked of one without a position.
+
+        Raises ExitError with NO_VEHICLE if none is heard.
+        """
+        self._wait_for_hello()
+        self.wait_until(
+            lambda: self.snapshot is not None and bool(self.snapshot.vehicle), timeout_s
+        )
+        return self._heard(timeout_s)
+
+    def _wait_for_hello(self) -> None:
+        """Raises ExitError: what keeps the station from starting, or that it does not start."""
+        self.wait_until(lambda: self.hello is not None, START_WAIT_S)
+        if self.hello is None:
+            raise ExitError(ExitCode.BUG, f"the link process said nothing for {START_WAIT_S:g} s")
+
+    def _heard(self, timeout_s: float) -> ipc.Snapshot:
         if self.snapshot is None or not self.snapshot.vehicle:
             where = ", ".join(self.hello.endpoints) if self.hello else "the link"
             raise ExitError(
@@ -163,7 +189,6 @@ class Dialogue:
                 f"no vehicle heard within {timeout_s:g} s ({where})",
                 "start one with `vehicle-sim`, use `gcs fly --sim`, or name the link with --link",
             )
-        self.wait_until(self._can_be_judged, SETTLE_WAIT_S)
         return self.snapshot
 
     # ------------------------------------------------------------------------ requests

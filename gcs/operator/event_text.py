@@ -12,7 +12,17 @@ LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 
 def verdict_line(label: str, event: ipc.VerdictEvent) -> str:
     """`goto 500 0 2: refused OUTSIDE_FENCE: the goal is ...`, `arm: accepted`."""
-    return answer_line(label, event.outcome, event.code, event.sentence)
+    line = answer_line(label, event.outcome, event.code, event.sentence)
+    rule = _RULES.get(event.word, "") if event.code == Code.POLICY else ""
+    return f"{line}: {rule}" if rule else line
+
+
+_RULES = {
+    "fence": "its key fence_switchable is false",
+    "disarm": "its key allow_force_disarm is false",
+    "mode": "only modes that hold, land, return, are guided or fly the mission may be asked for",
+}
+"""What a policy's refusal of a word rests on."""
 
 
 def outcome_line(label: str, event: ipc.EndingEvent) -> str:

@@ -138,7 +138,7 @@ def unknown_option(word: Word, typed: Sequence[str]) -> str:
     return next((text for text in typed if _OPTION.fullmatch(text)), "")
 
 
-_OPTION = re.compile(r"--.*|-[A-Za-z]")
+_OPTION = re.compile(r"--[A-Za-z].*|-[A-Za-z]")
 
 
 def _number(word: Word, argument: Argument, text: str) -> float:
