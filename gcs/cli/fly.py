@@ -148,14 +148,14 @@ def fly(
 
 
 def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
-    from gcs.cli.plain import Plain, PlainConfig, stdin_lines, to_stderr, to_stdout
+    from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 
     how = PlainConfig(config.connect_timeout_s, min_level, as_json, strict, config.speedup)
     with Interrupts() as interrupts:
         station = StationClient.start(config)
-        return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_lines())
+        return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
 
 
 def _refuse_options_of_the_sim(ctx: click.Context) -> None:
@@ -173,11 +173,19 @@ def _fly_keyboard(config: StationConfig, timeout_s: float | None) -> int:
     if not (stdin_is_a_terminal() and sys.stdout.isatty() and sys.stderr.isatty()):
         raise click.UsageError("the keyboard station needs a terminal; use --plain on a pipe")
 
+    from gcs.exit_codes import ExitCode
     from gcs.operator.client import StationClient
+    from gcs.operator.errors import Interrupted
+    from gcs.operator.interrupts import Interrupts
     from gcs.tui.app import FlyApp
     from gcs.tui.result import print_result, until_hello
 
-    station = StationClient.start(config)
-    app = FlyApp(station, until_hello(station))
+    with Interrupts() as interrupts:
+        station = StationClient.start(config)
+        try:
+            app = FlyApp(station, until_hello(station, interrupts))
+        except Interrupted:
+            click.echo("gcs: interrupted", err=True)
+            return ExitCode.INTERRUPTED
     app.run()
     return print_result(app.result, lambda line: click.echo(line, err=True))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -29,6 +30,8 @@ def log() -> None:
 
     Example: gcs log info logs/20260101-120000_flight.mcap
     """
+    # A Ctrl-C ends what is under way here in order: a bar on the screen, a file half written.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @log.command()

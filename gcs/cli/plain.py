@@ -238,7 +238,7 @@ class Plain:
         return self._dialogue.first_failure() if self._config.strict else ExitCode.DONE
 
 
-def stdin_lines() -> LineQueue:
+def stdin_input() -> LineQueue:
     return LineQueue(sys.stdin.fileno(), "<stdin>", typed=stdin_is_a_terminal())
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol
@@ -19,9 +21,11 @@ from textual.widget import Widget
 from textual.widgets import RichLog
 
 from gcs import ipc
+from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
 from gcs.operator.client import StationEnded, StationEvent
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
+from gcs.tui.hang_up import on_hang_up
 from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keys import ABORT, ACTIONS, KEYS
 from gcs.tui.result import SessionResult
@@ -93,6 +97,7 @@ class FlyApp(App[None]):
         self._next_id = 1
         self._leaving = False
         self._ended: StationEnded | None = None
+        self._station_gone = threading.Event()
         self._trouble: ipc.Trouble | None = None
 
     @property
@@ -128,13 +133,30 @@ class FlyApp(App[None]):
         loop = asyncio.get_running_loop()
         for event in self._first_events:
             self._handle(event)
-        self._connection.listen(lambda event: _call_in_loop(loop, self._handle, event))
+        self._connection.listen(lambda event: self._hear(loop, event))
         self.set_interval(REDRAW_S, self.redraw)
         if not self.is_headless and sys.platform != "win32":
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 loop.add_signal_handler(number, self._leave, number.name)
                 # The loop hears of it through a pipe; this runs even while it hangs in a write.
                 signal.signal(number, lambda *_: self._end_within(LEAVE_WAIT_S + RESTORE_WAIT_S))
+            on_hang_up(sys.__stdin__.fileno() if sys.__stdin__ else 0, self._leave_without_screen)
+
+    def _hear(self, loop: asyncio.AbstractEventLoop, event: StationEvent) -> None:
+        """In the reader's thread."""
+        if isinstance(event, StationEnded):
+            self._station_gone.set()
+        if not loop.is_closed():  # then nothing handles events any more
+            loop.call_soon_threadsafe(self._handle, event)
+
+    def _leave_without_screen(self) -> None:
+        """The terminal has closed: the station holds the vehicle, and this process ends with it.
+
+        In a thread of its own.  The loop may be stuck in a write for ever.
+        """
+        self._connection.send(ipc.Leave("the terminal has closed"))
+        self._station_gone.wait(LEAVE_WAIT_S)
+        os._exit(ExitCode.INTERRUPTED)
 
     def on_resize(self, event: Resize) -> None:
         self.screen.set_class(event.size.height < SMALL_ROWS, "-small")
@@ -283,11 +305,3 @@ class FlyApp(App[None]):
         """End the process by SIGALRM then, unless another time (0: none) is set before."""
         if not self.is_headless and sys.platform != "win32":
             signal.setitimer(signal.ITIMER_REAL, seconds)
-
-
-def _call_in_loop(
-    loop: asyncio.AbstractEventLoop, handle: Callable[[StationEvent], None], event: StationEvent
-) -> None:
-    """From the reader's thread; once the loop has closed, nothing handles events any more."""
-    if not loop.is_closed():
-        loop.call_soon_threadsafe(handle, event)

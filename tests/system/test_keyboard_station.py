@@ -7,6 +7,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,7 +19,10 @@ from tests.system.terminal import COLUMNS, ROWS, Terminal, environment, terminal
 from tests.system.typed_flight import take_off, until_state
 from tests.system.vehicle_program import until
 
-pytestmark = pytest.mark.system
+pytestmark = [
+    pytest.mark.system,
+    pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal"),
+]
 
 
 def take_off_and_go(screen: Terminal) -> None:
@@ -69,11 +73,13 @@ def test_when_the_station_goes_the_link_holds_the_vehicle_and_closes_the_log(
     assert_held(only_log(tmp_path))
 
 
+@pytest.mark.parametrize("told", [True, False], ids=["told by a signal", "told by nobody"])
 def test_a_terminal_that_closes_in_mid_flight_leaves_a_held_vehicle_and_no_process(
-    tmp_path: Path,
+    told: bool, tmp_path: Path
 ) -> None:
     """Whatever is written to it then fails or waits for ever, at the end of the screen too."""
-    with terminal(GCS, "fly", "--sim", "--log-dir", str(tmp_path)) as screen:
+    fly = (GCS, "fly", "--sim", "--log-dir", str(tmp_path))
+    with terminal(*fly, controlling=told) as screen:
         take_off_and_go(screen)
         family = [screen.process.pid, *descendants(screen.process.pid)]
         screen.hang_up()
