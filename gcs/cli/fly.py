@@ -11,6 +11,7 @@ from gcs.cli.options import (
     LINK,
     LOG_DIR,
     POLICY,
+    UTF8,
     FiniteRange,
     RecordName,
     Seconds,
@@ -102,6 +103,13 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
     show_default=True,
     help="Goes into the log's file name.",
 )
+@click.option(
+    "--mission",
+    type=UTF8,
+    default="",
+    metavar="FILE",
+    help="A mission file: the key i uploads it, then flies it.",
+)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
@@ -120,6 +128,7 @@ def fly(
     log_dir: str,
     timeout: float | None,
     name: str,
+    mission: str,
     plain: bool,
     as_json: bool,
     strict: bool,
@@ -141,10 +150,13 @@ def fly(
         vehicle = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
         config = msgspec.structs.replace(config, sim=vehicle, endpoints=[])
     config = msgspec.structs.replace(config, speedup=speedup)
+    if plain and mission:
+        raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
+    mission_path = _mission(mission) if mission else ""
     if plain:
         level = 1 if verbose else 3 if quiet else 2
         ctx.exit(_fly_plain(config, min_level=level, as_json=as_json, strict=strict))
-    ctx.exit(_fly_keyboard(config, timeout))
+    ctx.exit(_fly_keyboard(config, timeout, mission_path))
 
 
 def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
@@ -152,10 +164,29 @@ def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: 
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 
-    how = PlainConfig(config.connect_timeout_s, min_level, as_json, strict, config.speedup)
+    how = PlainConfig(
+        config.connect_timeout_s,
+        min_level,
+        as_json,
+        strict,
+        config.speedup,
+        simulated=config.sim is not None,
+    )
     with Interrupts() as interrupts:
         station = StationClient.start(config)
         return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
+
+
+def _mission(file: str) -> str:
+    """Path of the file, or of the shipped mission of that name, read once to see that it is one.
+
+    Raises ExitError with BAD_FILE.
+    """
+    from gcs import resources
+    from gcs.cli.mission import read_plan
+
+    read_plan(file, None)
+    return str(resources.find(file))
 
 
 def _refuse_options_of_the_sim(ctx: click.Context) -> None:
@@ -165,7 +196,7 @@ def _refuse_options_of_the_sim(ctx: click.Context) -> None:
             raise click.UsageError(f"--{name} is for the vehicle of --sim: add --sim, or leave it")
 
 
-def _fly_keyboard(config: StationConfig, timeout_s: float | None) -> int:
+def _fly_keyboard(config: StationConfig, timeout_s: float | None, mission_path: str) -> int:
     import sys
 
     from gcs.cli.plain import stdin_is_a_terminal
@@ -183,9 +214,18 @@ def _fly_keyboard(config: StationConfig, timeout_s: float | None) -> int:
     with Interrupts() as interrupts:
         station = StationClient.start(config)
         try:
-            app = FlyApp(station, until_hello(station, interrupts))
+            events = until_hello(station, interrupts)
         except Interrupted:
             click.echo("gcs: interrupted", err=True)
             return ExitCode.INTERRUPTED
+    app = FlyApp(station, events, mission_path=mission_path, timeout_s=timeout_s)
     app.run()
-    return print_result(app.result, lambda line: click.echo(line, err=True))
+    simulated = config.sim is not None
+    code = print_result(app.result, lambda line: click.echo(line, err=True), simulated=simulated)
+    if code or app.heard_vehicle:
+        return code
+    click.echo(
+        "  hint: start one with `vehicle-sim`, use `gcs fly --sim`, or name the link with --link",
+        err=True,
+    )
+    return ExitCode.NO_VEHICLE

@@ -35,6 +35,7 @@ class PlainConfig:
     as_json: bool = False
     strict: bool = False
     speedup: float = 1.0
+    simulated: bool = False
 
 
 class _LeaveNowError(Exception):
@@ -227,7 +228,7 @@ class Plain:
         if ended.bye is None:
             self._err(f"gcs: the link ended without a good-bye\n{ended.stderr_tail}".rstrip())
             return
-        for line in event_text.bye_lines(ended.bye):
+        for line in event_text.bye_lines(ended.bye, simulated=self._config.simulated):
             self._err(line)
 
     def _exit_code(self, ended: StationEnded) -> int:

@@ -12,9 +12,14 @@ LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 
 def verdict_line(label: str, event: ipc.VerdictEvent) -> str:
     """`goto 500 0 2: refused OUTSIDE_FENCE: the goal is ...`, `arm: accepted`."""
-    line = answer_line(label, event.outcome, event.code, event.sentence)
+    sentence = refused_by_rule(event) or event.sentence
+    return answer_line(label, event.outcome, event.code, sentence)
+
+
+def refused_by_rule(event: ipc.VerdictEvent) -> str:
+    """The sentence with the rule that a policy's refusal rests on; empty if it rests on none."""
     rule = _RULES.get(event.word, "") if event.code == Code.POLICY else ""
-    return f"{line}: {rule}" if rule else line
+    return f"{event.sentence}: {rule}" if rule else ""
 
 
 _RULES = {
@@ -56,9 +61,11 @@ def trouble_lines(event: ipc.Trouble) -> list[str]:
     return error_lines(event.text, event.hint)
 
 
-def bye_lines(bye: ipc.Bye) -> list[str]:
-    """Where the vehicle is, and where the record."""
+def bye_lines(bye: ipc.Bye, *, simulated: bool = False) -> list[str]:
+    """Where the vehicle is, and where the record.  `simulated`: it was the station's own."""
     lines = [f"gcs: {bye.sentence}"] if bye.sentence else []
+    if simulated:
+        lines.append("gcs: the simulation has ended with it, and its vehicle")
     return [*lines, f"log: {bye.log_path}"] if bye.log_path else lines
 
 

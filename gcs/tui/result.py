@@ -47,7 +47,9 @@ def until_hello(
     return events
 
 
-def print_result(result: SessionResult, echo: Callable[[str], None]) -> int:
+def print_result(
+    result: SessionResult, echo: Callable[[str], None], *, simulated: bool = False
+) -> int:
     """Print how it ended and the log's path; returns the exit code.
 
     Raises ExitError if the station ended although nobody asked it to.
@@ -58,6 +60,6 @@ def print_result(result: SessionResult, echo: Callable[[str], None]) -> int:
     if bye is None:
         echo(f"gcs: the link ended without a good-bye\n{result.ended.stderr_tail}".rstrip())
     else:
-        for line in event_text.bye_lines(bye):
+        for line in event_text.bye_lines(bye, simulated=simulated):
             echo(line)
     return exit_code_of(result.ended)

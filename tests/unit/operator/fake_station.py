@@ -203,7 +203,7 @@ class FakeStation:
     def snapshot(self) -> ipc.Snapshot:
         heard = self.scenario != "silent"
         return ipc.Snapshot(
-            time_ns=0,
+            time_ns=int(self.time_s * 1e9),
             state=self.state if heard else "NO_VEHICLE",
             control=self.control,
             severity="NOMINAL",
