@@ -84,6 +84,10 @@ def run_over(
             dialogue.leave("failed")
             raise
         ended = dialogue.leave("done")
+        if code == ExitCode.NOT_COMPLETED and ended.bye is not None:
+            display.clear()
+            for line in event_text.bye_lines(ended.bye):
+                click.echo(line, err=True)
         return code or exit_code_of(ended)
 
 

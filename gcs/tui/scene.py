@@ -110,7 +110,8 @@ class Scene:
                 self._note_outcome(event)
                 self._show_answer(self.label(event), event.ended, event.code, event.sentence)
             case ipc.ProgressEvent():
-                self.progress = event
+                # The last step of a transfer needs no ending of the request to be over.
+                self.progress = None if event.done >= event.total > 0.0 else event
             case ipc.LogEvent() | ipc.Trouble() | ipc.Bye():
                 pass
 

@@ -134,9 +134,9 @@ def test_in_the_background_of_a_terminal_it_leaves_the_screen_to_others() -> Non
         screen.until_text("listens on UDP port", "my prompt")
         screen.process.wait(20.0)
     assert b"\x1b" not in screen.seen
-    assert "simulated" not in screen.text
+    assert "battery" not in screen.text
 
 
 def test_in_the_foreground_of_a_terminal_it_shows_a_live_page() -> None:
     with terminal(*PROGRAM, "--port", str(free_port())) as screen:
-        screen.until_text("times real time")
+        screen.until_text("battery", "times real time")

@@ -49,11 +49,11 @@ def described(fault: AnyFault) -> str:
         case model.GyroBias(off):
             return f"the gyroscope is off by {_vector(off)} rad/s (forward, right, down)"
         case model.BaroFault(offset_m, lost):
-            off = f"the barometer is off by {_number(offset_m)} m"
-            return "the barometer is lost" if lost else off
+            wrong = f"the barometer is off by {_number(offset_m)} m"
+            return "the barometer is lost" if lost else wrong
         case model.MagFault(offset, lost):
-            off = f"the compass is off by {_vector(offset)} gauss (forward, right, down)"
-            return "the compass is lost" if lost else off
+            wrong = f"the compass is off by {_vector(offset)} gauss (forward, right, down)"
+            return "the compass is lost" if lost else wrong
         case model.RcLost(lost):
             return "the sticks are lost" if lost else "the sticks are back"
         case model.ClockJump(by_ns):

@@ -62,6 +62,18 @@ def test_a_stop_goes_out_with_the_first_word_of_the_vehicle() -> None:
     assert connection.asked_at_s == [pytest.approx(0.1)]
 
 
+def test_whoever_leaves_before_the_end_sends_nothing_but_that_and_is_told_where_the_vehicle_is(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    code, connection = run("rtl", FakeStation("airborne"), wait_s=0.3)
+    assert code == ExitCode.NOT_COMPLETED
+    assert sent_words(connection) == ["rtl"]
+    assert connection.sent[1:] == [ipc.Leave("done")]
+    told = capsys.readouterr().err
+    assert "rtl: not completed within 0.3 s" in told
+    assert "log: logs/x.mcap" in told
+
+
 @pytest.mark.parametrize("line", ["land", "hold", "arm", "mode LOITER"])
 def test_what_is_no_move_needs_no_control(line: str) -> None:
     _, connection = run(line, FakeStation("airborne"))

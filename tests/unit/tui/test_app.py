@@ -228,6 +228,18 @@ def test_a_refusal_stays_until_the_next_key_whatever_else_ends() -> None:
     flown(script)
 
 
+def test_a_transfer_is_shown_until_its_last_step() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.say(ipc.ProgressEvent(9, "reading back", 3, 7, "items"))
+        await drawn(app, pilot)
+        assert "reading back: 3 of 7 items" in screen_text(app)
+        station.say(ipc.ProgressEvent(9, "reading back", 7, 7, "items"))
+        await drawn(app, pilot)
+        assert "reading back" not in screen_text(app)
+
+    flown(script)
+
+
 def test_an_outcome_is_not_shown_for_ever() -> None:
     async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("m")
