@@ -6,6 +6,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,7 +55,9 @@ def info(files: tuple[Path, ...], last: bool, as_json: bool) -> None:
         with _told(file), _progress(file, "reading") as progress:
             flight = read_info(file, progress)
         if as_json:
-            click.echo(msgspec.json.encode(flight).decode())
+            # JSON has no text but UTF-8; a file's name may be other.
+            name = flight.path.encode(errors="backslashreplace").decode()
+            click.echo(msgspec.json.encode(replace(flight, path=name)).decode())
         else:
             if number:
                 click.echo()

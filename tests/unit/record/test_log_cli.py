@@ -133,6 +133,17 @@ def test_the_last_one_is_the_newest(
     assert gcs_log("info", "--last", *older).output.startswith(str(older[1]))
 
 
+@pytest.mark.skipif(os.name != "posix", reason="a file's name is bytes on POSIX only")
+def test_a_file_whose_name_is_not_utf8_is_told_in_json_too(flight: Path, tmp_path: Path) -> None:
+    other = tmp_path / os.fsdecode(b"\xff.mcap")
+    try:
+        other.write_bytes(flight.read_bytes())
+    except OSError:
+        pytest.skip("this file system has no such names")
+    found = json.loads(gcs_log("info", other, "--json").output)
+    assert found["path"].endswith("\\udcff.mcap")
+
+
 def test_without_a_file_it_is_a_usage_error() -> None:
     ended = gcs_log("info")
     assert (ended.exit_code, "--last" in ended.output) == (2, True)
