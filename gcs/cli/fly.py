@@ -224,6 +224,10 @@ def _fly_keyboard(config: StationConfig, timeout_s: float | None, mission_path: 
     code = print_result(app.result, lambda line: click.echo(line, err=True), simulated=simulated)
     if code or app.heard_vehicle:
         return code
+    if app.interrupted:
+        return ExitCode.INTERRUPTED
+    if simulated:
+        return ExitCode.DONE
     click.echo(
         "  hint: start one with `vehicle-sim`, use `gcs fly --sim`, or name the link with --link",
         err=True,

@@ -100,6 +100,7 @@ class FlyApp(App[None]):
         self._mission_path = mission_path
         self._timeout_s = timeout_s
         self._start_after: int | None = None
+        self.interrupted = False
         self._connection = connection
         self._first_events = events
         self.scene = Scene()
@@ -230,6 +231,7 @@ class FlyApp(App[None]):
         """Every key of ours comes through here.  Under an open help page nothing is sent unseen:
         any key closes it, and of all keys only the abort acts as well."""
         self.scene.note_key()
+        self.interrupted = self.interrupted or name == "ctrl+c"
         self._start_after = None  # whoever presses another key has something else in mind
         if not self._close_help() or name == ABORT:
             await self.run_action(ACTIONS[name])

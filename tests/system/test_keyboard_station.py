@@ -89,6 +89,24 @@ def test_a_terminal_that_closes_in_mid_flight_leaves_a_held_vehicle_and_no_proce
     assert_held(only_log(tmp_path))
 
 
+@pytest.mark.parametrize(
+    ("words", "key", "exit_code"),
+    [((), "q", 3), ((), "\x03", 130), (("--timeout", "0.5"), "", 3)],
+    ids=["quit", "Ctrl-C", "timeout"],
+)
+def test_without_a_vehicle_it_says_so_and_exits_accordingly(
+    words: tuple[str, ...], key: str, exit_code: int, tmp_path: Path
+) -> None:
+    link = ("--link", "udpin://127.0.0.1:0", "--log-dir", str(tmp_path))
+    with terminal(GCS, "fly", *link, *words) as screen:
+        if key:
+            screen.until_text("start one: vehicle-sim")
+            screen.press(key)
+        assert screen.process.wait(20.0) == exit_code
+        screen.until_text("gcs: no vehicle was heard")
+        assert ("hint: start one" in screen.text) == (exit_code == 3)
+
+
 class Tmux:
     """A tmux server of our own with one window, in which a shell runs."""
 
