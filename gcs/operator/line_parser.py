@@ -111,7 +111,8 @@ def parse_arguments(word: Word, typed: Sequence[str]) -> Action:
 
 
 def _find(tokens: list[str]) -> tuple[Word, list[str]]:
-    tokens = [OTHER_NAMES.get(tokens[0], tokens[0]), *tokens[1:]]
+    first = tokens[0].lower()  # ABORT is as good
+    tokens = [OTHER_NAMES.get(first, first), *tokens[1:]]
     two = " ".join(tokens[:2])
     if two in WORD_BY_NAME:
         return WORD_BY_NAME[two], tokens[2:]

@@ -132,6 +132,11 @@ def test_one_that_stops_or_tells_is(typed: str, meant: str) -> None:
     assert wrong.value.hint == f"did you mean {meant}?"
 
 
+@pytest.mark.parametrize("line", ["ABORT", "Abort", "abort  # now!"])
+def test_an_abort_is_one_however_it_is_written(line: str) -> None:
+    assert requests(line) == (ipc.Ask(0, "abort"),)
+
+
 @pytest.mark.parametrize("line", ["!hold", "! hold", "  !hold  # at once"])
 def test_a_mark_lets_a_stop_overtake(line: str) -> None:
     parsed = parse_line(line)
