@@ -6,18 +6,23 @@ every room.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from gcs.frames import Vec3, enu_from_ned
 
 DECIMALS = 2
+BEYOND_REACH_M = 1e10
 
 
 def fixed(value: float, decimals: int, *, sign: bool = False) -> str:
     """`decimals` places; `sign` writes a plus before what is not negative.
 
-    Rounded first, so that a small negative number is not written as -0.00.
+    Rounded first, so that a small negative number is not written as -0.00.  What is farther than
+    anything on Earth is written as a power of ten: `1e+30`.
     """
+    if math.isfinite(value) and abs(value) >= BEYOND_REACH_M:
+        return f"{value:{'+' if sign else ''}.3g}"
     rounded = round(value, decimals) + 0.0
     return f"{rounded:+.{decimals}f}" if sign else f"{rounded:.{decimals}f}"
 

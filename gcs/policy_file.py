@@ -46,6 +46,4 @@ def load_policy(
         raise PolicyFileError(str(error), error.hint) from error
     except OSError as error:
         hint = "--policy takes `default`, `lab` or the path of a TOML file"
-        if error.filename != str(path):
-            hint = f"{path} names it as a fence file"
         raise PolicyFileError(f"{error.filename}: {error.strerror}", hint) from error

@@ -90,6 +90,8 @@ def decode(data: bytes, file: str) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
+        if b"\0" in data:
+            raise TomlError(file, 0, "", "is no text", "a TOML file is wanted") from None
         raise TomlError(file, line, "text", "is not UTF-8") from None
 
 
@@ -123,7 +125,9 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def none_of(value: object, words: Iterable[str]) -> tuple[str, str]:
     """What is wrong with a value that is not one of `words`, and a hint."""
     listed = list(words)
-    return f"{shown(value)} is none of: {', '.join(listed)}", did_you_mean(str(value), listed)
+    near = difflib.get_close_matches(str(value), listed, n=1)
+    hint = f"did you mean {near[0]}?" if near else ""
+    return f"{shown(value)} is none of: {', '.join(listed)}", hint
 
 
 # ------------------------------------------------------------- what does not fit, in words

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, Literal
 import click
 
 from vehicle_sim.autopilot.firmware import FIRMWARES, Firmware, FirmwareError, firmware_of
-from vehicle_sim.options import AssignmentType, HomeType, SpeedType, WindType
+from vehicle_sim.options import AssignmentType, HomeType, SeedType, SpeedType, WindType
 
 if TYPE_CHECKING:
     from vehicle_sim.autopilot.boot import Boot
@@ -146,7 +146,7 @@ class _BadFileError(Exception):
     "as measured in life (GPS wanders by a metre, the barometer drifts, the rotors shake).",
 )
 @click.option("--home", type=HomeType(), help="Where it stands; the autopilot's usual place.")
-@click.option("--seed", type=int, default=1, show_default=True, help="Of all noise.")
+@click.option("--seed", type=SeedType(), default=1, show_default=True, help="Of all noise.")
 @click.option(
     "--speedup", type=SpeedType(), default="1", show_default=True, help="Times real time."
 )
@@ -202,6 +202,9 @@ class _BadFileError(Exception):
 @click.option("--control", is_flag=True, help="JSON lines on standard input and output, for tests.")
 @click.option("--plain", is_flag=True, help="Plain lines on a terminal too.")
 @click.option("-v", "--verbose", is_flag=True, help="Debug lines as well.")
+@click.version_option(
+    package_name="mavgate", prog_name="vehicle-sim", message="%(prog)s %(version)s"
+)
 def main(
     autopilot: Literal["px4", "ardupilot"],
     firmware: str | None,
@@ -232,8 +235,8 @@ def main(
 ) -> None:
     """Simulated quadrotors that speak MAVLink like PX4 or ArduPilot.
 
-    On a terminal it shows a live line per vehicle; on a pipe it prints what to connect to, then a
-    line for everything that happens.
+    On a terminal it shows a live line per vehicle, while it is in the foreground; on a pipe and in
+    the background it prints what to connect to, then a line for everything that happens.
     """
     try:
         played = firmware_of(autopilot, firmware)

@@ -89,7 +89,7 @@ def cells(status: VehicleLine) -> tuple[str, ...]:
         str(status.system),
         status.mode,
         f"{state}, FAILSAFE" if status.failsafe else state,
-        f"{status.up_m:.1f} m",
+        f"{round(status.up_m, 1) + 0.0:.1f} m",  # never -0.0
         f"{status.speed_m_s:.1f} m/s",
         f"{100.0 * status.battery:.0f} %",
         {0: "nobody", 1: "1 client"}.get(status.clients, f"{status.clients} clients"),

@@ -158,8 +158,19 @@ class Json(Plain):
         _print(line.decode().rstrip())
 
 
+def in_foreground() -> bool:
+    """Whether the terminal of standard output is ours now: a program that was started with `&`, or
+    put into the background later, shares it with whatever else writes there."""
+    if sys.platform == "win32":
+        return True
+    try:
+        return os.tcgetpgrp(sys.stdout.fileno()) == os.getpgrp()
+    except (OSError, ValueError):
+        return False
+
+
 class Live(Plain):
-    """One live line per vehicle, under the log."""
+    """One live line per vehicle, under the log; plain lines while in the background."""
 
     redraw_ns = REDRAW_NS
 
@@ -174,6 +185,9 @@ class Live(Plain):
             self._face.say(spelled(line), LEVELS[line.level] >= LEVELS["warning"])
 
     def show(self, statuses: Sequence[VehicleLine], rhythm: Rhythm) -> None:
+        if not in_foreground():
+            self.close()
+            return
         if self._face is None:
             from vehicle_sim.live_page import LivePage
 
@@ -183,3 +197,4 @@ class Live(Plain):
     def close(self) -> None:
         if self._face is not None:
             self._face.close()
+            self._face = None

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 _PROGRESS_FROM_BYTES = 20_000_000
 """Smaller files are read in less than a second."""
 
+_LOGS = Path("logs")
 _RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
 
 
@@ -29,28 +32,48 @@ def log() -> None:
 
     Example: gcs log info logs/20260101-120000_flight.mcap
     """
+    # A Ctrl-C ends what is under way here in order: a bar on the screen, a file half written.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @log.command()
-@click.argument("file", type=_RECORD)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def info(file: Path, as_json: bool) -> None:
-    """What FILE holds: duration, topics and rates, states, decisions, gaps.
+@click.argument("files", type=_RECORD, nargs=-1, metavar="FILE...")
+@click.option("--last", is_flag=True, help="Only the newest of them; without FILE, of logs/*.mcap.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a file, one a line.")
+def info(files: tuple[Path, ...], last: bool, as_json: bool) -> None:
+    """What each FILE holds: duration, topics and rates, states, decisions, gaps.
 
     Works on a file whose writer was killed, and says so.
 
-    Example: gcs log info logs/20260101-120000_flight.mcap --json
+    Examples: gcs log info --last  |  gcs log info logs/*.mcap --json
     """
     import msgspec
 
     from gcs.record.info import read_info
 
-    with _told(file), _progress(file, "reading") as progress:
-        flight = read_info(file, progress)
-    if as_json:
-        click.echo(msgspec.json.encode(flight).decode())
-    else:
-        _print(flight)
+    for number, file in enumerate(_chosen(files, last=last)):
+        with _told(file), _progress(file, "reading") as progress:
+            flight = read_info(file, progress)
+        if as_json:
+            # JSON has no text but UTF-8; a file's name may be other.
+            name = flight.path.encode(errors="backslashreplace").decode()
+            click.echo(msgspec.json.encode(replace(flight, path=name)).decode())
+        else:
+            if number:
+                click.echo()
+            _print(flight)
+
+
+def _chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
+    """Raises UsageError where none is named, and ExitError where there is no last one."""
+    if not last:
+        if not files:
+            raise click.UsageError("Missing argument 'FILE...'; --last is the newest of logs/")
+        return files
+    found = files or tuple(_LOGS.glob("*.mcap"))
+    if not found:
+        raise ExitError(ExitCode.BAD_FILE, f"{_LOGS}/: no record in it", "name one, as FILE")
+    return (max(found, key=lambda file: file.stat().st_mtime_ns),)
 
 
 @log.command()

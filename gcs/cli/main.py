@@ -78,8 +78,18 @@ def _load(target: str) -> click.Command:
     return command
 
 
+MOVES = frozenset({"control", "arm", "takeoff", "goto", "land", "rtl", "resume", "disarm", "mode"})
+"""Commands that move a vehicle or switch its motors: never offered for one that was mistyped."""
+
+
 class LazyGroup(click.Group):
     """A group that knows its commands' names and one-line helps without importing them."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """`gcs help fly` is `gcs fly --help`."""
+        if args[:1] == ["help"]:
+            args = [*args[1:], "--help"]
+        return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return [name for section in COMMANDS.values() for name in section]
@@ -117,8 +127,9 @@ def _with_additions(entry: Entry) -> click.Command:
 def _unknown(name: str, known: Sequence[str]) -> str:
     import difflib
 
-    near = difflib.get_close_matches(name, known, n=1)
-    return f"no command {name!r}" + (f"; did you mean {near[0]!r}?" if near else "")
+    near = difflib.get_close_matches(name, [each for each in known if each not in MOVES], n=1)
+    hint = f"did you mean {near[0]!r}?" if near else "`gcs --help` lists them"
+    return f"no command {name!r}; {hint}"
 
 
 def _print_version(ctx: click.Context, _param: click.Parameter, asked: bool) -> None:

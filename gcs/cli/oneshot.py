@@ -49,7 +49,7 @@ def _command(name: str) -> click.Command:
         arguments: tuple[str, ...] = (),
     ) -> None:
         try:
-            action = line_parser.parse_arguments(word, arguments, finite=True)
+            action = line_parser.parse_arguments(word, arguments)
         except line_parser.LineError as error:
             raise click.UsageError(f"{error.sentence}\n  hint: {error.hint}") from None
         assert isinstance(action, request_words.SendRequests)
@@ -60,9 +60,10 @@ def _command(name: str) -> click.Command:
             links, policy, log_dir, name=name, timeout_s=timeout, vehicle=vehicle
         )
         stops = all(request.word in request_words.STOPS for request in action.requests)
+        placed = name not in ("abort", "hold")
         anywhere = stops and not links
         how = oneshot_session.OneShotConfig(
-            timeout, wait, as_json, name, anywhere=anywhere, take=take, stops=stops
+            timeout, wait, as_json, name, placed=placed, anywhere=anywhere, take=take, stops=stops
         )
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)

@@ -37,7 +37,8 @@ Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
 class OneShotConfig:
     """`wait_s` limits the wait for the outcome, `timeout_s` that for a vehicle; seconds.
 
-    `cautions`: show what is always wrong with this vehicle, too.
+    `cautions`: show what is always wrong with this vehicle, too.  `placed`: wait for its position,
+    which a stop needs not.
 
     Through a running station: `anywhere` says that the only one that runs will do, whatever its
     link is; `take`, to take control over from another operator; `stops`, that nothing is to delay
@@ -53,6 +54,7 @@ class OneShotConfig:
     take: bool = False
     stops: bool = False
     at_once: bool = False
+    placed: bool = True
 
 
 def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
@@ -91,12 +93,14 @@ def run_over(
 
         dialogue = Dialogue(connection, interrupts, on_event)
         try:
-            if not how.at_once:
+            if how.placed and not how.at_once:
                 dialogue.wait_for_vehicle(how.timeout_s)
+            elif not how.at_once:
+                dialogue.wait_until_heard(how.timeout_s)
             if how.take:
                 taken = dialogue.wait_settled(dialogue.send(Ask(0, "station_take")))
                 if not taken.completed:
-                    return _left(dialogue, taken.exit_code)
+                    return _left(dialogue, taken.exit_code, display)
             code = task(dialogue, display)
         except Interrupted:
             ended = dialogue.leave("interrupted")
@@ -107,12 +111,19 @@ def run_over(
         except ExitError:
             dialogue.leave("failed")
             raise
-        return _left(dialogue, code)
+        return _left(dialogue, code, display)
 
 
-def _left(dialogue: Dialogue, code: int) -> int:
-    """Leave in good order; the exit code, which the station may have one for if we have none."""
+def _left(dialogue: Dialogue, code: int, display: ProgressDisplay) -> int:
+    """Leave in good order; the exit code, which the station may have one for if we have none.
+
+    Where a request was not completed, what the station says of the vehicle at the end is shown.
+    """
     ended = dialogue.leave("done")
+    if code == ExitCode.NOT_COMPLETED and ended.bye is not None:
+        display.clear()
+        for line in event_text.bye_lines(ended.bye):
+            click.echo(line, err=True)
     return code or exit_code_of(ended)
 
 

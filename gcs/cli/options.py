@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import os
+import re
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -12,21 +12,41 @@ import click
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
+from gcs.operator.number_text import read_number, read_whole_number
 
 DEFAULT_LINK = "udpin://127.0.0.1:14550"
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 class FiniteRange(click.FloatRange):
-    """`FloatRange` lets nan through whatever its limits, and inf where one is missing."""
+    """A number as `read_number` takes it, within limits."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
-        number = float(super().convert(value, param, ctx))
-        if not math.isfinite(number):
-            self.fail(f"{value} is not a finite number.", param, ctx)
-        return number
+        if isinstance(value, str):
+            try:
+                value = read_number(value)
+            except ValueError as error:
+                self.fail(f"{error}.", param, ctx)
+        return float(super().convert(value, param, ctx))
+
+
+class Seed(click.ParamType[int]):
+    """A whole number from 0."""
+
+    name = "SEED"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        if not isinstance(value, str):
+            return int(value)
+        try:
+            seed = read_whole_number(value)
+        except ValueError as error:
+            self.fail(f"{error}.", param, ctx)
+        if seed < 0:
+            self.fail(f"{seed} is negative.", param, ctx)
+        return seed
 
 
 class Seconds(FiniteRange):
@@ -48,6 +68,25 @@ class Utf8Text(click.types.StringParamType):
         return text
 
 
+class RecordName(Utf8Text):
+    """The part of a record's file name that a user chooses: no folder, and no more than fits."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        text = super().convert(value, param, ctx)
+        if len(text) > RECORD_NAME_MAX:
+            self.fail(f"has {len(text)} characters; at most {RECORD_NAME_MAX}.", param, ctx)
+        if not _RECORD_NAME.fullmatch(text):
+            self.fail(
+                f"{text!r} is no part of a file name: letters, digits and . _ -, "
+                "the first of them no point.",
+                param,
+                ctx,
+            )
+        return text
+
+
+RECORD_NAME_MAX = 80
+_RECORD_NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]*")
 UTF8 = Utf8Text()
 
 LINK = click.Option(
@@ -119,6 +158,10 @@ def _policy_file(name: str) -> str:
     path = policy_path(name)
     if name in POLICIES:
         return str(path)
+    if path.is_dir():
+        raise ExitError(
+            ExitCode.BAD_FILE, f"{name}: is a directory", "a policy is a TOML file, or default, lab"
+        )
     if not path.is_file():
         raise ExitError(
             ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab"

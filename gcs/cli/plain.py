@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from gcs import ipc
+from gcs.cli.line_queue import BadLine, LineQueue
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text, line_parser, request_words
 from gcs.operator.client import StationEnded
@@ -20,7 +21,6 @@ from gcs.operator.dialogue import (
 )
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.warning_filter import WarningFilter
-from gcs.shell.pipes import LineSource
 
 FRESH_WAIT_S = 0.5
 Printer = Callable[[str], None]
@@ -35,31 +35,19 @@ class PlainConfig:
     as_json: bool = False
     strict: bool = False
     speedup: float = 1.0
+    simulated: bool = False
 
 
-class Input:
-    """Numbered lines of a file descriptor, handed out one at a time."""
-
-    def __init__(self, fd: int, name: str) -> None:
-        self.source = LineSource(fd, keep_blank=True)
-        self.name = name
-        self.number = 0
-        self._lines: list[str] = []
-
-    def read(self) -> None:
-        self._lines.extend(line.decode(errors="replace") for line in self.source.read())
-
-    def take(self) -> str | None:
-        if not self._lines:
-            return None
-        self.number += 1
-        return self._lines.pop(0)
+class _LeaveNowError(Exception):
+    """`quit` was typed: whatever is waited for is not waited for any more."""
 
 
 class Plain:
-    """The console: reads a line when the one before is settled, prints what becomes of it.
+    """The console: does a line when the one before is settled, prints what becomes of it.
 
-    Answers go to `out`, log lines and complaints to `err`.
+    The input is read all the while: a line that acts at once (`request_words.ActsAtOnce`) is sent
+    as it comes, and the lines before it that have not begun are dropped.  Answers go to `out`, log
+    lines and complaints to `err`.
     """
 
     def __init__(
@@ -75,12 +63,18 @@ class Plain:
         self._dialogue = Dialogue(connection, interrupts, self._on_event)
         self._warnings = WarningFilter(cautions=True)
         self._bad_lines = False
+        self._overtaken = False
+        self._sent_at_once: list[TrackedRequest] = []
+        self._until_heard: list[line_parser.Line] = []
 
-    def run(self, script: Input) -> int:
+    def run(self, lines: LineQueue) -> int:
         """Until `quit`, the end of the input, or Ctrl-C; returns the exit code."""
         try:
+            self._watch(lines)
             self._dialogue.wait_for_vehicle(self._config.timeout_s)
-            self._run_lines(script)
+            self._run_lines(lines)
+        except _LeaveNowError:
+            pass
         except Interrupted as interrupt:
             self._err(f"gcs: {interrupt}: leaving; the link holds the vehicle first")
             self._show_end(self._dialogue.leave(str(interrupt)))
@@ -92,57 +86,126 @@ class Plain:
         self._show_end(ended)
         return self._exit_code(ended)
 
-    def _run_lines(self, script: Input) -> None:
-        while (text := self._next_line(script)) is not None:
-            try:
-                line = line_parser.parse_line(text)
-            except line_parser.LineError as error:
-                self._bad_lines = True
-                self._err(f"{script.name}:{script.number}: {error.sentence}\n  hint: {error.hint}")
-                continue
-            if line is None:
-                continue
-            if isinstance(line.action, request_words.Quit):
-                return
-            self._act(line)
+    # ------------------------------------------------------------- lines that act at once
 
-    def _next_line(self, script: Input) -> str | None:
+    def _watch(self, lines: LineQueue) -> None:
+        if lines.ended or lines.full:
+            self._dialogue.unwatch()
+        else:
+            self._dialogue.watch(lines, lambda: self._read(lines))
+
+    def _read(self, lines: LineQueue) -> None:
+        for each in lines.read():
+            for dropped in each.dropped:
+                self._tell_dropped(dropped, each.line)
+            self._act_at_once(each.line)
+        if lines.typed_end:
+            raise _LeaveNowError
+        self._watch(lines)
+
+    def _act_at_once(self, line: line_parser.Line | BadLine) -> None:
+        if isinstance(line, BadLine):
+            self._tell_bad(line)
+            return
+        match line.action:
+            case request_words.SendRequests():
+                self._overtaken = True
+                seen = self._dialogue.snapshot
+                if seen is not None and seen.vehicle:
+                    self._send_at_once(line)
+                else:
+                    self._until_heard.append(line)
+            case request_words.ShowState():
+                self._show_state()
+            case request_words.ShowHelp():
+                self._show_help()
+            case request_words.Quit():
+                raise _LeaveNowError
+            case request_words.Wait():
+                raise AssertionError("a wait has its turn")
+
+    def _send_at_once(self, line: line_parser.Line) -> None:
+        assert isinstance(line.action, request_words.SendRequests)
+        (request,) = line.action.requests
+        self._sent_at_once.append(self._dialogue.send(request, line.text))
+
+    def _tell_dropped(
+        self, line: line_parser.Line | BadLine, by: line_parser.Line | BadLine
+    ) -> None:
+        if isinstance(line, BadLine):
+            self._tell_bad(line)
+            return
+        assert isinstance(by, line_parser.Line)
+        tell = self._err if self._config.as_json else self._out
+        tell(f"{line.text}: dropped by {by.text}, which did not wait for it")
+
+    # --------------------------------------------------------------------- lines in turn
+
+    def _run_lines(self, lines: LineQueue) -> None:
+        while (line := self._next_line(lines)) is not None:
+            self._overtaken = False
+            if isinstance(line, BadLine):
+                self._tell_bad(line)
+            elif isinstance(line.action, request_words.Quit):
+                return
+            else:
+                self._act(line)
+
+    def _next_line(self, lines: LineQueue) -> line_parser.Line | BadLine | None:
         """None at the end of the input.  The station's events are read meanwhile."""
         while True:
-            text = script.take()
-            if text is not None:
-                return text
-            if script.source.ended:
-                return None
-            if self._dialogue.poll(1.0, (script.source,)):
-                script.read()
+            self._dialogue.wait_until(lambda: all(each.settled for each in self._sent_at_once))
+            self._sent_at_once.clear()
+            line = lines.take()
+            self._watch(lines)
+            if line is not None or lines.ended:
+                return line
+            self._dialogue.poll(1.0)
 
     def _act(self, line: line_parser.Line) -> None:
         match line.action:
             case request_words.SendRequests(requests) if line.wait:
-                self._dialogue.send_in_turn(requests, line.text)
+                self._dialogue.send_in_turn(requests, line.text, lambda: not self._overtaken)
             case request_words.SendRequests(requests):
                 # Not waited for: what has to follow another request cannot be sent blindly.
                 self._dialogue.send(requests[0], line.text)
             case request_words.Wait(seconds):
-                self._dialogue.wait_until(lambda: False, seconds / self._config.speedup)
+                seconds /= self._config.speedup
+                self._dialogue.wait_until(lambda: self._overtaken, seconds)
             case request_words.ShowState():
+                # As it is after whatever was answered last: the latest may be from before that.
+                latest = self._dialogue.snapshot
+                self._dialogue.wait_until(
+                    lambda: self._dialogue.snapshot is not latest, FRESH_WAIT_S
+                )
                 self._show_state()
+            case request_words.ShowHelp():
+                self._show_help()
             case request_words.Quit():
                 return
 
+    def _tell_bad(self, line: BadLine) -> None:
+        self._bad_lines = True
+        self._err(f"{line.where}: {line.sentence}\n  hint: {line.hint}")
+
     def _show_state(self) -> None:
-        """As it is after whatever was answered last: the latest snapshot may be from before."""
-        latest = self._dialogue.snapshot
-        self._dialogue.wait_until(lambda: self._dialogue.snapshot is not latest, FRESH_WAIT_S)
         seen = self._dialogue.snapshot
         if self._config.as_json and seen is not None:
             self._out(ipc.encode(seen).decode().rstrip())
         else:
             self._out(event_text.state_line(seen))
 
+    def _show_help(self) -> None:
+        tell = self._err if self._config.as_json else self._out
+        for line in request_words.help_lines():
+            tell(line)
+
     def _on_event(self, event: ipc.Event, request: TrackedRequest | None) -> None:
         if isinstance(event, ipc.Snapshot):
+            if event.vehicle:
+                waiting, self._until_heard = self._until_heard, []
+                for line in waiting:
+                    self._send_at_once(line)
             return
         if self._config.as_json:
             self._out(ipc.encode(event).decode().rstrip())
@@ -165,7 +228,7 @@ class Plain:
         if ended.bye is None:
             self._err(f"gcs: the link ended without a good-bye\n{ended.stderr_tail}".rstrip())
             return
-        for line in event_text.bye_lines(ended.bye):
+        for line in event_text.bye_lines(ended.bye, simulated=self._config.simulated):
             self._err(line)
 
     def _exit_code(self, ended: StationEnded) -> int:
@@ -176,8 +239,8 @@ class Plain:
         return self._dialogue.first_failure() if self._config.strict else ExitCode.DONE
 
 
-def stdin_input() -> Input:
-    return Input(sys.stdin.fileno(), "<stdin>")
+def stdin_input() -> LineQueue:
+    return LineQueue(sys.stdin.fileno(), "<stdin>", typed=stdin_is_a_terminal())
 
 
 def to_stdout(line: str) -> None:

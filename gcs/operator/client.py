@@ -21,6 +21,10 @@ from gcs.shell.pipes import LineSource
 STATION_COMMAND: tuple[str, ...] = (sys.executable, "-m", "gcs.shell.station")
 STDERR_LINES = 40
 TERMINATE_WAIT_S = 5.0
+if sys.platform == "win32":
+    _CREATION_FLAGS = subprocess.CREATE_NEW_PROCESS_GROUP
+else:
+    _CREATION_FLAGS = 0
 
 
 class Readable(Protocol):
@@ -84,8 +88,15 @@ class StationClient:
     ) -> StationClient:
         """Start `python -m gcs.shell.station '<config>'` (or `command` in its place)."""
         words = [*(command or STATION_COMMAND), config.encode(setup)]
+        # In a session of its own: a Ctrl-C is for the operator's program, which then leaves in
+        # good order; the station hears of everything through its pipe.
         process = subprocess.Popen(
-            words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+            words,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+            creationflags=_CREATION_FLAGS,
         )
         return cls(process, keep=setup.keep)
 

@@ -21,6 +21,8 @@ from gcs.operator.client import Polled, Readable, StationEnded
 from gcs.operator.errors import ExitError, Interrupted
 
 LEAVE_WAIT_S = 20.0
+START_WAIT_S = 60.0
+"""A busy machine takes seconds to start a process, and a name server to answer."""
 SETTLE_WAIT_S = 3.0
 POLL_S = 0.5
 UNKNOWN_LANDED = ("", LandedState.UNDEFINED.name)
@@ -102,6 +104,7 @@ class Dialogue:
         self._interrupts = interrupts
         self._on_event = on_event
         self._leaving = False
+        self._watched: tuple[Readable, Callable[[], None]] | None = None
         self._requests: dict[int, TrackedRequest] = {}
         self.hello: ipc.Hello | None = None
         self.snapshot: ipc.Snapshot | None = None
@@ -110,28 +113,33 @@ class Dialogue:
 
     # ------------------------------------------------------------------------- waiting
 
-    def wait_until(
-        self,
-        done: Callable[[], bool],
-        timeout_s: float | None = None,
-        also: Sequence[Readable] = (),
-    ) -> list[Readable]:
-        """Read events until `done()`, the time is over, or one of `also` is readable."""
+    def watch(self, source: Readable, on_ready: Callable[[], None]) -> None:
+        """Call `on_ready` whenever `source` is readable, whatever is being waited for.
+
+        Until `unwatch`, or until this operator leaves.  What it raises ends the waiting.
+        """
+        self._watched = (source, on_ready)
+
+    def unwatch(self) -> None:
+        self._watched = None
+
+    def wait_until(self, done: Callable[[], bool], timeout_s: float | None = None) -> None:
+        """Read events until `done()`, or the time is over."""
         start_s = self._connection.now_s()
         while not done():
             left_s = POLL_S
             if timeout_s is not None:
                 left_s = min(left_s, timeout_s - (self._connection.now_s() - start_s))
                 if left_s <= 0:
-                    break
-            ready = self.poll(left_s, also)
-            if ready:
-                return ready
-        return []
+                    return
+            self.poll(left_s)
 
-    def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> list[Readable]:
-        """Read what events there are, waiting at most `timeout_s`; which of `also` is readable."""
-        polled = self._connection.poll(timeout_s, (*also, self._interrupts))
+    def poll(self, timeout_s: float) -> None:
+        """Read what events there are, waiting at most `timeout_s`."""
+        sources: list[Readable] = [self._interrupts]
+        if self._watched is not None:
+            sources.append(self._watched[0])
+        polled = self._connection.poll(timeout_s, sources)
         for event in polled.events:
             if isinstance(event, StationEnded):
                 self.ended = event
@@ -141,15 +149,40 @@ class Dialogue:
             raise unexpected_end(self.ended, self.trouble)
         if self._interrupts.name and not self._leaving:
             raise Interrupted(self._interrupts.name)
-        return [source for source in polled.ready if source is not self._interrupts]
+        if self._watched is not None and self._watched[0] in polled.ready:
+            self._watched[1]()
 
     def wait_for_vehicle(self, timeout_s: float) -> ipc.Snapshot:
         """Wait for a vehicle with a position, a home and a landed state.
 
+        The time counts from the station's first word: until then it opens its links, or fails to.
         Raises ExitError with NO_VEHICLE if none is heard.  A vehicle that was heard but is not
         complete in time is returned as it is: the gate knows best what it can still do.
         """
+        self._wait_for_hello()
         self.wait_until(self._position_known, timeout_s)
+        seen = self._heard(timeout_s)
+        self.wait_until(self._can_be_judged, SETTLE_WAIT_S)
+        return self.snapshot or seen
+
+    def wait_until_heard(self, timeout_s: float) -> ipc.Snapshot:
+        """Wait for the first word of a vehicle, for what may be asked of one without a position.
+
+        Raises ExitError with NO_VEHICLE if none is heard.
+        """
+        self._wait_for_hello()
+        self.wait_until(
+            lambda: self.snapshot is not None and bool(self.snapshot.vehicle), timeout_s
+        )
+        return self._heard(timeout_s)
+
+    def _wait_for_hello(self) -> None:
+        """Raises ExitError: what keeps the station from starting, or that it does not start."""
+        self.wait_until(lambda: self.hello is not None, START_WAIT_S)
+        if self.hello is None:
+            raise ExitError(ExitCode.BUG, f"the link process said nothing for {START_WAIT_S:g} s")
+
+    def _heard(self, timeout_s: float) -> ipc.Snapshot:
         if self.snapshot is None or not self.snapshot.vehicle:
             where = ", ".join(self.hello.endpoints) if self.hello else "the link"
             if self.snapshot is not None and self.snapshot.vehicles:
@@ -163,7 +196,6 @@ class Dialogue:
                 f"no vehicle heard within {timeout_s:g} s ({where})",
                 "start one with `vehicle-sim`, use `gcs fly --sim`, or name the link with --link",
             )
-        self.wait_until(self._can_be_judged, SETTLE_WAIT_S)
         return self.snapshot
 
     # ------------------------------------------------------------------------ requests
@@ -184,8 +216,13 @@ class Dialogue:
         self.wait_until(lambda: tracked.settled, timeout_s)
         return tracked
 
-    def send_in_turn(self, requests: Sequence[ipc.Ask], label: str = "") -> list[TrackedRequest]:
-        """Send one after the other, each when the one before is complete.
+    def send_in_turn(
+        self,
+        requests: Sequence[ipc.Ask],
+        label: str = "",
+        go_on: Callable[[], bool] = lambda: True,
+    ) -> list[TrackedRequest]:
+        """Send one after the other, each when the one before is complete, while `go_on()`.
 
         `label` is of all together; two requests are told apart by labels of their own.
         """
@@ -193,7 +230,7 @@ class Dialogue:
         for request in requests:
             tracked = self.send(request, label if len(requests) == 1 else "")
             done.append(self.wait_settled(tracked))
-            if not tracked.completed:
+            if not (tracked.completed and go_on()):
                 break
         return done
 
@@ -219,6 +256,7 @@ class Dialogue:
         A second Ctrl-C ends the waiting.
         """
         self._leaving = True
+        self.unwatch()
         self._interrupts.forget()
         if self.ended is None:
             self._connection.send(ipc.Leave(reason))

@@ -13,7 +13,22 @@ LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 
 def verdict_line(label: str, event: ipc.VerdictEvent) -> str:
     """`goto 500 0 2: refused OUTSIDE_FENCE: the goal is ...`, `arm: accepted`."""
-    return answer_line(label, event.outcome, event.code, event.sentence)
+    sentence = refused_by_rule(event) or event.sentence
+    return answer_line(label, event.outcome, event.code, sentence)
+
+
+def refused_by_rule(event: ipc.VerdictEvent) -> str:
+    """The sentence with the rule that a policy's refusal rests on; empty if it rests on none."""
+    rule = _RULES.get(event.word, "") if event.code == Code.POLICY else ""
+    return f"{event.sentence}: {rule}" if rule else ""
+
+
+_RULES = {
+    "fence": "its key fence_switchable is false",
+    "disarm": "its key allow_force_disarm is false",
+    "mode": "only modes that hold, land, return, are guided or fly the mission may be asked for",
+}
+"""What a policy's refusal of a word rests on."""
 
 
 def outcome_line(label: str, event: ipc.EndingEvent) -> str:
@@ -47,9 +62,11 @@ def trouble_lines(event: ipc.Trouble) -> list[str]:
     return error_lines(event.text, event.hint)
 
 
-def bye_lines(bye: ipc.Bye) -> list[str]:
-    """Where the vehicle is, and where the record."""
+def bye_lines(bye: ipc.Bye, *, simulated: bool = False) -> list[str]:
+    """Where the vehicle is, and where the record.  `simulated`: it was the station's own."""
     lines = [f"gcs: {bye.sentence}"] if bye.sentence else []
+    if simulated:
+        lines.append("gcs: the simulation has ended with it, and its vehicle")
     return [*lines, f"log: {bye.log_path}"] if bye.log_path else lines
 
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import difflib
-import math
+import re
 import shlex
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
+from gcs.operator.number_text import read_number
 from gcs.operator.request_words import (
+    OTHER_NAMES,
     WORD_BY_NAME,
+    WORDS,
     Action,
+    ActsAtOnce,
     Argument,
     ArgumentKind,
     Values,
@@ -20,11 +24,27 @@ from gcs.operator.request_words import (
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One line that was understood.  `wait` is False if it ended in `&`."""
+    """One line that was understood.
+
+    `wait` is False if it ended in `&`: the next line does not wait for its ending.  `marked` is
+    True if it began with `!`: it does not wait for the line before it.
+    """
 
     text: str
     action: Action
     wait: bool
+    at_once: ActsAtOnce = ActsAtOnce.NEVER
+    marked: bool = False
+
+    def overtakes(self, *, typed: bool) -> bool:
+        """Whether it acts at once; `typed`: on a terminal, not in a script."""
+        match self.at_once:
+            case ActsAtOnce.ALWAYS:
+                return True
+            case ActsAtOnce.TYPED:
+                return typed or self.marked
+            case ActsAtOnce.MARKED | ActsAtOnce.NEVER:
+                return self.marked
 
 
 class LineError(Exception):
@@ -45,6 +65,10 @@ def parse_line(text: str) -> Line | None:
         tokens = list(lexer)
     except ValueError as error:
         raise LineError(f"cannot read the line: {error}", "check the quotes") from None
+    marked = bool(tokens) and tokens[0].startswith("!")
+    if marked:
+        tokens[0] = tokens[0][1:]
+        tokens = [token for token in tokens if token]
     wait = True
     if tokens and tokens[-1].endswith("&"):
         wait = False
@@ -53,25 +77,26 @@ def parse_line(text: str) -> Line | None:
     if not tokens:
         return None
     word, arguments = _find(tokens)
-    return Line(" ".join(tokens), parse_arguments(word, arguments), wait)
+    if marked and word.at_once is ActsAtOnce.NEVER:
+        others = [each.name for each in WORDS if each.at_once is not ActsAtOnce.NEVER]
+        raise LineError(f"{word.name}: waits for its turn", f"! is for: {', '.join(others)}")
+    action = parse_arguments(word, arguments)
+    return Line(" ".join(tokens), action, wait, word.at_once, marked)
 
 
-def parse_arguments(word: Word, typed: Sequence[str], *, finite: bool = False) -> Action:
-    """What `word` does with what was typed after it.  Raises LineError.
-
-    `finite`: refuse nan and inf here already, so that no station is started for them.
-    """
+def parse_arguments(word: Word, typed: Sequence[str]) -> Action:
+    """What `word` does with what was typed after it.  Raises LineError."""
     required = sum(not argument.optional for argument in word.arguments)
+    if unknown := unknown_option(word, typed):
+        raise _wrong(word, f"no option {unknown}")
     if not required <= len(typed) <= len(word.arguments):
         raise _wrong(word, f"expected {_expectation(word)}, got {len(typed) or 'nothing'}")
     numbers: list[float] = []
     name, switch, flagged = "", True, False
     for argument, text in zip(word.arguments, typed, strict=False):
         match argument.kind:
-            case ArgumentKind.NUMBER | ArgumentKind.FINITE | ArgumentKind.SECONDS:
-                plain = finite and argument.kind is ArgumentKind.NUMBER
-                kind = ArgumentKind.FINITE if plain else argument.kind
-                numbers.append(_number(word, replace(argument, kind=kind), text))
+            case ArgumentKind.NUMBER | ArgumentKind.DEGREES | ArgumentKind.SECONDS:
+                numbers.append(_number(word, argument, text))
             case ArgumentKind.NAME | ArgumentKind.FILE:
                 name = text
             case ArgumentKind.SWITCH:
@@ -86,6 +111,8 @@ def parse_arguments(word: Word, typed: Sequence[str], *, finite: bool = False) -
 
 
 def _find(tokens: list[str]) -> tuple[Word, list[str]]:
+    first = tokens[0].lower()  # ABORT is as good
+    tokens = [OTHER_NAMES.get(first, first), *tokens[1:]]
     two = " ".join(tokens[:2])
     if two in WORD_BY_NAME:
         return WORD_BY_NAME[two], tokens[2:]
@@ -94,21 +121,37 @@ def _find(tokens: list[str]) -> tuple[Word, list[str]]:
     seconds = [name for name in WORD_BY_NAME if name.startswith(tokens[0] + " ")]
     if seconds:
         raise LineError(f"{tokens[0]}: expected one of: {', '.join(seconds)}", f"try {seconds[0]}")
-    near = difflib.get_close_matches(tokens[0], WORD_BY_NAME, n=1)
-    hint = f"did you mean {near[0]}?" if near else f"words: {', '.join(WORD_BY_NAME)}"
+    near = nearest(tokens[0], (word.name for word in WORDS if not word.moves))
+    hint = f"did you mean {near}?" if near else f"words: {', '.join(WORD_BY_NAME)}"
     raise LineError(f"{tokens[0]}: not a word of ours", hint)
+
+
+def nearest(typed: str, known: Iterable[str]) -> str:
+    """The word that may have been meant; empty if none is near."""
+    near = difflib.get_close_matches(typed, list(known), n=1)
+    return near[0] if near else ""
+
+
+def unknown_option(word: Word, typed: Sequence[str]) -> str:
+    """The first of what was typed that looks like an option, if the word has none; else empty."""
+    if any(argument.kind is ArgumentKind.FLAG for argument in word.arguments):
+        return ""
+    return next((text for text in typed if _OPTION.fullmatch(text)), "")
+
+
+_OPTION = re.compile(r"--[A-Za-z].*|-[A-Za-z]")
 
 
 def _number(word: Word, argument: Argument, text: str) -> float:
     wrong = f"{argument.name}: expected a {argument.kind.value}, got {text!r}"
     try:
-        number = float(text)
+        number = read_number(text)
     except ValueError:
         hint = " (the decimal mark is a point)" if "," in text else ""
         raise _wrong(word, wrong + hint) from None
-    if argument.kind is not ArgumentKind.NUMBER and not math.isfinite(number):
-        raise _wrong(word, wrong)
     if argument.kind is ArgumentKind.SECONDS and number < 0:
+        raise _wrong(word, wrong)
+    if argument.kind is ArgumentKind.DEGREES and abs(number) > 360.0:
         raise _wrong(word, wrong)
     return number
 

@@ -22,8 +22,8 @@ NEEDS_CONTROL = frozenset({"goto", "photo", "mission_start"})
 class ArgumentKind(Enum):
     """What an argument must look like."""
 
-    NUMBER = "number"  # nan and inf pass: the gate refuses them, with a verdict
-    FINITE = "finite number"
+    NUMBER = "number"
+    DEGREES = "number of degrees from -360 to 360"
     SECONDS = "number of seconds, not negative"
     NAME = "name"
     FILE = "file"
@@ -38,6 +38,15 @@ class Argument:
     name: str
     kind: ArgumentKind
     optional: bool = False
+
+
+class ActsAtOnce(Enum):
+    """When a word does not wait for the line before it.  Otherwise its turn comes."""
+
+    NEVER = "never"
+    MARKED = "with a ! before it"
+    TYPED = "typed on a terminal, or with a ! before it"
+    ALWAYS = "always"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +72,16 @@ class ShowState:
 
 
 @dataclass(frozen=True, slots=True)
+class ShowHelp:
+    """Print the words."""
+
+
+@dataclass(frozen=True, slots=True)
 class Quit:
     """Leave in good order."""
 
 
-Action: TypeAlias = SendRequests | Wait | ShowState | Quit
+Action: TypeAlias = SendRequests | Wait | ShowState | ShowHelp | Quit
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,13 +96,19 @@ class Values:
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """`build` makes of the arguments what the word does."""
+    """`build` makes of the arguments what the word does.
+
+    `moves`: the vehicle moves, starts or stops its motors, or may fly where it may not now.  Such
+    a word is never offered for one that was mistyped.
+    """
 
     name: str
     arguments: tuple[Argument, ...]
     help: str
     example: str
     build: Callable[[Values], Action]
+    at_once: ActsAtOnce = ActsAtOnce.NEVER
+    moves: bool = False
 
     @property
     def usage(self) -> str:
@@ -115,14 +135,17 @@ _UP = Argument("UP", ArgumentKind.NUMBER)
 _FILE = Argument("FILE", ArgumentKind.FILE)
 
 WORDS: tuple[Word, ...] = (
-    Word("control", (), "take control of a flying vehicle", "control", _send("control")),
-    Word("arm", (), "arm the motors", "arm", _send("arm")),
+    Word(
+        "control", (), "take control of a flying vehicle", "control", _send("control"), moves=True
+    ),
+    Word("arm", (), "arm the motors", "arm", _send("arm"), moves=True),
     Word(
         "takeoff",
         (_UP,),
         "climb to UP metres above the take-off point, take control and hover",
         "takeoff 2",
         lambda values: SendRequests((Ask(0, "takeoff", up_m=values.numbers[0]),)),
+        moves=True,
     ),
     Word(
         "goto",
@@ -130,18 +153,56 @@ WORDS: tuple[Word, ...] = (
             Argument("EAST", ArgumentKind.NUMBER),
             Argument("NORTH", ArgumentKind.NUMBER),
             _UP,
-            Argument("YAW_DEG", ArgumentKind.FINITE, optional=True),
+            Argument("YAW_DEG", ArgumentKind.DEGREES, optional=True),
         ),
         "fly straight to a point, metres from the local origin, and hover; "
         "YAW_DEG is clockwise from north",
         "goto 3 0 2",
         _goto,
+        moves=True,
     ),
-    Word("land", (), "land where it is", "land", _send("land")),
-    Word("rtl", (), "return to home and land", "rtl", _send("rtl")),
-    Word("hold", (), "stop and hold, in the vehicle's own hold mode", "hold", _send("hold")),
-    Word("abort", (), "stop now and forget the goal; never refused", "abort", _send("abort")),
-    Word("resume", (), "after a hold: hover under our control", "resume", _send("resume")),
+    Word(
+        "land",
+        (),
+        "land where it is",
+        "land",
+        _send("land"),
+        at_once=ActsAtOnce.TYPED,
+        moves=True,
+    ),
+    Word(
+        "rtl",
+        (),
+        "return to home and land",
+        "rtl",
+        _send("rtl"),
+        at_once=ActsAtOnce.TYPED,
+        moves=True,
+    ),
+    Word(
+        "hold",
+        (),
+        "stop and hold, in the vehicle's own hold mode",
+        "hold",
+        _send("hold"),
+        at_once=ActsAtOnce.TYPED,
+    ),
+    Word(
+        "abort",
+        (),
+        "stop now and forget the goal; never refused, waits for nothing",
+        "abort",
+        _send("abort"),
+        at_once=ActsAtOnce.ALWAYS,
+    ),
+    Word(
+        "resume",
+        (),
+        "after a hold: hover under our control",
+        "resume",
+        _send("resume"),
+        moves=True,
+    ),
     Word("photo", (), "take a picture; moves are refused meanwhile", "photo", _send("photo")),
     Word(
         "disarm",
@@ -149,6 +210,8 @@ WORDS: tuple[Word, ...] = (
         "stop the motors on the ground; --force asks for it in the air",
         "disarm",
         lambda values: SendRequests((Ask(0, "disarm", force=values.flagged),)),
+        at_once=ActsAtOnce.MARKED,
+        moves=True,
     ),
     Word(
         "mode",
@@ -156,6 +219,7 @@ WORDS: tuple[Word, ...] = (
         "ask for a flight mode by the autopilot's own name",
         "mode LOITER",
         lambda values: SendRequests((Ask(0, "mode", mode=values.text),)),
+        moves=True,
     ),
     Word(
         "fence",
@@ -163,6 +227,7 @@ WORDS: tuple[Word, ...] = (
         "switch the fence, where the policy allows it (the lab's does)",
         "fence off",
         lambda values: SendRequests((Ask(0, "fence", on=values.switch),)),
+        moves=True,
     ),
     Word(
         "mission upload",
@@ -171,13 +236,21 @@ WORDS: tuple[Word, ...] = (
         "mission upload missions/demo.toml",
         lambda values: SendRequests((Ask(0, "mission_upload", path=values.text),)),
     ),
-    Word("mission start", (), "fly the mission on board", "mission start", _send("mission_start")),
+    Word(
+        "mission start",
+        (),
+        "fly the mission on board",
+        "mission start",
+        _send("mission_start"),
+        moves=True,
+    ),
     Word(
         "mission fly",
         (_FILE,),
         "upload a mission file, then start it",
         "mission fly missions/demo.toml",
         _mission_fly,
+        moves=True,
     ),
     Word(
         "mission download",
@@ -214,9 +287,34 @@ WORDS: tuple[Word, ...] = (
         "wait 2.5",
         lambda values: Wait(values.numbers[0]),
     ),
-    Word("state", (), "print what the vehicle reports", "state", lambda _: ShowState()),
-    Word("quit", (), "leave; a vehicle we fly is told to hold", "quit", lambda _: Quit()),
+    Word(
+        "state",
+        (),
+        "print what the vehicle reports; so does status",
+        "state",
+        lambda _: ShowState(),
+        at_once=ActsAtOnce.TYPED,
+    ),
+    Word(
+        "help",
+        (),
+        "print these words; so does ?",
+        "help",
+        lambda _: ShowHelp(),
+        at_once=ActsAtOnce.TYPED,
+    ),
+    Word(
+        "quit",
+        (),
+        "leave; a vehicle we fly is told to hold",
+        "quit",
+        lambda _: Quit(),
+        at_once=ActsAtOnce.TYPED,
+    ),
 )
+
+OTHER_NAMES: dict[str, str] = {"status": "state", "?": "help"}
+"""What is typed for some words as well."""
 
 WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
 
@@ -241,3 +339,13 @@ def label(request: Ask) -> str:
 
 def _shown(number: float | None) -> str:
     return "nan" if number is None else f"{number:g}"
+
+
+def help_lines() -> list[str]:
+    """One line a word, for a console's help."""
+    width = max(len(f"{word.name} {word.usage}") for word in WORDS)
+    lines = [f"{f'{word.name} {word.usage}':{width}}  {word.help}" for word in WORDS]
+    lines.append(f"{'LINE &':{width}}  the next line does not wait for the ending of this one")
+    at_once = ", ".join(word.name for word in WORDS if word.at_once is not ActsAtOnce.NEVER)
+    lines.append(f"{'!LINE':{width}}  does not wait for the line before it: {at_once}")
+    return lines

@@ -7,6 +7,7 @@ Speaks JSON lines with its operator (`gcs.ipc`) and writes nothing else to stand
 
 from __future__ import annotations
 
+import socket
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -131,6 +132,9 @@ def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
             raise CannotStartError(ExitCode.ADDRESS_IN_USE, str(error), hint) from error
         except sockets.SerialUnavailable as error:
             raise CannotStartError(ExitCode.USAGE, f"{url}: {error}", error.hint) from error
+        except socket.gaierror as error:
+            hint = "is the name of the host spelled right?"
+            raise CannotStartError(ExitCode.USAGE, f"{url}: {error.strerror}", hint) from error
         except OSError as error:
             hint = "is the address one of this machine's?"
             raise CannotStartError(

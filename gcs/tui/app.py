@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import sys
-import time
+import threading
 from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol
 
 from rich.console import RenderableType
-from rich.text import Text
 from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.events import Resize
 from textual.widget import Widget
-from textual.widgets import RichLog
 
 from gcs import ipc
+from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
 from gcs.operator.client import StationEnded, StationEvent
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
+from gcs.tui.hang_up import on_hang_up
 from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keys import ABORT, ACTIONS, KEYS
+from gcs.tui.log_panel import LogPanel
 from gcs.tui.result import SessionResult
 from gcs.tui.scene import Answer, Scene
 
@@ -33,7 +35,7 @@ RESTORE_WAIT_S = 5.0
 """For the screen to be given back.  A terminal that has closed, or that nobody reads, blocks every
 write to it, and with it the loop: then the process ends by SIGALRM."""
 SMALL_ROWS = 34
-LOG_LINES = 2000
+FOLDED_AFTER_S = 2.0
 
 
 class Connection(Protocol):
@@ -84,15 +86,28 @@ class FlyApp(App[None]):
         for name in key.names
     ]
 
-    def __init__(self, connection: Connection, events: Sequence[ipc.Event] = ()) -> None:
-        """`events`: those that came already."""
+    def __init__(
+        self,
+        connection: Connection,
+        events: Sequence[ipc.Event] = (),
+        *,
+        mission_path: str = "",
+        timeout_s: float | None = None,
+    ) -> None:
+        """`events`: those that came already.  `mission_path`: what the mission key uploads first.
+        `timeout_s`: leave if no vehicle is heard within it; None waits for ever."""
         super().__init__()
+        self._mission_path = mission_path
+        self._timeout_s = timeout_s
+        self._start_after: int | None = None
+        self.interrupted = False
         self._connection = connection
         self._first_events = events
         self.scene = Scene()
         self._next_id = 1
         self._leaving = False
         self._ended: StationEnded | None = None
+        self._station_gone = threading.Event()
         self._trouble: ipc.Trouble | None = None
 
     @property
@@ -101,6 +116,11 @@ class FlyApp(App[None]):
         self._end_within(0.0)
         ended = self._ended or self._connection.close()
         return SessionResult(ended, self._leaving, self._trouble)
+
+    @property
+    def heard_vehicle(self) -> bool:
+        """Whether any vehicle was heard at all."""
+        return self.scene.heard_vehicle
 
     # ------------------------------------------------------------------------- screen
 
@@ -114,10 +134,8 @@ class FlyApp(App[None]):
                 yield Panel(lambda _c, _r: fsa_panel.draw(scene), "fsa", "state")
                 yield Panel(lambda _c, _r: vehicle_panel.draw(scene), "vehicle", "vehicle")
         yield Panel(lambda _c, _r: vehicle_panel.goals(scene), "goals")
-        yield Panel(lambda _c, _r: vehicle_panel.answer(scene), "answer")
-        log = RichLog(id="log", max_lines=LOG_LINES, wrap=True, min_width=1)
-        log.can_focus = False
-        yield log
+        yield Panel(lambda columns, _: vehicle_panel.answer(scene, columns), "answer")
+        yield LogPanel()
         yield Panel(lambda columns, _: frame_panels.footer(columns), "footer")
         page = Panel(lambda _c, _r: frame_panels.help_table(), "help", "keys")
         page.border_subtitle = "any key closes this, Space aborts as well"
@@ -128,19 +146,43 @@ class FlyApp(App[None]):
         loop = asyncio.get_running_loop()
         for event in self._first_events:
             self._handle(event)
-        self._connection.listen(lambda event: _call_in_loop(loop, self._handle, event))
+        self._connection.listen(lambda event: self._hear(loop, event))
         self.set_interval(REDRAW_S, self.redraw)
+        self.set_interval(FOLDED_AFTER_S, self.query_one(LogPanel).tell_folded)
+        if self._timeout_s is not None:
+            self.set_timer(self._timeout_s, self._leave_without_vehicle)
         if not self.is_headless and sys.platform != "win32":
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 loop.add_signal_handler(number, self._leave, number.name)
                 # The loop hears of it through a pipe; this runs even while it hangs in a write.
                 signal.signal(number, lambda *_: self._end_within(LEAVE_WAIT_S + RESTORE_WAIT_S))
+            on_hang_up(sys.__stdin__.fileno() if sys.__stdin__ else 0, self._leave_without_screen)
+
+    def _hear(self, loop: asyncio.AbstractEventLoop, event: StationEvent) -> None:
+        """In the reader's thread."""
+        if isinstance(event, StationEnded):
+            self._station_gone.set()
+        if not loop.is_closed():  # then nothing handles events any more
+            loop.call_soon_threadsafe(self._handle, event)
+
+    def _leave_without_screen(self) -> None:
+        """The terminal has closed: the station holds the vehicle, and this process ends with it.
+
+        In a thread of its own.  The loop may be stuck in a write for ever.
+        """
+        self._connection.send(ipc.Leave("the terminal has closed"))
+        self._station_gone.wait(LEAVE_WAIT_S)
+        os._exit(ExitCode.INTERRUPTED)
 
     def on_resize(self, event: Resize) -> None:
         self.screen.set_class(event.size.height < SMALL_ROWS, "-small")
 
     def redraw(self) -> None:
         """Draw every panel anew from the scene."""
+        for panel in self.query("#answer").results(Panel):
+            rows = vehicle_panel.answer_rows(self.scene, panel.content_size.width)
+            if panel.styles.height is None or panel.styles.height.value != rows:
+                panel.styles.height = rows
         for panel in self.query(Panel):
             panel.redraw()
 
@@ -153,7 +195,12 @@ class FlyApp(App[None]):
         self.scene.update(event)
         match event:
             case ipc.LogEvent():
-                self._log_line(event_text.log_line(event), look.LEVEL[event.level], event.time_ns)
+                style = look.LEVEL[event.level]
+                self._log_line(event_text.log_line(event), style, event.level, event.time_ns)
+            case ipc.EndingEvent() if event.id == self._start_after:
+                self._start_after = None
+                if event.ended == "complete":
+                    self._request(ipc.Ask(self._next_id, "mission_start"))
             case ipc.Trouble():
                 self._trouble = event
                 for line in event_text.trouble_lines(event):
@@ -175,17 +222,17 @@ class FlyApp(App[None]):
         for line in [sentence, *ended.stderr_tail.splitlines()]:
             self._log_line(line, look.BAD)
 
-    def _log_line(self, text: str, style: str, time_ns: int | None = None) -> None:
-        seconds = None if time_ns is None else time_ns / 1e9
-        stamp = time.strftime("%H:%M:%S ", time.localtime(seconds))
-        line = Text.assemble((stamp, look.DIM), (text, style))
-        self.query_one(RichLog).write(line, expand=True)
+    def _log_line(self, text: str, style: str, level: int = 4, time_ns: int | None = None) -> None:
+        self.query_one(LogPanel).tell(text, style, level, time_ns)
 
     # ---------------------------------------------------------------- keys: the one door
 
     async def action_press(self, name: str) -> None:
         """Every key of ours comes through here.  Under an open help page nothing is sent unseen:
         any key closes it, and of all keys only the abort acts as well."""
+        self.scene.note_key()
+        self.interrupted = self.interrupted or name == "ctrl+c"
+        self._start_after = None  # whoever presses another key has something else in mind
         if not self._close_help() or name == ABORT:
             await self.run_action(ACTIONS[name])
 
@@ -245,6 +292,14 @@ class FlyApp(App[None]):
     def action_take_off(self) -> None:
         self._request(ipc.Ask(self._next_id, "takeoff", up_m=self.scene.pending.take_off_up_m))
 
+    def action_fly_mission(self) -> None:
+        """Start the mission on board; with one of `--mission`, once that is on board."""
+        if self._mission_path:
+            self._start_after = self._next_id
+            self._request(ipc.Ask(self._next_id, "mission_upload", path=self._mission_path))
+        else:
+            self.action_request("mission_start")
+
     def action_switch_fence(self) -> None:
         self._request(ipc.Ask(self._next_id, "fence", on=not self.scene.fence_on))
 
@@ -258,11 +313,18 @@ class FlyApp(App[None]):
         self.scene.zoom = 0
         self.redraw()
 
+    def action_log_level(self) -> None:
+        self.scene.answer = Answer(f"log: {self.query_one(LogPanel).cycle_level()}", "")
+
     def action_help(self) -> None:
         self.query_one("#help").display = True
 
     def action_leave(self) -> None:
         self._leave("quit")
+
+    def _leave_without_vehicle(self) -> None:
+        if not self.heard_vehicle:
+            self._leave("no vehicle heard")
 
     def _leave(self, reason: str) -> None:
         """Once: say good-bye, show it, and exit when the station has ended, or after 8 s."""
@@ -283,11 +345,3 @@ class FlyApp(App[None]):
         """End the process by SIGALRM then, unless another time (0: none) is set before."""
         if not self.is_headless and sys.platform != "win32":
             signal.setitimer(signal.ITIMER_REAL, seconds)
-
-
-def _call_in_loop(
-    loop: asyncio.AbstractEventLoop, handle: Callable[[StationEvent], None], event: StationEvent
-) -> None:
-    """From the reader's thread; once the loop has closed, nothing handles events any more."""
-    if not loop.is_closed():
-        loop.call_soon_threadsafe(handle, event)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from gcs import ipc
 from gcs.operator import event_text
 from gcs.operator.client import StationEnded
-from gcs.operator.dialogue import Connection, exit_code_of, unexpected_end
+from gcs.operator.dialogue import Connection, InterruptSource, exit_code_of, unexpected_end
+from gcs.operator.errors import Interrupted
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,15 +21,23 @@ class SessionResult:
     trouble: ipc.Trouble | None = None
 
 
-def until_hello(connection: Connection) -> list[ipc.Event]:
-    """The events of a station until it is ready.  Raises ExitError if it cannot start.
+def until_hello(
+    connection: Connection, interrupts: InterruptSource | None = None
+) -> list[ipc.Event]:
+    """The events of a station until it is ready.
 
-    Only then is the screen taken: a port in use is told where the command was typed.
+    Only then is the screen taken: a port in use is told where the command was typed.  Raises
+    ExitError if it cannot start, and Interrupted on a Ctrl-C; then the station has ended.
     """
     events: list[ipc.Event] = []
     trouble: ipc.Trouble | None = None
     while not any(isinstance(event, ipc.Hello) for event in events):
-        for event in connection.poll(1.0).events:
+        polled = connection.poll(1.0, () if interrupts is None else (interrupts,))
+        if interrupts is not None and interrupts.name:
+            connection.send(ipc.Leave(interrupts.name))
+            connection.close()
+            raise Interrupted(interrupts.name)
+        for event in polled.events:
             if isinstance(event, StationEnded):
                 connection.close()
                 raise unexpected_end(event, trouble)
@@ -38,7 +47,9 @@ def until_hello(connection: Connection) -> list[ipc.Event]:
     return events
 
 
-def print_result(result: SessionResult, echo: Callable[[str], None]) -> int:
+def print_result(
+    result: SessionResult, echo: Callable[[str], None], *, simulated: bool = False
+) -> int:
     """Print how it ended and the log's path; returns the exit code.
 
     Raises ExitError if the station ended although nobody asked it to.
@@ -49,6 +60,6 @@ def print_result(result: SessionResult, echo: Callable[[str], None]) -> int:
     if bye is None:
         echo(f"gcs: the link ended without a good-bye\n{result.ended.stderr_tail}".rstrip())
     else:
-        for line in event_text.bye_lines(bye):
+        for line in event_text.bye_lines(bye, simulated=simulated):
             echo(line)
     return exit_code_of(result.ended)

@@ -14,14 +14,19 @@ from gcs.tui.keyboard import PendingGoal
 TRAIL_POINTS = 800
 TRAIL_STEP_M = 0.1
 COMPLETE = "complete"
+REFUSED = "refused"
+ACCEPTED = "accepted"
+ANSWER_NS = 10_000_000_000
+"""How long it is shown that something has ended: after that it may not be so any more."""
 
 
 @dataclass(slots=True)
 class Answer:
-    """The last thing the gate said about a request, for the line above the log."""
+    """The last thing the gate said about a request, for the lines above the log."""
 
     text: str = ""
     kind: str = ""  # accepted | refused | superseded, or how it ended
+    given_ns: int = 0  # on the clock of the snapshots
 
 
 @dataclass(slots=True)
@@ -41,6 +46,12 @@ class Scene:
     _requests: dict[int, ipc.Ask] = field(default_factory=dict)
     _before_take_off: PendingGoal | None = None
     _up: bool = False
+    _key_since_refusal: bool = True
+    heard_vehicle: bool = False
+
+    @property
+    def now_ns(self) -> int:
+        return 0 if self.snapshot is None else self.snapshot.time_ns
 
     @property
     def lost(self) -> bool:
@@ -86,24 +97,47 @@ class Scene:
                 self.zones = zones
             case ipc.Snapshot():
                 self.snapshot = event
+                self.heard_vehicle = self.heard_vehicle or bool(event.vehicle)
+                self._forget_old_answer()
                 self._leave_trail(event.pos_enu)
             case ipc.StateEvent():
                 self.last_move = event
             case ipc.VerdictEvent():
-                self._show_answer(self.label(event), event.outcome, event.code, event.sentence)
+                sentence = event_text.refused_by_rule(event) or event.sentence
+                self._show_answer(self.label(event), event.outcome, event.code, sentence)
             case ipc.EndingEvent():
                 self.progress = None
                 self._note_outcome(event)
                 self._show_answer(self.label(event), event.ended, event.code, event.sentence)
             case ipc.ProgressEvent():
-                self.progress = event
+                # The last step of a transfer needs no ending of the request to be over.
+                self.progress = None if event.done >= event.total > 0.0 else event
             case ipc.Operators() | ipc.Operation() | ipc.OperationList() | ipc.MessageEvent():
                 pass
             case ipc.LogEvent() | ipc.Trouble() | ipc.Bye():
                 pass
 
+    def note_key(self) -> None:
+        """The operator has pressed a key: what was refused before has been read."""
+        self._key_since_refusal = True
+
     def _show_answer(self, label: str, kind: str, code: str, sentence: str) -> None:
-        self.answer = Answer(event_text.answer_line(label, kind, code, sentence), kind)
+        """A refusal stays until the next key, whatever else ends meanwhile."""
+        if kind == REFUSED:
+            self._key_since_refusal = False
+            why = event_text.reason(kind, code, sentence)
+            text = f"refused {code} {label}: {why}" if why else f"refused {code} {label}"
+        elif self._key_since_refusal or self.answer.kind != REFUSED:
+            text = event_text.answer_line(label, kind, code, sentence)
+        else:
+            return
+        self.answer = Answer(text, kind, self.now_ns)
+
+    def _forget_old_answer(self) -> None:
+        """What is under way, or refused and perhaps not read yet, is not forgotten."""
+        old = self.now_ns - self.answer.given_ns > ANSWER_NS
+        if old and self.answer.kind not in (ACCEPTED, REFUSED):
+            self.answer = Answer()
 
     def _note_outcome(self, event: ipc.EndingEvent) -> None:
         request = self._requests.get(event.id)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 import msgspec
 from rich.text import Text
@@ -12,7 +13,7 @@ from gcs.enu_text import signed_enu
 from gcs.gate.condition import Condition
 from gcs.operator.event_text import whole_degrees
 from gcs.tui import look
-from gcs.tui.scene import Scene
+from gcs.tui.scene import REFUSED, Scene
 
 OLD_POSITION_S = 0.5
 OLD_HEARTBEAT_S = 2.5
@@ -27,6 +28,8 @@ def draw(scene: Scene) -> Text:
         panel.append("no vehicle heard yet\n", look.WARN)
         for endpoint in scene.hello.endpoints if scene.hello else ["starting the link …"]:
             panel.append(f"{endpoint}\n", look.DIM)
+        panel.append("start one: vehicle-sim, gcs fly --sim\n", look.DIM)
+        panel.append("or name its link: --link URL\n", look.DIM)
         return panel
     for name, value, style in rows(seen, lost=scene.lost):
         panel.append(f"{name:<5}", look.DIM)
@@ -81,13 +84,27 @@ def goals(scene: Scene) -> Text:
     return line
 
 
-def answer(scene: Scene) -> Text:
-    """One line: the gate's last word, or a transfer under way."""
-    if scene.progress is not None:
+def answer(scene: Scene, columns: int) -> Text:
+    """The gate's last word, or a transfer under way, on as many lines as `answer_rows` says."""
+    if scene.progress is not None and scene.answer.kind != REFUSED:
         p = scene.progress
         return Text(f"… {p.what}: {p.done:g} of {p.total:g} {p.unit}", look.ACTIVE, end="")
     style = look.ANSWER.get(scene.answer.kind, look.DIM)
-    return Text(scene.answer.text or "nothing asked yet", style, no_wrap=True, overflow="ellipsis")
+    return Text("\n".join(_answer_lines(scene, columns)), style, no_wrap=True, overflow="ellipsis")
+
+
+def answer_rows(scene: Scene, columns: int) -> int:
+    """1 or 2: a sentence with its numbers seldom fits one line of 80."""
+    if scene.progress is not None and scene.answer.kind != REFUSED:
+        return 1
+    return len(_answer_lines(scene, columns))
+
+
+def _answer_lines(scene: Scene, columns: int) -> list[str]:
+    text = scene.answer.text or "nothing asked lately"
+    if len(text) <= columns:
+        return [text]
+    return textwrap.wrap(text, max(columns, 20), max_lines=2, placeholder=" …") or [text]
 
 
 def _age(age_s: float | None) -> str:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
-import pty
 import re
 import struct
 import subprocess
 import sys
-import termios
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+
+if sys.platform != "win32":
+    import fcntl
+    import pty
+    import termios
 
 from tests.system.programs import alive, all_gone, family
 from tests.system.vehicle_program import until
@@ -24,8 +26,8 @@ LONGEST_ESCAPE = 64
 
 _ON_A_TERMINAL = (
     "import fcntl, os, sys, termios;"
-    "fcntl.ioctl(0, termios.TIOCSCTTY, 0);"
-    "os.execv(sys.argv[1], sys.argv[1:])"
+    "sys.argv[1] == 'controlling' and fcntl.ioctl(0, termios.TIOCSCTTY, 0);"
+    "os.execv(sys.argv[2], sys.argv[2:])"
 )
 """Makes the pty the controlling terminal, as a login does, and becomes the program."""
 
@@ -41,13 +43,21 @@ def environment() -> dict[str, str]:
 class Terminal:
     """`seen` is every byte that the program has written; `text` is what of it can be read."""
 
-    def __init__(self, command: Sequence[str]) -> None:
+    def __init__(self, command: Sequence[str], *, controlling: bool = True) -> None:
+        """`controlling`: a hang-up is told by a signal as well."""
         self._screen, slave = pty.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
         self._slave = slave
+        self._controlling = controlling
         self.settings_before = self.settings
         self.process = subprocess.Popen(
-            [sys.executable, "-c", _ON_A_TERMINAL, *command],
+            [
+                sys.executable,
+                "-c",
+                _ON_A_TERMINAL,
+                "controlling" if controlling else "other",
+                *command,
+            ],
             stdin=slave,
             stdout=slave,
             stderr=slave,
@@ -99,6 +109,8 @@ class Terminal:
         self._hung_up = True
         self._reader.join()
         os.close(self._screen)
+        if not self._controlling:
+            os.close(self._slave)
 
     def close(self) -> None:
         started = family(self.process.pid)
@@ -112,16 +124,17 @@ class Terminal:
         finally:
             for pid in filter(alive, started):
                 os.kill(pid, 9)
-            os.close(self._slave)
+            if self._controlling or not self._hung_up:
+                os.close(self._slave)
             if not self._hung_up:
                 self._reader.join()
                 os.close(self._screen)
 
 
 @contextmanager
-def terminal(*command: str) -> Iterator[Terminal]:
+def terminal(*command: str, controlling: bool = True) -> Iterator[Terminal]:
     """A program on a terminal, gone at the end with everything that it started."""
-    made = Terminal(command)
+    made = Terminal(command, controlling=controlling)
     try:
         yield made
     finally:

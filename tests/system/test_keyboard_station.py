@@ -7,6 +7,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,7 +19,10 @@ from tests.system.terminal import COLUMNS, ROWS, Terminal, environment, terminal
 from tests.system.typed_flight import take_off, until_state
 from tests.system.vehicle_program import until
 
-pytestmark = pytest.mark.system
+pytestmark = [
+    pytest.mark.system,
+    pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal"),
+]
 
 
 def take_off_and_go(screen: Terminal) -> None:
@@ -69,11 +73,13 @@ def test_when_the_station_goes_the_link_holds_the_vehicle_and_closes_the_log(
     assert_held(only_log(tmp_path))
 
 
+@pytest.mark.parametrize("told", [True, False], ids=["told by a signal", "told by nobody"])
 def test_a_terminal_that_closes_in_mid_flight_leaves_a_held_vehicle_and_no_process(
-    tmp_path: Path,
+    told: bool, tmp_path: Path
 ) -> None:
     """Whatever is written to it then fails or waits for ever, at the end of the screen too."""
-    with terminal(GCS, "fly", "--sim", "--log-dir", str(tmp_path)) as screen:
+    fly = (GCS, "fly", "--sim", "--log-dir", str(tmp_path))
+    with terminal(*fly, controlling=told) as screen:
         take_off_and_go(screen)
         family = [screen.process.pid, *descendants(screen.process.pid)]
         screen.hang_up()
@@ -81,6 +87,24 @@ def test_a_terminal_that_closes_in_mid_flight_leaves_a_held_vehicle_and_no_proce
         until(lambda: all_gone(family), "the end of screen, link and vehicle", 10.0)
 
     assert_held(only_log(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("words", "key", "exit_code"),
+    [((), "q", 3), ((), "\x03", 130), (("--timeout", "0.5"), "", 3)],
+    ids=["quit", "Ctrl-C", "timeout"],
+)
+def test_without_a_vehicle_it_says_so_and_exits_accordingly(
+    words: tuple[str, ...], key: str, exit_code: int, tmp_path: Path
+) -> None:
+    link = ("--link", "udpin://127.0.0.1:0", "--log-dir", str(tmp_path))
+    with terminal(GCS, "fly", *link, *words) as screen:
+        if key:
+            screen.until_text("start one: vehicle-sim")
+            screen.press(key)
+        assert screen.process.wait(20.0) == exit_code
+        screen.until_text("gcs: no vehicle was heard")
+        assert ("hint: start one" in screen.text) == (exit_code == 3)
 
 
 class Tmux:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.system.terminal import terminal
 from tests.system.vehicle_program import free_port, until, vehicle_sim
 
 pytestmark = [pytest.mark.system, pytest.mark.skipif(sys.platform == "win32", reason="signals")]
@@ -52,6 +53,12 @@ def test_a_port_that_is_taken_is_a_clear_error_with_a_hint(scheme: str) -> None:
         ("--speedup", "0"),
         ("--speedup", "inf"),
         ("--port", "70000"),
+        ("--seed", "-1"),
+        ("--seed", "1_0"),
+        ("--home", "4_7.4,8.5,100"),
+        ("--wind", "nan"),
+        ("--speedup", "1_0"),
+        ("--param", "MIS_TAKEOFF_ALT=\uff13"),
     ],
 )
 def test_wrong_use_ends_with_2_and_no_traceback(arguments: tuple[str, ...]) -> None:
@@ -129,3 +136,25 @@ def test_a_viewers_address_must_be_one() -> None:
     ended = run("--view", "tcp://127.0.0.1:19410")
     assert ended.returncode == 2
     assert "udp://HOST:PORT" in ended.stderr
+
+
+def test_it_tells_its_version() -> None:
+    ended = run("--version")
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.startswith("vehicle-sim ")
+
+
+def test_in_the_background_of_a_terminal_it_leaves_the_screen_to_others() -> None:
+    shell = (
+        f"set -m; {' '.join(PROGRAM)} --port {free_port()} & sleep 5; echo my prompt; kill %1; wait"
+    )
+    with terminal("/bin/bash", "-c", shell) as screen:
+        screen.until_text("listens on UDP port", "my prompt")
+        screen.process.wait(20.0)
+    assert b"\x1b" not in screen.seen
+    assert "battery" not in screen.text
+
+
+def test_in_the_foreground_of_a_terminal_it_shows_a_live_page() -> None:
+    with terminal(*PROGRAM, "--port", str(free_port())) as screen:
+        screen.until_text("battery", "times real time")

@@ -45,11 +45,38 @@ def test_no_vehicle(tmp_path: Path) -> None:
     assert "hint: start one with `vehicle-sim`" in told
 
 
+@pytest.mark.parametrize(
+    ("words", "exit_code", "told"),
+    [
+        (("--link", "udpout://no-such-host.invalid:14550"), 2, "hint: is the name of the host"),
+        (("--link", "serial:///dev/ttyNONE:57600"), 2, "serial:///dev/ttyNONE:57600"),
+        (("--policy", "missing-fence.toml"), 4, "missing-fence.toml:3: fence[1].path"),
+    ],
+    ids=["unknown host", "no serial line", "bad policy"],
+)
+def test_what_keeps_a_station_from_starting_is_told_however_short_the_time(
+    words: tuple[str, ...],
+    exit_code: int,
+    told: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    fence = '[[fence]]\nkind = "file"\npath = "nowhere.plan"\n'
+    (tmp_path / "missing-fence.toml").write_text(fence)
+    code, output = refused("status", "--timeout", "0.001", *words)
+    assert code == exit_code
+    assert told in output
+    assert "no vehicle heard" not in output
+
+
 def test_a_port_in_use(tmp_path: Path) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", 0))
         link = f"udpin://127.0.0.1:{other.getsockname()[1]}"
-        code, told = refused("status", "--link", link, "--log-dir", str(tmp_path))
+        code, told = refused(
+            "status", "--link", link, "--timeout", "0.001", "--log-dir", str(tmp_path)
+        )
     assert code == 9
     assert f"{link} is in use by another program" in told
     assert "choose another port with --link" in told

@@ -62,3 +62,9 @@ def test_what_is_written_is_the_nearest_number_and_never_minus_zero(
     assert abs(float(text) - value) <= 0.5 * 10.0**-decimals + 1e-6
     assert not (text.startswith("-") and float(text) == 0.0)
     assert fixed(value, decimals, sign=True).lstrip("+") == text
+
+
+def test_what_is_farther_than_anything_on_earth_is_no_row_of_digits() -> None:
+    assert labelled_enu((1e30, -1e30, 2.0)) == "(1e+30 E, -1e+30 N, 2.00 U)"
+    assert signed_enu((1e30, 0.0, 2.0)) == "E +1e+30 N +0.00 U +2.00"
+    assert labelled_enu((6.4e6, 0.0, 2.0)) == "(6400000.00 E, 0.00 N, 2.00 U)"

@@ -84,8 +84,9 @@ def test_a_zone_of_a_fence_file_that_the_margin_fills_is_refused(policy: Path) -
 
 def test_a_fence_file_that_is_not_there_is_told_with_who_names_it(policy: Path) -> None:
     found = error(policy)
-    assert str(found) == f"{policy.parent / 'yard.plan'}: No such file or directory"
-    assert found.hint == f"{policy} names it as a fence file"
+    missing = policy.parent / "yard.plan"
+    assert str(found) == f"{policy}:3: fence[1].path: {missing}: No such file or directory"
+    assert found.hint == "the path of a plan, from the folder of this file"
 
 
 def test_a_fence_file_that_is_no_plan_is_told_with_its_own_place(policy: Path) -> None:
@@ -109,3 +110,21 @@ def test_a_mistake_is_told_with_its_line_and_a_hint(policy: Path) -> None:
 def test_a_policy_that_is_no_text_is_told(policy: Path) -> None:
     policy.write_bytes(b'name = "\xff"')
     assert str(error(policy)) == f"{policy}:1: text: is not UTF-8"
+
+
+def test_a_binary_policy_is_no_text(policy: Path) -> None:
+    policy.write_bytes(b"\x7fELF\0\0\xff\xfe")
+    found = error(policy)
+    assert str(found) == f"{policy}: is no text"
+    assert found.hint == "a TOML file is wanted"
+
+
+def test_the_words_of_a_severity_are_listed_once(policy: Path) -> None:
+    policy.write_text('[severities]\nbattery_low = "orange"\n')
+    found = error(policy)
+    assert str(found).endswith(
+        '"orange" is none of: nominal, caution, hold, return, land, terminate'
+    )
+    assert found.hint == ""
+    policy.write_text('[severities]\nbattery_low = "retrun"\n')
+    assert error(policy).hint == "did you mean return?"

@@ -19,8 +19,9 @@ The kinds and their keys are the literal table `KINDS`.  Equal files and seeds g
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from typing import Final, Literal, TypeAlias
@@ -64,11 +65,22 @@ class Timed:
 
 
 class _Entry:
-    """One table of the file, whose keys are taken one after another."""
+    """One table of the file, whose keys are taken one after another.
 
-    def __init__(self, keys: Mapping[str, object], where: str) -> None:
+    `lines`: the table's own lines, the header first, which is line `first` of the file `where`.
+    """
+
+    def __init__(
+        self,
+        keys: Mapping[str, object],
+        where: str,
+        name: str = "",
+        lines: Sequence[str] = (),
+        first: int = 0,
+    ) -> None:
         self._keys = dict(keys)
-        self.where = where
+        self._where, self._name = where, name
+        self._lines, self._first = lines, first
 
     def number(self, key: str, default: float, low: float, high: float) -> float:
         value = self._keys.pop(key, default)
@@ -105,7 +117,11 @@ class _Entry:
     def word(self, key: str, words: tuple[str, ...], default: str | None = None) -> str:
         value = self._keys.pop(key, default)
         if value not in words:
-            raise self.wrong(key, f"must be one of {', '.join(words)}; is {value!r}")
+            import difflib  # only for a file that is wrong
+
+            near = difflib.get_close_matches(str(value), words, n=1)
+            meant = f"; did you mean {near[0]}?" if near else ""
+            raise self.wrong(key, f"must be one of {', '.join(words)}; is {value!r}{meant}")
         return str(value)
 
     def finish(self) -> None:
@@ -113,7 +129,11 @@ class _Entry:
             raise self.wrong(min(self._keys), "is no key of this kind of fault")
 
     def wrong(self, key: str, what: str) -> FaultFileError:
-        return FaultFileError(f"{self.where}: {key}: {what}")
+        where = self._where
+        if self._lines:
+            stands = (n for n, line in enumerate(self._lines) if re.match(rf"\s*{key}\s*=", line))
+            where = f"{where}:{self._first + next(stands, 0)}: {self._name}"
+        return FaultFileError(f"{where}: {key}: {what}")
 
 
 def _link(e: _Entry) -> LinkFault:
@@ -163,6 +183,9 @@ KINDS: Final[dict[str, Callable[[_Entry], AnyFault]]] = {
 }
 
 
+_HEAD: Final = re.compile(r"\s*\[\[\s*fault\s*\]\]")
+
+
 def parse(text: str, where: str) -> tuple[Timed, ...]:
     """The file's faults in the order of their times.  Raises FaultFileError."""
     try:
@@ -175,9 +198,13 @@ def parse(text: str, where: str) -> tuple[Timed, ...]:
     entries = document.get("fault", [])
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise FaultFileError(f"{where}: fault: write [[fault]], with two brackets")
+    lines = text.splitlines()
+    heads = [number for number, line in enumerate(lines) if _HEAD.match(line)]
     happenings: list[Timed] = []
     for number, entry in enumerate(entries, 1):
-        happenings += _timed(_Entry(entry, f"{where}: fault {number}"))
+        first, *following = heads[number - 1 :] or [len(lines)]
+        own = lines[first : following[0] if following else None]
+        happenings += _timed(_Entry(entry, where, f"fault {number}", own, first + 1))
     return tuple(sorted(happenings, key=lambda timed: timed.at_ns))
 
 

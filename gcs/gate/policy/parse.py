@@ -17,6 +17,7 @@ from gcs.toml_lines import KeyPath
 Table: TypeAlias = dict[str, object]
 
 _BOUNDS = ("floor_up_m", "ceiling_up_m")
+FENCE_FILE_HINT = "the path of a plan, from the folder of this file"
 
 FenceFile: TypeAlias = Callable[[str], tuple[ZoneSpec, ...]]
 """The zones of the fence file of that name, as the policy writes it."""
@@ -117,7 +118,10 @@ def _read_file(
 ) -> list[_Written]:
     if fence_file is None:
         raise doc.error(at, "a fence file cannot be read here")
-    return [_Written(at, zone, path) for zone in fence_file(path)]
+    try:
+        return [_Written(at, zone, path) for zone in fence_file(path)]
+    except OSError as error:
+        raise doc.error(at, f"{error.filename}: {error.strerror}", FENCE_FILE_HINT) from error
 
 
 def _read_zone(doc: toml.Document, table: Table, at: KeyPath) -> ZoneSpec:

@@ -15,6 +15,7 @@ from gcs import resources
 from gcs.cli import main, oneshot, oneshot_session
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
+from gcs.operator import request_words
 from gcs.operator.errors import ExitError
 from tests.unit.cli.command_line import gcs
 
@@ -105,15 +106,34 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("args", "told"),
     [
-        (["got"], "no command 'got'; did you mean 'goto'?"),
+        (["got"], "no command 'got'; `gcs --help` lists them"),
+        (["param"], "no command 'param'; `gcs --help` lists them"),
+        (["stauts"], "no command 'stauts'; did you mean 'status'?"),
+        (["aborrt"], "no command 'aborrt'; did you mean 'abort'?"),
         (["goto", "1", "2"], "goto: expected 3 numbers EAST NORTH UP [YAW_DEG], got 2"),
-        (["goto", "-1", "x", "2"], "goto: NORTH: expected a finite number, got 'x'"),
-        (["goto", "nan", "0", "2"], "goto: EAST: expected a finite number, got 'nan'"),
-        (["takeoff", "inf"], "takeoff: UP: expected a finite number, got 'inf'"),
-        (["goto", "1", "0", "2", "nan"], "goto: YAW_DEG: expected a finite number, got 'nan'"),
-        (["land", "--timeout", "nan"], "nan is not a finite number"),
-        (["land", "--wait", "inf"], "inf is not a finite number"),
-        (["fly", "--speedup", "nan"], "nan is not a finite number"),
+        (["goto", "-1", "x", "2"], "goto: NORTH: expected a number, got 'x'"),
+        (["goto", "nan", "0", "2"], "goto: EAST: expected a number, got 'nan'"),
+        (["takeoff", "inf"], "takeoff: UP: expected a number, got 'inf'"),
+        (["goto", "1", "0", "2", "nan"], "goto: YAW_DEG: expected a number of degrees"),
+        (["goto", "1", "0", "2", "400"], "goto: YAW_DEG: expected a number of degrees"),
+        (["goto", "1_0", "0", "2"], "goto: EAST: expected a number, got '1_0'"),
+        (["goto", "\uff13", "0", "2"], "goto: EAST: expected a number, got '\uff13'"),
+        (["goto", "1", "0", "2", "--yaw", "3"], "goto: no option --yaw"),
+        (["land", "--timeout", "nan"], "'nan' is not a number"),
+        (["land", "--wait", "inf"], "'inf' is not a number"),
+        (["land", "--wait", "1_0"], "'1_0' is not a number"),
+        (["fly", "--sim", "--speedup", "nan"], "'nan' is not a number"),
+        (["fly", "--sim", "--seed", "-1"], "-1 is negative"),
+        (["fly", "--sim", "--seed", "1_0"], "'1_0' is not a whole number"),
+        (["fly", "--sim", "--home", "4_7,8,488"], "'4_7,8,488' is not as in"),
+        (["fly", "--name", "a/b"], "'a/b' is no part of a file name"),
+        (["fly", "--name", "../../x"], "'../../x' is no part of a file name"),
+        (["fly", "--name", ""], "'' is no part of a file name"),
+        (["fly", "--name", 300 * "a"], "has 300 characters; at most 80"),
+        (["fly", "--plain", "--speedup", "5"], "--speedup is for the vehicle of --sim"),
+        (["fly", "--plain", "--home", "47,8,488"], "--home is for the vehicle of --sim"),
+        (["fly", "--plain", "--seed", "1"], "--seed is for the vehicle of --sim"),
+        (["fly", "--autopilot", "px4"], "--autopilot is for the vehicle of --sim"),
         (["land", "now"], "unexpected extra argument"),
         (["takeoff"], "takeoff: expected 1 number UP, got nothing"),
         (["fly", "--sim", "--link", "udpin://127.0.0.1:1"], "--sim starts a vehicle of its own"),
@@ -126,6 +146,28 @@ def test_usage_errors_are_two_and_say_why(
 ) -> None:
     assert main.run(args) == ExitCode.USAGE
     assert told in capsys.readouterr().err
+
+
+def test_commands_that_are_never_offered_are_those_whose_words_move_the_vehicle() -> None:
+    commands = main.COMMANDS["One command, then leave"]
+    words = request_words.WORD_BY_NAME
+    assert {name for name in commands if name in words and words[name].moves} == main.MOVES
+
+
+@pytest.mark.parametrize("args", [["help"], ["help", "fly"], ["help", "mission", "fly"]])
+def test_help_is_a_command_too(args: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main.run(args) == ExitCode.DONE
+    helped = capsys.readouterr().out
+    assert main.run([*args[1:], "--help"]) == ExitCode.DONE
+    assert helped == capsys.readouterr().out
+
+
+def test_a_directory_is_no_policy(tmp_path: Path) -> None:
+    ended = gcs("fly", "--plain", "--policy", tmp_path)
+    assert ended == (
+        ExitCode.BAD_FILE,
+        f"gcs: {tmp_path}: is a directory\n  hint: a policy is a TOML file, or default, lab\n",
+    )
 
 
 NOT_UTF8 = os.fsdecode(b"not-\xff-utf8")

@@ -54,6 +54,26 @@ def test_a_vehicle_is_judged_once_it_is_known_whether_it_flies() -> None:
     assert connection.asked_at_s[0] > LANDED_KNOWN_S
 
 
+def test_a_stop_goes_out_with_the_first_word_of_the_vehicle() -> None:
+    connection = FakeConnection(FakeStation("late landed"))
+    how = OneShotConfig(10.0, 60.0, as_json=False, what="abort", placed=False)
+    task = sending(SendRequests((ipc.Ask(0, "abort"),)), 60.0)
+    assert run_over(connection, NoInterrupts(), how, task) == ExitCode.DONE
+    assert connection.asked_at_s == [pytest.approx(0.1)]
+
+
+def test_whoever_leaves_before_the_end_sends_nothing_but_that_and_is_told_where_the_vehicle_is(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    code, connection = run("rtl", FakeStation("airborne"), wait_s=0.3)
+    assert code == ExitCode.NOT_COMPLETED
+    assert sent_words(connection) == ["rtl"]
+    assert connection.sent[1:] == [ipc.Leave("done")]
+    told = capsys.readouterr().err
+    assert "rtl: not completed within 0.3 s" in told
+    assert "log: logs/x.mcap" in told
+
+
 @pytest.mark.parametrize("line", ["land", "hold", "arm", "mode LOITER"])
 def test_what_is_no_move_needs_no_control(line: str) -> None:
     _, connection = run(line, FakeStation("airborne"))

@@ -8,7 +8,8 @@ import os
 import pytest
 
 from gcs import ipc
-from gcs.cli.plain import Input, Plain, PlainConfig
+from gcs.cli.line_queue import LineQueue
+from gcs.cli.plain import Plain, PlainConfig
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
@@ -33,7 +34,7 @@ class Session:
             self.err.append,
         )
         try:
-            self.exit_code = plain.run(Input(reader, "<stdin>"))
+            self.exit_code = plain.run(LineQueue(reader, "<stdin>"))
         finally:
             os.close(reader)
 
@@ -107,7 +108,7 @@ def test_strict_makes_a_refusal_an_exit_code(script: str, code: ExitCode) -> Non
 
 
 def test_strict_counts_what_was_left_undone() -> None:
-    script = "arm\ntakeoff 2\ngoto 9 0 2 &\nwait 1\nabort\n"
+    script = "arm\ntakeoff 2\ngoto 9 0 2 &\nwait 1\nhold\n"
     session = Session(script, PlainConfig(strict=True))
     assert "goto 9 0 2: aborted OPERATOR" in session.out
     assert session.exit_code == ExitCode.NOT_COMPLETED
@@ -147,11 +148,6 @@ def test_a_refusal_is_not_told_again_as_a_warning() -> None:
     assert not any("Refused" in line for line in session.err)
 
 
-def test_nan_is_for_the_gate_to_refuse() -> None:
-    session = Session("arm\ntakeoff 2\ngoto nan 0 2\n")
-    assert session.out[-1] == "goto nan 0 2: refused NON_FINITE: the goal is not a number"
-
-
 def test_nothing_is_asked_before_it_is_known_whether_the_vehicle_stands_or_flies() -> None:
     session = Session("takeoff 2\n", scenario="late landed")
     assert session.out == ["takeoff 2: refused NOT_ARMED: the vehicle is not armed"]
@@ -167,6 +163,139 @@ def test_a_port_in_use_is_the_stations_own_exit_code() -> None:
     with pytest.raises(ExitError, match="address in use") as failed:
         Session("arm\n", scenario="port in use")
     assert failed.value.exit_code == ExitCode.ADDRESS_IN_USE
+
+
+class Typist(NoInterrupts):
+    """Types into a pipe, which the console reads, whenever it is told something that fits."""
+
+    def __init__(
+        self,
+        first: str,
+        then: dict[str, str],
+        *,
+        on_a_terminal: bool = False,
+        scenario: str = "flight",
+    ) -> None:
+        """`then`: what is typed after which answer."""
+        super().__init__()
+        self.out: list[str] = []
+        self.err: list[str] = []
+        self.connection = FakeConnection(FakeStation(scenario))
+        self._then = dict(then)
+        reader, self._writer = os.pipe()
+        self._type(first)
+        plain = Plain(self.connection, self, PlainConfig(), self._hear, self.err.append)
+        try:
+            lines = LineQueue(reader, "<stdin>", typed=on_a_terminal)
+            self.exit_code = plain.run(lines)
+        finally:
+            os.close(reader)
+            if self._writer >= 0:
+                os.close(self._writer)
+
+    def _type(self, text: str) -> None:
+        os.write(self._writer, text.encode())
+
+    def _hear(self, line: str) -> None:
+        self.out.append(line)
+        text = self._then.pop(line, "")
+        if text:
+            self._type(text.removesuffix("EOF"))
+        if text.endswith("EOF"):
+            os.close(self._writer)
+            self._writer = -1
+
+    @property
+    def words(self) -> list[str]:
+        return [command.word for command in self.connection.sent if isinstance(command, ipc.Ask)]
+
+    def sent_s(self, word: str) -> float:
+        """When it was sent, on the virtual clock."""
+        return self.connection.asked_at_s[self.words.index(word)]
+
+
+def test_an_abort_in_a_pipe_acts_while_a_goto_is_under_way_and_drops_what_has_not_begun() -> None:
+    typist = Typist(
+        "arm\ntakeoff 2\ngoto 60 0 2\ngoto 0 0 2\nland\n",
+        {"goto 60 0 2: accepted": "abort\nresume\nEOF"},
+    )
+    assert typist.words == ["arm", "takeoff", "goto", "abort", "resume"]
+    assert typist.sent_s("abort") - typist.sent_s("goto") <= 0.1
+    assert typist.out[-7:] == [
+        "goto 0 0 2: dropped by abort, which did not wait for it",
+        "land: dropped by abort, which did not wait for it",
+        "goto 60 0 2: aborted OPERATOR",
+        "abort: accepted",
+        "abort: complete",
+        "resume: accepted",
+        "resume: complete",
+    ]
+
+
+def test_an_abort_in_a_script_drops_the_lines_before_it() -> None:
+    session = Session("arm\ntakeoff 2\nabort\nphoto\n")
+    assert session.sent_words == ["abort", "photo"]
+
+
+def test_an_abort_waits_for_no_position_and_goes_out_with_the_first_word_of_the_vehicle() -> None:
+    session = Session("abort\n", scenario="late landed")
+    assert session.connection.asked_at_s == [pytest.approx(0.1)]
+
+
+def test_after_an_abort_a_mission_that_is_still_sent_is_not_started() -> None:
+    typist = Typist(
+        "arm\ntakeoff 2\nmission fly demo.toml\n",
+        {"mission upload demo.toml: accepted": "abort\nEOF"},
+        scenario="slow upload",
+    )
+    assert "mission upload demo.toml: complete" in typist.out
+    assert typist.words == ["arm", "takeoff", "mission_upload", "abort"]
+
+
+def test_an_abort_ends_a_wait() -> None:
+    typist = Typist("arm\nwait 1000\nland\n", {"arm: complete": "abort\nEOF"})
+    assert typist.words == ["arm", "abort"]
+    assert typist.connection.time_s < 10.0
+
+
+@pytest.mark.parametrize("word", ["hold", "land", "rtl"])
+@pytest.mark.parametrize(
+    ("mark", "on_a_terminal", "waits"), [("", False, True), ("!", False, False), ("", True, False)]
+)
+def test_other_stops_act_at_once_on_a_terminal_or_with_a_mark(
+    mark: str, on_a_terminal: bool, waits: bool, word: str
+) -> None:
+    typist = Typist(
+        "arm\ntakeoff 2\ngoto 60 0 2\nphoto\n",
+        {
+            "goto 60 0 2: accepted": f"{mark}{word}\n" + ("" if on_a_terminal else "EOF"),
+            f"{word}: complete": "quit\n" if on_a_terminal else "",
+        },
+        on_a_terminal=on_a_terminal,
+    )
+    assert typist.words == ["arm", "takeoff", "goto", *(["photo"] if waits else []), word]
+    assert (typist.sent_s(word) - typist.sent_s("goto") > 10.0) == waits
+    assert f"{word}: complete" in typist.out
+
+
+@pytest.mark.parametrize("typed", ["quit\n", "EOF"])
+def test_on_a_terminal_quit_and_the_end_of_the_input_do_not_wait(typed: str) -> None:
+    then = {"goto 60 0 2: accepted": typed}
+    typist = Typist("arm\ntakeoff 2\ngoto 60 0 2\nphoto\n", then, on_a_terminal=True)
+    assert typist.exit_code == ExitCode.DONE
+    assert typist.words == ["arm", "takeoff", "goto"]
+    assert typist.connection.sent[-1] == ipc.Leave("quit")
+    assert "goto 60 0 2: aborted OPERATOR" in typist.out
+
+
+def test_on_a_terminal_state_and_help_are_answered_while_something_else_is_under_way() -> None:
+    then = {"goto 60 0 2: accepted": "state\nhelp\naborrt\n", "goto 60 0 2: complete": "quit\n"}
+    typist = Typist("arm\ntakeoff 2\ngoto 60 0 2\n", then, on_a_terminal=True)
+    assert any(line.startswith("state: ") for line in typist.out)
+    assert any(line.startswith("abort ") for line in typist.out)
+    (told,) = (line for line in typist.err if line.startswith("<stdin>"))
+    assert told == "<stdin>:6: aborrt: not a word of ours\n  hint: did you mean abort?"
+    assert typist.sent_s("goto") < 10.0 < typist.connection.time_s
 
 
 def test_ctrl_c_leaves_through_the_station_and_exits_130() -> None:
@@ -186,7 +315,7 @@ def test_ctrl_c_leaves_through_the_station_and_exits_130() -> None:
     os.write(writer, b"arm\ntakeoff 2\ngoto 9 0 2\n")
     try:
         plain = Plain(connection, interrupts, PlainConfig(), listen, told.append)
-        assert plain.run(Input(reader, "<stdin>")) == ExitCode.INTERRUPTED
+        assert plain.run(LineQueue(reader, "<stdin>")) == ExitCode.INTERRUPTED
     finally:
         os.close(reader)
         os.close(writer)

@@ -96,9 +96,15 @@ def test_every_kind(keys: str, fault: object) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("[[fault]]\nkind = 'gps_lost'", "f.toml: fault 1: at_s: is missing"),
+        ("[[fault]]\nkind = 'gps_lost'", "f.toml:1: fault 1: at_s: is missing"),
         ("[[fault]]\nat_s = 1", "fault 1: kind: must be one of gps_lost, "),
         ("[[fault]]\nat_s = 1\nkind = 'gps'", "is 'gps'"),
+        ("\n[[fault]]\nat_s = 1\nkind = 'gps_los'", "f.toml:4: fault 1: kind: must be one of"),
+        ("[[fault]]\nat_s = 1\nkind = 'gps_los'", "is 'gps_los'; did you mean gps_lost?"),
+        (
+            "[[fault]]\nat_s = 1\nkind = 'reboot'\n\n[[fault]]\n at_s = -1\nkind = 'reboot'",
+            "f.toml:6: fault 2: at_s: must be a number",
+        ),
         ("[[fault]]\nat_s = -1\nkind = 'reboot'", "at_s: must be a number from 0"),
         ("[[fault]]\nat_s = nan\nkind = 'reboot'", "at_s: must be a number"),
         ("[[fault]]\nat_s = true\nkind = 'reboot'", "at_s: must be a number"),
@@ -114,7 +120,7 @@ def test_every_kind(keys: str, fault: object) -> None:
     ],
 )
 def test_a_wrong_file_is_refused_with_entry_and_key(text: str, said: str) -> None:
-    with pytest.raises(FaultFileError, match=r"^f\.toml: ") as refusal:
+    with pytest.raises(FaultFileError, match=r"^f\.toml:") as refusal:
         parse(text, "f.toml")
     assert said in str(refusal.value)
 

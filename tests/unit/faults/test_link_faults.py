@@ -113,5 +113,5 @@ def test_every_fault_is_said_when_it_strikes_and_when_it_ends() -> None:
     stage = Stage("px4", "[[fault]]\nat_s = 2\nfor_s = 1.5\nkind = 'gps_lost'\nvehicle = 1")
     stage.run(5.0)
     said = [log.text for log in stage.logs if log.node == "faults"]
-    assert said == ["vehicle 1: GpsLost(lost=True)", "vehicle 1: GpsLost(lost=False)"]
+    assert said == ["vehicle 1: GPS is lost", "vehicle 1: GPS is back"]
     assert MS * 1000 == S

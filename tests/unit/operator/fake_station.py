@@ -21,11 +21,12 @@ from gcs.operator.client import Polled, Readable, StationEnded, StationEvent
 TICK_S = 0.1
 SPEED_M_S = 2.0
 PHOTO_S = 2.0
+UPLOAD_S = 1.0
 FENCE_M = 150.0
 MISSION = ((2.0, 0.0, 2.0), (2.0, 2.0, 2.0), (0.0, 0.0, 2.0))
 FREE = ("HOVERING",)
 LANDED_KNOWN_S = 1.0
-SCENARIOS = ("flight", "airborne", "silent", "late landed", "port in use", "crash")
+SCENARIOS = ("flight", "airborne", "silent", "late landed", "slow upload", "port in use", "crash")
 
 
 @dataclass
@@ -42,6 +43,8 @@ class FakeStation:
     left: list[ipc.Vec3] = field(default_factory=list)
     current: ipc.Ask | None = None
     photo_until_s: float = 0.0
+    upload: ipc.Ask | None = None
+    upload_until_s: float = 0.0
     done: bool = False
     time_s: float = 0.0
 
@@ -78,6 +81,9 @@ class FakeStation:
         events: list[ipc.Event] = []
         if self.state == "TAKING_PICTURE" and now_s >= self.photo_until_s:
             events += [*self._to("HOVERING", "photo"), *self._end("complete")]
+        if self.upload is not None and now_s >= self.upload_until_s:
+            events.append(ipc.EndingEvent(self.upload.id, self.upload.word, "complete"))
+            self.upload = None
         if self.target is not None:
             self._move(self.target)
             if self.pos == self.target:
@@ -99,6 +105,9 @@ class FakeStation:
             return self._quick(ask, "HOVERING")
         if ask.word == "mission_upload":
             self.mission = MISSION
+            if self.scenario == "slow upload":
+                self.upload, self.upload_until_s = ask, now_s + UPLOAD_S
+                return [ipc.VerdictEvent(ask.id, ask.word, "accepted")]
             return self._quick(ask, self.state, ipc.ProgressEvent(ask.id, "upload", 3, 3, "items"))
         if ask.word in ("mission_download", "mission_clear", "mode", "fence"):
             return self._quick(ask, self.state)
@@ -196,7 +205,7 @@ class FakeStation:
     def snapshot(self) -> ipc.Snapshot:
         heard = self.scenario != "silent"
         return ipc.Snapshot(
-            time_ns=0,
+            time_ns=int(self.time_s * 1e9),
             state=self.state if heard else "NO_VEHICLE",
             control=self.control,
             severity="NOMINAL",

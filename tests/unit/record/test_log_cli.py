@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -106,6 +107,46 @@ def test_a_file_that_is_no_record_is_a_clear_error(
     assert result.exit_code == 4
     assert "bad.mcap: " in result.output
     assert "hint:" in result.output
+
+
+def test_several_files_are_told_one_after_the_other(flight: Path, killed_flight: Path) -> None:
+    told = gcs_log("info", flight, killed_flight).output
+    assert told.index(f"{flight}: ") < told.index(f"{killed_flight}: ")
+    lines = gcs_log("info", killed_flight, flight, "--json").output.splitlines()
+    assert [json.loads(line)["path"] for line in lines] == [str(killed_flight), str(flight)]
+
+
+def test_the_last_one_is_the_newest(
+    flight: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "logs").mkdir()
+    assert gcs_log("info", "--last").exit_code == 4
+    for name, at_s in (("b", 100), ("a", 300), ("c", 200)):
+        copy = tmp_path / "logs" / f"{name}.mcap"
+        copy.write_bytes(flight.read_bytes())
+        os.utime(copy, (at_s, at_s))
+    last = gcs_log("info", "--last").output
+    assert last.startswith(f"{Path('logs') / 'a.mcap'}: ")
+    assert last.count(".mcap: ") == 1
+    older = (Path("logs") / "b.mcap", Path("logs") / "c.mcap")
+    assert gcs_log("info", "--last", *older).output.startswith(str(older[1]))
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a file's name is bytes on POSIX only")
+def test_a_file_whose_name_is_not_utf8_is_told_in_json_too(flight: Path, tmp_path: Path) -> None:
+    other = tmp_path / os.fsdecode(b"\xff.mcap")
+    try:
+        other.write_bytes(flight.read_bytes())
+    except OSError:
+        pytest.skip("this file system has no such names")
+    found = json.loads(gcs_log("info", other, "--json").output)
+    assert found["path"].endswith("\\udcff.mcap")
+
+
+def test_without_a_file_it_is_a_usage_error() -> None:
+    ended = gcs_log("info")
+    assert (ended.exit_code, "--last" in ended.output) == (2, True)
 
 
 def test_a_file_that_is_not_there_is_a_usage_error(tmp_path: Path) -> None:

@@ -12,10 +12,10 @@ from textual.pilot import Pilot
 from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator.client import StationEnded
-from gcs.operator.errors import ExitError
+from gcs.operator.errors import ExitError, Interrupted
 from gcs.tui.app import FlyApp
-from gcs.tui.result import print_result, until_hello
-from tests.unit.operator.fake_station import FakeConnection, FakeStation
+from gcs.tui.result import SessionResult, print_result, until_hello
+from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 from tests.unit.tui.listening_station import ListeningStation
 
 pytestmark = pytest.mark.slow  # the screen's own timers
@@ -185,14 +185,183 @@ def test_a_long_log_line_is_wrapped_with_its_last_word_in_sight(size: tuple[int,
     flown(script, size)
 
 
-def test_a_sentence_too_long_for_the_line_ends_in_an_ellipsis() -> None:
+def test_a_refusal_has_its_verdict_first_and_its_numbers_on_a_second_line() -> None:
+    sentence = (
+        "the goal (500.00 E, 0.00 N, 2.00 U) is outside inclusion circle 'default': 350.0 m too far"
+    )
+
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.say(ipc.VerdictEvent(1, "goto", "refused", "OUTSIDE_FENCE", sentence))
+        await drawn(app, pilot)
+        rows = screen_text(app).splitlines()
+        (at,) = [number for number, row in enumerate(rows) if "OUTSIDE_FENCE" in row]
+        assert rows[at].strip().startswith("refused OUTSIDE_FENCE goto: the goal (500.00 E")
+        assert rows[at + 1].rstrip().endswith("350.0 m too far")
+
+    flown(script, (80, 24))
+
+
+def test_a_sentence_too_long_for_two_lines_ends_in_an_ellipsis() -> None:
     async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         station.say(ipc.VerdictEvent(1, "goto", "refused", "OUTSIDE_FENCE", "far away " * 20))
         await drawn(app, pilot)
-        (line,) = [row for row in screen_text(app).splitlines() if "OUTSIDE_FENCE" in row]
-        assert line.rstrip().endswith("…")
+        rows = screen_text(app).splitlines()
+        (at,) = [number for number, row in enumerate(rows) if "OUTSIDE_FENCE" in row]
+        assert rows[at + 1].rstrip().endswith("…")
 
     flown(script, (80, 24))
+
+
+def test_a_refusal_stays_until_the_next_key_whatever_else_ends() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.armed = True
+        await pilot.press("t", "p")
+        await drawn(app, pilot)
+        assert "refused BUSY photo" in screen_text(app)
+        station.fly(5.0)
+        await drawn(app, pilot)
+        assert "refused BUSY photo" in screen_text(app)
+        await pilot.press("x", "p")
+        await drawn(app, pilot)
+        assert "photo: accepted" in screen_text(app)
+
+    flown(script)
+
+
+def test_a_transfer_is_shown_until_its_last_step() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.say(ipc.ProgressEvent(9, "reading back", 3, 7, "items"))
+        await drawn(app, pilot)
+        assert "reading back: 3 of 7 items" in screen_text(app)
+        station.say(ipc.ProgressEvent(9, "reading back", 7, 7, "items"))
+        await drawn(app, pilot)
+        assert "reading back" not in screen_text(app)
+
+    flown(script)
+
+
+def test_an_outcome_is_not_shown_for_ever() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        await pilot.press("m")
+        await drawn(app, pilot)
+        assert "arm: complete" in screen_text(app)
+        station.fly(10.5)
+        await drawn(app, pilot)
+        assert "arm: complete" not in screen_text(app)
+        assert "nothing asked lately" in screen_text(app)
+
+    flown(script)
+
+
+def test_debug_lines_are_on_the_screen_only_when_asked_for() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.say(
+            ipc.LogEvent(0, 4, "gate", "an error"),
+            *(ipc.LogEvent(0, 1, "loop", f"a tick came {n} ms late") for n in range(20, 60)),
+            ipc.LogEvent(0, 2, "gate", "a state"),
+        )
+        await drawn(app, pilot)
+        assert "a tick came" not in screen_text(app)
+        assert "an error" in screen_text(app)
+        assert "a state" in screen_text(app)
+        await pilot.press("g")
+        await drawn(app, pilot)
+        assert "an error" in screen_text(app)
+        assert "a state" not in screen_text(app)
+        await pilot.press("g")
+        await drawn(app, pilot)
+        shown = screen_text(app)
+        assert shown.count("a tick came") == 1
+        assert "a tick came 20 ms late" in shown
+        assert "the like of it 39 times more" in shown
+        assert "a state" in shown
+
+    flown(script)
+
+
+def test_lines_that_differ_in_a_number_are_folded_only_if_they_are_debug_lines() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        same = ipc.LogEvent(0, 3, "vehicle", "low battery")
+        station.say(*(ipc.LogEvent(0, 2, "gate", f"item {n} reached") for n in (1, 2)), same, same)
+        station.say(ipc.LogEvent(0, 2, "gate", "item 3 reached"))
+        await drawn(app, pilot)
+        shown = screen_text(app)
+        assert [f"item {n} reached" in shown for n in (1, 2, 3)] == [True, True, True]
+        assert shown.count("low battery") == 1
+        assert "the like of it once more" in shown
+
+    flown(script)
+
+
+def test_the_log_is_wrapped_again_for_a_narrower_screen_and_stays_at_its_end() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        for letter in "abcdefghijklmnopqrst":
+            station.say(ipc.LogEvent(0, 2, "gate", f"{letter} " + "abcdefghi " * 12 + "THE-END"))
+        await drawn(app, pilot)
+        await pilot.resize_terminal(80, 30)
+        await drawn(app, pilot)
+        log = screen_text(app).splitlines()[:-2]
+        assert "THE-END" in log[-1]
+        assert (log[-2] + log[-1]).count("abcdefghi") == 12
+        assert " t " in log[-2]
+
+    flown(script, (160, 40))
+
+
+def test_the_mission_key_uploads_the_mission_of_the_command_line_and_then_starts_it() -> None:
+    async def run(*keys: str) -> ListeningStation:
+        station = ListeningStation(FakeStation("slow upload"))
+        app = FlyApp(station, mission_path="survey.plan")
+        async with app.run_test() as pilot:
+            await pilot.press("m", "t")
+            station.fly(2.0)
+            await pilot.pause()
+            await pilot.press("i", *keys)
+            station.fly(2.0)
+            await pilot.pause()
+        return station
+
+    flew = asyncio.run(run())
+    assert flew.requests() == ["arm", "takeoff", "mission_upload", "mission_start"]
+    (upload,) = (c for c in flew.sent if isinstance(c, ipc.Ask) and c.word == "mission_upload")
+    assert upload.path == "survey.plan"
+    # Whoever aborts meanwhile does not want it started any more.
+    aborted = asyncio.run(run("space"))
+    assert aborted.requests() == ["arm", "takeoff", "mission_upload", "abort"]
+
+
+def test_without_a_vehicle_it_says_what_to_do_and_leaves_when_the_time_is_over() -> None:
+    async def run() -> tuple[FlyApp, ListeningStation]:
+        station = ListeningStation(FakeStation("silent"))
+        app = FlyApp(station, timeout_s=0.5)
+        async with app.run_test() as pilot:
+            await drawn(app, pilot)
+            assert "start one: vehicle-sim" in screen_text(app)
+            assert not any(isinstance(command, ipc.Leave) for command in station.sent)
+            await pilot.pause(1.0)
+        return app, station
+
+    app, station = asyncio.run(run())
+    assert station.sent == [ipc.Leave("no vehicle heard")]
+    assert not app.heard_vehicle
+
+
+def test_a_simulated_vehicle_is_said_to_end_with_its_station() -> None:
+    bye = ipc.Bye(0, "logs/x.mcap", "the vehicle is STILL FLYING in AUTO.LOITER")
+    told: list[str] = []
+    ended = SessionResult(StationEnded(bye, 0, ""), asked=True)
+    assert print_result(ended, told.append, simulated=True) == ExitCode.DONE
+    assert told[1] == "gcs: the simulation has ended with it, and its vehicle"
+
+
+def test_a_ctrl_c_before_the_screen_is_taken_leaves_the_station() -> None:
+    interrupts = NoInterrupts()
+    interrupts.name = "SIGINT"
+    client = FakeConnection(FakeStation())
+    with pytest.raises(Interrupted):
+        until_hello(client, interrupts)
+    assert client.sent == [ipc.Leave("SIGINT")]
+    assert client.closed
 
 
 def test_a_flight_is_seen_with_pending_and_active_goal_apart() -> None:
@@ -216,7 +385,7 @@ def test_a_refusal_is_shown_with_its_reason() -> None:
     async def script(app: FlyApp, _station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("t")
         await drawn(app, pilot)
-        assert "takeoff 1.5: refused NOT_ARMED: the vehicle is not armed" in screen_text(app)
+        assert "refused NOT_ARMED takeoff 1.5: the vehicle is not armed" in screen_text(app)
 
     flown(script)
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 import pytest
 
+from vehicle_sim import reporting
 from vehicle_sim.autopilot.interface import Truth
 from vehicle_sim.live_page import Rhythm, VehicleLine, cells, footer, table
 from vehicle_sim.plant.faults import GpsLost, MotorFault
@@ -75,6 +77,39 @@ def test_a_line_has_all_that_one_wants_to_know() -> None:
     assert cells(status(3))[6] == "nobody"
     failing = VehicleLine(1, "AUTO.RTL", True, True, True, 0.0, 0.0, 0.1, 1)
     assert cells(failing)[2] == "flying, FAILSAFE"
+
+
+def test_a_vehicle_on_the_ground_is_never_at_minus_zero() -> None:
+    assert cells(VehicleLine(1, "X", False, False, False, -0.04, 0.0, 1.0, 0))[3] == "0.0 m"
+
+
+def test_the_live_page_gives_way_to_plain_lines_in_the_background(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+
+    class Page:
+        """In place of the one that draws."""
+
+        def show(self, statuses: Sequence[VehicleLine], rhythm: Rhythm) -> None:
+            told.append("shown")
+
+        def say(self, line: str, warning: bool) -> None:
+            told.append(line)
+
+        def close(self) -> None:
+            told.append("closed")
+
+    monkeypatch.setattr("vehicle_sim.live_page.LivePage", Page)
+    outlet = reporting.Live("info")
+    for foreground in (False, True, True, False):
+        monkeypatch.setattr(reporting, "in_foreground", lambda now=foreground: now)
+        outlet.show([status(1)], RHYTHM)
+        outlet.log(announcement(launch(1))[0])
+    outlet.close()
+    line = "INFO vehicle1: px4"
+    assert told == ["shown", line, "shown", line, "closed"]
+    assert capsys.readouterr().out == f"{line}\n{line}\n"
 
 
 def test_what_has_no_room_is_summed_up() -> None:

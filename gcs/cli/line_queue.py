@@ -1,0 +1,95 @@
+"""The lines of a console: most wait for their turn, some act at once and drop those before."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from gcs.operator.line_parser import Line, LineError, parse_line
+from gcs.operator.request_words import Quit, SendRequests
+from gcs.shell.pipes import LineSource
+
+MAX_WAITING_LINES = 10_000
+"""Beyond it no more is read until some of them have had their turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class BadLine:
+    """A line that cannot be understood; `where` is its file and number."""
+
+    where: str
+    sentence: str
+    hint: str
+
+
+@dataclass(frozen=True, slots=True)
+class AtOnce:
+    """What is to be done now.  `dropped` stood before it in the queue and is not done any more."""
+
+    line: Line | BadLine
+    dropped: tuple[Line | BadLine, ...] = ()
+
+
+class LineQueue:
+    """Numbered lines of a file descriptor.  `fileno()` is readable when there is news."""
+
+    def __init__(self, fd: int, name: str, *, typed: bool = False) -> None:
+        """`name` is what errors call it; `typed`: somebody types the lines on a terminal."""
+        self._source = LineSource(fd, keep_blank=True)
+        self._name = name
+        self._typed = typed
+        self._number = 0
+        self._waiting: deque[Line | BadLine] = deque()
+
+    def fileno(self) -> int:
+        return self._source.fileno()
+
+    @property
+    def ended(self) -> bool:
+        """Whether no more will be read; lines may still wait."""
+        return self._source.ended
+
+    @property
+    def typed_end(self) -> bool:
+        """Whether somebody has ended the input on a terminal: as good as `quit`."""
+        return self._typed and self.ended
+
+    @property
+    def full(self) -> bool:
+        return len(self._waiting) >= MAX_WAITING_LINES
+
+    def take(self) -> Line | BadLine | None:
+        """The next line in turn; None if none waits."""
+        return self._waiting.popleft() if self._waiting else None
+
+    def read(self) -> list[AtOnce]:
+        """Read what there is, once, and say what of it acts at once; the rest waits."""
+        found: list[AtOnce] = []
+        for text in self._source.read():
+            self._number += 1
+            line = self._parse(text.decode(errors="replace"))
+            if line is None:
+                continue
+            if isinstance(line, BadLine):
+                at_once = self._typed  # nobody who types waits for the news that it was in vain
+            else:
+                at_once = line.overtakes(typed=self._typed)
+            if at_once:
+                found.append(AtOnce(line, self._drop_for(line)))
+            else:
+                self._waiting.append(line)
+        return found
+
+    def _drop_for(self, line: Line | BadLine) -> tuple[Line | BadLine, ...]:
+        """Whoever stops the vehicle, or leaves, does not want done what is still to come."""
+        if isinstance(line, BadLine) or not isinstance(line.action, SendRequests | Quit):
+            return ()
+        dropped = tuple(self._waiting)
+        self._waiting.clear()
+        return dropped
+
+    def _parse(self, text: str) -> Line | BadLine | None:
+        try:
+            return parse_line(text)
+        except LineError as error:
+            return BadLine(f"{self._name}:{self._number}", error.sentence, error.hint)

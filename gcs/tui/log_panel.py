@@ -1,0 +1,97 @@
+"""The log under the panels: as wide as the screen, from a level on, and repeats folded."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+from rich.text import Text
+from textual.events import Resize
+from textual.widgets import RichLog
+
+from gcs.tui import look
+
+LOG_LINES: Final = 2000
+DEBUG, INFO, WARN = 1, 2, 3
+NEXT_LEVEL: Final = {INFO: WARN, WARN: DEBUG, DEBUG: INFO}
+LEVEL_NAMES: Final = {DEBUG: "debug and above", INFO: "info and above", WARN: "warnings and errors"}
+_NUMBER = re.compile(r"\d+(\.\d+)?")
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line, and how it is drawn."""
+
+    level: int
+    line: Text
+
+
+class LogPanel(RichLog):
+    """Shows what is said to it from `level` on, newest at the bottom, and keeps it all.
+
+    Of equal lines that follow each other only the first is shown; how many came after it is said
+    before the next other line.  Debug lines are equal if they differ in their numbers only.
+    """
+
+    can_focus = False
+
+    def __init__(self) -> None:
+        super().__init__(id="log", max_lines=LOG_LINES, wrap=True, min_width=1)
+        self.level = INFO
+        self._entries: deque[Entry] = deque(maxlen=LOG_LINES)
+        self._like = ""
+        self._folded = 0
+        self._last: tuple[str, str, int] = ("", "", INFO)
+        self._columns = 0
+
+    def tell(self, text: str, style: str, level: int = INFO, time_ns: int | None = None) -> None:
+        """`time_ns` of the wall clock; None is now."""
+        like = _NUMBER.sub("#", text) if level == DEBUG else text
+        stamp = time.strftime(
+            "%H:%M:%S ", time.localtime(None if time_ns is None else time_ns / 1e9)
+        )
+        if like == self._like:
+            self._folded += 1
+            self._last = (stamp, style, level)
+            return
+        self.tell_folded()
+        self._like = like
+        self._add(stamp, text, style, level)
+
+    def tell_folded(self) -> None:
+        """Say now how often the last line has come again."""
+        if self._folded:
+            stamp, style, level = self._last
+            times = "once" if self._folded == 1 else f"{self._folded} times"
+            self._add(stamp, f"  … the like of it {times} more", style, level)
+            self._folded = 0
+
+    def cycle_level(self) -> str:
+        """The next level; returns its name."""
+        self.level = NEXT_LEVEL[self.level]
+        self._write_again()
+        return LEVEL_NAMES[self.level]
+
+    def on_resize(self, event: Resize) -> None:
+        """Wrapped to the new width, and at its end if it was there."""
+        if self._columns not in (0, event.size.width):
+            self._write_again()
+        self._columns = event.size.width
+
+    def _add(self, stamp: str, text: str, style: str, level: int) -> None:
+        entry = Entry(level, Text.assemble((stamp, look.DIM), (text, style)))
+        self._entries.append(entry)
+        self._show(entry)
+
+    def _show(self, entry: Entry) -> None:
+        if entry.level >= self.level:
+            self.write(entry.line, expand=True)
+
+    def _write_again(self) -> None:
+        self.clear()
+        for entry in self._entries:
+            self._show(entry)
+        self.scroll_end(animate=False)
