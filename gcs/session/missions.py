@@ -39,6 +39,7 @@ class Missions:
         self._timing = Timing(
             round(SPEC_TIMING.wait_ns * config.speedup),
             round(SPEC_TIMING.item_wait_ns * config.speedup),
+            silence_ns=round(SPEC_TIMING.silence_ns * config.speedup),
         )
         self._job: Job | None = None
         self._on_board: OnBoard | None = None

@@ -124,7 +124,9 @@ class Job(ABC):
     def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         if self._transfer is None:
             return []
-        given = Cancel() if now_ns >= self._transfer_ends_ns else Wake()
+        given: Cancel | Wake = Wake()
+        if now_ns >= self._transfer_ends_ns:
+            given = Cancel(f"{self.progress_of()} took too long")
         return self._follow(self._transfer.handle(given, now_ns), view, now_ns)
 
     # --------------------------------------------------------------------------- transfer
