@@ -16,7 +16,7 @@ from gcs.plan import commands
 from gcs.plan.model import AutopilotName
 from gcs.plan.stored import kept
 from gcs.plan.wire import WireItem
-from gcs.wire.ids import MavFrame
+from gcs.wire.ids import MavFrame, MissionType
 
 _DATUM: dict[int, str] = {
     MavFrame.GLOBAL: "AMSL",
@@ -58,7 +58,8 @@ def same_meaning(
         differences.append(
             Difference(min(len(sent), len(received)), "items", str(len(sent)), str(len(received)))
         )
-    home_items = 1 if autopilot == "ardupilot" else 0
+    mission = not sent or sent[0].mission_type == MissionType.MISSION
+    home_items = 1 if autopilot == "ardupilot" and mission else 0
     for ours, theirs in list(zip(sent, received, strict=False))[home_items:]:
         differences.extend(_differences(ours, theirs, autopilot))
     return differences

@@ -36,6 +36,7 @@ class Missions:
 
     def __init__(self, config: StationConfig) -> None:
         self._own = Address(config.sysid, config.compid)
+        self._speedup = config.speedup
         self._timing = Timing(
             round(SPEC_TIMING.wait_ns * config.speedup),
             round(SPEC_TIMING.item_wait_ns * config.speedup),
@@ -72,7 +73,7 @@ class Missions:
         if refusal is not None:
             return [*refused(request_id, ask.word, refusal)]
         assert telemetry is not None
-        asked = Asked(request_id, ask.id, ask.word, self._own, self._timing)
+        asked = Asked(request_id, ask.id, ask.word, self._own, self._timing, self._speedup)
         job: Job
         match ask.word:
             case "mission_upload":

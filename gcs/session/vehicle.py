@@ -155,6 +155,7 @@ class Vehicle:
             work += self._commands.heard(heard, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += self._settings(self._discovery.heard(heard, telemetry, now_ns), telemetry)
+            work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif type(message) in MISSION_MESSAGES:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
