@@ -10,6 +10,7 @@ import pytest
 
 from gcs.cli.main import run
 from gcs.exit_codes import ExitCode
+from gcs.plan.items import ROWS
 from tests.sample_files import elsewhere
 from tests.unit.plan.samples import LOCAL, box, plan_document, simple, waypoint
 
@@ -191,3 +192,31 @@ def test_a_mission_without_items_says_so(
     empty.write_text("QGC WPL 110\n")
     assert run(["mission", "show", str(empty)]) == ExitCode.DONE
     assert "no items" in capsys.readouterr().out
+
+
+def test_a_version_that_is_not_known_is_named_once(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(file, box() | {"version": 3})
+    assert run(["mission", "check", str(file)]) == ExitCode.BAD_FILE
+    assert f"{file}:version: is 3, expected 1" in capsys.readouterr().err
+
+
+def test_a_policy_is_no_mission_and_the_option_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    policy = tmp_path / "policy.toml"
+    policy.write_text('name = "mine"\nmargin_h_m = 3.0\n')
+    assert run(["mission", "check", str(policy)]) == ExitCode.BAD_FILE
+    err = capsys.readouterr().err
+    assert "is a policy and no mission" in err
+    assert "--policy FILE" in err
+
+
+def test_how_items_are_flown_is_printed_with_every_command(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run(["mission", "items"]) == ExitCode.DONE
+    out = capsys.readouterr().out
+    assert "   82  NAV_SPLINE_WAYPOINT\n         PX4 1.14, PX4 1.15: refused" in out
+    assert all(row.command.name in out for row in ROWS)
