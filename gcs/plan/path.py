@@ -206,14 +206,14 @@ class PathWalk:
                 return self._straight(index, item, here)
 
     def _straight(self, index: int, item: Item, here: _Here) -> _Here:
-        to_ned = self._place(index, item, here.pos_ned)
-        self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
-        self._region(index, RegionKind.TURN, here.places, (to_ned,))
+        aims = self._aims(index, item, here)
+        to_ned = self._leg(index, LegKind.STRAIGHT, here.pos_ned, aims[0])
+        self._region(index, RegionKind.TURN, here.places, aims)
         if here.before_ned is not None and self._ground.autopilot == "ardupilot":
             accept_m = self._ground.settings.accept_m
             ends = blend(here.before_ned, here.pos_ned, to_ned, accept_m)
             self._region(index, RegionKind.TURN, (ends[0], here.pos_ned), (ends[1],))
-        also = self._turning(item, here.places, to_ned)
+        also = fewer((*self._turning(item, here.places, to_ned), *aims[1:]), without=to_ned)
         fast = item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_SPLINE_WAYPOINT)
         return _Here(to_ned, also, here.pos_ned if fast else None)
 
@@ -246,15 +246,17 @@ class PathWalk:
         return _Here(over_ned, self._turning(item, top.places, over_ned))
 
     def _land(self, index: int, item: Item, here: _Here) -> _Here:
-        horizontal = self._horizontal(index, item, here.pos_ned)
-        overs = tuple((*horizontal, place[2]) for place in here.places)
+        down_m = self._ground.home_ned[2]
+        nominal = self._horizontal(index, item, here.pos_ned)
+        spots = [place[:2] if _is_here(item) else nominal for place in here.places]
+        overs = tuple((*at, place[2]) for at, place in zip(spots, here.places, strict=True))
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
         self._region(index, RegionKind.TURN, here.places, overs)
-        ground_ned = (*horizontal, self._ground.home_ned[2])
-        self._leg(index, LegKind.DESCENT, overs[0], ground_ned)
+        grounds = tuple((*at, down_m) for at in dict.fromkeys(spots))
+        self._leg(index, LegKind.DESCENT, overs[0], grounds[0])
         near = self._turning(item, (*here.places, *overs), overs[0])
-        self._region(index, RegionKind.LANDING, (*overs, *near), (ground_ned,))
-        return _Here(ground_ned)
+        self._region(index, RegionKind.LANDING, (*overs, *near), grounds)
+        return _Here(grounds[0], grounds[1:])
 
     def _level_then_height(self, index: int, item: Item, here: _Here) -> _Here:
         """LOITER_TO_ALT: over the place at the height it has, then up or down; or straight."""
@@ -280,11 +282,13 @@ class PathWalk:
                 self._region(index, RegionKind.RETURN, starts, ends)
 
     def _turns(self, index: int, item: Item, here: _Here) -> _Here:
-        centre_ned = self._place(index, item, here.pos_ned)
+        centres = self._aims(index, item, here)
+        centre_ned = centres[0]
         turns, _, radius_m, _ = item.params
         if not abs(radius_m) > 0.0 or math.isnan(turns):
             raise self._problem(index, ProblemKind.NO_RADIUS)
-        self._circles[LoiterCircle(index, centre_ned, abs(radius_m))] = None
+        for centre in centres:
+            self._circles[LoiterCircle(index, centre, abs(radius_m))] = None
         begun = entries(here.places, centre_ned, abs(radius_m))
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, begun[0])
         around = way_on(here.places, begun, centre_ned, abs(radius_m))
@@ -325,6 +329,13 @@ class PathWalk:
     def _place(self, index: int, item: Item, pos_ned: Vec3) -> Vec3:
         return (*self._horizontal(index, item, pos_ned), self._down(index, item, pos_ned))
 
+    def _aims(self, index: int, item: Item, here: _Here) -> tuple[Vec3, ...]:
+        """Where the item leads; one without a place of its own may lead to any of `here`."""
+        aims = [self._place(index, item, here.pos_ned)]
+        if _is_here(item):
+            aims += [self._place(index, item, place) for place in here.also]
+        return tuple(dict.fromkeys(aims))
+
     def _horizontal(self, index: int, item: Item, pos_ned: Vec3) -> tuple[float, float]:
         place = item.place
         if isinstance(place, Local):
@@ -356,3 +367,7 @@ class PathWalk:
         if self._ground.origin_alt_amsl_m is None:
             raise self._problem(index, ProblemKind.NO_ORIGIN)
         return self._ground.origin_alt_amsl_m - place.alt_m
+
+
+def _is_here(item: Item) -> bool:
+    return isinstance(item.place, Geographic) and item.place.here

@@ -20,7 +20,7 @@ from gcs.plan.commands import KINDS, WITH_PLACE
 from gcs.plan.curves import Neighbours, curve_hull
 from gcs.plan.items import ROWS, Flown, flown_as
 from gcs.plan.legs import FlightPath, FlightSettings, Ground, LandingPlace, RegionKind
-from gcs.plan.model import AutopilotName, Frame, Item, Local, Plan
+from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
 from gcs.plan.path import flight_path
 from gcs.plan.turns import blend, turning_places
 from gcs.plan.verify import Verification, verify
@@ -166,6 +166,17 @@ def test_arducopter_s_blended_corner_is_in_its_triangle() -> None:
         at = (-reach_m * (1 - s) ** 2, reach_m * s**2)
         assert triangle.distance(shapely.Point(at)) < 1e-9
     assert blend(before, corner, (50.0, 0.0, 0.0), 2.0)[0] == before
+
+
+def test_an_item_without_a_place_is_flown_wherever_the_vehicle_turned() -> None:
+    """ArduCopter reads 0, 0 as "here" (C1_items_at_zero_position): 2 m before the waypoint."""
+    here = Item(21, Frame.HOME, (0.0, 0.0, 0.0, 0.0), Geographic(0.0, 0.0, 0.0), 0)
+    flown = path(ground("ardupilot"), item(16, 30, 0), here)
+    landing = [region for region in flown.regions if region.kind is RegionKind.LANDING]
+    assert (28.0, 0.0, 0.0) in landing[0].points
+    turns = Item(18, Frame.HOME, (1.0, 0.0, 9.0, 0.0), Geographic(0.0, 0.0, 10.0), 0)
+    flown = path(ground("ardupilot"), item(16, 30, 0), turns)
+    assert {circle.centre_ned[0] for circle in flown.circles} == {28.0, 30.0}
 
 
 # ------------------------------------------------------------------------------- curves
