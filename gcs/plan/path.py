@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
@@ -27,6 +28,7 @@ from gcs.plan import commands, returns
 from gcs.plan.circles import circle_ends, entries, way_on
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.curves import Neighbours, curve_hull
+from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import (
     FlightPath,
@@ -39,7 +41,7 @@ from gcs.plan.legs import (
     Region,
     RegionKind,
 )
-from gcs.plan.model import Frame, Geographic, Item, Local, Plan
+from gcs.plan.model import Item, Plan
 from gcs.plan.turns import blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
@@ -88,6 +90,7 @@ class PathWalk:
     def __init__(self, plan: Plan, ground: Ground) -> None:
         self._plan = plan
         self._ground = ground
+        self._places = ItemPlaces(ground)
         self._legs: dict[Leg, None] = {}
         self._circles: dict[LoiterCircle, None] = {}
         self._regions: dict[Region, None] = {}
@@ -124,8 +127,8 @@ class PathWalk:
         if item.command in (Cmd.NAV_TAKEOFF, Cmd.NAV_LAND):
             return _Here(start_ned)
         try:
-            wanted_down_m = self._down(first, item, start_ned)
-        except _DeadEndError:
+            wanted_down_m = self._places.down(item, start_ned)
+        except PlaceUnknownError:
             return _Here(start_ned)
         least_down_m = self._ground.home_ned[2] - self._ground.settings.first_climb_m
         return self._climb(first, start_ned, min(wanted_down_m, least_down_m))
@@ -145,7 +148,10 @@ class PathWalk:
                 raise self._problem(index, unflyable)
             match KINDS.get(item.command):
                 case Kind.MOVE:
-                    here = self._move(index, item, here)
+                    try:
+                        here = self._move(index, item, here)
+                    except PlaceUnknownError as error:
+                        raise self._problem(index, error.kind) from None
                 case Kind.RETURN:
                     self._return(index, here)
                     return
@@ -206,7 +212,7 @@ class PathWalk:
                 return self._straight(index, item, here)
 
     def _straight(self, index: int, item: Item, here: _Here) -> _Here:
-        aims = self._aims(index, item, here)
+        aims = self._aims(item, here)
         to_ned = self._leg(index, LegKind.STRAIGHT, here.pos_ned, aims[0])
         self._region(index, RegionKind.TURN, here.places, aims)
         if here.before_ned is not None and self._ground.autopilot == "ardupilot":
@@ -237,18 +243,18 @@ class PathWalk:
         return _Here(top_ned, (low_ned,) if low_ned != top_ned else ())
 
     def _take_off(self, index: int, item: Item, here: _Here) -> _Here:
-        top = self._climb(index, here.pos_ned, self._down(index, item, here.pos_ned))
+        top = self._climb(index, here.pos_ned, self._places.down(item, here.pos_ned))
         if flown_as(item.command, self._ground.autopilot) is Flown.TAKE_OFF:
             return top
-        over_ned = (*self._horizontal(index, item, top.pos_ned), top.pos_ned[2])
+        over_ned = (*self._places.horizontal(item, top.pos_ned), top.pos_ned[2])
         self._leg(index, LegKind.STRAIGHT, top.pos_ned, over_ned)
         self._region(index, RegionKind.TURN, top.places, (over_ned,))
         return _Here(over_ned, self._turning(item, top.places, over_ned))
 
     def _land(self, index: int, item: Item, here: _Here) -> _Here:
         down_m = self._ground.home_ned[2]
-        nominal = self._horizontal(index, item, here.pos_ned)
-        spots = [place[:2] if _is_here(item) else nominal for place in here.places]
+        nominal = self._places.horizontal(item, here.pos_ned)
+        spots = [place[:2] if is_here(item) else nominal for place in here.places]
         overs = tuple((*at, place[2]) for at, place in zip(spots, here.places, strict=True))
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
         self._region(index, RegionKind.TURN, here.places, overs)
@@ -260,7 +266,7 @@ class PathWalk:
 
     def _level_then_height(self, index: int, item: Item, here: _Here) -> _Here:
         """LOITER_TO_ALT: over the place at the height it has, then up or down; or straight."""
-        to_ned = self._place(index, item, here.pos_ned)
+        to_ned = self._places.place(item, here.pos_ned)
         overs = tuple((*to_ned[:2], place[2]) for place in here.places)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
         self._leg(index, LegKind.STRAIGHT, overs[0], to_ned)
@@ -282,7 +288,7 @@ class PathWalk:
                 self._region(index, RegionKind.RETURN, starts, ends)
 
     def _turns(self, index: int, item: Item, here: _Here) -> _Here:
-        centres = self._aims(index, item, here)
+        centres = self._aims(item, here)
         centre_ned = centres[0]
         turns, _, radius_m, _ = item.params
         if not abs(radius_m) > 0.0 or math.isnan(turns):
@@ -297,7 +303,7 @@ class PathWalk:
         return _Here(ends[0], fewer(ends[1:], without=ends[0]))
 
     def _curve(self, index: int, item: Item, here: _Here) -> _Here:
-        to_ned = self._place(index, item, here.pos_ned)
+        to_ned = self._places.place(item, here.pos_ned)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
         neighbours = Neighbours(here.before_ned, self._next_places(index, to_ned))
         hull, arrivals = curve_hull(here.places, to_ned, neighbours, self._ground.settings.accept_m)
@@ -316,7 +322,8 @@ class PathWalk:
             item = self._plan.items[at]
             if KINDS.get(item.command) in (Kind.MOVE, Kind.RETURN, Kind.WAIT):
                 if flown_as(item.command, self._ground.autopilot) in _THROUGH:
-                    found.append(self._place(at, item, pos_ned))
+                    with suppress(PlaceUnknownError):  # told when the walk comes to it
+                        found.append(self._places.place(item, pos_ned))
                 continue
             waiting.append(at + 1)
             target = self._plan.index_of(item.params[0]) if item.command == Cmd.DO_JUMP else None
@@ -324,50 +331,9 @@ class PathWalk:
                 waiting.append(target)
         return tuple(found)
 
-    # --------------------------------------------------------------------------- places
-
-    def _place(self, index: int, item: Item, pos_ned: Vec3) -> Vec3:
-        return (*self._horizontal(index, item, pos_ned), self._down(index, item, pos_ned))
-
-    def _aims(self, index: int, item: Item, here: _Here) -> tuple[Vec3, ...]:
+    def _aims(self, item: Item, here: _Here) -> tuple[Vec3, ...]:
         """Where the item leads; one without a place of its own may lead to any of `here`."""
-        aims = [self._place(index, item, here.pos_ned)]
-        if _is_here(item):
-            aims += [self._place(index, item, place) for place in here.also]
+        aims = [self._places.place(item, here.pos_ned)]
+        if is_here(item):
+            aims += [self._places.place(item, place) for place in here.also]
         return tuple(dict.fromkeys(aims))
-
-    def _horizontal(self, index: int, item: Item, pos_ned: Vec3) -> tuple[float, float]:
-        place = item.place
-        if isinstance(place, Local):
-            home_ned = self._ground.home_ned
-            return (home_ned[0] + place.north_m, home_ned[1] + place.east_m)
-        if not isinstance(place, Geographic):
-            raise self._problem(index, ProblemKind.NO_POSITION)
-        if place.here:
-            if item.command == Cmd.NAV_WAYPOINT and self._ground.autopilot == "px4":
-                raise self._problem(index, ProblemKind.NO_POSITION)
-            return pos_ned[:2]
-        if self._ground.north_east_of is None:
-            raise self._problem(index, ProblemKind.NO_ORIGIN)
-        return self._ground.north_east_of(place.lat_deg, place.lon_deg)
-
-    def _down(self, index: int, item: Item, pos_ned: Vec3) -> float:
-        place, home_down_m = item.place, self._ground.home_ned[2]
-        if isinstance(place, Local):
-            return home_down_m - place.up_m
-        if not isinstance(place, Geographic) or math.isnan(place.alt_m):
-            raise self._problem(index, ProblemKind.NO_HEIGHT)
-        if item.frame is Frame.TERRAIN:
-            raise self._problem(index, ProblemKind.TERRAIN)
-        keeps_height = self._ground.autopilot == "ardupilot" and place.alt_m == 0.0
-        if keeps_height and item.command != Cmd.NAV_TAKEOFF:
-            return pos_ned[2]
-        if item.frame is Frame.HOME:
-            return home_down_m - place.alt_m
-        if self._ground.origin_alt_amsl_m is None:
-            raise self._problem(index, ProblemKind.NO_ORIGIN)
-        return self._ground.origin_alt_amsl_m - place.alt_m
-
-
-def _is_here(item: Item) -> bool:
-    return isinstance(item.place, Geographic) and item.place.here

@@ -220,3 +220,43 @@ def test_how_items_are_flown_is_printed_with_every_command(
     out = capsys.readouterr().out
     assert "   82  NAV_SPLINE_WAYPOINT\n         PX4 1.14, PX4 1.15: refused" in out
     assert all(row.command.name in out for row in ROWS)
+
+
+def test_a_rally_point_in_a_zone_is_refused_with_the_zone_and_the_metres(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """clients.md, row 2."""
+    document = box()
+    circle = {"center": [47.3980, 8.545594], "radius": 10.0}
+    document["geoFence"]["circles"] = [{"inclusion": False, "circle": circle, "version": 1}]
+    document["rallyPoints"] = {"points": [[47.3980, 8.545594, 0]], "version": 2}
+    write(file, document)
+
+    assert run(["mission", "check", str(file)]) == ExitCode.REFUSED_BY_GATE
+
+    out = capsys.readouterr().out
+    assert "  refused  rally point 1: " in out
+    assert "inside exclusion circle 'geoFence.circles[0]'" in out
+
+
+def test_a_corner_cut_through_a_zone_is_refused_with_item_zone_and_metres(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """clients.md, row 1: an acceptance radius of 80 m; no leg comes near the circle."""
+    north = waypoint(2, 47.397742 + 90 / 111194.9, 8.545594, 10)
+    north["params"][1] = 80.0
+    east = waypoint(3, 47.397742 + 90 / 111194.9, 8.545594 + 90 / 75270.0, 10)
+    document = plan_document(waypoint(1, 47.397742, 8.545594, 10, command=22), north, east)
+    centre = [47.397742 + 60 / 111194.9, 8.545594 + 36 / 75270.0]
+    circle = {"center": centre, "radius": 4.0}
+    document["geoFence"]["circles"] = [{"inclusion": False, "circle": circle, "version": 1}]
+    write(file, document)
+
+    assert run(["mission", "check", str(file)]) == ExitCode.REFUSED_BY_GATE
+
+    out = capsys.readouterr().out
+    assert "refused  item 3 (NAV_WAYPOINT): turn to " in out
+    assert "inside exclusion circle 'geoFence.circles[0]'" in out
+    north["params"][1] = 0.0
+    write(file, document)
+    assert run(["mission", "check", str(file)]) == ExitCode.DONE
