@@ -89,6 +89,15 @@ def show(file: str, autopilot: AutopilotName | None, as_json: bool) -> int:
     return ExitCode.DONE
 
 
+@mission.command(epilog="Example: gcs mission items")
+def items() -> int:
+    """Print how each mission item is flown, by autopilot and version."""
+    from gcs.cli.mission_items import items_lines
+
+    click.echo("\n".join(items_lines()))
+    return ExitCode.DONE
+
+
 def read_plan(file: str, autopilot: AutopilotName | None) -> Plan:
     """The plan behind a path or the name of a shipped mission.
 

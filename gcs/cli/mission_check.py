@@ -11,10 +11,11 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.operator.errors import ExitError
 from gcs.plan.errors import Finding, Level
+from gcs.plan.legs import Ground, LandingPlace
 from gcs.plan.lint import lint, worst
 from gcs.plan.model import AutopilotName, Geodetic, Plan
-from gcs.plan.path import Ground
 from gcs.plan.place import georeference
+from gcs.plan.settings import USUAL
 from gcs.plan.verify import Verification, verify
 from gcs.plan.zones import zone_specs
 from gcs.policy_file import PolicyFileError, load_policy
@@ -78,10 +79,27 @@ def check_plan(
         north_east_of=projection.north_east,
         origin_alt_amsl_m=origin.alt_amsl_m,
         return_up_m=RETURN_UP_M[autopilot],
+        settings=USUAL[autopilot],
+        rally=_landings(placed, projection, autopilot),
+        on_ground=True,
     )
     verification = verify(placed, ground, verifier)
     start = check_start(verifier, home_ned)
     return Checked(plan, autopilot, policy, at_home, findings, verification, start)
+
+
+def _landings(
+    plan: Plan, projection: Projection, autopilot: AutopilotName
+) -> tuple[LandingPlace, ...]:
+    """The plan's rally points; home is the local origin here."""
+    found = []
+    for number, point in enumerate(plan.rally, start=1):
+        north_m, east_m = projection.north_east(point.lat_deg, point.lon_deg)
+        up_m = point.alt_above_home_m
+        ground_down_m, over_up_m = (-up_m, 0.0) if autopilot == "px4" else (0.0, up_m)
+        ground_ned = (north_m, east_m, ground_down_m)
+        found.append(LandingPlace(f"rally point {number}", ground_ned, over_up_m))
+    return tuple(found)
 
 
 def _choose_home(

@@ -61,19 +61,19 @@ def upload(
     _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
 
 
-@click.command(epilog=f"Example: gcs mission download -o on_board.plan\n\n{EXITS}")
+@click.command(epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
+@click.argument("file", required=False)
 @click.option(
     "-o",
     "--output",
-    default="mission.plan",
-    show_default=True,
     type=click.Path(dir_okay=False, writable=True),
-    help="Where to write it; the suffix chooses the format: .plan, .waypoints or .txt.",
+    help="The same as FILE.",
 )
 @click.option("--force", is_flag=True, help="Write over a file that exists.")
 @with_options(*LINK_OPTIONS)
 def download(
-    output: str,
+    file: str | None,
+    output: str | None,
     force: bool,
     links: tuple[str, ...],
     vehicle: int | None,
@@ -84,11 +84,17 @@ def download(
     as_json: bool,
     take: bool,
 ) -> None:
-    """Read the mission on board into a file."""
+    """Read the mission on board into FILE, mission.plan if none is named.
+
+    The suffix chooses the format: .plan, .waypoints or .txt.
+    """
     from gcs.ipc import Ask
 
-    _check_output(output, force)
-    requests = (Ask(0, "mission_download", path=output),)
+    if file is not None and output is not None:
+        raise ExitError(ExitCode.USAGE, f"one file, not two: {file} and {output}")
+    to = file or output or "mission.plan"
+    _check_output(to, force)
+    requests = (Ask(0, "mission_download", path=to),)
     _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
 
 

@@ -51,6 +51,8 @@ def check_lines(checked: Checked) -> Iterator[str]:
         yield _verdict_line(plan, verdict)
     for problem in checked.verification.path.problems:
         yield f"  refused  {problem.sentence}"
+    for landing in checked.verification.bad_landings:
+        yield f"  refused  {landing.sentence}"
     yield from _return_lines(checked.verification)
     yield f"verdict: {_summary(checked)}"
 
@@ -104,7 +106,10 @@ def check_json(checked: Checked) -> str:
     """One object: findings, legs, verdict."""
     verification = checked.verification
     legs = [] if verification is None else [_leg_json(v) for v in verification.verdicts]
-    problems = [] if verification is None else [p.sentence for p in verification.path.problems]
+    problems = []
+    if verification is not None:
+        problems = [problem.sentence for problem in verification.path.problems]
+        problems += [landing.sentence for landing in verification.bad_landings]
     document = {
         "file": checked.plan.source,
         "name": checked.plan.name,

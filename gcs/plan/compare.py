@@ -1,21 +1,22 @@
 """Is what came back from the vehicle what was sent?  In meaning, not in bytes.
 
-Autopilots store less than MISSION_ITEM_INT can say.  ArduPilot puts its own home at index 0,
-gives frame 6 back as 3, items that have no place back with frame 0, forgets parameters that the
-item does not use, and keeps heights in centimetres.  Everything passes through float32.
+Autopilots store less than MISSION_ITEM_INT can say; `stored.py` has what each of them keeps of
+every parameter.  Both give other frames back than were sent, with the same datum; ArduPilot puts
+its own home at index 0, gives items that have no place back with frame 0, and keeps heights in
+centimetres.  Everything passes through float32.
 """
 
 from __future__ import annotations
 
 import math
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gcs.plan import commands
 from gcs.plan.model import AutopilotName
+from gcs.plan.stored import kept
 from gcs.plan.wire import WireItem
-from gcs.wire.ids import Cmd, MavFrame
+from gcs.wire.ids import MavFrame, MissionType
 
 _DATUM: dict[int, str] = {
     MavFrame.GLOBAL: "AMSL",
@@ -26,39 +27,26 @@ _DATUM: dict[int, str] = {
     MavFrame.GLOBAL_TERRAIN_ALT_INT: "above terrain",
     MavFrame.MISSION: "no position",
 }
-_ARDUPILOT_USES: dict[int, tuple[int, ...]] = {
-    Cmd.NAV_WAYPOINT: (1,),
-    Cmd.NAV_LOITER_UNLIM: (3,),
-    Cmd.NAV_LOITER_TURNS: (1, 3),
-    Cmd.NAV_LOITER_TIME: (1, 3),
-    Cmd.NAV_RETURN_TO_LAUNCH: (),
-    Cmd.NAV_LAND: (1,),
-    Cmd.NAV_TAKEOFF: (1,),
-    Cmd.NAV_SPLINE_WAYPOINT: (1,),
-    Cmd.DO_JUMP: (1, 2),
-    Cmd.DO_CHANGE_SPEED: (1, 2),
-    Cmd.DO_SET_HOME: (1,),
-    Cmd.CONDITION_DELAY: (1,),
-    Cmd.DO_SET_CAM_TRIGG_DIST: (1, 3),
-    Cmd.IMAGE_START_CAPTURE: (2, 3),
-}
-"""Parameters that ArduCopter flies by; of commands that are not here, all four."""
-
 _DEGREE_UNITS = 1
 _HEIGHT_TOLERANCE_M = 0.011
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """At `seq`, `field` was sent as one thing and came back as another, both in words."""
+    """At `seq`, `field` was sent as one thing and is stored as another, both in words.
+
+    `item` is the name of the item's command; empty where it is about the whole mission.
+    """
 
     seq: int
     field: str
     sent: str
     received: str
+    item: str = ""
 
     def __str__(self) -> str:
-        return f"item {self.seq}: {self.field}: sent {self.sent}, received {self.received}"
+        name = f" ({self.item})" if self.item else ""
+        return f"item {self.seq}{name}: {self.field}: sent {self.sent}, stored {self.received}"
 
 
 def same_meaning(
@@ -70,7 +58,8 @@ def same_meaning(
         differences.append(
             Difference(min(len(sent), len(received)), "items", str(len(sent)), str(len(received)))
         )
-    home_items = 1 if autopilot == "ardupilot" else 0
+    mission = not sent or sent[0].mission_type == MissionType.MISSION
+    home_items = 1 if autopilot == "ardupilot" and mission else 0
     for ours, theirs in list(zip(sent, received, strict=False))[home_items:]:
         differences.extend(_differences(ours, theirs, autopilot))
     return differences
@@ -80,17 +69,15 @@ def _differences(ours: WireItem, theirs: WireItem, autopilot: AutopilotName) -> 
     if ours.command != theirs.command:
         named = commands.name(ours.command), commands.name(theirs.command)
         return [Difference(ours.seq, "command", *named)]
+    name = commands.name(ours.command)
     found: list[Difference] = []
 
     def differ(field: str, sent: object, received: object) -> None:
-        found.append(Difference(ours.seq, field, str(sent), str(received)))
+        found.append(Difference(ours.seq, field, str(sent), str(received), name))
 
-    uses: tuple[int, ...] = (1, 2, 3, 4)
-    if autopilot == "ardupilot":
-        uses = _ARDUPILOT_USES.get(ours.command, uses)
-    params = zip(_params(ours), _params(theirs), strict=True)
-    for number, (sent, back) in enumerate(params, start=1):
-        if number in uses and not _same_float(sent, back):
+    params = zip(kept(ours.command, autopilot), _params(ours), _params(theirs), strict=True)
+    for number, (as_stored, sent, back) in enumerate(params, start=1):
+        if not as_stored.same(sent, back):
             differ(f"param{number}", f"{sent:g}", f"{back:g}")
     if autopilot == "px4" and ours.autocontinue != theirs.autocontinue:
         differ("autocontinue", ours.autocontinue, theirs.autocontinue)
@@ -115,17 +102,7 @@ def _params(item: WireItem) -> tuple[float, float, float, float]:
     return (item.param1, item.param2, item.param3, item.param4)
 
 
-def _same_float(a: float, b: float) -> bool:
-    """Equal as the wire carries them: float32, with NaN equal to NaN."""
-    return (math.isnan(a) and math.isnan(b)) or _float32(a) == _float32(b)
-
-
 def _same_height(a: float, b: float) -> bool:
     if math.isnan(a) or math.isnan(b):
         return math.isnan(a) and math.isnan(b)
     return abs(a - b) <= max(_HEIGHT_TOLERANCE_M, abs(a) * 1e-6)
-
-
-def _float32(value: float) -> float:
-    number: float = struct.unpack("<f", struct.pack("<f", value))[0]
-    return number

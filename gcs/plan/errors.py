@@ -47,6 +47,7 @@ class PlanError(Exception):
     def __str__(self) -> str:
         """`file:where: item: what, expected ...`; the hint is for a line of its own."""
         place = f"{self.file}:{self.where}" if self.where else self.file
-        subject = f"{self.item}: " if self.item else ""
+        named = self.where.rpartition(".")[2] == self.item  # the place says it already
+        subject = f"{self.item}: " if self.item and not named else ""
         wanted = f", expected {self.expected}" if self.expected else ""
         return f"{place}: {subject}{self.what}{wanted}"

@@ -18,6 +18,7 @@ from gcs.plan.model import (
     Polygon,
     RallyPoint,
     Zone,
+    open_ring,
 )
 from gcs.wire.ids import Cmd
 
@@ -28,6 +29,8 @@ _VERTEX = {
 _CIRCLE = {True: Cmd.NAV_FENCE_CIRCLE_INCLUSION, False: Cmd.NAV_FENCE_CIRCLE_EXCLUSION}
 _INCLUDES = {Cmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, Cmd.NAV_FENCE_CIRCLE_INCLUSION}
 _MIN_CORNERS = 3
+_OTHER_KINDS = frozenset({*range(5000, 5200)} - {*range(5000, 5005), 5100})
+"""Numbers that MAVLink sets aside for fences and rally points, such as 5005; none is flown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,10 +91,8 @@ def split_fence(
         item = items[index]
         index += 1
         if item.command in _VERTEX.values():
-            zone = _polygon(file, items[index - 1 :])
-            zones.append(zone)
-            assert isinstance(zone.shape, Polygon)
-            index += len(zone.shape.corners) - 1
+            zones.append(_polygon(file, items[index - 1 :]))
+            index += int(item.params[0]) - 1
         elif item.command in _CIRCLE.values():
             zones.append(_circle(file, item))
         elif item.command == Cmd.NAV_FENCE_RETURN_POINT:
@@ -100,6 +101,15 @@ def split_fence(
         elif item.command == Cmd.NAV_RALLY_POINT:
             to = _position(file, item)
             rally.append(RallyPoint(to.lat_deg, to.lon_deg, to.alt_m, item.where))
+        elif item.command in _OTHER_KINDS:
+            raise PlanError(
+                file,
+                item.where,
+                commands.name(item.command),
+                "is a part of a fence or of rally points of a kind that is not known here",
+                "5000 to 5004, or 5100",
+                hint="what is left out of a fence is not guarded: take it out of the file",
+            )
         else:
             flown.append(item)
     return tuple(flown), Fence(tuple(zones), breach), tuple(rally)
@@ -139,7 +149,7 @@ def _polygon(file: str, items: Sequence[Item]) -> Zone:
             hint="is the file whole?",
         )
     places = tuple(LatLon(*_position(file, corner)[:2]) for corner in corners)
-    return _zone(Polygon(places), first)
+    return _zone(Polygon(open_ring(places)), first)
 
 
 def _circle(file: str, item: Item) -> Zone:

@@ -13,6 +13,7 @@ from typing import Protocol
 from gcs.plan import commands
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.errors import Finding, Level
+from gcs.plan.items import Flown, flown_as
 from gcs.plan.lint_fence import lint_fence
 from gcs.plan.lint_jumps import lint_jumps
 from gcs.plan.model import AutopilotName, Frame, Geodetic, Geographic, Item, Local, Plan
@@ -49,7 +50,7 @@ def lint(
     if autopilot and plan.firmware and autopilot != plan.firmware:
         what = f"was written for {plan.firmware} and is checked for {autopilot}"
         findings.append(Finding(Level.WARNING, "", "plan", what))
-    findings += _whole_mission(plan)
+    findings += _whole_mission(plan, who)
     for index, item in enumerate(plan.items):
         findings += _one_item(index, item, who, at_home)
     findings += lint_jumps(plan)
@@ -67,7 +68,7 @@ def item_label(index: int, item: Item) -> str:
     return f"item {index + 1} ({commands.name(item.command)})"
 
 
-def _whole_mission(plan: Plan) -> Iterator[Finding]:
+def _whole_mission(plan: Plan, autopilot: AutopilotName | None) -> Iterator[Finding]:
     if not plan.items:
         if not plan.fence.zones and not plan.rally:
             yield Finding(
@@ -79,11 +80,7 @@ def _whole_mission(plan: Plan) -> Iterator[Finding]:
     if not moving:
         yield Finding(Level.WARNING, "", "mission", "no item flies anywhere")
     elif plan.items[moving[0]].command != Cmd.NAV_TAKEOFF:
-        first = plan.items[moving[0]]
-        what = "is the first to fly, and no take-off comes before it"
-        hint = "a vehicle on the ground will not start this mission"
-        label = item_label(moving[0], first)
-        yield Finding(Level.WARNING, first.where, label, what, hint, moving[0])
+        yield _no_take_off(moving[0], plan.items[moving[0]], autopilot)
     for index, kind in enumerate(kinds[:-1]):
         if kind is Kind.RETURN:
             item = plan.items[index]
@@ -94,6 +91,15 @@ def _whole_mission(plan: Plan) -> Iterator[Finding]:
     if ids != list(range(1, len(ids) + 1)) and any(kind is Kind.JUMP for kind in kinds):
         what = "do not count 1, 2, 3 ...; jumps go to the id, not to the position"
         yield Finding(Level.NOTE, "", "doJumpIds", what)
+
+
+def _no_take_off(index: int, first: Item, autopilot: AutopilotName | None) -> Finding:
+    """Recorded: PX4 takes off by itself (C6, C12), ArduCopter says "Missing Takeoff Cmd" (C3)."""
+    what = "is the first to fly, and no take-off comes before it"
+    level, hint = Level.WARNING, "a vehicle on the ground will not start this mission"
+    if autopilot == "px4":
+        level, hint = Level.NOTE, "on the ground, px4 climbs first to the height of this item"
+    return Finding(level, first.where, item_label(index, first), what, hint, index)
 
 
 def _one_item(
@@ -109,8 +115,15 @@ def _one_item(
         yield finding(Level.ERROR, "a quadrotor is not known to fly this item")
     elif kind is Kind.SET_HOME:
         yield finding(Level.WARNING, "moves home in mid-flight, so that later heights move too")
-    elif item.command == Cmd.NAV_SPLINE_WAYPOINT:
-        yield finding(Level.WARNING, "a smooth curve cannot be checked against a fence")
+    elif item.command == Cmd.DO_FENCE_ENABLE and item.params[0] != 1.0:
+        what = "switches the vehicle's own fence off, in part or whole"
+        yield finding(Level.WARNING, what, "the legs are verified here all the same")
+    if autopilot is not None:
+        match flown_as(item.command, autopilot):
+            case Flown.REFUSED:
+                yield finding(Level.WARNING, f"{autopilot} refuses this item at upload")
+            case Flown.NEVER_STARTS:
+                yield finding(Level.WARNING, f"{autopilot} stores it and never starts the mission")
     if item.frame is Frame.TERRAIN:
         what = "its height is above terrain, which is not known here"
         yield finding(Level.WARNING, what, "heights above home can be checked")

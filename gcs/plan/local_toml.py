@@ -30,11 +30,13 @@ east_m = 3.0
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, TypeAlias
 
 from msgspec import Meta, Struct
 
 from gcs import toml
+from gcs.gate.policy.policy import Policy
 from gcs.plan.errors import PlanError
 from gcs.plan.model import (
     UNSET,
@@ -116,6 +118,9 @@ def read_local(file: str, data: bytes, name: str) -> Plan:
     """`name` is the plan's if the file gives it none.  Raises PlanError with the line."""
     try:
         doc = toml.read(toml.decode(data, file), file)
+        if _is_policy(doc.data):
+            hint = "`gcs mission check MISSION --policy FILE` checks a mission by it"
+            raise PlanError(file, "", "file", "is a policy and no mission", hint=hint)
         # First of all, as other schemas have other keys.
         if doc.data.get("schema", SCHEMA) != SCHEMA:
             what = f"{toml.shown(doc.data['schema'])} is not known"
@@ -124,6 +129,12 @@ def read_local(file: str, data: bytes, name: str) -> Plan:
     except toml.TomlError as error:
         line = str(error.line) if error.line else ""
         raise PlanError(file, line, error.key, error.what, hint=error.hint) from None
+
+
+def _is_policy(data: Mapping[str, object]) -> bool:
+    """Of a policy's keys a mission has only its name and one fence."""
+    fences = isinstance(data.get("fence"), list)
+    return fences or bool(set(Policy.__struct_fields__) & set(data) - {"name", "fence"})
 
 
 def _plan(doc: toml.Document, mission: _Mission, name: str) -> Plan:

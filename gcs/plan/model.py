@@ -111,6 +111,12 @@ class Polygon:
     corners: tuple[LatLon, ...] | tuple[EastNorth, ...]
 
 
+def open_ring(corners: tuple[LatLon, ...]) -> tuple[LatLon, ...]:
+    """Without a last corner that only closes the ring, as GeoJSON and others write it."""
+    closed = len(corners) > 3 and corners[0] == corners[-1]
+    return corners[:-1] if closed else corners
+
+
 @dataclass(frozen=True, slots=True)
 class Circle:
     centre: LatLon | EastNorth

@@ -1,12 +1,17 @@
-"""The path that a plan flies, as straight legs and circles in the vehicle's local frame.
+"""The path that a plan flies: its legs and circles, and the regions beside them.
 
-Geometry only: the gate decides what may be flown.  Every way through the DO_JUMPs is
-walked, so the legs are those of the whole mission, each once.  Where a quadrotor's behaviour
-depends on the autopilot, it follows PX4's navigator and ArduCopter's AUTO mode:
+Geometry only: the gate decides what may be flown.  Every way through the DO_JUMPs is walked, so
+the legs are those of the whole mission, each once.  How each item is flown is in `items.py`, by
+autopilot; this follows PX4's navigator and ArduCopter's AUTO mode:
 
 - a take-off climbs straight up; px4 then flies level to the item's position, ardupilot ignores it;
+- a mission without a take-off that is begun on the ground climbs first to its first item's height
+  (PX4 does so by itself, an ArduCopter is flown there before);
+- at a waypoint the vehicle turns before it is there (`turns.py`), and flies splines as curves
+  (`curves.py`);
 - a landing first flies level to its position, then descends to the height of home;
-- a return climbs to the return height (or stays if higher), flies straight home, and descends;
+- a return climbs to the return height (or stays if higher), flies straight to where it lands
+  (`returns.py`), and descends;
 - LOITER_TURNS flies to the nearest point of its circle and leaves where its turns end; the
   other loiters hover.
 """
@@ -14,163 +19,147 @@ depends on the autopilot, it follows PX4's navigator and ArduCopter's AUTO mode:
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
-from enum import Enum
-from typing import TypeAlias
 
 from gcs.frames import Vec3
-from gcs.plan import commands
+from gcs.plan import commands, returns
+from gcs.plan.circles import circle_ends, entries, way_on
 from gcs.plan.commands import KINDS, Kind
-from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
+from gcs.plan.curves import Neighbours, curve_hull
+from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
+from gcs.plan.items import Flown, flown_as
+from gcs.plan.legs import (
+    FlightPath,
+    Ground,
+    Leg,
+    LegKind,
+    LoiterCircle,
+    Problem,
+    ProblemKind,
+    Region,
+    RegionKind,
+)
+from gcs.plan.model import Item, Plan
+from gcs.plan.turns import blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
-NorthEastOf: TypeAlias = Callable[[float, float], tuple[float, float]]
-"""(lat_deg, lon_deg) -> (north_m, east_m) of the local origin: the vehicle's own projection."""
-
 _VISITS_MAX = 32
-
-
-class LegKind(Enum):
-    CLIMB = "climb"
-    STRAIGHT = "leg"
-    RETURN = "return"
-    DESCENT = "descent"
-
-
-class ProblemKind(Enum):
-    """Why a path cannot be verified: something about it is not known, or cannot be flown."""
-
-    NO_ORIGIN = "the vehicle's origin is not known"
-    TERRAIN = "heights above terrain need a terrain model"
-    NO_POSITION = "it has no position"
-    NO_HEIGHT = "it has no height"
-    NO_RADIUS = "the circle has no radius of its own"
-    NO_RETURN_HEIGHT = "the vehicle's return height is not known"
-    SPLINE = "a smooth curve is not checked"
-    HOME_MOVES = "it moves home, and what follows counts from it"
-    NOT_FLOWN = "it is no item that a quadrotor is known to fly"
-    JUMP_NOWHERE = "it jumps to an item that is not there"
-    TOO_MANY_WAYS = "there are too many ways through the jumps"
+_UNFLYABLE: dict[Flown | None, ProblemKind] = {
+    Flown.MOVES_HOME: ProblemKind.HOME_MOVES,
+    Flown.FENCE_PART: ProblemKind.NOT_OF_A_MISSION,
+    Flown.REFUSED: ProblemKind.REFUSED,
+    Flown.NEVER_STARTS: ProblemKind.NEVER_STARTS,
+}
+_THROUGH = (Flown.STRAIGHT, Flown.STAYS, Flown.CURVE)
+"""A spline leads on to these without a stop."""
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
-    """`item` counts into `Plan.items`."""
+class _Here:
+    """Where the vehicle is when an item begins: at `pos_ned`, or at one of `also`.
 
-    item: int
-    kind: ProblemKind
-    sentence: str
-
-
-@dataclass(frozen=True, slots=True)
-class Leg:
-    """A straight leg in local NED, metres."""
-
-    item: int
-    kind: LegKind
-    from_ned: Vec3
-    to_ned: Vec3
-
-    @property
-    def floor_applies(self) -> bool:
-        """Not to legs that leave or reach the ground."""
-        return self.kind not in (LegKind.CLIMB, LegKind.DESCENT)
-
-
-@dataclass(frozen=True, slots=True)
-class LoiterCircle:
-    item: int
-    centre_ned: Vec3
-    radius_m: float
-
-
-@dataclass(frozen=True, slots=True)
-class Ground:
-    """Where the vehicle's local frame lies, and what of the vehicle shapes a path.
-
-    `north_east_of` and `origin_alt_amsl_m` are None while the origin is not known; then only
-    plans in metres from the take-off point have a path.  `start_ned` is where it stands now.
-    `return_up_m` is its return height above home.
+    `before_ned` is where the waypoint leg that ended at `pos_ned` began; None after anything else.
     """
 
-    autopilot: AutopilotName
-    home_ned: Vec3
-    start_ned: Vec3
-    north_east_of: NorthEastOf | None = None
-    origin_alt_amsl_m: float | None = None
-    return_up_m: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class FlightPath:
-    """`problems` not empty means that the path is not the whole path."""
-
-    legs: tuple[Leg, ...]
-    circles: tuple[LoiterCircle, ...]
-    problems: tuple[Problem, ...]
+    pos_ned: Vec3
+    also: tuple[Vec3, ...] = ()
+    before_ned: Vec3 | None = None
 
     @property
-    def segments(self) -> tuple[tuple[Vec3, Vec3], ...]:
-        return tuple((leg.from_ned, leg.to_ned) for leg in self.legs)
-
-    @property
-    def length_m(self) -> float:
-        """Of the legs, without the circles."""
-        return sum(math.dist(leg.from_ned, leg.to_ned) for leg in self.legs)
+    def places(self) -> tuple[Vec3, ...]:
+        return (self.pos_ned, *self.also)
 
 
 def flight_path(plan: Plan, ground: Ground) -> FlightPath:
     """Never raises: what cannot be known is among the `problems`."""
-    return _Walk(plan, ground).walk()
+    walk = PathWalk(plan, ground)
+    for _ in walk.steps():
+        pass
+    return walk.path
 
 
 class _DeadEndError(Exception):
     """This way through the mission ends here, for a reason that is among the problems."""
 
 
-class _Walk:
+class PathWalk:
+    """The walk along a plan, item by item: 2,000 of them take half a second."""
+
     def __init__(self, plan: Plan, ground: Ground) -> None:
         self._plan = plan
         self._ground = ground
+        self._places = ItemPlaces(ground)
         self._legs: dict[Leg, None] = {}
         self._circles: dict[LoiterCircle, None] = {}
+        self._regions: dict[Region, None] = {}
         self._problems: dict[Problem, None] = {}
-        self._seen: set[tuple[int, Vec3]] = set()
+        self._seen: set[tuple[int, _Here]] = set()
         self._visits: dict[int, int] = {}
-        self._branches: list[tuple[int, Vec3]] = [(0, ground.start_ned)]
+        self._branches: list[tuple[int, _Here]] = []
 
-    def walk(self) -> FlightPath:
+    def steps(self) -> Iterator[None]:
+        """One item a step; after the last one `path` is whole."""
+        self._branches.append((0, self._begin()))
         while self._branches:
-            index, pos_ned = self._branches.pop()
+            index, here = self._branches.pop()
             try:
-                self._follow(index, pos_ned)
+                yield from self._follow(index, here)
             except _DeadEndError:
                 continue
-        return FlightPath(tuple(self._legs), tuple(self._circles), tuple(self._problems))
 
-    def _follow(self, index: int, pos_ned: Vec3) -> None:
-        """Walk from item `index`, entered at `pos_ned`, to the end of the mission or to where this
+    @property
+    def path(self) -> FlightPath:
+        parts = tuple(self._legs), tuple(self._circles), tuple(self._problems)
+        return FlightPath(*parts, tuple(self._regions))
+
+    def _begin(self) -> _Here:
+        """From the ground up, where the mission has no take-off of its own."""
+        start_ned = self._ground.start_ned
+        first = next(
+            (i for i, item in enumerate(self._plan.items) if KINDS.get(item.command) is Kind.MOVE),
+            None,
+        )
+        if first is None or not self._ground.on_ground:
+            return _Here(start_ned)
+        item = self._plan.items[first]
+        if item.command in (Cmd.NAV_TAKEOFF, Cmd.NAV_LAND):
+            return _Here(start_ned)
+        try:
+            wanted_down_m = self._places.down(item, start_ned)
+        except PlaceUnknownError:
+            return _Here(start_ned)
+        least_down_m = self._ground.home_ned[2] - self._ground.settings.first_climb_m
+        return self._climb(first, start_ned, min(wanted_down_m, least_down_m))
+
+    def _follow(self, index: int, here: _Here) -> Iterator[None]:
+        """Walk from item `index`, entered at `here`, to the end of the mission or to where this
         walk was before."""
-        while index < len(self._plan.items) and (index, pos_ned) not in self._seen:
-            self._seen.add((index, pos_ned))
+        while index < len(self._plan.items) and (index, here) not in self._seen:
+            yield
+            self._seen.add((index, here))
             self._visits[index] = self._visits.get(index, 0) + 1
             if self._visits[index] > _VISITS_MAX:
                 raise self._problem(index, ProblemKind.TOO_MANY_WAYS)
             item = self._plan.items[index]
+            unflyable = _UNFLYABLE.get(flown_as(item.command, self._ground.autopilot))
+            if unflyable is not None:
+                raise self._problem(index, unflyable)
             match KINDS.get(item.command):
                 case Kind.MOVE:
-                    pos_ned = self._move(index, item, pos_ned)
+                    try:
+                        here = self._move(index, item, here)
+                    except PlaceUnknownError as error:
+                        raise self._problem(index, error.kind) from None
                 case Kind.RETURN:
-                    self._return(index, pos_ned)
+                    self._return(index, here)
                     return
                 case Kind.JUMP:
-                    self._jump(index, item, pos_ned)
+                    self._jump(index, item, here)
                 case Kind.WAIT | Kind.ACT:
                     pass
-                case Kind.SET_HOME:
-                    raise self._problem(index, ProblemKind.HOME_MOVES)
-                case Kind.FENCE | None:
+                case Kind.SET_HOME | Kind.FENCE | None:
                     raise self._problem(index, ProblemKind.NOT_FLOWN)
             index += 1
 
@@ -185,107 +174,166 @@ class _Walk:
             self._legs[Leg(index, kind, from_ned, to_ned)] = None
         return to_ned
 
+    def _region(
+        self,
+        index: int,
+        kind: RegionKind,
+        starts: tuple[Vec3, ...],
+        ends: tuple[Vec3, ...],
+    ) -> None:
+        """What is no more than its own straight leg is judged as the leg."""
+        if len(set(starts) | set(ends)) > 2:
+            self._regions[Region(index, kind, starts, ends)] = None
+
     # ---------------------------------------------------------------------------- items
 
-    def _jump(self, index: int, item: Item, pos_ned: Vec3) -> None:
+    def _jump(self, index: int, item: Item, here: _Here) -> None:
         """The jump is a branch of its own; going on after it is always possible too."""
         if item.params[1] == 0.0:
             return
         target = self._plan.index_of(item.params[0])
         if target is None:
             raise self._problem(index, ProblemKind.JUMP_NOWHERE)
-        self._branches.append((target, pos_ned))
+        self._branches.append((target, here))
 
-    def _move(self, index: int, item: Item, pos_ned: Vec3) -> Vec3:
-        match item.command:
-            case Cmd.NAV_TAKEOFF:
-                return self._take_off(index, item, pos_ned)
-            case Cmd.NAV_LAND:
-                return self._land(index, item, pos_ned)
-            case Cmd.NAV_LOITER_TURNS:
-                return self._turns(index, item, pos_ned)
-            case Cmd.NAV_SPLINE_WAYPOINT:
-                raise self._problem(index, ProblemKind.SPLINE)
+    def _move(self, index: int, item: Item, here: _Here) -> _Here:
+        match flown_as(item.command, self._ground.autopilot):
+            case Flown.TAKE_OFF | Flown.TAKE_OFF_THEN_PLACE:
+                return self._take_off(index, item, here)
+            case Flown.LAND:
+                return self._land(index, item, here)
+            case Flown.CIRCLE:
+                return self._turns(index, item, here)
+            case Flown.CURVE:
+                return self._curve(index, item, here)
+            case Flown.LEVEL_THEN_HEIGHT:
+                return self._level_then_height(index, item, here)
             case _:
-                to_ned = (*self._horizontal(index, item, pos_ned), self._down(index, item, pos_ned))
-                return self._leg(index, LegKind.STRAIGHT, pos_ned, to_ned)
+                return self._straight(index, item, here)
 
-    def _take_off(self, index: int, item: Item, pos_ned: Vec3) -> Vec3:
-        down_m = min(self._down(index, item, pos_ned), pos_ned[2])
-        top_ned = self._leg(index, LegKind.CLIMB, pos_ned, (*pos_ned[:2], down_m))
-        if self._ground.autopilot == "ardupilot":
-            return top_ned
-        over_ned = (*self._horizontal(index, item, top_ned), down_m)
-        return self._leg(index, LegKind.STRAIGHT, top_ned, over_ned)
+    def _straight(self, index: int, item: Item, here: _Here) -> _Here:
+        aims = self._aims(item, here)
+        to_ned = self._leg(index, LegKind.STRAIGHT, here.pos_ned, aims[0])
+        self._region(index, RegionKind.TURN, here.places, aims)
+        if here.before_ned is not None and self._ground.autopilot == "ardupilot":
+            accept_m = self._ground.settings.accept_m
+            ends = blend(here.before_ned, here.pos_ned, to_ned, accept_m)
+            self._region(index, RegionKind.TURN, (ends[0], here.pos_ned), (ends[1],))
+        also = fewer((*self._turning(item, here.places, to_ned), *aims[1:]), without=to_ned)
+        fast = item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_SPLINE_WAYPOINT)
+        return _Here(to_ned, also, here.pos_ned if fast else None)
 
-    def _land(self, index: int, item: Item, pos_ned: Vec3) -> Vec3:
-        horizontal = self._horizontal(index, item, pos_ned)
-        over_ned = self._leg(index, LegKind.STRAIGHT, pos_ned, (*horizontal, pos_ned[2]))
-        ground_ned = (*horizontal, self._ground.home_ned[2])
-        return self._leg(index, LegKind.DESCENT, over_ned, ground_ned)
+    def _turning(self, item: Item, starts: tuple[Vec3, ...], to_ned: Vec3) -> tuple[Vec3, ...]:
+        settings = self._ground.settings
+        accept_m = settings.accept_m
+        own_m = item.params[1]
+        if self._ground.autopilot == "px4" and item.command == Cmd.NAV_WAYPOINT and own_m > 0.0:
+            accept_m = own_m
+        return turning_places(starts, to_ned, accept_m, settings.accept_up_m)
 
-    def _return(self, index: int, pos_ned: Vec3) -> None:
-        home_ned, up_m = self._ground.home_ned, self._ground.return_up_m
-        if up_m is None:
+    def _climb(self, index: int, from_ned: Vec3, down_m: float) -> _Here:
+        """Straight up; px4 counts a climb as done while something of it is left."""
+        top_ned = (*from_ned[:2], min(down_m, from_ned[2]))
+        if top_ned != from_ned:
+            self._legs[Leg(index, LegKind.CLIMB, from_ned, top_ned, take_off=True)] = None
+        short_m = self._ground.settings.accept_up_m
+        if self._ground.autopilot != "px4" or not short_m:
+            return _Here(top_ned)
+        low_ned = (*top_ned[:2], min(from_ned[2], top_ned[2] + short_m))
+        return _Here(top_ned, (low_ned,) if low_ned != top_ned else ())
+
+    def _take_off(self, index: int, item: Item, here: _Here) -> _Here:
+        top = self._climb(index, here.pos_ned, self._places.down(item, here.pos_ned))
+        if flown_as(item.command, self._ground.autopilot) is Flown.TAKE_OFF:
+            return top
+        over_ned = (*self._places.horizontal(item, top.pos_ned), top.pos_ned[2])
+        self._leg(index, LegKind.STRAIGHT, top.pos_ned, over_ned)
+        self._region(index, RegionKind.TURN, top.places, (over_ned,))
+        return _Here(over_ned, self._turning(item, top.places, over_ned))
+
+    def _land(self, index: int, item: Item, here: _Here) -> _Here:
+        down_m = self._ground.home_ned[2]
+        nominal = self._places.horizontal(item, here.pos_ned)
+        spots = [place[:2] if is_here(item) else nominal for place in here.places]
+        overs = tuple((*at, place[2]) for at, place in zip(spots, here.places, strict=True))
+        self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
+        self._region(index, RegionKind.TURN, here.places, overs)
+        grounds = tuple((*at, down_m) for at in dict.fromkeys(spots))
+        self._leg(index, LegKind.DESCENT, overs[0], grounds[0])
+        near = self._turning(item, (*here.places, *overs), overs[0])
+        self._region(index, RegionKind.LANDING, (*overs, *near), grounds)
+        return _Here(grounds[0], grounds[1:])
+
+    def _level_then_height(self, index: int, item: Item, here: _Here) -> _Here:
+        """LOITER_TO_ALT: over the place at the height it has, then up or down; or straight."""
+        to_ned = self._places.place(item, here.pos_ned)
+        overs = tuple((*to_ned[:2], place[2]) for place in here.places)
+        self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
+        self._leg(index, LegKind.STRAIGHT, overs[0], to_ned)
+        self._region(index, RegionKind.TURN, here.places, (*overs, to_ned))
+        return _Here(to_ned, self._turning(item, (*here.places, *overs), to_ned))
+
+    def _return(self, index: int, here: _Here) -> None:
+        ground = self._ground
+        if ground.return_up_m is None:
             raise self._problem(index, ProblemKind.NO_RETURN_HEIGHT)
-        down_m = min(home_ned[2] - up_m, pos_ned[2])
-        top_ned = self._leg(index, LegKind.CLIMB, pos_ned, (*pos_ned[:2], down_m))
-        over_ned = self._leg(index, LegKind.RETURN, top_ned, (*home_ned[:2], down_m))
-        self._leg(index, LegKind.DESCENT, over_ned, home_ned)
+        if not returns.straight(ground, self._plan):
+            raise self._problem(index, ProblemKind.RETURN_ROUTE)
+        for landing in returns.landing_places(ground, here.places):
+            way = returns.way_to(landing, ground, here.pos_ned)
+            self._leg(index, LegKind.CLIMB, here.pos_ned, way.top_ned)
+            self._leg(index, LegKind.RETURN, way.top_ned, way.over_ned)
+            self._leg(index, LegKind.DESCENT, way.over_ned, way.ground_ned)
+            for starts, ends in returns.regions(landing, ground, here.places):
+                self._region(index, RegionKind.RETURN, starts, ends)
 
-    def _turns(self, index: int, item: Item, pos_ned: Vec3) -> Vec3:
-        north_m, east_m = self._horizontal(index, item, pos_ned)
-        down_m = self._down(index, item, pos_ned)
+    def _turns(self, index: int, item: Item, here: _Here) -> _Here:
+        centres = self._aims(item, here)
+        centre_ned = centres[0]
         turns, _, radius_m, _ = item.params
         if not abs(radius_m) > 0.0 or math.isnan(turns):
             raise self._problem(index, ProblemKind.NO_RADIUS)
-        self._circles[LoiterCircle(index, (north_m, east_m, down_m), abs(radius_m))] = None
-        entry_rad = math.atan2(pos_ned[1] - east_m, pos_ned[0] - north_m)
+        for centre in centres:
+            self._circles[LoiterCircle(index, centre, abs(radius_m))] = None
+        begun = entries(here.places, centre_ned, abs(radius_m))
+        self._leg(index, LegKind.STRAIGHT, here.pos_ned, begun[0])
+        around = way_on(here.places, begun, centre_ned, abs(radius_m))
+        self._region(index, RegionKind.ENTRY, here.places, around)
+        ends = circle_ends(begun, centre_ned, radius_m, turns)
+        return _Here(ends[0], fewer(ends[1:], without=ends[0]))
 
-        def on_circle(angle_rad: float) -> Vec3:
-            return (
-                north_m + abs(radius_m) * math.cos(angle_rad),
-                east_m + abs(radius_m) * math.sin(angle_rad),
-                down_m,
-            )
+    def _curve(self, index: int, item: Item, here: _Here) -> _Here:
+        to_ned = self._places.place(item, here.pos_ned)
+        self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
+        neighbours = Neighbours(here.before_ned, self._next_places(index, to_ned))
+        hull, arrivals = curve_hull(here.places, to_ned, neighbours, self._ground.settings.accept_m)
+        self._region(index, RegionKind.CURVE, here.places, hull)
+        return _Here(to_ned, fewer(arrivals, without=to_ned), here.pos_ned)
 
-        entry_ned = self._leg(index, LegKind.STRAIGHT, pos_ned, on_circle(entry_rad))
-        part = math.fmod(turns, 1.0)
-        if part == 0.0:
-            return entry_ned
-        # Positive radius is clockwise seen from above: north to east, which is this angle's way.
-        return on_circle(entry_rad + math.copysign(2.0 * math.pi * part, radius_m))
+    def _next_places(self, index: int, pos_ned: Vec3) -> tuple[Vec3, ...]:
+        """Where it may go on to from item `index`, by every jump."""
+        found: list[Vec3] = []
+        waiting, seen = [index + 1], set[int]()
+        while waiting:
+            at = waiting.pop()
+            if at in seen or at >= len(self._plan.items):
+                continue
+            seen.add(at)
+            item = self._plan.items[at]
+            if KINDS.get(item.command) in (Kind.MOVE, Kind.RETURN, Kind.WAIT):
+                if flown_as(item.command, self._ground.autopilot) in _THROUGH:
+                    with suppress(PlaceUnknownError):  # told when the walk comes to it
+                        found.append(self._places.place(item, pos_ned))
+                continue
+            waiting.append(at + 1)
+            target = self._plan.index_of(item.params[0]) if item.command == Cmd.DO_JUMP else None
+            if target is not None:
+                waiting.append(target)
+        return tuple(found)
 
-    # --------------------------------------------------------------------------- places
-
-    def _horizontal(self, index: int, item: Item, pos_ned: Vec3) -> tuple[float, float]:
-        place = item.place
-        if isinstance(place, Local):
-            home_ned = self._ground.home_ned
-            return (home_ned[0] + place.north_m, home_ned[1] + place.east_m)
-        if not isinstance(place, Geographic):
-            raise self._problem(index, ProblemKind.NO_POSITION)
-        if place.here:
-            if item.command == Cmd.NAV_WAYPOINT and self._ground.autopilot == "px4":
-                raise self._problem(index, ProblemKind.NO_POSITION)
-            return pos_ned[:2]
-        if self._ground.north_east_of is None:
-            raise self._problem(index, ProblemKind.NO_ORIGIN)
-        return self._ground.north_east_of(place.lat_deg, place.lon_deg)
-
-    def _down(self, index: int, item: Item, pos_ned: Vec3) -> float:
-        place, home_down_m = item.place, self._ground.home_ned[2]
-        if isinstance(place, Local):
-            return home_down_m - place.up_m
-        if not isinstance(place, Geographic) or math.isnan(place.alt_m):
-            raise self._problem(index, ProblemKind.NO_HEIGHT)
-        if item.frame is Frame.TERRAIN:
-            raise self._problem(index, ProblemKind.TERRAIN)
-        keeps_height = self._ground.autopilot == "ardupilot" and place.alt_m == 0.0
-        if keeps_height and item.command != Cmd.NAV_TAKEOFF:
-            return pos_ned[2]
-        if item.frame is Frame.HOME:
-            return home_down_m - place.alt_m
-        if self._ground.origin_alt_amsl_m is None:
-            raise self._problem(index, ProblemKind.NO_ORIGIN)
-        return self._ground.origin_alt_amsl_m - place.alt_m
+    def _aims(self, item: Item, here: _Here) -> tuple[Vec3, ...]:
+        """Where the item leads; one without a place of its own may lead to any of `here`."""
+        aims = [self._places.place(item, here.pos_ned)]
+        if is_here(item):
+            aims += [self._places.place(item, place) for place in here.also]
+        return tuple(dict.fromkeys(aims))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.plan.errors import Finding, Level
 from gcs.plan.json_cursor import Node
-from gcs.plan.model import BreachReturn, Circle, Fence, LatLon, Polygon, Zone
+from gcs.plan.model import BreachReturn, Circle, Fence, LatLon, Polygon, Zone, open_ring
 
 _MIN_CORNERS = 3
 _RADIUS_MAX_M = 1.0e6
@@ -53,7 +53,7 @@ def _read_polygon(entry: Node) -> Zone:
     corners = tuple(read_lat_lon(*corner.items(2)) for corner in node.items())
     if len(corners) < _MIN_CORNERS:
         raise node.error(f"has {len(corners)} corners", f"at least {_MIN_CORNERS}")
-    return _zone(Polygon(corners), entry)
+    return _zone(Polygon(open_ring(corners)), entry)
 
 
 def _read_circle(entry: Node) -> Zone:

@@ -1,17 +1,23 @@
-"""Verification of a whole mission: every leg, every circle, and the way home from each leg.
+"""Verification of a whole mission as it will be flown: every leg, every region beside the legs,
+every circle, the rally points, and the way to where a return lands from each leg.
 
-The gate's verifier judges; this module walks the plan and asks it.
+The gate's verifier judges; this module walks the plan and asks it.  A mission of 2,000 items takes
+a good part of a second: `Verifying` does it in steps, between which others may act.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.refusal import Code, Refusal
+from gcs.plan import returns
+from gcs.plan.legs import FlightPath, Ground, Leg, LegKind, ProblemKind, Region
 from gcs.plan.model import Plan
-from gcs.plan.path import FlightPath, Ground, LegKind, ProblemKind, flight_path
+from gcs.plan.path import PathWalk
 
 _CODES = {
     ProblemKind.NO_ORIGIN: Code.NO_ORIGIN,
@@ -22,7 +28,7 @@ _CODES = {
 
 @dataclass(frozen=True, slots=True)
 class LegVerdict:
-    """One leg (`radius_m` 0), or one circle about `to_ned`.  `refusal` None: cleared.
+    """One leg or region (`radius_m` 0), or one circle about `to_ned`.  `refusal` None: cleared.
 
     `item` counts into `Plan.items`; local NED, metres.
     """
@@ -53,6 +59,8 @@ class Verification:
     path: FlightPath
     verdicts: tuple[LegVerdict, ...]
     blocked_returns: tuple[BlockedReturn, ...]
+    bad_landings: tuple[Refusal, ...] = ()
+    """Rally points where the vehicle must not land; each names its own."""
 
     @property
     def refusal(self) -> Refusal | None:
@@ -63,7 +71,7 @@ class Verification:
             if verdict.refusal is not None:
                 sentence = f"item {verdict.item + 1}: {verdict.refusal.sentence}"
                 return replace(verdict.refusal, sentence=sentence)
-        return None
+        return self.bad_landings[0] if self.bad_landings else None
 
     @property
     def evidence(self) -> tuple[tuple[str, float], ...]:
@@ -91,46 +99,114 @@ def verify(plan: Plan, ground: Ground, verifier: Verifier) -> Verification:
     `ground` and `verifier` must agree about home, origin and autopilot; the zones of the plan's
     own fence are the caller's to hand to the verifier (`zone_specs`).
     """
-    path = flight_path(plan, ground)
-    legs = [
-        LegVerdict(
-            leg.item,
-            leg.kind.value,
-            leg.from_ned,
-            leg.to_ned,
-            0.0,
-            verifier.mission_leg(leg.from_ned, leg.to_ned, floor_applies=leg.floor_applies),
+    verifying = Verifying(plan, ground, verifier)
+    while verifying.result is None:
+        verifying.step()
+    return verifying.result
+
+
+STEP_QUESTIONS = 25
+"""Questions to the verifier in one step: some milliseconds."""
+
+
+class Verifying:
+    """A verification in steps; `result` is None until it is done."""
+
+    def __init__(self, plan: Plan, ground: Ground, verifier: Verifier) -> None:
+        self._ground = ground
+        self._verifier = verifier
+        self._verdicts: list[LegVerdict] = []
+        self._blocked: dict[int, BlockedReturn] = {}
+        self._bad_landings: list[Refusal] = []
+        self._walk = PathWalk(plan, ground)
+        self._questions = self._ask_all()
+        self.result: Verification | None = None
+
+    def step(self) -> None:
+        """Walk on, or ask a few questions more; the last step has the result."""
+        for _ in range(STEP_QUESTIONS):
+            if next(self._questions, None) is None:
+                self.result = Verification(
+                    self._walk.path,
+                    tuple(self._verdicts),
+                    tuple(self._blocked.values()),
+                    tuple(self._bad_landings),
+                )
+                return
+
+    def _ask_all(self) -> Iterator[bool]:
+        """Yields once an item of the path, and once a question."""
+        for _ in self._walk.steps():
+            yield True
+        path = self._walk.path
+        for leg in path.legs:
+            self._verdicts.append(self._leg(leg))
+            yield True
+        for region in path.regions:
+            self._verdicts.append(self._region(region))
+            yield True
+        for circle in path.circles:
+            refusal = self._verifier.mission_circle(circle.centre_ned, circle.radius_m)
+            at_ned = circle.centre_ned
+            self._verdicts.append(
+                LegVerdict(circle.item, "circle", at_ned, at_ned, circle.radius_m, refusal)
+            )
+            yield True
+        self._judge_rally_points()
+        yield True
+        if self._ground.return_up_m is None:
+            return
+        for leg in path.legs:
+            if leg.kind is not LegKind.DESCENT and leg.item not in self._blocked:
+                self._judge_return(leg)
+                yield True
+
+    def _leg(self, leg: Leg) -> LegVerdict:
+        refusal = None
+        if leg.take_off:
+            refusal = self._verifier.mission_take_off(leg.from_ned, leg.to_ned)
+        refusal = refusal or self._verifier.mission_leg(
+            leg.from_ned, leg.to_ned, floor_applies=leg.floor_applies
         )
-        for leg in path.legs
-    ]
-    circles = [
-        LegVerdict(
-            circle.item,
-            "circle",
-            circle.centre_ned,
-            circle.centre_ned,
-            circle.radius_m,
-            verifier.mission_circle(circle.centre_ned, circle.radius_m),
+        return LegVerdict(leg.item, leg.kind.value, leg.from_ned, leg.to_ned, 0.0, refusal)
+
+    def _region(self, region: Region) -> LegVerdict:
+        to_ned = region.ends[0]
+        refusal = self._verifier.mission_region(
+            f"{region.kind.value} {place(to_ned)}",
+            region.starts,
+            region.ends,
+            floor_applies=region.floor_applies,
         )
-        for circle in path.circles
-    ]
-    return Verification(path, (*legs, *circles), _blocked_returns(path, ground, verifier))
+        kind = region.kind.name.lower()
+        return LegVerdict(region.item, kind, region.starts[0], to_ned, 0.0, refusal)
 
+    def _judge_rally_points(self) -> None:
+        """Inside the fence by the margin, from the height that it is flown to down to the ground.
 
-def _blocked_returns(
-    path: FlightPath, ground: Ground, verifier: Verifier
-) -> tuple[BlockedReturn, ...]:
-    """Where the vehicle's failsafe return, which no ground station can stop, leaves the fence.
+        While the return height is not known the rally point's own height is asked about.
+        """
+        for landing in self._ground.rally:
+            way = returns.way_to(landing, self._ground, landing.ground_ned)
+            refusal = self._verifier.mission_leg(
+                way.over_ned, way.ground_ned, floor_applies=False
+            ) or self._verifier.mission_leg(way.over_ned, way.over_ned, floor_applies=False)
+            if refusal is not None:
+                sentence = f"{landing.name}: {refusal.sentence}"
+                self._bad_landings.append(replace(refusal, sentence=sentence))
 
-    Nothing is found while the vehicle's return height is not known.
-    """
-    if ground.return_up_m is None:
-        return ()
-    blocked: dict[int, BlockedReturn] = {}
-    for leg in path.legs:
-        if leg.kind is LegKind.DESCENT or leg.item in blocked:
-            continue
-        refusal = verifier.return_refusal(leg.to_ned, ground.home_ned, ground.return_up_m)
-        if refusal is not None:
-            blocked[leg.item] = BlockedReturn(leg.item, refusal)
-    return tuple(blocked.values())
+    def _judge_return(self, leg: Leg) -> None:
+        """Whether the vehicle's failsafe return, which no ground station can stop, leaves the
+        fence."""
+        ground = self._ground
+        for landing in returns.landing_places(ground, (leg.to_ned,)):
+            up_m = max(ground.return_up_m or 0.0, landing.over_up_m)
+            refusal = self._verifier.return_refusal(leg.to_ned, landing.ground_ned, up_m)
+            if refusal is not None:
+                sentence = refusal.sentence
+                if landing.name != "home":
+                    sentence = f"to {landing.name}: {sentence}"
+                self._blocked[leg.item] = BlockedReturn(
+                    leg.item, replace(refusal, sentence=sentence)
+                )
+                return

@@ -40,11 +40,10 @@ def read_wpl(file: str, data: bytes, name: str, autopilot: AutopilotName | None)
     items, fence, rally = split_fence(file, [row.item for row in rows])
     kept = {item.do_jump_id for item in items}
     rows = [row for row in rows if row.item.do_jump_id in kept]
-    home = _decide_home(rows, autopilot, notes) if rows else None
-    flown = rows[1:] if home is not None else rows
+    home, flown = _decide_home(rows, autopilot, notes) if rows else (None, rows)
     return Plan(
         name,
-        autopilot if autopilot is not None else ("ardupilot" if home else None),
+        autopilot if autopilot is not None else ("ardupilot" if len(flown) < len(rows) else None),
         home,
         _named(file, flown),
         fence,
@@ -133,7 +132,8 @@ def _check_sequence(file: str, rows: list[_Row], notes: list[Finding]) -> None:
 
 def _decide_home(
     rows: list[_Row], autopilot: AutopilotName | None, notes: list[Finding]
-) -> Geodetic | None:
+) -> tuple[Geodetic | None, list[_Row]]:
+    """Home, and the rows that are flown."""
     first = rows[0]
     place = first.item.place
     told = f"item {first.seq}"
@@ -142,14 +142,18 @@ def _decide_home(
             what = "is not home, so it is flown; home goes before it at upload"
             hint = "ArduPilot's own files carry home as item 0"
             notes.append(Finding(Level.WARNING, first.line, told, what, hint))
-        return None
+        return None, rows
     if autopilot == "px4" and not _first_must_be_home(rows):
         what = "could be home, but PX4 files carry none: it is flown as the first waypoint"
         hint = "read it with --autopilot ardupilot if it is home"
         notes.append(Finding(Level.WARNING, first.line, told, what, hint))
-        return None
+        return None, rows
+    if place.here:
+        what = "is where home goes, and is 0, 0: no home was given"
+        notes.append(Finding(Level.NOTE, first.line, told, what))
+        return None, rows[1:]
     notes.append(Finding(Level.NOTE, first.line, told, "is home, so it is not flown"))
-    return Geodetic(place.lat_deg, place.lon_deg, place.alt_m)
+    return Geodetic(place.lat_deg, place.lon_deg, place.alt_m), rows[1:]
 
 
 def _looks_like_home(row: _Row) -> bool:

@@ -44,7 +44,9 @@ class Wake:
 
 @dataclass(frozen=True, slots=True)
 class Cancel:
-    """The transfer is not wanted any more."""
+    """The transfer is not wanted any more, because of `why`."""
+
+    why: str = "cancelled"
 
 
 @dataclass(frozen=True, slots=True)

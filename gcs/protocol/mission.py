@@ -6,7 +6,8 @@
 
 In an upload the vehicle asks and we answer, as often and in whatever order it asks; so a lost
 item is asked for again, and a duplicate does no harm.  An ACCEPTED before every item was asked for
-belongs to an earlier transfer and is not believed.  Any other result ends the transfer.
+belongs to an earlier transfer and is not believed.  INVALID_SEQUENCE is about a duplicate.  Any
+other result ends the transfer.
 """
 
 from __future__ import annotations
@@ -65,6 +66,8 @@ class MissionUpload(Transfer):
         )
         self._asked = 0
         """Items 0 up to this one were asked for."""
+        self._given = 0
+        """The item that was given last."""
 
     @property
     def all_given(self) -> bool:
@@ -79,7 +82,7 @@ class MissionUpload(Transfer):
             target_component=to.compid,
             mission_type=self._parties.mission_type,
         )
-        return self._pending.put(Send(count), self._timing.wait_ns, now_ns)
+        return self._pending.put(Send(count), now_ns)
 
     def handle(self, event: Input, now_ns: int) -> list[TransferEffect]:
         if self.ended:
@@ -90,15 +93,19 @@ class MissionUpload(Transfer):
             case Wake():
                 repeated = self._pending.wake(now_ns)
                 return self._failed(None, self._silence()) if repeated is None else repeated
-            case Cancel():
-                return self._cancelled()
+            case Cancel(why):
+                return self._cancelled(why)
             case _:
                 assert_never(event)
 
     def _heard(self, message: PlanMessage | None, now_ns: int) -> list[TransferEffect]:
         match message:
             case MissionRequest() | MissionRequestInt() if message.seq < len(self._items):
+                if message.seq >= self._asked:
+                    self._pending.answered(now_ns)
                 return self._give(message.seq, now_ns)
+            case MissionAck(type=MissionResult.INVALID_SEQUENCE):
+                return self._not_that_one(now_ns)
             case MissionAck() if message.type != MissionResult.ACCEPTED:
                 return self._refused(message.type)
             case MissionAck() if self.all_given:
@@ -108,11 +115,22 @@ class MissionUpload(Transfer):
 
     def _give(self, seq: int, now_ns: int) -> list[TransferEffect]:
         """Answer a request.  A first request also tells that all before it arrived."""
-        sent = self._pending.put(Send(self._items[seq]), self._timing.wait_ns, now_ns)
+        sent = self._pending.put_item(Send(self._items[seq]), now_ns)
+        self._given = seq
         if seq < self._asked:
             return sent
         self._asked = seq + 1
         return [*sent, TransferProgress(self._asked, len(self._items))]
+
+    def _not_that_one(self, now_ns: int) -> list[TransferEffect]:
+        """ArduPilot answers an item that it has already with INVALID_SEQUENCE, and asks once a
+        second only (GCS_MAVLink, MissionItemProtocol::handle_mission_item).
+
+        Where we had repeated the item, its request for the next one was lost: give it that.
+        """
+        if self._pending.repeats == 0 or self._given + 1 >= len(self._items):
+            return []
+        return self._give(self._given + 1, now_ns)
 
     def _silence(self) -> str:
         if self._asked == 0:
@@ -149,7 +167,7 @@ class MissionDownload(Transfer):
             target_component=to.compid,
             mission_type=self._parties.mission_type,
         )
-        return self._pending.put(Send(ask), self._timing.wait_ns, now_ns)
+        return self._pending.put(Send(ask), now_ns)
 
     def handle(self, event: Input, now_ns: int) -> list[TransferEffect]:
         if self.ended:
@@ -160,18 +178,20 @@ class MissionDownload(Transfer):
             case Wake():
                 repeated = self._pending.wake(now_ns)
                 return self._failed(None, self._silence()) if repeated is None else repeated
-            case Cancel():
-                return self._cancelled()
+            case Cancel(why):
+                return self._cancelled(why)
             case _:
                 assert_never(event)
 
     def _heard(self, message: PlanMessage | None, now_ns: int) -> list[TransferEffect]:
         match self._phase, message:
             case _Fetch.LISTING, MissionCount(count=count):
+                self._pending.answered(now_ns)
                 self._total = count
                 self._phase = _Fetch.FETCHING
                 return self._ask_or_end(now_ns)
             case _Fetch.FETCHING, MissionItemInt(seq=seq) as item if seq == len(self._items):
+                self._pending.answered(now_ns)
                 self._items.append(item)
                 progress = TransferProgress(len(self._items), self._total)
                 return [progress, *self._ask_or_end(now_ns)]
@@ -191,7 +211,7 @@ class MissionDownload(Transfer):
             target_component=to.compid,
             mission_type=self._parties.mission_type,
         )
-        return self._pending.put(Send(ask), self._timing.item_wait_ns, now_ns)
+        return self._pending.put_item(Send(ask), now_ns)
 
     def _silence(self) -> str:
         if self._phase is _Fetch.LISTING:
@@ -218,7 +238,7 @@ class MissionClear(Transfer):
             target_component=to.compid,
             mission_type=self._parties.mission_type,
         )
-        return self._pending.put(Send(clear), self._timing.wait_ns, now_ns)
+        return self._pending.put(Send(clear), now_ns)
 
     def handle(self, event: Input, now_ns: int) -> list[TransferEffect]:
         if self.ended:
@@ -236,7 +256,7 @@ class MissionClear(Transfer):
                 silence = "the vehicle did not answer"
                 repeated = self._pending.wake(now_ns)
                 return self._failed(None, silence) if repeated is None else repeated
-            case Cancel():
-                return self._failed(None, "cancelled")
+            case Cancel(why):
+                return self._failed(None, why)
             case _:
                 assert_never(event)

@@ -34,15 +34,52 @@ PlanMessage: TypeAlias = (
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """The specification's figures."""
+    """How long a message waits for its answer, and when a silent vehicle is given up.
+
+    The specification recommends 1.5 s, 250 ms for items, and 5 retries.  On a link that loses a
+    quarter both ways 5 retries are too few for 500 items: one and the same message is repeated
+    for `silence_ns`, and at least `retries` times.  How long a whole transfer may take is its
+    owner's to say.
+    """
 
     wait_ns: int = 1_500_000_000
     item_wait_ns: int = 250_000_000
     retries: int = 5
-    """Of one and the same message, after its first try."""
+    silence_ns: int = 15_000_000_000
+
+    @property
+    def soonest_ns(self) -> int:
+        """However quick the link is, an item is not asked for again sooner than this."""
+        return self.item_wait_ns // 5
 
 
 SPEC_TIMING = Timing()
+
+
+class RoundTrip:
+    """How long an answer takes on this link, as TCP reckons it (RFC 6298, with Karn's rule)."""
+
+    def __init__(self, timing: Timing) -> None:
+        self._timing = timing
+        self._mean_ns: float | None = None
+        self._spread_ns = 0.0
+
+    def measured(self, took_ns: int) -> None:
+        """An answer to a message that was sent once came after `took_ns`."""
+        if self._mean_ns is None:
+            self._mean_ns, self._spread_ns = float(took_ns), took_ns / 2.0
+            return
+        self._spread_ns += 0.25 * (abs(took_ns - self._mean_ns) - self._spread_ns)
+        self._mean_ns += 0.125 * (took_ns - self._mean_ns)
+
+    @property
+    def wait_ns(self) -> int:
+        """Before an item is asked for again: the specification's, or less on a quick link."""
+        longest_ns = self._timing.item_wait_ns
+        if self._mean_ns is None:
+            return longest_ns
+        wait_ns = round(self._mean_ns + 4.0 * self._spread_ns)
+        return min(longest_ns, max(self._timing.soonest_ns, wait_ns))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,18 +105,32 @@ class Parties:
 class Pending:
     """A message that is repeated until something comes back, or given up."""
 
-    def __init__(self, retries: int) -> None:
-        self._retries = retries
+    def __init__(self, timing: Timing) -> None:
+        self._timing = timing
+        self._round_trip = RoundTrip(timing)
         self._send: Send | None = None
         self._wait_ns = 0
-        self._left = 0
+        self._put_ns = 0
+        self.repeats = 0
         self.deadline_ns: int | None = None
 
-    def put(self, send: Send, wait_ns: int, now_ns: int) -> list[TransferEffect]:
+    def put(self, send: Send, now_ns: int) -> list[TransferEffect]:
         """Send it and start the wait, with all retries ahead."""
-        self._send, self._wait_ns, self._left = send, wait_ns, self._retries
+        return self._start(send, self._timing.wait_ns, now_ns)
+
+    def put_item(self, send: Send, now_ns: int) -> list[TransferEffect]:
+        """The same for an item, or for the question for one: as quick as the link is."""
+        return self._start(send, self._round_trip.wait_ns, now_ns)
+
+    def _start(self, send: Send, wait_ns: int, now_ns: int) -> list[TransferEffect]:
+        self._send, self._wait_ns, self._put_ns, self.repeats = send, wait_ns, now_ns, 0
         self.deadline_ns = now_ns + wait_ns
         return [send]
+
+    def answered(self, now_ns: int) -> None:
+        """What was awaited has come.  After a repeat nobody knows which of them it answers."""
+        if self._send is not None and self.repeats == 0:
+            self._round_trip.measured(now_ns - self._put_ns)
 
     def clear(self) -> None:
         self._send = self.deadline_ns = None
@@ -88,9 +139,12 @@ class Pending:
         """Repeat it if its wait is over; None when it was repeated often enough."""
         if self._send is None or self.deadline_ns is None or now_ns < self.deadline_ns:
             return []
-        if self._left == 0:
+        over = now_ns - self._put_ns >= self._timing.silence_ns
+        if over and self.repeats >= self._timing.retries:
             return None
-        self._left -= 1
+        self.repeats += 1
+        if self.repeats > self._timing.retries:
+            self._wait_ns = min(self._timing.wait_ns, 2 * self._wait_ns)
         self.deadline_ns = now_ns + self._wait_ns
         return [self._send]
 
@@ -100,8 +154,7 @@ class Transfer:
 
     def __init__(self, parties: Parties, timing: Timing) -> None:
         self._parties = parties
-        self._timing = timing
-        self._pending = Pending(timing.retries)
+        self._pending = Pending(timing)
         self.ended = False
 
     @property
@@ -119,11 +172,11 @@ class Transfer:
     def _refused(self, result: int) -> list[TransferEffect]:
         return self._failed(result, f"the vehicle answered {result_name(result)}")
 
-    def _cancelled(self) -> list[TransferEffect]:
+    def _cancelled(self, why: str) -> list[TransferEffect]:
         """Tell the vehicle, so that it need not time out."""
         return [
             self._acknowledge(MissionResult.OPERATION_CANCELLED),
-            *self._failed(None, "cancelled"),
+            *self._failed(None, why),
         ]
 
     def _acknowledge(self, result: MissionResult) -> Send:

@@ -38,7 +38,9 @@ class Missions:
         self._own = own
         self._times = times
         self._timing = Timing(
-            times.real_ns(SPEC_TIMING.wait_ns), times.real_ns(SPEC_TIMING.item_wait_ns)
+            times.real_ns(SPEC_TIMING.wait_ns),
+            times.real_ns(SPEC_TIMING.item_wait_ns),
+            silence_ns=times.real_ns(SPEC_TIMING.silence_ns),
         )
         self._job: Job | None = None
         self._on_board: OnBoard | None = None

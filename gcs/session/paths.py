@@ -9,10 +9,11 @@ from gcs.gate.airspace.projection import Projection
 from gcs.gate.airspace.verifier import verifier_for
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import LandedState
+from gcs.plan.legs import FlightSettings, Ground, LandingPlace
 from gcs.plan.model import AutopilotName, Geodetic, Plan
-from gcs.plan.path import FlightPath, Ground, flight_path
 from gcs.plan.place import georeference
-from gcs.plan.verify import verify as verify_plan
+from gcs.plan.verify import Verification, Verifying
 from gcs.plan.zones import zone_specs
 from gcs.session.telemetry import Telemetry
 
@@ -46,21 +47,31 @@ class ClearedMission:
     warnings: tuple[str, ...]
 
 
-def path_of(plan: Plan, telemetry: Telemetry) -> FlightPath | Refusal:
-    """The whole path from where the vehicle is now, local NED; refused where it is not known."""
-    ground = _ground(telemetry)
-    return ground if isinstance(ground, Refusal) else flight_path(plan, ground)
-
-
-def verify(
-    plan: Plan, policy: Policy, telemetry: Telemetry, now_ns: int
-) -> ClearedMission | Refusal:
+def verifying(
+    plan: Plan,
+    policy: Policy,
+    telemetry: Telemetry,
+    settings: FlightSettings,
+    return_up_m: float | None,
+    rally: tuple[LandingPlace, ...],
+    now_ns: int,
+) -> Verifying | Refusal:
     """The whole mission, from where the vehicle is now, against the policy's fence and its own."""
     if now_ns - telemetry.position_ns > round(policy.position_age_s * 1e9):
         return Refusal(Code.STALE, "the vehicle's position is too old")
-    ground = _ground(telemetry)
-    if isinstance(ground, Refusal):
-        return ground
+    if telemetry.origin is None or telemetry.home_ned is None or telemetry.pos_ned is None:
+        return Refusal(Code.NO_ORIGIN, "the vehicle's origin, home or position is not known yet")
+    ground = Ground(
+        autopilot_name(telemetry),
+        telemetry.home_ned,
+        telemetry.pos_ned,
+        Projection(telemetry.origin, telemetry.autopilot.name).north_east,
+        telemetry.origin.alt_amsl_m,
+        return_up_m,
+        settings,
+        rally,
+        on_ground=telemetry.landed is LandedState.ON_GROUND,
+    )
     verifier = verifier_for(
         policy,
         telemetry.autopilot.name,
@@ -68,21 +79,12 @@ def verify(
         telemetry.origin,
         zone_specs(plan.fence),
     )
-    found = verify_plan(plan, ground, verifier)
+    return Verifying(plan, ground, verifier)
+
+
+def cleared(found: Verification) -> ClearedMission | Refusal:
+    """What was found, as an answer to the operator."""
     if found.refusal is not None:
         return found.refusal
     warning = found.return_warning
     return ClearedMission(found.evidence, (": ".join(warning),) if warning else ())
-
-
-def _ground(telemetry: Telemetry) -> Ground | Refusal:
-    if telemetry.origin is None or telemetry.home_ned is None or telemetry.pos_ned is None:
-        return Refusal(Code.NO_ORIGIN, "the vehicle's origin, home or position is not known yet")
-    return Ground(
-        autopilot_name(telemetry),
-        telemetry.home_ned,
-        telemetry.pos_ned,
-        Projection(telemetry.origin, telemetry.autopilot.name).north_east,
-        telemetry.origin.alt_amsl_m,
-        telemetry.return_up_m,
-    )

@@ -16,13 +16,14 @@ from gcs.plan.lint import lint
 from gcs.plan.model import Geodetic, Plan
 from gcs.plan.reader import read
 from gcs.plan.wire import WireItem, to_wire
+from gcs.plan.wire_fence import fence_to_wire, has_heights, rally_to_wire
 from gcs.session.paths import autopilot_name, on_earth
 from gcs.session.telemetry import Telemetry
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import MissionItemInt
 
 MAX_ITEMS = 2_000
-"""More would keep the 20 Hz tick waiting while they are verified."""
+"""More would keep the 20 Hz tick waiting while they are read."""
 
 STOPS = (Kind.MOVE, Kind.WAIT, Kind.RETURN)
 """Items whose reaching ends a mission, where they are the last of their kind."""
@@ -35,6 +36,10 @@ class Prepared:
     plan: Plan
     sent: tuple[WireItem, ...]
     remarks: tuple[tuple[Level, str], ...]
+    fence: tuple[WireItem, ...] = ()
+    rally: tuple[WireItem, ...] = ()
+    not_sent: str = ""
+    """What of the plan is not sent, to end a sentence with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +64,7 @@ def prepare(path: str, data: bytes, telemetry: Telemetry) -> Prepared | Refusal:
     home = Geodetic(*telemetry.home) if telemetry.home else None
     written = read(path, data, who)
     if not written.items:
-        hint = "`gcs mission clear` takes a mission off; fences are checked, not uploaded"
+        hint = "`gcs mission clear` takes a mission off; a fence leaves with a mission only"
         raise PlanError(path, "", "mission", "has no items", hint=hint)
     if len(written.items) > MAX_ITEMS:
         what = f"has {len(written.items)} items"
@@ -73,7 +78,12 @@ def prepare(path: str, data: bytes, telemetry: Telemetry) -> Prepared | Refusal:
     plan = on_earth(written, telemetry)
     if isinstance(plan, Refusal):
         return plan
-    return Prepared(plan, to_wire(plan, who, home), tuple(remarks))
+    sent, rally = to_wire(plan, who, home), rally_to_wire(plan.rally)
+    if has_heights(plan.fence):
+        remarks.append((Level.WARNING, "fence: is kept by the gate and not sent: it has heights"))
+        return Prepared(plan, sent, tuple(remarks), (), rally, "; its fence is not sent")
+    fence = fence_to_wire(path, plan.fence)
+    return Prepared(plan, sent, tuple(remarks), fence, rally)
 
 
 def on_board(plan: Plan, sent: tuple[WireItem, ...]) -> OnBoard:

@@ -215,6 +215,7 @@ class Vehicle:
             work += self._explained(self._commands.heard(heard, now_ns), telemetry, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += self._learn(self._settings.heard(heard, telemetry, now_ns), telemetry)
+            work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif type(message) in MISSION_MESSAGES:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
@@ -314,7 +315,7 @@ class Vehicle:
                 case settings.ParameterKnown(name, value):
                     work.append(Record(ParamItem(telemetry.sysid, name, value)))
                 case settings.ReturnHeightKnown(up_m):
-                    telemetry.return_up_m, telemetry.return_told = up_m, True
+                    telemetry.return_up_m = up_m
                     if up_m is not None:
                         work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
                 case settings.AcceptanceKnown(radius_m):

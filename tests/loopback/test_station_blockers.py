@@ -3,7 +3,7 @@
 An expected failure is one of the station, to be mended there, and names its row of autopilots.md,
 "Defects of gcs".  That the vehicle does what was recorded is tested in tests/unit: real boot in
 test_real_boot.py, the mode after disarming in test_mode_after_disarming.py, altered items in
-test_altered_items.py.  Altered items of shipped missions are marked in test_missions.py.
+test_altered_items.py.
 """
 
 from __future__ import annotations
@@ -64,7 +64,6 @@ def test_a_mode_that_is_asked_for_on_the_ground_is_seen() -> None:
     assert flight.vehicle.mode_name == "AUTO.LOITER"
 
 
-@expected(4, "the pitch of PX4's take-off comes back as 0: the read-back is another mission")
 def test_a_plan_whose_take_off_has_a_pitch_is_flown(tmp_path: Path) -> None:
     path = tmp_path / "pitched.waypoints"
     path.write_text(PITCHED, encoding="utf-8")

@@ -7,10 +7,10 @@ whether the numbers are finite, are checked by the caller, the verifier.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from gcs.frames import Vec3
+from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.clearance import (
     NO_MARGINS,
     Face,
@@ -24,6 +24,14 @@ from gcs.gate.airspace.clearance import (
     swept_body_measure,
 )
 from gcs.gate.airspace.explain import zone_refusal
+from gcs.gate.airspace.hulls import (
+    ground_track,
+    ground_track_between,
+    hull_inside,
+    hull_outside,
+    ring_inside,
+    ring_outside,
+)
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import TOLERANCE_M
 from gcs.gate.policy.policy import Braking, Policy
@@ -46,13 +54,11 @@ class FenceJudge:
     def margins(self) -> Margins:
         return Margins(self.policy.margin_h_m, self.policy.margin_v_m)
 
-    def point(
-        self, subject: str, pos_ned: Vec3, *, floor_applies: bool, radius_m: float = 0.0
-    ) -> Refusal | None:
-        """Refuses a point that does not keep the margin, with a disc of `radius_m` around it."""
+    def point(self, subject: str, pos_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
+        """Refuses a point that does not keep the margin."""
         here = Motion.between(pos_ned, pos_ned)
         for zone in self.zones:
-            for measure in self._point_measures(zone, here, floor_applies, radius_m):
+            for measure in self._point_measures(zone, here, floor_applies, self.margins):
                 margin_m = self.margins.of(measure.face)
                 if not measure.least_m >= self._need(measure.face, margin_m):
                     return zone_refusal(subject, measure, margin_m, leg=False)
@@ -75,6 +81,40 @@ class FenceJudge:
                 return refusal
         return None
 
+    def hull(
+        self,
+        subject: str,
+        starts_ned: Sequence[Vec3],
+        ends_ned: Sequence[Vec3],
+        *,
+        floor_applies: bool,
+        margins: Margins | None = None,
+    ) -> Refusal | None:
+        """Refuses the convex hull of the points if any of it does not keep the margin.
+
+        A hull that starts closer than the margin must not come closer than its starts are.
+        """
+        margins = self.margins if margins is None else margins
+        for zone in self.zones:
+            measures = self._hull_measures(zone, starts_ned, ends_ned, floor_applies, margins)
+            for measure in measures:
+                margin_m = margins.of(measure.face)
+                need_m = min(self._need(measure.face, margin_m), measure.start_m - TOLERANCE_M)
+                inside = measure.start_m >= self._outermost(measure.face)
+                if not (inside and measure.least_m >= need_m):
+                    return zone_refusal(subject, measure, margin_m, leg=True)
+        return None
+
+    def ring(self, subject: str, centre_ned: Vec3, radius_m: float) -> Refusal | None:
+        """Refuses the line of a level circle if any of it does not keep the margin."""
+        here = Motion.between(centre_ned, centre_ned)
+        for zone in self.zones:
+            for measure in self._ring_measures(zone, here, radius_m):
+                margin_m = self.margins.of(measure.face)
+                if not measure.least_m >= self._need(measure.face, margin_m):
+                    return zone_refusal(subject, measure, margin_m, leg=False)
+        return None
+
     def outside(self, subject: str, pos_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
         """Refuses a point that is outside.  No margin is asked for.
 
@@ -83,7 +123,7 @@ class FenceJudge:
         """
         here = Motion.between(pos_ned, pos_ned)
         for zone in self.zones:
-            for measure in self._point_measures(zone, here, floor_applies, 0.0, NO_MARGINS):
+            for measure in self._point_measures(zone, here, floor_applies, NO_MARGINS):
                 if not measure.least_m >= self._outermost(measure.face):
                     return zone_refusal(subject, measure, 0.0, leg=False)
         return None
@@ -132,22 +172,55 @@ class FenceJudge:
         return self._need(face, self.stop_limit(face).outermost_m)
 
     def _point_measures(
-        self,
-        zone: Zone,
-        here: Motion,
-        floor_applies: bool,
-        radius_m: float,
-        margins: Margins | None = None,
+        self, zone: Zone, here: Motion, floor_applies: bool, margins: Margins
     ) -> Iterator[Measure]:
         if zone.inclusion:
-            for m in inclusion_measures(zone, here, floor_applies=floor_applies):
-                wide_m = radius_m if m.face is Face.SIDES else 0.0
-                yield Measure(zone, m.face, m.start_m - wide_m, m.least_m - wide_m)
+            yield from inclusion_measures(zone, here, floor_applies=floor_applies)
             return
-        beside_m = -zone.shape.clearance(here.a_en) - radius_m
         stacked_m = max(zone.floor_up_m - here.a_up_m, here.a_up_m - zone.ceiling_up_m)
-        if not stacked_m >= self._need(Face.BODY, (margins or self.margins).v_m):
+        if not stacked_m >= self._need(Face.BODY, margins.v_m):
+            beside_m = -zone.shape.clearance(here.a_en)
             yield Measure(zone, Face.BODY, beside_m, beside_m)
+
+    def _ring_measures(self, zone: Zone, here: Motion, radius_m: float) -> Iterator[Measure]:
+        for m in self._point_measures(zone, here, True, self.margins):
+            clear_m = m.least_m
+            if m.face is Face.SIDES:
+                clear_m = ring_inside(zone.shape, here.a_en, radius_m)
+            elif m.face is Face.BODY:
+                clear_m = ring_outside(zone.shape, here.a_en, radius_m)
+            yield Measure(zone, m.face, clear_m, clear_m)
+
+    def _hull_measures(
+        self,
+        zone: Zone,
+        starts_ned: Sequence[Vec3],
+        ends_ned: Sequence[Vec3],
+        floor_applies: bool,
+        margins: Margins,
+    ) -> Iterator[Measure]:
+        starts = [Motion.between(start, start) for start in starts_ned]
+        points = [(m.a_en, m.a_up_m) for m in starts]
+        points += [(end[:2], end[2]) for end in map(enu_from_ned, ends_ned)]
+        if not zone.inclusion:
+            start_m = min(body_clearance(zone, m.a_en, m.a_up_m) for m in starts)
+            if not start_m >= TOLERANCE_M:
+                yield Measure(zone, Face.BODY, start_m, start_m)
+                return
+            beside_m = min(self._need(Face.BODY, margins.v_m), start_m - TOLERANCE_M)
+            low, high = zone.floor_up_m - beside_m, zone.ceiling_up_m + beside_m
+            track = ground_track_between(points, low, high)
+            if track:
+                yield Measure(zone, Face.BODY, start_m, hull_outside(zone.shape, track))
+            return
+        low, high = min(up for _, up in points), max(up for _, up in points)
+        start_low, start_high = min(m.a_up_m for m in starts), max(m.a_up_m for m in starts)
+        start_m = min(zone.shape.clearance(m.a_en) for m in starts)
+        yield Measure(zone, Face.SIDES, start_m, hull_inside(zone.shape, ground_track(points)))
+        top = zone.ceiling_up_m
+        yield Measure(zone, Face.CEILING, top - start_high, top - high)
+        if floor_applies:
+            yield Measure(zone, Face.FLOOR, start_low - zone.floor_up_m, low - zone.floor_up_m)
 
     def _inclusion_leg(
         self, zone: Zone, subject: str, motion: Motion, margins: Margins, floor_applies: bool

@@ -22,6 +22,7 @@ from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_
 from gcs.gate.airspace.prediction import bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.zones import Zone, build_zones
+from gcs.gate.geometry import TOLERANCE_M
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import ZoneSpec
 from gcs.gate.refusal import Code, Refusal
@@ -212,19 +213,49 @@ class Verifier:
             )
         )
 
+    def mission_region(
+        self,
+        subject: str,
+        starts_ned: Sequence[Vec3],
+        ends_ned: Sequence[Vec3],
+        *,
+        floor_applies: bool,
+    ) -> Refusal | None:
+        """Why the convex hull of the points, where a mission may fly, is refused; None if it is
+        clear.
+
+        As a leg, it may be as close to a boundary as its starts are.
+        """
+        points = (*starts_ned, *ends_ned)
+        refusal = self._unusable(region=[value for point in points for value in point])
+        if refusal is not None:
+            return refusal
+        for point in points:
+            limit = self._limits(subject, point, floor_applies=floor_applies)
+            if limit is not None:
+                return limit
+        return self._judge.hull(subject, starts_ned, ends_ned, floor_applies=floor_applies)
+
     def mission_circle(self, centre_ned: Vec3, radius_m: float) -> Refusal | None:
         """Why a loiter circle is refused; None if it is clear.
 
-        The disc of the circle, not its rim alone, has to be clear.
+        Its line counts and not its inside, where the mast may stand that it goes round.
         """
         refusal = self._unusable(circle=(*centre_ned, radius_m))
         if refusal is not None:
             return refusal
         reach_m = abs(radius_m)
         subject = f"the circle of {metres(reach_m)} m about {place(centre_ned)}"
-        return self._limits(subject, centre_ned, allow=Margins(-reach_m, 0.0)) or self._judge.point(
-            subject, centre_ned, floor_applies=True, radius_m=reach_m
-        )
+        beyond = self._limits(subject, centre_ned, allow=Margins(-reach_m, 0.0))
+        return beyond or self._judge.ring(subject, centre_ned, reach_m)
+
+    def mission_take_off(self, from_ned: Vec3, top_ned: Vec3) -> Refusal | None:
+        """Why a take-off of a mission is refused: the policy's highest one binds it as well."""
+        up_m, most_m = from_ned[2] - top_ned[2], self.policy.takeoff.max_up_m
+        if up_m > most_m + TOLERANCE_M:
+            sentence = f"take-off to {metres(up_m)} m, the policy's highest is {metres(most_m)} m"
+            return Refusal(Code.TOO_HIGH, sentence, (("up_m", up_m), ("max_up_m", most_m)))
+        return None
 
     def start(self, pos_ned: Vec3) -> Refusal | None:
         """See `check_start`."""

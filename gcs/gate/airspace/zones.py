@@ -78,7 +78,8 @@ def _place(spec: ZoneSpec, home_ned: Vec3 | None, projection: Projection | None)
             corners = ((west, south), (east, south), (east, north), (west, north))
             placed = Polygon(tuple(local(c) for c in corners))
         case PolygonSpec(corners):
-            here = tuple(local(c) for c in corners)
+            closed = len(corners) > 3 and corners[0] == corners[-1]
+            here = tuple(local(c) for c in (corners[:-1] if closed else corners))
             fault = polygon_fault(here)
             if fault is not None:
                 return Refusal(Code.POLICY, f"fence zone '{spec.name}': {fault}", zone=spec.name)

@@ -44,6 +44,9 @@ class Download(Job):
             data = write(self._path, plan, autopilot).data if self._path else b""
         except PlanError as error:
             return self.end(OutcomeKind.ABORTED, Code.BAD_MISSION, str(error))
+        if self._path and not plan.items:
+            text = f"no mission is on board: {self._path} was not written"
+            return self.end(OutcomeKind.ABORTED, Code.NO_MISSION, text)
         if self._path:
             self.stop_transfer()
             return [WriteFile(self.asked.request_id, self._path, data)]

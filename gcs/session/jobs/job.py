@@ -1,7 +1,8 @@
 """What all jobs share: one request about missions, its transfer, its verdict and its outcome.
 
-Upload    READING -> (verdict) -> UPLOADING -> READING BACK -> on board
-Start     READING BACK -> (verdict: the gate's)
+Upload    READING -> LEARNING -> VERIFYING -> (verdict) -> UPLOADING -> READING BACK -> on board;
+          the last two for the fence and the rally points of the plan first
+Start     LEARNING -> READING BACK -> VERIFYING -> (verdict: the gate's)
 Download  (verdict) -> DOWNLOADING -> WRITING -> done
 Clear     (verdict) -> CLEARING -> done
 """
@@ -129,7 +130,9 @@ class Job(ABC):
     def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         if self._transfer is None:
             return []
-        given = Cancel() if now_ns >= self._transfer_ends_ns else Wake()
+        given: Cancel | Wake = Wake()
+        if now_ns >= self._transfer_ends_ns:
+            given = Cancel(f"{self.progress_of()} took too long")
         return self._follow(self._transfer.handle(given, now_ns), view, now_ns)
 
     # --------------------------------------------------------------------------- transfer
@@ -145,10 +148,12 @@ class Job(ABC):
     def stop_transfer(self) -> None:
         self._transfer = None
 
-    def parties(self, view: VehicleView) -> tuple[Address, Address, MissionType]:
-        """Us, the vehicle, and that it is about the mission (not fence, not rally points)."""
+    def parties(
+        self, view: VehicleView, kind: MissionType = MissionType.MISSION
+    ) -> tuple[Address, Address, MissionType]:
+        """Us, the vehicle, and what it is about: the mission, the fence or the rally points."""
         telemetry = view.telemetry
-        return self.asked.own, Address(telemetry.sysid, telemetry.compid), MissionType.MISSION
+        return self.asked.own, Address(telemetry.sysid, telemetry.compid), kind
 
     def progress_of(self) -> str:
         """What the transfer under way is called on the screen."""

@@ -10,24 +10,25 @@ from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import StartMission
 from gcs.plan import compare
+from gcs.plan.verify import Verification
 from gcs.protocol.mission import MissionDownload
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import (
     LEFT,
     Asked,
-    Job,
     JobWork,
     OnBoardChanged,
     VehicleView,
     code_of,
 )
-from gcs.session.paths import autopilot_name, verify
+from gcs.session.jobs.verified import VerifiedJob
+from gcs.session.paths import autopilot_name, cleared
 from gcs.session.plans import OnBoard, item_of
 from gcs.session.work import AskGate, ToGate
 from gcs.wire.messages import MissionItemInt
 
 
-class Start(Job):
+class Start(VerifiedJob):
     """The mission on board, read back and verified once more; then the gate decides."""
 
     def __init__(self, asked: Asked, on_board: OnBoard) -> None:
@@ -35,6 +36,9 @@ class Start(Job):
         self._on_board = on_board
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        return self.learn(view, now_ns)
+
+    def learnt(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         download = MissionDownload(*self.parties(view), self.asked.timing)
         return self.begin(download, len(self._on_board.sent), view, now_ns)
 
@@ -47,15 +51,19 @@ class Start(Job):
     def done(
         self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int
     ) -> list[JobWork]:
-        """It is still the mission that was verified, and its path still clears: the gate's turn."""
-        plan, sent = self._on_board.plan, self._on_board.sent
+        """Is it still the mission that was verified?"""
         received = tuple(item_of(message) for message in items)
-        differences = compare.same_meaning(sent, received, autopilot_name(view.telemetry))
+        sent, name = self._on_board.sent, autopilot_name(view.telemetry)
+        differences = compare.same_meaning(sent, received, name)
         if differences:
             text = f"another mission is on board than was verified: {differences[0]}"
             forget: list[JobWork] = [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
             return forget + self.refuse(Refusal(Code.BAD_MISSION, text))
-        answer = verify(plan, view.policy, view.telemetry, now_ns)
+        return self.verify(self._on_board.plan, view, now_ns)
+
+    def verified(self, found: Verification, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """Where its path still clears, it is the gate's turn."""
+        answer = cleared(found)
         if isinstance(answer, Refusal):
             return self.refuse(answer)
         self.over = True

@@ -1,62 +1,56 @@
 """Upload: a plan file, verified whole, brought on board and read back.
 
-A mission leaves only if every leg of it clears the fence; what the vehicle then holds is read
-back and compared in meaning.
+A mission leaves only if all of it clears the fence; what the vehicle then holds is read back and
+compared in meaning.  The plan's own fence and rally points leave before it, as a PX4 judges a
+mission by the fence that it has; a plan without them leaves those on board as they are.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from gcs.gate.effects import Level, OutcomeKind
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan import compare
 from gcs.plan.errors import PlanError
-from gcs.plan.model import Plan
+from gcs.plan.legs import FlightPath
+from gcs.plan.verify import Verification
 from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload, MissionUpload
 from gcs.report import AttachmentItem, MissionItem
 from gcs.session.effects import ReadFile, Record
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.jobs.job import (
-    LEFT,
-    NODE,
-    Asked,
-    Job,
-    JobWork,
-    OnBoardChanged,
-    VehicleView,
-)
-from gcs.session.paths import autopilot_name, path_of, verify
-from gcs.session.plans import item_of, message_of, on_board, prepare
+from gcs.session.jobs.job import LEFT, NODE, Asked, JobWork, OnBoardChanged, VehicleView
+from gcs.session.jobs.verified import VerifiedJob
+from gcs.session.paths import autopilot_name, cleared
+from gcs.session.plans import Prepared, item_of, message_of, on_board, prepare
 from gcs.session.work import Log, ToGate
+from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
 
-RETURN_HEIGHT_WAIT_NS = 15_000_000_000
-"""How long a plan waits for the vehicle's return height, which a lossy link may lose many times."""
-LOOK_NS = 50_000_000
+_NAMES = {MissionType.MISSION: "mission", MissionType.FENCE: "fence", MissionType.RALLY: "rally"}
 
 
 @dataclass(frozen=True, slots=True)
-class _Waiting:
-    """A plan that was read before the return height was known; how long it waits for that."""
+class _Plan:
+    """The plan that is on its way."""
 
     path: str
     data: bytes
-    until_ns: int
-    look_ns: int
+    prepared: Prepared
 
 
-class Upload(Job):
+class Upload(VerifiedJob):
     """A plan file, verified whole, brought on board and read back."""
 
     def __init__(self, asked: Asked, path: str) -> None:
         super().__init__(asked)
         self._path = path
-        self._waiting: _Waiting | None = None
-        self._plan: Plan | None = None
-        self._sent: tuple[WireItem, ...] = ()
+        self._plan: _Plan | None = None
+        self._flown: FlightPath | None = None
+        self._left: list[tuple[MissionType, tuple[WireItem, ...]]] = []
+        """What is to be brought on board yet; the first is under way."""
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         return [ReadFile(self.asked.request_id, self._path)]
@@ -68,56 +62,57 @@ class Upload(Job):
             return self.bad_file(f"{news.path}: {news.error}")
         return self._prepare(news.path, news.data, view, now_ns)
 
-    @property
-    def deadline_ns(self) -> int | None:
-        return self._waiting.look_ns if self._waiting else super().deadline_ns
-
-    def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
-        waiting = self._waiting
-        if waiting is None:
-            return super().wake(view, now_ns)
-        if view.telemetry.return_told or now_ns >= waiting.until_ns:
-            return self._prepare(waiting.path, waiting.data, view, now_ns)
-        self._waiting = replace(waiting, look_ns=now_ns + LOOK_NS)
-        return []
-
-    def _waits(self, path: str, data: bytes, view: VehicleView, now_ns: int) -> bool:
-        """Whether a return that could not be verified waits for the return height, and is to."""
-        before, self._waiting = self._waiting, None
-        if before is not None or view.telemetry.return_told:
-            return False
-        until_ns = now_ns + self.asked.times.real_ns(RETURN_HEIGHT_WAIT_NS)
-        self._waiting = _Waiting(path, data, until_ns, now_ns + LOOK_NS)
-        return True
-
     def _prepare(self, path: str, data: bytes, view: VehicleView, now_ns: int) -> list[JobWork]:
-        """From bytes to a verified plan on its way, or to the reason why not."""
+        """From bytes to a plan that can be verified, or to the reason why not."""
         try:
             prepared = prepare(path, data, view.telemetry)
         except PlanError as error:
             return self.bad_file(str(error), error.hint)
         if isinstance(prepared, Refusal):
             return self.refuse(prepared)
+        self._plan = _Plan(path, data, prepared)
         work: list[JobWork] = [
             Log(level, NODE, f"{path}: {text}") for level, text in prepared.remarks
         ]
-        answer = verify(prepared.plan, view.policy, view.telemetry, now_ns)
+        return work + self.learn(view, now_ns)
+
+    def learnt(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        assert self._plan is not None
+        return self.verify(self._plan.prepared.plan, view, now_ns)
+
+    def verified(self, found: Verification, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """The verdict; a mission that clears is on its way."""
+        assert self._plan is not None
+        answer = cleared(found)
         if isinstance(answer, Refusal):
-            blocked = answer.code is Code.RTL_BLOCKED
-            if blocked and self._waits(path, data, view, now_ns):
-                return []
-            return work + self.refuse(answer)
-        work += [Log(Level.WARNING, NODE, f"{path}: {text}") for text in answer.warnings]
-        self._plan, self._sent = prepared.plan, prepared.sent
+            return self.refuse(answer)
+        path, prepared = self._plan.path, self._plan.prepared
+        work: list[JobWork] = [
+            Log(Level.WARNING, NODE, f"{path}: {text}") for text in answer.warnings
+        ]
+        self._flown = found.path
         work += [
-            Record(AttachmentItem(path, "application/octet-stream", data)),
+            Record(AttachmentItem(path, "application/octet-stream", self._plan.data)),
             self.accept(answer.evidence),
             ToGate(MissionLoaded("", 0)),
             OnBoardChanged(None),
         ]
-        items = tuple(message_of(item) for item in self._sent)
-        upload = MissionUpload(*self.parties(view), items, self.asked.timing)
-        return work + self.begin(upload, len(items), view, now_ns)
+        self._left = [
+            (kind, items)
+            for kind, items in (
+                (MissionType.FENCE, prepared.fence),
+                (MissionType.RALLY, prepared.rally),
+                (MissionType.MISSION, prepared.sent),
+            )
+            if items
+        ]
+        return work + self._bring(view, now_ns)
+
+    def _bring(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        kind, items = self._left[0]
+        messages = tuple(message_of(item) for item in items)
+        upload = MissionUpload(*self.parties(view, kind), messages, self.asked.timing)
+        return self.begin(upload, len(items), view, now_ns)
 
     def progress_of(self) -> str:
         reads_back = isinstance(self._transfer, MissionDownload)
@@ -128,39 +123,57 @@ class Upload(Job):
     ) -> list[JobWork]:
         if isinstance(self._transfer, MissionUpload):
             return self._read_back(view, now_ns)
-        return self._compare(tuple(item_of(message) for message in items), view)
+        return self._compare(tuple(item_of(message) for message in items), view, now_ns)
 
     def failed(
         self, result: int | None, text: str, view: VehicleView, now_ns: int
     ) -> list[JobWork]:
         """Where only the last ack went missing, what is on board settles it."""
+        kind, _ = self._left[0]
         if isinstance(self._transfer, MissionUpload) and self._transfer.all_given:
             log = Log(Level.WARNING, NODE, f"upload: {text}: reading back")
             return [log, *self._read_back(view, now_ns)]
+        if kind is not MissionType.MISSION:
+            text = f"the plan's {_NAMES[kind]} was not brought on board: {text}"
         return super().failed(result, text, view, now_ns)
 
     def _read_back(self, view: VehicleView, now_ns: int) -> list[JobWork]:
-        download = MissionDownload(*self.parties(view), self.asked.timing)
-        return self.begin(download, len(self._sent), view, now_ns)
+        kind, items = self._left[0]
+        download = MissionDownload(*self.parties(view, kind), self.asked.timing)
+        return self.begin(download, len(items), view, now_ns)
 
-    def _compare(self, received: tuple[WireItem, ...], view: VehicleView) -> list[JobWork]:
+    def _compare(
+        self, received: tuple[WireItem, ...], view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
         """Believe what the vehicle holds, not what was sent."""
-        plan = self._plan
-        assert plan is not None
-        differences = compare.same_meaning(self._sent, received, autopilot_name(view.telemetry))
+        kind, sent = self._left[0]
+        differences = compare.same_meaning(sent, received, autopilot_name(view.telemetry))
         if differences:
-            text = f"read back, it is another mission: {differences[0]}"
+            text = f"read back, it is another {_NAMES[kind]}: {differences[0]}"
             return self.end(OutcomeKind.ABORTED, Code.VEHICLE_REFUSED, text)
-        work: list[JobWork] = [OnBoardChanged(on_board(plan, self._sent))]
-        path = path_of(plan, view.telemetry)
-        if not isinstance(path, Refusal):
-            points = tuple(dict.fromkeys(end for leg in path.segments for end in leg))
-            work.append(Record(MissionItem(plan.name, points)))
-        work.append(ToGate(MissionLoaded(plan.name, len(plan.items))))
-        text = f"{len(plan.items)} items are on board, read back equal"
+        del self._left[0]
+        return self._bring(view, now_ns) if self._left else self._on_board()
+
+    def _on_board(self) -> list[JobWork]:
+        assert self._plan is not None
+        assert self._flown is not None
+        prepared = self._plan.prepared
+        plan = prepared.plan
+        points = tuple(dict.fromkeys(end for leg in self._flown.segments for end in leg))
+        work: list[JobWork] = [
+            OnBoardChanged(on_board(plan, prepared.sent)),
+            Record(MissionItem(plan.name, points)),
+            ToGate(MissionLoaded(plan.name, len(plan.items))),
+        ]
+        parts = [f"{len(plan.items)} items"]
+        if prepared.fence:
+            parts.append(f"a fence of {len(plan.fence.zones)} zones")
+        if prepared.rally:
+            parts.append(f"{len(prepared.rally)} rally points")
+        text = f"{', '.join(parts)} are on board, read back equal{prepared.not_sent}"
         return work + self.end(OutcomeKind.COMPLETE, None, text)
 
     def leave(self) -> list[JobWork]:
-        if self._plan is None:  # it has no verdict yet
+        if self._flown is None:  # it has no verdict yet
             return self.refuse(Refusal(Code.OPERATOR_LOST, LEFT))
         return super().leave()

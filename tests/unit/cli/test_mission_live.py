@@ -34,6 +34,7 @@ def connection(monkeypatch: pytest.MonkeyPatch) -> FakeConnection:
         ("upload", ["FILE"], ["mission_upload"]),
         ("fly", ["FILE"], ["control", "mission_upload", "mission_start"]),
         ("download", ["-o", "NEW"], ["mission_download"]),
+        ("download", ["NEW"], ["mission_download"]),
         ("clear", [], ["mission_clear"]),
     ],
 )
@@ -58,6 +59,13 @@ def test_a_download_goes_to_a_new_file_of_a_format_we_know(
     result = gcs("mission", "download", "-o", tmp_path / name)
     assert result.exit_code == ExitCode.USAGE
     assert told in result.output
+    assert connection.sent == []
+
+
+def test_a_download_goes_to_one_file(connection: FakeConnection, tmp_path: Path) -> None:
+    result = gcs("mission", "download", tmp_path / "a.plan", "-o", tmp_path / "b.plan")
+    assert result.exit_code == ExitCode.USAGE
+    assert "one file, not two" in result.output
     assert connection.sent == []
 
 

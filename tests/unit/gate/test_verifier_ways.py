@@ -116,10 +116,11 @@ def test_a_leg_that_leaves_or_reaches_the_ground_is_free_of_the_floor() -> None:
     assert code_of(verifier.mission_leg(over, ground, floor_applies=True)) is Code.TOO_CLOSE
 
 
-def test_a_loiter_circle_is_judged_by_its_whole_disc() -> None:
+def test_a_loiter_circle_is_judged_by_its_line_and_not_by_what_it_goes_round() -> None:
     verifier = around(OUTER, TOWER)
     assert verifier.mission_circle(at(0, 40, 10), 20.0) is None
-    assert code_of(verifier.mission_circle(at(0, 40, 10), 60.0)) is Code.INSIDE_EXCLUSION
+    assert verifier.mission_circle(at(0, 40, 10), 60.0) is None
+    assert code_of(verifier.mission_circle(at(0, 40, 10), 45.0)) is Code.INSIDE_EXCLUSION
     assert code_of(verifier.mission_circle(at(0, 40, 30), 111.0)) is Code.OUTSIDE_FENCE
     assert code_of(verifier.mission_circle(at(0, 40, 10), NAN)) is Code.NON_FINITE
 

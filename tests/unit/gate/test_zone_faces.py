@@ -265,24 +265,31 @@ class TestPoints:
         less = math.nextafter(sure, 0.0)
         assert judge(lid).point("it", (0.0, 0.0, -less), floor_applies=True) is not None
 
-    def test_a_disc_widens_the_sides_and_the_body_and_not_the_heights(self) -> None:
-        def disc(place: Vec3, radius_m: float) -> Code | None:
-            fence = judge(YARD, TOWER)
-            return code(fence.point("it", at(*place), floor_applies=True, radius_m=radius_m))
+    def test_a_ring_counts_beside_sides_and_body_and_not_in_height(self) -> None:
+        def ring(place: Vec3, radius_m: float) -> Code | None:
+            return code(judge(YARD, TOWER).ring("it", at(*place), radius_m))
 
-        assert disc((50, 40, 15), 37.75) is None
-        assert disc((50, 40, 15), 38.25) is Code.TOO_CLOSE
-        assert disc((50, 40, 15), 40.25) is Code.OUTSIDE_FENCE
-        assert disc((50, 20, 15), 12.0) is None
+        assert ring((50, 40, 15), 37.75) is None
+        assert ring((50, 40, 15), 38.25) is Code.TOO_CLOSE
+        assert ring((50, 40, 15), 40.25) is Code.OUTSIDE_FENCE
+        assert ring((50, 20, 15), 12.0) is None
         fence = judge(TOWER)
-        near = fence.point("it", at(42, 0, 15), floor_applies=True, radius_m=10.25)
+        near = fence.ring("it", at(42, 0, 15), 10.25)
         assert near == Refusal(
             Code.TOO_CLOSE,
             "it is only 1.8 m from exclusion polygon 'tower', margin 2.0 m",
             (("clear_m", 1.75), ("margin_m", 2.0)),
             "tower",
         )
-        assert fence.point("it", at(42, 0, 15), floor_applies=True, radius_m=9.75) is None
+        assert fence.ring("it", at(42, 0, 15), 9.75) is None
+
+    def test_a_ring_may_go_round_a_body(self) -> None:
+        """The tower's corners are 7.07 m from its middle."""
+        fence = judge(TOWER)
+        assert fence.ring("it", at(25, 0, 15), 9.25) is None
+        assert code(fence.ring("it", at(25, 0, 15), 8.75)) is Code.TOO_CLOSE
+        assert code(fence.ring("it", at(25, 0, 15), 6.0)) is Code.INSIDE_EXCLUSION
+        assert code(fence.ring("it", at(25, 0, 15), 2.0)) is Code.INSIDE_EXCLUSION
 
     def test_inside_at_all_is_asked_for_from_the_tolerance_on(self) -> None:
         here = at(0, 0, 0)

@@ -86,6 +86,32 @@ def test_a_waypoint_at_0_0(who: AutopilotName, level: Level) -> None:
     assert (found.level, found.index) == (level, 1)
 
 
+def test_what_a_multirotor_flies_is_not_called_unknown() -> None:
+    land_start, to_alt = simple(3, 189, 2, [0] * 7), waypoint(4, 47.39785, 8.5456, 20, command=31)
+    for who in ("px4", "ardupilot"):
+        found = lint(read_json(plan_document(TAKEOFF, AWAY, land_start, to_alt)), who)
+        assert [
+            f for f in found if f.level is not Level.WARNING or "written for" not in f.what
+        ] == []
+
+
+def test_an_ardupilot_on_the_ground_does_not_start_without_a_take_off() -> None:
+    document = plan_document(AWAY)
+    document["mission"]["firmwareType"] = 3
+    found = only(lint(read_json(document), "ardupilot"))
+    assert (found.level, "will not start" in found.hint) == (Level.WARNING, True)
+
+
+@pytest.mark.parametrize(("enable", "count"), [(0, 1), (2, 1), (1, 0)])
+def test_a_mission_that_switches_the_vehicle_s_fence_off_is_warned_of(
+    enable: int, count: int
+) -> None:
+    document = plan_document(TAKEOFF, AWAY, simple(3, 207, 2, [enable, 0, 0, 0, 0, 0, 0]))
+    document["mission"]["firmwareType"] = 3
+    found = lint(read_json(document), "ardupilot")
+    assert ["fence off" in f.what for f in found] == [True] * count
+
+
 def test_a_landing_at_0_0_is_here() -> None:
     assert findings(TAKEOFF, AWAY, waypoint(3, 0, 0, 0, command=21)) == []
 
@@ -93,7 +119,7 @@ def test_a_landing_at_0_0_is_here() -> None:
 @pytest.mark.parametrize(
     ("items", "level", "words"),
     [
-        ([AWAY], Level.WARNING, "no take-off"),
+        ([AWAY], Level.NOTE, "no take-off"),
         ([TAKEOFF, waypoint(2, 47.39785, 8.5456, -3)], Level.WARNING, "3 m lower than home"),
         ([TAKEOFF, waypoint(2, 47.39785, 8.5456, 600)], Level.WARNING, "600 m above home"),
         ([TAKEOFF, waypoint(2, 47.39785, 8.5806, 10)], Level.WARNING, "2.6 km from item 1"),
@@ -101,8 +127,8 @@ def test_a_landing_at_0_0_is_here() -> None:
         ([TAKEOFF, simple(2, 16, 0, [0, 0, 0, 0, 47.3978, 8.5456, 100])], Level.ERROR, "388.0 m"),
         ([TAKEOFF, simple(2, 16, 10, [0, 0, 0, 0, 47.3978, 8.5456, 9])], Level.WARNING, "terrain"),
         ([TAKEOFF, simple(2, 30001, 2, [0] * 7)], Level.ERROR, "not known to fly"),
-        ([TAKEOFF, simple(2, 189, 2, [0] * 7)], Level.ERROR, "not known to fly"),
-        ([TAKEOFF, waypoint(2, 47.39785, 8.5456, 10, 82)], Level.WARNING, "curve"),
+        ([TAKEOFF, waypoint(2, 47.39785, 8.5456, 10, 82)], Level.WARNING, "refuses this item"),
+        ([TAKEOFF, simple(2, 114, 2, [5] * 7)], Level.WARNING, "never starts the mission"),
         ([TAKEOFF, simple(2, 179, 2, [1, 0, 0, 0, 0, 0, 0])], Level.WARNING, "moves home"),
         ([TAKEOFF, simple(2, 20, 2, [0] * 7), AWAY | {"doJumpId": 3}], Level.WARNING, "ends the"),
     ],

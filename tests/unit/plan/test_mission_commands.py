@@ -10,6 +10,7 @@ import pytest
 
 from gcs.cli.main import run
 from gcs.exit_codes import ExitCode
+from gcs.plan.items import ROWS
 from tests.sample_files import elsewhere
 from tests.unit.plan.samples import LOCAL, box, plan_document, simple, waypoint
 
@@ -191,3 +192,71 @@ def test_a_mission_without_items_says_so(
     empty.write_text("QGC WPL 110\n")
     assert run(["mission", "show", str(empty)]) == ExitCode.DONE
     assert "no items" in capsys.readouterr().out
+
+
+def test_a_version_that_is_not_known_is_named_once(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(file, box() | {"version": 3})
+    assert run(["mission", "check", str(file)]) == ExitCode.BAD_FILE
+    assert f"{file}:version: is 3, expected 1" in capsys.readouterr().err
+
+
+def test_a_policy_is_no_mission_and_the_option_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    policy = tmp_path / "policy.toml"
+    policy.write_text('name = "mine"\nmargin_h_m = 3.0\n')
+    assert run(["mission", "check", str(policy)]) == ExitCode.BAD_FILE
+    err = capsys.readouterr().err
+    assert "is a policy and no mission" in err
+    assert "--policy FILE" in err
+
+
+def test_how_items_are_flown_is_printed_with_every_command(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run(["mission", "items"]) == ExitCode.DONE
+    out = capsys.readouterr().out
+    assert "   82  NAV_SPLINE_WAYPOINT\n         PX4 1.14, PX4 1.15: refused" in out
+    assert all(row.command.name in out for row in ROWS)
+
+
+def test_a_rally_point_in_a_zone_is_refused_with_the_zone_and_the_metres(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """clients.md, row 2."""
+    document = box()
+    circle = {"center": [47.3980, 8.545594], "radius": 10.0}
+    document["geoFence"]["circles"] = [{"inclusion": False, "circle": circle, "version": 1}]
+    document["rallyPoints"] = {"points": [[47.3980, 8.545594, 0]], "version": 2}
+    write(file, document)
+
+    assert run(["mission", "check", str(file)]) == ExitCode.REFUSED_BY_GATE
+
+    out = capsys.readouterr().out
+    assert "  refused  rally point 1: " in out
+    assert "inside exclusion circle 'geoFence.circles[0]'" in out
+
+
+def test_a_corner_cut_through_a_zone_is_refused_with_item_zone_and_metres(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """clients.md, row 1: an acceptance radius of 80 m; no leg comes near the circle."""
+    north = waypoint(2, 47.397742 + 90 / 111194.9, 8.545594, 10)
+    north["params"][1] = 80.0
+    east = waypoint(3, 47.397742 + 90 / 111194.9, 8.545594 + 90 / 75270.0, 10)
+    document = plan_document(waypoint(1, 47.397742, 8.545594, 10, command=22), north, east)
+    centre = [47.397742 + 60 / 111194.9, 8.545594 + 36 / 75270.0]
+    circle = {"center": centre, "radius": 4.0}
+    document["geoFence"]["circles"] = [{"inclusion": False, "circle": circle, "version": 1}]
+    write(file, document)
+
+    assert run(["mission", "check", str(file)]) == ExitCode.REFUSED_BY_GATE
+
+    out = capsys.readouterr().out
+    assert "refused  item 3 (NAV_WAYPOINT): turn to " in out
+    assert "inside exclusion circle 'geoFence.circles[0]'" in out
+    north["params"][1] = 0.0
+    write(file, document)
+    assert run(["mission", "check", str(file)]) == ExitCode.DONE

@@ -9,8 +9,9 @@ import pytest
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin, Projection
+from gcs.plan.legs import FlightPath, Ground, LegKind, LoiterCircle, ProblemKind
 from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
-from gcs.plan.path import FlightPath, Ground, LegKind, LoiterCircle, ProblemKind, flight_path
+from gcs.plan.path import flight_path
 
 ORIGIN = Origin(47.397742, 8.545594, 488.0)
 PROJECTION = Projection(ORIGIN, "px4")
@@ -22,6 +23,8 @@ GROUND = Ground(
     origin_alt_amsl_m=488.0,
     return_up_m=30.0,
 )
+COPTER = replace(GROUND, autopilot="ardupilot")
+"""PX4 refuses LOITER_TURNS and splines at upload (scenario C8_upload_item_kinds)."""
 NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -127,7 +130,8 @@ def test_a_jump_loop_without_a_waypoint_ends() -> None:
 
 
 def test_a_circle_is_entered_at_its_nearest_point_and_left_there_after_whole_turns() -> None:
-    flown = path(at(0, 0, 5, 22), at(20, 0, 5, 18, (2.0, 0.0, 6.0, 0.0)), at(20, 30, 5))
+    turns = at(20, 0, 5, 18, (2.0, 0.0, 6.0, 0.0))
+    flown = path(at(0, 0, 5, 22), turns, at(20, 30, 5), ground=COPTER)
 
     assert flown.circles == (LoiterCircle(1, (20.0, 0.0, -5.0), 6.0),)
     assert flown.segments[1][1] == pytest.approx((14, 0, -5))
@@ -138,13 +142,15 @@ def test_a_circle_is_entered_at_its_nearest_point_and_left_there_after_whole_tur
 def test_a_quarter_turn_leaves_the_circle_on_the_side_it_turns_to(
     radius: float, east: float
 ) -> None:
-    flown = path(at(0, 0, 5, 22), at(20, 0, 5, 18, (0.25, 0.0, radius, 0.0)), at(20, 0, 9))
+    turns = at(20, 0, 5, 18, (0.25, 0.0, radius, 0.0))
+    flown = path(at(0, 0, 5, 22), turns, at(20, 0, 9), ground=COPTER)
 
     assert flown.segments[2][0] == pytest.approx((20, east, -5))
 
 
 def test_turns_without_end_through_a_jump_are_given_up_and_said() -> None:
-    flown = path(at(0, 0, 5, 22), at(20, 0, 5, 18, (0.123, 0.0, 6.0, 0.0)), jump(2, -1.0))
+    turns = at(20, 0, 5, 18, (0.123, 0.0, 6.0, 0.0))
+    flown = path(at(0, 0, 5, 22), turns, jump(2, -1.0), ground=COPTER)
 
     assert [problem.kind for problem in flown.problems] == [ProblemKind.TOO_MANY_WAYS]
 
@@ -169,10 +175,12 @@ def geographic(frame: Frame, place: Geographic, command: int = 16) -> Item:
         ),
         (geographic(Frame.HOME, Geographic(0.0, 0.0, 5.0)), GROUND, ProblemKind.NO_POSITION),
         (geographic(Frame.HOME, Geographic(47.4, 8.5, math.nan)), GROUND, ProblemKind.NO_HEIGHT),
-        (at(1, 0, 5, 82), GROUND, ProblemKind.SPLINE),
-        (at(1, 0, 5, 18), GROUND, ProblemKind.NO_RADIUS),
+        (at(1, 0, 5, 82), GROUND, ProblemKind.REFUSED),
+        (at(1, 0, 5, 112), GROUND, ProblemKind.NEVER_STARTS),
+        (at(1, 0, 5, 530), COPTER, ProblemKind.REFUSED),
+        (at(1, 0, 5, 18), COPTER, ProblemKind.NO_RADIUS),
         (at(1, 0, 5, 30001), GROUND, ProblemKind.NOT_FLOWN),
-        (at(1, 0, 5, 5001), GROUND, ProblemKind.NOT_FLOWN),
+        (at(1, 0, 5, 5001), GROUND, ProblemKind.NOT_OF_A_MISSION),
         (at(1, 0, 5, 179), GROUND, ProblemKind.HOME_MOVES),
         (jump(9), GROUND, ProblemKind.JUMP_NOWHERE),
         (at(1, 0, 5, 20), replace(GROUND, return_up_m=None), ProblemKind.NO_RETURN_HEIGHT),

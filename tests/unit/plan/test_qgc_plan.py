@@ -59,6 +59,16 @@ def test_inclusion_false_is_an_exclusion_zone() -> None:
     assert ring.shape == Circle(LatLon(47.0, 8.0), 25.5)
 
 
+def test_a_ring_that_is_closed_by_its_first_corner_is_the_same_polygon() -> None:
+    corners = [[47.0, 8.0], [47.1, 8.0], [47.1, 8.1]]
+    document = box()
+    ring = {"inclusion": True, "polygon": [*corners, corners[0]], "version": 1}
+    document["geoFence"]["polygons"] = [ring]
+    shape = read_json(document).fence.zones[0].shape
+    assert isinstance(shape, Polygon)
+    assert [list(corner) for corner in shape.corners] == corners
+
+
 def test_a_home_without_height_is_kept_without_height() -> None:
     document = box()
     document["mission"]["plannedHomePosition"][2] = None

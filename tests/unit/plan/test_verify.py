@@ -12,8 +12,8 @@ from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.refusal import Code
+from gcs.plan.legs import Ground
 from gcs.plan.model import Frame, Item, Local, Plan
-from gcs.plan.path import Ground
 from gcs.plan.verify import Verification, verify
 from gcs.wire.ids import Cmd
 
@@ -22,6 +22,9 @@ HOME = (0.0, 0.0, 0.0)
 GROUND = Ground("px4", HOME, HOME, Projection(ORIGIN, "px4").north_east, 488.0, return_up_m=30.0)
 TOWER = CircleSpec(3.0, (10.0, 10.0), name="tower", inclusion=False)
 """East 10, north 10: between home and the far corner, beside every leg of ROUND."""
+
+
+COPTER = replace(GROUND, autopilot="ardupilot")
 
 
 def verifier(*zones: CircleSpec) -> Verifier:
@@ -50,7 +53,7 @@ def checked(
 
 def test_every_leg_and_circle_has_a_verdict_and_the_numbers_add_up() -> None:
     circle = item(Cmd.NAV_LOITER_TURNS, 40, 0, 5, radius_m=4.0)
-    found = checked(*ROUND[:2], circle, zones=())
+    found = checked(*ROUND[:2], circle, ground=COPTER, zones=())
     assert [(v.item, v.kind, v.radius_m) for v in found.verdicts] == [
         (0, "climb", 0.0),
         (1, "leg", 0.0),
@@ -74,7 +77,7 @@ def test_the_first_refusal_names_its_item() -> None:
 
 def test_a_circle_that_leaves_the_fence_is_refused_though_the_way_to_it_is_clear() -> None:
     wide = item(Cmd.NAV_LOITER_TURNS, 40, 0, 5, radius_m=140.0)
-    found = checked(ROUND[0], wide, zones=())
+    found = checked(ROUND[0], wide, ground=COPTER, zones=())
     assert [v.kind for v in found.verdicts if v.refusal is not None] == ["circle"]
     assert found.refusal is not None
     assert found.refusal.sentence.startswith("item 2: the circle of 140")

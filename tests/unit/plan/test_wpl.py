@@ -43,6 +43,29 @@ def test_home_before_a_take_off_is_home_for_everyone(autopilot: AutopilotName | 
     assert [(n.level, n.where, n.item) for n in plan.notes] == [(Level.NOTE, "2", "item 0")]
 
 
+@pytest.mark.parametrize("autopilot", ["ardupilot", None])
+def test_a_home_of_0_0_is_none_and_its_row_is_not_flown(autopilot: AutopilotName | None) -> None:
+    plan = read_text(wpl("0 1 0 16 0 0 0 0 0 0 0 1", TAKEOFF, FIRST, JUMP, LAND), autopilot)
+
+    assert plan.home is None
+    assert plan.firmware == "ardupilot"
+    assert [item.command for item in plan.items] == [22, 16, 177, 21]
+    assert plan.items[2].params[0] == 2.0
+    (note,) = plan.notes
+    assert (note.level, note.what) == (
+        Level.NOTE,
+        "is where home goes, and is 0, 0: no home was given",
+    )
+
+
+@pytest.mark.parametrize("command", [5005, 5010, 5101])
+def test_a_part_of_a_fence_of_another_kind_is_no_mission_item(command: int) -> None:
+    error = refused(wpl(f"0 0 0 {command} 40 0 0 0 47.0 8.0 0 1"))
+
+    assert error.where == "2"
+    assert "of a fence or of rally points of a kind that is not known" in error.what
+
+
 def test_without_home_the_jump_still_goes_to_the_same_item() -> None:
     plan = read_text(WITHOUT_HOME, "px4")
 

@@ -21,7 +21,7 @@ from gcs.session.missions import Missions
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, Decide, ToGate, Work
-from gcs.wire.messages import Message, MissionCurrent, MissionItemReached
+from gcs.wire.messages import Message, MissionCount, MissionCurrent, MissionItemReached
 from tests.unit.plan import samples
 from tests.unit.session.jobs.script import START_NS, Board, placed
 from tests.unit.session.plans import BOX, LAT, LON, plan
@@ -255,7 +255,7 @@ def test_a_job_s_time_is_the_missions_time() -> None:
     assert script.missions.deadline_ns is None
     script.ask("mission_upload", "a.plan")
     assert script.missions.deadline_ns is None  # it waits for a file, not for the vehicle
-    script.board.deaf_from_seq = 0
+    script.board.deaf_to = [MissionCount]
     script.read(BOX)
     assert script.missions.deadline_ns == START_NS + 3 * SECOND_NS // 2
 

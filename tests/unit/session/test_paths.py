@@ -11,10 +11,12 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.refusal import Code, Refusal
+from gcs.plan.legs import FlightPath
 from gcs.plan.model import Plan
-from gcs.plan.path import FlightPath
+from gcs.plan.settings import USUAL
+from gcs.plan.verify import Verification, Verifying
 from gcs.protocol.autopilot import ARDUPILOT, GENERIC, PX4, Autopilot
-from gcs.session.paths import ClearedMission, autopilot_name, on_earth, path_of, verify
+from gcs.session.paths import ClearedMission, autopilot_name, cleared, on_earth, verifying
 from gcs.session.telemetry import Telemetry
 from tests.unit.plan import samples
 from tests.unit.session.jobs.script import START_NS, placed
@@ -29,8 +31,21 @@ def read(data: bytes) -> Plan:
 
 
 def path(data: bytes, telemetry: Telemetry | None = None) -> FlightPath:
-    found = path_of(read(data), telemetry or placed())
-    assert isinstance(found, FlightPath)
+    found = verified(read(data), telemetry or placed())
+    assert isinstance(found, Verification)
+    return found.path
+
+
+def verified(
+    plan: Plan, telemetry: Telemetry, policy: Policy = DEFAULT, now_ns: int = START_NS
+) -> Verification | Refusal:
+    """With parameters as delivered and no rally points."""
+    settings = USUAL[autopilot_name(telemetry)]
+    found = verifying(plan, policy, telemetry, settings, telemetry.return_up_m, (), now_ns)
+    if isinstance(found, Verifying):
+        while found.result is None:
+            found.step()
+        return found.result
     return found
 
 
@@ -74,7 +89,7 @@ def test_a_return_flies_at_the_vehicle_s_own_return_height_and_lands() -> None:
 def test_what_is_not_known_is_no_path(unknown: str) -> None:
     telemetry = placed()
     setattr(telemetry, unknown, None)
-    assert refusal(path_of(read(BOX), telemetry)) is Code.NO_ORIGIN
+    assert refusal(verified(read(BOX), telemetry)) is Code.NO_ORIGIN
 
 
 def test_placed_on_earth_metres_become_degrees_and_degrees_stay() -> None:
@@ -96,7 +111,9 @@ def judged(
 ) -> ClearedMission | Refusal:
     """The verdict so long after the vehicle's last position."""
     plan = data if isinstance(data, Plan) else read(data)
-    return verify(plan, policy, telemetry or placed(), START_NS + round(after_s * SECOND_NS))
+    now_ns = START_NS + round(after_s * SECOND_NS)
+    found = verified(plan, telemetry or placed(), policy, now_ns)
+    return found if isinstance(found, Refusal) else cleared(found)
 
 
 def test_a_path_inside_the_fence_clears_with_its_numbers() -> None:

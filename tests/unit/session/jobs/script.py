@@ -35,6 +35,9 @@ from gcs.wire.messages import (
     MissionItemInt,
     MissionRequestInt,
     MissionRequestList,
+    ParamError,
+    ParamRequestRead,
+    ParamValue,
 )
 from tests.unit.session.vehicles import HOME, SECOND_NS, vehicle
 
@@ -67,44 +70,74 @@ def brought(data: bytes, telemetry: Telemetry) -> OnBoard:
     return on_board(prepared.plan, prepared.sent)
 
 
+PARAMETERS = {
+    "NAV_ACC_RAD": 2.0,
+    "NAV_MC_ALT_RAD": 0.8,
+    "MIS_TAKEOFF_ALT": 2.5,
+    "RTL_RETURN_ALT": 30.0,
+    "RTL_MIN_DIST": 10.0,
+    "WPNAV_RADIUS": 200.0,
+    "RTL_ALT": 1500.0,
+    "RTL_CONE_SLOPE": 3.0,
+}
+"""As delivered; what is not here is answered with PARAM_ERROR, as by ArduPilot."""
+REAL32 = 9
+
+
 class Board:
-    """The vehicle's store of missions."""
+    """The vehicle's store of missions, of rally points and of a fence, and its parameters."""
 
     def __init__(self, mission: OnBoard | None = None) -> None:
         sent = mission.sent if mission else ()
         self.items: list[MissionItemInt] = [message_of(item) for item in sent]
         self.heard: list[Message] = []
         self.deaf_to: list[type[Message]] = []
-        """Kinds that never reach it."""
+        """Kinds that never reach it, where they are about the mission or a parameter."""
         self.mute_ack = False
         """Its MISSION_ACKs never reach us."""
         self.deaf_from_seq = 1 << 16
         """Items from this one on never reach it."""
         self.refuses: MissionResult | None = None
+        self.lists: dict[int, list[MissionItemInt]] = {1: [], 2: []}
+        """Its fence and its rally points."""
+        self.parameters = dict(PARAMETERS)
         self._coming: list[MissionItemInt] = []
         self._count = 0
 
     def hear(self, message: Message) -> list[Message]:
         self.heard.append(message)
-        if type(message) in self.deaf_to:
+        about_mission = getattr(message, "mission_type", 0) == 0
+        if type(message) in self.deaf_to and about_mission:
             return []
-        if self.refuses is not None and isinstance(message, ANSWERABLE):
+        if self.refuses is not None and isinstance(message, ANSWERABLE) and about_mission:
             return [self._ack(self.refuses)]
         match message:
-            case MissionCount(count=count):
+            case ParamRequestRead(param_id=name):
+                return [self._parameter(name)]
+            case MissionCount(count=count, mission_type=kind):
                 self._count, self._coming = count, []
-                return [self._request(0)]
+                return [self._request(0, kind)]
             case MissionItemInt():
                 return self._item(message)
-            case MissionRequestList():
-                return [MissionCount(count=len(self.items), **self._to())]
-            case MissionRequestInt(seq=seq):
-                return [msgspec.structs.replace(self.items[seq], seq=seq, **self._to())]
+            case MissionRequestList(mission_type=kind):
+                return [MissionCount(count=len(self._list(kind)), mission_type=kind, **self._to())]
+            case MissionRequestInt(seq=seq, mission_type=kind):
+                item = self._list(kind)[seq]
+                return [msgspec.structs.replace(item, seq=seq, mission_type=kind, **self._to())]
             case MissionClearAll():
                 self.items = []
                 return self._acked()
             case _:
                 return []
+
+    def _list(self, kind: int) -> list[MissionItemInt]:
+        return self.lists[kind] if kind else self.items
+
+    def _parameter(self, name: str) -> Message:
+        if name in self.parameters:
+            value = self.parameters[name]
+            return ParamValue(value, 1, 0, name, REAL32)
+        return ParamError(param_index=-1, param_id=name, error=1, **self._to())
 
     def _item(self, item: MissionItemInt) -> list[Message]:
         if item.seq >= self.deaf_from_seq:
@@ -112,18 +145,21 @@ class Board:
         if item.seq == len(self._coming):
             self._coming.append(item)
         if len(self._coming) < self._count:
-            return [self._request(len(self._coming))]
-        self.items = self._coming
-        return self._acked()
+            return [self._request(len(self._coming), item.mission_type)]
+        if item.mission_type:
+            self.lists[item.mission_type] = self._coming
+        else:
+            self.items = self._coming
+        return self._acked(item.mission_type)
 
-    def _acked(self) -> list[Message]:
-        return [] if self.mute_ack else [self._ack(MissionResult.ACCEPTED)]
+    def _acked(self, kind: int = 0) -> list[Message]:
+        return [] if self.mute_ack else [self._ack(MissionResult.ACCEPTED, kind)]
 
-    def _ack(self, result: MissionResult) -> MissionAck:
-        return MissionAck(type=result, **self._to())
+    def _ack(self, result: MissionResult, kind: int = 0) -> MissionAck:
+        return MissionAck(type=result, mission_type=kind, **self._to())
 
-    def _request(self, seq: int) -> MissionRequestInt:
-        return MissionRequestInt(seq=seq, **self._to())
+    def _request(self, seq: int, kind: int) -> MissionRequestInt:
+        return MissionRequestInt(seq=seq, mission_type=kind, **self._to())
 
     def _to(self) -> dict[str, int]:
         return {"target_system": OWN.sysid, "target_component": OWN.compid}
@@ -179,6 +215,11 @@ class JobScript:
             self.now_ns += SECOND_NS // 20
             self.telemetry.position_ns = self.now_ns
             self._take(self.job.wake(self.view, self.now_ns))
+        return self
+
+    def wake(self) -> JobScript:
+        """Its deadline is now."""
+        self._take(self.job.wake(self.view, self.now_ns))
         return self
 
     def hear(self, *messages: Message, sysid: int = 1) -> JobScript:

@@ -41,6 +41,13 @@ def test_a_vehicle_without_a_mission_has_none() -> None:
     assert script.sentence == "0 items are on board"
 
 
+def test_a_vehicle_without_a_mission_gives_no_file_and_that_is_said() -> None:
+    script = download(Board(), "out.plan")
+    assert script.outcome == (ABORTED, Code.NO_MISSION)
+    assert script.sentence == "no mission is on board: out.plan was not written"
+    assert script.of(WriteFile) == []
+
+
 @pytest.mark.parametrize("path", ["out.plan", "out.waypoints"])
 def test_the_file_is_the_mission_that_is_on_board(path: str) -> None:
     script = download(board(), path)

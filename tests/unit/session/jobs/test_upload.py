@@ -6,6 +6,7 @@ import json
 
 import msgspec
 import pytest
+from msgspec import structs
 
 from gcs import ipc
 from gcs.gate.effects import OutcomeKind
@@ -16,7 +17,7 @@ from gcs.protocol.effects import Send
 from gcs.session.effects import ReadFile
 from gcs.session.jobs.upload import Upload
 from gcs.session.telemetry import Telemetry
-from gcs.session.work import Decide, ToGate
+from gcs.session.work import Decide, Log, ToGate
 from gcs.wire.ids import MissionResult
 from gcs.wire.messages import (
     Message,
@@ -25,6 +26,7 @@ from gcs.wire.messages import (
     MissionItemInt,
     MissionRequestInt,
     MissionRequestList,
+    ParamRequestRead,
 )
 from tests.unit.plan import samples
 from tests.unit.session import told
@@ -65,7 +67,11 @@ def test_a_mission_is_on_board_once_it_was_read_back_equal() -> None:
 
 def test_the_gate_forgets_the_old_mission_before_a_message_of_the_new_one_leaves() -> None:
     script = upload().read(BOX)
-    first_send = next(i for i, item in enumerate(script.work) if isinstance(item, Send))
+    first_send = next(
+        i
+        for i, item in enumerate(script.work)
+        if isinstance(item, Send) and isinstance(item.message, MissionCount)
+    )
     assert script.work.index(ToGate(MissionLoaded("", 0))) < first_send
     assert script.work.index(script.of(Decide)[0]) < first_send
 
@@ -135,7 +141,7 @@ def test_a_leg_that_leaves_the_fence_is_refused_with_its_item_and_never_sent() -
     script = upload().read(FAR)
     assert script.refused in (Code.LEG_LEAVES_FENCE, Code.OUTSIDE_FENCE, Code.TOO_FAR)
     assert script.sentence.startswith("item 2: ")
-    assert script.board.heard == []
+    assert script.sent(MissionCount) == []
 
 
 def test_the_fence_of_the_plan_itself_counts_too() -> None:
@@ -154,13 +160,104 @@ def test_heights_above_the_terrain_are_not_known_and_refused() -> None:
 
 
 def test_a_return_whose_height_is_not_known_is_refused() -> None:
-    telemetry = placed()
-    telemetry.return_up_m = None
+    board = Board()
+    height = board.parameters.pop("RTL_RETURN_ALT")
     back = samples.simple(2, 20, 2, [0, 0, 0, 0, 0, 0, 0])
     data = plan(samples.waypoint(1, LAT, LON, 10, command=22), back)
-    assert upload(telemetry=telemetry).read(data).refused is Code.RTL_BLOCKED
-    telemetry.return_up_m = 30.0
-    assert upload(telemetry=telemetry).read(data).outcome == COMPLETE
+    assert upload(board).read(data).refused is Code.RTL_BLOCKED
+    board.parameters["RTL_RETURN_ALT"] = height
+    assert upload(board).read(data).outcome == COMPLETE
+
+
+def test_a_return_height_that_is_lost_on_the_way_is_waited_for() -> None:
+    board = Board()
+    board.deaf_to = [ParamRequestRead]
+    back = samples.simple(2, 20, 2, [0, 0, 0, 0, 0, 0, 0])
+    script = upload(board).read(plan(samples.waypoint(1, LAT, LON, 10, command=22), back))
+    script.run(10.0)
+    assert script.of(Decide) == []
+    board.deaf_to = []
+    assert script.run(1.0).outcome == COMPLETE
+
+
+def test_without_the_acceptance_radius_nothing_is_verified() -> None:
+    board = Board()
+    del board.parameters["NAV_ACC_RAD"]
+    script = upload(board).read(BOX).run(31.0)
+    assert script.refused is Code.NO_ANSWER
+    assert "NAV_ACC_RAD" in script.sentence
+
+
+RALLY_IN_A_ZONE = LAT + 0.0003, LON
+
+
+def with_rally(*points: tuple[float, float]) -> bytes:
+    """A box with an exclusion circle of 10 m about 33 m north, and rally points 5 m up."""
+    document = samples.box()
+    circle = {"circle": {"center": [LAT + 0.0003, LON], "radius": 10}, "inclusion": False}
+    document["geoFence"]["circles"] = [{**circle, "version": 1}]
+    document["rallyPoints"] = {"points": [[*at, 5.0] for at in points], "version": 2}
+    return json.dumps(document).encode()
+
+
+def test_a_plan_s_fence_and_rally_points_are_brought_on_board_before_its_mission() -> None:
+    script = upload().read(with_rally((LAT, LON + 0.0003)))
+    assert script.outcome == COMPLETE
+    assert [count.mission_type for count in script.sent(MissionCount)] == [1, 2, 0]
+    fence, rally = script.board.lists[1], script.board.lists[2]
+    assert [(item.command, item.param1) for item in fence] == [(5004, 10.0)]
+    assert [(item.command, item.z) for item in rally] == [(5100, 5.0)]
+
+
+def test_a_plan_s_rally_point_in_an_exclusion_zone_is_refused_by_its_number() -> None:
+    script = upload().read(with_rally((LAT, LON + 0.0003), RALLY_IN_A_ZONE))
+    assert script.refused in (Code.INSIDE_EXCLUSION, Code.LEG_LEAVES_FENCE)
+    assert script.sentence.startswith("rally point 2: ")
+    assert script.sent(MissionCount) == []
+
+
+def test_a_rally_point_that_another_station_set_counts_too() -> None:
+    board = Board()
+    here = upload(board).read(with_rally((LAT, LON + 0.0003)))
+    assert here.outcome == COMPLETE
+    (point,) = board.lists[2]
+    board.lists[2] = [structs.replace(point, x=round(RALLY_IN_A_ZONE[0] * 1e7), y=round(LON * 1e7))]
+    script = upload(board).read(with_rally())
+    assert script.refused in (Code.INSIDE_EXCLUSION, Code.LEG_LEAVES_FENCE)
+    assert script.sentence.startswith("rally point on board 1: ")
+
+
+def test_a_fence_with_heights_is_said_not_to_be_sent() -> None:
+    data = b"""schema = 1
+frame = "home"
+[[waypoint]]
+north_m = 5
+east_m = 0
+up_m = 5
+[fence]
+north_m = [-50, 50]
+east_m = [-50, 50]
+up_m = [0, 40]
+"""
+    script = JobScript(Upload(asked("mission_upload"), "a.toml"), Board()).read(data)
+    assert script.outcome == COMPLETE
+    assert [count.mission_type for count in script.sent(MissionCount)] == [0]
+    assert any("fence: is kept by the gate and not sent" in log.text for log in script.of(Log))
+
+
+def test_two_thousand_items_are_verified_in_steps() -> None:
+    """No step asks more than 25 questions, and all are done without waiting for anything."""
+    way = [samples.waypoint(n, LAT + 1e-7 * n, LON, 10) for n in range(2, 2001)]
+    board = Board()
+    board.deaf_to = [MissionCount]
+    script = upload(board).read(plan(samples.waypoint(1, LAT, LON, 10, command=22), *way))
+    steps = 0
+    while script.of(Decide) == []:
+        assert script.job.deadline_ns == script.now_ns
+        script.wake()
+        steps += 1
+    assert steps > 100
+    assert script.accepted
 
 
 def returning() -> bytes:
@@ -208,7 +305,7 @@ def test_a_vehicle_that_never_answers_is_no_answer_after_all_tries() -> None:
     assert script.accepted
     script.run(60.0)
     assert script.outcome == aborted(Code.NO_ANSWER)
-    assert len(script.sent(MissionCount)) == 6  # the specification's: one, and five retries
+    assert len(script.sent(MissionCount)) == 10  # every 1.5 s, for 15 s
     assert script.loaded == [("", 0)]
 
 
@@ -262,7 +359,8 @@ def test_a_vehicle_that_asks_for_one_item_for_ever_is_given_up_and_told_so() -> 
         script.run(0.6).hear(request(0))
     assert 60 * SECOND_NS <= script.now_ns - START_NS <= 66 * SECOND_NS
     assert script.outcome == aborted(Code.NO_ANSWER)
-    assert [ack.type for ack in script.sent(MissionAck)] == [MissionResult.OPERATION_CANCELLED]
+    acks = [ack.type for ack in script.sent(MissionAck) if not ack.mission_type]
+    assert acks == [MissionResult.OPERATION_CANCELLED]
 
 
 def request(seq: int) -> MissionRequestInt:
@@ -304,7 +402,7 @@ def test_what_is_read_back_otherwise_is_not_believed(change: dict[str, float]) -
     hear = board.hear
 
     def altered(message: Message) -> list[Message]:
-        if isinstance(message, MissionRequestList):
+        if isinstance(message, MissionRequestList) and not message.mission_type:
             board.items[1] = msgspec.structs.replace(board.items[1], **change)
         return hear(message)
 

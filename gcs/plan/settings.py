@@ -1,0 +1,22 @@
+"""What the autopilots' parameters say as delivered, for a plan that is checked without a vehicle.
+
+Source: the full parameter lists of PX4 1.14.3 and ArduCopter 4.7.
+"""
+
+from __future__ import annotations
+
+from gcs.plan.legs import FlightSettings
+from gcs.plan.model import AutopilotName
+
+USUAL: dict[AutopilotName, FlightSettings] = {
+    "px4": FlightSettings(
+        accept_m=2.0,
+        accept_up_m=0.8,
+        first_climb_m=2.5,
+        return_low_within_m=10.0,
+    ),
+    "ardupilot": FlightSettings(
+        accept_m=2.0,
+        return_low_within_m=5.0,
+    ),
+}

@@ -1,0 +1,126 @@
+"""Where a vehicle is when it turns from a waypoint to the next.
+
+It does not fly to the waypoint: it turns as soon as it is near enough, and its speed carries it on
+towards the waypoint that it turned from.  So from a set of places where it may begin, every place
+on its way lies in the hull of that set and the waypoint, and the set where it turns next is the
+waypoint itself and the places where it enters the sphere of acceptance.
+
+PX4: mission_block.cpp, is_mission_item_reached_or_completed: horizontally within NAV_WAYPOINT's
+param 2 or NAV_ACC_RAD, vertically within NAV_MC_ALT_RAD; vehicle-sim takes the distance in space.
+Whichever lets the vehicle turn earlier counts here.
+
+ArduCopter: SCurve::advance_target_along_track lets the end of a leg and the beginning of the next
+overlap, such that the apex of the turn is within WPNAV_RADIUS of the waypoint.  The blended path
+lies in the triangle of the waypoint and the places on both legs where the overlap begins and ends.
+Half the turn's time is at least a sixth of its way (a speed that rises and falls with limited
+jerk), so a turn by the angle t with its apex r away begins no earlier than 3 r / sin(t / 2).
+"""
+
+from __future__ import annotations
+
+import math
+
+from gcs.frames import Vec3
+
+WIDEST_RAD = math.radians(120.0)
+"""Places that are seen from the waypoint under a wider angle than this are all kept."""
+_OVERLAP = 3.0
+_MOST_PLACES = 8
+_DIGITS = 2
+
+
+def turning_places(
+    starts: tuple[Vec3, ...], to_ned: Vec3, accept_m: float, accept_up_m: float | None
+) -> tuple[Vec3, ...]:
+    """Where a vehicle that flies from `starts` to `to_ned` may be when it turns, beside `to_ned`.
+
+    Rounded to centimetres, so that a loop comes back to what it was before.
+    """
+    if accept_m <= 0.0 and not accept_up_m:
+        return ()
+    angle_rad = _widest_angle(starts, to_ned)
+    if angle_rad > WIDEST_RAD:
+        return fewer(starts)
+    wider = 1.0 / math.cos(0.5 * angle_rad)
+    found = [
+        _towards(start, to_ned, wider * _turn_m(start, to_ned, accept_m, accept_up_m))
+        for start in starts
+    ]
+    return fewer(tuple(found), without=to_ned)
+
+
+def fewer(places: tuple[Vec3, ...], without: Vec3 | None = None) -> tuple[Vec3, ...]:
+    """Places to the centimetre, each once; where there are many, a box around them."""
+    rounded = dict.fromkeys(_rounded(place) for place in places)
+    if without is not None:
+        rounded.pop(_rounded(without), None)
+    if len(rounded) <= _MOST_PLACES:
+        return tuple(rounded)
+    lows = [min(place[axis] for place in rounded) for axis in range(3)]
+    highs = [max(place[axis] for place in rounded) for axis in range(3)]
+    return tuple(
+        (north, east, down)
+        for north in {lows[0], highs[0]}
+        for east in {lows[1], highs[1]}
+        for down in {lows[2], highs[2]}
+    )
+
+
+def blend(before_ned: Vec3, at_ned: Vec3, to_ned: Vec3, accept_m: float) -> tuple[Vec3, Vec3]:
+    """Where ArduCopter's turn at `at_ned` begins and ends, at the earliest and the latest."""
+    back_m, on_m = math.dist(before_ned, at_ned), math.dist(at_ned, to_ned)
+    turn_rad = math.pi - _angle(before_ned, to_ned, at_ned)
+    half_sine = math.sin(0.5 * turn_rad)
+    most_m = min(back_m, on_m)
+    reach_m = (
+        most_m if half_sine * most_m <= _OVERLAP * accept_m else _OVERLAP * accept_m / half_sine
+    )
+    return _towards(before_ned, at_ned, reach_m), _towards(to_ned, at_ned, reach_m)
+
+
+def _turn_m(start: Vec3, to_ned: Vec3, accept_m: float, accept_up_m: float | None) -> float:
+    """How far from `to_ned` the turn may begin, on the straight line to it."""
+    if accept_up_m is None:
+        return accept_m
+    whole_m = math.dist(start, to_ned)
+    flat_m, high_m = math.dist(start[:2], to_ned[:2]), abs(start[2] - to_ned[2])
+    by_flat_m = whole_m if flat_m <= accept_m else accept_m * whole_m / flat_m
+    by_height_m = whole_m if high_m <= accept_up_m else accept_up_m * whole_m / high_m
+    return max(min(accept_m, whole_m), min(by_flat_m, by_height_m))
+
+
+def _towards(start: Vec3, to_ned: Vec3, left_m: float) -> Vec3:
+    """On the way from `start` to `to_ned`, where `left_m` are left; `start` if that is nearer."""
+    whole_m = math.dist(start, to_ned)
+    if whole_m <= left_m:
+        return start
+    share = left_m / whole_m
+    n, e, d = (b + share * (a - b) for a, b in zip(start, to_ned, strict=True))
+    return (n, e, d)
+
+
+def _widest_angle(places: tuple[Vec3, ...], seen_from: Vec3) -> float:
+    return max(
+        (
+            _angle(a, b, seen_from)
+            for number, a in enumerate(places)
+            for b in places[number + 1 :]
+            if a != seen_from and b != seen_from
+        ),
+        default=0.0,
+    )
+
+
+def _angle(a: Vec3, b: Vec3, seen_from: Vec3) -> float:
+    u = [x - y for x, y in zip(a, seen_from, strict=True)]
+    v = [x - y for x, y in zip(b, seen_from, strict=True)]
+    size = math.hypot(*u) * math.hypot(*v)
+    if size == 0.0:
+        return 0.0
+    cosine = sum(x * y for x, y in zip(u, v, strict=True)) / size
+    return math.acos(max(-1.0, min(1.0, cosine)))
+
+
+def _rounded(place: Vec3) -> Vec3:
+    n, e, d = (round(x, _DIGITS) for x in place)
+    return (n, e, d)

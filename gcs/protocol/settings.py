@@ -1,0 +1,130 @@
+"""Some parameters of a vehicle, asked for all at once and again until each is known.
+
+A firmware has a parameter under one of several names (ArduCopter 4.7 renamed many): each
+quantity is asked for by all of its names, and the first answer settles it.  A name that is unknown
+is answered with PARAM_ERROR by new firmwares and not at all by old ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import assert_never
+
+from gcs.protocol.autopilot import ParamEncoding
+from gcs.protocol.effects import Address, Heard, Send, Wake
+from gcs.protocol.parameters import BY_NAME, decode_value
+from gcs.wire.ids import ParamType
+from gcs.wire.messages import ParamError, ParamRequestRead, ParamValue
+
+ASK_AGAIN_NS = 500_000_000
+GIVE_UP_NS = 30_000_000_000
+
+_TYPES = frozenset(int(kind) for kind in ParamType)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """Something that a parameter says: its names, each with the factor to SI units."""
+
+    name: str
+    names: tuple[tuple[str, float], ...]
+    needed: bool = True
+    """Whether to wait for it: else what is usual is taken where no answer has come in time."""
+
+
+class SettingsReader:
+    """Reads `quantities`; `done` once each is known, denied, or given up."""
+
+    def __init__(
+        self,
+        own: Address,
+        target: Address,
+        encoding: ParamEncoding,
+        quantities: tuple[Quantity, ...],
+        speedup: float = 1.0,
+    ) -> None:
+        self._own = own
+        self._target = target
+        self._encoding = encoding
+        self._quantities = quantities
+        self._again_ns = round(ASK_AGAIN_NS * speedup)
+        self._give_up_ns = round(GIVE_UP_NS * speedup)
+        self._denied: set[str] = set()
+        self._ends_ns = 0
+        self.values: dict[str, float] = {}
+        """By the quantity's own name, SI units."""
+        self.deadline_ns: int | None = None
+        self.done = False
+
+    @property
+    def missing(self) -> tuple[Quantity, ...]:
+        """What is needed and not known."""
+        return tuple(q for q in self._quantities if q.needed and q.name not in self.values)
+
+    def start(self, now_ns: int) -> list[Send]:
+        self._ends_ns = now_ns + self._give_up_ns
+        return self._ask(now_ns)
+
+    def handle(self, event: Heard | Wake, now_ns: int) -> list[Send]:
+        if self.done:
+            return []
+        match event:
+            case Heard():
+                self._heard(event)
+                return self._end() if not self._open else []
+            case Wake():
+                if self.deadline_ns is None or now_ns < self.deadline_ns:
+                    return []
+                return self._end() if now_ns >= self._ends_ns else self._ask(now_ns)
+            case _:
+                assert_never(event)
+
+    @property
+    def _open(self) -> list[str]:
+        """Names that may still be answered."""
+        return [
+            name
+            for quantity in self._quantities
+            if quantity.name not in self.values
+            for name, _ in quantity.names
+            if name not in self._denied
+        ]
+
+    def _ask(self, now_ns: int) -> list[Send]:
+        names = self._open
+        if not names:
+            return self._end()
+        self.deadline_ns = now_ns + self._again_ns
+        return [
+            Send(
+                ParamRequestRead(
+                    param_index=BY_NAME,
+                    target_system=self._target.sysid,
+                    target_component=self._target.compid,
+                    param_id=name,
+                )
+            )
+            for name in names
+        ]
+
+    def _end(self) -> list[Send]:
+        self.done, self.deadline_ns = True, None
+        return []
+
+    def _heard(self, heard: Heard) -> None:
+        if not self._target.includes(heard.sysid, heard.compid):
+            return
+        match heard.message:
+            case ParamValue(param_id=name) as answer if answer.param_type in _TYPES:
+                value = decode_value(
+                    answer.param_value, ParamType(answer.param_type), self._encoding
+                )
+                for quantity in self._quantities:
+                    for known, factor in quantity.names:
+                        if known == name:
+                            self.values[quantity.name] = factor * float(value)
+            case ParamError(param_id=name, target_system=system, target_component=component):
+                if Address(system, component).includes(self._own.sysid, self._own.compid):
+                    self._denied.add(name)
+            case _:
+                pass

@@ -1,0 +1,30 @@
+"""What is verified is what is flown: cleared random missions stay clear of every zone, in wind."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.random_missions import fly
+
+CHUNKS = 25
+FLIGHTS_A_CHUNK = 10
+FLIGHTS_IN_EACH_RUN = 5
+
+chunks = [pytest.param(chunk, marks=[pytest.mark.soak] if chunk else []) for chunk in range(CHUNKS)]
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("chunk", chunks)
+def test_a_cleared_random_mission_stays_inside_and_outside_as_verified(
+    chunk: int, personality: Personality
+) -> None:
+    """A few with the station all the way; in the soak the vehicle flies what it was given."""
+    count = FLIGHTS_A_CHUNK if chunk else FLIGHTS_IN_EACH_RUN
+    flown = 0
+    for seed in range(chunk * FLIGHTS_A_CHUNK, chunk * FLIGHTS_A_CHUNK + count):
+        found = fly(seed, personality, alone=chunk > 0)
+        if found.refusal is None:
+            flown += 1
+            assert found.nearest_m > 0.0, f"seed {seed}: {found}"
+    assert flown > 0
