@@ -59,7 +59,7 @@ def placed(autopilot: Autopilot = PX4) -> Telemetry:
     telemetry.home = (HOME.lat_deg, HOME.lon_deg, HOME.alt_amsl_m)
     telemetry.home_ned = telemetry.pos_ned = (0.0, 0.0, 0.0)
     telemetry.position_ns = START_NS
-    telemetry.return_up_m, telemetry.return_told = 30.0, True
+    telemetry.return_up_m = 30.0
     return telemetry
 
 

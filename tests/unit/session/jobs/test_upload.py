@@ -260,29 +260,6 @@ def test_two_thousand_items_are_verified_in_steps() -> None:
     assert script.accepted
 
 
-def returning() -> bytes:
-    back = samples.simple(2, 20, 2, [0, 0, 0, 0, 0, 0, 0])
-    return plan(samples.waypoint(1, LAT, LON, 10, command=22), back)
-
-
-def test_a_return_waits_for_a_return_height_that_a_lossy_link_has_lost() -> None:
-    """clients.md, gate 3: at 5 % loss four of five uploads were refused."""
-    telemetry = placed()
-    telemetry.return_up_m, telemetry.return_told = None, False
-    script = upload(telemetry=telemetry).read(returning()).run(8.0)
-    assert not script.job.over
-    telemetry.return_up_m, telemetry.return_told = 30.0, True
-    assert script.run(1.0).outcome == COMPLETE
-
-
-def test_a_return_height_that_never_comes_is_a_refusal_in_the_end() -> None:
-    telemetry = placed()
-    telemetry.return_up_m, telemetry.return_told = None, False
-    script = upload(telemetry=telemetry).read(returning()).run(14.9)
-    assert not script.job.over
-    assert script.run(0.2).refused is Code.RTL_BLOCKED
-
-
 def test_without_origin_and_home_nothing_can_be_verified() -> None:
     telemetry = placed()
     telemetry.origin = None
