@@ -61,7 +61,7 @@ class Flight:
         return self
 
     def airborne(self, up_m: float = 5.0) -> Flight:
-        """Booted, armed, taken off, and hovering; PX4 ends its climb NAV_MC_ALT_RAD below `up_m`."""
+        """Booted, armed, taken off and hovering; PX4 up to NAV_MC_ALT_RAD below `up_m`."""
         self.boot()
         if self.personality == "ardupilot":
             assert self.vehicle.set_mode_kind("guided") is Result.ACCEPTED
