@@ -165,16 +165,24 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
         "gcs/gate/machine/guards.py _guards_of_memory: with None -> without",
     ),
     "it is read in FLYING_MISSION only, and the start of a mission sets it": (
-        "gcs/gate/machine/memory.py Memory: False -> True #3",
+        "gcs/gate/machine/memory.py Memory: False -> True #5",
     ),
     "every picture sets it before it is read": (
+        "gcs/gate/machine/memory.py Memory: False -> True #6",
+    ),
+    "every heartbeat sets it, and a mode that changes comes with one": (
         "gcs/gate/machine/memory.py Memory: False -> True #4",
+    ),
+    "whatever gives us control is a request, which sets it": (
+        "gcs/gate/machine/memory.py Memory: False -> True #8",
     ),
     "it is read while a mode is awaited, and set with that mode": (
         "gcs/gate/machine/memory.py Memory: 0 -> 1 #3",
     ),
     "it is read during a take-off, which sets it": (
-        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0",
+        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0 #2",
+        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0 #3",
+        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0 #4",
     ),
     "exactly at the height `at_height` holds, and its branches come first": (
         (

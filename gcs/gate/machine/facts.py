@@ -227,7 +227,11 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
 
 
 def _floor_applies(turn: Turn) -> bool:
+    """A mission begins on the ground, and PX4 may end its climb below half a metre already."""
     memory = turn.memory
+    low = memory.ground_down_m is not None and not memory.climbed
+    if memory.flown_state is State.FLYING_MISSION and low:
+        return False
     return memory.flown_state not in FLOOR_FREE and memory.landed is LandedState.IN_AIR
 
 

@@ -148,12 +148,10 @@ def _same_zone(was: Zone, now: Zone) -> bool:
 
 
 def _numbers(zone: Zone) -> tuple[float, ...]:
-    shape: tuple[float, ...]
+    bounds = (zone.floor_up_m, zone.ceiling_up_m)
     if isinstance(zone.shape, Circle):
-        shape = (*zone.shape.centre_en, zone.shape.radius_m)
-    else:
-        shape = tuple(x for corner in zone.shape.corners_en for x in corner)
-    return (*shape, zone.floor_up_m, zone.ceiling_up_m)
+        return (*zone.shape.centre_en, zone.shape.radius_m, *bounds)
+    return (*(x for corner in zone.shape.corners_en for x in corner), *bounds)
 
 
 def _keep(turn: Turn, judged: Cleared | Refusal) -> Refusal | None:

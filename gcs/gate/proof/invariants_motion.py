@@ -45,6 +45,8 @@ BRAKED: Final = FLOWN_BY_US | {State.RETURNING}
 """Where a predicted breach is braked: a landing ends by itself, a held vehicle brakes already."""
 
 HEIGHT_WITHIN_M: Final = 0.2
+LIFT_OFF_M: Final = 0.5
+"""A mission begins on the ground: so low above where it stood the floor does not apply."""
 HOME_MOVED_M: Final = 1.0
 OVERSHOOT_M: Final = 1.0
 SLACK_NS: Final = SECOND_NS // 5
@@ -175,6 +177,9 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
         State.TAKING_OFF,
         State.RETURNING,
     )
+    if before.flown_state is State.FLYING_MISSION and not given.reset:
+        ground_down_m = before.ground_down_m
+        floor &= ground_down_m is None or ground_down_m - given.pos_ned[2] > LIFT_OFF_M
     breach = before.verifier.predicted_stop(given.pos_ned, given.v_ned, floor_applies=floor)
     if breach is None:
         return

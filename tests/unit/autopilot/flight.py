@@ -79,10 +79,8 @@ class Flight:
         return self
 
     def airborne(self, up_m: float = 5.0) -> Flight:
-        """Booted, armed, taken off and hovering at `up_m`, and not up to 0.8 m lower."""
+        """Booted, armed, taken off and hovering; PX4 up to NAV_MC_ALT_RAD below `up_m`."""
         self.boot()
-        if self.personality == "px4":
-            self.vehicle.parameters.set("NAV_MC_ALT_RAD", 0.3)
         if self.personality == "ardupilot":
             assert self.vehicle.set_mode_kind("guided") is Result.ACCEPTED
         assert self.vehicle.arm(False) is Result.ACCEPTED

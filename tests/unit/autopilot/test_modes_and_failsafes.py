@@ -223,7 +223,7 @@ def test_a_picture_takes_its_exposure_and_tells_where_it_was(personality: Person
     assert flight.vehicle.images_captured == 1
     (picture,) = [event for event in flight.seen if isinstance(event, ImageCaptured)]
     assert picture.index == 0
-    assert picture.alt_rel_m == pytest.approx(5.0, abs=0.4)
+    assert picture.alt_rel_m == pytest.approx(-flight.vehicle.truth.pos_ned[2], abs=0.4)
 
 
 def test_a_series_of_pictures_keeps_its_interval_and_can_be_stopped() -> None:

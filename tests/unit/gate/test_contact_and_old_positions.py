@@ -172,6 +172,11 @@ class TestContact:
         script.feed(OperatorLost("quit"))
         assert (script.commands(), script.gate.settled) == (sent, sent == [])
 
+    def test_who_quits_asks_nothing_of_nobody(self) -> None:
+        script = Script(policy("default"))
+        script.feed(OperatorLost("quit"))
+        assert (script.commands(), script.gate.settled) == ([], True)
+
     def test_who_quits_does_not_take_back_the_landing_of_what_is_not_heard(self) -> None:
         script = Script(policy("default")).take_control(UP)
         script.reports_heartbeat = script.reports_position = False

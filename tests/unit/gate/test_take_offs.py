@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.effects import CommandKind, SendCommand
+from gcs.gate.machine.memory import Memory
 from gcs.gate.requests import Hold, Land, TakeOff
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
@@ -88,6 +89,16 @@ class TestTheEndOfTheClimb:
     def test_a_climb_that_ended_further_below_is_not_over(self, up: float, autopilot: str) -> None:
         script, _ = self.climbed(up, autopilot)
         assert state_of(script) is not State.HOVERING
+
+    def test_of_a_vehicle_that_told_no_tolerance_the_radius_counts(self) -> None:
+        script = Script(policy("default"))
+        take_off(script, 5.0)
+        remember(script, climb_ends_within_m=Memory("px4").climb_ends_within_m)
+        script.land_state(LandedState.IN_AIR)
+        script.at(0.0, 0.0, 4.25)
+        script.heartbeat(FlightMode.HOLD)
+        script.tick()
+        assert state_of(script) is State.HOLDING
 
     def test_a_vehicle_that_does_not_show_the_end_climbs_on(self) -> None:
         script, _ = self.climbed(3.5)

@@ -5,6 +5,7 @@ Each function is asked by itself: a fact that is missing, or too old, is a refus
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -13,7 +14,7 @@ import pytest
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.airspace.zones import Zone
-from gcs.gate.geometry import Circle
+from gcs.gate.geometry import Circle, Polygon, Shape
 from gcs.gate.inputs import Requested
 from gcs.gate.machine import verifying
 from gcs.gate.machine.memory import SECOND_NS, Goal, Memory
@@ -105,6 +106,12 @@ class TestEveryQuestion:
             assert refusal.sentence.endswith("land instead")
 
 
+SQUARE = ((40.0, 0.0), (0.0, 40.0), (-40.0, 0.0), (0.0, -40.0))
+CIRCLE = Circle((0.0, 0.0), 150.0)
+EXCLUDED = Zone("loft", False, CIRCLE, 0.0, 50.0)
+RENAMED = Zone("attic", True, CIRCLE, 0.0, 50.0)
+
+
 class TestWhatIsFlown:
     """A new fence has a floor 5 m up, and the vehicle flies above it."""
 
@@ -151,6 +158,34 @@ class TestWhatIsFlown:
     )
     def test_under_another_it_does_not(self, was: Verifier | None) -> None:
         assert self.refusal(State.FLYING_MISSION, FENCE, was) is Code.BAD_MISSION
+
+    @pytest.mark.parametrize(
+        ("was", "is_"),
+        [
+            (Circle((0.0, 0.0), 150.0), Circle((0.0, 1.5), 150.0)),
+            (Circle((0.0, 0.0), 150.0), Circle((0.0, 0.0), 140.0)),
+            (Circle((0.0, 0.0), 150.0), Polygon(SQUARE)),
+            (Polygon(SQUARE), Polygon((*SQUARE, (30.0, -30.0)))),
+            (Polygon(SQUARE), Polygon(((42.0, 0.0), *SQUARE[1:]))),
+        ],
+    )
+    def test_nor_under_one_that_has_as_many_zones(self, was: Shape, is_: Shape) -> None:
+        """station.md, bug 14: the number of zones alone was compared."""
+        fences = [replace(FENCE, zones=(Zone("yard", True, s, 0.0, 50.0),)) for s in (was, is_)]
+        assert self.refusal(State.FLYING_MISSION, fences[1], fences[0]) is Code.BAD_MISSION
+
+    @pytest.mark.parametrize("zone", [Zone("loft", True, CIRCLE, 2.0, 50.0), EXCLUDED, RENAMED])
+    def test_nor_where_its_heights_its_kind_or_its_name_differ(self, zone: Zone) -> None:
+        yard = replace(FENCE, zones=(Zone("loft", True, CIRCLE, 0.0, 50.0),))
+        other = replace(FENCE, zones=(zone,))
+        assert self.refusal(State.FLYING_MISSION, other, yard) is Code.BAD_MISSION
+
+    def test_a_home_that_moves_by_centimetres_makes_no_other_fence(self) -> None:
+        """As it does when the vehicle arms; without a ceiling, too."""
+        was = replace(FENCE, zones=(Zone("yard", True, CIRCLE, 0.0, math.inf),))
+        moved = Circle((0.25, -0.75), 150.0)
+        now = replace(FENCE, zones=(Zone("yard", True, moved, 0.25, math.inf),))
+        assert self.refusal(State.FLYING_MISSION, now, was) is None
 
     @pytest.mark.parametrize("was", [None, FENCE, replace(FENCE, fence_on=False)])
     def test_with_the_fence_off_there_is_nothing_to_verify_by(self, was: Verifier | None) -> None:
