@@ -369,8 +369,10 @@ class Vehicle:
         return self._roster.names(now_ns)
 
     def listening(self, now_ns: int) -> bool:
-        """Whether it may still turn out that there are several; a vehicle of our own is alone."""
-        return self._config.sim is None and self._roster.listening(now_ns)
+        """Whether it may still turn out that there are several vehicles (one of our own is alone),
+        or the return height, which a return needs, is still on its way."""
+        several = self._config.sim is None and self._roster.listening(now_ns)
+        return several or (self.telemetry is not None and not self.telemetry.return_told)
 
     def ask_mission(self, request_id: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""
