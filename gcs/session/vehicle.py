@@ -251,7 +251,8 @@ class Vehicle:
         work: list[Work] = []
         if self._roster.heard(frame.sysid, frame.compid, beat, now_ns):
             names = ", ".join(self._roster.names(now_ns))
-            work.append(Log(Level.WARNING, NODE, f"several vehicles are heard: {names}"))
+            level = Level.INFO if self._config.target_sysid else Level.WARNING
+            work.append(Log(level, NODE, f"several vehicles are heard: {names}"))
         wanted = self._config.target_sysid
         if wanted not in (0, frame.sysid):
             return work
