@@ -229,7 +229,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     active_goal_enu: Vec3 | None = None
     vehicle: str = ""  # "1/1 px4 quadrotor"
     vehicles: list[str] = []  # all that are heard on the links, this one among them
-    listening: bool = False  # others may still be heard: who asks should wait a moment
+    listening: bool = False  # other vehicles or its settings may still come: wait a moment
     mode: str = ""
     armed: bool | None = None
     landed: str = ""

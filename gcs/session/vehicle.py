@@ -7,7 +7,6 @@ All that is per vehicle is here and in the parts that this composes; what is per
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import Final, get_args
 
 from gcs import ipc
@@ -34,6 +33,7 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
 from gcs.session.position_health import GPS_SILENT_NS
+from gcs.session.reasons import Reasons
 from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
 from gcs.session.setpoints import setpoint
@@ -41,12 +41,12 @@ from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.updates import updates
-from gcs.session.words import Said, Words
+from gcs.session.words import Words, logged
 from gcs.session.work import CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
-from gcs.wire.ids import Component, MavAutopilot, MavType, Severity
+from gcs.wire.ids import Component, MavAutopilot, MavType
 
 ALIVE_EVERY_NS = 250_000_000
 """How often the gate is told that something of the vehicle was heard."""
@@ -57,25 +57,7 @@ restarted: on the way no frame is overtaken by that much."""
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
 
-REASON_WAIT_NS = 150_000_000
-"""How long a refusal waits for its reason: ArduPilot's text may leave a moment after its answer."""
-WAITS_FOR_REASONS: Final = frozenset(
-    {CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START_MISSION, CommandKind.SET_MODE}
-)
-"""What nobody is stopped by: no refused hold, landing or disarming waits for words."""
-
 NODE = "link"
-
-STATUSTEXT_LEVEL = {
-    Severity.EMERGENCY: Level.FATAL,
-    Severity.ALERT: Level.ERROR,
-    Severity.CRITICAL: Level.ERROR,
-    Severity.ERROR: Level.ERROR,
-    Severity.WARNING: Level.WARNING,
-    Severity.NOTICE: Level.INFO,
-    Severity.INFO: Level.INFO,
-    Severity.DEBUG: Level.DEBUG,
-}
 
 STATE_MESSAGES: Final = frozenset({m.Heartbeat, m.ExtendedSysState, m.SysStatus, m.MissionCurrent})
 """What tells a state is void once a newer one was seen; answers and events are not."""
@@ -103,8 +85,7 @@ class Vehicle:
         self._missions = Missions(own, times)
         self._words = Words(times)
         self._roster = Roster(config.target_sysid, times, self._gone_ns)
-        self._arm_asked_ns = 0
-        self._unexplained: tuple[tuple[int, inputs.CommandEnded], ...] = ()
+        self._reasons = Reasons(self._words, times)
         self._met_ns = 0
         self._newest: dict[tuple[int, int], int] = {}
         self._heard_ns: dict[tuple[int, int], int] = {}
@@ -116,9 +97,8 @@ class Vehicle:
     @property
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
-        parts = (self._commands, self._settings, self._missions, self._words)
+        parts = (self._commands, self._settings, self._missions, self._words, self._reasons)
         times = [part.deadline_ns for part in parts]
-        times += [due_ns for due_ns, _ in self._unexplained]
         return min((time for time in times if time is not None), default=None)
 
     @property
@@ -212,14 +192,15 @@ class Vehicle:
         work: list[Work] = []
         message = heard.message
         if isinstance(message, m.CommandAck):
-            work += self._explained(self._commands.heard(heard, now_ns), telemetry, now_ns)
+            answered = self._commands.heard(heard, now_ns)
+            work += self._reasons.explained(answered, telemetry.custom_mode, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += self._learn(self._settings.heard(heard, telemetry, now_ns), telemetry)
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif type(message) in MISSION_MESSAGES:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
-            work += _logged(self._words.text(heard.compid, message, now_ns))
+            work += logged(self._words.text(heard.compid, message, now_ns))
         elif isinstance(message, m.Event) and heard.compid == telemetry.compid:
             self._words.event(message)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
@@ -230,37 +211,6 @@ class Vehicle:
                     work += self._missions.forget()
             work.append(update)
         return work + _accuracy(telemetry)
-
-    def _explained(self, work: list[Work], telemetry: Telemetry, now_ns: int) -> list[Work]:
-        """The vehicle's refusals among `work` with its reasons, which may come after its answer."""
-        explained: list[Work] = []
-        for item in work:
-            match item:
-                case ToGate(inputs.CommandEnded(kind=kind, result=result) as ended) if result:
-                    text = self._reasons(kind, telemetry, now_ns)
-                    if text or kind not in WAITS_FOR_REASONS:
-                        explained.append(ToGate(replace(ended, text=text)))
-                    else:
-                        due_ns = now_ns + self._times.real_ns(REASON_WAIT_NS)
-                        self._unexplained = *self._unexplained, (due_ns, ended)
-                case _:
-                    explained.append(item)
-        return explained
-
-    def _explain_due(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
-        """The refusals whose reasons were waited for."""
-        due = [ended for due_ns, ended in self._unexplained if now_ns >= due_ns]
-        self._unexplained = tuple(item for item in self._unexplained if now_ns < item[0])
-        return [
-            ToGate(replace(ended, text=self._reasons(ended.kind, telemetry, now_ns)))
-            for ended in due
-        ]
-
-    def _reasons(self, kind: CommandKind, telemetry: Telemetry, now_ns: int) -> str:
-        if kind is CommandKind.ARM:
-            mode = telemetry.custom_mode
-            return self._words.reasons_not_to_arm(mode, self._arm_asked_ns, now_ns)
-        return self._words.reasons(now_ns)
 
     # ---------------------------------------------------------------------------- discovery
 
@@ -273,7 +223,8 @@ class Vehicle:
         work: list[Work] = []
         if self._roster.heard(frame.sysid, frame.compid, beat, now_ns):
             names = ", ".join(self._roster.names(now_ns))
-            work.append(Log(Level.WARNING, NODE, f"several vehicles are heard: {names}"))
+            level = Level.INFO if self._config.target_sysid else Level.WARNING
+            work.append(Log(level, NODE, f"several vehicles are heard: {names}"))
         wanted = self._config.target_sysid
         if wanted not in (0, frame.sysid):
             return work
@@ -338,9 +289,9 @@ class Vehicle:
 
     def wake(self, now_ns: int) -> list[Work]:
         """Some part's deadline has passed."""
-        work = self._commands.wake(self.telemetry, now_ns) + _logged(self._words.wake(now_ns))
+        work = self._commands.wake(self.telemetry, now_ns) + logged(self._words.wake(now_ns))
         if self.telemetry is not None:
-            work += self._explain_due(self.telemetry, now_ns)
+            work += self._reasons.wake(self.telemetry.custom_mode, now_ns)
             work += self._learn(self._settings.wake(self.telemetry, now_ns), self.telemetry)
             work += self._missions.wake(self._view(self.telemetry), now_ns)
         return work
@@ -396,8 +347,10 @@ class Vehicle:
         return self._roster.names(now_ns)
 
     def listening(self, now_ns: int) -> bool:
-        """Whether it may still turn out that there are several; a vehicle of our own is alone."""
-        return self._config.sim is None and self._roster.listening(now_ns)
+        """Whether it may still turn out that there are several vehicles (one of our own is alone),
+        or the return height, which a return needs, is still on its way."""
+        several = self._config.sim is None and self._roster.listening(now_ns)
+        return several or (self.telemetry is not None and not self.telemetry.return_told)
 
     def ask_mission(self, request_id: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""
@@ -436,8 +389,7 @@ class Vehicle:
                 return [Send(message), Record(sent)]
             case effects.SendCommand():
                 assert self.telemetry is not None
-                if effect.kind is CommandKind.ARM:
-                    self._arm_asked_ns = now_ns
+                self._reasons.asked(effect.kind, now_ns)
                 return self._commands.send(effect, self.telemetry, now_ns)
             case effects.CancelCommand(request_id, kind):
                 return self._commands.cancel(request_id, kind, now_ns)
@@ -471,12 +423,3 @@ def _accuracy(telemetry: Telemetry) -> list[Work]:
         return []
     telemetry.accuracy_told = seen
     return [ToGate(seen)]
-
-
-def _logged(said: Iterable[Said]) -> list[Work]:
-    """The vehicle's texts as lines of the log, as severe as it says."""
-    work: list[Work] = []
-    for each in said:
-        level = STATUSTEXT_LEVEL[Severity(each.severity & 7)]
-        work.append(Log(level, "vehicle", each.text))
-    return work

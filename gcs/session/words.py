@@ -8,11 +8,14 @@ and as PX4's events, before the COMMAND_ACK or right after it.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Final
 
+from gcs.gate.effects import Level
 from gcs.protocol.px4_events import ArmingChecks
 from gcs.session.times import Times
+from gcs.session.work import Log
 from gcs.wire.ids import Severity
 from gcs.wire.messages import Event, Statustext
 
@@ -30,6 +33,18 @@ PREARM_AGE_NS: Final = 40_000_000_000
 PREARM: Final = ("PreArm: ", "Preflight Fail: ")
 ARM: Final = ("Arm: ", "Arming denied", "Transition denied")
 KEPT: Final = 20
+
+
+STATUSTEXT_LEVEL: Final = {
+    Severity.EMERGENCY: Level.FATAL,
+    Severity.ALERT: Level.ERROR,
+    Severity.CRITICAL: Level.ERROR,
+    Severity.ERROR: Level.ERROR,
+    Severity.WARNING: Level.WARNING,
+    Severity.NOTICE: Level.INFO,
+    Severity.INFO: Level.INFO,
+    Severity.DEBUG: Level.DEBUG,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,3 +146,10 @@ class Words:
         ]
         texts += self._checks.against_arming(custom_mode)
         return "; ".join(dict.fromkeys(texts)) or self.reasons(now_ns)
+
+
+def logged(said: Iterable[Said]) -> list[Log]:
+    """The vehicle's texts as lines of the log, as severe as it says."""
+    return [
+        Log(STATUSTEXT_LEVEL[Severity(each.severity & 7)], "vehicle", each.text) for each in said
+    ]

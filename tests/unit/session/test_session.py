@@ -221,6 +221,7 @@ def test_what_the_vehicle_refuses_ends_as_refused_by_the_vehicle() -> None:
     script.hear(wire.system(armable=True))
     asked = script.ask("arm")
     script.hear(wire.ack(ARM, 2))  # MAV_RESULT_DENIED
+    script.run(0.2)  # its reason may follow
     assert told.outcomes(script.told) == [(asked, "aborted", "VEHICLE_REFUSED")]
 
 

@@ -152,6 +152,8 @@ def test_several_vehicles_are_named_and_none_is_meant() -> None:
     assert refusal.code is Code.SEVERAL_VEHICLES
     assert names in refusal.sentence
     assert "--vehicle" in refusal.sentence
+    script.hear(wire.float_param("RTL_RETURN_ALT", 30.0))
+    assert script.vehicle.listening(script.now_ns)
     script.wait(0.4)
     assert not script.vehicle.listening(script.now_ns)
 
@@ -161,6 +163,8 @@ def test_a_vehicle_that_was_named_is_meant() -> None:
     script.hear(wire.heartbeat())
     script.hear(wire.heartbeat(), sender=Sender(2))
     assert script.vehicle.refusal(script.now_ns) is None
+    assert script.vehicle.listening(script.now_ns), "for its return height"
+    script.hear(wire.float_param("RTL_RETURN_ALT", 30.0), sender=Sender(2))
     assert not script.vehicle.listening(script.now_ns)
     assert script.vehicle.heard_vehicles(script.now_ns) == [
         "1/1 px4 quadrotor",
