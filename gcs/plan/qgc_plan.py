@@ -11,6 +11,7 @@ from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.json_cursor import Node, parse
 from gcs.plan.model import AutopilotName, Fence, Geodetic, Item, Plan, RallyPoint
 from gcs.plan.qgc_geofence import read_fence, read_lat_lon
+from gcs.steps import Steps
 from gcs.wire.ids import MavType
 
 FIRMWARES: dict[int, AutopilotName] = {12: "px4", 3: "ardupilot"}
@@ -28,10 +29,12 @@ _MULTIROTORS = frozenset(
 )
 _TRANSECTS: dict[str, tuple[int, ...]] = {"survey": (4, 5), "CorridorScan": (2,)}
 _PARAM_COUNT = 7
+ITEMS_A_STEP = 50
 
 
-def read_plan(file: str, data: bytes, name: str) -> Plan:
+def read_plan(file: str, data: bytes, name: str) -> Steps[Plan]:
     """Raises PlanError with the JSON path."""
+    yield
     top = parse(file, data)
     kind = top.get("fileType", hint="is this a QGroundControl .plan?")
     if kind.text() != "Plan":
@@ -48,7 +51,7 @@ def read_plan(file: str, data: bytes, name: str) -> Plan:
     mission.version(2, hint="save the plan again with a present QGroundControl")
     firmware = _read_firmware(mission, notes)
     home = _read_home(mission, notes)
-    items = _read_items(mission.get("items"))
+    items = yield from _read_items(mission.get("items"))
     cruise, hover = mission.find("cruiseSpeed"), mission.find("hoverSpeed")
     return Plan(
         name,
@@ -102,9 +105,11 @@ def _read_rally(node: Node) -> tuple[RallyPoint, ...]:
     return tuple(points)
 
 
-def _read_items(node: Node) -> tuple[Item, ...]:
+def _read_items(node: Node) -> Steps[tuple[Item, ...]]:
     items: list[Item] = []
-    for entry in node.items():
+    for number, entry in enumerate(node.items()):
+        if number % ITEMS_A_STEP == 0:
+            yield
         kind = entry.get("type")
         match kind.text():
             case "SimpleItem":

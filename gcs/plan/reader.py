@@ -9,6 +9,7 @@ from gcs.plan.local_toml import read_local
 from gcs.plan.model import AutopilotName, Plan
 from gcs.plan.qgc_plan import read_plan
 from gcs.plan.wpl import read_wpl
+from gcs.steps import Steps, drained
 
 SUPPORTED = "a QGroundControl .plan, a QGC WPL 110 table, or a mission in TOML"
 _TOML_START = re.compile(rb"\s*(?:#[^\n]*\n\s*)*\[{0,2}[A-Za-z_]+[\]\s]*(?:=|\n|$)")
@@ -16,6 +17,13 @@ SIZE_MAX = 16 * 1024 * 1024
 
 
 def read(path_text: str, data: bytes, autopilot: AutopilotName | None = None) -> Plan:
+    """As `read_in_steps`, at once."""
+    return drained(read_in_steps(path_text, data, autopilot))
+
+
+def read_in_steps(
+    path_text: str, data: bytes, autopilot: AutopilotName | None = None
+) -> Steps[Plan]:
     """The plan in `data`, the bytes of the file that users know as `path_text`.
 
     `autopilot` is the vehicle's, where it is known: whether a waypoint table begins with home
@@ -27,15 +35,15 @@ def read(path_text: str, data: bytes, autopilot: AutopilotName | None = None) ->
         raise PlanError(path_text, "", "file", what, f"at most {SIZE_MAX}")
     start = data.removeprefix(b"\xef\xbb\xbf").lstrip()
     if start.startswith(b"{"):
-        return read_plan(path_text, data, name)
+        return (yield from read_plan(path_text, data, name))
     if path_text.lower().endswith(".toml"):
         return read_local(path_text, data, name)
     if re.match(rb"(?:#[^\n]*\n\s*)*QGC\s", start):
-        return read_wpl(path_text, data, name, autopilot)
+        return (yield from read_wpl(path_text, data, name, autopilot))
     if path_text.lower().endswith(".plan"):
-        return read_plan(path_text, data, name)
+        return (yield from read_plan(path_text, data, name))
     if path_text.lower().endswith((".waypoints", ".wpl")):
-        return read_wpl(path_text, data, name, autopilot)
+        return (yield from read_wpl(path_text, data, name, autopilot))
     if _TOML_START.match(start):
         return read_local(path_text, data, name)
     what = "is empty" if not start else "is none of the mission files that can be read"

@@ -15,6 +15,7 @@ from gcs.plan.build import item_from_numbers
 from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.fence_items import split_fence
 from gcs.plan.model import AutopilotName, Frame, Geodetic, Geographic, Item, Plan
+from gcs.steps import Steps
 from gcs.wire.ids import Cmd
 
 HEADER = "QGC WPL 110"
@@ -23,6 +24,7 @@ _FIELDS = (*_WHOLE[:4], "p1", "p2", "p3", "p4", "lat", "lon", "alt", "autocontin
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _RELATIVE = (Frame.HOME, Frame.TERRAIN)
 _SEQ_MAX = 65535
+ITEMS_A_STEP = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +34,10 @@ class _Row:
     item: Item
 
 
-def read_wpl(file: str, data: bytes, name: str, autopilot: AutopilotName | None) -> Plan:
+def read_wpl(file: str, data: bytes, name: str, autopilot: AutopilotName | None) -> Steps[Plan]:
     """Raises PlanError with the line.  `notes` says what was decided about home."""
     notes: list[Finding] = []
-    rows = _read_rows(file, data, notes)
+    rows = yield from _read_rows(file, data, notes)
     _check_sequence(file, rows, notes)
     items, fence, rally = split_fence(file, [row.item for row in rows])
     kept = {item.do_jump_id for item in items}
@@ -66,12 +68,17 @@ def _lines(file: str, data: bytes) -> Iterator[tuple[str, str]]:
             yield str(number), content
 
 
-def _read_rows(file: str, data: bytes, notes: list[Finding]) -> list[_Row]:
+def _read_rows(file: str, data: bytes, notes: list[Finding]) -> Steps[list[_Row]]:
     lines = _lines(file, data)
     where, header = next(lines, ("1", ""))
     if " ".join(header.split()) != HEADER:
         raise PlanError(file, where, "header", f'is "{header[:40]}"', f'"{HEADER}"')
-    return [_read_row(file, where, line, notes) for where, line in lines]
+    rows: list[_Row] = []
+    for where, line in lines:
+        if len(rows) % ITEMS_A_STEP == 0:
+            yield
+        rows.append(_read_row(file, where, line, notes))
+    return rows
 
 
 def _read_row(file: str, where: str, line: str, notes: list[Finding]) -> _Row:

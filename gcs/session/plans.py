@@ -14,16 +14,17 @@ from gcs.plan.errors import Level as PlanLevel
 from gcs.plan.errors import PlanError
 from gcs.plan.lint import lint
 from gcs.plan.model import Geodetic, Plan
-from gcs.plan.reader import read
+from gcs.plan.reader import read_in_steps
 from gcs.plan.wire import WireItem, to_wire
 from gcs.plan.wire_fence import fence_to_wire, has_heights, rally_to_wire
 from gcs.session.paths import autopilot_name, on_earth
 from gcs.session.telemetry import Telemetry
+from gcs.steps import Steps
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import MissionItemInt
 
 MAX_ITEMS = 2_000
-"""More would keep the 20 Hz tick waiting while they are read."""
+"""More would keep the 20 Hz tick waiting while they are checked."""
 
 STOPS = (Kind.MOVE, Kind.WAIT, Kind.RETURN)
 """Items whose reaching ends a mission, where they are the last of their kind."""
@@ -54,7 +55,7 @@ class OnBoard:
     """It jumps back: its last stop may be reached many times."""
 
 
-def prepare(path: str, data: bytes, telemetry: Telemetry) -> Prepared | Refusal:
+def prepare(path: str, data: bytes, telemetry: Telemetry) -> Steps[Prepared | Refusal]:
     """Read, lint and place the plan in `data`.
 
     Raises PlanError for a file that is none, or none that can be flown; refuses where the
@@ -62,7 +63,8 @@ def prepare(path: str, data: bytes, telemetry: Telemetry) -> Prepared | Refusal:
     """
     who = autopilot_name(telemetry)
     home = Geodetic(*telemetry.home) if telemetry.home else None
-    written = read(path, data, who)
+    written = yield from read_in_steps(path, data, who)
+    yield
     if not written.items:
         hint = "`gcs mission clear` takes a mission off; a fence leaves with a mission only"
         raise PlanError(path, "", "mission", "has no items", hint=hint)
@@ -75,9 +77,11 @@ def prepare(path: str, data: bytes, telemetry: Telemetry) -> Prepared | Refusal:
             raise PlanError(path, finding.where, finding.item, finding.what, hint=finding.hint)
         level = Level.WARNING if finding.level is PlanLevel.WARNING else Level.INFO
         remarks.append((level, f"{finding.item}: {finding.what}"))
+    yield
     plan = on_earth(written, telemetry)
     if isinstance(plan, Refusal):
         return plan
+    yield
     sent, rally = to_wire(plan, who, home), rally_to_wire(plan.rally)
     if has_heights(plan.fence):
         remarks.append((Level.WARNING, "fence: is kept by the gate and not sent: it has heights"))

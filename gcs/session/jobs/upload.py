@@ -26,9 +26,12 @@ from gcs.session.jobs.verified import VerifiedJob
 from gcs.session.paths import autopilot_name, cleared
 from gcs.session.plans import Prepared, item_of, message_of, on_board, prepare
 from gcs.session.work import Log, ToGate
+from gcs.steps import Steps
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
 
+SMALL_BYTES = 20_000
+"""A file that is no larger is read, checked and placed in one turn."""
 _NAMES = {MissionType.MISSION: "mission", MissionType.FENCE: "fence", MissionType.RALLY: "rally"}
 
 
@@ -47,6 +50,9 @@ class Upload(VerifiedJob):
     def __init__(self, asked: Asked, path: str) -> None:
         super().__init__(asked)
         self._path = path
+        self._file: FileRead | None = None
+        self._preparing: Steps[Prepared | Refusal] | None = None
+        self._prepare_ns = 0
         self._plan: _Plan | None = None
         self._flown: FlightPath | None = None
         self._left: list[tuple[MissionType, tuple[WireItem, ...]]] = []
@@ -60,14 +66,43 @@ class Upload(VerifiedJob):
             return []
         if news.data is None:
             return self.bad_file(f"{news.path}: {news.error}")
-        return self._prepare(news.path, news.data, view, now_ns)
+        self._file = news
+        self._preparing = prepare(news.path, news.data, view.telemetry)
+        return self._prepare_on(view, now_ns)
 
-    def _prepare(self, path: str, data: bytes, view: VehicleView, now_ns: int) -> list[JobWork]:
-        """From bytes to a plan that can be verified, or to the reason why not."""
+    @property
+    def deadline_ns(self) -> int | None:
+        return super().deadline_ns if self._preparing is None else self._prepare_ns
+
+    def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        if self._preparing is not None:
+            return self._prepare_on(view, now_ns)
+        return super().wake(view, now_ns)
+
+    def _prepare_on(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """A step more on the way from bytes to a plan that can be verified, or to why not."""
+        assert self._preparing is not None
+        assert self._file is not None
+        self._prepare_ns = now_ns
+        small = len(self._file.data or b"") <= SMALL_BYTES
         try:
-            prepared = prepare(path, data, view.telemetry)
+            next(self._preparing)
+            while small:
+                next(self._preparing)
+        except StopIteration as over:
+            self._preparing = None
+            return self._prepared(over.value, view, now_ns)
         except PlanError as error:
+            self._preparing = None
             return self.bad_file(str(error), error.hint)
+        return []
+
+    def _prepared(
+        self, prepared: Prepared | Refusal, view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        assert self._file is not None
+        assert self._file.data is not None
+        path, data = self._file.path, self._file.data
         if isinstance(prepared, Refusal):
             return self.refuse(prepared)
         self._plan = _Plan(path, data, prepared)

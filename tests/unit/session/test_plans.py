@@ -13,6 +13,7 @@ from gcs.plan.errors import PlanError
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.links import Links
 from gcs.session.plans import OnBoard, Prepared, item_of, message_of, on_board, prepare
+from gcs.steps import drained
 from gcs.wire.messages import MissionItemInt
 from tests.unit.plan import samples
 from tests.unit.session import wire
@@ -33,7 +34,7 @@ up_m = 5.0
 
 
 def prepared(data: bytes, autopilot: Autopilot = PX4, path: str = "a.plan") -> Prepared:
-    found = prepare(path, data, placed(autopilot))
+    found = drained(prepare(path, data, placed(autopilot)))
     assert isinstance(found, Prepared)
     return found
 
@@ -70,7 +71,7 @@ def test_metres_from_the_take_off_point_are_placed_on_earth_around_home() -> Non
 def test_a_place_on_earth_needs_the_vehicle_s_own(unknown: str) -> None:
     telemetry = placed()
     setattr(telemetry, unknown, None)
-    found = prepare("square.toml", LOCAL, telemetry)
+    found = drained(prepare("square.toml", LOCAL, telemetry))
     assert isinstance(found, Refusal)
     assert found.code is Code.NO_ORIGIN
 
@@ -78,12 +79,12 @@ def test_a_place_on_earth_needs_the_vehicle_s_own(unknown: str) -> None:
 @pytest.mark.parametrize("data", [b"", b"\xff\xfe", b"[]", plan(), BOX[:-1]])
 def test_what_is_no_mission_is_an_error_that_names_the_file(data: bytes) -> None:
     with pytest.raises(PlanError, match=r"^a\.plan"):
-        prepare("a.plan", data, placed())
+        drained(prepare("a.plan", data, placed()))
 
 
 def test_a_plan_of_a_fence_alone_has_a_hint() -> None:
     with pytest.raises(PlanError, match="no items") as caught:
-        prepare("a.plan", plan(), placed())
+        drained(prepare("a.plan", plan(), placed()))
     assert "mission clear" in caught.value.hint
 
 

@@ -26,6 +26,7 @@ from gcs.session.plans import OnBoard, Prepared, message_of, on_board, prepare
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, Decide, ToGate
+from gcs.steps import drained
 from gcs.wire.ids import MissionResult
 from gcs.wire.messages import (
     Message,
@@ -65,7 +66,7 @@ def placed(autopilot: Autopilot = PX4) -> Telemetry:
 
 def brought(data: bytes, telemetry: Telemetry) -> OnBoard:
     """The plan in `data` as it is once it was uploaded and read back."""
-    prepared = prepare("a.plan", data, telemetry)
+    prepared = drained(prepare("a.plan", data, telemetry))
     assert isinstance(prepared, Prepared)
     return on_board(prepared.plan, prepared.sent)
 

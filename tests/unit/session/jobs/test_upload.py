@@ -131,7 +131,7 @@ def test_a_file_that_is_no_mission_is_refused_by_name_and_never_sent(
 
 def test_more_items_than_can_be_verified_in_a_tick_are_refused() -> None:
     many = [samples.waypoint(n, LAT, LON, 10) for n in range(1, 2002)]
-    assert upload().read(plan(*many)).refused is Code.BAD_MISSION
+    assert upload().read(plan(*many)).run(5.0).refused is Code.BAD_MISSION
 
 
 # ---------------------------------------------------------------------------- refused: the path
