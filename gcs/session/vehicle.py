@@ -40,6 +40,7 @@ from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MavAutopilot, MavType, Severity
+from gcs.wire.messages import CommandLong
 
 VEHICLE_GONE_NS = 3_500_000_000
 LINK_SILENT_NS = 2_000_000_000
@@ -260,6 +261,10 @@ class Vehicle:
             lost_pct(self.losses),
         )
         return [*work, Record(status)]
+
+    def send_own(self, commands: Iterable[CommandLong], now_ns: int) -> list[Work]:
+        """Harmless commands of the station's own, such as for a stream."""
+        return [work for each in commands for work in self._commands.send_own(each, now_ns)]
 
     def remind(self) -> list[Work]:
         """The gate's state once more, for the record."""
