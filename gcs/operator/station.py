@@ -30,7 +30,7 @@ from gcs.operator.dialogue import unexpected_end
 from gcs.operator.failures import Disconnected, NotCompleted, Refused
 from gcs.operator.request_words import label
 
-TELEMETRY_WAIT_S = 3.0
+TELEMETRY_WAIT_S = 5.0
 ANSWER_WAIT_S = 10.0
 KEPT_EVENTS = 10_000
 """Of an `events()` that is not read; the oldest are forgotten."""

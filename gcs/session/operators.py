@@ -23,6 +23,7 @@ from gcs.session.operations import Operations
 from gcs.session.requests import BadAskError, Requests, request_of
 from gcs.session.setup import Setup
 from gcs.session.subscriptions import Subscriptions
+from gcs.session.telemetry import Telemetry
 from gcs.session.work import (
     AskGate,
     AskMission,
@@ -35,6 +36,7 @@ from gcs.session.work import (
     Work,
 )
 from gcs.wire.frame import Frame
+from gcs.wire.messages import CommandLong
 
 NODE = "link"
 LOGGED_LETTERS = 40
@@ -121,7 +123,7 @@ class Operators:
             case ipc.Leave(reason):
                 return self._leave(client, reason, now_ns)
             case ipc.Subscribe(names):
-                return [*self._subscriptions.subscribe(client, names)]
+                return [*self._subscriptions.subscribe(client, names, now_ns)]
             case ipc.ListOperations(number):
                 return [Emit(ipc.OperationList(number, self._operations.listed()), client)]
             case ipc.Join():
@@ -207,6 +209,10 @@ class Operators:
 
     def tell(self, told: Tell) -> list[Work]:
         return [Emit(told.event, self._requests.get(told.request_id).client)]
+
+    def missing_messages(self, telemetry: Telemetry, now_ns: int) -> list[CommandLong]:
+        """Commands that ask the vehicle for what somebody subscribed to and does not hear."""
+        return [*self._subscriptions.missing(telemetry, now_ns)]
 
     def heard(self, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of the vehicle, for those who subscribed to such messages."""

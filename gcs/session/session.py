@@ -275,7 +275,8 @@ class Session:
             return work + self._no_vehicle_yet(now_ns)
         if now_ns - self._other_station_ns > self._times.real_ns(OTHER_STATION_NS):
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
-        return work + self._vehicle.second(now_ns)
+        wanted = self._operators.missing_messages(self._vehicle.telemetry, now_ns)
+        return [*work, *self._vehicle.second(now_ns), *self._vehicle.send_own(wanted, now_ns)]
 
     def _no_vehicle_yet(self, now_ns: int) -> list[Work]:
         waited_s = self._times.real_s(now_ns - self._start_ns)

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from gcs import ipc
 from gcs.session.effects import Effect, Emit
+from gcs.session.telemetry import Telemetry
 from gcs.wire.dialect import MESSAGES_BY_NAME
 from gcs.wire.fields import fields_of
 from gcs.wire.frame import Frame
+from gcs.wire.ids import Cmd
+from gcs.wire.messages import CommandLong
 
 LEAST_INTERVAL_NS = 100_000_000
+PATIENCE_NS = 1_200_000_000
+"""A message that has not come for so long is asked for, and again after as long."""
+ASKED_INTERVAL_US = 500_000.0
 MAX_MESSAGES = 64
 """Names in one subscription."""
 
@@ -20,13 +28,17 @@ class Subscriptions:
         self._interval_ns = round(LEAST_INTERVAL_NS * speedup)
         self._told_ns: dict[int, dict[int, int]] = {}
         """Message id -> client -> when it was told last."""
+        self._heard_ns: dict[int, int] = {}
+        self._asked_ns: dict[int, int] = {}
+        self._patience_ns = round(PATIENCE_NS * speedup)
 
-    def subscribe(self, client: int, names: list[str]) -> list[Effect]:
+    def subscribe(self, client: int, names: list[str], now_ns: int) -> list[Effect]:
         """In place of what it had; what is no message of the dialect is told."""
         self.forget(client)
         known = [MESSAGES_BY_NAME[name].msgid for name in names if name in MESSAGES_BY_NAME]
         for msgid in known[:MAX_MESSAGES]:
             self._told_ns.setdefault(msgid, {})[client] = 0
+            self._asked_ns.setdefault(msgid, now_ns)
         unknown = [name for name in names if name not in MESSAGES_BY_NAME]
         if unknown:
             text = f"no such MAVLink message: {', '.join(unknown[:3])}"
@@ -35,6 +47,27 @@ class Subscriptions:
             text = f"{len(known)} messages subscribed to: only the first {MAX_MESSAGES} are told"
             return [Emit(ipc.Trouble(text), client)]
         return []
+
+    def missing(self, telemetry: Telemetry, now_ns: int) -> Iterator[CommandLong]:
+        """SET_MESSAGE_INTERVAL for what is subscribed to and does not come by itself: many
+        vehicles, ArduPilot above all, send little unasked."""
+        for msgid, clients in self._told_ns.items():
+            heard_ns, asked_ns = self._heard_ns.get(msgid, 0), self._asked_ns[msgid]
+            if clients and now_ns - max(heard_ns, asked_ns) > self._patience_ns:
+                self._asked_ns[msgid] = now_ns
+                yield CommandLong(
+                    param1=float(msgid),
+                    param2=ASKED_INTERVAL_US,
+                    param3=0.0,
+                    param4=0.0,
+                    param5=0.0,
+                    param6=0.0,
+                    param7=0.0,
+                    command=Cmd.SET_MESSAGE_INTERVAL,
+                    target_system=telemetry.sysid,
+                    target_component=telemetry.compid,
+                    confirmation=0,
+                )
 
     def forget(self, client: int) -> None:
         """It has left."""
@@ -46,6 +79,7 @@ class Subscriptions:
         clients = self._told_ns.get(frame.msgid)
         if not clients:
             return []
+        self._heard_ns[frame.msgid] = now_ns
         due = [each for each, told in clients.items() if now_ns - told >= self._interval_ns]
         if not due:
             return []

@@ -47,6 +47,7 @@ from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MavAutopilot, MavType
+from gcs.wire.messages import CommandLong
 
 ALIVE_EVERY_NS = 250_000_000
 """How often the gate is told that something of the vehicle was heard."""
@@ -325,6 +326,10 @@ class Vehicle:
             lost_pct(self.losses),
         )
         return [*work, Record(status)]
+
+    def send_own(self, commands: Iterable[CommandLong], now_ns: int) -> list[Work]:
+        """Harmless commands of the station's own, such as for a stream."""
+        return [work for each in commands for work in self._commands.send_own(each, now_ns)]
 
     def remind(self) -> list[Work]:
         """The gate's state once more, for the record."""

@@ -355,6 +355,18 @@ class TestMessages:
         assert isinstance(trouble, ipc.Trouble)
         assert trouble.text == "no such MAVLink message: BATTERY"
 
+    def test_what_does_not_come_by_itself_is_asked_for(self) -> None:
+        script = Script().met()
+        join(script)
+        self.subscribe(script, "BATTERY_STATUS", "HEARTBEAT")
+        script.forget()
+        script.run(2.5)
+        asked = [m for m in script.sent("COMMAND_LONG") if m.command == 511]
+        assert [(m.param1, m.param2) for m in asked] == [(147.0, 500_000.0)]
+        script.run(2.0)
+        asked = [m for m in script.sent("COMMAND_LONG") if m.command == 511]
+        assert len(asked) == 2, "and again after a while"
+
     def test_one_that_left_is_told_no_more(self) -> None:
         script = Script().met()
         join(script)

@@ -126,3 +126,20 @@ def test_lines_come_through_whichever_way_the_platform_reads(pipe: tuple[int, in
         assert select.select([source], [], [], 60.0)[0] == [source]
         lines += source.read()
     assert lines == [b"one", b"two", b"thr"]
+
+
+def test_a_sink_that_hangs_up_ends_the_file_after_what_is_queued(pipe: tuple[int, int]) -> None:
+    sink = LineSink(pipe[1])
+    line = b"x" * 999 + b"\n"
+    for _ in range(100):  # more than the pipe holds
+        sink.put(line)
+    sink.hang_up()
+    sink.put(b"too late\n")
+    read = b""
+    while piece := os.read(pipe[0], 1 << 16):
+        read += piece
+        sink.flush()
+    assert read == line * 100
+    os.write(pipe[1], b"into the null device")
+    os.close(pipe[0])
+    os.close(pipe[1])
