@@ -81,7 +81,7 @@ def run_over(
                     break
         except Interrupted:
             ended = dialogue.leave("interrupted")
-            for line in event_text.bye_lines(ended.bye) if ended.bye else ():
+            for line in event_text.bye_lines(ended.bye, simulated=True) if ended.bye else ():
                 console.print(line, markup=False, soft_wrap=True)
             return ExitCode.INTERRUPTED
         except ExitError:

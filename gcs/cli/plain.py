@@ -63,6 +63,7 @@ class Plain:
         self._dialogue = Dialogue(connection, interrupts, self._on_event)
         self._warnings = WarningFilter(cautions=True)
         self._bad_lines = False
+        self._dropped_lines = False
         self._overtaken = False
         self._sent_at_once: list[TrackedRequest] = []
         self._until_heard: list[line_parser.Line] = []
@@ -136,6 +137,7 @@ class Plain:
             self._tell_bad(line)
             return
         assert isinstance(by, line_parser.Line)
+        self._dropped_lines = True
         tell = self._err if self._config.as_json else self._out
         tell(f"{line.text}: dropped by {by.text}, which did not wait for it")
 
@@ -236,7 +238,10 @@ class Plain:
             return code
         if self._bad_lines:
             return ExitCode.USAGE
-        return self._dialogue.first_failure() if self._config.strict else ExitCode.DONE
+        if not self._config.strict:
+            return ExitCode.DONE
+        undone = ExitCode.NOT_COMPLETED if self._dropped_lines else ExitCode.DONE
+        return self._dialogue.first_failure() or undone
 
 
 def stdin_input() -> LineQueue:

@@ -63,5 +63,7 @@ def test_ctrl_c_in_the_demo_leaves_through_the_station() -> None:
     out = io.StringIO()
     console = Console(file=out)
     assert demo.run_over(connection, interrupts, console, "x", 10.0) == ExitCode.INTERRUPTED
-    assert out.getvalue().endswith("gcs: left\nlog: logs/x.mcap\n")
+    assert out.getvalue().endswith(
+        "gcs: left\ngcs: the simulation has ended with it, and its vehicle\nlog: logs/x.mcap\n"
+    )
     assert connection.sent == [ipc.Leave("interrupted")]

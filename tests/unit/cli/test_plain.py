@@ -237,6 +237,12 @@ def test_an_abort_in_a_script_drops_the_lines_before_it() -> None:
     assert session.sent_words == ["abort", "photo"]
 
 
+def test_strict_counts_what_was_dropped() -> None:
+    script = "arm\ntakeoff 2\nabort\n"
+    assert Session(script).exit_code == ExitCode.DONE
+    assert Session(script, PlainConfig(strict=True)).exit_code == ExitCode.NOT_COMPLETED
+
+
 def test_an_abort_waits_for_no_position_and_goes_out_with_the_first_word_of_the_vehicle() -> None:
     session = Session("abort\n", scenario="late landed")
     assert session.connection.asked_at_s == [pytest.approx(0.1)]
