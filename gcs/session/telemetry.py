@@ -67,6 +67,7 @@ class Telemetry:
     home: tuple[float, float, float] | None = None
     home_ned: Vec3 | None = None
     return_up_m: float | None = None
+    return_told: bool = False  # its return height is known, or it says that it has none
     accuracy_told: AccuracySeen | None = None
     acceptance_m: float | None = None  # how near a waypoint it takes it as reached itself
 

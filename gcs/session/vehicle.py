@@ -267,7 +267,7 @@ class Vehicle:
                 case settings.ParameterKnown(name, value):
                     work.append(Record(ParamItem(telemetry.sysid, name, value)))
                 case settings.ReturnHeightKnown(up_m):
-                    telemetry.return_up_m = up_m
+                    telemetry.return_up_m, telemetry.return_told = up_m, True
                     if up_m is not None:
                         work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
                 case settings.AcceptanceKnown(radius_m):
