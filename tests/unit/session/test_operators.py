@@ -7,9 +7,8 @@ import pytest
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.session.effects import EVERYONE, Effect, Emit
-from gcs.session.inputs import FileRead, OperatorGone, OperatorJoined, OperatorNoise, SignalCame
+from gcs.session.inputs import OperatorGone, OperatorJoined, OperatorNoise, SignalCame
 from tests.unit.session import told, wire
-from tests.unit.session.plans import BOX
 from tests.unit.session.station import Script
 
 SECOND, THIRD = 2, 3
@@ -304,13 +303,11 @@ class TestOperations:
 
     def test_a_transfer_is_stopped_without_touching_the_flight(self) -> None:
         script = Script().hovering()
-        upload = script.ask("mission_upload", path="box.plan")
-        (asked,) = told.files(script.told)
-        script.feed(FileRead(asked.token, "box.plan", BOX))
-        assert told.verdicts(script.told)[-1] == (upload, "accepted", "")
+        download = script.ask("mission_download", path="box.plan")
+        assert told.verdicts(script.told)[-1] == (download, "accepted", "")
         running = told.events(script.told, ipc.Operation)[-1].id
         stop = script.ask("abort", operation=running)
-        assert (upload, "aborted", "OPERATOR") in told.outcomes(script.told)
+        assert (download, "aborted", "OPERATOR") in told.outcomes(script.told)
         assert (stop, "complete", "") in told.outcomes(script.told)
         assert script.state == "HOVERING"
 
