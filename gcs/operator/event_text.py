@@ -48,8 +48,8 @@ def reason(what: str, code: str, sentence: str) -> str:
 
     Whoever can still read that the operator is lost is the operator, who left in good order.
     """
-    if code == Code.OPERATOR_LOST and sentence.endswith("is lost"):
-        return "the operator left"
+    if code == Code.OPERATOR_LOST:
+        return sentence.replace("the operator is lost", "the operator left")
     return "" if sentence.lower() == what else sentence
 
 

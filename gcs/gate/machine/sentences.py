@@ -149,7 +149,7 @@ def done_at_once(request: Request) -> str:
     """What is so already, or was done at once."""
     if isinstance(request, SwitchFence):
         return f"the fence is {'on' if request.on else 'off'}"
-    return _DONE[event_of(request)]
+    return _DONE.get(event_of(request), "nothing is left to do")
 
 
 ASKED_FOR: Final[Mapping[CommandKind, str]] = MappingProxyType(

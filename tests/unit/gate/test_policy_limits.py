@@ -55,6 +55,7 @@ def value(policy: Policy, key: str) -> object:
         ("jump_speed_m_s", 1.0, 0.99),
         ("deadline_factor", 1.0, 0.99),
         ("takeoff.timeout_s", 1.0, 0.99),
+        ("arm_timeout_s", 1.0, 0.99),
         ("land_timeout_s", 1.0, 0.99),
     ],
 )

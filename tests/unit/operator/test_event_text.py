@@ -17,6 +17,12 @@ from gcs.operator.event_text import outcome_line, verdict_line
             "arm: aborted OPERATOR_LOST: the operator left",
         ),
         (
+            ipc.EndingEvent(
+                1, "arm", "aborted", "OPERATOR_LOST", "the operator is lost; the vehicle goes on"
+            ),
+            "arm: aborted OPERATOR_LOST: the operator left; the vehicle goes on",
+        ),
+        (
             ipc.EndingEvent(1, "arm", "aborted", "LINK_LOST", "not heard any more"),
             "arm: aborted LINK_LOST: not heard any more",
         ),
