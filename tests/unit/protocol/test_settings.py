@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.protocol.autopilot import ParamEncoding
 from gcs.protocol.effects import Address, Heard, Send, Wake
-from gcs.protocol.settings import ASK_AGAIN_NS, GIVE_UP_NS, Quantity, SettingsReader
+from gcs.protocol.settings import ASK_AGAIN_NS, GIVE_UP_NS, PATIENCE_NS, Quantity, SettingsReader
 from gcs.wire.messages import Message, ParamError, ParamRequestRead, ParamValue
 
 OWN, VEHICLE = Address(255, 190), Address(1, 1)
@@ -66,6 +66,16 @@ def test_what_was_lost_is_asked_for_again_and_nothing_else() -> None:
     script.has("RTL_ALT_M", 30.0)
     script.denies("RTL_CONE_SLOPE")
     assert script.reader.done
+    assert script.reader.missing == ()
+
+
+def test_what_is_not_needed_is_not_waited_for_as_long() -> None:
+    script = Script()
+    script.has("WP_RADIUS_M", 2.0)
+    script.has("RTL_ALT_M", 15.0)
+    while not script.reader.done:
+        script.wait(ASK_AGAIN_NS)
+    assert script.now_ns == PATIENCE_NS
     assert script.reader.missing == ()
 
 
