@@ -18,6 +18,8 @@ from gcs.wire.messages import ParamError, ParamRequestRead, ParamValue
 
 ASK_AGAIN_NS = 500_000_000
 GIVE_UP_NS = 30_000_000_000
+PATIENCE_NS = 5_000_000_000
+"""So long even what is not needed is waited for."""
 
 _TYPES = frozenset(int(kind) for kind in ParamType)
 
@@ -49,8 +51,9 @@ class SettingsReader:
         self._quantities = quantities
         self._again_ns = round(ASK_AGAIN_NS * speedup)
         self._give_up_ns = round(GIVE_UP_NS * speedup)
+        self._patience_ns = round(PATIENCE_NS * speedup)
         self._denied: set[str] = set()
-        self._ends_ns = 0
+        self._began_ns = 0
         self.values: dict[str, float] = {}
         """By the quantity's own name, SI units."""
         self.deadline_ns: int | None = None
@@ -62,7 +65,7 @@ class SettingsReader:
         return tuple(q for q in self._quantities if q.needed and q.name not in self.values)
 
     def start(self, now_ns: int) -> list[Send]:
-        self._ends_ns = now_ns + self._give_up_ns
+        self._began_ns = now_ns
         return self._ask(now_ns)
 
     def handle(self, event: Heard | Wake, now_ns: int) -> list[Send]:
@@ -75,7 +78,9 @@ class SettingsReader:
             case Wake():
                 if self.deadline_ns is None or now_ns < self.deadline_ns:
                     return []
-                return self._end() if now_ns >= self._ends_ns else self._ask(now_ns)
+                longest_ns = self._give_up_ns if self.missing else self._patience_ns
+                over = now_ns - self._began_ns >= longest_ns
+                return self._end() if over else self._ask(now_ns)
             case _:
                 assert_never(event)
 

@@ -9,6 +9,7 @@ import pytest
 
 from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, PERSONALITIES, Flight, Personality
+from vehicle_sim.autopilot.firmware import Firmware
 
 ITEMS = 500
 MOST_S = 150.0
@@ -18,7 +19,7 @@ USUAL_SEED = 1
 """The others are run with `-m soak`."""
 
 
-def long_plan(path: Path, personality: Personality) -> str:
+def long_plan(path: Path, personality: Personality, items: int = ITEMS) -> str:
     """A take-off, a spiral of waypoints within 60 m, a return: 500 items as a table."""
     home = HOMES[personality]
     lines = ["QGC WPL 110"]
@@ -30,7 +31,7 @@ def long_plan(path: Path, personality: Personality) -> str:
 
     add(0, 16, home.lat_deg, home.lon_deg, home.alt_amsl_m)
     add(3, 22, home.lat_deg, home.lon_deg, 10.0)
-    for number in range(ITEMS - 2):
+    for number in range(items - 2):
         angle, radius_deg = 0.1 * number, 1e-6 * number
         lat_deg = home.lat_deg + radius_deg * math.cos(angle)
         lon_deg = home.lon_deg + radius_deg * math.sin(angle)
@@ -57,3 +58,13 @@ def test_five_hundred_items_cross_a_link_that_loses_a_quarter(
     print(f"{personality} seed {seed}: {flight.elapsed_s - began_s:.1f} s")
     home_items = 1 if personality == "ardupilot" else 0
     assert len(flight.vehicle.plan) == ITEMS + home_items
+
+
+@pytest.mark.parametrize("firmware", ["4.5", "4.7"])
+def test_the_return_height_is_known_by_either_generation_of_names(
+    firmware: Firmware, tmp_path: Path
+) -> None:
+    """A plan that ends in a return, uploaded at once, while a quarter of all answers is lost."""
+    flight = Flight("ardupilot", firmware=firmware, up=LOSSY, down=LOSSY).connected()
+    path = long_plan(tmp_path / "short.waypoints", "ardupilot", items=6)
+    flight.do("mission_upload", path=path)

@@ -76,14 +76,14 @@ class Upload(VerifiedJob):
 
     def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         if self._preparing is not None:
-            return self._prepare_on(view, now_ns)
+            return self._prepare_on(view, now_ns) if now_ns >= self._prepare_ns else []
         return super().wake(view, now_ns)
 
     def _prepare_on(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         """A step more on the way from bytes to a plan that can be verified, or to why not."""
         assert self._preparing is not None
         assert self._file is not None
-        self._prepare_ns = now_ns
+        self._prepare_ns = self.after_pause_ns(now_ns)
         small = len(self._file.data or b"") <= SMALL_BYTES
         try:
             next(self._preparing)

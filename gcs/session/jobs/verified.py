@@ -14,6 +14,9 @@ from gcs.session.jobs.facts import Facts, Learning, landings_on_board
 from gcs.session.jobs.job import Asked, Job, JobWork, VehicleView
 from gcs.session.paths import verifying
 
+PAUSE_NS = 15_000_000
+"""Between two steps of some milliseconds: positions and ticks are handled in time meanwhile."""
+
 
 class VerifiedJob(Job):
     """`learn`, then `learnt`; `verify`, then `verified`.  The ticks go on between the steps."""
@@ -27,7 +30,7 @@ class VerifiedJob(Job):
 
     @property
     def deadline_ns(self) -> int | None:
-        """At once, while there is something to verify."""
+        """Soon, while there is something to verify."""
         if self._verifying is not None:
             return self._step_ns
         return self._learning.deadline_ns if self._learning else super().deadline_ns
@@ -71,11 +74,15 @@ class VerifiedJob(Job):
 
     def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         if self._verifying is not None:
-            return self._verify_on(view, now_ns)
+            return self._verify_on(view, now_ns) if now_ns >= self._step_ns else []
         if self._learning is not None:
             sends = self._learning.handle(Wake(), now_ns)
             return [*sends, *self._learn_on(view, now_ns)]
         return super().wake(view, now_ns)
+
+    def after_pause_ns(self, now_ns: int) -> int:
+        """When the next step of something long is due."""
+        return now_ns + round(PAUSE_NS * self.asked.speedup)
 
     def _learn_on(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         learning = self._learning
@@ -89,7 +96,7 @@ class VerifiedJob(Job):
 
     def _verify_on(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         assert self._verifying is not None
-        self._step_ns = now_ns
+        self._step_ns = self.after_pause_ns(now_ns)
         self._verifying.step()
         found = self._verifying.result
         if found is None:

@@ -219,7 +219,8 @@ class JobScript:
         return self
 
     def wake(self) -> JobScript:
-        """Its deadline is now."""
+        """Let time pass to its deadline."""
+        self.now_ns = max(self.now_ns, self.job.deadline_ns or 0)
         self._take(self.job.wake(self.view, self.now_ns))
         return self
 

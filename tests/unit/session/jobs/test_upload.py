@@ -16,6 +16,7 @@ from gcs.protocol.autopilot import ARDUPILOT
 from gcs.protocol.effects import Send
 from gcs.session.effects import ReadFile
 from gcs.session.jobs.upload import Upload
+from gcs.session.jobs.verified import PAUSE_NS
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import Decide, Log, ToGate
 from gcs.wire.ids import MissionResult
@@ -246,17 +247,19 @@ up_m = [0, 40]
 
 
 def test_two_thousand_items_are_verified_in_steps() -> None:
-    """No step asks more than 25 questions, and all are done without waiting for anything."""
+    """Between two steps there is time for positions and ticks; a step before its time is none."""
     way = [samples.waypoint(n, LAT + 1e-7 * n, LON, 10) for n in range(2, 2001)]
     board = Board()
     board.deaf_to = [MissionCount]
     script = upload(board).read(plan(samples.waypoint(1, LAT, LON, 10, command=22), *way))
     steps = 0
     while script.of(Decide) == []:
-        assert script.job.deadline_ns == script.now_ns
+        assert script.job.deadline_ns == script.now_ns + PAUSE_NS
         script.wake()
+        script.telemetry.position_ns = script.now_ns
         steps += 1
     assert steps > 100
+    assert script.now_ns - START_NS == steps * PAUSE_NS
     assert script.accepted
 
 

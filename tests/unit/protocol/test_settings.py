@@ -1,0 +1,98 @@
+"""A vehicle's settings under whichever name it has them, on a link that loses some."""
+
+from __future__ import annotations
+
+from gcs.protocol.autopilot import ParamEncoding
+from gcs.protocol.effects import Address, Heard, Send, Wake
+from gcs.protocol.settings import ASK_AGAIN_NS, GIVE_UP_NS, PATIENCE_NS, Quantity, SettingsReader
+from gcs.wire.messages import Message, ParamError, ParamRequestRead, ParamValue
+
+OWN, VEHICLE = Address(255, 190), Address(1, 1)
+RADIUS = Quantity("radius", (("WPNAV_RADIUS", 0.01), ("WP_RADIUS_M", 1.0)))
+HEIGHT = Quantity("height", (("RTL_ALT", 0.01), ("RTL_ALT_M", 1.0)))
+SLOPE = Quantity("slope", (("RTL_CONE_SLOPE", 1.0),), needed=False)
+REAL32 = 9
+
+
+class Script:
+    """A reader of three quantities, and the names that it asked for in each round."""
+
+    def __init__(self) -> None:
+        quantities = (RADIUS, HEIGHT, SLOPE)
+        self.reader = SettingsReader(OWN, VEHICLE, ParamEncoding.CAST, quantities)
+        self.now_ns = 0
+        self.rounds: list[list[str]] = []
+        self._keep(self.reader.start(0))
+
+    def _keep(self, sends: list[Send]) -> None:
+        names = [s.message.param_id for s in sends if isinstance(s.message, ParamRequestRead)]
+        if names:
+            self.rounds.append(names)
+
+    def hear(self, message: Message, sysid: int = 1) -> None:
+        self._keep(self.reader.handle(Heard(sysid, 1, message), self.now_ns))
+
+    def has(self, name: str, value: float, sysid: int = 1) -> None:
+        self.hear(ParamValue(value, 1, 0, name, REAL32), sysid)
+
+    def denies(self, name: str) -> None:
+        self.hear(ParamError(-1, OWN.sysid, OWN.compid, name, 1))
+
+    def wait(self, ns: int) -> None:
+        self.now_ns += ns
+        self._keep(self.reader.handle(Wake(), self.now_ns))
+
+
+def test_all_names_are_asked_for_at_once_and_either_settles_a_quantity() -> None:
+    script = Script()
+    assert script.rounds == [
+        ["WPNAV_RADIUS", "WP_RADIUS_M", "RTL_ALT", "RTL_ALT_M", "RTL_CONE_SLOPE"]
+    ]
+    script.has("WPNAV_RADIUS", 200.0)
+    script.has("RTL_ALT_M", 15.0)
+    script.has("RTL_CONE_SLOPE", 3.0)
+    assert script.reader.done
+    assert script.reader.values == {"radius": 2.0, "height": 15.0, "slope": 3.0}
+
+
+def test_what_was_lost_is_asked_for_again_and_nothing_else() -> None:
+    script = Script()
+    script.has("WP_RADIUS_M", 2.0)
+    script.denies("RTL_ALT")
+    script.wait(ASK_AGAIN_NS - 1)
+    assert len(script.rounds) == 1
+    script.wait(1)
+    assert script.rounds[1] == ["RTL_ALT_M", "RTL_CONE_SLOPE"]
+    script.has("RTL_ALT_M", 30.0)
+    script.denies("RTL_CONE_SLOPE")
+    assert script.reader.done
+    assert script.reader.missing == ()
+
+
+def test_what_is_not_needed_is_not_waited_for_as_long() -> None:
+    script = Script()
+    script.has("WP_RADIUS_M", 2.0)
+    script.has("RTL_ALT_M", 15.0)
+    while not script.reader.done:
+        script.wait(ASK_AGAIN_NS)
+    assert script.now_ns == PATIENCE_NS
+    assert script.reader.missing == ()
+
+
+def test_a_quantity_that_every_name_is_denied_of_is_missing_and_not_waited_for() -> None:
+    script = Script()
+    for name in ("WPNAV_RADIUS", "WP_RADIUS_M", "RTL_ALT", "RTL_ALT_M", "RTL_CONE_SLOPE"):
+        script.denies(name)
+    assert script.reader.done
+    assert script.reader.missing == (RADIUS, HEIGHT)
+
+
+def test_silence_is_given_up_and_another_vehicle_is_not_heard() -> None:
+    script = Script()
+    script.has("WP_RADIUS_M", 9.0, sysid=2)
+    while not script.reader.done:
+        script.wait(ASK_AGAIN_NS)
+    assert script.now_ns == GIVE_UP_NS
+    assert script.reader.values == {}
+    script.has("WP_RADIUS_M", 2.0)
+    assert script.reader.deadline_ns is None
