@@ -33,7 +33,7 @@ _rng = random.Random(1)
 class Stopwatch(HoldWatch):
     """How long it takes from an abort to the hold command."""
 
-    def latency_ms(self, abort: Callable[[], None]) -> float:
+    def latency_ms(self, abort: Callable[[], object]) -> float:
         time.sleep(_rng.uniform(0.0, 0.2))
         known = len(self.passed_ns)
         start_ns = time.monotonic_ns()

@@ -53,7 +53,7 @@ def _type(kind: object) -> str:
     """As JSON has it."""
     plain = {int: "integer", float: "number", str: "text", bool: "true or false"}
     if kind in plain:
-        return plain[typing.cast("type", kind)]
+        return plain[kind]
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     if kind is type(None):
         return "null"
