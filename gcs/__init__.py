@@ -41,8 +41,10 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> object:
-    """The library's names, loaded when one is used: every start of `gcs` imports this module."""
-    if name in __all__:
-        return getattr(import_module(f"gcs.operator.{_HOME.get(name, 'failures')}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        """The library, loaded when it is used: every start of `gcs` imports this module."""
+        if name in __all__:
+            return getattr(import_module(f"gcs.operator.{_HOME.get(name, 'failures')}"), name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
