@@ -82,7 +82,7 @@ class VerifiedJob(Job):
 
     def after_pause_ns(self, now_ns: int) -> int:
         """When the next step of something long is due."""
-        return now_ns + round(PAUSE_NS * self.asked.speedup)
+        return now_ns + self.asked.times.real_ns(PAUSE_NS)
 
     def _learn_on(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         learning = self._learning
