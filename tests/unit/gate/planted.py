@@ -316,7 +316,7 @@ FAULTS = [
         Event.HOLD_DUE,
         NOTHING,
         0,
-        "wait: mode overdue",
+        "wait: hold due",
     ),
     planted(
         "a hold ends with the deadline of its request",
