@@ -316,7 +316,7 @@ FAULTS = [
         Event.HOLD_DUE,
         NOTHING,
         0,
-        "wait: mode overdue",
+        "wait: hold due",
     ),
     planted(
         "a hold ends with the deadline of its request",
@@ -415,7 +415,7 @@ FAULTS = [
         Event.MODE_CONFIRMED,
         without(State.HOVERING, Event.MODE_CONFIRMED, Guard.TASK_IS_TAKE_OFF),
         2,
-        "guided mode",
+        "wait: position too old",
     ),
     planted(
         "the place where the climb ended is held, and not its top",
@@ -428,7 +428,7 @@ FAULTS = [
             for branch in TABLE[State.TAKING_OFF, Event.TICK]
         ),
         2,
-        "tick",
+        "wait: mode overdue",
     ),
     # ----------------------------------------------------------- who is not heard, who leaves
     planted(

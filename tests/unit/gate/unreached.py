@@ -56,8 +56,6 @@ UNREACHED: Final = (
     Unreached("return mode", "NO_VEHICLE", HEARD_FIRST),
     Unreached("land mode", "NO_VEHICLE", HEARD_FIRST),
     Unreached("another mode", "NO_VEHICLE", HEARD_FIRST),
-    Unreached("command refused", "HOLDING", NO_COMMAND),
-    Unreached("command unanswered", "HOLDING", NO_COMMAND),
     Unreached("disarm refused", f"NO_VEHICLE {FLIGHT} HOLDING", NO_COMMAND),
     Unreached("hold refused", FLIGHT, NO_COMMAND),
     Unreached("hold unanswered", FLIGHT, NO_COMMAND),
