@@ -29,6 +29,9 @@ _BRAKE_SHARE = 0.6
 """Of the acceleration that a vehicle plans to brake with (vehicle-sim; an ArduCopter's corner too
 leaves some of it)."""
 
+_CARRY_UP_M = 4.0
+"""2.5 m/s of climb and 1 m/s^2, as delivered, are 3.1 m."""
+
 
 @dataclass(frozen=True, slots=True)
 class Neighbours:
@@ -90,5 +93,6 @@ def carried(
             size = math.hypot(*tangent)
             if size > 0.0:
                 n, e, d = _moved(to_ned, tangent, reach_m / size)
-                found[(float(round(n)), float(round(e)), d)] = None
+                height_m = max(-_CARRY_UP_M, min(_CARRY_UP_M, float(round(d - to_ned[2]))))
+                found[(float(round(n)), float(round(e)), to_ned[2] + height_m)] = None
     return tuple(found)
