@@ -25,6 +25,14 @@ _LAG_M = 4.0
 ArduCopter's error of position in WP_NAV is limited to a few metres as well, by memory)."""
 
 
+_BRAKE_SHARE = 0.6
+"""Of the acceleration that a vehicle plans to brake with (vehicle-sim; an ArduCopter's corner too
+leaves some of it)."""
+
+_CARRY_UP_M = 4.0
+"""2.5 m/s of climb and 1 m/s^2, as delivered, are 3.1 m."""
+
+
 @dataclass(frozen=True, slots=True)
 class Neighbours:
     """Where the leg before began, if the vehicle does not begin at rest, and where it may go on."""
@@ -63,3 +71,28 @@ def _from(a: Vec3, b: Vec3) -> Vec3:
 
 def _moved(at: Vec3, by: Vec3, share: float) -> Vec3:
     return (at[0] + share * by[0], at[1] + share * by[1], at[2] + share * by[2])
+
+
+def carried(
+    starts: tuple[Vec3, ...],
+    to_ned: Vec3,
+    straight_after: tuple[Vec3, ...],
+    speed_m_s: float,
+    accel_m_s2: float,
+) -> tuple[Vec3, ...]:
+    """How far its speed may carry a vehicle past `to_ned` before it is on the straight leg that
+    follows: along the tangent of a curve that looks ahead to that leg's end.
+
+    To whole metres, so that a loop comes back to what it was before; one metre more for that.
+    """
+    reach_m = 1.0 + speed_m_s * speed_m_s / (2.0 * _BRAKE_SHARE * accel_m_s2)
+    found: dict[Vec3, None] = {}
+    for start in starts:
+        for after in straight_after:
+            tangent = _from(start, after)
+            size = math.hypot(*tangent)
+            if size > 0.0:
+                n, e, d = _moved(to_ned, tangent, reach_m / size)
+                height_m = max(-_CARRY_UP_M, min(_CARRY_UP_M, float(round(d - to_ned[2]))))
+                found[(float(round(n)), float(round(e)), to_ned[2] + height_m)] = None
+    return tuple(found)

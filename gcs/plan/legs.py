@@ -139,6 +139,10 @@ class FlightSettings:
     """Nearer than this to where it lands, a return may be lower than the return height."""
     return_type: int = 0
     """PX4's RTL_TYPE."""
+    speed_m_s: float = 0.0
+    """How fast it flies its legs at most (WPNAV_SPEED), where no item says otherwise."""
+    accel_m_s2: float = 2.5
+    """Its acceleration on legs (WPNAV_ACCEL)."""
     return_climb_m: float = 0.0
     """A return climbs so much at least (RTL_CLIMB_MIN)."""
 

@@ -27,7 +27,7 @@ from gcs.frames import Vec3
 from gcs.plan import commands, returns
 from gcs.plan.circles import circle_ends, entries, way_on
 from gcs.plan.commands import KINDS, Kind
-from gcs.plan.curves import Neighbours, curve_hull
+from gcs.plan.curves import Neighbours, carried, curve_hull
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import (
@@ -303,16 +303,28 @@ class PathWalk:
         return _Here(ends[0], fewer(ends[1:], without=ends[0]))
 
     def _curve(self, index: int, item: Item, here: _Here) -> _Here:
+        """Where a straight leg follows, the vehicle's speed carries it past the curve's end."""
         to_ned = self._places.place(item, here.pos_ned)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
-        neighbours = Neighbours(here.before_ned, self._next_places(index, to_ned))
-        hull, arrivals = curve_hull(here.places, to_ned, neighbours, self._ground.settings.accept_m)
+        settings = self._ground.settings
+        after = self._next_places(index, to_ned)
+        neighbours = Neighbours(here.before_ned, tuple(place for place, _ in after))
+        hull, arrivals = curve_hull(here.places, to_ned, neighbours, settings.accept_m)
         self._region(index, RegionKind.CURVE, here.places, hull)
-        return _Here(to_ned, fewer(arrivals, without=to_ned), here.pos_ned)
+        straight = tuple(place for place, curved in after if not curved)
+        speed_m_s = max(settings.speed_m_s, self._fastest_item_m_s)
+        past = carried(here.places, to_ned, straight, speed_m_s, settings.accel_m_s2)
+        return _Here(to_ned, fewer((*arrivals, *past), without=to_ned), here.pos_ned)
 
-    def _next_places(self, index: int, pos_ned: Vec3) -> tuple[Vec3, ...]:
-        """Where it may go on to from item `index`, by every jump."""
-        found: list[Vec3] = []
+    @property
+    def _fastest_item_m_s(self) -> float:
+        """The largest DO_CHANGE_SPEED of the plan; 0 without one."""
+        changes = (one for one in self._plan.items if one.command == Cmd.DO_CHANGE_SPEED)
+        return max((change.params[1] for change in changes), default=0.0)
+
+    def _next_places(self, index: int, pos_ned: Vec3) -> tuple[tuple[Vec3, bool], ...]:
+        """Where it may go on to from item `index`, by every jump; True for curves."""
+        found: list[tuple[Vec3, bool]] = []
         waiting, seen = [index + 1], set[int]()
         while waiting:
             at = waiting.pop()
@@ -321,9 +333,11 @@ class PathWalk:
             seen.add(at)
             item = self._plan.items[at]
             if KINDS.get(item.command) in (Kind.MOVE, Kind.RETURN, Kind.WAIT):
-                if flown_as(item.command, self._ground.autopilot) in _THROUGH:
+                flown = flown_as(item.command, self._ground.autopilot)
+                if flown in _THROUGH:
                     with suppress(PlaceUnknownError):  # told when the walk comes to it
-                        found.append(self._places.place(item, pos_ned))
+                        place = self._places.place(item, pos_ned)
+                        found.append((place, flown is Flown.CURVE))
                 continue
             waiting.append(at + 1)
             target = self._plan.index_of(item.params[0]) if item.command == Cmd.DO_JUMP else None

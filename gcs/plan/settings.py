@@ -18,5 +18,7 @@ USUAL: dict[AutopilotName, FlightSettings] = {
     "ardupilot": FlightSettings(
         accept_m=2.0,
         return_low_within_m=5.0,
+        speed_m_s=10.0,
+        accel_m_s2=2.5,
     ),
 }

@@ -23,7 +23,7 @@ import math
 from gcs.frames import Vec3
 
 WIDEST_RAD = math.radians(120.0)
-"""Places that are seen from the waypoint under a wider angle than this are all kept."""
+"""From places that are seen from the waypoint under a wider angle it may turn all round it."""
 _OVERLAP = 3.0
 _MOST_PLACES = 8
 _DIGITS = 2
@@ -38,15 +38,30 @@ def turning_places(
     """
     if accept_m <= 0.0 and not accept_up_m:
         return ()
+    reaches = [_turn_m(start, to_ned, accept_m, accept_up_m) for start in starts]
     angle_rad = _widest_angle(starts, to_ned)
     if angle_rad > WIDEST_RAD:
-        return fewer(starts)
+        return _box_about(starts, to_ned, max(reaches))
     wider = 1.0 / math.cos(0.5 * angle_rad)
     found = [
-        _towards(start, to_ned, wider * _turn_m(start, to_ned, accept_m, accept_up_m))
-        for start in starts
+        _towards(start, to_ned, wider * reach_m)
+        for start, reach_m in zip(starts, reaches, strict=True)
     ]
     return fewer(tuple(found), without=to_ned)
+
+
+def _box_about(starts: tuple[Vec3, ...], to_ned: Vec3, reach_m: float) -> tuple[Vec3, ...]:
+    """A square round the circle where it may turn, at the heights that it may have there."""
+    heights = [_towards(start, to_ned, reach_m)[2] for start in starts]
+    north, east, down = to_ned
+    return fewer(
+        tuple(
+            (north + dn * reach_m, east + de * reach_m, height)
+            for dn in (-1.0, 1.0)
+            for de in (-1.0, 1.0)
+            for height in (min(*heights, down), max(*heights, down))
+        )
+    )
 
 
 def fewer(places: tuple[Vec3, ...], without: Vec3 | None = None) -> tuple[Vec3, ...]:
@@ -55,14 +70,14 @@ def fewer(places: tuple[Vec3, ...], without: Vec3 | None = None) -> tuple[Vec3, 
     if without is not None:
         rounded.pop(_rounded(without), None)
     if len(rounded) <= _MOST_PLACES:
-        return tuple(rounded)
+        return tuple(sorted(rounded))
     lows = [min(place[axis] for place in rounded) for axis in range(3)]
     highs = [max(place[axis] for place in rounded) for axis in range(3)]
     return tuple(
         (north, east, down)
-        for north in {lows[0], highs[0]}
-        for east in {lows[1], highs[1]}
-        for down in {lows[2], highs[2]}
+        for north in dict.fromkeys((lows[0], highs[0]))
+        for east in dict.fromkeys((lows[1], highs[1]))
+        for down in dict.fromkeys((lows[2], highs[2]))
     )
 
 

@@ -39,6 +39,8 @@ QUANTITIES: dict[AutopilotName, tuple[Quantity, ...]] = {
     "ardupilot": (
         Quantity("accept_m", (("WPNAV_RADIUS", _CM), ("WP_RADIUS_M", _M))),
         Quantity("return_up_m", (("RTL_ALT", _CM), ("RTL_ALT_M", _M))),
+        Quantity("speed_m_s", (("WPNAV_SPEED", _CM), ("WP_SPD", _M)), needed=False),
+        Quantity("accel_m_s2", (("WPNAV_ACCEL", _CM), ("WP_ACC", _M)), needed=False),
         Quantity("return_climb_m", (("RTL_CLIMB_MIN", _CM), ("RTL_CLIMB_MIN_M", _M)), False),
         Quantity("cone", (("RTL_CONE_SLOPE", 1.0),), needed=False),
     ),
@@ -123,6 +125,8 @@ class Learning:
             first_climb_m=values.get("first_climb_m", usual.first_climb_m),
             return_low_within_m=self._low_within_m(usual),
             return_type=int(values.get("return_type", usual.return_type)),
+            speed_m_s=values.get("speed_m_s", usual.speed_m_s),
+            accel_m_s2=values.get("accel_m_s2", 0.0) or usual.accel_m_s2,
             return_climb_m=values.get("return_climb_m", usual.return_climb_m),
             accept_up_m=values.get("accept_up_m", usual.accept_up_m),
         )

@@ -232,6 +232,17 @@ def test_a_spline_is_verified_by_its_curve_and_not_by_its_chord() -> None:
     assert checked(ground("ardupilot"), mast(110.0, 20.0), *way).refusal is None
 
 
+def test_its_speed_carries_a_vehicle_past_the_end_of_a_curve() -> None:
+    """At 6 m/s it comes to rest 12 m on, along the tangent towards the straight leg's end."""
+    quick = ground("ardupilot", replace(TWO_METRES, speed_m_s=6.0))
+    way = (item(82, 50, 0), item(16, 50, 50))
+    refusal = refused(checked(quick, mast(57.0, 14.0, 3.0), *way))
+    assert refusal.sentence.startswith("item 2: the turn towards ")
+    assert checked(quick, mast(66.0, 14.0, 3.0), *way).refusal is None
+    slow = ground("ardupilot", replace(TWO_METRES, speed_m_s=1.0))
+    assert checked(slow, mast(57.0, 14.0, 3.0), *way).refusal is None
+
+
 # -------------------------------------------------------------------------------- rings
 
 
