@@ -9,8 +9,6 @@ from math import nan, sqrt
 from pathlib import Path
 from typing import Self
 
-from vehicle_sim.engine.few import Few
-
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.interface import (
@@ -24,6 +22,7 @@ from vehicle_sim.autopilot.interface import (
 )
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.tasks.guided import Offboard
+from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.plant.airframe import load, parse, shipped
@@ -49,7 +48,7 @@ class Flight:
     ) -> None:
         home = HOMES[personality]
         frame = load(airframe) if airframe in shipped() else parse(SIH.read_text(), SIH.name)
-        seat = Seat(Few([VehicleSpec(seed, 0, home.lat_deg)], frame), 0)
+        seat = Seat(ScalarEngine([VehicleSpec(seed, 0, home.lat_deg)], frame), 0)
         self.vehicle = Autopilot(personality, home, seed, seat=seat, boot=boot, offboard=offboard)
         self.personality: Personality = personality
         self.seen: list[VehicleEvent] = []
