@@ -19,7 +19,6 @@ VTOL: Final = "NAV_VTOL_TAKEOFF: a mode that is not flown here; ours is asked to
 TAKE_OFF_AGAIN: Final = "to mend: a take-off in the air, to a height below, climbs MIS_TAKEOFF_ALT"
 LATER_DOWN: Final = "ours had not come down after OFFBOARD: it lands from 5 m, not from 1.5 m"
 SETPOINTS: Final = "PX4's OFFBOARD steps are smoothed here: a known gap"
-JERK: Final = "PX4's own flights have a jerk of 4 m/s^3, here 30: a known gap"
 SLOW_START: Final = "to mend: PX4 leaves the ground 1.6 to 1.9 s after arming, ours after 1.2 s"
 PREARM: Final = "to mend: RUN_PREARM_CHECKS says nothing in ORBIT"
 NOT_BUILT: Final = "not built here"
@@ -65,8 +64,6 @@ PX4: Final[dict[str, str]] = {
     "rate intervals set, ORBIT_EXECUTION_STATUS: ours more": VTOL,
     "figure: take-off sent to TAKEOFF": SLOW_START,
     "figure: take-off sent to IN_AIR": SLOW_START,
-    "figure: reposition, fastest": JERK,
-    "figure: reposition, time to 90 %": JERK,
     "figure: take-off again, fastest climb": TAKE_OFF_AGAIN,
     "figure: take-off again, height kept": TAKE_OFF_AGAIN,
     "figure: OFFBOARD, fastest across": SETPOINTS,

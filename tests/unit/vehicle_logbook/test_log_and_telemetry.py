@@ -79,7 +79,8 @@ def test_px4(tmp_path: Path) -> None:
     ]
     assert len(compared) > 100
     assert all(logged == sent for logged, sent in compared)
-    assert min(logged[2] for logged, _ in compared) < -2.0, "it flew"
+    # MIS_TAKEOFF_ALT 2.5 m; the climb may end NAV_MC_ALT_RAD = 0.8 m below it.
+    assert min(logged[2] for logged, _ in compared) < -1.7, "it flew"
 
 
 def test_ardupilot(tmp_path: Path) -> None:
