@@ -12,6 +12,7 @@ from typing import assert_never
 
 from gcs.protocol.autopilot import ParamEncoding
 from gcs.protocol.effects import Address, Heard, Send, Wake
+from gcs.protocol.parameter_names import ParameterName, names_of
 from gcs.protocol.parameters import BY_NAME, decode_value
 from gcs.wire.ids import ParamType
 from gcs.wire.messages import ParamError, ParamRequestRead, ParamValue
@@ -26,12 +27,17 @@ _TYPES = frozenset(int(kind) for kind in ParamType)
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """Something that a parameter says: its names, each with the factor to SI units."""
+    """Something that a parameter says, SI units; `parameter` is its newest name."""
 
     name: str
-    names: tuple[tuple[str, float], ...]
+    parameter: str
     needed: bool = True
     """Whether to wait for it: else what is usual is taken where no answer has come in time."""
+
+    @property
+    def names(self) -> tuple[ParameterName, ...]:
+        """All that a firmware may have it under, the newest first."""
+        return names_of(self.parameter)
 
 
 class SettingsReader:
@@ -88,11 +94,11 @@ class SettingsReader:
     def _open(self) -> list[str]:
         """Names that may still be answered."""
         return [
-            name
+            each.name
             for quantity in self._quantities
             if quantity.name not in self.values
-            for name, _ in quantity.names
-            if name not in self._denied
+            for each in quantity.names
+            if each.name not in self._denied
         ]
 
     def _ask(self, now_ns: int) -> list[Send]:
@@ -125,9 +131,9 @@ class SettingsReader:
                     answer.param_value, ParamType(answer.param_type), self._encoding
                 )
                 for quantity in self._quantities:
-                    for known, factor in quantity.names:
-                        if known == name:
-                            self.values[quantity.name] = factor * float(value)
+                    for known in quantity.names:
+                        if known.name == name:
+                            self.values[quantity.name] = known.scale * float(value)
             case ParamError(param_id=name, target_system=system, target_component=component):
                 if Address(system, component).includes(self._own.sysid, self._own.compid):
                     self._denied.add(name)

@@ -24,25 +24,25 @@ from gcs.session.telemetry import Telemetry
 from gcs.wire.ids import MavFrame, MissionType
 from gcs.wire.messages import MissionItemInt, ParamError, ParamValue
 
-_M, _CM, _KM = 1.0, 0.01, 1000.0
+_KM = 1000.0
 
 QUANTITIES: dict[AutopilotName, tuple[Quantity, ...]] = {
     "px4": (
-        Quantity("accept_m", (("NAV_ACC_RAD", _M),)),
-        Quantity("return_up_m", (("RTL_RETURN_ALT", _M),)),
-        Quantity("accept_up_m", (("NAV_MC_ALT_RAD", _M),), needed=False),
-        Quantity("first_climb_m", (("MIS_TAKEOFF_ALT", _M),), needed=False),
-        Quantity("return_type", (("RTL_TYPE", 1.0),), needed=False),
-        Quantity("cone", (("RTL_CONE_ANG", 1.0),), needed=False),
-        Quantity("cone_within_m", (("RTL_MIN_DIST", _M),), needed=False),
+        Quantity("accept_m", "NAV_ACC_RAD"),
+        Quantity("return_up_m", "RTL_RETURN_ALT"),
+        Quantity("accept_up_m", "NAV_MC_ALT_RAD", needed=False),
+        Quantity("first_climb_m", "MIS_TAKEOFF_ALT", needed=False),
+        Quantity("return_type", "RTL_TYPE", needed=False),
+        Quantity("cone", "RTL_CONE_ANG", needed=False),
+        Quantity("cone_within_m", "RTL_MIN_DIST", needed=False),
     ),
     "ardupilot": (
-        Quantity("accept_m", (("WPNAV_RADIUS", _CM), ("WP_RADIUS_M", _M))),
-        Quantity("return_up_m", (("RTL_ALT", _CM), ("RTL_ALT_M", _M))),
-        Quantity("speed_m_s", (("WPNAV_SPEED", _CM), ("WP_SPD", _M)), needed=False),
-        Quantity("accel_m_s2", (("WPNAV_ACCEL", _CM), ("WP_ACC", _M)), needed=False),
-        Quantity("return_climb_m", (("RTL_CLIMB_MIN", _CM), ("RTL_CLIMB_MIN_M", _M)), False),
-        Quantity("cone", (("RTL_CONE_SLOPE", 1.0),), needed=False),
+        Quantity("accept_m", "WP_RADIUS_M"),
+        Quantity("return_up_m", "RTL_ALT_M"),
+        Quantity("speed_m_s", "WP_SPD", needed=False),
+        Quantity("accel_m_s2", "WP_ACC", needed=False),
+        Quantity("return_climb_m", "RTL_CLIMB_MIN_M", needed=False),
+        Quantity("cone", "RTL_CONE_SLOPE", needed=False),
     ),
 }
 _FLATTEST_SLOPE = 0.5
@@ -103,7 +103,7 @@ class Learning:
         """The radii are needed for any path, the return's height for one that returns."""
         for quantity in self._reader.missing:
             if quantity.name == "accept_m":
-                names = " or ".join(name for name, _ in quantity.names)
+                names = " or ".join(each.name for each in quantity.names)
                 text = f"the vehicle has not told its acceptance radius ({names})"
                 self.refusal = Refusal(Code.NO_ANSWER, text)
                 return []

@@ -8,9 +8,9 @@ from gcs.protocol.settings import ASK_AGAIN_NS, GIVE_UP_NS, PATIENCE_NS, Quantit
 from gcs.wire.messages import Message, ParamError, ParamRequestRead, ParamValue
 
 OWN, VEHICLE = Address(255, 190), Address(1, 1)
-RADIUS = Quantity("radius", (("WPNAV_RADIUS", 0.01), ("WP_RADIUS_M", 1.0)))
-HEIGHT = Quantity("height", (("RTL_ALT", 0.01), ("RTL_ALT_M", 1.0)))
-SLOPE = Quantity("slope", (("RTL_CONE_SLOPE", 1.0),), needed=False)
+RADIUS = Quantity("radius", "WP_RADIUS_M")
+HEIGHT = Quantity("height", "RTL_ALT_M")
+SLOPE = Quantity("slope", "RTL_CONE_SLOPE", needed=False)
 REAL32 = 9
 
 
@@ -46,7 +46,7 @@ class Script:
 def test_all_names_are_asked_for_at_once_and_either_settles_a_quantity() -> None:
     script = Script()
     assert script.rounds == [
-        ["WPNAV_RADIUS", "WP_RADIUS_M", "RTL_ALT", "RTL_ALT_M", "RTL_CONE_SLOPE"]
+        ["WP_RADIUS_M", "WPNAV_RADIUS", "RTL_ALT_M", "RTL_ALT", "RTL_CONE_SLOPE"]
     ]
     script.has("WPNAV_RADIUS", 200.0)
     script.has("RTL_ALT_M", 15.0)
