@@ -74,7 +74,9 @@ def speed_by_jerk(distance_m: float, accel_m_s2: float, jerk_m_s3: float) -> flo
     """PX4's speed at `distance_m` from a goal (`computeMaxSpeedFromDistance`, by memory): one that
     it can still brake after the acceleration has been reversed at that jerk."""
     half = 2.0 * accel_m_s2 * accel_m_s2 / jerk_m_s3
-    return sqrt(half * half + 2.0 * accel_m_s2 * distance_m) - half
+    more = 2.0 * accel_m_s2 * distance_m
+    # Not the root less `half`, which is zero for a small distance: a leg would wait for it for ever.
+    return more / (sqrt(half * half + more) + half)
 
 
 def stopping_point(f: Flight, est: Estimated, limits: MotionLimits) -> Vec3:
