@@ -443,7 +443,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "ATC_ANG_YAW_P",
-        {3.0: pytest.approx(0.035, rel=0.12), 9.0: pytest.approx(0.049, rel=0.12)},
+        {3.0: pytest.approx(0.036, rel=0.12), 9.0: pytest.approx(0.078, rel=0.12)},
         fly.answer("qz", fly.tips(fly.turned(yaw=20.0)), 0.3),
     ),
     Case(
@@ -463,12 +463,12 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "PSC_POSZ_P",
-        {0.5: pytest.approx(0.224, rel=0.12), 1.0: pytest.approx(0.53, rel=0.12)},
+        {0.5: pytest.approx(0.265, rel=0.12), 1.0: pytest.approx(0.53, rel=0.12)},
         fly.answer("pos_d", fly.reference(ref_d=1.0, goal_d=1.0), 1.0, hover_s=6.0),
     ),
     Case(
         "PSC_VELZ_P",
-        {2.0: pytest.approx(0.274, rel=0.12), 6.0: pytest.approx(0.705, rel=0.12)},
+        {2.0: pytest.approx(0.349, rel=0.12), 6.0: pytest.approx(0.705, rel=0.12)},
         fly.answer("vel_d", fly.reference(ref_d=1.0, goal_d=1.0), 0.5, hover_s=2.0),
     ),
     Case(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from math import acos, cos, degrees, hypot, inf, pi, radians, remainder, sin
 
 from tests.unit.autopilot.flight import item
@@ -270,14 +271,18 @@ def reached_at_m(setting: Setting) -> float:
 
 
 def answer(field: str, ask: Act, after_s: float, hover_s: float = 0.0) -> Script:
-    """How much of a step a field of the truth has taken up some time after it was asked for."""
+    """How much of a step a field of the truth has taken up some time after it was asked for.
+
+    What the hover's own drift does meanwhile is that of a copy that was not asked.
+    """
 
     def script(setting: Setting) -> object:
         flight = setting.aloft(hover_s)
+        unasked = deepcopy(flight)
         ask(flight)
-        before = _truth(flight, field)
         flight.fly(after_s)
-        return _truth(flight, field) - before
+        unasked.fly(after_s)
+        return _truth(flight, field) - _truth(unasked, field)
 
     return script
 
