@@ -75,7 +75,7 @@ def speed_by_jerk(distance_m: float, accel_m_s2: float, jerk_m_s3: float) -> flo
     it can still brake after the acceleration has been reversed at that jerk."""
     half = 2.0 * accel_m_s2 * accel_m_s2 / jerk_m_s3
     more = 2.0 * accel_m_s2 * distance_m
-    # Not the root less `half`, which is zero for a small distance: a leg would wait for it for ever.
+    # Not the root less `half`: for a small distance that is zero, and a leg would wait for ever.
     return more / (sqrt(half * half + more) + half)
 
 

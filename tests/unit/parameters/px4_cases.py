@@ -496,7 +496,7 @@ CASES: tuple[Case, ...] = (
         fly.answer("qz", fly.tips(fly.turned(yaw=20.0)), 0.3),
     ),
     Case(
-        # A loop of second order with MPC_XY_VEL_P_ACC = 1.8 gives 0.25 and 0.45, less the tilt's lag.
+        # A loop of second order with MPC_XY_VEL_P_ACC = 1.8 gives 0.25, 0.45, less the tilt's lag.
         "MPC_XY_P",
         {0.5: pytest.approx(0.22, rel=0.12), 0.95: pytest.approx(0.40, rel=0.12)},
         fly.answer("pos_n", fly.reference(ref_n=1.0, goal_n=1.0), 1.0, hover_s=6.0),
