@@ -33,6 +33,7 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
 from gcs.session.position_health import GPS_SILENT_NS
+from gcs.session.presence import Presence
 from gcs.session.reasons import Reasons
 from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
@@ -49,19 +50,10 @@ from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MavAutopilot, MavType
 from gcs.wire.messages import CommandLong
 
-ALIVE_EVERY_NS = 250_000_000
-"""How often the gate is told that something of the vehicle was heard."""
-LINK_SILENT_NS = 2_000_000_000
-RESTART_SILENCE_NS = 500_000_000
-"""A frame that seems older than others, and comes after such a silence, is of a vehicle that
-restarted: on the way no frame is overtaken by that much."""
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
 
 NODE = "link"
-
-STATE_MESSAGES: Final = frozenset({m.Heartbeat, m.ExtendedSysState, m.SysStatus, m.MissionCurrent})
-"""What tells a state is void once a newer one was seen; answers and events are not."""
 
 CAMERA_MESSAGES: Final = frozenset({m.CameraImageCaptured, m.CameraFeedback})
 PARAMETER_MESSAGES: Final = frozenset({m.ParamValue, m.ParamError})
@@ -76,7 +68,7 @@ class Vehicle:
     def __init__(self, config: StationConfig, policy: Policy, times: Times, now_ns: int) -> None:
         self._config = config
         self._times = times
-        self._gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
+        gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self._start_ns = now_ns
         own = Address(config.sysid, config.compid)
         self._port = GatePort(times.policy(policy), now_ns)
@@ -85,13 +77,11 @@ class Vehicle:
         self._settings = Settings(own, times)
         self._missions = Missions(own, times)
         self._words = Words(times)
-        self._roster = Roster(config.target_sysid, times, self._gone_ns)
+        self._roster = Roster(config.target_sysid, times, gone_ns)
         self._reasons = Reasons(self._words, times)
         self._met_ns = 0
-        self._newest: dict[tuple[int, int], int] = {}
-        self._heard_ns: dict[tuple[int, int], int] = {}
+        self._presence = Presence(times, gone_ns)
         self.telemetry: Telemetry | None = None
-        self.losses = SequenceTracker()
 
     # ------------------------------------------------------------------------------ reading
 
@@ -123,6 +113,11 @@ class Vehicle:
         return self._port.fence_shapes
 
     @property
+    def losses(self) -> SequenceTracker:
+        """Frames that were lost on the way."""
+        return self._presence.losses
+
+    @property
     def mission_total(self) -> int | None:
         return self._missions.total
 
@@ -140,54 +135,16 @@ class Vehicle:
         telemetry = self.telemetry
         if telemetry is None or frame.sysid != telemetry.sysid:
             return work
-        self._notice_restart(frame, now_ns)
-        number = self.losses.number(frame.sysid, frame.compid, frame.seq)
-        self.losses.seen(frame.sysid, frame.compid, frame.seq)
+        number = self._presence.number(frame, now_ns)
         telemetry.count_frame(now_ns)
         if frame.compid == telemetry.compid:
-            self._choose_link(telemetry, link, now_ns)
-            work += self._alive(telemetry, now_ns)
-        if message is not None and not self._overtaken(frame, message, number):
+            self._presence.choose_link(telemetry, link, now_ns)
+            if self._presence.alive(telemetry, now_ns):
+                work.append(ToGate(inputs.MessageSeen()))
+        if message is not None and not self._presence.overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
             work += self._heard(telemetry, heard, now_ns)
         return work
-
-    def _notice_restart(self, frame: Frame, now_ns: int) -> None:
-        sender = (frame.sysid, frame.compid)
-        heard_ns, self._heard_ns[sender] = self._heard_ns.get(sender, now_ns), now_ns
-        silent = now_ns - heard_ns > self._times.real_ns(RESTART_SILENCE_NS)
-        if silent and self.losses.late(*sender, frame.seq):
-            self.losses.restart(*sender)
-
-    def _choose_link(self, telemetry: Telemetry, link: int, now_ns: int) -> None:
-        """Answer where it is heard; another link takes over only once that one is silent."""
-        silent = now_ns - telemetry.link_ns > self._times.real_ns(LINK_SILENT_NS)
-        if link == telemetry.link or silent:
-            telemetry.link, telemetry.link_ns = link, now_ns
-
-    def _alive(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
-        """Any message is a sign of life; the gate hears of it a few times a second."""
-        telemetry.was_gone |= self._is_gone(telemetry, now_ns)
-        telemetry.heard_ns = now_ns
-        if now_ns - telemetry.alive_told_ns < ALIVE_EVERY_NS:
-            return []
-        telemetry.alive_told_ns = now_ns
-        return [ToGate(inputs.MessageSeen())]
-
-    def _is_gone(self, telemetry: Telemetry, now_ns: int) -> bool:
-        """It was silent for so long that the gate has lost it."""
-        return 0 < telemetry.heard_ns < now_ns - self._gone_ns
-
-    def _overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
-        """A state that is older than one of the same kind that has come: void."""
-        if type(message) not in STATE_MESSAGES:
-            return False
-        key = (frame.compid, frame.msgid)
-        newest = self._newest.get(key)
-        if newest is not None and number <= newest:
-            return True
-        self._newest[key] = number
-        return False
 
     def _heard(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
         work: list[Work] = []
@@ -242,12 +199,11 @@ class Vehicle:
             work += self._port.meet(telemetry, now_ns)
             news = f"vehicle {telemetry.label} on link {link}"
         elif telemetry.sysid == frame.sysid and (
-            telemetry.was_gone or self._is_gone(telemetry, now_ns)
+            telemetry.was_gone or self._presence.is_gone(telemetry, now_ns)
         ):
-            telemetry.was_gone, telemetry.heard_ns = False, now_ns
+            self._presence.back(telemetry, now_ns)
             news = f"vehicle {telemetry.label} is back"
             telemetry.forget_place()
-            self.losses.restart(frame.sysid, frame.compid)
             work += self._missions.forget()
             work.append(PlaceFence())
         else:
@@ -303,7 +259,7 @@ class Vehicle:
         if telemetry is None:
             return []
         work: list[Work] = []
-        if not self._is_gone(telemetry, now_ns):
+        if not self._presence.is_gone(telemetry, now_ns):
             work += self._ask_for_missing(telemetry, now_ns)
         if now_ns >= telemetry.delay.ask_at_ns:
             target = telemetry.sysid, telemetry.compid

@@ -1,0 +1,85 @@
+"""Whether the vehicle is there, on which link, and what of it is in order and new."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gcs.protocol.sequence import SequenceTracker
+from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
+from gcs.wire import messages as m
+from gcs.wire.frame import Frame
+
+ALIVE_EVERY_NS = 250_000_000
+"""How often the gate is told that something of the vehicle was heard."""
+LINK_SILENT_NS = 2_000_000_000
+RESTART_SILENCE_NS = 500_000_000
+"""A frame that seems older than others, and comes after such a silence, is of a vehicle that
+restarted: on the way no frame is overtaken by that much."""
+
+STATE_MESSAGES: Final = frozenset({m.Heartbeat, m.ExtendedSysState, m.SysStatus, m.MissionCurrent})
+"""What tells a state is void once a newer one was seen; answers and events are not."""
+
+
+class Presence:
+    """Of one vehicle: its silences, its sequence numbers, and the link to answer on.
+
+    `gone_ns` is the silence after which the gate has lost it.
+    """
+
+    def __init__(self, times: Times, gone_ns: int) -> None:
+        self._link_silent_ns = times.real_ns(LINK_SILENT_NS)
+        self._restart_silence_ns = times.real_ns(RESTART_SILENCE_NS)
+        self._gone_ns = gone_ns
+        self._newest: dict[tuple[int, int], int] = {}
+        self._heard_ns: dict[tuple[int, int], int] = {}
+        self.losses = SequenceTracker()
+
+    def number(self, frame: Frame, now_ns: int) -> int:
+        """The frame's place among all of its sender; it is counted."""
+        self._notice_restart(frame, now_ns)
+        number = self.losses.number(frame.sysid, frame.compid, frame.seq)
+        self.losses.seen(frame.sysid, frame.compid, frame.seq)
+        return number
+
+    def _notice_restart(self, frame: Frame, now_ns: int) -> None:
+        sender = (frame.sysid, frame.compid)
+        heard_ns, self._heard_ns[sender] = self._heard_ns.get(sender, now_ns), now_ns
+        silent = now_ns - heard_ns > self._restart_silence_ns
+        if silent and self.losses.late(*sender, frame.seq):
+            self.losses.restart(*sender)
+
+    def overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
+        """A state that is older than one of the same kind that has come: void."""
+        if type(message) not in STATE_MESSAGES:
+            return False
+        key = (frame.compid, frame.msgid)
+        newest = self._newest.get(key)
+        if newest is not None and number <= newest:
+            return True
+        self._newest[key] = number
+        return False
+
+    def choose_link(self, telemetry: Telemetry, link: int, now_ns: int) -> None:
+        """Answer where it is heard; another link takes over only once that one is silent."""
+        silent = now_ns - telemetry.link_ns > self._link_silent_ns
+        if link == telemetry.link or silent:
+            telemetry.link, telemetry.link_ns = link, now_ns
+
+    def alive(self, telemetry: Telemetry, now_ns: int) -> bool:
+        """Any message is a sign of life; True where the gate is to hear of it."""
+        telemetry.was_gone |= self.is_gone(telemetry, now_ns)
+        telemetry.heard_ns = now_ns
+        if now_ns - telemetry.alive_told_ns < ALIVE_EVERY_NS:
+            return False
+        telemetry.alive_told_ns = now_ns
+        return True
+
+    def is_gone(self, telemetry: Telemetry, now_ns: int) -> bool:
+        """It was silent for so long that the gate has lost it."""
+        return 0 < telemetry.heard_ns < now_ns - self._gone_ns
+
+    def back(self, telemetry: Telemetry, now_ns: int) -> None:
+        """It is heard again after it was gone: its numbers begin anew."""
+        telemetry.was_gone, telemetry.heard_ns = False, now_ns
+        self.losses.restart(telemetry.sysid, telemetry.compid)
