@@ -332,7 +332,8 @@ class Session:
 
     def _farewells(self, now_ns: int) -> list[Work]:
         """To those who leave a station that lives on."""
-        settled, words = self.gate.settled, self._last_words()
+        settled = self.gate.settled
+        words = self._last_words() if settled else "the vehicle was not seen to hold yet"
         return self._operators.farewells(settled, words, self._log_path, now_ns)
 
     def _finish(self, exit_code: int, sentence: str) -> list[Work]:
