@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
@@ -12,7 +12,7 @@ from rich.console import Console
 
 from gcs import ipc, resources
 from gcs.cli.demo import run_over
-from gcs.operator.client import StationClient
+from gcs.operator.client import Polled, Readable, StationClient
 from gcs.report import Direction
 from tests.system.flight_log import Json, decoded, frames, readings, whole, wire
 from tests.system.station import tapped
@@ -32,11 +32,20 @@ class Flight:
 
 
 class SilencingConnection:
-    """The wire falls silent before the station ends, so that both sides saw the same of it."""
+    """The wire falls silent before the station ends, so that both sides saw the same of it.
 
-    def __init__(self, client: StationClient, tap: WireTap) -> None:
+    The station's first word, which the test has read already, is told once more.
+    """
+
+    def __init__(self, client: StationClient, tap: WireTap, hello: ipc.Hello) -> None:
         self._client, self._tap = client, tap
-        self.poll, self.now_s, self.close = client.poll, client.now_s, client.close
+        self._told: list[ipc.Hello] = [hello]
+        self.now_s, self.close = client.now_s, client.close
+
+    def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
+        if self._told:
+            return Polled([self._told.pop()])
+        return self._client.poll(timeout_s, also)
 
     def send(self, command: ipc.Command) -> bool:
         if isinstance(command, ipc.Leave):
@@ -49,7 +58,8 @@ def flight(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Flight]:
     folder = tmp_path_factory.mktemp("logs")
     with tapped(folder, speedup=3.0) as (operator, tap):
         told = StringIO()
-        connection = SilencingConnection(operator.client, tap)
+        assert operator.dialogue.hello is not None
+        connection = SilencingConnection(operator.client, tap, operator.dialogue.hello)
         mission = str(resources.find("demo.toml"))
         exit_code = run_over(connection, operator.interrupts, Console(file=told), mission, 10.0)
         tap.drained()

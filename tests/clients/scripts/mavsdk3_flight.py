@@ -282,7 +282,7 @@ async def services(drone: System, scratch: Path, personality: str) -> None:
     if personality == "px4":  # of an ArduPilot's texts it understands none
         progress = [step async for step in drone.calibration.calibrate_gyro()]
         print("calibration", progress[-1].progress == 1.0)
-    print("actuator", await refusal(drone.action.set_actuator(1, 0.5)))
+    print("actuator", await refusal(drone.action.set_actuator(9, 0.5)))
 
 
 async def flight(drone: System, personality: str, scratch: Path) -> None:

@@ -178,7 +178,7 @@ def metadata(station: Station) -> None:
 def others(station: Station, action: Action) -> None:
     """What a quadrotor without the equipment answers, and soon."""
     print("gimbals", len(Gimbal(station.system).gimbal_list().gimbals))
-    print("actuator", refusal(action.set_actuator, 1, 0.5))
+    print("actuator", refusal(action.set_actuator, 9, 0.5))
     print("relay", refusal(action.set_relay, 0, 0))
     print("vtol", refusal(action.transition_to_fixedwing))
 

@@ -106,8 +106,8 @@ def centre_sticks(personality):
         link.mav.manual_control_send(1, 0, 0, 500, 0, 0)
 
 
-def height_reached(up_m):
-    wait("GLOBAL_POSITION_INT", lambda m: abs(m.relative_alt * 1e-3 - up_m) < 0.5)
+def height_reached(up_m, within_m=0.5):
+    wait("GLOBAL_POSITION_INT", lambda m: abs(m.relative_alt * 1e-3 - up_m) < within_m)
 
 
 # -------------------------------------------------------------------------------- mission
@@ -176,7 +176,8 @@ def arm_and_take_off(personality, home):
         1, 1, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, math.nan, math.nan, math.nan, up
     )
     acked(mavlink.MAV_CMD_NAV_TAKEOFF)
-    height_reached(10)
+    # PX4 ends its climb up to NAV_MC_ALT_RAD = 0.8 m lower.
+    height_reached(10, within_m=0.9 if personality == "px4" else 0.5)
     print("10 m up")
 
 
