@@ -108,8 +108,9 @@ def test_lines_of_a_second_operator_stop_an_operation_of_the_first(tmp_path: Pat
     with simulated(tmp_path) as operator, running(GCS, "attach", "--plain") as other:
         operator.fly("arm", "takeoff 3")
         goto = operator.send("goto 60 0 3")
-        other.type("goto 1 0 3", "abort", "state")
+        other.type("goto 1 0 3")
         other.until_out("goto 1 0 3: refused OTHER_OPERATOR")
+        other.type("abort", "state")
         other.until_out("abort: complete")
         operator.until(lambda: goto.settled, "its ending")
         other.type("station take", "resume", "quit")
