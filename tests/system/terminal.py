@@ -78,8 +78,8 @@ class Terminal:
                 self.seen += data
                 ready = rest + data
                 # A sequence may come in two pieces: what could be its beginning waits.
-                whole = ready.rfind(b"\x1b", -LONGEST_ESCAPE)
-                rest = ready[whole:] if whole >= 0 else b""
+                last = ready.rfind(b"\x1b", -LONGEST_ESCAPE)
+                rest = ready[last:] if last >= 0 and not _ESCAPE.match(ready, last) else b""
                 ready = ready.removesuffix(rest)
                 self.text += _ESCAPE.sub(b"", ready).decode(errors="replace")
 
