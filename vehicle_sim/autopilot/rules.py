@@ -61,7 +61,7 @@ class AutopilotRules:
     sticks_take_over: bool  # a moved stick ends an automatic flight (COM_RC_OVERRIDE)
     orbit_mode: bool  # DO_ORBIT is known
     take_off_mode: str | None  # the mode of NAV_TAKEOFF; None = it takes off in GUIDED
-    take_off_in_flight: Result  # the answer to NAV_TAKEOFF in flight
+    takes_off_in_flight: bool  # NAV_TAKEOFF in flight climbs once more; else it is FAILED
     repositions_by_hold: bool  # DO_REPOSITION flies in the hold mode; else in GUIDED
     pauses: bool  # DO_PAUSE_CONTINUE is known
     changes_speed_on_ground: bool  # DO_CHANGE_SPEED; else in flight only
@@ -195,7 +195,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         sticks_take_over=True,
         orbit_mode=True,
         take_off_mode="AUTO.TAKEOFF",
-        take_off_in_flight=Result.ACCEPTED,
+        takes_off_in_flight=True,
         repositions_by_hold=True,
         pauses=False,
         changes_speed_on_ground=True,
@@ -318,7 +318,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         sticks_take_over=False,
         orbit_mode=False,
         take_off_mode=None,
-        take_off_in_flight=Result.FAILED,
+        takes_off_in_flight=False,
         repositions_by_hold=False,
         pauses=True,
         changes_speed_on_ground=False,
