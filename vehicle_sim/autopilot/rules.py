@@ -126,6 +126,7 @@ class AutopilotRules:
 
     # Take-off, landing, disarming.
     lifts_off_at_once: bool  # else after TKOFF_SLEW_TIME, when the throttle has come up to hover
+    lift_off_s: float  # from when it may leave the ground until it does, as its land detector tells
     take_off_ramp: str | None  # the parameter with how long the climb rate grows [s]
     take_off_done_within: str | None  # the parameter with how near the height is enough [m]
     land_speed_high: str | None  # the parameter for the upper part of a landing [cm/s]
@@ -253,6 +254,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         jumps_may_lead_beyond=True,
         # Take-off, landing, disarming.
         lifts_off_at_once=True,
+        lift_off_s=0.78,
         take_off_ramp="MPC_TKO_RAMP_T",
         take_off_done_within="NAV_MC_ALT_RAD",
         land_speed_high=None,
@@ -376,6 +378,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         jumps_may_lead_beyond=False,
         # Take-off, landing, disarming.
         lifts_off_at_once=False,
+        lift_off_s=0.0,
         take_off_ramp=None,
         take_off_done_within=None,
         land_speed_high="LAND_SPEED_HIGH",

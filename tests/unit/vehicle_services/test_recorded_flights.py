@@ -324,6 +324,20 @@ def test_px4_checks_before_arming_without_a_word_about_its_mode() -> None:
     assert bench.texts(heard) == []
 
 
+def test_px4_detects_its_take_off_after_the_thrust_has_come_up() -> None:
+    """px4_1_14_flight.tlog: armed 78.53 s, NAV_TAKEOFF 78.91 s, "Takeoff detected" 80.31 s; the
+    scenarios: 1.56 to 1.95 s after arming, 0.58 s after MISSION_START where the motors had spooled
+    up before (C10)."""
+    bench = on_the_ground("px4")
+    heard = bench.send(ARM) + bench.advance(380 * MS)
+    heard += bench.send(long(22, 0, 0, 0, nan, nan, nan, HOME.alt_amsl_m + 5))
+    heard += bench.advance(1_560 * MS - 380 * MS)
+    assert "Takeoff detected\t" not in bench.texts(heard)
+    assert bench.autopilot.landed is Landed.ON_GROUND
+    assert "Takeoff detected\t" in bench.texts(bench.advance(1_950 * MS - 1_560 * MS))
+    assert bench.autopilot.landed is Landed.TAKEOFF
+
+
 def test_px4_takes_off_once_more_in_the_air() -> None:
     """px4_1_14_flight.tlog, 116.43 s: NAV_TAKEOFF to below where it flies, 5.15 m up: ACCEPTED,
     the text (severity 2), AUTO.TAKEOFF, IN_AIR all the while, at least 0.94 m/s up; AUTO.LOITER
