@@ -10,7 +10,7 @@ import msgspec
 
 from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
-from gcs.cli.running import joined_station, station_for
+from gcs.cli.running import joined_station, others_running, station_for
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.ipc import Ask
@@ -63,6 +63,8 @@ def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
     found = station_for(setup.endpoints, anywhere=how.anywhere)
     if found is not None:
         return run_through(found, how, task)
+    for line in others_running(setup.endpoints):
+        click.echo(f"gcs: {line}", err=True)
     how = replace(how, take=False)
     with Interrupts() as interrupts:
         return run_over(StationClient.start(setup), interrupts, how, task)

@@ -29,6 +29,18 @@ def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description 
     return everywhere[0] if everywhere else None
 
 
+def others_running(links: Sequence[str]) -> list[str]:
+    """What to say to somebody who has named no link, where stations run on other ones."""
+    if list(links) != [DEFAULT_LINK]:
+        return []
+    return [
+        f"a station runs: process {described_shortly(each)}; to go through it, name its link: "
+        f"--link {each.endpoints[0]}"
+        for each in running_stations()
+        if each.endpoints
+    ]
+
+
 def the_station(links: Sequence[str]) -> Description:
     """The same for a command that needs one; without a link the default one's, or the only one.
 

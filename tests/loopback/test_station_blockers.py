@@ -27,11 +27,6 @@ QGC WPL 110
 """
 
 
-def expected(row: int, why: str) -> pytest.MarkDecorator:
-    reason = f"autopilots.md, defect {row} of the station: {why}"
-    return pytest.mark.xfail(strict=True, reason=reason)
-
-
 def test_a_take_off_that_ends_low_ends_at_the_height_that_was_asked_for() -> None:
     """The vehicle is put into AUTO.LOITER 0.5 m low, where PX4 ends its take-off."""
     flight = Flight("px4").connected()

@@ -87,7 +87,7 @@ def test_control_is_taken_over_only_when_that_is_asked_for(connection: FakeConne
 
 
 def test_the_only_station_will_do_for_a_stop_without_a_link_and_for_nothing_else(
-    connection: FakeConnection,
+    connection: FakeConnection, capsys: pytest.CaptureFixture[str]
 ) -> None:
     default = ("udpin://127.0.0.1:14550",)
     stop = OneShotConfig(10.0, 60.0, as_json=False, what="abort", stops=True, anywhere=True)
@@ -95,6 +95,7 @@ def test_the_only_station_will_do_for_a_stop_without_a_link_and_for_nothing_else
     goto = OneShotConfig(10.0, 60.0, as_json=False, what="goto")
     with pytest.raises(AssertionError, match="of its own"):
         run("goto 1 0 2", goto, default)
+    assert "name its link: --link udpin://127.0.0.1:47001" in capsys.readouterr().err
 
 
 def test_stations_are_listed_without_their_tokens(found: list[Description]) -> None:
