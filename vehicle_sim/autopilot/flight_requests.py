@@ -27,7 +27,6 @@ from vehicle_sim.autopilot.transitions import Transitions
 from vehicle_sim.numerics.vectors import Vec3
 
 _LOWEST_GOAL_UP_M = 0.5
-_UNSAID_M = 0.1  # so little below the least height of a take-off PX4 does not mention it
 
 
 class FlightRequests:
@@ -58,13 +57,10 @@ class FlightRequests:
             up_m = state.parameters.si(Quantity.TAKEOFF_UP_M)
         if not isfinite(up_m) or up_m < _LOWEST_GOAL_UP_M:
             return Result.DENIED
-        flying = state.armed and state.control.flying
-        if flying and not state.rules.takes_off_in_flight:
-            return Result.FAILED
+        if state.armed and state.control.flying:
+            return state.rules.take_off_in_flight
         if not state.position_ok:
             return self._state.rules.not_now
-        if flying:
-            up_m = self._at_least_above_here(up_m)
         if state.rules.take_off_mode is not None:
             mode = MODES[state.personality][state.rules.take_off_mode]
             self._transitions.enter(mode, self._mode_tasks.take_off(up_m))
@@ -75,20 +71,6 @@ class FlightRequests:
         state.task.take_off(home_d - up_m, state.look_around(), state.control.heading)
         state.request_decision()
         return Result.ACCEPTED
-
-    def _at_least_above_here(self, up_m: float) -> float:
-        """The height above home of a take-off in flight: MIS_TAKEOFF_ALT above here at least.
-
-        As recorded (`px4_1_14_flight.tlog`, 116.43 s); that a higher one is flown as it is, and
-        what may go unsaid, is from memory of PX4's navigator (`Takeoff::set_takeoff_position`).
-        """
-        state = self._state
-        climb_m = state.parameters.si(Quantity.TAKEOFF_UP_M)
-        home_d = state.home_ned[2] if state.home_ned is not None else 0.0
-        least_m = home_d - state.est.pos_d + climb_m
-        if up_m < least_m - _UNSAID_M:
-            state.say(2, f"Using minimum takeoff altitude: {climb_m:.2f} m")
-        return max(up_m, least_m)
 
     def land(self) -> Result:
         return self._mode_changes.set_mode_kind("land")

@@ -86,7 +86,6 @@ class ModeTasks:
         return Hold
 
     def take_off(self, up_m: float) -> TakeOff:
-        """`up_m` above home."""
         state = self._state
         home_d = state.home_ned[2] if state.home_ned is not None else 0.0
-        return TakeOff(home_d - up_m, state.parameters, in_flight=state.control.flying)
+        return TakeOff(home_d - up_m, state.parameters)

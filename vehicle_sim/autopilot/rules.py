@@ -61,7 +61,7 @@ class AutopilotRules:
     sticks_take_over: bool  # a moved stick ends an automatic flight (COM_RC_OVERRIDE)
     orbit_mode: bool  # DO_ORBIT is known
     take_off_mode: str | None  # the mode of NAV_TAKEOFF; None = it takes off in GUIDED
-    takes_off_in_flight: bool  # NAV_TAKEOFF in flight climbs once more; else it is FAILED
+    take_off_in_flight: Result  # the answer to NAV_TAKEOFF in flight
     repositions_by_hold: bool  # DO_REPOSITION flies in the hold mode; else in GUIDED
     pauses: bool  # DO_PAUSE_CONTINUE is known
     changes_speed_on_ground: bool  # DO_CHANGE_SPEED; else in flight only
@@ -126,7 +126,6 @@ class AutopilotRules:
 
     # Take-off, landing, disarming.
     lifts_off_at_once: bool  # else after TKOFF_SLEW_TIME, when the throttle has come up to hover
-    lift_off_s: float  # from when it may leave the ground until it does, as its land detector tells
     take_off_ramp: str | None  # the parameter with how long the climb rate grows [s]
     take_off_done_within: str | None  # the parameter with how near the height is enough [m]
     land_speed_high: str | None  # the parameter for the upper part of a landing [cm/s]
@@ -196,7 +195,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         sticks_take_over=True,
         orbit_mode=True,
         take_off_mode="AUTO.TAKEOFF",
-        takes_off_in_flight=True,
+        take_off_in_flight=Result.ACCEPTED,
         repositions_by_hold=True,
         pauses=False,
         changes_speed_on_ground=True,
@@ -254,7 +253,6 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         jumps_may_lead_beyond=True,
         # Take-off, landing, disarming.
         lifts_off_at_once=True,
-        lift_off_s=0.78,
         take_off_ramp="MPC_TKO_RAMP_T",
         take_off_done_within="NAV_MC_ALT_RAD",
         land_speed_high=None,
@@ -320,7 +318,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         sticks_take_over=False,
         orbit_mode=False,
         take_off_mode=None,
-        takes_off_in_flight=False,
+        take_off_in_flight=Result.FAILED,
         repositions_by_hold=False,
         pauses=True,
         changes_speed_on_ground=False,
@@ -378,7 +376,6 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         jumps_may_lead_beyond=False,
         # Take-off, landing, disarming.
         lifts_off_at_once=False,
-        lift_off_s=0.0,
         take_off_ramp=None,
         take_off_done_within=None,
         land_speed_high="LAND_SPEED_HIGH",

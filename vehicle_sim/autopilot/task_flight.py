@@ -42,14 +42,13 @@ class TaskFlight:
         self._mission_checks = mission_checks
         self._transitions = transitions
         self._auto_disarm = auto_disarm
-        self._lifting_off_ns: int | None = None  # since when; None = it is not
 
     def fly(self, s: Situation, regular: bool) -> None:
         state = self._state
         pilot = state.control
         task = state.task
         if not pilot.flying:
-            if self._lifts_off(task, s):
+            if self._may_lift_off(task, s):
                 pilot.lift_off(s.pos_ned, s.heading_rad)
                 s.flying = True
                 if state.rules.tells_land_detector:
@@ -94,27 +93,6 @@ class TaskFlight:
         elif state.mode.behaviour is Behaviour.LAND and abs(s.v_ned[2]) < _STILL_M_S:
             state.cut_off_in_air = False
             self._touch_down(s)
-
-    def _lifts_off(self, task: Task, s: Situation) -> bool:
-        """Whether it leaves the ground now.
-
-        PX4's thrust comes up first: its land detector was recorded to strike 0.78 s after the
-        motors had spooled up, 1.56 to 1.95 s after arming (`px4_1_14_flight.tlog`, 78.53 to
-        80.31 s; "Takeoff detected" in scenarios_px4.json).  How it leaves the ground by hand
-        alone was not recorded: there it does at once.
-        """
-        state = self._state
-        if not self._may_lift_off(task, s):
-            self._lifting_off_ns = None
-            return False
-        since_ns = self._lifting_off_ns
-        if since_ns is None or since_ns < state.armed_ns:
-            self._lifting_off_ns = since_ns = s.time_ns
-        lift_off_s = state.rules.lift_off_s if state.mode.law is None else 0.0
-        if s.time_ns - since_ns < int(lift_off_s * 1e9):
-            return False
-        self._lifting_off_ns = None
-        return True
 
     def _may_lift_off(self, task: Task, s: Situation) -> bool:
         state = self._state

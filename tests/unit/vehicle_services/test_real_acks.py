@@ -176,6 +176,7 @@ TEXTS: Final = [
 UNSAID: Final = {
     "SIM Hit ground at 2.447183 m/s": "ArduPilot's simulator says it, not the autopilot",
     "Disarmed by landing\t": "of a landing that was under way when 218 was sent",
+    "Using minimum takeoff altitude: 2.50 m\t": "the take-off in the air changes nothing here",
 }
 
 

@@ -313,65 +313,6 @@ def test_each_circle_of_a_mission_is_told_and_one_more() -> None:
     assert told == ["Mission: starting circle 1/1", "Mission: starting circle 2/1"]
 
 
-def test_px4_checks_before_arming_without_a_word_about_its_mode() -> None:
-    """px4_1_14_flight.tlog, 64.75 s: RUN_PREARM_CHECKS in POSCTL.ORBIT on the ground, ACCEPTED, no
-    STATUSTEXT follows."""
-    bench = on_the_ground("px4")
-    bench.result(long(Cmd.DO_ORBIT, 5, 1, 0, nan, nan, nan, nan))
-    assert bench.mode_name == "POSCTL.ORBIT"
-    heard = bench.send(long(Cmd.RUN_PREARM_CHECKS)) + bench.advance(2 * S)
-    assert acks(heard) == [(Cmd.RUN_PREARM_CHECKS, Result.ACCEPTED)]
-    assert bench.texts(heard) == []
-
-
-def test_px4_detects_its_take_off_after_the_thrust_has_come_up() -> None:
-    """px4_1_14_flight.tlog: armed 78.53 s, NAV_TAKEOFF 78.91 s, "Takeoff detected" 80.31 s; the
-    scenarios: 1.56 to 1.95 s after arming, 0.58 s after MISSION_START where the motors had spooled
-    up before (C10)."""
-    bench = on_the_ground("px4")
-    heard = bench.send(ARM) + bench.advance(380 * MS)
-    heard += bench.send(long(22, 0, 0, 0, nan, nan, nan, HOME.alt_amsl_m + 5))
-    heard += bench.advance(1_560 * MS - 380 * MS)
-    words = [bench.autopilot.landed]
-    assert "Takeoff detected\t" not in bench.texts(heard)
-    assert "Takeoff detected\t" in bench.texts(bench.advance(1_950 * MS - 1_560 * MS))
-    words.append(bench.autopilot.landed)
-    assert words == [Landed.ON_GROUND, Landed.TAKEOFF]
-
-
-def test_px4_takes_off_once_more_in_the_air() -> None:
-    """px4_1_14_flight.tlog, 116.43 s: NAV_TAKEOFF to below where it flies, 5.15 m up: ACCEPTED,
-    the text (severity 2), AUTO.TAKEOFF, IN_AIR all the while, at least 0.94 m/s up; AUTO.LOITER
-    2.3 to 2.7 s later, 1.9 m higher: within NAV_MC_ALT_RAD (0.8 m) of MIS_TAKEOFF_ALT (2.5 m)."""
-    bench = in_the_air("px4")
-    bench.parameters.set("MIS_TAKEOFF_ALT", 2.5)
-    bench.send(long(511, m.IDS[m.ExtendedSysState], 100_000))
-    from_m = -bench.autopilot.truth.pos_ned[2]
-    heard = bench.send(long(Cmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 5))
-    assert acks(heard) == [(Cmd.NAV_TAKEOFF, Result.ACCEPTED)]
-    heard += bench.advance(S)
-    (told,) = [each for each in heard if isinstance(each, m.Statustext)]
-    text = "Using minimum takeoff altitude: 2.50 m\t"
-    assert (told.severity, told.text.rstrip(b"\0").decode()) == (2, text)
-    assert bench.mode_name == "AUTO.TAKEOFF"
-    assert -bench.autopilot.truth.v_ned[2] > 0.75
-    heard += bench.advance(2 * S)
-    assert bench.mode_name == "AUTO.LOITER"
-    words = [each.landed_state for each in heard if isinstance(each, m.ExtendedSysState)]
-    assert set(words) == {Landed.IN_AIR}
-    bench.advance(4 * S)
-    assert -bench.autopilot.truth.pos_ned[2] - from_m == pytest.approx(1.9, abs=0.3)
-
-
-def test_px4_takes_off_in_the_air_to_a_height_that_is_high_enough() -> None:
-    """From memory: no text, and up to what was asked for."""
-    bench = in_the_air("px4")
-    asked = long(22, 0, 0, 0, nan, nan, nan, HOME.alt_amsl_m + 12)
-    heard = bench.send(asked) + bench.advance(12 * S)
-    assert bench.texts(heard) == []
-    assert -bench.autopilot.truth.pos_ned[2] == pytest.approx(11.6, abs=0.5)
-
-
 # --------------------------------------------------------- G station lost (vehicle.md 1)
 
 

@@ -114,15 +114,12 @@ class TakeOff:
     height (navigator, `MissionBlock::is_mission_item_reached`), where it then holds: up to that
     much too low.  ArduCopter opens its throttle within TKOFF_SLEW_TIME, so it leaves the ground
     when it has come to the thrust of hover.
-
-    `in_flight`: PX4's from where it flies already climbs at once, and is told as IN_AIR.
     """
 
-    __slots__ = ("_done", "_goal_d", "_in_flight", "_ned", "_parameters", "_since_ns")
+    __slots__ = ("_done", "_goal_d", "_ned", "_parameters", "_since_ns")
 
-    def __init__(self, goal_d: float, parameters: Parameters, in_flight: bool = False) -> None:
+    def __init__(self, goal_d: float, parameters: Parameters) -> None:
         self._goal_d = goal_d
-        self._in_flight = in_flight
         self._parameters = parameters
         self._ned: Vec3 = (0.0, 0.0, goal_d)
         self._done = False
@@ -130,7 +127,7 @@ class TakeOff:
 
     @property
     def landed_word(self) -> Landed:
-        return Landed.IN_AIR if self._done or self._in_flight else Landed.TAKEOFF
+        return Landed.IN_AIR if self._done else Landed.TAKEOFF
 
     @property
     def done(self) -> bool:
@@ -157,7 +154,7 @@ class TakeOff:
             self._done = True
         climb_m_s = self._parameters.si(Quantity.TAKEOFF_CLIMB_M_S)
         ramp = self._parameters.rules.take_off_ramp
-        if ramp is not None and not self._in_flight:
+        if ramp is not None:
             ramp_s = self._parameters.get(ramp)
             gone_s = self._run_s(s)
             climb_m_s *= gone_s / ramp_s if gone_s < ramp_s else 1.0
