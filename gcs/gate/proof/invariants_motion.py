@@ -159,9 +159,13 @@ def ends_a_climb_at_its_top(edge: Edge) -> Iterator[str]:
             continue
         if pos_ned is None or edge.stale:
             yield "a take-off is complete on a position too old"
-        elif math.dist(pos_ned, edge.before.top_ned) >= edge.policy.arrival.radius_m or (
-            abs(pos_ned[2] - edge.before.top_ned[2]) >= HEIGHT_WITHIN_M
-        ):
+            continue
+        # Sideways the radius is the policy's, or the wider one that the reported accuracy allows.
+        radius_m = edge.policy.arrival.radius_m
+        beside_m = math.dist(pos_ned[:2], edge.before.top_ned[:2])
+        below_m = abs(pos_ned[2] - edge.before.top_ned[2])
+        wider = radius_m / (edge.before.arrival_h_m or radius_m)
+        if math.hypot(beside_m * wider, below_m) >= radius_m or below_m >= HEIGHT_WITHIN_M:
             yield "a take-off is complete though its top is not reached"
 
 
