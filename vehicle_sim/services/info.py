@@ -32,7 +32,7 @@ AVAILABLE_MIB: Final = 30_000.0
 AWAITED: Final[dict[Personality, dict[int, Callable[[BootStage], bool]]]] = {
     "px4": {
         m.IDS[kind]: lambda stage: stage.attitude
-        for kind in (m.Attitude, m.AttitudeQuaternion, m.GlobalPositionInt)
+        for kind in (m.Attitude, m.AttitudeQuaternion, m.GlobalPositionInt, m.UtmGlobalPosition)
     },
     "ardupilot": {
         m.IDS[m.LocalPositionNed]: lambda stage: stage.position,

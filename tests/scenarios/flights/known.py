@@ -59,7 +59,7 @@ PX4: Final[dict[str, str]] = {
     "kind LINK_NODE_STATUS: the real one only": "not sent here: a known gap",
     "kind DISTANCE_SENSOR: the real one only": NO_SENSOR,
     "kind COMPONENT_INFORMATION: the real one only": NOT_BUILT,
-    "first UTM_GLOBAL_POSITION: ours sooner": "to mend: it waits for the attitude, at 6.5 s",
+    "first UTM_GLOBAL_POSITION: ours later": "every 2 s on a grid: at 8.1 s; PX4's at once, at 6.5",
     "first STATUSTEXT: ours later": STANDING,
     "rate intervals set, ORBIT_EXECUTION_STATUS: ours more": VTOL,
     "figure: take-off sent to TAKEOFF": SLOW_START,

@@ -61,6 +61,13 @@ def test_a_message_comes_when_there_is_something_to_tell(
     assert first_s(booting(personality), kind) == pytest.approx(at_s, abs=within_s)
 
 
+def test_px4s_utm_position_waits_for_the_attitude() -> None:
+    """The flight: UTM_GLOBAL_POSITION at 6.53 s for the first time, with GLOBAL_POSITION_INT."""
+    bench = booting("px4")
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[m.UtmGlobalPosition], 100_000))
+    assert first_s(bench, m.UtmGlobalPosition) == pytest.approx(6.5, abs=0.2)
+
+
 @pytest.mark.parametrize(
     ("at_s", "present", "enabled", "healthy"),
     [
