@@ -23,6 +23,14 @@ _CHECKED_EVERY_NS = 1_000_000_000
 _AGAIN_NS = 4_000_000_000
 _DISPLAYED_EVERY_NS = 30_000_000_000
 
+_ONLY_TO_ARM = ("Arm: ", "Arming denied: not in mode ")
+"""How the words begin that only a request to arm is answered with.
+
+Some of ArduCopter's checks are made only then.  PX4 was recorded to say nothing in
+POSCTL.ORBIT to RUN_PREARM_CHECKS (`px4_1_14_flight.tlog`, 64.75 s); what it says there to a request
+to arm was not recorded.
+"""
+
 
 class HealthChecks:
     """Looks, and decides nothing."""
@@ -107,8 +115,8 @@ class HealthChecks:
         return bool(against)
 
     def _unready(self) -> tuple[str, ...]:
-        """What is against arming at any time; some of ArduCopter's checks are made only then."""
-        return tuple(why for why in self.against_arming() if not why.startswith("Arm: "))
+        """What is against arming at any time, not only when it is asked for."""
+        return tuple(why for why in self.against_arming() if not why.startswith(_ONLY_TO_ARM))
 
     def check_arming(self) -> Result:
         state = self._state

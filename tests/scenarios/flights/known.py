@@ -20,7 +20,6 @@ TAKE_OFF_AGAIN: Final = "to mend: a take-off in the air, to a height below, clim
 LATER_DOWN: Final = "ours had not come down after OFFBOARD: it lands from 5 m, not from 1.5 m"
 SETPOINTS: Final = "PX4's OFFBOARD steps are smoothed here: a known gap"
 SLOW_START: Final = "to mend: PX4 leaves the ground 1.6 to 1.9 s after arming, ours after 1.2 s"
-PREARM: Final = "to mend: RUN_PREARM_CHECKS says nothing in ORBIT"
 NOT_BUILT: Final = "not built here"
 STANDING: Final = "its velocity estimate drifted while it stood"
 INJECTED: Final = "on purpose: failures can be injected without a simulator's parameters"
@@ -54,7 +53,6 @@ PX4: Final[dict[str, str]] = {
     "text 'Using minimum takeoff altitude: 2.50 m': ours never": TAKE_OFF_AGAIN,
     "text 'Landing detected': ours later": LATER_DOWN,
     "text 'Disarmed by landing': ours later": LATER_DOWN,
-    "text 'Arming denied: not in mode POSCTL.ORBIT': ours only": PREARM,
     "kind TIME_ESTIMATE_TO_TARGET: the real one only": "not sent here: a known gap",
     "kind LINK_NODE_STATUS: the real one only": "not sent here: a known gap",
     "kind DISTANCE_SENSOR: the real one only": NO_SENSOR,

@@ -313,6 +313,17 @@ def test_each_circle_of_a_mission_is_told_and_one_more() -> None:
     assert told == ["Mission: starting circle 1/1", "Mission: starting circle 2/1"]
 
 
+def test_px4_checks_before_arming_without_a_word_about_its_mode() -> None:
+    """px4_1_14_flight.tlog, 64.75 s: RUN_PREARM_CHECKS in POSCTL.ORBIT on the ground, ACCEPTED, no
+    STATUSTEXT follows."""
+    bench = on_the_ground("px4")
+    bench.result(long(Cmd.DO_ORBIT, 5, 1, 0, nan, nan, nan, nan))
+    assert bench.mode_name == "POSCTL.ORBIT"
+    heard = bench.send(long(Cmd.RUN_PREARM_CHECKS)) + bench.advance(2 * S)
+    assert acks(heard) == [(Cmd.RUN_PREARM_CHECKS, Result.ACCEPTED)]
+    assert bench.texts(heard) == []
+
+
 # --------------------------------------------------------- G station lost (vehicle.md 1)
 
 
