@@ -17,12 +17,20 @@ from gcs.protocol.parameters import BY_NAME, decode_value
 from gcs.wire.ids import ParamType
 from gcs.wire.messages import ParamError, ParamRequestRead, ParamValue
 
-ASK_AGAIN_NS = 500_000_000
-GIVE_UP_NS = 30_000_000_000
-PATIENCE_NS = 5_000_000_000
-"""So long even what is not needed is waited for."""
-
 _TYPES = frozenset(int(kind) for kind in ParamType)
+
+
+@dataclass(frozen=True, slots=True)
+class Waits:
+    """When what did not come is asked for again, and when it is waited for no longer: what is
+    needed for `give_up_ns`, all else for `patience_ns`."""
+
+    again_ns: int = 500_000_000
+    give_up_ns: int = 30_000_000_000
+    patience_ns: int = 5_000_000_000
+
+
+USUAL_WAITS = Waits()
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +57,13 @@ class SettingsReader:
         target: Address,
         encoding: ParamEncoding,
         quantities: tuple[Quantity, ...],
-        speedup: float = 1.0,
+        waits: Waits = USUAL_WAITS,
     ) -> None:
         self._own = own
         self._target = target
         self._encoding = encoding
         self._quantities = quantities
-        self._again_ns = round(ASK_AGAIN_NS * speedup)
-        self._give_up_ns = round(GIVE_UP_NS * speedup)
-        self._patience_ns = round(PATIENCE_NS * speedup)
+        self._waits = waits
         self._denied: set[str] = set()
         self._began_ns = 0
         self.values: dict[str, float] = {}
@@ -84,7 +90,7 @@ class SettingsReader:
             case Wake():
                 if self.deadline_ns is None or now_ns < self.deadline_ns:
                     return []
-                longest_ns = self._give_up_ns if self.missing else self._patience_ns
+                longest_ns = self._waits.give_up_ns if self.missing else self._waits.patience_ns
                 over = now_ns - self._began_ns >= longest_ns
                 return self._end() if over else self._ask(now_ns)
             case _:
@@ -105,7 +111,7 @@ class SettingsReader:
         names = self._open
         if not names:
             return self._end()
-        self.deadline_ns = now_ns + self._again_ns
+        self.deadline_ns = now_ns + self._waits.again_ns
         return [
             Send(
                 ParamRequestRead(

@@ -63,14 +63,15 @@ class Discovery:
             silent = now_ns - telemetry.landed_ns > self._ask_again_ns
             unknown = silent and msgid is MsgId.EXTENDED_SYS_STATE
             if first or telemetry.pos_ned is None or unknown:
-                yield _interval(telemetry, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
+                yield message_interval(telemetry, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
 
 
 def _request(telemetry: Telemetry, msgid: MsgId) -> CommandLong:
     return _command(telemetry, Cmd.REQUEST_MESSAGE, float(msgid), 0.0)
 
 
-def _interval(telemetry: Telemetry, msgid: MsgId, rate_hz: float) -> CommandLong:
+def message_interval(telemetry: Telemetry, msgid: int, rate_hz: float) -> CommandLong:
+    """SET_MESSAGE_INTERVAL: the vehicle is to send `msgid` at `rate_hz` of its own clock."""
     return _command(telemetry, Cmd.SET_MESSAGE_INTERVAL, float(msgid), round(1e6 / rate_hz))
 
 

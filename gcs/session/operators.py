@@ -24,6 +24,7 @@ from gcs.session.requests import BadAskError, Requests, request_of
 from gcs.session.setup import Setup
 from gcs.session.subscriptions import Subscriptions
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.session.work import (
     AskGate,
     AskMission,
@@ -47,12 +48,12 @@ STATION_WORDS = frozenset({"station_take", "station_end"})
 class Operators:
     """Everybody who talks with this station."""
 
-    def __init__(self, setup: Setup) -> None:
+    def __init__(self, setup: Setup, times: Times) -> None:
         self._keep = setup.config.keep
         self._clients = Clients(setup.config.operator)
         self._requests = Requests()
         self._operations = Operations()
-        self._subscriptions = Subscriptions(setup.config.speedup)
+        self._subscriptions = Subscriptions(times)
 
     # ----------------------------------------------------------------------- come and go
 

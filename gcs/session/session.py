@@ -91,7 +91,7 @@ class Session:
         count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
         self._links = Links(config.sysid, config.compid, count, streams, waiting)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
-        self._operators = Operators(setup)
+        self._operators = Operators(setup, self._times)
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gcs import ipc
+from gcs.session.discovery import message_interval
 from gcs.session.effects import Effect, Emit
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.wire.dialect import MESSAGES_BY_NAME
 from gcs.wire.fields import fields_of
 from gcs.wire.frame import Frame
-from gcs.wire.ids import Cmd
 from gcs.wire.messages import CommandLong
 
 LEAST_INTERVAL_NS = 100_000_000
 PATIENCE_NS = 1_200_000_000
 """A message that has not come for so long is asked for, and again after as long."""
-ASKED_INTERVAL_US = 500_000.0
+ASKED_HZ = 2.0
 MAX_MESSAGES = 64
 """Names in one subscription."""
 
@@ -24,13 +25,13 @@ MAX_MESSAGES = 64
 class Subscriptions:
     """Each operator's latest `ipc.Subscribe`."""
 
-    def __init__(self, speedup: float) -> None:
-        self._interval_ns = round(LEAST_INTERVAL_NS * speedup)
+    def __init__(self, times: Times) -> None:
+        self._interval_ns = times.real_ns(LEAST_INTERVAL_NS)
         self._told_ns: dict[int, dict[int, int]] = {}
         """Message id -> client -> when it was told last."""
         self._heard_ns: dict[int, int] = {}
         self._asked_ns: dict[int, int] = {}
-        self._patience_ns = round(PATIENCE_NS * speedup)
+        self._patience_ns = times.real_ns(PATIENCE_NS)
 
     def subscribe(self, client: int, names: list[str], now_ns: int) -> list[Effect]:
         """In place of what it had; what is no message of the dialect is told."""
@@ -55,19 +56,7 @@ class Subscriptions:
             heard_ns, asked_ns = self._heard_ns.get(msgid, 0), self._asked_ns[msgid]
             if clients and now_ns - max(heard_ns, asked_ns) > self._patience_ns:
                 self._asked_ns[msgid] = now_ns
-                yield CommandLong(
-                    param1=float(msgid),
-                    param2=ASKED_INTERVAL_US,
-                    param3=0.0,
-                    param4=0.0,
-                    param5=0.0,
-                    param6=0.0,
-                    param7=0.0,
-                    command=Cmd.SET_MESSAGE_INTERVAL,
-                    target_system=telemetry.sysid,
-                    target_component=telemetry.compid,
-                    confirmation=0,
-                )
+                yield message_interval(telemetry, msgid, ASKED_HZ)
 
     def forget(self, client: int) -> None:
         """It has left."""

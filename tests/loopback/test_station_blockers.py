@@ -1,9 +1,8 @@
 """What stopped the station on a real autopilot, and did not show on a vehicle that was too kind.
 
-An expected failure is one of the station, to be mended there, and names its row of autopilots.md,
-"Defects of gcs".  That the vehicle does what was recorded is tested in tests/unit: real boot in
-test_real_boot.py, the mode after disarming in test_mode_after_disarming.py, altered items in
-test_altered_items.py.
+Each test is of a row of autopilots.md, "Defects of gcs".  That the vehicle does what was recorded
+is tested in tests/unit: real boot in test_real_boot.py, the mode after disarming in
+test_mode_after_disarming.py, altered items in test_altered_items.py.
 """
 
 from __future__ import annotations

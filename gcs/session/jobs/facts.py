@@ -16,11 +16,12 @@ from gcs.plan.settings import USUAL
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address, Heard, Send, TransferDone, TransferFailed, Wake
 from gcs.protocol.mission import MissionDownload
-from gcs.protocol.settings import Quantity, SettingsReader
+from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
 from gcs.protocol.transfer import Timing
 from gcs.session.paths import autopilot_name
 from gcs.session.plans import item_of
 from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
 from gcs.wire.ids import MavFrame, MissionType
 from gcs.wire.messages import MissionItemInt, ParamError, ParamValue
 
@@ -61,12 +62,17 @@ class Facts:
 class Learning:
     """Asks the vehicle; over once `facts` or `refusal` is there."""
 
-    def __init__(self, own: Address, telemetry: Telemetry, timing: Timing, speedup: float) -> None:
+    def __init__(self, own: Address, telemetry: Telemetry, timing: Timing, times: Times) -> None:
         self._autopilot = autopilot_name(telemetry)
         target = Address(telemetry.sysid, telemetry.compid)
         quantities = QUANTITIES[self._autopilot]
         encoding = telemetry.autopilot.param_encoding
-        self._reader = SettingsReader(own, target, encoding, quantities, speedup)
+        waits = Waits(
+            times.real_ns(USUAL_WAITS.again_ns),
+            times.real_ns(USUAL_WAITS.give_up_ns),
+            times.real_ns(USUAL_WAITS.patience_ns),
+        )
+        self._reader = SettingsReader(own, target, encoding, quantities, waits)
         self._rally = MissionDownload(own, target, MissionType.RALLY, timing)
         self.facts: Facts | None = None
         self.refusal: Refusal | None = None

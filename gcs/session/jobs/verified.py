@@ -46,7 +46,7 @@ class VerifiedJob(Job):
     def learn(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         """Ask the vehicle for what shapes its flight."""
         asked = self.asked
-        self._learning = Learning(asked.own, view.telemetry, asked.timing, asked.times.speedup)
+        self._learning = Learning(asked.own, view.telemetry, asked.timing, asked.times)
         return [*self._learning.start(now_ns), *self._learn_on(view, now_ns)]
 
     def verify(self, plan: Plan, view: VehicleView, now_ns: int) -> list[JobWork]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.protocol.autopilot import ParamEncoding
 from gcs.protocol.effects import Address, Heard, Send, Wake
-from gcs.protocol.settings import ASK_AGAIN_NS, GIVE_UP_NS, PATIENCE_NS, Quantity, SettingsReader
+from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader
 from gcs.wire.messages import Message, ParamError, ParamRequestRead, ParamValue
 
 OWN, VEHICLE = Address(255, 190), Address(1, 1)
@@ -59,7 +59,7 @@ def test_what_was_lost_is_asked_for_again_and_nothing_else() -> None:
     script = Script()
     script.has("WP_RADIUS_M", 2.0)
     script.denies("RTL_ALT")
-    script.wait(ASK_AGAIN_NS - 1)
+    script.wait(USUAL_WAITS.again_ns - 1)
     assert len(script.rounds) == 1
     script.wait(1)
     assert script.rounds[1] == ["RTL_ALT_M", "RTL_CONE_SLOPE"]
@@ -74,8 +74,8 @@ def test_what_is_not_needed_is_not_waited_for_as_long() -> None:
     script.has("WP_RADIUS_M", 2.0)
     script.has("RTL_ALT_M", 15.0)
     while not script.reader.done:
-        script.wait(ASK_AGAIN_NS)
-    assert script.now_ns == PATIENCE_NS
+        script.wait(USUAL_WAITS.again_ns)
+    assert script.now_ns == USUAL_WAITS.patience_ns
     assert script.reader.missing == ()
 
 
@@ -91,8 +91,8 @@ def test_silence_is_given_up_and_another_vehicle_is_not_heard() -> None:
     script = Script()
     script.has("WP_RADIUS_M", 9.0, sysid=2)
     while not script.reader.done:
-        script.wait(ASK_AGAIN_NS)
-    assert script.now_ns == GIVE_UP_NS
+        script.wait(USUAL_WAITS.again_ns)
+    assert script.now_ns == USUAL_WAITS.give_up_ns
     assert script.reader.values == {}
     script.has("WP_RADIUS_M", 2.0)
     assert script.reader.deadline_ns is None
