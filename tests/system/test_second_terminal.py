@@ -155,11 +155,16 @@ def kept(tmp_path: Path) -> Iterator[int]:
         until(lambda: not alive(pid), "its end", 15.0)
 
 
-def test_a_kept_station_outlives_its_operator_and_is_flown_by_one_shots(kept: int) -> None:
+def test_a_kept_station_outlives_its_operator_and_is_flown_by_one_shots(
+    kept: int, tmp_path: Path
+) -> None:
     (found,) = listed("stations")
     assert (found["pid"], found["keep"]) == (kept, True)
     link = ("--link", found["endpoints"][0])
-    moved = gcs("goto", "2", "0", "2", *link)
+    other = gcs("goto", "2", "0", "2", *link, "--policy", "lab")
+    assert other.returncode == ExitCode.USAGE
+    assert "policy lab was asked for, it has default" in other.stderr
+    moved = gcs("goto", "2", "0", "2", *link, "--policy", "default", "--log-dir", str(tmp_path))
     assert (moved.returncode, moved.stdout) == (0, "resume: complete\ngoto 2 0 2: complete\n")
     assert listed("status", *link)["state"] == "HOVERING", "a one-shot leaves it as it is"
     ended = gcs("stations", "end")
