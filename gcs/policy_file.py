@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from pathlib import Path
-
-import msgspec
 
 from gcs import toml
 from gcs.gate.policy.parse import parse_policy
@@ -50,10 +47,3 @@ def load_policy(
     except OSError as error:
         hint = "--policy takes `default`, `lab` or the path of a TOML file"
         raise PolicyFileError(f"{error.filename}: {error.strerror}", hint) from error
-
-
-def policy_digest(policy: Policy) -> str:
-    """The same for policies that say the same, zones of fence files included; the name is not
-    part of it."""
-    nameless = msgspec.structs.replace(policy, name="-")
-    return hashlib.sha256(msgspec.json.encode(nameless, order="sorted")).hexdigest()[:16]

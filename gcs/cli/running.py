@@ -57,12 +57,10 @@ def the_station(links: Sequence[str]) -> Description:
 
 def refuse_differences(found: Description, wanted: Wanted) -> None:
     """Raises ExitError if the station is not as was asked for, or a policy cannot be read."""
-    from gcs.policy_file import PolicyFileError
-
     try:
         different = differences(found, wanted)
-    except PolicyFileError as error:
-        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from error
+    except OSError as error:
+        raise ExitError(ExitCode.BAD_FILE, f"{wanted.policy}: {error.strerror}") from error
     if different:
         how = hint(found, different, "--")
         raise ExitError(ExitCode.USAGE, sentence(found, different), how)

@@ -96,12 +96,10 @@ def _running(links: Sequence[str]) -> Description | None:
 
 def _refuse_differences(found: Description, wanted: Wanted) -> None:
     """Raises StationDiffers, or CannotConnect for a policy that cannot be read."""
-    from gcs.policy_file import PolicyFileError
-
     try:
         different = differences(found, wanted)
-    except PolicyFileError as error:
-        raise CannotConnect(str(error), error.hint, ExitCode.BAD_FILE) from error
+    except OSError as error:
+        raise _no_policy(str(wanted.policy)) from error
     if different:
         raise StationDiffers(sentence(found, different), hint(found, different), different)
 
@@ -161,6 +159,10 @@ def _policy_file(policy: str) -> str:
         return ""
     path = policy_path(policy)
     if not path.is_file():
-        hint = "or one of: default, lab"
-        raise CannotConnect(f"{policy}: no such policy file", hint, ExitCode.BAD_FILE)
+        raise _no_policy(policy)
     return str(path)
+
+
+def _no_policy(policy: str) -> CannotConnect:
+    hint = "or one of: default, lab"
+    return CannotConnect(f"{policy}: no such policy file", hint, ExitCode.BAD_FILE)

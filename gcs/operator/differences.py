@@ -27,9 +27,9 @@ class Difference:
 
 
 def differences(found: Description, wanted: Wanted) -> list[Difference]:
-    """What the station has otherwise.  Policies are compared by what they say, not by their text.
+    """What the station has otherwise.  Policies are compared by what is in their files.
 
-    Raises PolicyFileError for a policy that cannot be read.
+    Raises OSError for a policy that cannot be read.
     """
     return list(_differences(found, wanted))
 
@@ -51,12 +51,12 @@ def hint(found: Description, different: Sequence[Difference], prefix: str = "") 
 
 def _differences(found: Description, wanted: Wanted) -> Iterator[Difference]:
     if wanted.policy is not None and found.policy_digest:
-        from gcs.policy_file import load_policy, policy_digest
+        from gcs.policy_digest import policy_digest
 
-        policy, _ = load_policy(wanted.policy)
-        if policy_digest(policy) != found.policy_digest:
-            named = found.policy if found.policy != policy.name else f"another {found.policy}"
-            yield Difference("policy", wanted.policy, named)
+        if policy_digest(wanted.policy) != found.policy_digest:
+            another = found.policy == wanted.policy
+            has = "another one of that name" if another else found.policy
+            yield Difference("policy", wanted.policy, has)
     if wanted.log_dir is not None:
         folder = os.path.realpath(wanted.log_dir)
         has = os.path.dirname(os.path.realpath(found.log_path)) if found.log_path else ""

@@ -18,7 +18,8 @@ from gcs import __version__, config, ipc
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import Policy
-from gcs.policy_file import PolicyFileError, load_policy, policy_digest
+from gcs.policy_digest import policy_digest
+from gcs.policy_file import PolicyFileError, load_policy
 from gcs.record.writer import Recorder, RecorderError
 from gcs.session.effects import EVERYONE
 from gcs.session.session import Session
@@ -161,7 +162,7 @@ def _open_local_socket(
             recording.path,
             keep=setup.keep,
             policy=policy.name,
-            policy_digest=policy_digest(policy),
+            policy_digest=policy_digest(setup.policy_path or "default"),
             speedup=setup.speedup,
         )
     except (OSError, Unsafe) as error:

@@ -44,7 +44,7 @@ class Description(msgspec.Struct, frozen=True):
     started_ns: int = 0
     keep: bool = False
     policy: str = ""  # its name
-    policy_digest: str = ""  # the same for policies that say the same
+    policy_digest: str = ""  # see gcs/policy_digest.py
     speedup: float = 1.0
 
 

@@ -16,7 +16,7 @@ from gcs.operator.client import StationClient
 from gcs.operator.event_text import operation_line
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
-from gcs.policy_file import load_policy, policy_digest
+from gcs.policy_digest import policy_digest
 from gcs.shell.stations import Description
 from tests.unit.cli.command_line import gcs
 from tests.unit.operator.fake_station import FakeConnection, FakeStation
@@ -30,7 +30,7 @@ FOUND = Description(
     vehicle="1/1 px4 quadrotor",
     log_path="/flights/a.mcap",
     policy="default",
-    policy_digest=policy_digest(load_policy("default")[0]),
+    policy_digest=policy_digest("default"),
 )
 
 

@@ -12,7 +12,8 @@ from gcs.operator import joined
 from gcs.operator.client import StationClient
 from gcs.operator.differences import Difference
 from gcs.operator.joined import JoinedStation
-from gcs.policy_file import load_policy, policy_digest
+from gcs.policy_digest import policy_digest
+from gcs.resources import policy_path
 from gcs.shell.stations import Description
 from tests.unit.operator.test_station import FakeWay
 
@@ -24,7 +25,7 @@ RUNNING = Description(
     vehicle="1/1 px4 quadrotor",
     log_path="/flights/a.mcap",
     policy="lab",
-    policy_digest=policy_digest(load_policy("lab")[0]),
+    policy_digest=policy_digest("lab"),
     speedup=2.0,
 )
 
@@ -81,15 +82,25 @@ def test_what_was_not_asked_for_or_is_so_is_joined(asked: dict[str, object]) -> 
         assert station.hello is not None
 
 
-def test_a_policy_is_known_by_what_it_says_not_by_its_file(tmp_path: Path) -> None:
-    lab = load_policy("lab")[1]
+def test_a_policy_is_known_by_what_is_in_its_file(tmp_path: Path) -> None:
+    lab = policy_path("lab").read_text()
     same, other = tmp_path / "same.toml", tmp_path / "lab.toml"
-    same.write_text("# a comment\n" + lab)
+    same.write_text(lab)
     other.write_text(lab.replace("brake_slack_h_m = 0.5", "brake_slack_h_m = 0.6"))
     with gcs.connect(LINK, policy=str(same)):
         pass
     (told,) = differing(policy=str(other)).differences
-    assert told == Difference("policy", str(other), "another lab")
+    assert told == Difference("policy", str(other), "lab")
+
+
+def test_and_by_the_fence_files_that_it_names(tmp_path: Path) -> None:
+    policy, fence = tmp_path / "field.toml", tmp_path / "field.plan"
+    policy.write_text('[[fence]]\nkind = "file"\npath = "field.plan"\n')
+    alone = policy_digest(str(policy))
+    fence.write_text("one")
+    first = policy_digest(str(policy))
+    fence.write_text("two")
+    assert len({alone, first, policy_digest(str(policy))}) == 3
 
 
 def test_a_policy_that_cannot_be_read_is_told_as_such() -> None:
