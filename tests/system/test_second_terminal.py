@@ -137,6 +137,19 @@ def test_a_second_screen_shows_the_flight_and_may_stop_it(tmp_path: Path) -> Non
         operator.leave()
 
 
+def test_a_screen_says_who_is_in_control_and_who_took_it(tmp_path: Path) -> None:
+    with simulated(tmp_path) as operator, terminal(GCS, "attach") as screen:
+        screen.until_text("control: operator 1", "ctrl operator 1")
+        screen.press("o")
+        screen.until_text("you are in control of the station")
+        operator.until(lambda: operator.said("taken over from operator 1"), "being told")
+        operator.fly("station take")
+        screen.until_text("CONTROL WENT TO operator 1")
+        screen.press("q")
+        assert screen.process.wait(10.0) == 0
+        operator.leave()
+
+
 @pytest.fixture
 def kept(tmp_path: Path) -> Iterator[int]:
     """The process of a station that flies, kept, after its first operator has left."""
