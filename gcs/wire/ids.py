@@ -358,17 +358,6 @@ class ParamType(IntEnum):
     REAL64 = 10
 
 
-class ParamError(IntEnum):
-    """MAV_PARAM_ERROR: PARAM_ERROR.error."""
-
-    NO_ERROR = 0
-    DOES_NOT_EXIST = 1
-    VALUE_OUT_OF_RANGE = 2
-    PERMISSION_DENIED = 3
-    COMPONENT_NOT_FOUND = 4
-    READ_ONLY = 5
-
-
 class Component(IntEnum):
     """MAV_COMPONENT: component ids."""
 
