@@ -20,7 +20,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gcs.operator.connect import connect
-    from gcs.operator.failures import CannotConnect, Disconnected, GcsError, NotCompleted, Refused
+    from gcs.operator.failures import (
+        CannotConnect,
+        Disconnected,
+        GcsError,
+        NotCompleted,
+        Refused,
+        StationDiffers,
+    )
     from gcs.operator.station import Operation, Station
 
 __version__ = "0.1.0"
@@ -37,6 +44,7 @@ __all__ = [
     "Operation",
     "Refused",
     "Station",
+    "StationDiffers",
     "connect",
 ]
 

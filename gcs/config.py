@@ -32,6 +32,20 @@ class StationConfig(msgspec.Struct, frozen=True):
     record: bool = True  # False: nothing is written, as for a short look at the vehicle
 
 
+class Wanted(msgspec.Struct, frozen=True):
+    """What an operator asks of a station by name, which one that runs may have otherwise; None:
+    whatever it has."""
+
+    policy: str | None = None  # default, lab, or a file
+    log_dir: str | None = None
+    vehicle: int | None = None  # MAVLink system id
+    speedup: float | None = None
+    keep: bool | None = None
+
+
+ANY_STATION = Wanted()
+
+
 def encode(config: StationConfig) -> str:
     return msgspec.json.encode(config).decode()
 

@@ -247,6 +247,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     setpoint_hz: float = 0.0
     mission_seq: int | None = None
     mission_total: int | None = None
+    in_control: OperatorInfo | None = None  # of the station; None = nobody
 
 
 class Trouble(msgspec.Struct, frozen=True, tag="trouble", tag_field="type"):

@@ -16,6 +16,7 @@ from gcs.cli.options import (
     UTF8,
     VEHICLE,
     Seconds,
+    asked_for,
     station_config,
     with_options,
 )
@@ -187,7 +188,7 @@ def _run(
         links, policy, log_dir, name="mission", timeout_s=timeout, vehicle=vehicle
     )
     what = label(requests[0])
-    how = oneshot_session.OneShotConfig(timeout, wait, as_json, what, take=take)
+    how = oneshot_session.OneShotConfig(timeout, wait, as_json, what, take=take, wanted=asked_for())
     task = oneshot_session.sending(SendRequests(requests), wait)
     code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

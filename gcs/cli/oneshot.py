@@ -16,6 +16,7 @@ from gcs.cli.options import (
     UTF8,
     VEHICLE,
     Seconds,
+    asked_for,
     station_config,
 )
 from gcs.operator import line_parser, request_words
@@ -63,7 +64,15 @@ def _command(name: str) -> click.Command:
         placed = name not in ("abort", "hold")
         anywhere = stops and not links
         how = oneshot_session.OneShotConfig(
-            timeout, wait, as_json, name, placed=placed, anywhere=anywhere, take=take, stops=stops
+            timeout,
+            wait,
+            as_json,
+            name,
+            placed=placed,
+            anywhere=anywhere,
+            take=take,
+            stops=stops,
+            wanted=asked_for(),
         )
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
@@ -113,7 +122,13 @@ def _status(
         links, policy, log_dir, name="status", timeout_s=timeout, vehicle=vehicle, record=False
     )
     how = oneshot_session.OneShotConfig(
-        timeout, 0.0, as_json, "status", cautions=True, anywhere=not links
+        timeout,
+        0.0,
+        as_json,
+        "status",
+        cautions=True,
+        anywhere=not links,
+        wanted=asked_for(),
     )
     code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)

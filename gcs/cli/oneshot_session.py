@@ -10,8 +10,13 @@ import msgspec
 
 from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
-from gcs.cli.running import joined_station, others_running, station_for
-from gcs.config import StationConfig
+from gcs.cli.running import (
+    joined_station,
+    others_running,
+    refuse_differences,
+    station_for,
+)
+from gcs.config import ANY_STATION, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.ipc import Ask
 from gcs.operator import event_text
@@ -42,7 +47,8 @@ class OneShotConfig:
 
     Through a running station: `anywhere` says that the only one that runs will do, whatever its
     link is; `take`, to take control over from another operator; `stops`, that nothing is to delay
-    it.  `at_once`: do not wait to hear how the vehicle is, the station knows.
+    it.  `at_once`: do not wait to hear how the vehicle is, the station knows.  `wanted`: what of
+    the station was asked for by name.
     """
 
     timeout_s: float
@@ -55,13 +61,20 @@ class OneShotConfig:
     stops: bool = False
     at_once: bool = False
     placed: bool = True
+    wanted: Wanted = ANY_STATION
 
 
 def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
     """Do it through the running station that has one of the links open, else with a station of our
-    own; returns the exit code."""
+    own; returns the exit code.
+
+    Raises ExitError if the running one is not as `how.wanted` says.  A stop takes it as it is,
+    unless it would stop another vehicle.
+    """
     found = station_for(setup.endpoints, anywhere=how.anywhere)
     if found is not None:
+        wanted = Wanted(vehicle=how.wanted.vehicle) if how.stops else how.wanted
+        refuse_differences(found, wanted)
         return run_through(found, how, task)
     for line in others_running(setup.endpoints):
         click.echo(f"gcs: {line}", err=True)

@@ -8,8 +8,9 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 import click
+from click.core import ParameterSource
 
-from gcs.config import StationConfig
+from gcs.config import StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.operator.number_text import read_number, read_whole_number
@@ -133,6 +134,17 @@ TAKE = click.Option(
     help="Where another operator is in control of the running station, take it over; it is told.",
 )
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
+
+
+def asked_for() -> Wanted:
+    """What of a station the present command line asks for by name."""
+    context = click.get_current_context()
+
+    def typed(name: str) -> Any:
+        by_name = context.get_parameter_source(name) is not ParameterSource.DEFAULT
+        return context.params.get(name) if by_name else None
+
+    return Wanted(typed("policy"), typed("log_dir"), typed("vehicle"))
 
 
 def with_options(*options: click.Option) -> Callable[[F], F]:

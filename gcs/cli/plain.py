@@ -195,7 +195,8 @@ class Plain:
         if self._config.as_json and seen is not None:
             self._out(ipc.encode(seen).decode().rstrip())
         else:
-            self._out(event_text.state_line(seen))
+            hello = self._dialogue.hello
+            self._out(event_text.state_line(seen, hello.client if hello else 0))
 
     def _show_help(self) -> None:
         tell = self._err if self._config.as_json else self._out

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from gcs.cli.options import DEFAULT_LINK
+from gcs.config import Wanted
 from gcs.exit_codes import ExitCode
+from gcs.operator.differences import differences, hint, sentence
 from gcs.operator.errors import ExitError
 from gcs.operator.joined import JoinedStation, running_stations, station_on
 from gcs.shell.stations import Description
@@ -51,6 +53,17 @@ def the_station(links: Sequence[str]) -> Description:
         hint = "start one with gcs fly; gcs stations lists those that run"
         raise ExitError(ExitCode.NO_VEHICLE, f"no station is running{where}", hint)
     return found
+
+
+def refuse_differences(found: Description, wanted: Wanted) -> None:
+    """Raises ExitError if the station is not as was asked for, or a policy cannot be read."""
+    try:
+        different = differences(found, wanted)
+    except OSError as error:
+        raise ExitError(ExitCode.BAD_FILE, f"{wanted.policy}: {error.strerror}") from error
+    if different:
+        how = hint(found, different, "--")
+        raise ExitError(ExitCode.USAGE, sentence(found, different), how)
 
 
 def joined_station(

@@ -44,6 +44,7 @@ def _lines(each: Description) -> list[str]:
         f"{each.pid}  {each.vehicle or 'no vehicle yet'}, since {started}{kept}",
         *(f"  link {endpoint}" for endpoint in each.endpoints),
         f"  log  {each.log_path or 'not recorded'}",
+        *([f"  policy {each.policy}"] if each.policy else []),
     ]
 
 

@@ -11,6 +11,7 @@ from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
 from gcs.enu_text import signed_enu
 from gcs.exit_codes import ExitCode
+from gcs.operator.control_text import control_words
 from gcs.operator.dialogue import Dialogue
 from gcs.operator.event_text import whole_degrees
 
@@ -25,10 +26,11 @@ def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> Ex
         SLOW_VALUES_WAIT_S,
     )
     display.clear()
-    return show(dialogue.snapshot, as_json=as_json)
+    client = dialogue.hello.client if dialogue.hello else 0
+    return show(dialogue.snapshot, client, as_json=as_json)
 
 
-def show(seen: ipc.Snapshot | None, *, as_json: bool) -> ExitCode:
+def show(seen: ipc.Snapshot | None, client: int, *, as_json: bool) -> ExitCode:
     """Print it; NO_VEHICLE if nothing was heard."""
     if seen is None:
         return ExitCode.NO_VEHICLE
@@ -43,19 +45,20 @@ def show(seen: ipc.Snapshot | None, *, as_json: bool) -> ExitCode:
     table = Table(box=box.SIMPLE, show_header=False, pad_edge=False)
     table.add_column(style="dim")
     table.add_column()
-    for name, value in rows(seen):
+    for name, value in rows(seen, client):
         table.add_row(name, value)
     Console(highlight=False, markup=False).print(table)
     return ExitCode.DONE
 
 
-def rows(seen: ipc.Snapshot) -> list[tuple[str, str]]:
-    """What is shown, top to bottom; unknown values are a dash."""
+def rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str]]:
+    """What is shown to the operator `client`, top to bottom; unknown values are a dash."""
     armed = {None: "-", True: "armed", False: "disarmed"}[seen.armed]
     conditions = f" ({', '.join(seen.conditions)})" if seen.conditions else ""
     return [
         ("vehicle", seen.vehicle),
         ("state", f"{seen.state}, control {seen.control}"),
+        ("control", control_words(seen, client)),
         ("severity", f"{seen.severity}{conditions}"),
         ("mode", f"{seen.mode or '-'}, {armed}, {seen.landed or '-'}"),
         ("position", f"{signed_enu(seen.pos_enu)} m, {_fixed(seen.position_age_s, 's', 2)} old"),

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from gcs import ipc
-from gcs.config import SimConfig, StationConfig
+from gcs.config import SimConfig, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.gate.states import LandedState, State
 from gcs.operator import joined
 from gcs.operator.client import StationClient
-from gcs.operator.failures import CannotConnect, Disconnected
+from gcs.operator.differences import differences, hint, sentence
+from gcs.operator.failures import CannotConnect, Disconnected, StationDiffers
 from gcs.operator.station import Station
 from gcs.resources import policy_path
 from gcs.shell.stations import Description
@@ -24,12 +25,12 @@ def connect(
     link: str | Sequence[str] | None = None,
     *,
     sim: bool = False,
-    policy: str = "default",
+    policy: str | None = None,
     take_control: bool = False,
-    keep: bool = False,
-    autopilot: str = "px4",
-    speedup: float = 1.0,
-    log_dir: str = "logs",
+    keep: bool | None = None,
+    autopilot: str | None = None,
+    speedup: float | None = None,
+    log_dir: str | None = None,
     name: str = "script",
     timeout_s: float = 10.0,
 ) -> Station:
@@ -37,10 +38,14 @@ def connect(
 
     Joins the station that has the link open, if one runs on this machine: then another operator
     may be in control, and `take_control` takes it over, which is told there.  Otherwise it starts
-    one, with this `policy` (default, lab or a file), that records into `log_dir` and ends when
-    this program leaves, unless it is to `keep`.  Without a link: the station on the default link,
-    else the only one that runs, else one of its own.  `sim`: one of its own with a vehicle of its
-    own, which speaks like `autopilot`, `speedup` times as fast as real time.
+    one, with this `policy` (default, lab or a file; None: default), that records into `log_dir`
+    (None: logs) and ends when this program leaves, unless it is to `keep`.  Without a link: the
+    station on the default link, else the only one that runs, else one of its own.  `sim`: one of
+    its own with a vehicle of its own, which speaks like `autopilot` (None: px4), `speedup` times
+    as fast as real time (None: 1).
+
+    A running station that has another `policy`, `log_dir`, `speedup` or `keep` than asked for is
+    not joined: StationDiffers says which.  What is None is taken as the station has it.
 
     Waits `timeout_s` for a vehicle to be heard.  Raises CannotConnect.
     """
@@ -48,21 +53,29 @@ def connect(
         raise CannotConnect(
             "sim=True starts a vehicle of its own", "leave out the link", ExitCode.USAGE
         )
+    if autopilot is not None and not sim:
+        raise CannotConnect(
+            f"autopilot={autopilot!r} is for the vehicle of sim=True; another one is as it is",
+            "leave out the autopilot",
+            ExitCode.USAGE,
+        )
     links = [link] if isinstance(link, str) else list(link or ())
     found = None if sim else _running(links)
     if found is not None:
+        _refuse_differences(found, Wanted(policy, log_dir, speedup=speedup, keep=keep))
         return _join(found, name, take_control, timeout_s)
-    vehicle = SimConfig(autopilot=autopilot, speedup=speedup) if sim else None
+    times = 1.0 if speedup is None else speedup
+    vehicle = SimConfig(autopilot=autopilot or "px4", speedup=times) if sim else None
     setup = StationConfig(
         endpoints=[] if sim else links or [DEFAULT_LINK],
         sim=vehicle,
-        policy_path=_policy_file(policy),
-        log_dir=log_dir,
+        policy_path=_policy_file(policy or "default"),
+        log_dir=log_dir or "logs",
         name=name,
-        speedup=speedup,
+        speedup=times,
         connect_timeout_s=timeout_s,
         operator=f"Python {name}",
-        keep=keep,
+        keep=bool(keep),
     )
     station = Station(StationClient.start(setup))
     try:
@@ -79,6 +92,16 @@ def _running(links: Sequence[str]) -> Description | None:
         return found
     everywhere = joined.running_stations()
     return everywhere[0] if len(everywhere) == 1 else None
+
+
+def _refuse_differences(found: Description, wanted: Wanted) -> None:
+    """Raises StationDiffers, or CannotConnect for a policy that cannot be read."""
+    try:
+        different = differences(found, wanted)
+    except OSError as error:
+        raise _no_policy(str(wanted.policy)) from error
+    if different:
+        raise StationDiffers(sentence(found, different), hint(found, different), different)
 
 
 def _join(found: Description, name: str, take_control: bool, timeout_s: float) -> Station:
@@ -136,6 +159,10 @@ def _policy_file(policy: str) -> str:
         return ""
     path = policy_path(policy)
     if not path.is_file():
-        hint = "or one of: default, lab"
-        raise CannotConnect(f"{policy}: no such policy file", hint, ExitCode.BAD_FILE)
+        raise _no_policy(policy)
     return str(path)
+
+
+def _no_policy(policy: str) -> CannotConnect:
+    hint = "or one of: default, lab"
+    return CannotConnect(f"{policy}: no such policy file", hint, ExitCode.BAD_FILE)

@@ -6,6 +6,7 @@ from gcs import ipc
 from gcs.enu_text import signed_enu
 from gcs.gate.refusal import Code
 from gcs.operator import request_words
+from gcs.operator.control_text import control_words
 from gcs.operator.errors import error_lines
 
 LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
@@ -75,8 +76,9 @@ def whole_degrees(yaw_deg: float) -> int:
     return round(yaw_deg) % 360
 
 
-def state_line(seen: ipc.Snapshot | None) -> str:
-    """One line: state, control, severity, position in m, mode, motors, battery.
+def state_line(seen: ipc.Snapshot | None, client: int) -> str:
+    """One line: state, control, severity, position in m, mode, motors, battery, and who is in
+    control as the operator `client` is told it.
 
     `state: HOVERING, control OURS, severity NOMINAL, at E +0.00 N +0.00 U +2.00 m, ...`
     """
@@ -86,7 +88,8 @@ def state_line(seen: ipc.Snapshot | None) -> str:
     battery = "-" if seen.battery_pct is None else f"{seen.battery_pct:.0f}"
     return (
         f"state: {seen.state}, control {seen.control}, severity {seen.severity}, "
-        f"at {signed_enu(seen.pos_enu)} m, mode {seen.mode or '-'}, {armed}, battery {battery} %"
+        f"at {signed_enu(seen.pos_enu)} m, mode {seen.mode or '-'}, {armed}, battery {battery} %, "
+        f"in control: {control_words(seen, client)}"
     )
 
 

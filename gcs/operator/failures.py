@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from gcs.exit_codes import ExitCode
+
+if TYPE_CHECKING:
+    from gcs.operator.differences import Difference
 
 
 class GcsError(Exception):
@@ -22,6 +26,15 @@ class CannotConnect(GcsError):  # noqa: N818 - the names read as what happened
         self.sentence = sentence
         self.hint = hint
         self.exit_code = exit_code
+
+
+class StationDiffers(CannotConnect):
+    """The running station that has the link open is not as was asked for, in each of
+    `differences`: it was not joined."""
+
+    def __init__(self, sentence: str, hint: str, differences: Sequence[Difference]) -> None:
+        super().__init__(sentence, hint, ExitCode.USAGE)
+        self.differences = tuple(differences)
 
 
 class Refused(GcsError):  # noqa: N818

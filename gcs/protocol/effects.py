@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gcs.wire.ids import MissionType, ParamError, ParamType
+from gcs.wire.ids import MissionType
 from gcs.wire.messages import CommandInt, CommandLong, Message, MissionItemInt
 
 
@@ -136,28 +136,5 @@ class TransferFailed:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class ParamRead:
-    """A parameter is known: an integer stays an integer."""
-
-    name: str
-    value: int | float
-    type: ParamType
-
-
-@dataclass(frozen=True, slots=True)
-class ParamAbsent:
-    """The vehicle does not have it: it said so (`error`), or never answered (None)."""
-
-    name: str
-    error: ParamError | int | None
-
-
-@dataclass(frozen=True, slots=True)
-class ParamsDone:
-    """Every name that was asked for is read or absent."""
-
-
 CommandEffect: TypeAlias = Send | Finished | InProgress | LateAck
 TransferEffect: TypeAlias = Send | TransferProgress | TransferDone | TransferFailed
-ParamEffect: TypeAlias = Send | ParamRead | ParamAbsent | ParamsDone

@@ -76,6 +76,23 @@ class SettingsReader:
         """What is needed and not known."""
         return tuple(q for q in self._quantities if q.needed and q.name not in self.values)
 
+    @property
+    def silent(self) -> tuple[Quantity, ...]:
+        """What is neither known nor denied under every name."""
+        open_names = frozenset(self._open)
+        return tuple(
+            q for q in self._quantities if any(each.name in open_names for each in q.names)
+        )
+
+    @property
+    def absent(self) -> tuple[Quantity, ...]:
+        """What the vehicle has said that it does not have, under any name."""
+        return tuple(
+            q
+            for q in self._quantities
+            if q.name not in self.values and all(each.name in self._denied for each in q.names)
+        )
+
     def start(self, now_ns: int) -> list[Send]:
         self._began_ns = now_ns
         return self._ask(now_ns)

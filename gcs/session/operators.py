@@ -55,6 +55,12 @@ class Operators:
         self._operations = Operations()
         self._subscriptions = Subscriptions(times)
 
+    @property
+    def in_control(self) -> ipc.OperatorInfo | None:
+        """The operator in control of the station; None: nobody."""
+        client = self._clients.in_control
+        return ipc.OperatorInfo(client, self._clients.name(client)) if client else None
+
     # ----------------------------------------------------------------------- come and go
 
     def join(self, client: int, name: str, hold_on_leave: bool) -> list[Work]:

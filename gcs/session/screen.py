@@ -25,6 +25,7 @@ def snapshot(
     recorded_bytes: int,
     vehicles: list[str],
     listening: bool,
+    in_control: ipc.OperatorInfo | None,
 ) -> ipc.Snapshot:
     """Everything a panel shows; what is not known is None, never a zero."""
     goal_ned = gate.active_goal_ned
@@ -41,6 +42,7 @@ def snapshot(
         recorded_mb=recorded_bytes / 1e6,
         vehicles=vehicles,
         listening=listening,
+        in_control=in_control,
     )
     if telemetry is None:
         return without_vehicle

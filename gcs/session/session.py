@@ -389,4 +389,5 @@ class Session:
             recorded_bytes=self._recorded_bytes,
             vehicles=self._vehicle.heard_vehicles(now_ns),
             listening=self._vehicle.listening(now_ns),
+            in_control=self._operators.in_control,
         )

@@ -10,18 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from gcs.protocol.effects import (
-    Address,
-    Heard,
-    ParamAbsent,
-    ParamEffect,
-    ParamRead,
-    ParamsDone,
-    Send,
-    Wake,
-)
+from gcs.protocol.effects import Address, Heard, Send, Wake
 from gcs.protocol.parameter_names import names_of
-from gcs.protocol.parameters import READ_WAIT_NS, ParamReader, decode_value
+from gcs.protocol.parameters import decode_value
+from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.wire.ids import ParamType
@@ -29,8 +21,10 @@ from gcs.wire.messages import ParamValue
 
 PARAM_TYPES = frozenset(int(kind) for kind in ParamType)
 
+ASKED_FOR_NS = 1_500_000_000
+"""How long what is not answered is asked for at a time, three tries."""
 READ_AGAIN_NS = 1_000_000_000
-"""Wait before what no answer came to is asked for again; each has several tries a time."""
+"""Wait before what no answer came to is asked for again."""
 LONGEST_READ_AGAIN_NS = 8_000_000_000
 """The wait doubles up to this."""
 
@@ -118,7 +112,7 @@ class Settings:
     def __init__(self, own: Address, times: Times) -> None:
         self._own = own
         self._times = times
-        self._reader: ParamReader | None = None
+        self._reader: SettingsReader | None = None
         self._scales: dict[str, tuple[str, float]] = {}
         """By every name that is asked for: the newest name, and what makes its unit."""
         self._values: dict[str, float] = {}
@@ -144,75 +138,72 @@ class Settings:
         return none + self._read(wanted, telemetry, now_ns)
 
     def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Found]:
+        found: list[Found] = []
+        if isinstance(heard.message, ParamValue) and heard.compid == telemetry.compid:
+            found += self._told_value(heard.message, telemetry)
         if self._reader is not None:
-            found = self._found(self._reader.handle(heard, now_ns), telemetry, now_ns)
-            if found:
-                return found
-        if isinstance(heard.message, ParamValue):
-            return self._changed(heard.message, telemetry, now_ns)
-        return []
+            sends = self._reader.handle(heard, now_ns)
+            found += self._asked(self._reader, sends, telemetry, now_ns)
+        return found
 
     def wake(self, telemetry: Telemetry, now_ns: int) -> list[Found]:
         if self._reader is not None:
-            return self._found(self._reader.handle(Wake(), now_ns), telemetry, now_ns)
+            sends = self._reader.handle(Wake(), now_ns)
+            return self._asked(self._reader, sends, telemetry, now_ns)
         if self._read_again_ns is not None and now_ns >= self._read_again_ns:
             return self._read(self._silent, telemetry, now_ns)
         return []
 
-    def _changed(self, news: ParamValue, telemetry: Telemetry, now_ns: int) -> list[Found]:
-        """A parameter came unasked, as after another station set it: keep ours up to date."""
+    def _told_value(self, news: ParamValue, telemetry: Telemetry) -> list[Found]:
+        """A parameter came, as an answer or unasked, as after another station set it."""
         if news.param_id not in self._scales or news.param_type not in PARAM_TYPES:
             return []
         kind = ParamType(news.param_type)
-        value = decode_value(news.param_value, kind, telemetry.autopilot.param_encoding)
+        encoding = telemetry.autopilot.param_encoding
+        value = float(decode_value(news.param_value, kind, encoding))
         newest, scale = self._scales[news.param_id]
-        if self._values.get(newest) == float(value) * scale:
+        if self._values.get(newest) == value * scale:
             return []
-        found = self._known(ParamRead(news.param_id, value, kind), _whose(telemetry))
+        found = self._known(news.param_id, value, _whose(telemetry))
         return found if self._reader is not None else [*found, *self._summary(telemetry)]
 
     def _read(self, wanted: list[str], telemetry: Telemetry, now_ns: int) -> list[Found]:
         self._silent = []
         self._read_again_ns = None
-        self._reader = ParamReader(
+        real_ns = self._times.real_ns
+        asked_for_ns = real_ns(ASKED_FOR_NS)
+        self._reader = SettingsReader(
             self._own,
             Address(telemetry.sysid, telemetry.compid),
             telemetry.autopilot.param_encoding,
-            (tuple(name.name for name in names_of(newest)) for newest in wanted),
-            self._times.real_ns(READ_WAIT_NS),
+            tuple(Quantity(newest, newest) for newest in wanted),
+            Waits(real_ns(USUAL_WAITS.again_ns), asked_for_ns, asked_for_ns),
         )
-        return self._found(self._reader.start(now_ns), telemetry, now_ns)
+        return self._asked(self._reader, self._reader.start(now_ns), telemetry, now_ns)
 
-    def _found(self, effects: list[ParamEffect], telemetry: Telemetry, now_ns: int) -> list[Found]:
-        who = _whose(telemetry)
-        out: list[Found] = []
-        for effect in effects:
-            match effect:
-                case Send():
-                    out.append(effect)
-                case ParamRead():
-                    out += self._known(effect, who)
-                case ParamAbsent(name, None):
-                    self._silent.append(name)
-                case ParamAbsent(name):
-                    if name == RETURN_HEIGHT.get(who):
-                        out.append(ReturnHeightKnown(None))
-                case ParamsDone():
-                    self._reader = None
-                    if self._silent:
-                        self._read_again_ns = now_ns + self._pause_ns
-                        self._pause_ns = min(
-                            2 * self._pause_ns, self._times.real_ns(LONGEST_READ_AGAIN_NS)
-                        )
-                    out += self._summary(telemetry)
-        return out
+    def _asked(
+        self, reader: SettingsReader, sends: list[Send], telemetry: Telemetry, now_ns: int
+    ) -> list[Found]:
+        """What it says, and what follows once it has said its last."""
+        out: list[Found] = [*sends]
+        if not reader.done:
+            return out
+        self._reader = None
+        if any(each.name == RETURN_HEIGHT.get(_whose(telemetry)) for each in reader.absent):
+            out.append(ReturnHeightKnown(None))
+        self._silent = [each.name for each in reader.silent]
+        if self._silent:
+            self._read_again_ns = now_ns + self._pause_ns
+            longest_ns = self._times.real_ns(LONGEST_READ_AGAIN_NS)
+            self._pause_ns = min(2 * self._pause_ns, longest_ns)
+        return [*out, *self._summary(telemetry)]
 
-    def _known(self, read: ParamRead, who: str) -> list[Found]:
-        newest, scale = self._scales[read.name]
-        value = self._values[newest] = float(read.value) * scale
+    def _known(self, name: str, read: float, who: str) -> list[Found]:
+        newest, scale = self._scales[name]
+        value = self._values[newest] = read * scale
         if newest in self._silent:
             self._silent.remove(newest)
-        found: list[Found] = [ParameterKnown(read.name, float(read.value))]
+        found: list[Found] = [ParameterKnown(name, read)]
         if newest == RETURN_HEIGHT.get(who):
             found.append(ReturnHeightKnown(value))
         elif newest == ACCEPTANCE_RADIUS.get(who):

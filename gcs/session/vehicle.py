@@ -28,6 +28,7 @@ from gcs.session.commands import Commands
 from gcs.session.delay import Delay
 from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
+from gcs.session.events import EVENT_MESSAGES, Events
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
@@ -77,6 +78,7 @@ class Vehicle:
         self._settings = Settings(own, times)
         self._missions = Missions(own, times)
         self._words = Words(times)
+        self._events = Events(own, self._words, times)
         self._roster = Roster(config.target_sysid, times, gone_ns)
         self._reasons = Reasons(self._words, times)
         self._met_ns = 0
@@ -88,7 +90,8 @@ class Vehicle:
     @property
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
-        parts = (self._commands, self._settings, self._missions, self._words, self._reasons)
+        talking = (self._commands, self._settings, self._missions)
+        parts = (*talking, self._words, self._events, self._reasons)
         times = [part.deadline_ns for part in parts]
         return min((time for time in times if time is not None), default=None)
 
@@ -159,8 +162,8 @@ class Vehicle:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
             work += logged(self._words.text(heard.compid, message, now_ns))
-        elif isinstance(message, m.Event) and heard.compid == telemetry.compid:
-            self._words.event(message)
+        elif type(message) in EVENT_MESSAGES and heard.compid == telemetry.compid:
+            work += self._events.heard(heard, now_ns)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
             return work
         for update in updates(message, telemetry, now_ns):
@@ -210,6 +213,7 @@ class Vehicle:
             return work
         work.append(Log(Level.INFO, NODE, news))
         self._discovery.start()
+        self._events.start(Address(telemetry.sysid, telemetry.compid))
         work += self._learn(self._settings.start(telemetry, now_ns), telemetry)
         return work + self._ask_for_missing(telemetry, now_ns)
 
@@ -247,6 +251,7 @@ class Vehicle:
     def wake(self, now_ns: int) -> list[Work]:
         """Some part's deadline has passed."""
         work = self._commands.wake(self.telemetry, now_ns) + logged(self._words.wake(now_ns))
+        work += self._events.wake(now_ns)
         if self.telemetry is not None:
             work += self._reasons.wake(self.telemetry.custom_mode, now_ns)
             work += self._learn(self._settings.wake(self.telemetry, now_ns), self.telemetry)

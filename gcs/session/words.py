@@ -1,8 +1,9 @@
 """What the vehicle says in words: its texts joined from their pieces, and its reasons for a no.
 
 A STATUSTEXT longer than 50 characters comes in chunks.  PX4 ends a text that it also sends as an
-EVENT with a TAB.  Reasons come as texts (ArduPilot's "Arm: ...", "PreArm: ...", PX4's "... denied")
-and as PX4's events, before the COMMAND_ACK or right after it.
+EVENT with a TAB; where that text is lost, the event, which is asked for again, is told instead.
+Reasons come as texts (ArduPilot's "Arm: ...", "PreArm: ...", PX4's "... denied") and as PX4's
+events, before the COMMAND_ACK or right after it.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from gcs.gate.effects import Level
+from gcs.protocol.px4_event_words import WordedEvent, worded
 from gcs.protocol.px4_events import ArmingChecks
 from gcs.session.times import Times
 from gcs.session.work import Log
@@ -25,6 +27,9 @@ CHUNK_WAIT_NS: Final = 1_000_000_000
 """How long the other chunks of a text are waited for; what is there is told then."""
 LOST: Final = "…"
 """In the place of a chunk that was lost."""
+
+TEXT_WAIT_NS: Final = 1_000_000_000
+"""An event is told in words where its text came neither so long before it nor so long after."""
 
 REASON_AGE_NS: Final = 1_000_000_000
 """A warning is taken as the reason of a refusal that follows within this time."""
@@ -55,6 +60,14 @@ class Said:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class _Untold:
+    """An event whose text may still come, or came just before."""
+
+    event: WordedEvent
+    heard_ns: int
+
+
 @dataclass(slots=True)
 class _Pieces:
     severity: int
@@ -80,12 +93,17 @@ class Words:
         self._times = times
         self._coming: dict[tuple[int, int], _Pieces] = {}
         self._lately: deque[tuple[int, Said]] = deque(maxlen=KEPT)
+        self._untold: list[_Untold] = []
+        self._text_wait_ns = times.real_ns(TEXT_WAIT_NS)
         self._checks = ArmingChecks()
 
     @property
     def deadline_ns(self) -> int | None:
-        """When a text of which chunks are missing is told as it is."""
-        return min((pieces.until_ns for pieces in self._coming.values()), default=None)
+        """When a text of which chunks are missing is told as it is, or an event in place of its
+        text."""
+        texts = [pieces.until_ns for pieces in self._coming.values()]
+        events = [untold.heard_ns + self._text_wait_ns for untold in self._untold]
+        return min(texts + events, default=None)
 
     def text(self, compid: int, message: Statustext, now_ns: int) -> list[Said]:
         """A STATUSTEXT of the component `compid`: the texts that are whole now."""
@@ -110,11 +128,27 @@ class Words:
         for key in due:
             pieces = self._coming.pop(key)
             said += self._say(pieces.severity, pieces.text(), now_ns)
+        waiting, self._untold = self._untold, []
+        for untold in waiting:
+            if now_ns < untold.heard_ns + self._text_wait_ns:
+                self._untold.append(untold)
+            elif not self._text_came(untold):
+                said += self._say(untold.event.severity, untold.event.text, now_ns)
         return said
 
-    def event(self, message: Event) -> None:
-        """An EVENT; the texts that go with others of them come too."""
+    def event(self, message: Event, now_ns: int) -> None:
+        """An EVENT, in its order.  `wake` tells it where its text does not come."""
         self._checks.heard(message)
+        event = worded(message)
+        if event is not None:
+            self._untold.append(_Untold(event, now_ns))
+
+    def _text_came(self, untold: _Untold) -> bool:
+        since_ns = untold.heard_ns - self._text_wait_ns
+        return any(
+            time_ns >= since_ns and said.text.startswith(untold.event.begins)
+            for time_ns, said in self._lately
+        )
 
     def _say(self, severity: int, text: str, now_ns: int) -> list[Said]:
         said = Said(severity, text.rstrip())
@@ -132,6 +166,11 @@ class Words:
             said.text
             for time_ns, said in self._lately
             if time_ns >= since_ns and said.severity <= Severity.WARNING
+        ]
+        texts += [
+            untold.event.text
+            for untold in self._untold
+            if untold.event.severity <= Severity.WARNING and not self._text_came(untold)
         ]
         return "; ".join(dict.fromkeys(texts))
 

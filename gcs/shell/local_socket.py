@@ -34,6 +34,9 @@ class LocalSocket:
         log_path: str,
         *,
         keep: bool,
+        policy: str = "",
+        policy_digest: str = "",
+        speedup: float = 1.0,
         folder: Path | None = None,
         unix: bool = UNIX,
     ) -> None:
@@ -44,9 +47,12 @@ class LocalSocket:
             os.getpid(),
             ipc.SCHEMA,
             endpoints,
-            log_path=log_path,
+            log_path=_absolute(log_path),
             started_ns=time.time_ns(),
             keep=keep,
+            policy=policy,
+            policy_digest=policy_digest,
+            speedup=speedup,
         )
         if unix:
             path = self._folder / f"{os.getpid()}.sock"
@@ -65,7 +71,7 @@ class LocalSocket:
     def describe(self, snapshot: ipc.Snapshot) -> None:
         """Keep the description up to date; writes only when something in it changed."""
         now = msgspec.structs.replace(
-            self.description, vehicle=snapshot.vehicle, log_path=snapshot.log_path
+            self.description, vehicle=snapshot.vehicle, log_path=_absolute(snapshot.log_path)
         )
         if now != self.description:
             self.description = now
@@ -79,6 +85,11 @@ class LocalSocket:
             if path.parent == self._folder:
                 with contextlib.suppress(OSError):
                     path.unlink()
+
+
+def _absolute(log_path: str) -> str:
+    """Whoever reads the description may be in another folder."""
+    return os.path.abspath(log_path) if log_path else ""
 
 
 def _unix_listener(path: Path) -> socket.socket:

@@ -18,6 +18,7 @@ from gcs import __version__, config, ipc
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import Policy
+from gcs.policy_digest import policy_digest
 from gcs.policy_file import PolicyFileError, load_policy
 from gcs.record.writer import Recorder, RecorderError
 from gcs.session.effects import EVERYONE
@@ -73,7 +74,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
         if setup.sim is not None:
             sim = SimProcess(setup.sim, links[0].port)
             opened.callback(sim.stop)
-        local, clients = _open_local_socket(setup, links, recording, screen, opened)
+        local, clients = _open_local_socket(setup, policy, links, recording, screen, opened)
         session = Session(
             Setup(
                 config=setup,
@@ -147,6 +148,7 @@ def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
 
 def _open_local_socket(
     setup: StationConfig,
+    policy: Policy,
     links: Sequence[sockets.Link],
     recording: Recording,
     screen: LineSink,
@@ -155,7 +157,14 @@ def _open_local_socket(
     """The way in for other operators.  A station that cannot have one flies without it."""
     endpoints = [str(replace(link.endpoint, port=link.port)) for link in links]
     try:
-        local = LocalSocket(endpoints, recording.path, keep=setup.keep)
+        local = LocalSocket(
+            endpoints,
+            recording.path,
+            keep=setup.keep,
+            policy=policy.name,
+            policy_digest=policy_digest(setup.policy_path or "default"),
+            speedup=setup.speedup,
+        )
     except (OSError, Unsafe) as error:
         text = f"no other terminal can reach this station: {error}"
         screen.put(ipc.encode(ipc.Trouble(text, "")))

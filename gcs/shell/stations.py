@@ -43,6 +43,9 @@ class Description(msgspec.Struct, frozen=True):
     log_path: str = ""
     started_ns: int = 0
     keep: bool = False
+    policy: str = ""  # its name
+    policy_digest: str = ""  # see gcs/policy_digest.py
+    speedup: float = 1.0
 
 
 def folder_of(environment: Mapping[str, str] = os.environ) -> Path:

@@ -5,9 +5,13 @@ from __future__ import annotations
 from rich.table import Table
 from rich.text import Text
 
+from gcs.operator.control_text import operator_words
 from gcs.tui import look
 from gcs.tui.keys import KEYS, MOVES, SECTIONS
 from gcs.tui.scene import Scene
+
+CONTROL_COLUMNS = 26
+"""What the header needs beside the name of the operator in control."""
 
 
 def header(scene: Scene, columns: int) -> Text:
@@ -24,6 +28,8 @@ def header(scene: Scene, columns: int) -> Text:
         left.append(f"  LINK LOST {_whole(seen.heartbeat_age_s)} s ", look.BAD)
     if not scene.fence_on:
         left.append("  FENCE OFF ", look.BAD)
+    if not scene.in_control:
+        left.append(f"  control: {_operator(scene, columns - left.cell_len)} ", look.WARN)
     if seen.recording:
         name = seen.log_path.replace("\\", "/").rsplit("/", 1)[-1]
         right.append("● ", look.BAD).append(f"{seen.recorded_mb:.1f} MB ", look.DIM)
@@ -34,6 +40,15 @@ def header(scene: Scene, columns: int) -> Text:
         right.append("NOT RECORDED ", look.BAD)
     gap = columns - left.cell_len - right.cell_len
     return Text.assemble(left, " " * max(1, gap), right, end="", no_wrap=True)
+
+
+def _operator(scene: Scene, columns: int) -> str:
+    """Who is in control, with its program where there is room beside the size of the record."""
+    operator = scene.snapshot.in_control if scene.snapshot else None
+    whole = operator_words(operator, scene.client)
+    if len(whole) + CONTROL_COLUMNS <= columns:
+        return whole
+    return operator_words(operator, scene.client, short=True)
 
 
 def _whole(age_s: float | None) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from gcs import ipc
 from gcs.gate.states import State
-from gcs.operator import event_text, request_words
+from gcs.operator import control_text, event_text, request_words
 from gcs.tui.keyboard import PendingGoal
 
 TRAIL_POINTS = 800
@@ -16,6 +16,7 @@ TRAIL_STEP_M = 0.1
 COMPLETE = "complete"
 REFUSED = "refused"
 ACCEPTED = "accepted"
+TAKEN_OVER = "taken over"
 ANSWER_NS = 10_000_000_000
 """How long it is shown that something has ended: after that it may not be so any more."""
 
@@ -52,6 +53,17 @@ class Scene:
     @property
     def now_ns(self) -> int:
         return 0 if self.snapshot is None else self.snapshot.time_ns
+
+    @property
+    def client(self) -> int:
+        """The number that the station knows this operator by."""
+        return self.hello.client if self.hello else 0
+
+    @property
+    def in_control(self) -> bool:
+        """Whether this operator may ask for everything, or would get control by asking."""
+        operator = self.snapshot.in_control if self.snapshot else None
+        return operator is None or operator.client == self.client
 
     @property
     def lost(self) -> bool:
@@ -96,6 +108,7 @@ class Scene:
             case ipc.Fences(zones):
                 self.zones = zones
             case ipc.Snapshot():
+                self._note_control(self.snapshot, event)
                 self.snapshot = event
                 self.heard_vehicle = self.heard_vehicle or bool(event.vehicle)
                 self._forget_old_answer()
@@ -147,6 +160,15 @@ class Scene:
             self.fence_on = request.on
         elif request.word == "takeoff":
             self._up = True
+
+    def _note_control(self, before: ipc.Snapshot | None, now: ipc.Snapshot) -> None:
+        """Say it where control of the station has passed to another operator, whatever was said
+        before."""
+        if before is None:
+            return
+        words = control_text.change_words(before.in_control, now.in_control, self.client)
+        if words:
+            self.answer = Answer(words, TAKEN_OVER, now.time_ns)
 
     def _leave_trail(self, pos_enu: ipc.Vec3 | None) -> None:
         if pos_enu is None:

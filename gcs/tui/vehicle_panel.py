@@ -11,6 +11,7 @@ from rich.text import Text
 from gcs import ipc
 from gcs.enu_text import signed_enu
 from gcs.gate.condition import Condition
+from gcs.operator.control_text import control_words
 from gcs.operator.event_text import whole_degrees
 from gcs.tui import look
 from gcs.tui.scene import REFUSED, Scene
@@ -31,29 +32,34 @@ def draw(scene: Scene) -> Text:
         panel.append("start one: vehicle-sim, gcs fly --sim\n", look.DIM)
         panel.append("or name its link: --link URL\n", look.DIM)
         return panel
-    for name, value, style in rows(seen, lost=scene.lost):
+    for name, value, style in rows(seen, scene.client, lost=scene.lost):
         panel.append(f"{name:<5}", look.DIM)
         panel.append(value, style)
         panel.append("\n")
     return panel
 
 
-def rows(seen: ipc.Snapshot, *, lost: bool = False) -> list[tuple[str, str, str]]:
-    """Name, value, style.  Of a vehicle that is lost the ages are bright and all else is dim."""
-    shown = _rows(msgspec.structs.replace(seen, rx_hz=0.0) if lost else seen)
+def rows(seen: ipc.Snapshot, client: int, *, lost: bool = False) -> list[tuple[str, str, str]]:
+    """Name, value, style, for the operator `client`.  Of a vehicle that is lost the ages are
+    bright and all else is dim."""
+    shown = _rows(msgspec.structs.replace(seen, rx_hz=0.0) if lost else seen, client)
     if not lost:
         return shown
     return [(name, value, style if style == look.BAD else look.DIM) for name, value, style in shown]
 
 
-def _rows(seen: ipc.Snapshot) -> list[tuple[str, str, str]]:
+def _rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str, str]]:
     armed = {None: "arm?", True: "ARMED", False: "disarmed"}[seen.armed]
     speed = "-" if seen.v_enu is None else f"{math.hypot(*seen.v_enu):.1f} m/s"
     heading = "-" if seen.yaw_deg is None else f"{whole_degrees(seen.yaw_deg):03d}°"
     position_age = _age(seen.position_age_s)
     return [
         ("mode", f"{seen.mode or '-'} {armed}", look.WARN if seen.armed else look.PLAIN),
-        ("ctrl", f"{seen.control} {seen.severity}", look.SEVERITY.get(seen.severity, look.BAD)),
+        (
+            "ctrl",
+            f"{control_words(seen, client, short=True)}, {seen.control} {seen.severity}",
+            look.SEVERITY.get(seen.severity, look.BAD),
+        ),
         ("pos", signed_enu(seen.pos_enu), look.VEHICLE),
         ("", f"{speed} {heading} age {position_age}", _if(seen.position_age_s, OLD_POSITION_S)),
         ("batt", _battery(seen), _battery_style(seen.battery_pct)),

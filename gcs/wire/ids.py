@@ -48,6 +48,9 @@ class MsgId(IntEnum):
     CAMERA_IMAGE_CAPTURED = 263
     PARAM_ERROR = 345
     EVENT = 410
+    CURRENT_EVENT_SEQUENCE = 411
+    REQUEST_EVENT = 412
+    RESPONSE_EVENT_ERROR = 413
 
 
 class Cmd(IntEnum):
@@ -353,17 +356,6 @@ class ParamType(IntEnum):
     INT64 = 8
     REAL32 = 9
     REAL64 = 10
-
-
-class ParamError(IntEnum):
-    """MAV_PARAM_ERROR: PARAM_ERROR.error."""
-
-    NO_ERROR = 0
-    DOES_NOT_EXIST = 1
-    VALUE_OUT_OF_RANGE = 2
-    PERMISSION_DENIED = 3
-    COMPONENT_NOT_FOUND = 4
-    READ_ONLY = 5
 
 
 class Component(IntEnum):

@@ -458,6 +458,35 @@ class Event(Message, frozen=True, gc=False):
     arguments: tuple[int, ...]  # 40 values
 
 
+class CurrentEventSequence(Message, frozen=True, gc=False):
+    """CURRENT_EVENT_SEQUENCE (411): 3 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.CURRENT_EVENT_SEQUENCE
+    sequence: int
+    flags: int
+
+
+class RequestEvent(Message, frozen=True, gc=False):
+    """REQUEST_EVENT (412): 6 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.REQUEST_EVENT
+    first_sequence: int
+    last_sequence: int
+    target_system: int
+    target_component: int
+
+
+class ResponseEventError(Message, frozen=True, gc=False):
+    """RESPONSE_EVENT_ERROR (413): 7 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.RESPONSE_EVENT_ERROR
+    sequence: int
+    sequence_oldest_available: int
+    target_system: int
+    target_component: int
+    reason: int
+
+
 CLASSES: Mapping[int, type[Message]] = MappingProxyType(
     {cls.MSG_ID: cls for cls in Message.__subclasses__()}
 )

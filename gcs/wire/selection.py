@@ -37,6 +37,9 @@ MESSAGES = (
     "CAMERA_IMAGE_CAPTURED",
     "PARAM_ERROR",
     "EVENT",
+    "CURRENT_EVENT_SEQUENCE",
+    "REQUEST_EVENT",
+    "RESPONSE_EVENT_ERROR",
     "GPS_RAW_INT",
     "ESTIMATOR_STATUS",
     "EKF_STATUS_REPORT",
@@ -205,7 +208,6 @@ ENUMS = (
     ),
     EnumChoice("Severity", "MAV_SEVERITY", "MAV_SEVERITY_", "STATUSTEXT.severity"),
     EnumChoice("ParamType", "MAV_PARAM_TYPE", "MAV_PARAM_TYPE_", "PARAM_VALUE.param_type"),
-    EnumChoice("ParamError", "MAV_PARAM_ERROR", "MAV_PARAM_ERROR_", "PARAM_ERROR.error"),
     EnumChoice("Component", "MAV_COMPONENT", "MAV_COMP_ID_", "component ids", ("AUTOPILOT1",)),
     EnumChoice(
         "TypeMask",

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import pytest
 
+from gcs.gate.states import State
 from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, PEER, PERSONALITIES, Flight, Personality
 from tests.loopback.looks import START_NS, Sent
@@ -24,6 +25,7 @@ both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 def lab_flight(personality: Personality, seed: int) -> Flight:
     flight = Flight(personality, seed=seed, up=ROUGH, down=ROUGH)
     flight.run(2.0)
+    flight.until(lambda: flight.is_in(State.GROUNDED))  # its first messages may be lost
     flight.say("arm")
     flight.run(3.0)
     flight.say("takeoff", up_m=2.0)

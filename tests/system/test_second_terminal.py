@@ -137,6 +137,19 @@ def test_a_second_screen_shows_the_flight_and_may_stop_it(tmp_path: Path) -> Non
         operator.leave()
 
 
+def test_a_screen_says_who_is_in_control_and_who_took_it(tmp_path: Path) -> None:
+    with simulated(tmp_path) as operator, terminal(GCS, "attach") as screen:
+        screen.until_text("control: operator 1", "ctrl operator 1")
+        screen.press("o")
+        screen.until_text("you are in control of the station")
+        operator.until(lambda: operator.said("taken over from operator 1"), "being told")
+        operator.fly("station take")
+        screen.until_text("CONTROL WENT TO operator 1")
+        screen.press("q")
+        assert screen.process.wait(10.0) == 0
+        operator.leave()
+
+
 @pytest.fixture
 def kept(tmp_path: Path) -> Iterator[int]:
     """The process of a station that flies, kept, after its first operator has left."""
@@ -155,11 +168,16 @@ def kept(tmp_path: Path) -> Iterator[int]:
         until(lambda: not alive(pid), "its end", 15.0)
 
 
-def test_a_kept_station_outlives_its_operator_and_is_flown_by_one_shots(kept: int) -> None:
+def test_a_kept_station_outlives_its_operator_and_is_flown_by_one_shots(
+    kept: int, tmp_path: Path
+) -> None:
     (found,) = listed("stations")
     assert (found["pid"], found["keep"]) == (kept, True)
     link = ("--link", found["endpoints"][0])
-    moved = gcs("goto", "2", "0", "2", *link)
+    other = gcs("goto", "2", "0", "2", *link, "--policy", "lab")
+    assert other.returncode == ExitCode.USAGE
+    assert "policy lab was asked for, it has default" in other.stderr
+    moved = gcs("goto", "2", "0", "2", *link, "--policy", "default", "--log-dir", str(tmp_path))
     assert (moved.returncode, moved.stdout) == (0, "resume: complete\ngoto 2 0 2: complete\n")
     assert listed("status", *link)["state"] == "HOVERING", "a one-shot leaves it as it is"
     ended = gcs("stations", "end")

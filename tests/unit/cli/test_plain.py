@@ -123,7 +123,7 @@ def test_mission_fly_starts_only_what_was_uploaded() -> None:
 def test_state_is_one_line() -> None:
     assert Session("state\n").out == [
         "state: GROUNDED, control NONE, severity NOMINAL, at E +0.00 N +0.00 U +0.00 m, "
-        "mode AUTO.LOITER, disarmed, battery 98 %"
+        "mode AUTO.LOITER, disarmed, battery 98 %, in control: you"
     ]
 
 

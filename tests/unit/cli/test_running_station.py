@@ -16,12 +16,21 @@ from gcs.operator.client import StationClient
 from gcs.operator.event_text import operation_line
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
+from gcs.policy_digest import policy_digest
 from gcs.shell.stations import Description
 from tests.unit.cli.command_line import gcs
 from tests.unit.operator.fake_station import FakeConnection, FakeStation
 
+LINK = "udpin://127.0.0.1:47001"
 FOUND = Description(
-    4711, 1, ["udpin://127.0.0.1:47001"], token="secret", vehicle="1/1 px4 quadrotor"
+    4711,
+    1,
+    [LINK],
+    token="secret",
+    vehicle="1/1 px4 quadrotor",
+    log_path="/flights/a.mcap",
+    policy="default",
+    policy_digest=policy_digest("default"),
 )
 
 
@@ -96,6 +105,65 @@ def test_the_only_station_will_do_for_a_stop_without_a_link_and_for_nothing_else
     with pytest.raises(AssertionError, match="of its own"):
         run("goto 1 0 2", goto, default)
     assert "name its link: --link udpin://127.0.0.1:47001" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("typed", "told", "hint"),
+    [
+        (("--policy", "lab"), "policy lab was asked for, it has default", "leave out --policy"),
+        (
+            ("--log-dir", "/elsewhere"),
+            "log_dir /elsewhere was asked for, it has /flights",
+            "leave out --log-dir",
+        ),
+        (
+            ("--vehicle", 2),
+            "vehicle 2 was asked for, it has 1/1 px4 quadrotor",
+            "leave out --vehicle",
+        ),
+    ],
+)
+@pytest.mark.parametrize(
+    "command", [("goto", 3, 0, 2), ("status",), ("mission", "clear")], ids=lambda words: words[0]
+)
+def test_an_option_that_a_running_station_cannot_honour_is_refused(
+    connection: FakeConnection,
+    command: tuple[object, ...],
+    typed: tuple[object, ...],
+    told: str,
+    hint: str,
+) -> None:
+    ended = gcs(*command, "--link", LINK, *typed)
+    assert ended.exit_code == ExitCode.USAGE
+    assert f"the running station of process 4711, which differs: {told}" in ended.output
+    assert f"{hint} to use that station as it is" in ended.output
+    assert f"gcs stations end --link {LINK}" in ended.output
+    assert connection.sent == []
+
+
+def test_an_option_that_says_what_the_station_has_is_none_the_less_right(
+    connection: FakeConnection,
+) -> None:
+    typed = ("--policy", "default", "--log-dir", "/flights", "--vehicle", 1)
+    assert gcs("goto", 3, 0, 2, "--link", LINK, *typed).exit_code == ExitCode.DONE
+
+
+def test_a_policy_that_cannot_be_read_is_told_as_such(connection: FakeConnection) -> None:
+    ended = gcs("goto", 3, 0, 2, "--link", LINK, "--policy", "missing.toml")
+    assert ended.exit_code == ExitCode.BAD_FILE
+    assert connection.sent == []
+
+
+def test_a_stop_takes_any_policy_and_log_but_stops_no_other_vehicle(
+    connection: FakeConnection,
+) -> None:
+    typed = ("--policy", "lab", "--log-dir", "/elsewhere")
+    assert gcs("abort", "--link", LINK, *typed).exit_code == ExitCode.DONE
+    assert words(connection) == ["abort"]
+    ended = gcs("abort", "--link", LINK, "--vehicle", 2)
+    assert ended.exit_code == ExitCode.USAGE
+    assert "vehicle 2 was asked for, it has 1/1 px4 quadrotor" in ended.output
+    assert words(connection) == ["abort"]
 
 
 def test_stations_are_listed_without_their_tokens(found: list[Description]) -> None:

@@ -2,19 +2,47 @@
 
 from __future__ import annotations
 
-import msgspec
+import json
 
-from gcs.cli.status import rows
+import msgspec
+import pytest
+
+from gcs import ipc
+from gcs.cli.status import rows, show
 from tests.unit.operator.fake_station import FakeStation
 
 
 def test_a_heading_goes_round_and_a_rate_not_measured_is_left_out() -> None:
     seen = msgspec.structs.replace(FakeStation().snapshot(), yaw_deg=359.7, rx_hz=0.0)
-    shown = dict(rows(seen))
+    shown = dict(rows(seen, 1))
     assert shown["heading"] == "0 deg"
     assert shown["link"] == "0.0 % lost"
 
 
 def test_unknown_values_are_dashes() -> None:
-    shown = dict(rows(FakeStation("silent").snapshot()))
+    shown = dict(rows(FakeStation("silent").snapshot(), 1))
     assert shown["position"].startswith("E - N - U -")
+
+
+@pytest.mark.parametrize(
+    ("state", "in_control", "told"),
+    [
+        ("HOVERING", ipc.OperatorInfo(3, "gcs status, pid 9"), "you"),
+        ("HOVERING", ipc.OperatorInfo(1, "gcs fly, pid 7"), "operator 1 (gcs fly, pid 7)"),
+        ("HOVERING", None, "nobody"),
+        ("EXTERNAL", None, "the pilot or another station; of this station: nobody"),
+    ],
+)
+def test_who_is_in_control_is_told(
+    state: str, in_control: ipc.OperatorInfo | None, told: str
+) -> None:
+    seen = msgspec.structs.replace(FakeStation().snapshot(), state=state, in_control=in_control)
+    assert dict(rows(seen, 3))["control"] == told
+
+
+def test_json_tells_it_too(capsys: pytest.CaptureFixture[str]) -> None:
+    operator = ipc.OperatorInfo(1, "gcs fly, pid 7")
+    seen = msgspec.structs.replace(FakeStation().snapshot(), in_control=operator)
+    show(seen, 3, as_json=True)
+    told = json.loads(capsys.readouterr().out)
+    assert told["in_control"] == {"client": 1, "name": "gcs fly, pid 7"}

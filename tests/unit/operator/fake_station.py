@@ -29,6 +29,9 @@ LANDED_KNOWN_S = 1.0
 SCENARIOS = ("flight", "airborne", "silent", "late landed", "slow upload", "port in use", "crash")
 
 
+FIRST = ipc.OperatorInfo(1, "gcs fly, pid 4710")
+
+
 @dataclass
 class FakeStation:
     """States carry the gate's names; every accepted request ends exactly once."""
@@ -47,6 +50,7 @@ class FakeStation:
     upload_until_s: float = 0.0
     done: bool = False
     time_s: float = 0.0
+    in_control: ipc.OperatorInfo | None = FIRST
 
     def hello(self) -> list[ipc.Event]:
         fence = ipc.FenceShape(
@@ -231,6 +235,7 @@ class FakeStation:
             log_path="logs/x.mcap",
             recording=True,
             recorded_mb=1.2,
+            in_control=self.in_control,
         )
 
 

@@ -96,3 +96,32 @@ def test_silence_is_given_up_and_another_vehicle_is_not_heard() -> None:
     assert script.reader.values == {}
     script.has("WP_RADIUS_M", 2.0)
     assert script.reader.deadline_ns is None
+
+
+def test_what_is_silent_and_what_is_absent_are_told_apart() -> None:
+    script = Script()
+    script.has("WP_RADIUS_M", 2.0)
+    for name in ("RTL_ALT", "RTL_ALT_M"):
+        script.denies(name)
+    assert (script.reader.silent, script.reader.absent) == ((SLOPE,), (HEIGHT,))
+    script.denies("RTL_CONE_SLOPE")
+    assert (script.reader.silent, script.reader.absent) == ((), (HEIGHT, SLOPE))
+
+
+def test_a_denial_to_another_station_is_none_to_us() -> None:
+    script = Script()
+    script.hear(ParamError(-1, 254, OWN.compid, "RTL_CONE_SLOPE", 1))
+    assert script.reader.absent == ()
+    script.wait(USUAL_WAITS.again_ns)
+    assert "RTL_CONE_SLOPE" in script.rounds[1]
+
+
+def test_a_value_of_a_type_that_does_not_exist_is_none() -> None:
+    script = Script()
+    script.hear(ParamValue(15.0, 1, 0, "RTL_ALT_M", 99))
+    assert script.reader.values == {}
+
+
+def test_nothing_is_known_at_once_where_nothing_is_asked_for() -> None:
+    reader = SettingsReader(OWN, VEHICLE, ParamEncoding.CAST, ())
+    assert (reader.start(0), reader.done, reader.deadline_ns) == ([], True, None)

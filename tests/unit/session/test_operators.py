@@ -142,6 +142,20 @@ class TestControl:
         assert (goes, "accepted", "") in told.verdicts(script.told)
         assert holds(script) == 0
 
+    def test_every_snapshot_tells_who_is_in_control(self) -> None:
+        def shown() -> ipc.OperatorInfo | None:
+            script.run(0.2)
+            return told.events(script.told, ipc.Snapshot)[-1].in_control
+
+        script = Script(config=KEPT).hovering()
+        join(script, hold_on_leave=False)
+        assert shown() == ipc.OperatorInfo(1, "first operator")
+        script.ask("station_take", client=SECOND)
+        assert shown() == ipc.OperatorInfo(SECOND, "test 2")
+        script.feed(OperatorGone(1, "lost"))
+        script.feed(OperatorGone(SECOND, "lost"))
+        assert shown() is None
+
     def test_one_who_has_left_is_not_heard(self) -> None:
         script = Script().met()
         join(script)

@@ -41,6 +41,7 @@ class Scene:
             recorded_bytes=1_500_000,
             vehicles=["1/1 px4 quadrotor"],
             listening=False,
+            in_control=ipc.OperatorInfo(2, "gcs attach, pid 7"),
         )
 
 
@@ -53,6 +54,10 @@ def reported() -> Telemetry:
     telemetry.home_ned = (10.0, 20.0, -1.0)
     telemetry.yaw_rad = -math.pi / 2
     return telemetry
+
+
+def test_who_is_in_control_is_told_without_a_vehicle_too() -> None:
+    assert Scene().shot().in_control == ipc.OperatorInfo(2, "gcs attach, pid 7")
 
 
 def test_without_a_vehicle_nothing_of_one_is_shown() -> None:

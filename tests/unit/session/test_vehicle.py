@@ -15,6 +15,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.protocol.effects import Send
+from gcs.session.settings import FAILSAFES, READ_FIRST
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import Log, PlaceFence, ToGate, Work
@@ -135,7 +136,10 @@ def test_a_vehicle_that_is_met_is_asked_for_its_origin_its_home_and_its_version(
         for item in work
         if isinstance(item, Send) and hasattr(item.message, "param_id")
     ]
-    assert len(names) == 1
+    assert names[0] == "RTL_RETURN_ALT"  # a return waits for it
+    assert sorted(names) == sorted(
+        [table["px4"] for table in READ_FIRST] + [each.name for each in FAILSAFES["px4"]]
+    )
 
 
 def test_several_vehicles_are_named_and_none_is_meant() -> None:

@@ -110,7 +110,7 @@ def test_what_was_said_twice_is_told_once() -> None:
 def report(words: Words, can_arm: int, *checks: Event) -> None:
     summary = struct.pack("<BIIII", 0, 0, 0, can_arm, can_arm).hex()
     for each in (event(ARMING_SUMMARY, 0x88, summary), *checks, event(HEALTH_SUMMARY, 0x88, "00")):
-        words.event(each)
+        words.event(each, 0)
 
 
 SIGNAL = event(NO_OFFBOARD_SIGNAL, 0x33, "0040000014")
@@ -173,3 +173,41 @@ def test_a_text_of_which_a_chunk_is_lost_is_logged_in_time() -> None:
     script.hear(chunk)
     script.run(1.5)
     assert LONG[:50] + LOST in told.log(script.told)
+
+
+# ------------------------------------------------------------------- events in place of texts
+
+TAKEOFF = event(21054825, 0x66, "")
+FAILSAFE = event(31382480, 0x42, "0000060005")
+
+
+def test_an_event_is_told_where_its_text_does_not_come() -> None:
+    words = Words(Times())
+    words.event(TAKEOFF, 0)
+    assert words.wake(SECOND_NS - 1) == []
+    assert words.deadline_ns == SECOND_NS
+    assert words.wake(SECOND_NS) == [Said(INFO, "Takeoff detected")]
+    assert words.deadline_ns is None
+
+
+@pytest.mark.parametrize("text_ns", [0, SECOND_NS // 2, 3 * SECOND_NS // 2])
+def test_and_not_where_it_came_before_or_after(text_ns: int) -> None:
+    """Also where the text says more than the event: the failsafe's reason."""
+    words = Words(Times())
+    said = []
+    for time_ns in range(0, 3 * SECOND_NS, SECOND_NS // 10):
+        if time_ns == text_ns:
+            said += words.text(1, text(LONG[:49] + "\t", severity=CRITICAL), time_ns)
+        if time_ns == SECOND_NS:
+            words.event(FAILSAFE, time_ns)
+        said += words.wake(time_ns)
+    assert len(said) == 1
+    assert said[0].text == LONG[:49]
+
+
+def test_an_event_of_which_no_text_came_yet_is_a_reason_too() -> None:
+    words = Words(Times())
+    words.event(event(27280279, 0x62, "0000040403"), 0)
+    assert words.reasons(1) == "Switching to AUTO_MISSION is currently not available"
+    words.text(1, text("Switching to AUTO_MISSION is currently not available\t", severity=2), 2)
+    assert words.reasons(3) == "Switching to AUTO_MISSION is currently not available"

@@ -136,7 +136,8 @@ def test_vehicle_and_log_are_written_when_they_change_and_only_then(tmp_path: Pa
     )
     local.describe(seen)
     told = json.loads(path.read_bytes())
-    assert (told["vehicle"], told["log_path"]) == ("1/1 px4 quadrotor", "logs/a_part2.mcap")
+    assert told["vehicle"] == "1/1 px4 quadrotor"
+    assert told["log_path"] == str(Path.cwd() / "logs/a_part2.mcap"), "its reader may be elsewhere"
     path.unlink()
     local.describe(seen)
     assert not path.exists()

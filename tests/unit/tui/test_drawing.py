@@ -197,9 +197,84 @@ def test_of_a_lost_vehicle_only_the_ages_are_bright() -> None:
     seen = msgspec.structs.replace(
         FakeStation().snapshot(), state="NO_VEHICLE", heartbeat_age_s=9.0, position_age_s=9.0
     )
-    bright = [value for _, value, style in vehicle_panel.rows(seen, lost=True) if style != look.DIM]
+    rows = vehicle_panel.rows(seen, 1, lost=True)
+    bright = [value for _, value, style in rows if style != look.DIM]
     assert len(bright) == 2
     assert all("9.0 s" in value for value in bright)
+
+
+OTHER = ipc.OperatorInfo(2, "gcs attach, pid 4711")
+
+
+def controlled_by(operator: ipc.OperatorInfo | None, state: str = "HOVERING") -> Scene:
+    scene = scene_at((0.0, 0.0, 2.0))
+    assert scene.snapshot is not None
+    scene.update(msgspec.structs.replace(scene.snapshot, in_control=operator, state=state))
+    return scene
+
+
+@pytest.mark.parametrize(
+    ("operator", "state", "told"),
+    [
+        (ipc.OperatorInfo(1, "gcs fly, pid 4710"), "HOVERING", "you, NONE NOMINAL"),
+        (OTHER, "HOVERING", "operator 2, NONE NOMINAL"),
+        (None, "HOVERING", "nobody, NONE NOMINAL"),
+        (OTHER, "EXTERNAL", "the pilot, NONE NOMINAL"),
+    ],
+)
+def test_who_is_in_control_is_on_the_panel(
+    operator: ipc.OperatorInfo | None, state: str, told: str
+) -> None:
+    panel = vehicle_panel.draw(controlled_by(operator, state)).plain
+    assert f"ctrl {told}\n" in panel
+
+
+@pytest.mark.parametrize(
+    ("columns", "told"), [(140, "control: operator 2 (gcs attach, pid 4711) "), (80, "operator 2 ")]
+)
+def test_another_operator_in_control_is_in_the_header(columns: int, told: str) -> None:
+    line = header(controlled_by(OTHER), columns).plain
+    assert told in line
+    assert "MB" in line
+    assert len(line) <= columns
+
+
+@pytest.mark.parametrize("operator", [ipc.OperatorInfo(1, "gcs fly, pid 4710"), None])
+def test_the_header_says_nothing_of_control_that_one_has_or_would_get(
+    operator: ipc.OperatorInfo | None,
+) -> None:
+    assert "control" not in header(controlled_by(operator), 140).plain
+
+
+def test_an_operator_is_told_who_has_taken_control_over_and_how_to_have_it_back() -> None:
+    scene = controlled_by(OTHER)
+    assert scene.answer.text.startswith("CONTROL WENT TO operator 2 (gcs attach, pid 4711)")
+    assert "o takes it back" in scene.answer.text
+    assert look.ANSWER[scene.answer.kind] == look.WARN
+    assert scene.snapshot is not None
+    mine = ipc.OperatorInfo(1, "gcs fly, pid 4710")
+    scene.update(msgspec.structs.replace(scene.snapshot, in_control=mine))
+    assert scene.answer.text == "you are in control of the station"
+    scene.update(msgspec.structs.replace(scene.snapshot, in_control=None))
+    assert scene.answer.text.startswith("CONTROL WENT TO nobody")
+
+
+def test_whoever_looks_on_is_told_of_a_change_between_others() -> None:
+    scene = controlled_by(OTHER)
+    assert scene.snapshot is not None
+    third = ipc.OperatorInfo(3, "Python script, pid 9")
+    scene.update(msgspec.structs.replace(scene.snapshot, in_control=third))
+    assert scene.answer.text == "operator 3 (Python script, pid 9) is in control now"
+
+
+def test_control_that_nobody_had_is_no_news_to_the_one_who_gets_it() -> None:
+    scene = scene_at((0.0, 0.0, 2.0))
+    assert scene.snapshot is not None
+    nobody = msgspec.structs.replace(scene.snapshot, in_control=None)
+    mine, scene = scene.snapshot, Scene()
+    for seen in (FakeStation().hello()[0], nobody, mine):
+        scene.update(seen)
+    assert scene.answer.text == ""
 
 
 @pytest.mark.parametrize(("columns", "named"), [(120, True), (64, False)])
@@ -214,7 +289,7 @@ def test_the_log_name_gives_way_to_what_is_wrong(columns: int, named: bool) -> N
 
 def test_a_heading_never_reads_360() -> None:
     seen = msgspec.structs.replace(FakeStation().snapshot(), yaw_deg=359.9)
-    assert any("000°" in value for _, value, _ in vehicle_panel.rows(seen))
+    assert any("000°" in value for _, value, _ in vehicle_panel.rows(seen, 1))
 
 
 def test_unknown_values_are_dashes_not_zeros() -> None:

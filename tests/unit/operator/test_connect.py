@@ -1,0 +1,115 @@
+"""`gcs.connect` where a station runs: joined as it is, or told what it has otherwise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import gcs
+from gcs.exit_codes import ExitCode
+from gcs.operator import joined
+from gcs.operator.client import StationClient
+from gcs.operator.differences import Difference
+from gcs.operator.joined import JoinedStation
+from gcs.policy_digest import policy_digest
+from gcs.resources import policy_path
+from gcs.shell.stations import Description
+from tests.unit.operator.test_station import FakeWay
+
+LINK = "udpin://127.0.0.1:47001"
+RUNNING = Description(
+    4711,
+    1,
+    [LINK],
+    vehicle="1/1 px4 quadrotor",
+    log_path="/flights/a.mcap",
+    policy="lab",
+    policy_digest=policy_digest("lab"),
+    speedup=2.0,
+)
+
+
+@pytest.fixture(autouse=True)
+def running(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One station runs; joining it works, starting another one fails the test."""
+
+    def refuse(*_: object) -> None:
+        raise AssertionError("a station of its own was started")
+
+    monkeypatch.setattr(joined, "running_stations", lambda: [RUNNING])
+    monkeypatch.setattr(JoinedStation, "join", lambda *_, **__: FakeWay())
+    monkeypatch.setattr(StationClient, "start", refuse)
+
+
+def differing(**asked: object) -> gcs.StationDiffers:
+    with pytest.raises(gcs.StationDiffers) as differs:
+        gcs.connect(LINK, **asked)  # type: ignore[arg-type]
+    return differs.value
+
+
+@pytest.mark.parametrize(
+    ("asked", "difference"),
+    [
+        ({"policy": "default"}, Difference("policy", "default", "lab")),
+        ({"log_dir": "/elsewhere"}, Difference("log_dir", "/elsewhere", "/flights")),
+        ({"speedup": 1.0}, Difference("speedup", "1", "2")),
+        ({"keep": True}, Difference("keep", "True", "False")),
+    ],
+)
+def test_what_the_running_station_has_otherwise_is_told(
+    asked: dict[str, object], difference: Difference
+) -> None:
+    differs = differing(**asked)
+    assert differs.differences == (difference,)
+    assert differs.exit_code == ExitCode.USAGE
+    assert str(difference) in differs.sentence
+    assert "process 4711" in differs.sentence
+    assert f"leave out {difference.option} to use that station" in differs.hint
+    assert f"gcs stations end --link {LINK}" in differs.hint
+
+
+def test_all_that_differs_is_told_at_once() -> None:
+    told = [each.option for each in differing(policy="default", keep=True).differences]
+    assert told == ["policy", "keep"]
+
+
+@pytest.mark.parametrize(
+    "asked", [{}, {"policy": "lab", "log_dir": "/flights", "speedup": 2.0, "keep": False}]
+)
+def test_what_was_not_asked_for_or_is_so_is_joined(asked: dict[str, object]) -> None:
+    with gcs.connect(LINK, **asked) as station:  # type: ignore[arg-type]
+        assert station.hello is not None
+
+
+def test_a_policy_is_known_by_what_is_in_its_file(tmp_path: Path) -> None:
+    lab = policy_path("lab").read_text()
+    same, other = tmp_path / "same.toml", tmp_path / "lab.toml"
+    same.write_text(lab)
+    other.write_text(lab.replace("brake_slack_h_m = 0.5", "brake_slack_h_m = 0.6"))
+    with gcs.connect(LINK, policy=str(same)):
+        pass
+    (told,) = differing(policy=str(other)).differences
+    assert told == Difference("policy", str(other), "lab")
+
+
+def test_and_by_the_fence_files_that_it_names(tmp_path: Path) -> None:
+    policy, fence = tmp_path / "field.toml", tmp_path / "field.plan"
+    policy.write_text('[[fence]]\nkind = "file"\npath = "field.plan"\n')
+    alone = policy_digest(str(policy))
+    fence.write_text("one")
+    first = policy_digest(str(policy))
+    fence.write_text("two")
+    assert len({alone, first, policy_digest(str(policy))}) == 3
+
+
+def test_a_policy_that_cannot_be_read_is_told_as_such() -> None:
+    with pytest.raises(gcs.CannotConnect) as wrong:
+        gcs.connect(LINK, policy="missing.toml")
+    assert wrong.value.exit_code == ExitCode.BAD_FILE
+
+
+def test_the_autopilot_of_a_vehicle_that_is_there_cannot_be_chosen() -> None:
+    with pytest.raises(gcs.CannotConnect, match="is for the vehicle of sim=True") as wrong:
+        gcs.connect(LINK, autopilot="ardupilot")
+    assert wrong.value.exit_code == ExitCode.USAGE
