@@ -237,7 +237,7 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.LAND_MODE_ONLY: commanding.land_mode_only,
         Action.RETURN: commanding.return_home,
         Action.HOLD: holding.hold,
-        Action.HOLD_ONCE: holding.hold_once,
+        Action.HOLD_UNASKED: holding.hold_unasked,
         Action.HOLD_MODE_ONLY: holding.hold_mode_only,
         Action.REPEAT_HOLD: holding.repeat_hold,
         Action.CONFIRM_HOLD: holding.confirm_hold,

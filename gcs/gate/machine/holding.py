@@ -43,9 +43,10 @@ def verify_held_point(turn: Turn) -> None:
     memory.hold = Goal(memory.pos_ned, None, turn.evidence) if clears and memory.pos_ned else None
 
 
-def hold_once(turn: Turn) -> None:
-    """Command hold mode once, in the gate's own name."""
+def hold_unasked(turn: Turn) -> None:
+    """Command hold mode until the heartbeat shows it, in the gate's own name; control stays."""
     turn.command(CommandKind.HOLD, "our own guided command may yet take effect", own=True)
+    turn.memory.hold_again_ns = turn.after_ns(HOLD_EVERY_S)
 
 
 def hold_mode_only(turn: Turn) -> None:
