@@ -27,9 +27,6 @@ from gcs.gate.states import Control, LandedState, State
 TICK_S = 0.05
 """The time from one tick to the next: the session ticks at 20 Hz."""
 
-DISARM_WAIT_S = 3.0
-"""How long a request that ends on the ground waits for the vehicle to be reported disarmed."""
-
 FLOWN: Final = frozenset(
     {
         State.TAKING_OFF,
@@ -185,7 +182,7 @@ def _forget_vehicle(turn: Turn) -> None:
 
 
 def _await_disarm(turn: Turn) -> None:
-    turn.set_deadline(DISARM_WAIT_S)
+    turn.set_deadline(turn.policy.control.disarm_wait_s)
 
 
 def _await_landing(turn: Turn) -> None:

@@ -1,6 +1,7 @@
 """The actions that stop the vehicle: hold, brake, and what follows from a position too old.
 
-"Hold" is the vehicle's own hold mode, commanded once a second until the heartbeat shows it.
+"Hold" is the vehicle's own hold mode, commanded once a second (the policy's `hold_every_s`) until
+the heartbeat shows it.
 Beside it the held position is sent as a setpoint, where it was verified.
 """
 
@@ -13,9 +14,6 @@ from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.turn import SetpointDraft, Turn
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
-
-HOLD_EVERY_S = 1.0
-"""How often HOLD is commanded until the heartbeat shows it."""
 
 
 def hold(turn: Turn) -> None:
@@ -46,7 +44,7 @@ def verify_held_point(turn: Turn) -> None:
 def hold_unasked(turn: Turn) -> None:
     """Command hold mode until the heartbeat shows it, in the gate's own name; control stays."""
     turn.command(CommandKind.HOLD, "our own guided command may yet take effect", own=True)
-    turn.memory.hold_again_ns = turn.after_ns(HOLD_EVERY_S)
+    _repeat_later(turn)
 
 
 def hold_mode_only(turn: Turn) -> None:
@@ -56,9 +54,13 @@ def hold_mode_only(turn: Turn) -> None:
 
 
 def repeat_hold(turn: Turn) -> None:
-    """Command hold mode, and again after `HOLD_EVERY_S`."""
+    """Command hold mode, and again after the policy's `hold_every_s`."""
     turn.command(CommandKind.HOLD, "hold is never refused")
-    turn.memory.hold_again_ns = turn.after_ns(HOLD_EVERY_S)
+    _repeat_later(turn)
+
+
+def _repeat_later(turn: Turn) -> None:
+    turn.memory.hold_again_ns = turn.after_ns(turn.policy.control.hold_every_s)
 
 
 def confirm_hold(turn: Turn) -> None:

@@ -74,10 +74,18 @@ class TakeOffLimits(_Section, frozen=True):
 
 
 class ControlTimes(_Section, frozen=True):
-    """Taking control: how long to stream before asking, how long to wait for the heartbeat."""
+    """Taking control: how long to stream before asking, how long to wait for the heartbeat.
+
+    Beside it: how often a hold is commanded until the heartbeat shows it, how long a request that
+    ends on the ground waits for the disarmed heartbeat, and within what time a forced disarm is to
+    be asked for again.
+    """
 
     stream_s: FromZero
     timeout_s: FromTenth
+    hold_every_s: FromTenth
+    disarm_wait_s: FromTenth
+    force_repeat_s: FromOne
 
 
 class Policy(_Section, frozen=True):
