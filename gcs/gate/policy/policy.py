@@ -88,6 +88,16 @@ class ControlTimes(_Section, frozen=True):
     force_repeat_s: FromOne
 
 
+class MissionRules(_Section, frozen=True):
+    """`blocked_return` is about the vehicle's own failsafe return from somewhere in a mission.
+
+    "refuse" refuses a mission where such a return leaves the fence in any way, "refuse_exclusions"
+    where it enters an exclusion zone; it is told otherwise, as it always is with "warn".
+    """
+
+    blocked_return: Literal["refuse", "refuse_exclusions", "warn"]
+
+
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
@@ -128,6 +138,7 @@ class Policy(_Section, frozen=True):
 
     severities: Mapping[Condition, Severity]
     rtl_blocked: Literal["hold", "land", "forward"]
+    mission: MissionRules
     retarget: Literal["refuse", "replace"]
     allow_force_disarm: bool
     arm_requires_recording: bool
