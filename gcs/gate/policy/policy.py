@@ -58,6 +58,16 @@ class Braking(_Section, frozen=True):
     position_error_v_m: FromZero
 
 
+class Overshoot(_Section, frozen=True):
+    """How far an autopilot flies past a goal that it is sent: a share of its leg, and at most so
+    many metres; beside the goal and above or below it."""
+
+    share_h: Annotated[float, Meta(ge=0.0, le=1.0)]
+    most_h_m: FromZero
+    share_v: Annotated[float, Meta(ge=0.0, le=1.0)]
+    most_v_m: FromZero
+
+
 class Speeds(_Section, frozen=True):
     """The slowest speeds at which a healthy vehicle flies to a goal, for deadlines."""
 
@@ -101,7 +111,7 @@ class MissionRules(_Section, frozen=True):
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
-    `braking` is by the autopilot's name; `severities` has every `Condition`.
+    `braking` and `overshoot` are by the autopilot's name; `severities` has every `Condition`.
     """
 
     name: Text
@@ -120,6 +130,7 @@ class Policy(_Section, frozen=True):
     allow_stop_outside: bool
     creep_m: FromZero
     braking: Mapping[str, Braking]
+    overshoot: Mapping[str, Overshoot]
 
     position_age_s: FromTwentieth
     stale_grace_s: FromZero
@@ -155,4 +166,17 @@ class Policy(_Section, frozen=True):
             a_brake_v_m_s2=min(b.a_brake_v_m_s2 for b in every),
             position_error_h_m=max(b.position_error_h_m for b in every),
             position_error_v_m=max(b.position_error_v_m for b in every),
+        )
+
+    def overshoot_of(self, autopilot: str) -> Overshoot:
+        """The autopilot's own; for one that is not listed, the worst of every entry."""
+        own = self.overshoot.get(autopilot)
+        if own is not None:
+            return own
+        every = tuple(self.overshoot.values())
+        return Overshoot(
+            share_h=max(o.share_h for o in every),
+            most_h_m=max(o.most_h_m for o in every),
+            share_v=max(o.share_v for o in every),
+            most_v_m=max(o.most_v_m for o in every),
         )

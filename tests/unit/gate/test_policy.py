@@ -15,6 +15,7 @@ from gcs.gate.policy.policy import (
     Braking,
     ControlTimes,
     MissionRules,
+    Overshoot,
     Policy,
     Speeds,
     TakeOffLimits,
@@ -36,7 +37,7 @@ def error(text: str) -> TomlError:
     return caught.value
 
 
-KINDS = [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes, MissionRules]
+KINDS = [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes, MissionRules, Overshoot]
 PARTS = (DEFAULT.arrival, DEFAULT.speeds, DEFAULT.takeoff, DEFAULT.control, DEFAULT.mission)
 
 
@@ -63,6 +64,9 @@ def test_the_shipped_default_names_every_key_there_is() -> None:
         name = next(f.name for f in structs.fields(Policy) if getattr(DEFAULT, f.name) is part)
         for key in structs.fields(part):
             assert (name, key.name) in lines, (name, key.name)
+    for autopilot, overshoot in DEFAULT.overshoot.items():
+        for key in structs.fields(overshoot):
+            assert ("overshoot", autopilot, key.name) in lines
     for autopilot, braking in DEFAULT.braking.items():
         for key in structs.fields(braking):
             assert ("braking", autopilot, key.name) in lines
