@@ -10,9 +10,10 @@ import math
 
 import pytest
 
+from gcs.frames import enu_from_ned
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
-from tests.loopback.flight import Flight, lab_policy
+from tests.loopback.flight import POLICIES, Flight, lab_policy
 
 Vec3 = tuple[float, float, float]
 SETTLES_S = 6.44 - 3.31
@@ -63,3 +64,36 @@ def test_L13_without_the_fence_the_goal_is_flown_and_settles_as_recorded() -> No
     assert flight.done(flight.goto(*goal_enu)) == "complete"
     flight.run(SETTLES_S)
     assert flight.truth_enu()[0] == pytest.approx(7.0, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("goal_enu", "outcome"),
+    [((5.0, 5.0, 2.0), "accepted"), ((5.01, 0.0, 1.0), "refused"), ((0.0, 0.0, -0.1), "refused")],
+)
+def test_L12_what_is_refused_never_appears_on_the_wire(goal_enu: Vec3, outcome: str) -> None:
+    flight = Flight(policy=lab_policy(), offboard="real").hovering(1.0)
+    ask = flight.goto(*goal_enu)
+    flight.run(10.0)
+    [verdict] = flight.verdicts(ask)
+    assert verdict.outcome == outcome
+    flown = {enu_from_ned(setpoint.pos_ned) for setpoint in flight.setpoints()}
+    assert (goal_enu in flown) == (outcome == "accepted")
+
+
+@pytest.mark.parametrize("policy", POLICIES)
+def test_L15_an_abort_while_it_moves_holds_it(policy: str) -> None:
+    """Recorded: 6.5 m from 2.75 m/s after the last setpoint, of which 1.0 s went by unbraked."""
+    flight = Flight(policy=POLICIES[policy], offboard="real").hovering(1.0)
+    flight.goto(4.0, 1.0, 1.5)
+    flight.run(0.8)
+    assert flight.is_in(State.MOVING)
+    since_ns, at_enu = flight.now_ns, flight.truth_enu()
+    assert flight.done(flight.say("abort")) == "complete"
+    flight.run(3.0)
+    rest_enu = flight.truth_enu()
+    assert math.dist(at_enu, rest_enu) < 6.5 - 2.75
+    flight.run(2.0)
+    assert flight.is_in(State.HOLDING)
+    assert math.dist(flight.truth_enu(), rest_enu) < 0.2
+    flown = {setpoint.pos_ned for setpoint in flight.setpoints(since_ns + 1)}
+    assert (1.0, 4.0, -1.5) not in flown
