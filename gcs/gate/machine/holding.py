@@ -10,6 +10,7 @@ from __future__ import annotations
 from gcs.enu_text import place
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying
+from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.turn import SetpointDraft, Turn
 from gcs.gate.refusal import Code, Refusal
@@ -42,7 +43,13 @@ def verify_held_point(turn: Turn) -> None:
 
 
 def hold_unasked(turn: Turn) -> None:
-    """Command hold mode until the heartbeat shows it, in the gate's own name; control stays."""
+    """Command hold mode until the heartbeat shows it, in the gate's own name; control stays.
+
+    Where a request to hold or abort is under way, it is that request's hold that is not shown.
+    """
+    memory = turn.memory
+    asked = memory.task is not None and memory.task.kind in (Event.HOLD, Event.ABORT)
+    memory.hold_requested = memory.hold_requested or asked
     turn.command(CommandKind.HOLD, "our own guided command may yet take effect", own=True)
     _repeat_later(turn)
 
