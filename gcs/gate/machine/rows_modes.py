@@ -271,7 +271,7 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
         during(RETURNING, then=unchanged),
         during(LANDING, then=(unchanged_while_mode_awaited, to_returning)),
         during(HOLDING, then=(unchanged_while_hold_awaited, to_returning)),
-        during(EXTERNAL, then=to_returning),
+        during(EXTERNAL, then=(unchanged_if_hold_requested, to_returning)),
     ),
     Event.SAW_LAND: row(
         during(NO_VEHICLE, then=unchanged),
@@ -291,6 +291,6 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
         during(FLYING_MISSION, RETURNING, then=mission_lands),
         during(LANDING, then=unchanged),
         during(HOLDING, then=(unchanged_while_hold_awaited, to_landing)),
-        during(EXTERNAL, then=to_landing),
+        during(EXTERNAL, then=(unchanged_if_hold_requested, to_landing)),
     ),
 }
