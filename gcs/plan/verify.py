@@ -45,11 +45,13 @@ class LegVerdict:
 class BlockedReturn:
     """From the end of this item the vehicle's own return would leave the fence.
 
-    `item` counts into `Plan.items`.
+    `item` counts into `Plan.items`; `refuses` says whether the mission is refused for it, by the
+    policy's choice, or only told of it.
     """
 
     item: int
     refusal: Refusal
+    refuses: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +73,16 @@ class Verification:
             if verdict.refusal is not None:
                 sentence = f"item {verdict.item + 1}: {verdict.refusal.sentence}"
                 return replace(verdict.refusal, sentence=sentence)
-        return self.bad_landings[0] if self.bad_landings else None
+        if self.bad_landings:
+            return self.bad_landings[0]
+        for blocked in self.blocked_returns:
+            if blocked.refuses:
+                sentence = (
+                    f"item {blocked.item + 1}: a failsafe return from here cannot be stopped: "
+                    f"{blocked.refusal.sentence} (the policy's mission.blocked_return)"
+                )
+                return replace(blocked.refusal, sentence=sentence)
+        return None
 
     @property
     def evidence(self) -> tuple[tuple[str, float], ...]:
@@ -115,6 +126,8 @@ class Verifying:
     def __init__(self, plan: Plan, ground: Ground, verifier: Verifier) -> None:
         self._ground = ground
         self._verifier = verifier
+        exclusions = tuple(zone for zone in verifier.zones if not zone.inclusion)
+        self._exclusions = replace(verifier, zones=exclusions) if exclusions else None
         self._verdicts: list[LegVerdict] = []
         self._blocked: dict[int, BlockedReturn] = {}
         self._bad_landings: list[Refusal] = []
@@ -197,16 +210,18 @@ class Verifying:
 
     def _judge_return(self, leg: Leg) -> None:
         """Whether the vehicle's failsafe return, which no ground station can stop, leaves the
-        fence."""
-        ground = self._ground
+        fence; what refuses the mission is kept before what is only told."""
+        ground, choice = self._ground, self._verifier.policy.mission.blocked_return
         for landing in returns.landing_places(ground, (leg.to_ned,)):
             up_m = max(ground.return_up_m or 0.0, landing.over_up_m)
-            refusal = self._verifier.return_refusal(leg.to_ned, landing.ground_ned, up_m)
-            if refusal is not None:
-                sentence = refusal.sentence
-                if landing.name != "home":
-                    sentence = f"to {landing.name}: {sentence}"
-                self._blocked[leg.item] = BlockedReturn(
-                    leg.item, replace(refusal, sentence=sentence)
-                )
-                return
+            way = (leg.to_ned, landing.ground_ned, up_m)
+            entered = self._exclusions.return_refusal(*way) if self._exclusions else None
+            refusal = entered or self._verifier.return_refusal(*way)
+            if refusal is None:
+                continue
+            if landing.name != "home":
+                refusal = replace(refusal, sentence=f"to {landing.name}: {refusal.sentence}")
+            refuses = choice == "refuse" or (choice != "warn" and entered is not None)
+            known = self._blocked.get(leg.item)
+            if known is None or (refuses and not known.refuses):
+                self._blocked[leg.item] = BlockedReturn(leg.item, refusal, refuses)

@@ -7,7 +7,8 @@ Everything that moves still goes through the gate.
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.gate.inputs import MissionLoaded, MissionSeen
+from gcs.gate.inputs import Input, MissionLoaded, MissionSeen, OperatorLost, Requested
+from gcs.gate.machine.events import Event, event_of
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import StartMission
@@ -29,6 +30,11 @@ from gcs.wire.messages import MissionCurrent, MissionItemReached
 
 TRANSFER_WORDS = frozenset({"mission_upload", "mission_download", "mission_clear"})
 MISSION_WORDS = TRANSFER_WORDS | {"mission_start"}
+
+STOPS = frozenset(
+    {Event.ABORT, Event.HOLD, Event.LAND, Event.RETURN, Event.DISARM, Event.FORCE_DISARM}
+)
+"""After these no mission begins that was asked for before them."""
 
 
 class Missions:
@@ -146,6 +152,18 @@ class Missions:
         if self._job is None or self._job.asked.request_id != request_id:
             return []
         return self._follow(self._job.stop())
+
+    def overruled(self, given: Input) -> list[Work]:
+        """Whatever stops the vehicle stops a mission start, too, that is still being prepared."""
+        if not isinstance(self._job, Start):
+            return []
+        match given:
+            case Requested(request=request) if event_of(request) in STOPS:
+                return self._follow(self._job.stop())
+            case OperatorLost():
+                return self._follow(self._job.leave())
+            case _:
+                return []
 
     def leave(self) -> list[Work]:
         """The session ends: the job under way ends with it."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from msgspec import structs
 
-from gcs.gate.policy.policy import ControlTimes, Policy
+from gcs.gate.policy.policy import ControlTimes, Policy, TakeOffLimits
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +30,30 @@ class Times:
         return session_ns / 1e9 / self.speedup
 
     def policy(self, policy: Policy) -> Policy:
-        """`policy`, whose waits for heartbeats, answers, pictures and positions are real time."""
+        """`policy`, whose waits for heartbeats, answers, pictures and positions, and for a person,
+        are real time.
+
+        What the vehicle flies or does by itself meanwhile (a climb, a landing, a start of the
+        estimator) takes as long on both clocks; its report comes in real time.  So such a wait is
+        never shorter than the policy says, on either clock.
+        """
         times, faster = policy.control, self.speedup
         no_less = max(1.0, faster)
         return structs.replace(
             policy,
             heartbeat_age_s=policy.heartbeat_age_s * faster,
             position_age_s=policy.position_age_s * no_less,
+            stale_grace_s=policy.stale_grace_s * no_less,
+            deadline_min_s=policy.deadline_min_s * no_less,
+            arm_timeout_s=policy.arm_timeout_s * no_less,
+            land_timeout_s=policy.land_timeout_s * no_less,
             photo_timeout_s=policy.photo_timeout_s * no_less,
-            control=ControlTimes(times.stream_s * faster, times.timeout_s * faster),
+            takeoff=TakeOffLimits(policy.takeoff.max_up_m, policy.takeoff.timeout_s * no_less),
+            control=ControlTimes(
+                stream_s=times.stream_s * faster,
+                timeout_s=times.timeout_s * faster,
+                hold_every_s=times.hold_every_s * faster,
+                disarm_wait_s=times.disarm_wait_s * no_less,
+                force_repeat_s=times.force_repeat_s * faster,
+            ),
         )

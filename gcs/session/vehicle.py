@@ -339,7 +339,7 @@ class Vehicle:
     # --------------------------------------------------------------------------------- gate
 
     def ask_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
-        return self._port.handle(given, now_ns)
+        return [*self._port.handle(given, now_ns), *self._missions.overruled(given)]
 
     def carry_out(
         self, effect: effects.Effect | PlaceFence | CheckStart, now_ns: int

@@ -31,6 +31,7 @@ from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.parameters.parameters import Parameters
+from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram as Inbound
@@ -70,6 +71,7 @@ class Flight(Looks):
         params: dict[str, float] | None = None,
         firmware: Firmware | None = None,
         boot: Boot = "quick",
+        offboard: Offboard = "smooth",
     ) -> None:
         """`up` is the weather towards the vehicle, `down` towards the ground station."""
         super().__init__()
@@ -79,7 +81,7 @@ class Flight(Looks):
         for name, value in (params or {}).items():
             parameters.set(name, value)
         self.vehicle = Autopilot(
-            personality, HOMES[personality], seed, params=parameters, boot=boot
+            personality, HOMES[personality], seed, params=parameters, boot=boot, offboard=offboard
         )
         profile = profile_of(personality, parameters.firmware)
         server = VehicleServer(self.vehicle, profile, parameters, 1)

@@ -14,6 +14,7 @@ import pytest
 
 from gcs import ipc
 from gcs.gate.effects import Level
+from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
@@ -153,17 +154,26 @@ east_m = 10
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
-def test_a_blocked_failsafe_return_is_warned_of_and_uploaded(
-    personality: Personality, tmp_path: Path
+@pytest.mark.parametrize("choice", ["refuse_exclusions", "warn"])
+def test_a_blocked_failsafe_return_is_refused_or_warned_of_and_uploaded(
+    choice: str, personality: Personality, tmp_path: Path
 ) -> None:
     """Every leg goes round the tower; the vehicle's own way home from the far corner does not."""
     path = tmp_path / "round.toml"
     corners = ((0, 20), (20, 20), (20, 0), (0, 0))
     places = [f"[[waypoint]]\nnorth_m = {n}\neast_m = {e}\nup_m = 5\n" for n, e in corners]
     path.write_text(ROUND_A_TOWER + "".join(places), encoding="utf-8")
-    flight = Flight(personality).connected()
+    policy = parse_policy(f'mission.blocked_return = "{choice}"', "my.toml")
+    flight = Flight(personality, policy=policy).connected()
     flight.until(lambda: flight.session.gate.memory.return_up_m is not None)
     ask = flight.say("mission_upload", path=str(path))
+    if choice == "refuse_exclusions":
+        assert flight.done(ask) == "refused RTL_BLOCKED"
+        [verdict] = flight.verdicts(ask)
+        assert verdict.zone == "tower"
+        assert verdict.sentence.startswith("item 3: a failsafe return from here cannot be stopped")
+        assert not {"MISSION_COUNT", "MISSION_ITEM_INT"} & set(flight.sent_types())
+        return
     assert flight.done(ask) == "complete"
     [warning] = [line for line in flight.of(ipc.LogEvent) if "failsafe return" in line.text]
     assert (warning.node, warning.level) == ("mission", Level.WARNING)

@@ -3,7 +3,9 @@
     wait for sockets until the deadline, drain, world.handle, send
 
 Where the machine cannot live as fast as asked, the pacer's clock slips behind the real one,
-which is said, rather than making up for it in a burst.
+which is said, rather than making up for it in a burst.  What it has to make up for is lived in
+short turns of simulated time, with a look at the sockets after each: a command that comes meanwhile
+is carried out then, and not seconds of the vehicle's time later.
 """
 
 from __future__ import annotations
@@ -20,6 +22,8 @@ from vehicle_sim.shell.readable import ReadableSockets
 from vehicle_sim.simulation.world import Input, Log, Transmit, Wake, World
 
 SLIP_NS: Final = 100_000_000
+TURN_NS: Final = 100_000_000
+"""Of simulated time: no more is lived between two looks at the sockets."""
 SAID_EVERY_NS: Final = 5_000_000_000
 WORTH_SAYING_NS: Final = 500_000_000
 """Less than this is a hiccup of the machine."""
@@ -107,6 +111,7 @@ class Pacer:
         self._drawn_ns = start_ns
         self._ends_ns: int | None = None
         self._slipped_ns = 0
+        self._turn_ns = world.wall_ns(TURN_NS)
         self._start_ns = start_ns
         self._last_ns = start_ns
         self._said_ns = start_ns
@@ -148,7 +153,7 @@ class Pacer:
         return self._world.time_ns / lived_ns if lived_ns else 0.0
 
     def _now(self) -> int:
-        """The pacer's wall time: the real one, less what it has slipped."""
+        """The pacer's wall time: the real one, less what it has slipped; at most a turn on."""
         real_ns = monotonic_ns()
         late_ns = real_ns - self._slipped_ns - self._last_ns - SLIP_NS
         if late_ns > 0:
@@ -161,7 +166,7 @@ class Pacer:
                     f"{self.pace.reached:.2f} times real time lately"
                 )
                 self._log(Log("warning", "pacer", text))
-        self._last_ns = real_ns - self._slipped_ns
+        self._last_ns = min(real_ns - self._slipped_ns, self._last_ns + self._turn_ns)
         return self._last_ns
 
     def _due_inputs(self) -> list[Input]:

@@ -109,6 +109,10 @@ class World:
         """Simulated time."""
         return self._steps * self._dt_ns
 
+    def wall_ns(self, time_ns: int) -> int:
+        """How long that much simulated time takes on the wall."""
+        return time_ns * self._denominator // self._numerator
+
     def counters(self, link: int, peer: Peer) -> Counters | None:
         """What was heard from a peer, good and bad."""
         return self._board.counters(link, peer)

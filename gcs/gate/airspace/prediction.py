@@ -11,6 +11,8 @@ from gcs.gate.airspace import stopping
 from gcs.gate.airspace.clearance import Measure
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.policy.policy import Overshoot
+from gcs.gate.refusal import Code, Refusal
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,23 @@ def bad_stop(
     )
     numbers = (("clear_m", measure.start_m), ("stop_clear_m", rest_m), ("limit_m", limit_m))
     return BadStop(stop_ned, measure, sentence, (*numbers, *stopping_numbers(judge, v_ned)))
+
+
+def bad_overshoot(
+    judge: FenceJudge, subject: str, pos_ned: Vec3, goal_ned: Vec3, overshoot: Overshoot
+) -> Refusal | None:
+    """Refuses a goal past which the vehicle would fly so close to a boundary that it is braked."""
+    past_ned = stopping.overshoot_point(pos_ned, goal_ned, overshoot)
+    measure = judge.broken_stop(goal_ned, past_ned, floor_applies=True)
+    if measure is None:
+        return None
+    limit_m, past_m = judge.stop_limit(measure.face).limit_m, math.dist(goal_ned, past_ned)
+    sentence = (
+        f"{subject} is {metres(measure.start_m)} m from {measure.zone.title}: the vehicle may fly "
+        f"{metres(past_m)} m past it, and be braked {metres(limit_m)} m from the edge"
+    )
+    numbers = (("clear_m", measure.start_m), ("overshoot_m", past_m), ("limit_m", limit_m))
+    return Refusal(Code.TOO_CLOSE, sentence, numbers, measure.zone.name)
 
 
 def stopping_numbers(judge: FenceJudge, v_ned: Vec3) -> tuple[tuple[str, float], ...]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from gcs.frames import Vec3
-from gcs.gate.policy.policy import Braking
+from gcs.gate.policy.policy import Braking, Overshoot
 
 
 def travel_m(speed_m_s: float, react_s: float, a_brake_m_s2: float) -> float:
@@ -39,3 +39,17 @@ def stop_point(pos_ned: Vec3, v_ned: Vec3, braking: Braking) -> Vec3:
     per_speed = run_h / speed_h if speed_h > 0.0 else 0.0
     run_v = math.copysign(travel_m(down, braking.react_s, braking.a_brake_v_m_s2), down)
     return (pos_ned[0] + north * per_speed, pos_ned[1] + east * per_speed, pos_ned[2] + run_v)
+
+
+def overshoot_point(pos_ned: Vec3, goal_ned: Vec3, overshoot: Overshoot) -> Vec3:
+    """How far the vehicle may fly past a goal, straight on from its leg."""
+    north, east, down = (goal - pos for pos, goal in zip(pos_ned, goal_ned, strict=True))
+    leg_h = math.hypot(north, east)
+    past_h = min(overshoot.share_h * leg_h, overshoot.most_h_m)
+    per_metre = past_h / leg_h if leg_h > 0.0 else 0.0
+    past_v = math.copysign(min(overshoot.share_v * abs(down), overshoot.most_v_m), down)
+    return (
+        goal_ned[0] + north * per_metre,
+        goal_ned[1] + east * per_metre,
+        goal_ned[2] + past_v,
+    )

@@ -19,11 +19,11 @@ from gcs.gate.airspace.clearance import NO_MARGINS, Margins
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
-from gcs.gate.airspace.prediction import bad_stop, stopping_numbers
+from gcs.gate.airspace.prediction import bad_overshoot, bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import TOLERANCE_M
-from gcs.gate.policy.policy import Policy
+from gcs.gate.policy.policy import Overshoot, Policy
 from gcs.gate.policy.zonespec import ZoneSpec
 from gcs.gate.refusal import Code, Refusal
 
@@ -78,7 +78,7 @@ class Verifier:
     ) -> Cleared | Refusal:
         """May the vehicle at `pos_ned`, moving at `v_ned`, fly straight to `goal_ned`?
 
-        In this order: finite, altitude, distance, zones, leg, stopping distance.
+        In this order: finite, altitude, distance, zones, leg, overshoot, stopping distance.
         """
         yaw = () if yaw_rad is None else (yaw_rad,)
         refusal = self._unusable(goal=goal_ned, yaw=yaw, position=pos_ned, velocity=v_ned)
@@ -92,6 +92,7 @@ class Verifier:
             or judge.leg(
                 f"the leg to {there}", pos_ned, goal_ned, judge.margins, floor_applies=True
             )
+            or bad_overshoot(judge, f"goal {there}", pos_ned, goal_ned, self._overshoot)
             or self._cannot_stop(pos_ned, v_ned, floor_applies=True)
         )
         return refusal or Cleared(
@@ -271,6 +272,10 @@ class Verifier:
     def _judge(self) -> FenceJudge:
         zones = self.zones if self.fence_on else ()
         return FenceJudge(zones, self.policy, self.policy.braking_of(self.autopilot))
+
+    @property
+    def _overshoot(self) -> Overshoot:
+        return self.policy.overshoot_of(self.autopilot)
 
     def _unusable(self, **values: Sequence[float]) -> Refusal | None:
         """NON_FINITE where a number is not finite, NO_ORIGIN where the fence is not known."""

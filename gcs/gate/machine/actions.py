@@ -27,9 +27,6 @@ from gcs.gate.states import Control, LandedState, State
 TICK_S = 0.05
 """The time from one tick to the next: the session ticks at 20 Hz."""
 
-DISARM_WAIT_S = 3.0
-"""How long a request that ends on the ground waits for the vehicle to be reported disarmed."""
-
 FLOWN: Final = frozenset(
     {
         State.TAKING_OFF,
@@ -185,7 +182,7 @@ def _forget_vehicle(turn: Turn) -> None:
 
 
 def _await_disarm(turn: Turn) -> None:
-    turn.set_deadline(DISARM_WAIT_S)
+    turn.set_deadline(turn.policy.control.disarm_wait_s)
 
 
 def _await_landing(turn: Turn) -> None:
@@ -237,7 +234,7 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.LAND_MODE_ONLY: commanding.land_mode_only,
         Action.RETURN: commanding.return_home,
         Action.HOLD: holding.hold,
-        Action.HOLD_ONCE: holding.hold_once,
+        Action.HOLD_UNASKED: holding.hold_unasked,
         Action.HOLD_MODE_ONLY: holding.hold_mode_only,
         Action.REPEAT_HOLD: holding.repeat_hold,
         Action.CONFIRM_HOLD: holding.confirm_hold,

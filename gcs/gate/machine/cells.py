@@ -96,10 +96,10 @@ def stop_stream_if(guard: Guard, outcome: End) -> Branch:
 
 def release_if_taking_control(outcome: End) -> Branch:
     """Control could not be taken.  Our command for guided mode may still take effect, so the
-    vehicle is told once to hold."""
+    vehicle is told to hold, until it shows that mode or one that somebody else chose."""
     return Branch(
         when=(Guard.TAKING_CONTROL,),
         ends=outcome,
-        do=(Action.RELEASE_CONTROL, Action.HOLD_ONCE),
+        do=(Action.RELEASE_CONTROL, Action.HOLD_UNASKED),
         to=EXTERNAL,
     )

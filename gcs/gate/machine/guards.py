@@ -19,9 +19,6 @@ from gcs.gate.machine.rules import Guard
 from gcs.gate.machine.turn import Turn
 from gcs.gate.states import Control, FlightMode, State
 
-FORCE_REPEAT_S = 5.0
-"""A forced disarm in the air has to be asked for a second time within this time."""
-
 MODES_OF_STATE: Final[Mapping[State, frozenset[FlightMode]]] = MappingProxyType(
     {
         State.TAKING_OFF: frozenset({FlightMode.TAKEOFF, FlightMode.HOLD, FlightMode.GUIDED}),
@@ -79,7 +76,8 @@ def _retarget_allowed(turn: Turn) -> bool:
 
 def _force_disarm_unconfirmed(turn: Turn) -> bool:
     asked_ns = turn.memory.force_asked_ns
-    return asked_ns is None or turn.now_ns - asked_ns > FORCE_REPEAT_S * SECOND_NS
+    within_ns = turn.policy.control.force_repeat_s * SECOND_NS
+    return asked_ns is None or turn.now_ns - asked_ns > within_ns
 
 
 def _mode_fits_state(turn: Turn) -> bool:

@@ -1,6 +1,7 @@
 """The actions that stop the vehicle: hold, brake, and what follows from a position too old.
 
-"Hold" is the vehicle's own hold mode, commanded once a second until the heartbeat shows it.
+"Hold" is the vehicle's own hold mode, commanded once a second (the policy's `hold_every_s`) until
+the heartbeat shows it.
 Beside it the held position is sent as a setpoint, where it was verified.
 """
 
@@ -9,13 +10,11 @@ from __future__ import annotations
 from gcs.enu_text import place
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying
+from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.turn import SetpointDraft, Turn
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
-
-HOLD_EVERY_S = 1.0
-"""How often HOLD is commanded until the heartbeat shows it."""
 
 
 def hold(turn: Turn) -> None:
@@ -43,9 +42,16 @@ def verify_held_point(turn: Turn) -> None:
     memory.hold = Goal(memory.pos_ned, None, turn.evidence) if clears and memory.pos_ned else None
 
 
-def hold_once(turn: Turn) -> None:
-    """Command hold mode once, in the gate's own name."""
+def hold_unasked(turn: Turn) -> None:
+    """Command hold mode until the heartbeat shows it, in the gate's own name; control stays.
+
+    Where a request to hold or abort is under way, it is that request's hold that is not shown.
+    """
+    memory = turn.memory
+    asked = memory.task is not None and memory.task.kind in (Event.HOLD, Event.ABORT)
+    memory.hold_requested = memory.hold_requested or asked
     turn.command(CommandKind.HOLD, "our own guided command may yet take effect", own=True)
+    _repeat_later(turn)
 
 
 def hold_mode_only(turn: Turn) -> None:
@@ -55,9 +61,13 @@ def hold_mode_only(turn: Turn) -> None:
 
 
 def repeat_hold(turn: Turn) -> None:
-    """Command hold mode, and again after `HOLD_EVERY_S`."""
+    """Command hold mode, and again after the policy's `hold_every_s`."""
     turn.command(CommandKind.HOLD, "hold is never refused")
-    turn.memory.hold_again_ns = turn.after_ns(HOLD_EVERY_S)
+    _repeat_later(turn)
+
+
+def _repeat_later(turn: Turn) -> None:
+    turn.memory.hold_again_ns = turn.after_ns(turn.policy.control.hold_every_s)
 
 
 def confirm_hold(turn: Turn) -> None:

@@ -118,9 +118,12 @@ taken_over_if_it_returns_to_state: Final = Branch(
 hold_again_if_guided_may_come_late: Final = Branch(
     when=(Guard.GUIDED_MAY_COME_LATE,), do=(Action.HOLD,)
 )
-hold_once_if_guided_may_come_late: Final = Branch(
-    when=(Guard.GUIDED_MAY_COME_LATE,), do=(Action.HOLD_ONCE,)
+hold_unasked_if_guided_may_come_late: Final = Branch(
+    when=(Guard.GUIDED_MAY_COME_LATE,), do=(Action.HOLD_UNASKED,)
 )
+unchanged_if_hold_requested: Final = Branch(when=(Guard.HOLD_AWAITED, Guard.HOLD_REQUESTED))
+# Somebody else has chosen a mode: a hold that nobody asked for gives way to it.
+drop_hold_if_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,), do=(Action.CONFIRM_HOLD,))
 take_control_if_mission_over: Final = Branch(
     when=(Guard.MISSION_AT_LAST_ITEM, *CONTROL_REGAINABLE),
     do=(Action.TAKE_CONTROL,),
@@ -130,6 +133,7 @@ hold_if_mission_over: Final = Branch(
     when=(Guard.MISSION_AT_LAST_ITEM,), ends=COMPLETE, do=(Action.HOLD,), to=HOLDING
 )
 
+mode_of_others: Final[Cell] = (unchanged_if_hold_requested, drop_hold_if_awaited, unchanged)
 mode_seen_in_stale: Final[Cell] = (
     unchanged_while_hold_awaited,
     unchanged_while_mode_awaited,
@@ -181,7 +185,7 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
             HOLDING,
             then=(unchanged_while_hold_awaited, hold_again_if_guided_may_come_late, to_external),
         ),
-        during(EXTERNAL, then=(hold_once_if_guided_may_come_late, unchanged)),
+        during(EXTERNAL, then=(hold_unasked_if_guided_may_come_late, *mode_of_others)),
     ),
     Event.SAW_HOLD: row(
         during(NO_VEHICLE, then=unchanged),
@@ -213,7 +217,7 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
             FLYING_MISSION, RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)
         ),
         during(HOLDING, then=(unchanged_while_hold_awaited, to_external)),
-        during(EXTERNAL, then=unchanged),
+        during(EXTERNAL, then=mode_of_others),
     ),
     Event.SAW_MISSION: row(
         during(NO_VEHICLE, then=unchanged),
@@ -229,7 +233,7 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
         during(FLYING_MISSION, then=unchanged),
         during(RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)),
         during(HOLDING, then=(unchanged_while_hold_awaited, to_external)),
-        during(EXTERNAL, then=unchanged),
+        during(EXTERNAL, then=mode_of_others),
     ),
     Event.SAW_OTHER: row(
         during(NO_VEHICLE, then=unchanged),
@@ -246,7 +250,7 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
             FLYING_MISSION, RETURNING, LANDING, then=(unchanged_while_mode_awaited, to_external)
         ),
         during(HOLDING, then=(unchanged_while_hold_awaited, to_external)),
-        during(EXTERNAL, then=unchanged),
+        during(EXTERNAL, then=mode_of_others),
     ),
     Event.SAW_RETURN: row(
         during(NO_VEHICLE, then=unchanged),
@@ -267,7 +271,7 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
         during(RETURNING, then=unchanged),
         during(LANDING, then=(unchanged_while_mode_awaited, to_returning)),
         during(HOLDING, then=(unchanged_while_hold_awaited, to_returning)),
-        during(EXTERNAL, then=to_returning),
+        during(EXTERNAL, then=(unchanged_if_hold_requested, to_returning)),
     ),
     Event.SAW_LAND: row(
         during(NO_VEHICLE, then=unchanged),
@@ -287,6 +291,6 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
         during(FLYING_MISSION, RETURNING, then=mission_lands),
         during(LANDING, then=unchanged),
         during(HOLDING, then=(unchanged_while_hold_awaited, to_landing)),
-        during(EXTERNAL, then=to_landing),
+        during(EXTERNAL, then=(unchanged_if_hold_requested, to_landing)),
     ),
 }

@@ -110,7 +110,7 @@ class Action(StrEnum):
     LAND_MODE_ONLY = "command land unseen"
     RETURN = "command return"
     HOLD = "command hold"
-    HOLD_ONCE = "command hold once"
+    HOLD_UNASKED = "command hold unasked"
     HOLD_MODE_ONLY = "command hold unseen"
     REPEAT_HOLD = "command hold again"
     CONFIRM_HOLD = "hold is confirmed"

@@ -253,7 +253,7 @@ class Turn:
         memory, timeout_s = self.memory, self.policy.control.timeout_s
         task = None if own else memory.task
         request_id = GATE if task is None else task.requested.request_id
-        seconds = 1.0 if kind is CommandKind.HOLD else timeout_s
+        seconds = self.policy.control.hold_every_s if kind is CommandKind.HOLD else timeout_s
         self.out.append(CommandDraft(request_id, kind, self.after_ns(seconds), reason, up_m=up_m))
         if (request_id, kind) not in memory.outstanding:
             memory.outstanding = (*memory.outstanding, (request_id, kind))

@@ -58,6 +58,16 @@ class Braking(_Section, frozen=True):
     position_error_v_m: FromZero
 
 
+class Overshoot(_Section, frozen=True):
+    """How far an autopilot flies past a goal that it is sent: a share of its leg, and at most so
+    many metres; beside the goal and above or below it."""
+
+    share_h: Annotated[float, Meta(ge=0.0, le=1.0)]
+    most_h_m: FromZero
+    share_v: Annotated[float, Meta(ge=0.0, le=1.0)]
+    most_v_m: FromZero
+
+
 class Speeds(_Section, frozen=True):
     """The slowest speeds at which a healthy vehicle flies to a goal, for deadlines."""
 
@@ -74,16 +84,34 @@ class TakeOffLimits(_Section, frozen=True):
 
 
 class ControlTimes(_Section, frozen=True):
-    """Taking control: how long to stream before asking, how long to wait for the heartbeat."""
+    """Taking control: how long to stream before asking, how long to wait for the heartbeat.
+
+    Beside it: how often a hold is commanded until the heartbeat shows it, how long a request that
+    ends on the ground waits for the disarmed heartbeat, and within what time a forced disarm is to
+    be asked for again.
+    """
 
     stream_s: FromZero
     timeout_s: FromTenth
+    hold_every_s: FromTenth
+    disarm_wait_s: FromTenth
+    force_repeat_s: FromOne
+
+
+class MissionRules(_Section, frozen=True):
+    """`blocked_return` is about the vehicle's own failsafe return from somewhere in a mission.
+
+    "refuse" refuses a mission where such a return leaves the fence in any way, "refuse_exclusions"
+    where it enters an exclusion zone; it is told otherwise, as it always is with "warn".
+    """
+
+    blocked_return: Literal["refuse", "refuse_exclusions", "warn"]
 
 
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
-    `braking` is by the autopilot's name; `severities` has every `Condition`.
+    `braking` and `overshoot` are by the autopilot's name; `severities` has every `Condition`.
     """
 
     name: Text
@@ -102,6 +130,7 @@ class Policy(_Section, frozen=True):
     allow_stop_outside: bool
     creep_m: FromZero
     braking: Mapping[str, Braking]
+    overshoot: Mapping[str, Overshoot]
 
     position_age_s: FromTwentieth
     stale_grace_s: FromZero
@@ -120,6 +149,7 @@ class Policy(_Section, frozen=True):
 
     severities: Mapping[Condition, Severity]
     rtl_blocked: Literal["hold", "land", "forward"]
+    mission: MissionRules
     retarget: Literal["refuse", "replace"]
     allow_force_disarm: bool
     arm_requires_recording: bool
@@ -136,4 +166,17 @@ class Policy(_Section, frozen=True):
             a_brake_v_m_s2=min(b.a_brake_v_m_s2 for b in every),
             position_error_h_m=max(b.position_error_h_m for b in every),
             position_error_v_m=max(b.position_error_v_m for b in every),
+        )
+
+    def overshoot_of(self, autopilot: str) -> Overshoot:
+        """The autopilot's own; for one that is not listed, the worst of every entry."""
+        own = self.overshoot.get(autopilot)
+        if own is not None:
+            return own
+        every = tuple(self.overshoot.values())
+        return Overshoot(
+            share_h=max(o.share_h for o in every),
+            most_h_m=max(o.most_h_m for o in every),
+            share_v=max(o.share_v for o in every),
+            most_v_m=max(o.most_v_m for o in every),
         )

@@ -106,7 +106,7 @@ def holds_until_it_is_shown(edge: Edge) -> Iterator[str]:
     """A hold that is commanded and not shown always has a next try, at 1 Hz."""
     before, after = edge.before, edge.after
     again_ns = after.hold_again_ns
-    if CommandKind.HOLD in edge.commands and again_ns is None and not _held_once(edge):
+    if CommandKind.HOLD in edge.commands and again_ns is None and INSTEAD.isdisjoint(edge.commands):
         yield f"hold is commanded in {after.state.name} and has no next try"
     if before.hold_again_ns is None:
         return
@@ -119,12 +119,12 @@ def holds_until_it_is_shown(edge: Edge) -> Iterator[str]:
         yield "the next try of hold is too far off"
 
 
-def _held_once(edge: Edge) -> bool:
-    """Something else is commanded after it; or control could not be taken, and nobody asked for a
-    hold."""
-    if not INSTEAD.isdisjoint(edge.commands):
-        return True
-    return edge.after.state is State.EXTERNAL and edge.request is None
+def _chosen_by_others(edge: Edge) -> bool:
+    """The heartbeat shows a mode that we did not command, and nobody asked for the hold."""
+    given, before = edge.given, edge.before
+    if not isinstance(given, HeartbeatSeen) or given.mode is before.mode:
+        return False
+    return before.state is State.EXTERNAL and not before.hold_requested
 
 
 def _prepared(memory: Memory) -> bool:
@@ -141,6 +141,8 @@ def _hold_is_over(edge: Edge) -> bool:
     if isinstance(given, HeartbeatSeen) and (given.mode is FlightMode.HOLD or not given.armed):
         return True
     if isinstance(given, LandedSeen) and given.landed is LandedState.ON_GROUND:
+        return True
+    if _chosen_by_others(edge):
         return True
     before = edge.before
     asked = before.task is not None and isinstance(before.task.requested.request, Hold | Abort)

@@ -14,7 +14,6 @@ from gcs.plan.verify import Verification
 from gcs.protocol.mission import MissionDownload
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import (
-    LEFT,
     Asked,
     JobWork,
     OnBoardChanged,
@@ -26,6 +25,9 @@ from gcs.session.paths import autopilot_name, cleared
 from gcs.session.plans import OnBoard, item_of
 from gcs.session.work import AskGate, ToGate
 from gcs.wire.messages import MissionItemInt
+
+LEFT = "its operator left before it began"
+STOPPED = "an operator stopped the vehicle before it began"
 
 
 class Start(VerifiedJob):
@@ -76,4 +78,9 @@ class Start(VerifiedJob):
         return self.refuse(Refusal(code_of(result), sentence))
 
     def leave(self) -> list[JobWork]:
+        """Its operator, or the station, goes before the verdict."""
         return self.refuse(Refusal(Code.OPERATOR_LOST, LEFT))
+
+    def stop(self) -> list[JobWork]:
+        """It has no verdict yet, so it is refused."""
+        return self.refuse(Refusal(Code.OPERATOR, STOPPED))

@@ -330,14 +330,24 @@ class TestGuidedThatComesLate:
         assert state_of(script) is State.EXTERNAL
         return script
 
-    def test_somebody_elses_vehicle_that_goes_guided_for_us_is_held_once(self) -> None:
+    def test_somebody_elses_vehicle_that_goes_guided_for_us_is_held_until_it_shows(self) -> None:
         script = self.given_up()
-        assert reaction(script, 0, lambda s: s.heartbeat(FlightMode.GUIDED)) == Reaction(
-            State.EXTERNAL, Control.NONE, [CommandKind.HOLD], ""
-        )
-        assert reaction(script, 0, lambda s: s.wait(3.0)) == Reaction(
-            State.EXTERNAL, Control.NONE, [], ""
-        )
+        unchanged = Reaction(State.EXTERNAL, Control.NONE, [], "")
+        again = unchanged._replace(sent=[CommandKind.HOLD])
+        assert reaction(script, 0, lambda s: s.heartbeat(FlightMode.GUIDED)) == again
+        assert reaction(script, 0, lambda s: s.wait(1.0)) == again
+        assert reaction(script, 0, lambda s: s.heartbeat(FlightMode.HOLD)) == unchanged
+        assert reaction(script, 0, lambda s: s.wait(3.0)) == unchanged
+
+    @pytest.mark.parametrize("mode", [FlightMode.OTHER, FlightMode.MISSION, FlightMode.TAKEOFF])
+    def test_a_hold_that_nobody_asked_for_gives_way_to_a_mode_that_somebody_chose(
+        self, mode: FlightMode
+    ) -> None:
+        script = self.given_up()
+        script.heartbeat(FlightMode.GUIDED)
+        unchanged = Reaction(State.EXTERNAL, Control.NONE, [], "")
+        assert reaction(script, 0, lambda s: s.heartbeat(mode)) == unchanged
+        assert reaction(script, 0, lambda s: s.wait(3.0)) == unchanged
 
     def test_later_it_is_somebody_elses(self) -> None:
         script = self.given_up()

@@ -14,6 +14,8 @@ from gcs.gate.policy.policy import (
     Arrival,
     Braking,
     ControlTimes,
+    MissionRules,
+    Overshoot,
     Policy,
     Speeds,
     TakeOffLimits,
@@ -35,11 +37,15 @@ def error(text: str) -> TomlError:
     return caught.value
 
 
+KINDS = [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes, MissionRules, Overshoot]
+PARTS = (DEFAULT.arrival, DEFAULT.speeds, DEFAULT.takeoff, DEFAULT.control, DEFAULT.mission)
+
+
 def test_the_shipped_default_is_the_default() -> None:
     assert parse_policy(shipped("default.toml"), "default.toml") == DEFAULT
 
 
-@pytest.mark.parametrize("kind", [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes])
+@pytest.mark.parametrize("kind", KINDS)
 def test_no_default_stands_anywhere_but_in_the_shipped_file(kind: type[Struct]) -> None:
     assert all(key.required for key in structs.fields(kind))
 
@@ -54,10 +60,13 @@ def test_the_shipped_default_names_every_key_there_is() -> None:
         assert (key.name,) in lines or (key.name, 0) in lines, key.name
     for condition in Condition:
         assert ("severities", condition.value) in lines
-    for part in (DEFAULT.arrival, DEFAULT.speeds, DEFAULT.takeoff, DEFAULT.control):
+    for part in PARTS:
         name = next(f.name for f in structs.fields(Policy) if getattr(DEFAULT, f.name) is part)
         for key in structs.fields(part):
             assert (name, key.name) in lines, (name, key.name)
+    for autopilot, overshoot in DEFAULT.overshoot.items():
+        for key in structs.fields(overshoot):
+            assert ("overshoot", autopilot, key.name) in lines
     for autopilot, braking in DEFAULT.braking.items():
         for key in structs.fields(braking):
             assert ("braking", autopilot, key.name) in lines

@@ -66,7 +66,8 @@ def test_the_order_is_finite_altitude_distance_zones_leg_stopping() -> None:
         (at(149.9, 0, 2), Code.TOO_CLOSE),
         (at(150.0, 0, 2), Code.TOO_CLOSE),  # exactly on the boundary
         (at(150.1, 0, 2), Code.OUTSIDE_FENCE),
-        (at(0, 0, 49.6), None),
+        (at(0, 0, 49.5), None),
+        (at(0, 0, 49.6), Code.TOO_CLOSE),  # a px4 that climbs 5 m and more flies 0.25 m past it
         (at(0, 0, 49.8), Code.TOO_CLOSE),
         (at(0, 0, 50.1), Code.OUTSIDE_FENCE),
         (at(0, 0, 0.5), None),

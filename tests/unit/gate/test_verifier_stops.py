@@ -51,8 +51,12 @@ def test_outside_there_is_nowhere_to_brake_to() -> None:
 
 def test_hovering_at_a_goal_at_the_margin_is_no_breach() -> None:
     verifier = flying()
-    for goal in (at(147.9, 0, 2), at(0, 0, 0.31), at(0, 0, 49.69)):
-        assert go(verifier, goal, at(0, 0, 2)) is None
+    for goal, start in (
+        (at(147.9, 0, 2), at(0, 0, 2)),
+        (at(0, 0, 0.31), at(0, 0, 2)),
+        (at(0, 0, 49.69), at(0, 0, 49)),
+    ):
+        assert go(verifier, goal, start) is None
         for noise in (at(0.15, 0.1, 0.2), at(-0.15, 0.1, -0.2)):
             assert verifier.predicted_stop(goal, noise, floor_applies=True) is None
 

@@ -314,10 +314,10 @@ def test_px4_returns_to_the_nearest_of_home_and_the_rally_points() -> None:
     assert near_rally.legs[-1].to_ned == (100.0, 50.0, 0.0)
 
 
-def test_a_failsafe_return_to_a_rally_point_through_a_zone_is_warned_of() -> None:
+def test_a_failsafe_return_to_a_rally_point_through_a_zone_refuses_the_mission() -> None:
     on = ground(rally=(rally_point(80.0, 50.0),))
     found = checked(on, mast(70.0, 25.0), item(16, 60, 0))
-    assert found.refusal is None
+    assert "to rally point 1: return blocked" in refused(found).sentence
     assert found.return_warning is not None
     assert "to rally point 1: return blocked" in found.return_warning[1]
 

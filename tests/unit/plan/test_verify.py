@@ -9,7 +9,7 @@ import pytest
 from gcs.frames import ned_from_enu
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.verifier import Verifier, verifier_for
-from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.refusal import Code
 from gcs.plan.legs import Ground
@@ -27,8 +27,9 @@ TOWER = CircleSpec(3.0, (10.0, 10.0), name="tower", inclusion=False)
 COPTER = replace(GROUND, autopilot="ardupilot")
 
 
-def verifier(*zones: CircleSpec) -> Verifier:
-    return verifier_for(DEFAULT, "px4", HOME, ORIGIN, zones)
+def verifier(*zones: CircleSpec, blocked_return: str) -> Verifier:
+    policy = parse_policy(f'mission.blocked_return = "{blocked_return}"', "my.toml")
+    return verifier_for(policy, "px4", HOME, ORIGIN, zones)
 
 
 def item(command: Cmd, east: float, north: float, up: float, *, radius_m: float = 0.0) -> Item:
@@ -45,10 +46,15 @@ ROUND = (
 
 
 def checked(
-    *items: Item, ground: Ground = GROUND, zones: tuple[CircleSpec, ...] = (TOWER,)
+    *items: Item,
+    ground: Ground = GROUND,
+    zones: tuple[CircleSpec, ...] = (TOWER,),
+    blocked_return: str = DEFAULT.mission.blocked_return,
 ) -> Verification:
     numbered = tuple(replace(one, do_jump_id=i) for i, one in enumerate(items, start=1))
-    return verify(Plan("a", None, None, numbered), ground, verifier(*zones))
+    return verify(
+        Plan("a", None, None, numbered), ground, verifier(*zones, blocked_return=blocked_return)
+    )
 
 
 def test_every_leg_and_circle_has_a_verdict_and_the_numbers_add_up() -> None:
@@ -97,8 +103,38 @@ def test_what_cannot_be_known_of_the_path_refuses_before_any_leg() -> None:
     assert refusal.code is Code.BAD_MISSION
 
 
-def test_a_return_through_a_zone_is_a_warning_and_no_refusal() -> None:
-    found = checked(*ROUND)
+def test_a_return_through_an_exclusion_zone_refuses_the_mission() -> None:
+    refusal = checked(*ROUND).refusal
+    assert refusal is not None
+    assert (refusal.code, refusal.zone) == (Code.RTL_BLOCKED, "tower")
+    assert refusal.sentence.startswith(
+        "item 3: a failsafe return from here cannot be stopped: return blocked: "
+    )
+    assert refusal.sentence.endswith("(the policy's mission.blocked_return)")
+
+
+@pytest.mark.parametrize(
+    ("choice", "refused"), [("refuse", True), ("refuse_exclusions", False), ("warn", False)]
+)
+def test_a_return_above_a_ceiling_refuses_the_mission_where_the_policy_says_so(
+    choice: str, refused: bool
+) -> None:
+    low_ceiling = CircleSpec(100.0, name="hall", ceiling_up_m=20.0)
+    found = checked(*ROUND, zones=(low_ceiling,), blocked_return=choice)
+    assert (found.refusal is not None) == refused
+    assert found.return_warning is not None
+
+
+def test_an_exclusion_zone_is_found_behind_the_ceiling_that_hides_it() -> None:
+    """The return passes both; the ceiling of the first zone would only be told of."""
+    low_ceiling = CircleSpec(100.0, name="hall", ceiling_up_m=20.0)
+    refusal = checked(*ROUND, zones=(low_ceiling, TOWER)).refusal
+    assert refusal is not None
+    assert refusal.zone == "tower"
+
+
+def test_a_return_through_a_zone_is_a_warning_where_the_policy_says_so() -> None:
+    found = checked(*ROUND, blocked_return="warn")
     assert found.refusal is None
     assert [blocked.item for blocked in found.blocked_returns] == [2]
     assert found.blocked_returns[0].refusal.code is Code.RTL_BLOCKED

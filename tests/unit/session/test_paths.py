@@ -8,7 +8,7 @@ import pytest
 from msgspec import structs
 
 from gcs.gate.policy.parse import DEFAULT
-from gcs.gate.policy.policy import Policy
+from gcs.gate.policy.policy import MissionRules, Policy
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.legs import FlightPath
@@ -175,7 +175,7 @@ def test_the_plan_s_own_fence_is_kept_as_well_as_the_policy_s() -> None:
     assert isinstance(judged(BOX), ClearedMission)
 
 
-def test_a_failsafe_return_that_a_zone_blocks_is_a_warning_and_no_refusal() -> None:
+def test_a_failsafe_return_that_a_zone_blocks_is_what_the_policy_makes_of_it() -> None:
     """The mission ends east of a pole, and home lies west of it; it flies around."""
     pole = CircleSpec(
         name="pole", radius_m=3.0, centre=(30.0, 0.0), inclusion=False, ceiling_up_m=45.0
@@ -189,7 +189,11 @@ def test_a_failsafe_return_that_a_zone_blocks_is_a_warning_and_no_refusal() -> N
         samples.waypoint(3, LAT + north, LON + east, 10),
         samples.waypoint(4, LAT, LON + east, 10),
     )
-    answer = judged(data, policy=policy)
+    refusal = judged(data, policy=policy)
+    assert isinstance(refusal, Refusal)
+    assert (refusal.code, refusal.zone) == (Code.RTL_BLOCKED, "pole")
+    warns = structs.replace(policy, mission=MissionRules("warn"))
+    answer = judged(data, policy=warns)
     assert isinstance(answer, ClearedMission)
     (warning,) = answer.warnings
     assert "pole" in warning

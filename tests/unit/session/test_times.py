@@ -13,6 +13,7 @@ from gcs.session.times import Times
 from tests.unit.session import told, wire
 from tests.unit.session.station import Script
 
+DO_SET_MODE = 176
 SPEEDS = pytest.mark.parametrize("speedup", [20.0, 50.0, 100.0])
 
 
@@ -27,15 +28,45 @@ def test_waits_for_the_other_side_do_not_shrink_and_flights_do_not_grow() -> Non
     assert fast.photo_timeout_s == 10.0 * DEFAULT.photo_timeout_s
     assert fast.control.stream_s == 10.0 * DEFAULT.control.stream_s
     assert fast.control.timeout_s == 10.0 * DEFAULT.control.timeout_s
+    assert fast.control.hold_every_s == 10.0 * DEFAULT.control.hold_every_s
+    assert fast.control.disarm_wait_s == 10.0 * DEFAULT.control.disarm_wait_s
+    assert fast.control.force_repeat_s == 10.0 * DEFAULT.control.force_repeat_s
     assert fast.position_age_s == 10.0 * DEFAULT.position_age_s
+    assert fast.stale_grace_s == 10.0 * DEFAULT.stale_grace_s
+    assert fast.deadline_min_s == 10.0 * DEFAULT.deadline_min_s
+    assert fast.arm_timeout_s == 10.0 * DEFAULT.arm_timeout_s
+    assert fast.land_timeout_s == 10.0 * DEFAULT.land_timeout_s
+    assert fast.takeoff.timeout_s == 10.0 * DEFAULT.takeoff.timeout_s
     same = structs.replace(
         fast,
         heartbeat_age_s=DEFAULT.heartbeat_age_s,
         position_age_s=DEFAULT.position_age_s,
+        stale_grace_s=DEFAULT.stale_grace_s,
+        deadline_min_s=DEFAULT.deadline_min_s,
+        arm_timeout_s=DEFAULT.arm_timeout_s,
+        land_timeout_s=DEFAULT.land_timeout_s,
+        takeoff=DEFAULT.takeoff,
         photo_timeout_s=DEFAULT.photo_timeout_s,
         control=DEFAULT.control,
     )
     assert same == DEFAULT
+
+
+@SPEEDS
+def test_a_hold_is_commanded_again_after_a_real_second(speedup: float) -> None:
+    """The acknowledgement and the heartbeat that shows it take real time to come."""
+    script = Script(config=StationConfig(speedup=speedup)).flying()
+    script.forget()
+    script.ask("hold")
+    assert holds(script) == 1
+    script.run(0.45 * speedup)
+    assert holds(script) == 1
+    script.run(0.75 * speedup)
+    assert holds(script) > 1
+
+
+def holds(script: Script) -> int:
+    return sum(m.command == DO_SET_MODE for m in script.sent("COMMAND_LONG"))
 
 
 def test_a_position_is_never_fresh_for_less_than_the_policy_says() -> None:
