@@ -18,7 +18,7 @@ NO_CONTROL: Final = (
     "it is looked for where we have or take control, with something of ours to judge"
 )
 NO_MODE: Final = "no mode is waited for there, or a hold is, which has its own clock"
-NO_HOLD: Final = "a hold is waited for in HOLDING, and where nothing of ours flies"
+NO_HOLD: Final = "a hold is waited for in HOLDING, and in EXTERNAL where control was not taken"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,5 +66,5 @@ UNREACHED: Final = (
         " RETURNING LANDING HOLDING EXTERNAL",
         "control is being taken in HOVERING and STALE only",
     ),
-    Unreached("hold due", f"{FLIGHT} RETURNING LANDING EXTERNAL", NO_HOLD),
+    Unreached("hold due", f"{FLIGHT} RETURNING LANDING", NO_HOLD),
 )
