@@ -13,6 +13,7 @@ from typing import Literal, get_args
 import msgspec
 
 from gcs import ipc
+from gcs.enu_text import DECIMALS
 from gcs.frames import Vec3
 from gcs.live.parameters import Parameters
 
@@ -131,7 +132,7 @@ def goal_height_m(parameters: Parameters, snapshot: ipc.Snapshot | None) -> floa
         return parameters.goal_height_m
     if snapshot is None or snapshot.pos_enu is None:
         return None
-    return round(snapshot.pos_enu[2], 2)  # as it is shown, so that both say the same
+    return _as_shown(snapshot.pos_enu[2])
 
 
 def _stepped(direction: str, step_m: float, snapshot: ipc.Snapshot | None) -> Vec3:
@@ -139,9 +140,15 @@ def _stepped(direction: str, step_m: float, snapshot: ipc.Snapshot | None) -> Ve
     if start_enu is None or not all(map(math.isfinite, start_enu)):
         raise BadCallError("a step needs a position to step from, and none is known")
     east, north, up = (
-        at_m + step_m * share for at_m, share in zip(start_enu, _OFFSET_ENU[direction], strict=True)
+        _as_shown(at_m + step_m * share)
+        for at_m, share in zip(start_enu, _OFFSET_ENU[direction], strict=True)
     )
     return (east, north, up)
+
+
+def _as_shown(metres: float) -> float:
+    """To the centimetre: what is asked for and what is read of it are the same."""
+    return round(metres, DECIMALS)
 
 
 def schema_of(kind: type[msgspec.Struct]) -> bytes:
