@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+import sys
 import time
 from dataclasses import dataclass
 from typing import Protocol
@@ -43,6 +44,7 @@ CODE_LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"
 """Without those that are taken for one another."""
 CODE_LENGTH = 8
 NICE = 10
+MAX_MEMORY_BYTES = 1 << 30
 TAKEN_HINT = "another live view may be open; name a free port, as in 127.0.0.1:9000"
 ADDRESS_HINT = "is the address one of this machine's, and does the station still run?"
 
@@ -90,8 +92,7 @@ class LiveView:
 
     def run(self, interrupt: Interrupt | None = None) -> StationEnded | None:
         """Until the station ends; None if it was interrupted before."""
-        if hasattr(os, "nice"):
-            os.nice(NICE)
+        _give_way()
         self._looking.send(ipc.WatchTopics())
         due_s = time.monotonic() + TICK_S
         while interrupt is None or not interrupt.name:
@@ -201,6 +202,21 @@ class LiveView:
         joined = self._trusted.pop(viewer, None)
         if joined is not None:
             joined.close_at_once()
+
+
+def _give_way() -> None:
+    """To the flight, on a machine that has too little of everything; where there is such a thing.
+
+    The server's library takes 16 MiB of any number of viewers: with no memory left this process
+    ends, and not another one.
+    """
+    if sys.platform != "win32":
+        import resource
+
+        os.nice(NICE)
+        _, most = resource.getrlimit(resource.RLIMIT_DATA)
+        if most == resource.RLIM_INFINITY or most > MAX_MEMORY_BYTES:
+            resource.setrlimit(resource.RLIMIT_DATA, (MAX_MEMORY_BYTES, most))
 
 
 def open_view(described: Description, address: Address) -> LiveView:
