@@ -13,8 +13,8 @@ import socket
 import threading
 from collections import Counter, deque
 
+from gcs.live.inputs import Called, Gone, Published
 from gcs.live.services import Answer
-from gcs.live.viewers import Called, Gone, Published
 
 MAX_ITEMS = 256
 MAX_OF_A_VIEWER = 16

@@ -32,9 +32,10 @@ from foxglove.websocket import Service as SdkService
 from gcs import ipc
 from gcs.live.clicked_goals import ENCODINGS, KINDS, MAX_MESSAGE_BYTES, kind_of
 from gcs.live.inbox import Inbox
+from gcs.live.inputs import Gone, Published
 from gcs.live.parameters import Parameters
 from gcs.live.services import MAX_REQUEST_BYTES, SERVICES, Answer, schema_of
-from gcs.live.viewers import CALL_WAIT_NS, Gone, Published
+from gcs.live.viewers import CALL_WAIT_NS
 
 MESSAGE_BACKLOG = 512
 """Messages that wait for one viewer; then the oldest is dropped."""

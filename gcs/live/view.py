@@ -17,22 +17,11 @@ from typing import Protocol
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
+from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send
 from gcs.live.inbox import Inbox, Item
+from gcs.live.inputs import Ended, Input, Tick, Told
 from gcs.live.server import LiveServer, PortTakenError
-from gcs.live.viewers import (
-    LOOKING,
-    Close,
-    Effect,
-    Ended,
-    Input,
-    Join,
-    Notice,
-    Reply,
-    Send,
-    Tick,
-    Told,
-    Viewers,
-)
+from gcs.live.viewers import LOOKING, Viewers
 from gcs.operator.client import Readable, StationEnded, StationEvent
 from gcs.operator.errors import ExitError
 from gcs.operator.joined import JoinedStation

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 import hmac
 from dataclasses import dataclass, field
-from typing import TypeAlias
 
 import msgspec
 
 from gcs import ipc
 from gcs.live.clicked_goals import BadMessageError, clicked_goal
+from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send
+from gcs.live.inputs import Called, Ended, Gone, Input, Published, Tick, Told
 from gcs.live.parameters import Parameters
 from gcs.live.services import (
     SERVICES,
@@ -45,110 +46,6 @@ NOTICE_NS = 2_000_000_000
 """A viewer's mistakes are told to all viewers, at most once in so long."""
 
 NEEDS_CONTROL = "this viewer only looks: call take_control with the code that gcs has printed"
-
-
-# ------------------------------------------------------------------------------------- inputs
-
-
-@dataclass(frozen=True, slots=True)
-class Called:
-    """A viewer has called a service; `call` numbers the call for its answer.
-
-    `watching`: it has a subscription or a topic of its own, so that its end will be noticed.
-    """
-
-    viewer: int
-    call: int
-    service: str
-    payload: bytes
-    watching: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Published:
-    """A viewer has published a message on a topic of its own."""
-
-    viewer: int
-    encoding: str
-    schema_name: str
-    data: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class Gone:
-    """A viewer has neither a subscription nor a topic of its own left: its connection ended."""
-
-    viewer: int
-
-
-@dataclass(frozen=True, slots=True)
-class Told:
-    """The station has said something over a viewer's connection, or over `LOOKING`."""
-
-    viewer: int
-    event: ipc.Event
-
-
-@dataclass(frozen=True, slots=True)
-class Ended:
-    """The station has ended a trusted viewer's connection, or none could be made."""
-
-    viewer: int
-
-
-@dataclass(frozen=True, slots=True)
-class Tick:
-    """Time has passed."""
-
-
-Input: TypeAlias = Called | Published | Gone | Told | Ended | Tick
-
-
-# ------------------------------------------------------------------------------------ effects
-
-
-@dataclass(frozen=True, slots=True)
-class Join:
-    """Make a connection of this viewer's own."""
-
-    viewer: int
-
-
-@dataclass(frozen=True, slots=True)
-class Send:
-    """A line over a viewer's connection, or over `LOOKING`."""
-
-    viewer: int
-    command: ipc.Command
-
-
-@dataclass(frozen=True, slots=True)
-class Close:
-    """End this viewer's connection without a word: the station holds for it."""
-
-    viewer: int
-
-
-@dataclass(frozen=True, slots=True)
-class Reply:
-    """The response of a call."""
-
-    call: int
-    answer: Answer
-
-
-@dataclass(frozen=True, slots=True)
-class Notice:
-    """A sentence for all viewers to see."""
-
-    text: str
-    warning: bool
-
-
-Effect: TypeAlias = Join | Send | Close | Reply | Notice
-
-
-# ------------------------------------------------------------------------------------- state
 
 
 @dataclass(slots=True)

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import pytest
 
 from gcs.live.inbox import MAX_CALLS, MAX_ITEMS, MAX_OF_A_VIEWER, Inbox
+from gcs.live.inputs import Called, Gone, Published
 from gcs.live.services import Answer
-from gcs.live.viewers import Called, Gone, Published
 
 pytestmark = pytest.mark.slow  # threads, a socket
 

@@ -9,6 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs import ipc
+from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send
+from gcs.live.inputs import Called, Ended, Gone, Input, Published, Tick, Told
 from gcs.live.parameters import Parameters
 from gcs.live.services import SERVICES, Answer
 from gcs.live.viewers import (
@@ -20,19 +22,6 @@ from gcs.live.viewers import (
     MAX_WAITING,
     NEEDS_CONTROL,
     NOTICE_NS,
-    Called,
-    Close,
-    Effect,
-    Ended,
-    Gone,
-    Input,
-    Join,
-    Notice,
-    Published,
-    Reply,
-    Send,
-    Tick,
-    Told,
     Viewers,
 )
 
