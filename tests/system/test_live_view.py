@@ -62,7 +62,7 @@ def test_a_goal_that_is_clicked_inside_is_flown_and_one_outside_refused_with_the
     with watched(tmp_path) as (operator, looker, live):
         assert looker.call("take_control", code=live.code)["accepted"]
         assert looker.call("arm")["accepted"]
-        looker.until(lambda: bool(looker.of(STATE)[-1].json["armed"]), "armed")
+        looker.until(lambda: bool(looker.of(STATE)[-1].json.get("armed")), "armed")
         looker.subscribe(DECISIONS)
         assert looker.call("takeoff", up_m=3.0)["accepted"]
         looker.until(lambda: ("takeoff", "complete") in decided(looker), "the take-off", 40.0)
@@ -86,7 +86,7 @@ def test_a_goal_that_is_clicked_inside_is_flown_and_one_outside_refused_with_the
         assert (refused["outcome"], refused["code"]) == ("refused", "OUTSIDE_FENCE")
         looker.until(lambda: "refused OUTSIDE_FENCE" in looker.statuses[-1], "the sentence")
         assert refused["sentence"] in looker.statuses[-1]
-        assert state(looker) in ("HOVERING", "")
+        looker.until(lambda: state(looker) == "HOVERING", "HOVERING still")
         answer = looker.call("goto", east_m=900.0, north_m=0.0)
         assert not answer["accepted"]
         assert answer["code"] == "OUTSIDE_FENCE"
