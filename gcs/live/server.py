@@ -150,7 +150,7 @@ class LiveServer:
         self._last_ns = max(self._last_ns, told.log_time_ns)
         if told.latch:
             self._latched[number][told.latch] = told.data, told.log_time_ns
-        elif number in self._first:
+        if number in self._first:
             self._keep_first(told)
         self._channels[number].base.log(told.data, told.log_time_ns)
 
@@ -159,7 +159,7 @@ class LiveServer:
         until_ns = self._first_until_ns.setdefault(told.number, told.log_time_ns + FIRST_NS)
         if told.log_time_ns >= until_ns or len(first) >= MAX_FIRST:
             del self._first[told.number]
-        else:
+        elif not told.latch:
             first.append((told.data, told.log_time_ns))
 
     def repeat(self) -> None:
