@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -140,7 +141,13 @@ def test_when_the_viewer_in_control_goes_the_vehicle_holds_and_control_returns(
             assert flyer.call("goto", east_m=60.0, north_m=0.0)["accepted"]
         operator.until(lambda: operator.said("Current State: HOLDING"), "HOLDING")
         operator.fly("resume", "goto 0 0 2")
+        log_path = operator.log_path
         operator.leave()
+    inputs = [
+        r.data for r in Reading(log_path) if isinstance(r, Message) and b'"client":3' in r.data
+    ]
+    kinds = [json.loads(each)["kind"] for each in inputs if each.startswith(b'{"kind"')]
+    assert kinds == ["OperatorJoined", "OperatorLine", "OperatorLine", "OperatorGone"]
 
 
 def test_a_late_viewer_sees_what_was_said_only_once(tmp_path: Path) -> None:
