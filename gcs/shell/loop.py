@@ -196,7 +196,8 @@ class Loop:
         """One input with all its effects; then whatever they lead back to."""
         if self._finish is not None:
             return
-        now_ns = self._clock.now_ns()
+        # The record tells when an input was handled by the log_time of its first message.
+        now_ns = self._recording.time_ns(self._clock.now_ns())
         effects: Sequence[Effect] = ()
         answers: list[Input] = []
         report = ""

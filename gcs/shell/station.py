@@ -7,11 +7,13 @@ Speaks JSON lines with its operator (`gcs.ipc`) and writes nothing else to stand
 
 from __future__ import annotations
 
+import platform
 import socket
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from pathlib import Path
 
 from gcs import __version__, config, ipc
@@ -84,6 +86,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
                 log_path=recording.path,
                 streams=frozenset(n for n, link in enumerate(links) if link.stream),
                 waiting=frozenset(n for n, link in enumerate(links) if link.endpoint.listens),
+                environment=_environment(),
             ),
             clock.now_ns(),
         )
@@ -109,6 +112,12 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
             clients.tell(bye, EVERYONE, droppable=False, last=True)
     screen.put(bye)
     return exit_code
+
+
+def _environment() -> str:
+    sdk = "with" if find_spec("foxglove") else "without"
+    machine = f"{platform.system()} {platform.machine()}"
+    return f"Python {platform.python_version()} on {machine}, {sdk} foxglove-sdk"
 
 
 def _read_policy(path: str) -> tuple[Policy, str]:
@@ -170,7 +179,8 @@ def _open_recording(setup: StationConfig, clock: Clock) -> Recording:
     if not setup.record:
         return Recording(None)
     try:
-        recorder = Recorder.open(Path(setup.log_dir), setup.name, clock.stamp(), clock.now_ns())
+        folder, stamp, now_ns = Path(setup.log_dir), clock.stamp(), clock.now_ns()
+        recorder = Recorder.open(folder, setup.name, stamp, now_ns, sealed=True)
     except RecorderError as error:
         hint = "choose a folder that can be written with --log-dir"
         raise CannotStartError(ExitCode.RECORDER, str(error), hint) from error
