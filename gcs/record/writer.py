@@ -20,7 +20,7 @@ from zlib import crc32
 from gcs.record import ros1
 from gcs.record.backend import Backend, Channel, Log, best_backend
 from gcs.record.derived import Derived
-from gcs.record.guarded_file import GuardedFile, Opener, open_exclusive
+from gcs.record.guarded_file import GuardedFile, NoFile, Opener, open_exclusive
 from gcs.record.topics import Out
 from gcs.report import (
     AttachmentItem,
@@ -167,6 +167,13 @@ class Recorder:
         except OSError as error:
             raise RecorderError(directory, error.strerror or str(error)) from error
         raise RecorderError(directory / f"{base}.mcap", "the name is taken")
+
+    @classmethod
+    def without_file(cls, backend: Backend, now_ns: int) -> Recorder:
+        """A recorder of a session whose messages go to `backend` alone."""
+        recorder = cls(Path(), "", backend, lambda _: NoFile(), now_ns, sealed=True)
+        recorder._start(Path(), now_ns)
+        return recorder
 
     # ------------------------------------------------------------------------------ state
 

@@ -7,13 +7,11 @@ Speaks JSON lines with its operator (`gcs.ipc`) and writes nothing else to stand
 
 from __future__ import annotations
 
-import platform
 import socket
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from pathlib import Path
 
 from gcs import __version__, config, ipc
@@ -29,6 +27,7 @@ from gcs.shell import sockets
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.endpoints import EndpointError, parse_endpoint
+from gcs.shell.environment import environment
 from gcs.shell.local_socket import LocalSocket
 from gcs.shell.loop import Loop
 from gcs.shell.pipes import LineSink, LineSource
@@ -86,7 +85,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
                 log_path=recording.path,
                 streams=frozenset(n for n, link in enumerate(links) if link.stream),
                 waiting=frozenset(n for n, link in enumerate(links) if link.endpoint.listens),
-                environment=_environment(),
+                environment=environment(),
             ),
             clock.now_ns(),
         )
@@ -112,12 +111,6 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
             clients.tell(bye, EVERYONE, droppable=False, last=True)
     screen.put(bye)
     return exit_code
-
-
-def _environment() -> str:
-    sdk = "with" if find_spec("foxglove") else "without"
-    machine = f"{platform.system()} {platform.machine()}"
-    return f"Python {platform.python_version()} on {machine}, {sdk} foxglove-sdk"
 
 
 def _read_policy(path: str) -> tuple[Policy, str]:

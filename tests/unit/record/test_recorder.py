@@ -446,19 +446,17 @@ def test_a_later_part_says_what_it_repeats_and_what_was_before_it(tmp_path: Path
     recorder = Recorder.open(
         tmp_path, "test", "20260101-000000", START_NS, opener=disk.open, sealed=True
     )
-    now_ns = START_NS
-    recorder.write(ParamItem(1, "A", 1.0), now_ns)
-    recorder.write(ParamItem(1, "B", 2.0), now_ns)
+    recorder.write(ParamItem(1, "A", 1.0), START_NS)
+    recorder.write(ParamItem(1, "B", 2.0), START_NS)
     disk.free = 0
-    while not recorder.failed:
-        now_ns = recorder.deadline_ns
-        recorder.tick(now_ns)
-    recorder.write(position_frame(1), now_ns)  # in no file
+    lost_ns = recorder.deadline_ns
+    (lost,) = recorder.tick(lost_ns)
+    assert isinstance(lost, RecordLost)
+    recorder.write(position_frame(1), lost_ns)  # in no file
     disk.free = 1 << 30
-    while recorder.failed:
-        now_ns += SECOND
-        recorder.tick(now_ns)
-    recorder.close(now_ns + MS)
+    (resumed,) = recorder.tick(lost_ns + 5 * SECOND)
+    assert isinstance(resumed, RecordResumed)
+    recorder.close(lost_ns + 6 * SECOND)
     found = messages_of(recorder.path)
     began, *_, end = sealed(found)
     # Two parameters, a seal, a frame.
