@@ -169,12 +169,9 @@ class Turns:
             turn.now_ns = next(m.log_time_ns for m in turn.messages if m.topic == INPUT_TOPIC)
         match kept:
             case None:
-                try:
-                    return _Open(turn, Pieces(message.link, 1))
-                except ValueError:
-                    turn.given = Unreadable(f"{message.topic} names no link")
+                return self._datagram(turn, Pieces(_link(message), 1))
             case Pieces():
-                return _Open(turn, kept)
+                return self._datagram(turn, kept)
             case Seal():
                 turn.given = RecorderTurn(kind)
                 self.closed |= turn.given is RecorderTurn.END
@@ -183,6 +180,13 @@ class Turns:
             case _:
                 turn.given = kept
         return _Open(turn)
+
+    def _datagram(self, turn: Turn, pieces: Pieces) -> _Open:
+        assert self._start is not None
+        if not 0 <= pieces.link < len(self._start.setup.endpoints):
+            turn.given = Unreadable(f"there is no link {pieces.link}")
+            return _Open(turn)
+        return _Open(turn, pieces)
 
     def _take(self, message: Stored, kept: Kept | Unreadable | None) -> None:
         if self._open is None:
@@ -206,3 +210,11 @@ class Turns:
             self._rests[pieces.link] = pieces.rest
         turn.cut = cut
         yield turn
+
+
+def _link(message: Stored) -> int:
+    """-1 where it names none."""
+    try:
+        return message.link
+    except ValueError:
+        return -1
