@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import traceback
 from collections.abc import Iterable
 from pathlib import Path
 from zlib import crc32
@@ -10,6 +11,11 @@ from zlib import crc32
 from gcs.audit.audit import AuditResult, audit
 from gcs.audit.files import SessionFiles
 from gcs.audit.messages import INPUT_TOPIC, Attachments, Stored
+from gcs.record.writer import Recorder
+from gcs.session.effects import Effect, Record
+from gcs.session.inputs import Input, Wake
+from gcs.session.session import Session
+from gcs.session.setup import Setup
 
 VERSION = "test"
 
@@ -55,3 +61,40 @@ def resealed(messages: Iterable[Stored]) -> list[Stored]:
         whole.append(message)
         unsealed.append(message.data)
     return whole
+
+
+class RecordedSession:
+    """A session and what is recorded of it, as the loop does it."""
+
+    def __init__(self, recorder: Recorder, setup: Setup, start_ns: int) -> None:
+        self.recorder = recorder
+        self.now_ns = start_ns
+        self.session = Session(setup, start_ns)
+
+    def feed(self, given: Input) -> list[Effect]:
+        """One input, a millisecond after the one before."""
+        self.now_ns = now_ns = self.recorder.next_ns(self.now_ns + 1_000_000)
+        effects: list[Effect] = []
+        try:
+            effects = self.session.handle(given, now_ns)
+        except Exception:  # noqa: BLE001 - as in the loop
+            self.fault(given, traceback.format_exc())
+        self._record(effects)
+        if now_ns >= self.recorder.deadline_ns:
+            self.recorder.tick(now_ns)
+        return effects
+
+    def fault(self, given: Input, report: str) -> None:
+        self._record(self.session.fault(given, report, self.now_ns))
+
+    def wait(self, seconds: float) -> None:
+        """Whatever the session wakes for."""
+        until_ns = self.now_ns + round(seconds * 1e9)
+        while self.session.deadline_ns < until_ns:
+            self.now_ns = max(self.now_ns, self.session.deadline_ns)
+            self.feed(Wake())
+
+    def _record(self, effects: list[Effect]) -> None:
+        for effect in effects:
+            if isinstance(effect, Record):
+                self.recorder.write(effect.item, self.now_ns)

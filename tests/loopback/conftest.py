@@ -13,7 +13,7 @@ from gcs.record.writer import Recorder
 from tests.loopback.flight import Flight
 from tests.loopback.looks import START_NS
 
-AUDITED_OF = 1
+AUDITED_OF = 6
 """One test in so many, by its name; the flights of the others are not recorded."""
 
 

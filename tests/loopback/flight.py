@@ -164,18 +164,28 @@ class Flight(Looks):
         """
         if self.finish is not None:
             return
-        now_ns, recorder = self.now_ns, self.recorder
-        if recorder is not None:
-            now_ns = recorder.next_ns(now_ns)
-        answers: list[inputs.Input] = []
-        for effect in self.session.handle(given, now_ns):
-            if recorder is not None and isinstance(effect, effects.Record):
-                recorder.write(effect.item, now_ns)
-            answers += self._carry_out(effect)
-        if recorder is not None and self.now_ns >= recorder.deadline_ns:
-            recorder.tick(self.now_ns)
+        now_ns = self.now_ns if self.recorder is None else self.recorder.next_ns(self.now_ns)
+        follows = self.session.handle(given, now_ns)
+        self._record(follows, now_ns)
+        answers = [answer for effect in follows for answer in self._carry_out(effect)]
         for answer in answers:
             self.feed(answer)
+
+    def fault(self, given: inputs.Input, report: str) -> list[effects.Effect]:
+        """Tell the session that `given` raised while its effects were performed; its answer."""
+        answer = self.session.fault(given, report, self.now_ns)
+        self._record(answer, self.now_ns)
+        return answer
+
+    def _record(self, performed: list[effects.Effect], now_ns: int) -> None:
+        recorder = self.recorder
+        if recorder is None:
+            return
+        for effect in performed:
+            if isinstance(effect, effects.Record):
+                recorder.write(effect.item, now_ns)
+        if self.now_ns >= recorder.deadline_ns:
+            recorder.tick(self.now_ns)
 
     def _carry_out(self, effect: effects.Effect) -> list[inputs.Input]:
         """Do it; what the session is to hear of it."""
