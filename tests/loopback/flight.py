@@ -91,7 +91,7 @@ class Flight(Looks):
         config = StationConfig(endpoints=["test"], name="loopback")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
         self.session = Session(setup, START_NS)
-        self.recorder = self.new_recorder()
+        self.recorder = Flight.new_recorder()
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
         self.finish: effects.Finish | None = None
         self.files: dict[str, bytes] = {}

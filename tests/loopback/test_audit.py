@@ -208,6 +208,7 @@ def test_any_byte_of_any_input_is_found_by_its_checksum(
     del first[INPUT_TOPIC, "Setup"]  # of which a byte changed may be that nothing can be read
     for place, index in first.items():
         changed = flipped(len(messages[index].data) * 2 // 3)(messages[index])
+        assert changed is not None
         turns = Turns([*messages[:index], changed, *messages[index + 1 :]], attachments)
         for _ in turns:
             pass
