@@ -21,7 +21,7 @@ from gcs.record import ros1
 from gcs.record.backend import Backend, Channel, Log, best_backend
 from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, NoFile, Opener, open_exclusive
-from gcs.record.topics import Out
+from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.report import (
     AttachmentItem,
     FrameItem,
@@ -284,6 +284,10 @@ class Recorder:
                 self._keep_once(f"attachment {name}", item, now_ns)
             case MetadataItem(name):
                 self._keep_once(f"metadata {name}", item, now_ns)
+            case InputItem():
+                # An audit takes the input for the first of what is recorded of it.
+                outs = self._derived.handle(item, now_ns)
+                self._emit(sorted(outs, key=lambda out: out.channel.topic != INPUT_TOPIC), now_ns)
             case _:
                 self._emit(self._derived.handle(item, now_ns), now_ns)
 
