@@ -253,6 +253,14 @@ class Recorder:
         self._seal("RecordEnd", now_ns)
         self._emit(self._derived.close(now_ns), now_ns)
 
+    def input_ns(self, now_ns: int) -> int:
+        """When the next input is to be handled: `now_ns`, or so much later that a nanosecond
+        remains free before the log_time of its first message.
+
+        What is recorded of one input has no such gap, so it shows where each input begins.
+        """
+        return max(now_ns, self._last_ns + 2)
+
     def next_ns(self, now_ns: int) -> int:
         """`now_ns`, or the first log_time that is free after what is recorded."""
         return max(now_ns, self._last_ns + 1)

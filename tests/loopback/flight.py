@@ -164,7 +164,7 @@ class Flight(Looks):
         """
         if self.finish is not None:
             return
-        now_ns = self.now_ns if self.recorder is None else self.recorder.next_ns(self.now_ns)
+        now_ns = self.now_ns if self.recorder is None else self.recorder.input_ns(self.now_ns)
         follows = self.session.handle(given, now_ns)
         self._record(follows, now_ns)
         answers = [answer for effect in follows for answer in self._carry_out(effect)]

@@ -142,7 +142,6 @@ def is_received(name: str) -> Callable[[Stored], bool]:
         (is_kind("LinkEvent"), replaced(b"open", b"Open"), "log line"),
         (is_kind("SimLine"), replaced(b"vehicle", b"Vehicle"), "log line"),
         (is_kind("Wake"), replaced(b"Wake", b"Wade"), "course"),
-        (is_kind("Datagram"), replaced(b'"link":0', b'"link":1'), "course"),
         (is_kind("FileRead"), replaced(b'"token":5', b'"token":4'), "course"),
         (is_kind("SignalCame"), replaced(b"SIGTERM", b"SIGHUP "), "log line"),
         (is_received("HEARTBEAT"), flipped(13), "frame received"),
