@@ -13,6 +13,7 @@ class ExitCode(IntEnum):
     """The same number means the same thing in every command."""
 
     DONE = 0
+    DIFFERENT = 1  # a check was carried out, and what was looked at is not as it should be
     USAGE = 2
     NO_VEHICLE = 3
     BAD_FILE = 4

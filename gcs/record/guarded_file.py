@@ -29,6 +29,16 @@ def open_exclusive(path: Path) -> RawFile:
     return open(path, "xb", buffering=0)
 
 
+class NoFile:
+    """Takes everything and keeps nothing."""
+
+    def write(self, data: memoryview, /) -> int:
+        return len(data)
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
 class GuardedFile:
     """Append-only bytes on disk.  After the first OSError nothing more is written, silently.
 

@@ -76,8 +76,10 @@ class Reading:
     Raises BadRecordError for what is no MCAP at all, and OSError.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, chunks: bool = True) -> None:
+        """Without `chunks`: only attachments and metadata, which is quick."""
         self.path = path
+        self._chunks = chunks
         self.condition = Condition(path.stat().st_size)
 
     def __iter__(self) -> Generator[Record, None, None]:
@@ -102,11 +104,13 @@ class Reading:
                 condition.closed = data[end : end + len(MAGIC)] == MAGIC
                 break
             if end > condition.size:
-                if opcode == Opcode.CHUNK:
+                if opcode == Opcode.CHUNK and self._chunks:
                     condition.broken_chunk = True
                     yield from self._inner(_inflate_what_is_there(data[body:]))
                 break
-            if opcode == Opcode.CHUNK:
+            if opcode == Opcode.CHUNK and not self._chunks:
+                pass
+            elif opcode == Opcode.CHUNK:
                 records = _inflate(data[body:end])
                 condition.damaged += records is None
                 yield from self._inner(records or b"")

@@ -166,6 +166,12 @@ def encode_garbage(reason: str, raw: bytes) -> bytes:
     return b"%b%b%b%b" % (len(why).to_bytes(4, "little"), why, len(raw).to_bytes(4, "little"), raw)
 
 
+def decode_garbage(message: bytes) -> tuple[str, bytes]:
+    """Reason and bytes, as `encode_garbage` was given them."""
+    at = 4 + int.from_bytes(message[:4], "little")
+    return message[4:at].decode(errors="replace"), message[at + 4 :]
+
+
 def field_name(name: str) -> str:
     """A payload field that is called like one of ours gets an underscore (COMMAND_INT.frame)."""
     return f"{name}_" if name in _OWN_NAMES else name

@@ -16,16 +16,18 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
+from zlib import crc32
 
 from gcs.record import ros1
 from gcs.record.backend import Backend, Channel, Log, best_backend
 from gcs.record.derived import Derived
-from gcs.record.guarded_file import GuardedFile, Opener, open_exclusive
-from gcs.record.topics import Out
+from gcs.record.guarded_file import GuardedFile, NoFile, Opener, open_exclusive
+from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.report import (
     AttachmentItem,
     FrameItem,
     GarbageItem,
+    InputItem,
     MetadataItem,
     RecordItem,
 )
@@ -74,6 +76,29 @@ Watch: TypeAlias = Callable[[Channel, bytes, int, str], None]
 """(channel, message, log_time in ns, latch): is told of every message; see `Out` for `latch`."""
 
 
+@dataclass(frozen=True, slots=True)
+class Seal:
+    """On `/session/input`, as `RecordTick` and `RecordEnd`: what a reader can check the file by."""
+
+    messages: int
+    """Before this one, in all files of the session, without what later parts repeat."""
+    crc32: int
+    """Of all messages since the last seal, or since this file's beginning, end to end."""
+
+
+@dataclass(frozen=True, slots=True)
+class PartBegan:
+    """On `/session/input`, as `RecordPart`, first of all in every file but a session's first."""
+
+    part: int
+    of: str
+    """Name of the session's first file, without its suffix."""
+    repeated: int
+    """So many messages follow that are in an earlier file already."""
+    messages: int
+    """As in `Seal`: what earlier files should hold.  Fewer: the others are in no file."""
+
+
 class Recorder:
     """Items in, MCAP out.  Times are log_time: ns of the one clock, made strictly increasing."""
 
@@ -84,8 +109,11 @@ class Recorder:
         backend: Backend,
         opener: Opener,
         now_ns: int,
+        *,
+        sealed: bool = False,
     ) -> None:
         """Call `Recorder.open` instead."""
+        self._seals = sealed
         self._directory = directory
         self._stem = stem
         self._backend = backend
@@ -97,6 +125,10 @@ class Recorder:
         self._watch: Watch | None = None
         self._latched: dict[tuple[str, str], Out] = {}
         self._kept: dict[str, AttachmentItem | MetadataItem] = {}
+        self._unsealed: list[bytes] = []
+        """Messages since the last seal."""
+        self._sealed = 0
+        """Messages before those."""
         self._last_ns = now_ns - 1
         self._safe_ns = now_ns
         self._flush_at_ns = now_ns + FLUSH_NS
@@ -118,10 +150,12 @@ class Recorder:
         *,
         backend: Backend | None = None,
         opener: Opener = open_exclusive,
+        sealed: bool = False,
     ) -> Recorder:
         """Start `<directory>/<started_text>_<name>.mcap`; `started_text` is YYYYMMDD-HHMMSS.
 
         The folder is made where it is missing; a second session of the same second gets -2, -3.
+        `sealed`: the record of a session, which is audited, has a `Seal` at every flush.
         Raises RecorderError.
         """
         base = f"{started_text}_{re.sub(r'[^A-Za-z0-9._-]+', '-', name) or 'flight'}"
@@ -130,7 +164,7 @@ class Recorder:
             directory.mkdir(parents=True, exist_ok=True)
             for number in range(1, _SAME_SECOND_NAMES):
                 stem = base if number == 1 else f"{base}-{number}"
-                recorder = cls(directory, stem, backend, opener, now_ns)
+                recorder = cls(directory, stem, backend, opener, now_ns, sealed=sealed)
                 try:
                     recorder._start(recorder.path, now_ns)
                 except FileExistsError:
@@ -139,6 +173,13 @@ class Recorder:
         except OSError as error:
             raise RecorderError(directory, error.strerror or str(error)) from error
         raise RecorderError(directory / f"{base}.mcap", "the name is taken")
+
+    @classmethod
+    def without_file(cls, backend: Backend, now_ns: int) -> Recorder:
+        """A recorder of a session whose messages go to `backend` alone."""
+        recorder = cls(Path(), "", backend, lambda _: NoFile(), now_ns, sealed=True)
+        recorder._start(Path(), now_ns)
+        return recorder
 
     # ------------------------------------------------------------------------------ state
 
@@ -206,11 +247,13 @@ class Recorder:
             now_ns = self._last_ns + 1
         self._last_ns = now_ns
         log(message, now_ns)
+        if self._seals:
+            self._unsealed.append(message)
 
     def tick(self, now_ns: int) -> list[RecordNews]:
         """Flush at 2 Hz, write what is due by the clock, begin a new part after a failure."""
         if not self.failed and now_ns >= self._flush_at_ns:
-            self._emit(self._derived.tick(now_ns), now_ns)
+            self.repeat(now_ns)
             self._flush(now_ns)
         return self._recover(now_ns) if self.failed else []
 
@@ -218,7 +261,7 @@ class Recorder:
         """Finish the file; whether all that was recorded reached the disk, in one part."""
         if self._file is None:
             return False
-        self._emit(self._derived.close(now_ns), now_ns)
+        self.end(now_ns)
         self._finish()
         return self._file.failure is None and len(self.parts) == 1
 
@@ -230,21 +273,61 @@ class Recorder:
 
     # --------------------------------------------------------------------------- recording
 
-    def _next_ns(self, now_ns: int) -> int:
-        self._last_ns = max(now_ns, self._last_ns + 1)
-        return self._last_ns
+    def repeat(self, now_ns: int) -> None:
+        """Write what is due by the clock alone, behind a `RecordTick`: what the audit repeats."""
+        now_ns = self.next_ns(now_ns)
+        self._seal("RecordTick", now_ns)
+        self._emit(self._derived.tick(now_ns), now_ns)
+
+    def end(self, now_ns: int) -> None:
+        """Write what belongs at the end, behind a `RecordEnd`."""
+        now_ns = self.next_ns(now_ns)
+        self._seal("RecordEnd", now_ns)
+        self._emit(self._derived.close(now_ns), now_ns)
+
+    def input_ns(self, now_ns: int) -> int:
+        """When the next input is to be handled: `now_ns`, or so much later that a nanosecond
+        remains free before the log_time of its first message.
+
+        What is recorded of one input has no such gap, so it shows where each input begins.
+        """
+        return max(now_ns, self._last_ns + 2)
+
+    def next_ns(self, now_ns: int) -> int:
+        """`now_ns`, or the first log_time that is free after what is recorded."""
+        return max(now_ns, self._last_ns + 1)
+
+    def _seal(self, kind: str, now_ns: int) -> None:
+        """Write how many messages there were and the checksum of those since the last seal."""
+        if not self._seals:
+            return
+        checksum = crc32(b"".join(self._unsealed))
+        self._drop_unsealed()
+        self._write_other(InputItem.of(kind, Seal(self._sealed, checksum)), now_ns)
+
+    def _drop_unsealed(self) -> None:
+        self._sealed += len(self._unsealed)
+        self._unsealed.clear()
+
+    def _log_message(self, log: Log, message: bytes, now_ns: int) -> None:
+        self._last_ns = self.next_ns(now_ns)
+        log(message, self._last_ns)
+        if self._seals:
+            self._unsealed.append(message)
 
     def _write_other(self, item: RecordItem, now_ns: int) -> None:
         match item:
             case GarbageItem(link, raw, reason):
                 log = self._watched_log(ros1.garbage_channel(link))
-                log(ros1.encode_garbage(reason, raw), self._next_ns(now_ns))
+                self._log_message(log, ros1.encode_garbage(reason, raw), now_ns)
             case AttachmentItem(name):
-                self._kept[f"attachment {name}"] = item
-                self._keep(item, now_ns)
+                self._keep_once(f"attachment {name}", item, now_ns)
             case MetadataItem(name):
-                self._kept[f"metadata {name}"] = item
-                self._keep(item, now_ns)
+                self._keep_once(f"metadata {name}", item, now_ns)
+            case InputItem():
+                # An audit takes the input for the first of what is recorded of it.
+                outs = self._derived.handle(item, now_ns)
+                self._emit(sorted(outs, key=lambda out: out.channel.topic != INPUT_TOPIC), now_ns)
             case _:
                 self._emit(self._derived.handle(item, now_ns), now_ns)
 
@@ -279,10 +362,15 @@ class Recorder:
         for out in outs:
             if out.latch:
                 self._latched[out.channel.topic, out.latch] = out
-            at_ns = self._next_ns(now_ns)
-            self._log(out.channel)(out.message, at_ns)
+            self._log_message(self._log(out.channel), out.message, now_ns)
             if self._watch is not None:
-                self._watch(out.channel, out.message, at_ns, out.latch)
+                self._watch(out.channel, out.message, self._last_ns, out.latch)
+
+    def _keep_once(self, key: str, item: AttachmentItem | MetadataItem, now_ns: int) -> None:
+        """What is there already, word for word, is not written a second time."""
+        if self._kept.get(key) != item:
+            self._kept[key] = item
+            self._keep(item, now_ns)
 
     def _keep(self, item: AttachmentItem | MetadataItem, now_ns: int) -> None:
         match item:
@@ -301,7 +389,16 @@ class Recorder:
         self._backend.open(self._file)
         for item in self._kept.values():
             self._keep(item, now_ns)
+        if self._seals and len(self.parts) > 1:
+            self._begin_part(now_ns)
         self._emit(list(self._latched.values()), now_ns)
+
+    def _begin_part(self, now_ns: int) -> None:
+        """Say that there are files before this one, and how many messages are but repeated."""
+        self._drop_unsealed()
+        part = PartBegan(len(self.parts), self._stem, len(self._latched), self._sealed)
+        self._write_other(InputItem.of("RecordPart", part), now_ns)
+        self._sealed -= len(self._latched)  # they are written next, and do not count
 
     def _flush(self, now_ns: int) -> None:
         # The grid is kept, a missed flush is not made up for.
@@ -317,6 +414,7 @@ class Recorder:
         self._file.close()
 
     def _recover(self, now_ns: int) -> list[RecordNews]:
+        self._drop_unsealed()
         if not self._loss_told:
             self._loss_told = True
             self._retry_at_ns = now_ns + RETRY_NS

@@ -42,6 +42,11 @@ class Links:
         splitter = self._splitters.get(link)
         return split(data) if splitter is None else splitter.feed(data)
 
+    def rest(self, link: int) -> bytes:
+        """Bytes of a stream that are in no item yet; always empty for a link of datagrams."""
+        splitter = self._splitters.get(link)
+        return b"" if splitter is None else splitter.rest
+
     def peer_known(self, link: int) -> None:
         """A frame came in on `link`: from now on frames are sent there."""
         self._waiting.discard(link)

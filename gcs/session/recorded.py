@@ -1,20 +1,71 @@
-"""What the record is told besides frames and decisions: the set-up, the inputs, the simulator."""
+"""What the record is told besides frames and decisions: the set-up, the inputs, the simulator.
+
+With the frames that were received it is all that a fresh session needs to do the same again
+(`gcs/audit`).  An input is handled at the log_time of the first message that is recorded of it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import PurePath
+
+import msgspec
 
 from gcs import ipc
 from gcs.gate.effects import Level
 from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem
 from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Record
-from gcs.session.inputs import FileRead, OtherInput, RecorderGrew
+from gcs.session.inputs import FileRead, Input, OtherInput
 from gcs.session.setup import Setup
 from gcs.session.work import Log, Work
 
 
-def introduction(setup: Setup) -> list[Effect]:
+@dataclass(frozen=True, slots=True)
+class Start:
+    """All that a session is made with; the first input that is recorded, as `Setup`."""
+
+    setup: Setup
+    start_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Pieces:
+    """The next `items` frames and garbage of `link` came as one read of a stream, of which `rest`
+    is in no item yet.  Recorded as `Datagram`, before these; also for an empty datagram.  All else
+    needs no word: the items of one datagram have log_times without a gap."""
+
+    link: int
+    items: int
+    rest: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class FileKept:
+    """A `FileRead`, whose bytes are the attachment of that name; `size` is -1 without any."""
+
+    token: int
+    path: str
+    size: int
+    attachment: str
+    error: str
+
+
+@dataclass(frozen=True, slots=True)
+class FaultKept:
+    """An exception at `input`, one of `kind`: while it was handled, so that nothing else is
+    recorded of it, or (`handled`) while its effects were performed.  It was given at `at_ns`."""
+
+    report: str
+    handled: bool
+    kind: str
+    input: msgspec.Raw
+    at_ns: int
+
+
+def introduction(setup: Setup, start_ns: int) -> list[Effect]:
     """First of all: what this session is, in the record and on the screen."""
     config = setup.config
     values = (
@@ -24,12 +75,13 @@ def introduction(setup: Setup) -> list[Effect]:
         ("station", f"{config.sysid}/{config.compid}"),
         ("speedup", f"{config.speedup:g}"),
         ("seed", str(config.sim.seed) if config.sim else ""),
+        ("environment", setup.environment),
     )
     policy = setup.policy_text.encode()
     return [
         Record(MetadataItem("mavgate", values)),
         Record(AttachmentItem("policy.toml", "application/toml", policy)),
-        Record(InputItem.of("Setup", config)),
+        Record(InputItem.of("Setup", Start(setup, start_ns))),
         Emit(hello(setup, setup.log_path), FIRST),
     ]
 
@@ -45,14 +97,41 @@ def hello(
 def recorded(given: OtherInput) -> list[Effect]:
     """All but the frames, which are recorded as such; with them it is the audit's input."""
     match given:
-        case RecorderGrew():
-            return []
+        case FileRead(token, path, None, error):
+            return [Record(InputItem.of("FileRead", FileKept(token, path, -1, "", error)))]
         case FileRead(token, path, data, error):
-            size = -1 if data is None else len(data)
-            told = {"token": token, "path": path, "size": size, "error": error}
-            return [Record(InputItem.of("FileRead", told))]
+            assert data is not None
+            name = attachment_name(path, data)
+            kept = FileKept(token, path, len(data), name, error)
+            return [
+                Record(AttachmentItem(name, "application/octet-stream", data)),
+                Record(InputItem.of("FileRead", kept)),
+            ]
         case _:
             return [Record(InputItem.of(type(given).__name__, given))]
+
+
+def attachment_name(path: str, data: bytes) -> str:
+    """One name a content: the recorder keeps an attachment of the same name and content once."""
+    return f"read-{sha256(data).hexdigest()[:16]}-{PurePath(path).name}"
+
+
+def pieces(link: int, items: int, rest: bytes) -> Sequence[Effect]:
+    """How a datagram was cut, where that does not show in what is recorded of it."""
+    if items and not rest:
+        return ()
+    return (Record(InputItem.of("Datagram", Pieces(link, items, rest))),)
+
+
+def fault(given: Input, report: str, handled: bool, at_ns: int) -> Record:
+    """See `FaultKept`.  Raises nothing: an input that has no JSON is left out."""
+    kind = type(given).__name__
+    try:
+        as_json = msgspec.json.encode(given)
+    except (TypeError, ValueError):
+        as_json = b"null"
+    kept = FaultKept(report, handled, kind, msgspec.Raw(as_json), at_ns)
+    return Record(InputItem.of("Fault", kept))
 
 
 def sim_line(text: str, now_ns: int) -> Work:

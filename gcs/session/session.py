@@ -21,7 +21,6 @@ from gcs.report import (
     Direction,
     FrameItem,
     GarbageItem,
-    InputItem,
 )
 from gcs.session import teller
 from gcs.session.clients import FIRST, LEAVING_NS
@@ -48,7 +47,7 @@ from gcs.session.inputs import (
 from gcs.session.links import Links
 from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
-from gcs.session.recorded import hello, introduction, recorded, sim_line
+from gcs.session.recorded import fault, hello, introduction, pieces, recorded, sim_line
 from gcs.session.screen import snapshot
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
@@ -102,6 +101,8 @@ class Session:
         self._faults = 0
         self._introduced = False
         self._finished = False
+        self._unfinished: Input | None = None
+        """The input that is being handled: none of its effects has left yet."""
 
     @property
     def deadline_ns(self) -> int:
@@ -128,14 +129,16 @@ class Session:
     def handle(self, given: Input, now_ns: int) -> list[Effect]:
         """Everything that follows from `given` at `now_ns`, in order."""
         queue = self._queue
+        self._unfinished = given
         if not self._introduced:
             self._introduced = True
-            queue.run(introduction(self._setup), now_ns)
+            queue.run(introduction(self._setup, self._start_ns), now_ns)
         if isinstance(given, Datagram):
             self._datagram(given, now_ns)
         else:
             queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
         queue.run(self._end_if_due(now_ns), now_ns)
+        self._unfinished = None
         return queue.take()
 
     def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
@@ -146,11 +149,12 @@ class Session:
         operator who has joined loses the connection instead: nobody's words end the station.
         """
         self._queue.drop()
+        handled, self._unfinished = self._unfinished is None, None
         visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
         self._faults += not visitor
         text = f"internal error: {report.splitlines()[-1]}"
         work: list[Work] = [
-            Record(InputItem.of("Fault", report)),
+            fault(given, report, handled, now_ns),
             Log(Level.FATAL, NODE, text),
         ]
         if isinstance(given, OperatorJoined | OperatorLine) and visitor:
@@ -247,7 +251,9 @@ class Session:
     def _datagram(self, given: Datagram, now_ns: int) -> None:
         """Frame by frame: what one leads to is done before the next is looked at."""
         link, run = given.link, self._queue.run
-        for item in self._links.split(link, given.data):
+        items = self._links.split(link, given.data)
+        run(pieces(link, len(items), self._links.rest(link)), now_ns)
+        for item in items:
             if isinstance(item, Garbage):
                 run([Record(GarbageItem(link, item.raw, item.reason.value))], now_ns)
             else:

@@ -22,3 +22,6 @@ class Setup:
     """Links that carry a byte stream (TCP, serial), not datagrams."""
     waiting: frozenset[int] = frozenset()
     """Links whose peer is not known before it has sent something (`udpin`)."""
+    environment: str = ""
+    """Python, machine and libraries that the station runs with: another one may count otherwise
+    in the last digit."""

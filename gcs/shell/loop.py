@@ -201,7 +201,8 @@ class Loop:
         """One input with all its effects; then whatever they lead back to."""
         if self._finish is not None:
             return
-        now_ns = self._clock.now_ns()
+        # The log_time of an input's first message tells when it was handled.
+        now_ns = self._recording.time_ns(self._clock.now_ns())
         effects: Sequence[Effect] = ()
         answers: list[Input] = []
         report = ""

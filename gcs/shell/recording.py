@@ -35,6 +35,10 @@ class Recording:
         """When `upkeep` has something to do."""
         return self._recorder.deadline_ns if self._recorder else 1 << 62
 
+    def time_ns(self, now_ns: int) -> int:
+        """When an input that came by `now_ns` is to be handled; see `Recorder.input_ns`."""
+        return self._recorder.input_ns(now_ns) if self._recorder else now_ns
+
     def write(self, item: RecordItem, now_ns: int) -> None:
         if self._recorder:
             self._recorder.write(item, now_ns)

@@ -28,6 +28,7 @@ from gcs.shell import sockets
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.endpoints import EndpointError, parse_endpoint
+from gcs.shell.environment import environment
 from gcs.shell.local_socket import LocalSocket
 from gcs.shell.loop import Loop
 from gcs.shell.pipes import LineSink, LineSource
@@ -85,6 +86,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
                 log_path=recording.path,
                 streams=frozenset(n for n, link in enumerate(links) if link.stream),
                 waiting=frozenset(n for n, link in enumerate(links) if link.endpoint.listens),
+                environment=environment(),
             ),
             clock.now_ns(),
         )
@@ -179,7 +181,8 @@ def _open_recording(setup: StationConfig, clock: Clock) -> Recording:
     if not setup.record:
         return Recording(None)
     try:
-        recorder = Recorder.open(Path(setup.log_dir), setup.name, clock.stamp(), clock.now_ns())
+        folder, stamp, now_ns = Path(setup.log_dir), clock.stamp(), clock.now_ns()
+        recorder = Recorder.open(folder, setup.name, stamp, now_ns, sealed=True)
     except RecorderError as error:
         hint = "choose a folder that can be written with --log-dir"
         raise CannotStartError(ExitCode.RECORDER, str(error), hint) from error

@@ -108,6 +108,11 @@ class StreamSplitter:
         """Number of bytes kept for the next `feed`."""
         return len(self._rest)
 
+    @property
+    def rest(self) -> bytes:
+        """The bytes kept for the next `feed`: the beginning of a frame, perhaps."""
+        return self._rest
+
     def feed(self, data: bytes) -> list[Item]:
         """Take the next bytes; return the items that they complete."""
         data = self._rest + data

@@ -2,10 +2,11 @@
 
 Run: python tests/bench/bench_record.py
 
-Four stretches of work over the same frames (a real mix of sizes), taken in turn so that a change
+Five stretches of work over the same frames (a real mix of sizes), taken in turn so that a change
 of load hits all alike; figures are medians over the rounds, both sides with lz4 and 256 KiB chunks:
 
   recorder          the whole path: FrameItem -> ros1 message -> MCAP, as the link does it
+  without seals     the same without what a session's record can be checked by
   encode + mcap     the same work by the peer: frame -> ros1 message -> mcap.Writer
   bare foxglove     foxglove-sdk alone, on messages that are already encoded
   bare mcap         mcap.Writer alone, on the same
@@ -55,13 +56,16 @@ def frames() -> list[FrameItem]:
     return items
 
 
-def recorder_ns(items: list[FrameItem], folder: Path) -> int:
-    recorder = Recorder.open(folder, "bench", "20260101-000000", START_NS)
+def recorder_ns(items: list[FrameItem], folder: Path, sealed: bool) -> int:
+    """With the seals of a session's record, or without."""
+    recorder = Recorder.open(folder, "bench", "20260101-000000", START_NS, sealed=sealed)
     now_ns = START_NS
     began = time.perf_counter_ns()
     for item in items:
         now_ns += 10_000
         recorder.write(item, now_ns)
+        if now_ns >= recorder.deadline_ns:
+            recorder.tick(now_ns)
     assert recorder.close(now_ns)
     return time.perf_counter_ns() - began
 
@@ -90,7 +94,8 @@ def writer_ns(items: list[FrameItem], folder: Path, backend: Backend, encoded: b
 def main() -> None:
     items = frames()
     stretches: dict[str, Callable[[Path], int]] = {
-        "recorder": lambda folder: recorder_ns(items, folder),
+        "recorder": lambda folder: recorder_ns(items, folder, sealed=True),
+        "without seals": lambda folder: recorder_ns(items, folder, sealed=False),
         "encode + mcap": lambda folder: writer_ns(items, folder, McapBackend(), encoded=False),
         "bare foxglove": lambda folder: writer_ns(items, folder, FoxgloveBackend(), encoded=True),
         "bare mcap": lambda folder: writer_ns(items, folder, McapBackend(), encoded=True),
@@ -103,6 +108,7 @@ def main() -> None:
     for name, each in spent.items():
         print(f"{name:14} {statistics.median(each):6.2f} us a frame")
     for ours, peer in (
+        ("recorder", "without seals"),
         ("recorder", "encode + mcap"),
         ("recorder", "bare mcap"),
         ("bare foxglove", "bare mcap"),

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import Literal
+from typing import ClassVar, Literal
 
 from gcs import ipc
 from gcs.config import StationConfig
@@ -18,6 +18,7 @@ from gcs.frames import Vec3
 from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import State
+from gcs.record.writer import Recorder
 from gcs.resources import policy_path
 from gcs.session import effects, inputs
 from gcs.session.session import Session
@@ -60,6 +61,9 @@ POLICIES = {"lab": lab_policy(), "default": DEFAULT}
 class Flight(Looks):
     """One session, one vehicle, one link, one clock."""
 
+    new_recorder: ClassVar[Callable[[], Recorder | None]] = staticmethod(lambda: None)
+    """Makes what each flight is recorded with, if it is."""
+
     def __init__(
         self,
         personality: Personality = "px4",
@@ -89,6 +93,7 @@ class Flight(Looks):
         config = StationConfig(endpoints=["test"], name="loopback")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
         self.session = Session(setup, START_NS)
+        self.recorder = Flight.new_recorder()
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
         self.finish: effects.Finish | None = None
         self.files: dict[str, bytes] = {}
@@ -155,11 +160,37 @@ class Flight(Looks):
         return b"".join(frame.raw for frame in frames if frame.name != "LOCAL_POSITION_NED")
 
     def feed(self, given: inputs.Input) -> None:
-        """Hand the session an input, now."""
-        for effect in self.session.handle(given, self.now_ns):
-            self._carry_out(effect)
+        """Hand the session an input, now; then what its effects lead back to.
 
-    def _carry_out(self, effect: effects.Effect) -> None:
+        As in the loop, nothing is heard any more once the session has finished.
+        """
+        if self.finish is not None:
+            return
+        now_ns = self.now_ns if self.recorder is None else self.recorder.input_ns(self.now_ns)
+        follows = self.session.handle(given, now_ns)
+        self._record(follows, now_ns)
+        answers = [answer for effect in follows for answer in self._carry_out(effect)]
+        for answer in answers:
+            self.feed(answer)
+
+    def fault(self, given: inputs.Input, report: str) -> list[effects.Effect]:
+        """Tell the session that `given` raised while its effects were performed; its answer."""
+        answer = self.session.fault(given, report, self.now_ns)
+        self._record(answer, self.now_ns)
+        return answer
+
+    def _record(self, performed: list[effects.Effect], now_ns: int) -> None:
+        recorder = self.recorder
+        if recorder is None:
+            return
+        for effect in performed:
+            if isinstance(effect, effects.Record):
+                recorder.write(effect.item, now_ns)
+        if self.now_ns >= recorder.deadline_ns:
+            recorder.tick(self.now_ns)
+
+    def _carry_out(self, effect: effects.Effect) -> list[inputs.Input]:
+        """Do it; what the session is to hear of it."""
         match effect:
             case effects.Transmit(_, data):
                 self.sent.append(Sent(self.now_ns, data))
@@ -173,12 +204,13 @@ class Flight(Looks):
                 self.event_times_ns.append(self.now_ns)
             case effects.ReadFile(token, path):
                 text = Path(path).read_bytes() if Path(path).is_file() else None
-                self.feed(inputs.FileRead(token, path, text, "" if text else "no such file"))
+                return [inputs.FileRead(token, path, text, "" if text else "no such file")]
             case effects.WriteFile(token, path, data):
                 self.files[path] = data
-                self.feed(inputs.FileWritten(token, path))
+                return [inputs.FileWritten(token, path)]
             case effects.Finish():
                 self.finish = effect
+        return []
 
     # --------------------------------------------------------------------------- operator
 

@@ -18,12 +18,13 @@ def test_a_fault_on_the_clock_in_flight_holds_the_vehicle(personality: Personali
     flight.run(1.0)
     assert flight.is_in(State.MOVING)
     fault_ns = flight.now_ns
-    effects = flight.session.fault(inputs.Wake(), "ZeroDivisionError: a bug", fault_ns)
+    effects = flight.fault(inputs.Wake(), "ZeroDivisionError: a bug")
     sent = [effect.data for effect in effects if isinstance(effect, Transmit)]
     (finish,) = [effect for effect in effects if isinstance(effect, Finish)]
     assert finish.exit_code == ExitCode.BUG
     for data in sent:
         flight.up.send(data, fault_ns)
+    flight.recorder = None  # a station that has ended records nothing
     flight.vehicle_silent = True  # the link is gone: nobody listens, nobody speaks
     flight.finish = None
     flight.run(0.2)

@@ -22,7 +22,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge
 from gcs.gate.proof.invariants import objections
 from gcs.gate.states import LandedState
-from gcs.session import effects
+from gcs.session import effects, inputs
 from tests.loopback import eyes
 from tests.loopback.flight import Flight
 
@@ -137,7 +137,7 @@ class WatchedFlight(Flight):
         self.requests[self.last_id + 1] = (word, float32(goal_ned) if usable else None)
         return super().say(word, **named)
 
-    def _carry_out(self, effect: effects.Effect) -> None:
+    def _carry_out(self, effect: effects.Effect) -> list[inputs.Input]:
         match effect:
             case effects.Transmit(_, data):
                 self._sends(eyes.read(data))
@@ -145,7 +145,7 @@ class WatchedFlight(Flight):
                 self._judges(verdict)
             case effects.Emit(ipc.EndingEvent() as ending):
                 self._ends(ending)
-        super()._carry_out(effect)
+        return super()._carry_out(effect)
 
     # ------------------------------------------------------------------------- promises
 

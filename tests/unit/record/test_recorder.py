@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import errno
+import json
 import logging
 from itertools import pairwise
 from pathlib import Path
+from zlib import crc32
 
 import pytest
 from hypothesis import given, settings
@@ -13,9 +15,11 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from gcs.record import ros1, writer
-from gcs.record.backend import FoxgloveBackend, McapBackend
+from gcs.record.backend import Channel, FoxgloveBackend, McapBackend
+from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
 from gcs.record.reading import Reading
+from gcs.record.topics import Out
 from gcs.record.writer import Recorder, RecorderError, RecordLost, RecordResumed
 from gcs.report import (
     AttachmentItem,
@@ -27,11 +31,13 @@ from gcs.report import (
     MetadataItem,
     ParamItem,
     PoseItem,
+    RecordItem,
 )
 from tests.unit.record.flights import (
     MS,
     SECOND,
     START_NS,
+    Logged,
     a_flight,
     frame_v2,
     messages_of,
@@ -412,3 +418,80 @@ def test_every_part_keeps_attachments_and_metadata_once(tmp_path: Path) -> None:
         assert [m.metadata for m in reader.iter_metadata()] == [
             {"vehicle": "udpin://127.0.0.1:14540"}
         ]
+
+
+# ------------------------------------------------------------- what a file can be checked by
+
+
+def sealed(found: list[Logged]) -> list[tuple[str, dict[str, int]]]:
+    """What the recorder itself says on /session/input."""
+    said = [json.loads(m.data) for m in found if m.topic == "/session/input"]
+    return [(each["kind"], each["data"]) for each in said if each["kind"].startswith("Record")]
+
+
+def test_a_session_s_record_is_sealed_at_every_flush_and_at_its_end(tmp_path: Path) -> None:
+    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS, sealed=True)
+    for number in range(3):
+        recorder.write(position_frame(number), START_NS + number)
+    recorder.tick(recorder.deadline_ns)
+    recorder.write(GarbageItem(0, b"\xfd", "truncated"), recorder.deadline_ns)
+    assert recorder.close(recorder.deadline_ns)
+    found = messages_of(recorder.path)
+    first, last = sealed(found)
+    frames, tick, garbage = found[:3], found[3], found[4]
+    checksum = crc32(b"".join(message.data for message in frames))
+    assert first == ("RecordTick", {"messages": 3, "crc32": checksum})
+    assert last == ("RecordEnd", {"messages": 5, "crc32": crc32(tick.data + garbage.data)})
+
+
+def test_a_later_part_says_what_it_repeats_and_what_was_before_it(tmp_path: Path) -> None:
+    disk = Disk(1 << 30)
+    recorder = Recorder.open(
+        tmp_path, "test", "20260101-000000", START_NS, opener=disk.open, sealed=True
+    )
+    recorder.write(ParamItem(1, "A", 1.0), START_NS)
+    recorder.write(ParamItem(1, "B", 2.0), START_NS)
+    disk.free = 0
+    lost_ns = recorder.deadline_ns
+    (lost,) = recorder.tick(lost_ns)
+    assert isinstance(lost, RecordLost)
+    recorder.write(position_frame(1), lost_ns)  # in no file
+    disk.free = 1 << 30
+    (resumed,) = recorder.tick(lost_ns + 5 * SECOND)
+    assert isinstance(resumed, RecordResumed)
+    recorder.close(lost_ns + 6 * SECOND)
+    found = messages_of(recorder.path)
+    began, *_, end = sealed(found)
+    # Two parameters, a seal, a frame.
+    part = {"part": 2, "of": "20260101-000000_test", "repeated": 2, "messages": 4}
+    assert found[0].topic == "/session/input"
+    assert began == ("RecordPart", part)
+    assert [m.topic for m in found[1:3]] == ["/vehicle/1/param"] * 2
+    assert end[1]["messages"] == 5, "what is repeated does not count"
+    assert end[1]["crc32"] == crc32(b"".join(message.data for message in found[:-1]))
+
+
+def test_what_was_attached_word_for_word_is_not_attached_again(tmp_path: Path) -> None:
+    first, other = (AttachmentItem("a.plan", "text/plain", data) for data in (b"one", b"two"))
+    path = record(tmp_path, [first, first, other])
+    with open(path, "rb") as file:
+        assert [each.data for each in make_reader(file).iter_attachments()] == [b"one", b"two"]
+
+
+class DrawsFirst(Derived):
+    """Says something of each item before what the item itself becomes."""
+
+    def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
+        drawn = Channel("/drawn", "json", "", "", b"")
+        return [Out(drawn, b"{}"), *super().handle(item, now_ns)]
+
+
+def test_an_input_is_the_first_of_what_is_recorded_of_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So its log_time is the time at which it was handled."""
+    monkeypatch.setattr(writer, "Derived", DrawsFirst)
+    path = record(tmp_path, [InputItem.of("Wake", {}), LogEvent(START_NS, 2, "gate", "Complete")])
+    first, second, third, *_ = messages_of(path)
+    assert (first.topic, first.log_time_ns) == ("/session/input", START_NS)
+    assert [second.topic, third.topic] == ["/drawn", "/drawn"]

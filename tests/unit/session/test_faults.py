@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import msgspec
 import pytest
 
 from gcs import ipc
@@ -13,10 +14,17 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.report import InputItem
 from gcs.session import inputs
 from gcs.session.effects import Effect, Emit, Finish, Record
+from gcs.session.recorded import FaultKept
 from gcs.session.session import MAX_FAULTS, Session
 from gcs.session.setup import Setup
+from gcs.wire.codec import FrameWriter
+from gcs.wire.messages import Heartbeat
 from tests.unit.session import wire
 from tests.unit.session.station import Script
+
+HEARTBEAT = Heartbeat(
+    custom_mode=0, type=2, autopilot=12, base_mode=128, system_status=4, mavlink_version=3
+)
 
 
 @pytest.fixture
@@ -36,6 +44,41 @@ def test_bytes_that_we_cannot_take_are_dropped_said_and_recorded(session: Sessio
     said = [effect.event for effect in effects if isinstance(effect, Emit)]
     assert "ValueError: bad" in repr(said)
     assert session.handle(inputs.Wake(), 2)
+
+
+def fault_kept(effects: list[Effect]) -> FaultKept:
+    items = [effect.item for effect in effects if isinstance(effect, Record)]
+    (item,) = (item for item in items if isinstance(item, InputItem))
+    return msgspec.json.decode(item.data, type=FaultKept)
+
+
+def test_an_input_that_raised_is_recorded_whole_with_what_came_of_it(session: Session) -> None:
+    """Nothing else is recorded of it, since what was under way is dropped."""
+    session.handle(inputs.LinkEvent(0, "open"), 1)
+    bad = inputs.Datagram(7, FrameWriter(1, 1).write(HEARTBEAT))  # there is no link 7 to ask it on
+    with pytest.raises(IndexError):
+        session.handle(bad, 2)
+    kept = fault_kept(session.fault(bad, "IndexError: no", 2))
+    assert (kept.report, kept.handled, kept.kind, kept.at_ns) == (
+        "IndexError: no",
+        False,
+        "Datagram",
+        2,
+    )
+    assert msgspec.json.decode(kept.input, type=inputs.Datagram) == bad
+
+
+def test_a_fault_after_an_input_was_handled_says_so(session: Session) -> None:
+    line = inputs.OperatorLine(2, ipc.Ask(1, "land"))
+    session.handle(line, 1)
+    kept = fault_kept(session.fault(line, "OSError: link", 1))
+    assert (kept.handled, kept.kind) == (True, "OperatorLine")
+    assert msgspec.json.decode(kept.input, type=inputs.OperatorLine) == line
+
+
+def test_an_input_that_has_no_json_is_left_out_and_the_fault_is_told(session: Session) -> None:
+    kept = fault_kept(session.fault(inputs.SimLine("\ud800"), "UnicodeEncodeError: no", 1))
+    assert (kept.kind, bytes(kept.input)) == ("SimLine", b"null")
 
 
 def test_a_fault_on_the_clock_ends_the_session(session: Session) -> None:

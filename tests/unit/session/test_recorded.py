@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import msgspec
 import pytest
 
 from gcs import ipc
@@ -26,7 +27,7 @@ from gcs.session.inputs import (
     SimLine,
     Wake,
 )
-from gcs.session.recorded import introduction, recorded, sim_line
+from gcs.session.recorded import Start, introduction, recorded, sim_line
 from gcs.session.setup import Setup
 from gcs.session.work import Log, Work
 from tests.unit.session import told
@@ -63,8 +64,21 @@ def as_json(item: Any) -> Any:
             OperatorLine(1, ipc.Ask(1, "takeoff", up_m=2.0)),
             {"client": 1, "command": {"type": "ask", "id": 1, "word": "takeoff", "up_m": 2.0}},
         ),
-        (FileRead(1, "a", b"12345"), {"token": 1, "path": "a", "size": 5, "error": ""}),
-        (FileRead(1, "a", None, "gone"), {"token": 1, "path": "a", "size": -1, "error": "gone"}),
+        (RecorderGrew(1_000), {"size_bytes": 1_000}),
+        (
+            FileRead(1, "b/a.plan", b"12345"),
+            {
+                "token": 1,
+                "path": "b/a.plan",
+                "size": 5,
+                "attachment": "read-5994471abb01112a-a.plan",
+                "error": "",
+            },
+        ),
+        (
+            FileRead(1, "a", None, "gone"),
+            {"token": 1, "path": "a", "size": -1, "attachment": "", "error": "gone"},
+        ),
     ],
 )
 def test_every_input_is_kept_under_its_own_name(given: OtherInput, told_as: object) -> None:
@@ -73,14 +87,20 @@ def test_every_input_is_kept_under_its_own_name(given: OtherInput, told_as: obje
     assert as_json(item) == told_as
 
 
-def test_the_growth_of_the_record_is_not_recorded() -> None:
-    assert recorded(RecorderGrew(1_000)) == []
-
-
 def test_the_set_up_is_told_before_anything_else() -> None:
     config = StationConfig(sysid=254, speedup=2.0, sim=SimConfig(seed=42))
-    setup = Setup(config, "1.2.3", DEFAULT, "name = 'x'", ("udpin://:1", "tcp:h:2"), "logs/a.mcap")
-    effects = introduction(setup)
+    setup = Setup(
+        config,
+        "1.2.3",
+        DEFAULT,
+        "name = 'x'",
+        ("udpin://:1", "tcp:h:2"),
+        "logs/a.mcap",
+        frozenset({1}),
+        frozenset({0}),
+        "Python 3 on a machine",
+    )
+    effects = introduction(setup, 1_000)
     (values,) = told.recorded(effects, "MetadataItem")
     assert dict(values.values) == {
         "version": "1.2.3",
@@ -89,18 +109,19 @@ def test_the_set_up_is_told_before_anything_else() -> None:
         "station": "254/190",
         "speedup": "2",
         "seed": "42",
+        "environment": "Python 3 on a machine",
     }
     (policy,) = told.recorded(effects, "AttachmentItem")
     assert policy.data == b"name = 'x'"
     (kept,) = told.recorded(effects, "InputItem")
-    assert as_json(kept)["sysid"] == 254
+    assert msgspec.json.decode(kept.data, type=Start) == Start(setup, 1_000)
     (hello,) = told.events(effects, ipc.Hello)
     assert hello.endpoints == ["udpin://:1", "tcp:h:2"]
 
 
 def test_without_a_vehicle_of_our_own_there_is_no_seed() -> None:
     (values,) = told.recorded(
-        introduction(Setup(StationConfig(), "1", DEFAULT, "", (), "")), "MetadataItem"
+        introduction(Setup(StationConfig(), "1", DEFAULT, "", (), ""), 0), "MetadataItem"
     )
     assert dict(values.values)["seed"] == ""
 

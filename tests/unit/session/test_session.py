@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import msgspec
 import pytest
 from msgspec import structs
 
@@ -22,6 +23,7 @@ from gcs.session.inputs import (
     SimGone,
     SimLine,
 )
+from gcs.session.recorded import Pieces
 from tests.unit.session import told, wire
 from tests.unit.session.station import Script
 from tests.unit.session.wire import MS_NS, Sender
@@ -72,9 +74,9 @@ def test_bytes_that_are_no_frame_are_recorded_and_change_nothing(data: bytes) ->
     script.forget()
     effects = script.feed(Datagram(0, data))
     assert [type(e.item).__name__ for e in effects if isinstance(e, Record)] == (
-        ["GarbageItem"] if data else []
+        ["GarbageItem"] if data else ["InputItem"]
     )
-    assert len(effects) == (1 if data else 0)
+    assert len(effects) == 1
 
 
 def test_a_frame_with_a_wrong_checksum_moves_nothing() -> None:
@@ -84,6 +86,22 @@ def test_a_frame_with_a_wrong_checksum_moves_nothing() -> None:
     effects = script.feed(Datagram(0, bytes(raw)))
     assert told.frames(effects) == []
     assert script.session.gate.pos_ned == (0.0, 0.0, -5.0)
+
+
+def test_how_a_datagram_was_cut_is_recorded_only_where_it_does_not_show() -> None:
+    script = Script(streams=frozenset({1})).met()
+    script.forget()
+    first, second = script.sender.frame(wire.heartbeat()), script.sender.frame(wire.heartbeat())
+    script.feed(Datagram(0, first))
+    script.feed(Datagram(0, first + second))
+    script.feed(Datagram(1, first[:5]))
+    script.feed(Datagram(1, first[5:] + second[:3]))
+    script.feed(Datagram(1, second[3:]))
+    script.feed(Datagram(1, first))
+    kept = [
+        msgspec.json.decode(i.data, type=Pieces) for i in told.recorded(script.told, "InputItem")
+    ]
+    assert kept == [Pieces(1, 0, first[:5]), Pieces(1, 1, second[:3])]
 
 
 def test_an_input_that_is_no_frame_is_recorded_as_what_it_was() -> None:
@@ -285,9 +303,9 @@ def test_a_recorder_that_failed_before_the_vehicle_was_heard_still_has() -> None
     assert "recorder_failed" in script.conditions
 
 
-def test_how_much_is_recorded_is_shown_and_not_recorded() -> None:
+def test_how_much_is_recorded_is_shown() -> None:
     script = Script().met()
-    assert script.feed(RecorderGrew(2_500_000)) == []
+    script.feed(RecorderGrew(2_500_000))
     script.run(0.1)
     assert told.snapshots(script.told)[-1].recorded_mb == 2.5
 

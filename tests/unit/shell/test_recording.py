@@ -11,7 +11,7 @@ import pytest
 
 from gcs.record.guarded_file import RawFile, open_exclusive
 from gcs.record.writer import Recorder
-from gcs.report import AttachmentItem
+from gcs.report import AttachmentItem, InputItem
 from gcs.session.inputs import RecorderChanged, RecorderGrew
 from gcs.shell.recording import GREW_STEP_BYTES, Recording
 
@@ -147,6 +147,15 @@ def test_a_file_with_a_gap_is_not_whole(recording: Recording, disk: Disk) -> Non
     disk.full = False
     list(recording.upkeep(failed_ns + 5 * SECOND_NS))
     assert not recording.close(failed_ns + 6 * SECOND_NS)
+
+
+def test_an_input_has_a_time_of_its_own(recording: Recording) -> None:
+    recording.write(piece(1), START_NS)
+    recording.write(InputItem.of("Wake", {}), START_NS)
+    recording.write(InputItem.of("Wake", {}), START_NS)
+    assert recording.time_ns(START_NS) == START_NS + 3, "a nanosecond after the last remains free"
+    assert recording.time_ns(START_NS + 9) == START_NS + 9
+    assert Recording(None).time_ns(START_NS) == START_NS
 
 
 def test_without_a_recorder_there_is_nothing_to_wait_for_and_nothing_to_lose() -> None:

@@ -1,0 +1,88 @@
+"""Records on disk, as an audit wants them: a session's files together, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+from mcap.records import Attachment, Channel
+
+from gcs.audit.inputs import CannotReadError, kept_of
+from gcs.audit.messages import INPUT_TOPIC, Attachments, InputMessage, Stored, payload_length
+from gcs.record.reading import Condition, Message, Reading
+from gcs.record.writer import PartBegan
+from gcs.session.recorded import Start
+
+Progress = Callable[[Path, Condition], None]
+
+
+@dataclass(slots=True)
+class SessionFiles:
+    """The files of one session, the first one first; `damaged` counts what could not be read."""
+
+    paths: list[Path]
+    damaged: int = 0
+
+    def attachments(self) -> Attachments:
+        """Raises BadRecordError and OSError."""
+        found: Attachments = {}
+        for path in self.paths:
+            for record in Reading(path, chunks=False):
+                if isinstance(record, Attachment):
+                    found.setdefault(record.name, []).append(record.data)
+        return found
+
+    def messages(self, progress: Progress | None = None) -> Iterator[Stored]:
+        """Every message, file by file, in file order.  Raises BadRecordError and OSError."""
+        for path in self.paths:
+            reading = Reading(path)
+            yield from _messages(reading, progress)
+            self.damaged += reading.condition.damaged
+
+
+def sessions(paths: Iterable[Path]) -> list[SessionFiles]:
+    """Which files belong together: each session's, in the order of its parts.
+
+    A file that does not tell stands for itself.  Raises BadRecordError and OSError.
+    """
+    found: dict[str, list[tuple[int, Path]]] = {}
+    for path in dict.fromkeys(paths):
+        name, part = _place(path)
+        if any(part == other for other, _ in found.get(name, ())):
+            name = str(path)  # a copy of a file that is there
+        found.setdefault(name, []).append((part, path))
+    return [SessionFiles([path for _, path in sorted(parts)]) for parts in found.values()]
+
+
+def _place(path: Path) -> tuple[str, int]:
+    """Which session a file is of, and which part of it: its first input tells."""
+    for message in _messages(Reading(path), None):
+        if message.topic != INPUT_TOPIC:
+            continue
+        try:
+            said = msgspec.json.decode(message.data, type=InputMessage)
+            match kept_of(said.kind, said.data, {}):
+                case PartBegan(part, of):
+                    return of, part
+                case Start(setup):
+                    return Path(setup.log_path).stem or str(path), 1
+        except (msgspec.MsgspecError, CannotReadError):
+            pass
+        break
+    return str(path), 1
+
+
+def _messages(reading: Reading, progress: Progress | None) -> Iterator[Stored]:
+    channels: dict[int, tuple[str, int | None]] = {}
+    for number, record in enumerate(reading):
+        if isinstance(record, Message):
+            channel = channels.get(record.channel_id)
+            if channel is not None:
+                topic, length = channel
+                yield Stored(topic, record.log_time_ns, record.data, length)
+        elif isinstance(record, Channel):
+            channels[record.id] = record.topic, payload_length(record.metadata)
+        if progress is not None and number % 1024 == 0:
+            progress(reading.path, reading.condition)

@@ -1,0 +1,96 @@
+"""What was recorded of an input, and the input that it was."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias, cast, get_args
+
+import msgspec
+
+from gcs.audit.messages import Attachments
+from gcs.gate.policy.parse import DEFAULT
+from gcs.record.writer import PartBegan, Seal
+from gcs.session.inputs import Datagram, FileRead, Input, OtherInput
+from gcs.session.recorded import FaultKept, FileKept, Pieces, Start, attachment_name
+
+
+class CannotReadError(Exception):
+    """A recorded input that this version does not understand: why."""
+
+
+Kept: TypeAlias = OtherInput | Start | Pieces | FaultKept | Seal | PartBegan
+"""What a message of `/session/input` holds; a Seal is a tick or the end, by its kind."""
+
+_KINDS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(OtherInput)}
+_KINDS |= {
+    "Datagram": Pieces,
+    "FileRead": FileKept,
+    "Fault": FaultKept,
+    "RecordTick": Seal,
+    "RecordEnd": Seal,
+    "RecordPart": PartBegan,
+}
+_decoders = {name: msgspec.json.Decoder(kind) for name, kind in _KINDS.items()}
+_inputs: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Input)}
+
+
+def kept_of(kind: str, data: bytes, attachments: Attachments) -> Kept:
+    """Raises CannotReadError."""
+    try:
+        if kind == "Setup":
+            return start_of(data)
+        decoder = _decoders.get(kind)
+        if decoder is None:
+            raise CannotReadError(f"there is no input {kind!r}")
+        kept = decoder.decode(data)
+    except msgspec.MsgspecError as error:
+        raise CannotReadError(f"{kind}: {error}") from error
+    return _file_read(kept, attachments) if isinstance(kept, FileKept) else cast("Kept", kept)
+
+
+def start_of(data: bytes) -> Start:
+    """The set-up, with this version's defaults for what another one did not have in its policy.
+
+    Raises msgspec.MsgspecError where it cannot be read.
+    """
+    tree = msgspec.json.decode(data)
+    if not isinstance(tree, dict) or "setup" not in tree:
+        raise msgspec.ValidationError("it does not hold what a session is made with")
+    try:
+        return msgspec.convert(tree, Start)
+    except msgspec.ValidationError:
+        setup = tree["setup"]
+        if not isinstance(setup, dict):
+            raise
+        setup["policy"] = _overlaid(msgspec.to_builtins(DEFAULT), setup.get("policy"))
+        return msgspec.convert(tree, Start)
+
+
+def _overlaid(default: Any, own: Any) -> Any:  # two trees of JSON
+    if not (isinstance(default, dict) and isinstance(own, dict)):
+        return own
+    return {key: _overlaid(value, own.get(key, value)) for key, value in default.items()}
+
+
+def input_of_fault(kept: FaultKept) -> Input:
+    """The input at which there was an exception.  Raises CannotReadError."""
+    kind = _inputs.get(kept.kind)
+    if kind is None or bytes(kept.input) == b"null":
+        raise CannotReadError(f"the {kept.kind} that raised was not recorded")
+    try:
+        return cast("Input", msgspec.json.decode(kept.input, type=kind))
+    except msgspec.MsgspecError as error:
+        raise CannotReadError(f"{kept.kind}: {error}") from error
+
+
+def _file_read(kept: FileKept, attachments: Attachments) -> FileRead:
+    if kept.size < 0:
+        return FileRead(kept.token, kept.path, None, kept.error)
+    for data in attachments.get(kept.attachment, ()):
+        if len(data) == kept.size and attachment_name(kept.path, data) == kept.attachment:
+            return FileRead(kept.token, kept.path, data, kept.error)
+    raise CannotReadError(f"what was read of {kept.path} is not attached, or was altered")
+
+
+def datagram_of(pieces: Pieces, raws: list[bytes], rest_before: bytes) -> Datagram:
+    """The bytes as they came: without what an earlier read of the stream had brought."""
+    return Datagram(pieces.link, (b"".join(raws) + pieces.rest)[len(rest_before) :])

@@ -1,0 +1,119 @@
+"""`gcs log audit`: is what the gate decided, and what was sent, what it decides again?"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.record_files import RECORD, told
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
+
+if TYPE_CHECKING:
+    from gcs.audit.audit import AuditResult, Difference
+    from gcs.audit.files import SessionFiles
+    from gcs.record.reading import Condition
+
+_PROGRESS_FROM_BYTES = 500_000
+"""Smaller files are audited in less than a second."""
+
+
+@click.command()
+@click.argument("files", type=RECORD, nargs=-1, required=True, metavar="FILE...")
+@click.option("--show", default=10, show_default=True, help="How many differences are printed.")
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a session, one a line.")
+@click.pass_context
+def audit(ctx: click.Context, files: tuple[Path, ...], show: int, as_json: bool) -> None:
+    """Do again what a station did, from its record, and compare.
+
+    Every input that was recorded is given to a fresh session: each decision, each frame that was
+    sent, each log line and each other message must come out as it is in the record, byte for
+    byte. The files of a session that has several parts are named together. The exit code is 1
+    where anything differs.
+
+    Examples: gcs log audit logs/20260101-120000_flight.mcap  |  gcs log audit logs/*.mcap --json
+    """
+    import msgspec
+
+    from gcs.audit.files import sessions
+
+    with told(files[0]):
+        found = sessions(files)
+    results = []
+    for number, session in enumerate(found):
+        result = _audited(session)
+        results.append(result)
+        if as_json:
+            names = [str(path).encode(errors="backslashreplace").decode() for path in session.paths]
+            values = {"paths": names, "good": result.good, **msgspec.to_builtins(result)}
+            values["first"] = values["first"][:show]
+            click.echo(msgspec.json.encode(values).decode())
+        else:
+            if number:
+                click.echo()
+            _print(session, result, show)
+    ctx.exit(ExitCode.DONE if all(each.good for each in results) else ExitCode.DIFFERENT)
+
+
+def _audited(session: SessionFiles) -> AuditResult:
+    from gcs import __version__
+    from gcs.audit.audit import audit as audit_session
+    from gcs.audit.turns import NoStartError
+    from gcs.shell.environment import environment
+
+    with told(session.paths[0]), _progress(session) as progress:
+        try:
+            messages = session.messages(progress)
+            attachments = session.attachments()
+            result = audit_session(messages, attachments, __version__, environment())
+        except NoStartError as error:
+            text = f"{session.paths[0]}: cannot be audited: {error}"
+            raise ExitError(ExitCode.BAD_FILE, text, error.hint) from error
+    if session.damaged:
+        result.whole = False
+        result.notes.append(f"{session.damaged} damaged records of the file could not be read")
+    return result
+
+
+def _print(session: SessionFiles, result: AuditResult, show: int) -> None:
+    names = ", ".join(map(str, session.paths))
+    click.echo(f"{names}: {result.seconds:.1f} s, recorded by mavgate {result.version}")
+    for title, counts in (("inputs", result.inputs), ("compared", result.compared)):
+        parts = sorted(counts.items(), key=lambda each: -each[1])
+        click.echo(f"  {title:8}  {sum(counts.values()):7d}  ", nl=False)
+        click.echo(", ".join(f"{name} {count}" for name, count in parts))
+    for note in result.notes:
+        click.echo(f"  note: {note}")
+    for difference in result.first[:show]:
+        _print_difference(difference)
+    if result.differences:
+        more = result.differences - min(show, len(result.first))
+        rest = f", {more} more than are shown" if more > 0 else ""
+        click.echo(f"{result.differences} differences{rest}")
+    elif result.whole:
+        click.echo("no difference: every decision and every message is reproduced")
+    else:
+        click.echo("no difference in what could be audited, which is not all")
+
+
+def _print_difference(difference: Difference) -> None:
+    click.echo(f"\n{difference.t_s:10.3f} s  {difference.kind}, after {difference.after}")
+    click.echo(f"    recorded    {difference.recorded}")
+    click.echo(f"    reproduced  {difference.reproduced}")
+
+
+@contextmanager
+def _progress(session: SessionFiles) -> Iterator[Callable[[Path, Condition], None] | None]:
+    """A bar on a terminal, over all files of the session."""
+    sizes = [path.stat().st_size for path in session.paths]
+    if sum(sizes) < _PROGRESS_FROM_BYTES or not sys.stderr.isatty():
+        yield None
+        return
+    before = {path: sum(sizes[:number]) for number, path in enumerate(session.paths)}
+    with click.progressbar(length=sum(sizes), label="auditing", file=sys.stderr) as bar:
+        yield lambda path, condition: bar.update(before[path] + condition.position - bar.pos)

@@ -1,0 +1,298 @@
+"""Records of short sessions: streams, exceptions, files, parts of a record; each audited."""
+
+from __future__ import annotations
+
+import errno
+import json
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from gcs import ipc
+from gcs.audit import replay
+from gcs.audit.files import sessions
+from gcs.audit.messages import Stored, Tape
+from gcs.audit.turns import NoStartError
+from gcs.config import StationConfig
+from gcs.gate.policy.parse import DEFAULT
+from gcs.policy_file import load_policy
+from gcs.record.guarded_file import RawFile, open_exclusive
+from gcs.record.writer import Recorder
+from gcs.session.effects import Effect
+from gcs.session.inputs import (
+    Datagram,
+    FileRead,
+    FileWritten,
+    Input,
+    LinkEvent,
+    OperatorJoined,
+    OperatorLine,
+    SimLine,
+)
+from gcs.session.session import Session
+from gcs.session.setup import Setup
+from gcs.wire.codec import FrameWriter
+from gcs.wire.messages import Heartbeat
+from tests.audits import RecordedSession, audited, kind_of, read, resealed, with_data
+from tests.unit.cli.command_line import gcs
+
+START_NS = 1_767_225_600_000_000_000
+BEAT = Heartbeat(
+    custom_mode=0, type=2, autopilot=12, base_mode=128, system_status=4, mavlink_version=3
+)
+
+
+def set_up(name: str = "") -> Setup:
+    """Link 0 carries datagrams, link 1 a stream."""
+    links = ("datagrams", "a stream")
+    log_path = f"logs/{name}.mcap" if name else ""
+    return Setup(StationConfig(), "test", DEFAULT, "", links, log_path, frozenset({1}))
+
+
+def on_tape(setup: Setup | None = None) -> tuple[RecordedSession, Tape]:
+    tape = Tape()
+    recorder = Recorder.without_file(tape, START_NS)
+    return RecordedSession(recorder, setup or set_up(), START_NS), tape
+
+
+def close(session: RecordedSession, tape: Tape) -> list[Stored]:
+    session.recorder.end(session.now_ns)
+    return list(tape.take())
+
+
+@pytest.fixture
+def beats() -> FrameWriter:
+    return FrameWriter(1, 1)
+
+
+# ---------------------------------------------------------------------------------- inputs
+
+
+def test_a_stream_is_cut_as_it_came(beats: FrameWriter) -> None:
+    session, tape = on_tape()
+    first, second, third = (beats.write(BEAT) for _ in range(3))
+    session.feed(Datagram(1, first[:4]))
+    session.feed(Datagram(1, first[4:] + b"noise" + second[:7]))
+    session.feed(Datagram(0, third))
+    session.feed(Datagram(1, second[7:]))
+    session.feed(Datagram(1, b""))
+    session.feed(Datagram(1, third[:9]))
+    result = audited(close(session, tape), tape.attachments)
+    assert (result.first, result.good) == ([], True)
+    assert result.inputs["datagrams"] == 6
+    assert (result.compared["frame received"], result.compared["garbage"]) == (3, 1)
+
+
+def test_an_exception_while_an_input_was_handled_happens_again(beats: FrameWriter) -> None:
+    session, tape = on_tape()
+    session.feed(LinkEvent(0, "open"))
+    session.feed(Datagram(7, beats.write(BEAT)))  # a link that is not there cannot be asked on
+    session.feed(LinkEvent(0, "still open"))
+    messages = close(session, tape)
+    assert [kind_of(m) for m in messages].count("Fault") == 1
+    result = audited(messages, tape.attachments)
+    assert (result.first, result.good) == ([], True)
+    assert result.inputs["exceptions"] == 1
+
+
+def test_an_exception_that_does_not_happen_again_is_a_difference(beats: FrameWriter) -> None:
+    session, tape = on_tape()
+    session.feed(LinkEvent(0, "open"))
+    session.feed(Datagram(7, beats.write(BEAT)))
+    messages = [
+        with_data(m, m.data.replace(b'"link":7', b'"link":0')) if kind_of(m) == "Fault" else m
+        for m in close(session, tape)
+    ]
+    difference = audited(resealed(messages), tape.attachments).first[0]
+    assert difference.recorded == "IndexError: list index out of range"
+    assert difference.reproduced == "no exception"
+
+
+def test_an_exception_while_effects_were_performed_is_told_again() -> None:
+    session, tape = on_tape()
+    session.feed(OperatorJoined(2, "a test"))
+    line = OperatorLine(2, ipc.Ask(1, "land"))
+    session.feed(line)
+    session.fault(line, "Traceback\nOSError: the link is gone")
+    session.feed(LinkEvent(0, "open"))
+    result = audited(close(session, tape), tape.attachments)
+    assert (result.first, result.good) == ([], True)
+
+
+class Clumsy(Session):
+    """Another version of the session, with a bug."""
+
+    def handle(self, given: Input, now_ns: int) -> list[Effect]:
+        if isinstance(given, SimLine):
+            raise ZeroDivisionError("planted")
+        return super().handle(given, now_ns)
+
+
+def test_an_exception_that_was_not_recorded_is_a_difference(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    session, tape = on_tape()
+    session.feed(LinkEvent(0, "open"))
+    session.feed(SimLine("INFO sim: x"))
+    messages = close(session, tape)
+    monkeypatch.setattr(replay, "Session", Clumsy)
+    first = audited(messages, tape.attachments).first[0]
+    assert (first.recorded, first.reproduced) == ("no exception", "ZeroDivisionError: planted")
+    assert first.after == "the simulator printed 'INFO sim: x'"
+
+
+def test_without_a_set_up_nothing_can_be_audited() -> None:
+    session, tape = on_tape()
+    session.feed(LinkEvent(0, "open"))
+    messages = [message for message in close(session, tape) if kind_of(message) != "Setup"]
+    with pytest.raises(NoStartError, match="it holds no set-up of a session"):
+        audited(messages, tape.attachments)
+
+
+def test_the_same_file_read_twice_is_attached_once_and_found_both_times() -> None:
+    session, tape = on_tape()
+    session.feed(FileRead(1, "plans/a.plan", b"one"))
+    session.feed(FileRead(2, "plans/a.plan", b"one"))
+    session.feed(FileRead(3, "plans/a.plan", b"two"))
+    session.feed(FileWritten(4, "b.plan", "disk full"))
+    messages = close(session, tape)
+    assert sorted(len(contents) for contents in tape.attachments.values()) == [1, 1, 1]
+    result = audited(messages, tape.attachments)
+    # Nobody had asked for any of them.
+    assert [d.kind for d in result.first] == ["course"] * 4
+    assert result.first[0].recorded == "plans/a.plan was to be read"
+
+
+def test_lines_of_a_simulator_keep_their_letters() -> None:
+    session, tape = on_tape()
+    session.feed(SimLine("WARNING sim: Überschlag — 100 % \ufffd"))
+    assert audited(close(session, tape), tape.attachments).good
+
+
+def test_every_shipped_policy_is_read_back_as_it_was(beats: FrameWriter) -> None:
+    for name in ("default", "lab"):
+        policy, text = load_policy(name)
+        session, tape = on_tape(
+            Setup(StationConfig(speedup=3.0), "test", policy, text, ("a", "b"), "", frozenset({1}))
+        )
+        session.feed(Datagram(0, beats.write(BEAT)))
+        session.wait(2.0)
+        assert audited(close(session, tape), tape.attachments).good
+
+
+def test_a_policy_of_another_version_has_this_ones_defaults() -> None:
+    session, tape = on_tape()
+    session.feed(LinkEvent(0, "open"))
+    messages = close(session, tape)
+    said = json.loads(messages[0].data)
+    policy = said["data"]["setup"]["policy"]
+    del policy["margin_h_m"], policy["takeoff"]["max_up_m"]
+    policy["key_of_another_version"] = 1
+    messages[0] = with_data(messages[0], msgspec.json.encode(said))
+    result = audited(resealed(messages), tape.attachments)
+    assert [(d.kind, d.after) for d in result.first] == [("input", "link 0: open")]
+
+
+# ----------------------------------------------------------------------------------- parts
+
+
+class Disk:
+    """A disk that can be full."""
+
+    def __init__(self) -> None:
+        self.full = False
+
+    def open(self, path: Path) -> RawFile:
+        return DiskFile(self, open_exclusive(path))
+
+
+class DiskFile:
+    def __init__(self, disk: Disk, raw: RawFile) -> None:
+        self._disk, self._raw = disk, raw
+
+    def write(self, data: memoryview, /) -> int | None:
+        if self._disk.full:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return self._raw.write(data)
+
+    def close(self) -> None:
+        self._raw.close()
+
+
+@pytest.fixture
+def two_parts(tmp_path: Path, beats: FrameWriter) -> list[Path]:
+    """A disk is full for six seconds."""
+    disk = Disk()
+    recorder = Recorder.open(
+        tmp_path, "x", "20260101-000000", START_NS, opener=disk.open, sealed=True
+    )
+    session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
+    session.feed(Datagram(0, beats.write(BEAT)))
+    session.wait(3.0)
+    disk.full = True
+    session.wait(2.0)
+    disk.full = False
+    session.wait(9.0)
+    recorder.close(session.now_ns)
+    assert [path.name for path in recorder.parts] == [
+        "20260101-000000_x.mcap",
+        "20260101-000000_x_part2.mcap",
+    ]
+    return recorder.parts
+
+
+def test_after_a_hole_in_the_record_nothing_can_be_audited(two_parts: list[Path]) -> None:
+    messages, attachments = read(*two_parts)
+    result = audited(messages, attachments)
+    assert (result.differences, result.whole, result.good) == (0, False, False)
+    (note,) = result.notes
+    assert "messages are in no file between" in note
+    assert 2.0 < result.seconds < 3.5
+
+
+def test_the_part_before_the_hole_is_audited_by_itself(two_parts: list[Path]) -> None:
+    first = gcs("log", "audit", two_parts[0])
+    assert (first.exit_code, "note: the record breaks off" in first.output) == (0, True)
+
+
+def test_a_part_alone_is_refused_with_the_name_of_the_others(two_parts: list[Path]) -> None:
+    ended = gcs("log", "audit", two_parts[1])
+    assert ended.exit_code == 4
+    assert "it is part 2 of 20260101-000000_x, not its beginning" in ended.output
+    assert "hint: name all files of 20260101-000000_x in one command" in ended.output
+
+
+def test_files_that_follow_one_another_without_a_hole_are_one_record(
+    tmp_path: Path, beats: FrameWriter
+) -> None:
+    recorder = Recorder.open(tmp_path, "x", "20260101-000000", START_NS, sealed=True)
+    session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
+    session.feed(Datagram(0, beats.write(BEAT)))
+    session.wait(1.2)
+    recorder._finish()
+    recorder._start_next_part(session.now_ns)
+    session.wait(1.2)
+    recorder.close(session.now_ns)
+    assert len(recorder.parts) == 2
+    (found,) = sessions(reversed(recorder.parts))
+    assert found.paths == recorder.parts
+    result = audited(found.messages(), found.attachments())
+    assert (result.first, result.notes, result.good) == ([], [], True)
+    assert result.seconds > 2.0
+
+
+def test_sessions_are_told_apart(tmp_path: Path) -> None:
+    paths = []
+    for name in ("a", "b"):
+        recorder = Recorder.open(tmp_path, name, "20260101-000000", START_NS, sealed=True)
+        session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
+        session.feed(LinkEvent(0, "open"))
+        recorder.close(session.now_ns)
+        paths.append(recorder.path)
+    copy = tmp_path / "copy.mcap"
+    copy.write_bytes(paths[0].read_bytes())
+    assert [each.paths for each in sessions([*paths, copy])] == [[p] for p in (*paths, copy)]
+    ended = gcs("log", "audit", *paths, "--json")
+    lines = [json.loads(line) for line in ended.output.splitlines()]
+    assert [line["paths"] for line in lines] == [[str(path)] for path in paths]
