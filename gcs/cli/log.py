@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import signal
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli.log_report import report
+from gcs.cli.record_files import RECORD, reading_progress, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.record.info import FlightInfo
-    from gcs.record.reading import Condition
-
-_PROGRESS_FROM_BYTES = 20_000_000
-"""Smaller files are read in less than a second."""
 
 _LOGS = Path("logs")
-_RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
 
 
 @click.group()
@@ -36,8 +30,11 @@ def log() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+log.add_command(report)
+
+
 @log.command()
-@click.argument("files", type=_RECORD, nargs=-1, metavar="FILE...")
+@click.argument("files", type=RECORD, nargs=-1, metavar="FILE...")
 @click.option("--last", is_flag=True, help="Only the newest of them; without FILE, of logs/*.mcap.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object a file, one a line.")
 def info(files: tuple[Path, ...], last: bool, as_json: bool) -> None:
@@ -52,7 +49,7 @@ def info(files: tuple[Path, ...], last: bool, as_json: bool) -> None:
     from gcs.record.info import read_info
 
     for number, file in enumerate(_chosen(files, last=last)):
-        with _told(file), _progress(file, "reading") as progress:
+        with told(file), reading_progress(file, "reading") as progress:
             flight = read_info(file, progress)
         if as_json:
             # JSON has no text but UTF-8; a file's name may be other.
@@ -77,7 +74,7 @@ def _chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
 
 
 @log.command()
-@click.argument("file", type=_RECORD, required=False)
+@click.argument("file", type=RECORD, required=False)
 @click.option(
     "-o",
     "--output",
@@ -98,7 +95,7 @@ def layout(file: Path | None, output: Path | None) -> None:
 
     topics = set(ANY_FLIGHT)
     if file is not None:
-        with _told(file), _progress(file, "reading") as progress:
+        with told(file), reading_progress(file, "reading") as progress:
             topics = {topic.topic for topic in read_info(file, progress).topics}
     text = json.dumps(layout(topics), indent=1) + "\n"
     if output is None:
@@ -112,7 +109,7 @@ def layout(file: Path | None, output: Path | None) -> None:
 
 
 @log.command()
-@click.argument("file", type=_RECORD)
+@click.argument("file", type=RECORD)
 @click.option(
     "-o",
     "--output",
@@ -133,7 +130,7 @@ def recover(file: Path, output: Path, as_json: bool) -> None:
 
     from gcs.record.recover import recover
 
-    with _told(file), _progress(file, "recovering") as progress:
+    with told(file), reading_progress(file, "recovering") as progress:
         try:
             saved = recover(file, output, progress)
         except FileExistsError as error:
@@ -212,31 +209,5 @@ def _began(start_ns: int | None) -> str:
     return f", from {began:%Y-%m-%d %H:%M:%S} UTC"
 
 
-@contextmanager
-def _told(file: Path) -> Iterator[None]:
-    """What can be wrong with a record becomes one sentence and exit 4."""
-    from gcs.record.reading import BadRecordError
-
-    try:
-        yield
-    except BadRecordError as error:
-        raise ExitError(
-            ExitCode.BAD_FILE, str(error), "gcs reads MCAP files, as it writes them into logs/"
-        ) from error
-    except OSError as error:
-        raise ExitError(ExitCode.BAD_FILE, f"{file}: {error.strerror or error}") from error
-
-
 def _cannot_write(path: Path, error: OSError) -> ExitError:
     return ExitError(ExitCode.RECORDER, f"{path}: cannot write: {error.strerror or error}")
-
-
-@contextmanager
-def _progress(file: Path, label: str) -> Iterator[Callable[[Condition], None] | None]:
-    """A bar on a terminal, for files that take over a second."""
-    size = file.stat().st_size
-    if size < _PROGRESS_FROM_BYTES or not sys.stderr.isatty():
-        yield None
-        return
-    with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
-        yield lambda condition: bar.update(condition.position - bar.pos)

@@ -1,0 +1,49 @@
+"""What the commands that read records share: errors in a sentence, a bar for a large file."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
+
+if TYPE_CHECKING:
+    from gcs.record.reading import Condition
+
+RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
+"""The type of an argument that names a record."""
+
+_PROGRESS_FROM_BYTES = 20_000_000
+"""Smaller files are read in less than a second."""
+
+
+@contextmanager
+def told(file: Path) -> Iterator[None]:
+    """What can be wrong with a record becomes one sentence and exit 4."""
+    from gcs.record.reading import BadRecordError
+
+    try:
+        yield
+    except BadRecordError as error:
+        raise ExitError(
+            ExitCode.BAD_FILE, str(error), "gcs reads MCAP files, as it writes them into logs/"
+        ) from error
+    except OSError as error:
+        raise ExitError(ExitCode.BAD_FILE, f"{file}: {error.strerror or error}") from error
+
+
+@contextmanager
+def reading_progress(file: Path, label: str) -> Iterator[Callable[[Condition], None] | None]:
+    """A bar on a terminal, for files that take over a second."""
+    size = file.stat().st_size
+    if size < _PROGRESS_FROM_BYTES or not sys.stderr.isatty():
+        yield None
+        return
+    with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
+        yield lambda condition: bar.update(condition.position - bar.pos)
