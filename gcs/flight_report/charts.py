@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import atan2, cos, degrees, radians, sin
+
 import msgspec
 
 from gcs.flight_report.findings.estimator import REJECTED
@@ -41,9 +43,11 @@ class Chart(msgspec.Struct):
     lines: list[Line]
     limits: list[LimitLine] = []
     low: float | None = None
-    """The first scale begins and ends here, whatever the values."""
-    high: float | None = None
-    high_right: float | None = None
+    """The first scale begins here, whatever the values."""
+    right_to: float | None = None
+    """The second scale reaches at least so far."""
+    circle: bool = False
+    """Degrees of a heading, which may be drawn beyond 0 and 360."""
 
 
 class Mark(msgspec.Struct):
@@ -92,28 +96,46 @@ def _charts(vehicle: VehicleFlight) -> list[Chart]:
             plots.attitude,
             [_line("roll", "°"), _line("pitch", "°")],
         ),
-        _chart(
-            "heading",
-            "Heading",
-            "clockwise from north",
-            plots.heading,
-            [Line("heading", "°", [], dots=True)],
-            low=0.0,
-            high=360.0,
-        ),
+        _heading(plots.heading),
         _battery(plots.battery),
-        _chart(
-            "link",
-            "Link",
-            "messages of the vehicle a second, and how many were lost",
-            plots.link,
-            [_line("messages", "/s"), Line("lost", "%", [], axis=1)],
-            low=0.0,
-        ),
+        _link(plots.link),
         _gps(plots.gps),
         _estimator(plots.estimator, kind),
         _vibration(plots.vibration, kind),
     ]
+
+
+def _heading(series: Series) -> Chart:
+    """Cut where the vehicle looks least, so that a heading about north is one line and not two."""
+    chart = _chart(
+        "heading",
+        "Heading",
+        "clockwise from north",
+        series,
+        [Line("heading", "°", [], dots=True)],
+    )
+    chart.circle = True
+    for line in chart.lines:
+        turns = [radians(value) for value in line.values if value is not None]
+        middle = degrees(atan2(sum(map(sin, turns)), sum(map(cos, turns))))
+        line.values = [
+            None if value is None else round(middle + (value - middle + 180.0) % 360.0 - 180.0, 1)
+            for value in line.values
+        ]
+    return chart
+
+
+def _link(series: Series) -> Chart:
+    chart = _chart(
+        "link",
+        "Link",
+        "messages of the vehicle a second, and how many were lost",
+        series,
+        [_line("messages", "/s"), Line("lost", "%", [], axis=1)],
+        low=0.0,
+    )
+    chart.right_to = 10.0
+    return chart
 
 
 def _battery(series: Series) -> Chart:
@@ -122,7 +144,9 @@ def _battery(series: Series) -> Chart:
         Line("left", "%", [], axis=1),
         Line("current", "A", [], axis=1, dashed=True),
     ]
-    return _chart("battery", "Battery", "voltage; what is left, and the current", series, lines)
+    chart = _chart("battery", "Battery", "voltage; what is left, and the current", series, lines)
+    chart.right_to = 100.0
+    return chart
 
 
 def _gps(series: Series) -> Chart:
@@ -135,6 +159,7 @@ def _gps(series: Series) -> Chart:
         low=0.0,
     )
     chart.limits = [LimitLine(HDOP_BAD.value, "warning", 1)]
+    chart.right_to = 1.25 * HDOP_BAD.value
     return chart
 
 
@@ -174,7 +199,6 @@ def _chart(
     series: Series,
     lines: list[Line],
     low: float | None = None,
-    high: float | None = None,
 ) -> Chart:
     """Without the lines that have no value at all."""
     rows = series.rows()
@@ -184,7 +208,7 @@ def _chart(
         line.values = [_rounded(values[column]) for _, values in rows]
         if any(value is not None for value in line.values):
             drawn.append(line)
-    return Chart(name, title, about, times if drawn else [], drawn, low=low, high=high)
+    return Chart(name, title, about, times if drawn else [], drawn, low=low)
 
 
 def _rounded(value: float | None) -> float | None:

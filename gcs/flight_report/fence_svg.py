@@ -41,7 +41,8 @@ def fence_from_above(fence: Fence, view: View) -> list[str]:
         parts.append(
             f'<g class="zone {kind}"><title>{_name(zone)}</title>'
             f'{shape} class="margin" stroke-width="{margin_px:.1f}"{cut}/>'
-            f'{shape} class="edge"/></g>'
+            + ("" if zone.inclusion else f'{shape} class="ground"/>')
+            + f'{shape} class="edge"/></g>'
         )
     return parts
 

@@ -83,8 +83,8 @@ def _from_aside(flight: Flight, vehicle: VehicleFlight, points: list[TrackPoint]
     ]
     box = _box(points, vehicle.requests, plane, box_of(limits))
     box = Box(box.left, box.right, min(box.bottom, -0.5), box.top)
-    height_px = max(200.0, min(WIDTH_PX * 0.8, WIDTH_PX * box.height / box.width))
-    height_px = min(height_px, _STRETCH * WIDTH_PX * box.height / box.width)
+    true_px = WIDTH_PX * box.height / box.width
+    height_px = min(max(0.55 * WIDTH_PX, min(0.8 * WIDTH_PX, true_px)), _STRETCH * true_px)
     view = View(box, WIDTH_PX, max(90.0, height_px))
     stretch = view.y_scale / view.x_scale
     parts = [
@@ -204,7 +204,7 @@ def _grid(view: View, x_name: str, y_name: str) -> list[str]:
     for x in ticks(box.left, box.right, 7):
         at, _ = view.px(x, 0.0)
         parts.append(f'<path d="M{at:.1f} 0V{view.height_px:.1f}"/>')
-        if 24.0 < at < view.width_px - 60.0:
+        if 24.0 < at < view.width_px - 84.0:
             parts.append(
                 f'<text x="{at:.1f}" y="{view.height_px - 5:.1f}" text-anchor="middle">{x:g}</text>'
             )

@@ -82,7 +82,7 @@ def _sections(flight: Flight, vehicle: VehicleFlight | None, data: ChartData) ->
         figures = "".join(
             f"<figure>{p.svg}<figcaption>{text(p.caption)}</figcaption></figure>" for p in pictures
         )
-        key = tables_html.path_key(vehicle, has_fence=bool(flight.fence.zones))
+        key = tables_html.path_key(vehicle, flight.fence)
         sections.append(_section("path", "Path", f'<div class="pictures">{figures}</div>{key}'))
     else:
         quiet = '<p class="quiet">The record has no position of this vehicle.</p>'
@@ -114,7 +114,8 @@ def _sections(flight: Flight, vehicle: VehicleFlight | None, data: ChartData) ->
 def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
     """What happened, and what went wrong first: what is read when nothing else is."""
     asked = what_was_asked(vehicle) if vehicle else ""
-    happened = " ".join(part for part in (what_happened(flight, vehicle), asked) if part)
+    asked = f'<p class="asked">{text(asked)}</p>' if asked else ""
+    happened = f'<p class="lead">{text(what_happened(flight, vehicle))}</p>{asked}'
     wrong = what_went_wrong(vehicle)
     first = first_trouble(vehicle)
     chain = ""
@@ -129,9 +130,7 @@ def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
         else ""
     )
     notes = "".join(f'<p class="quiet">{text(note)}</p>' for note in _record_notes(flight, vehicle))
-    return (
-        f'<section class="verdict"><p class="lead">{text(happened)}</p>{trouble}{notes}</section>'
-    )
+    return f'<section class="verdict">{happened}{trouble}{notes}</section>'
 
 
 def _consequence(later: Finding, first: Finding) -> str:

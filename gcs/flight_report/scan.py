@@ -27,10 +27,36 @@ _POLICY = "policy.toml"
 _MAX_VEHICLES = 250
 
 
+class _Point(msgspec.Struct):
+    east_m: float
+    north_m: float
+
+
+class _Zone(msgspec.Struct):
+    name: str
+    inclusion: bool
+    corners: list[_Point] = []
+    centre: _Point | None = None
+    radius_m: float = 0.0
+    floor_up_m: float | None = None
+    ceiling_up_m: float | None = None
+
+    def shape(self) -> FenceShape:
+        return FenceShape(
+            self.name,
+            self.inclusion,
+            [(corner.east_m, corner.north_m) for corner in self.corners],
+            None if self.centre is None else (self.centre.east_m, self.centre.north_m),
+            self.radius_m,
+            self.floor_up_m,
+            self.ceiling_up_m,
+        )
+
+
 class _FenceMessage(msgspec.Struct):
     """`/geofence/zones`; a margin that is not there is the policy's."""
 
-    zones: list[FenceShape]
+    zones: list[_Zone]
     margin_h_m: float | None = None
     margin_v_m: float | None = None
 
@@ -149,7 +175,8 @@ class Scan:
         except msgspec.MsgspecError:
             self.flight.damaged += 1
             return
-        self.flight.fence = Fence(found.zones, found.margin_h_m or 0.0, found.margin_v_m or 0.0)
+        zones = [zone.shape() for zone in found.zones]
+        self.flight.fence = Fence(zones, found.margin_h_m or 0.0, found.margin_v_m or 0.0)
 
 
 def _is_vehicle(flight: VehicleFlight) -> bool:

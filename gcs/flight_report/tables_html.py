@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from gcs.enu_text import labelled_enu
 from gcs.flight_report.findings.finding import Check, Finding, Level
-from gcs.flight_report.flight import Request, VehicleFlight
+from gcs.flight_report.flight import Fence, Request, VehicleFlight
 from gcs.flight_report.html_text import text
 from gcs.flight_report.path_svg import colour_of
 from gcs.flight_report.words import clock, sentence
@@ -140,7 +140,7 @@ def _texts(lines: Iterable[tuple[float, int, str]]) -> str:
     return f'<ol class="texts">{rows}</ol>' if rows else ""
 
 
-def path_key(vehicle: VehicleFlight, *, has_fence: bool) -> str:
+def path_key(vehicle: VehicleFlight, fence: Fence) -> str:
     """What the pictures' marks mean, and the times of the path's colours."""
     points = vehicle.track.points
     stops = ", ".join(colour_of(i / 6) for i in range(7))
@@ -156,7 +156,8 @@ def path_key(vehicle: VehicleFlight, *, has_fence: bool) -> str:
         items.append('<li><i class="cross">✕</i> goal, refused</li>')
     if vehicle.went_wrong:
         items.append('<li><i class="dot bad">!</i> where it went wrong first</li>')
-    if has_fence:
+    if any(zone.inclusion for zone in fence.zones):
         items.append('<li><i class="swatch inside"></i> margin of the fence</li>')
+    if any(not zone.inclusion for zone in fence.zones):
         items.append('<li><i class="swatch outside"></i> keep out</li>')
     return f'<ul class="key">{"".join(items)}</ul>'

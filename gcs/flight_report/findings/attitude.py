@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import acos, cos, degrees, radians
 
 from gcs.flight_report.facts import Fact, Pose
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
@@ -20,8 +19,8 @@ class AttitudeDetector:
     def handle(self, fact: Fact, now: Situation) -> None:
         if not isinstance(fact, Pose) or not now.flying:
             return
-        upright = cos(radians(fact.roll_deg)) * cos(radians(fact.pitch_deg))
-        tilt_deg = degrees(acos(max(-1.0, min(1.0, upright))))
+        # PX4 judges each by itself.
+        tilt_deg = max(abs(fact.roll_deg), abs(fact.pitch_deg))
         self.tilt.update(now.t_s, tilt_deg)
         self.beyond.update(now.t_s, tilt_deg > FAILURE.value)
 
@@ -43,5 +42,7 @@ class AttitudeDetector:
             )
         measured = "" if most is None else f"up to {most:.0f} degrees"
         told = f"below {FAILURE.value:g} degrees"
-        result.checks.append(Check("attitude", "Tilt", measured, told, FAILURE.source, level))
+        result.checks.append(
+            Check("attitude", "Roll and pitch", measured, told, FAILURE.source, level)
+        )
         return result

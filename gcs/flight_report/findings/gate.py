@@ -98,7 +98,7 @@ class GateDetector:
     def result(self, now: Situation) -> Result:
         refused = sum(self.refused.values())
         if not self.seen:
-            return Result()
+            return Result(findings=self.findings)
         codes = ", ".join(f"{n} {code}" for code, n in self.refused.most_common())
         measured = f"{self.accepted} accepted, {refused} refused"
         check = Check("gate", "Requests", measured, codes, _SOURCE, Level.OK)

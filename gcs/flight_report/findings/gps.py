@@ -15,7 +15,8 @@ HDOP_BAD = Limit(2.0, "", _WIKI)
 SATELLITES_GOOD = Limit(12, "", _WIKI)
 SATELLITES_NEEDED = Limit(6, "", "EKF2_REQ_NSATS of a PX4 1.14")
 SILENT = Limit(3.0, "s", "a receiver that is gone is no longer reported by PX4 (from memory)")
-FIX_3D = 3
+LONGEST_STEP_S = 1.0
+FIX_2D, FIX_3D = 2, 3
 
 
 @dataclass(slots=True)
@@ -28,13 +29,17 @@ class GpsDetector:
     had_fix: bool = False
     seen_s: float | None = None
     silent: Spells = field(default_factory=Spells)
+    quiet_s: float = 0.0
+    """For so long other things were told, and nothing of the GPS."""
+    counted_s: float = 0.0
     lost_fix_type: int = 0
 
     def handle(self, fact: Fact, now: Situation) -> None:
-        if now.flying and self.had_fix and self.seen_s is not None:
-            self.silent.update(now.t_s, now.t_s - self.seen_s > SILENT.value)
         if not isinstance(fact, Gps):
+            self._other(now)
             return
+        self.silent.update(now.t_s, False)
+        self.quiet_s, self.counted_s = 0.0, now.t_s
         self.seen_s = now.t_s
         fixed = fact.fix_type >= FIX_3D
         self.had_fix |= fixed
@@ -51,6 +56,13 @@ class GpsDetector:
         self.diluted.update(now.t_s, fact.hdop is not None and fact.hdop > HDOP_BAD.value)
         count = fact.satellites
         self.few.update(now.t_s, count is not None and count < SATELLITES_NEEDED.value)
+
+    def _other(self, now: Situation) -> None:
+        # Where nothing at all was told, the link was silent, and not the receiver.
+        self.quiet_s += min(now.t_s - self.counted_s, LONGEST_STEP_S)
+        self.counted_s = now.t_s
+        if now.flying and self.had_fix:
+            self.silent.update(now.t_s, self.quiet_s > SILENT.value)
 
     def result(self, now: Situation) -> Result:
         result = Result()
@@ -73,9 +85,11 @@ class GpsDetector:
             if not spells.count:
                 continue
             level, measured = Level.CRITICAL, f"lost {spells.words}"
-            fix = f", down to fix type {self.lost_fix_type}" if spells is self.no_fix else ""
+            fix = ""
+            if spells is self.no_fix:
+                fix = "a 2D fix " if self.lost_fix_type == FIX_2D else "no fix at all "
             until_s = None if spells.open else spells.last_s
-            detail = spells.words + fix + ("" if until_s else "; not regained")
+            detail = fix + spells.words + ("" if until_s else ", until the end of the record")
             result.findings.append(
                 Finding("gps", Level.CRITICAL, spells.first_s, title, detail, until_s)
             )

@@ -66,7 +66,7 @@ class LinkDetector:
                 )
             )
         known = self.heard_s is not None
-        measured = f"longest silence {self.longest_s:.1f} s" if known else ""
+        measured = f"longest silence {self.longest_s:.2f} s" if known else ""
         told = f"below {GAP.value:g} s, lost above {LOST.value:g} s"
         result.checks.append(
             Check("link", "Silence", measured, told, LOST.source, worst if known else None)

@@ -39,9 +39,10 @@ class Spells:
 
     @property
     def words(self) -> str:
-        """ "3 times, 12.5 s in all"; the end of a spell is the first good value."""
-        times = "once" if self.count == 1 else f"{self.count} times"
-        return f"{times}, {self.total_s:.1f} s in all"
+        """ "for 8.0 s", "3 times, 12.5 s in all"; a spell ends with the first good value."""
+        if self.count == 1:
+            return f"for {self.total_s:.1f} s"
+        return f"{self.count} times, {self.total_s:.1f} s in all"
 
 
 @dataclass(slots=True)

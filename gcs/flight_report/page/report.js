@@ -41,6 +41,10 @@
     return clock(seconds).replace(/\.0$/, "");
   }
 
+  function compass(degrees) {
+    return ((degrees % 360) + 360) % 360;
+  }
+
   const LEVELS = { note: "--note", warning: "--warn", critical: "--bad" };
 
   function line(u, from, to, color, dash) {
@@ -76,16 +80,18 @@
     };
   }
 
-  function range(low, high) {
+  function range(low, high, span) {
     return (u, min, max) => {
       if (min == null) return [low ?? 0, high ?? 1];
+      const missing = Math.max(0, span - (max - min)) / 2;
+      min -= missing;
+      max += missing;
       const pad = (max - min || Math.abs(max) || 1) * 0.08;
-      return [low ?? min - pad, high ?? max + pad];
+      return [low ?? min - pad, Math.max(max + pad, high ?? max + pad)];
     };
   }
 
   function columns(chart) {
-    // Values of steps hold until the next one; a gap is a row of nulls.
     return [chart.x, ...chart.lines.map((each) => each.values)];
   }
 
@@ -97,14 +103,14 @@
     const right = chart.lines.some((each) => each.axis);
     const axes = [
       { ...axis, values: (u, at) => at.map(tick), size: 28, space: 70 },
-      { ...axis, size: 44 },
+      { ...axis, size: 44, values: chart.circle ? (u, at) => at.map(compass) : undefined },
     ];
     if (right) axes.push({ ...axis, scale: "right", side: 1, size: 44, grid: { show: false } });
     const scales = {
       x: { time: false, range: (u, min, max) => (min === max ? [min - 1, max + 1] : [min, max]) },
-      y: { range: range(chart.low, chart.high) },
+      y: { range: range(chart.low, null, chart.circle ? 40 : 0) },
     };
-    if (right) scales.right = { range: range(0, null) };
+    if (right) scales.right = { range: range(0, chart.right_to, 0) };
     const series = chart.lines.map((each, number) => ({
       label: each.unit ? each.label + ", " + each.unit : each.label,
       scale: each.axis ? "right" : "y",
@@ -113,10 +119,11 @@
       dash: each.dashed ? [6, 4] : undefined,
       paths: each.dots ? () => null : each.steps ? uPlot.paths.stepped({ align: 1 }) : undefined,
       points: each.dots ? { show: true, size: 3 } : { show: false },
-      value: (u, value) => (value == null ? "–" : String(Math.round(value * 100) / 100)),
+      value: (u, value) => (value == null ? "–" : String(Math.round((chart.circle ? compass(value) : value) * 100) / 100)),
     }));
     return {
-      width, height: HEIGHT, axes, scales,
+      // Without a second scale its room is left free, so that all plots have one time axis.
+      width, height: HEIGHT, axes, scales, padding: [8, right ? 0 : 44, 0, 0],
       series: [{ label: "at", value: (u, value) => (value == null ? "–" : clock(value)) }, ...series],
       cursor: { sync: { key: "flight" }, drag: { x: true, y: false }, points: { size: 6 } },
       hooks: { draw: [drawMarks, drawLimits(chart)], setScale: [zoomAll] },

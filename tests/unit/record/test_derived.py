@@ -90,6 +90,7 @@ def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None
         "/gate/decision": "gate.Decision",
         "/geofence": "foxglove.SceneUpdate",
         "/geofence/geojson": "foxglove.GeoJSON",
+        "/geofence/zones": "gate.Fence",
         "/mission": "foxglove.SceneUpdate",
         "/log": "foxglove.Log",
         "/tf_static": "foxglove.FrameTransforms",
@@ -343,7 +344,37 @@ def test_the_fence_is_on_the_map_where_the_origin_is_known(tmp_path: Path) -> No
 
 def test_without_an_origin_there_is_no_fence_on_the_map(tmp_path: Path) -> None:
     path = record(tmp_path, [FenceItem([], None)])
-    assert {message.topic for message in messages_of(path)} == {"/geofence"}
+    assert {message.topic for message in messages_of(path)} == {"/geofence", "/geofence/zones"}
+
+
+def test_the_fence_as_numbers(tmp_path: Path) -> None:
+    path = record(tmp_path, a_flight())
+    (message,) = [m for m in messages_of(path) if m.topic == "/geofence/zones"]
+    told = json.loads(message.data)
+    assert {name: told[name] for name in ("zones", "origin")} == {
+        "zones": [
+            {
+                "name": "home",
+                "inclusion": True,
+                "corners": [],
+                "centre": {"east_m": 0.0, "north_m": 0.0},
+                "radius_m": 150.0,
+                "floor_up_m": 0.0,
+                "ceiling_up_m": 50.0,
+            },
+            {
+                "name": "tower",
+                "inclusion": False,
+                "corners": [
+                    {"east_m": 10, "north_m": 10},
+                    {"east_m": 20, "north_m": 10},
+                    {"east_m": 20, "north_m": 20},
+                ],
+                "floor_up_m": 0.0,
+            },
+        ],
+        "origin": {"lat_deg": 47.397742, "lon_deg": 8.545594, "alt_amsl_m": 488.0},
+    }
 
 
 def test_a_mission_is_a_line_of_numbered_points(tmp_path: Path) -> None:
@@ -381,6 +412,7 @@ def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
             "state:string state_id:integer before:string event:string control:string"
             " severity:string goal:goal"
         ),
+        "gate.Fence": "zones:array origin:object",
         "session.Input": "kind:string data:object",
         "vehicle.Param": "name:string value:number",
         "vehicle.State": (
@@ -397,12 +429,15 @@ def test_json_schemas_use_only_what_viewers_read(tmp_path: Path) -> None:
         summary = make_reader(file).get_summary()
     assert summary is not None
     found = [s for s in summary.schemas.values() if s.encoding == "jsonschema"]
-    assert len(found) == 5
+    assert len(found) == 6
 
     def check(schema: dict[str, Any]) -> None:
         if schema["type"] == "object":
             for inner in schema["properties"].values():
                 check(inner)
+        elif schema["type"] == "array":
+            assert schema["items"]["type"] != "array"
+            check(schema["items"])
         else:
             assert schema["type"] in ("string", "number", "integer", "boolean")
 
