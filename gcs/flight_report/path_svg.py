@@ -165,7 +165,6 @@ def _goal(view: View, at: tuple[float, float], request: Request) -> str:
     if request.sentence:
         words += f": {request.sentence}"
     x, y = view.px(*at)
-    inside = view.box.holds(*at)
     # A goal out of sight is marked where the edge is next to it.
     x, y = min(max(x, 9.0), view.width_px - 9.0), min(max(y, 9.0), view.height_px - 9.0)
     mark = (
@@ -175,12 +174,22 @@ def _goal(view: View, at: tuple[float, float], request: Request) -> str:
     )
     right = x < view.width_px - 60.0
     anchor, label_x = ("start", x + 9.0) if right else ("end", x - 9.0)
-    label = f"#{request.request_id}" + ("" if inside else " →" if right else " ← out of view")
+    label = f"#{request.request_id} {_beyond_edge(view.box, at)}".strip()
     label_y = min(max(y - 6.0, 12.0), view.height_px - 4.0)
     return (
         f'<g class="goal {kind}"><title>{text(words)}</title>{mark}'
         f'<text x="{label_x:.1f}" y="{label_y:.1f}" text-anchor="{anchor}">{label}</text></g>'
     )
+
+
+def _beyond_edge(box: Box, at: tuple[float, float]) -> str:
+    """An arrow to a place that is out of the view; empty for one in it."""
+    x, y = at
+    if not box.left <= x <= box.right:
+        return "→" if x > box.right else "←"
+    if not box.bottom <= y <= box.top:
+        return "↑" if y > box.top else "↓"
+    return ""
 
 
 def _ends(view: View, plane: Plane, points: Sequence[TrackPoint]) -> list[str]:
@@ -211,13 +220,13 @@ def _grid(view: View, x_name: str, y_name: str) -> list[str]:
     for y in ticks(box.bottom, box.top, max(2, round(view.height_px / 80))):
         _, at = view.px(0.0, y)
         parts.append(f'<path d="M0 {at:.1f}H{view.width_px:.1f}"/>')
-        if 20.0 < at < view.height_px - 18.0:
+        if 40.0 < at < view.height_px - 18.0:
             parts.append(f'<text x="5" y="{at - 3:.1f}">{y:g}</text>')
     parts.append(
         f'<text x="{view.width_px - 5:.1f}" y="{view.height_px - 5:.1f}" text-anchor="end">'
         f"{x_name}, m</text>"
     )
-    parts.append(f'<text x="5" y="13">{y_name}, m</text>')
+    parts.append(f'<text x="5" y="18">{y_name}, m</text>')
     return [f'<g class="grid">{"".join(parts)}</g>']
 
 

@@ -8,7 +8,7 @@ from gcs.flight_report.words import clock, count, duration, metres, sentence
 
 _NAMES = {"px4": "PX4", "ardupilot": "ArduPilot"}
 CONSEQUENCES_WITHIN_S = 15.0
-MAX_CONSEQUENCES = 4
+MAX_CONSEQUENCES = 6
 
 
 def vehicle_name(vehicle: VehicleFlight) -> str:

@@ -55,7 +55,7 @@ def _badge(level: Level | None) -> str:
 def checks(vehicle: VehicleFlight) -> str:
     rows = "".join(_check(check) for check in vehicle.checks)
     return (
-        '<table class="stacked"><thead><tr><th>value</th><th>measured</th><th>limit</th>'
+        '<table class="stacked checks"><thead><tr><th>value</th><th>measured</th><th>limit</th>'
         f"<th></th></tr></thead><tbody>{rows}</tbody></table>"
     )
 
@@ -86,7 +86,7 @@ def _request(request: Request) -> str:
     goal = f"<br><small>{text(labelled_enu(request.goal_enu))}</small>" if request.goal_enu else ""
     ending = "—" if not request.ending else text(request.ending)
     if request.ended_s is not None:
-        ending += f"<br><small>after {request.ended_s - request.t_s:.1f} s</small>"
+        ending += f" <br><small>after {request.ended_s - request.t_s:.1f} s</small>"
     words = [part for part in (request.sentence, _told(request.ending_sentence)) if part]
     why = "".join(f"<div>{text(part)}</div>" for part in words)
     code = f"<code>{text(request.code)}</code> " if request.code else ""
@@ -153,7 +153,7 @@ def path_key(vehicle: VehicleFlight, fence: Fence) -> str:
     if "accepted" in outcomes:
         items.append('<li><i class="dot good"></i> goal, accepted</li>')
     if "refused" in outcomes:
-        items.append('<li><i class="cross">✕</i> goal, refused</li>')
+        items.append('<li><i class="cross">✕</i> goal, refused (→ out of view)</li>')
     if vehicle.went_wrong:
         items.append('<li><i class="dot bad">!</i> where it went wrong first</li>')
     if any(zone.inclusion for zone in fence.zones):

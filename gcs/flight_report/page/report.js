@@ -123,7 +123,7 @@
     }));
     return {
       // Without a second scale its room is left free, so that all plots have one time axis.
-      width, height: HEIGHT, axes, scales, padding: [8, right ? 0 : 44, 0, 0],
+      width, height: HEIGHT, axes, scales, padding: [8, right ? 0 : width < 500 ? 12 : 44, 0, 0],
       series: [{ label: "at", value: (u, value) => (value == null ? "–" : clock(value)) }, ...series],
       cursor: { sync: { key: "flight" }, drag: { x: true, y: false }, points: { size: 6 } },
       hooks: { draw: [drawMarks, drawLimits(chart)], setScale: [zoomAll] },
