@@ -35,7 +35,8 @@ def page(flight: Flight) -> str:
     """The whole page.  Everything that comes from the record is escaped."""
     vehicle = flight.main_vehicle()
     data = chart_data(flight, vehicle)
-    script = f"{_asset('uPlot.iife.min.js')}\n{_asset('report.js')}"
+    licence = f"/* uPlot 1.6.32\n\n{_asset('uPlot.LICENSE')}*/"
+    script = f"{licence}\n{_asset('uPlot.iife.min.js')}\n{_asset('report.js')}"
     parts = {
         "title": text(flight.name),
         "policy": _content_policy(script),

@@ -195,7 +195,10 @@ class TestSelfContained:
         assert hashlib.sha256(library).hexdigest() == (
             "19c8d4c6ad88929a79f4ae49d6f7161566dfd0ba3d15cc495e974f787eb78f1f"
         )
-        assert "MIT License" in (folder / "uPlot.LICENSE").read_text()
+        licence = (folder / "uPlot.LICENSE").read_text()
+        assert "MIT License" in licence
+        # Which is to be in every copy.
+        assert licence in page(Flight("x.mcap", 1))
 
 
 class TestPartialRecords:
