@@ -9,6 +9,7 @@ from gcs.flight_report.facts import (
     Cells,
     Decision,
     Estimator,
+    Fact,
     Gps,
     LogLine,
     Machine,
@@ -101,7 +102,10 @@ class TestGps:
         assert "until the end" in finding.detail
 
     def test_a_receiver_that_is_not_told_of_any_more(self) -> None:
-        facts = [(0.0, self.GOOD), *((float(t), UNDISTURBED) for t in range(1, 8))]
+        facts: list[tuple[float, Fact]] = [
+            (0.0, self.GOOD),
+            *((float(t), UNDISTURBED) for t in range(1, 8)),
+        ]
         (finding,) = found(GpsDetector(), facts).findings
         assert finding.title == "nothing more was told of the GPS"
         assert finding.t_s == 4.0
@@ -200,7 +204,7 @@ class TestBattery:
 
     def test_cells_that_are_told_are_not_guessed(self) -> None:
         # quad_2015.tlog came down to 6.98 V of three cells.
-        facts = [(0.0, Cells(3)), (1.0, Battery(6.981, 1.0, 20.0))]
+        facts: list[tuple[float, Fact]] = [(0.0, Cells(3)), (1.0, Battery(6.981, 1.0, 20.0))]
         result = found(BatteryDetector(), facts)
         assert "2.33 V a cell of 3" in check(result, "Voltage").measured
         assert "guessed" not in check(result, "Voltage").measured
@@ -321,7 +325,7 @@ class TestFailsafes:
         assert found(FailsafeDetector(), [(1.0, Text(2, "GCS Failsafe"))], ground).findings == []
 
     def test_the_mode_that_follows_is_told(self) -> None:
-        facts = [
+        facts: list[tuple[float, Fact]] = [
             (1.0, UNDISTURBED),
             (4.0, Text(2, "Failsafe activated")),
             (5.5, Status(True, "AUTO.RTL", "IN_AIR", None, None)),
@@ -330,7 +334,7 @@ class TestFailsafes:
         assert finding.detail == "it said: Failsafe activated; then mode AUTO.RTL after 1.5 s"
 
     def test_a_mode_much_later_is_none_of_its_doing(self) -> None:
-        facts = [
+        facts: list[tuple[float, Fact]] = [
             (1.0, UNDISTURBED),
             (4.0, Text(2, "Failsafe activated")),
             (30.0, Status(True, "AUTO.RTL", "IN_AIR", None, None)),

@@ -155,7 +155,7 @@ class TestPartialRecords:
         assert "No vehicle was heard" in what_happened(flight, None)
 
     def test_a_flight_without_a_position(self, tmp_path: Path) -> None:
-        items = [heartbeat(), status(armed=True, landed="IN_AIR"), heartbeat()]
+        items: list[RecordItem] = [heartbeat(), status(armed=True, landed="IN_AIR"), heartbeat()]
         vehicle = scanned(tmp_path, items).main_vehicle()
         assert vehicle is not None
         assert vehicle.track.points == []
