@@ -81,7 +81,9 @@ def what_went_wrong(vehicle: VehicleFlight | None) -> str:
         return ""
     if first is None:
         looked = sum(check.level is not None for check in vehicle.checks)
-        return f"Nothing went wrong: {count(looked, 'value')} looked at, all within their limits."
+        if not looked:
+            return "Nothing is known of its health: the record has none of the values looked at."
+        return f"Nothing went wrong: of {count(looked, 'value')} that were looked at, none was bad."
     detail = f" ({first.detail})" if first.detail else ""
     return f"At {clock(first.t_s)} {first.title}{detail}."
 

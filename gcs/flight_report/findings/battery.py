@@ -49,6 +49,8 @@ class BatteryDetector:
             self.cells = max(1, ceil(voltage_v / FULL_CELL_V))
         if not now.armed:
             self.recent.clear()
+            for spells in (self.low, self.critical, self.empty):
+                spells.update(now.t_s, False)
             return
         if remaining_pct is not None:
             self.remaining.update(now.t_s, remaining_pct)

@@ -32,7 +32,11 @@ class EstimatorDetector:
     failsafe_s: float | None = None
 
     def handle(self, fact: Fact, now: Situation) -> None:
-        if not isinstance(fact, Estimator) or fact.autopilot != now.autopilot or not now.armed:
+        if not isinstance(fact, Estimator) or fact.autopilot != now.autopilot:
+            return
+        if not now.armed:
+            for spells in (self.two, *(ratio.spells for ratio in self.ratios)):
+                spells.update(now.t_s, False)
             return
         limit = REJECTED[fact.autopilot].value
         values = (fact.velocity, fact.position, fact.height, fact.compass)

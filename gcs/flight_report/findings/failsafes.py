@@ -64,6 +64,8 @@ TEXTS = (
 class FailsafeDetector:
     findings: list[Finding] = field(default_factory=list)
     mode_before: str = ""
+    waits_for_mode: bool = False
+    """The mode that follows the last finding is still to come."""
 
     def handle(self, fact: Fact, now: Situation) -> None:
         match fact:
@@ -80,6 +82,7 @@ class FailsafeDetector:
         row = next((row for row in TEXTS if row.pattern.search(text)), None)
         if row is not None:
             words = f"it said: {text}"
+            self.waits_for_mode = True
             self.findings.append(
                 Finding("failsafe", row.level, now.t_s, row.title, words, source=row.source)
             )
@@ -87,8 +90,9 @@ class FailsafeDetector:
     def _mode(self, mode: str, now: Situation) -> None:
         changed = bool(self.mode_before) and mode != self.mode_before
         self.mode_before = mode
-        if not changed or not self.findings:
+        if not changed or not self.waits_for_mode:
             return
+        self.waits_for_mode = False
         last = self.findings[-1]
         since_s = now.t_s - last.t_s
         if since_s <= FOLLOWS_WITHIN_S:

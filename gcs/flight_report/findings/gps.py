@@ -44,6 +44,8 @@ class GpsDetector:
         fixed = fact.fix_type >= FIX_3D
         self.had_fix |= fixed
         if not now.armed:
+            for spells in (self.no_fix, self.few, self.diluted):
+                spells.update(now.t_s, False)
             return
         lost = self.had_fix and not fixed
         if lost:

@@ -47,7 +47,11 @@ class VibrationDetector:
     clipped_s: float = 0.0
 
     def handle(self, fact: Fact, now: Situation) -> None:
-        if not isinstance(fact, Vibration) or not now.armed:
+        if not isinstance(fact, Vibration):
+            return
+        if not now.armed:
+            self.fair.update(now.t_s, False)
+            self.bad.update(now.t_s, False)
             return
         level = level_of(fact, now.autopilot) if now.in_air else 0.0
         kind = now.autopilot if now.autopilot in FAIR else "ardupilot"

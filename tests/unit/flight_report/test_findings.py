@@ -95,6 +95,14 @@ class TestGps:
         assert (finding.t_s, finding.until_s, finding.level) == (10.0, 18.0, Level.CRITICAL)
         assert "for 8.0 s" in finding.detail
 
+    def test_a_spell_ends_where_the_vehicle_is_disarmed(self) -> None:
+        diluted, detector, now = Gps(3, 14, 2.6, None), GpsDetector(), flying()
+        for t_s, armed in ((0.0, True), (10.0, True), (10.5, False), (500.0, True), (501.0, True)):
+            now.t_s, now.armed = t_s, armed
+            detector.handle(diluted, now)
+        (finding,) = detector.result(now).findings
+        assert "2 times, 11.5 s in all" in finding.detail
+
     def test_a_fix_that_is_not_regained(self) -> None:
         facts = [(0.0, self.GOOD), (10.0, Gps(0, 0, None, None))]
         (finding,) = found(GpsDetector(), facts, end_s=12.0).findings
@@ -332,6 +340,18 @@ class TestFailsafes:
         ]
         (finding,) = found(FailsafeDetector(), facts).findings
         assert finding.detail == "it said: Failsafe activated; then mode AUTO.RTL after 1.5 s"
+
+    def test_the_modes_after_that_are_not(self) -> None:
+        # px4_1_14_flight.tlog: POSCTL after the text, then what the script asked for.
+        facts: list[tuple[float, Fact]] = [
+            (1.0, UNDISTURBED),
+            (4.0, Text(2, "Failsafe activated")),
+            (5.6, Status(True, "POSCTL", "IN_AIR", None, None)),
+            (10.6, Status(True, "AUTO.LOITER", "IN_AIR", None, None)),
+        ]
+        (finding,) = found(FailsafeDetector(), facts).findings
+        assert "POSCTL" in finding.detail
+        assert "AUTO.LOITER" not in finding.detail
 
     def test_a_mode_much_later_is_none_of_its_doing(self) -> None:
         facts: list[tuple[float, Fact]] = [
