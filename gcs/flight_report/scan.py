@@ -11,9 +11,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
-from mcap.records import Attachment, Channel, Metadata
+from mcap.records import Attachment, Channel, Metadata, Schema
 
-from gcs.flight_report.facts import Decision, LogLine
+from gcs.flight_report.facts import Decision, Fact, Identity, LogLine, Text
 from gcs.flight_report.flight import Fence, Flight, VehicleFlight
 from gcs.flight_report.opening import open_flight
 from gcs.flight_report.topics import UNREADABLE, Source, source_of
@@ -25,6 +25,9 @@ from gcs.report import FenceShape
 
 _POLICY = "policy.toml"
 _MAX_VEHICLES = 250
+VEHICLE_NODE = "vehicle"
+_SEVERITIES = {5: 2, 4: 3, 3: 4, 2: 6, 1: 7}
+"""Level of a log line -> MAV_SEVERITY."""
 
 
 class _Point(msgspec.Struct):
@@ -72,6 +75,8 @@ def scan(path: Path, progress: Callable[[Condition], None] | None = None) -> Fli
         match record:
             case Message():
                 scanning.message(record)
+            case Schema():
+                scanning.schema(record)
             case Channel():
                 scanning.channel(record)
             case Metadata(name=name, metadata=values):
@@ -90,16 +95,22 @@ class Scan:
 
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
+        self._schemas: dict[int, bytes] = {}
         self._sources: dict[int, Source] = {}
+        self._says_texts = False
         self._fence_channel: int | None = None
         self._vehicles: dict[int, VehicleScan] = {}
         self._last_ns = 0
         self._margins = (0.0, 0.0)
 
+    def schema(self, schema: Schema) -> None:
+        self._schemas[schema.id] = schema.data
+
     def channel(self, channel: Channel) -> None:
         if channel.topic == FENCE_TOPIC:
             self._fence_channel = channel.id
-        source = source_of(channel.topic)
+        self._says_texts |= channel.topic.endswith("/STATUSTEXT")
+        source = source_of(channel.topic, self._schemas.get(channel.schema_id, b""))
         if source is not None:
             self._sources.setdefault(channel.id, source)
 
@@ -138,14 +149,22 @@ class Scan:
             flight.damaged += 1
             return
         for fact in facts:
-            match fact:
-                case Decision(vehicle=vehicle):
-                    self._vehicle(vehicle).handle(fact, t_s)
-                case LogLine():
-                    for scan in self._vehicles.values():
-                        scan.handle(fact, t_s)
-                case _:
-                    self._vehicle(source.vehicle).handle(fact, t_s)
+            self._fact(fact, source, t_s)
+
+    def _fact(self, fact: Fact, source: Source, t_s: float) -> None:
+        match fact:
+            case Decision(vehicle=sysid):
+                self._vehicle(sysid).handle(fact, t_s)
+            case LogLine(level, node, text):
+                # Where there is no STATUSTEXT, the log has what the vehicle said.
+                said = node == VEHICLE_NODE and not self._says_texts
+                for vehicle in self._vehicles.values():
+                    vehicle.handle(Text(_SEVERITIES.get(level, 6), text) if said else fact, t_s)
+            case _:
+                vehicle = self._vehicle(source.vehicle or min(self._vehicles, default=1))
+                if source.autopilot and not vehicle.flight.autopilot:
+                    vehicle.handle(Identity(source.autopilot, "vehicle"), t_s)
+                vehicle.handle(fact, t_s)
 
     def finish(self, condition: Condition) -> Flight:
         flight = self.flight

@@ -83,7 +83,7 @@ def what_went_wrong(vehicle: VehicleFlight | None) -> str:
         looked = sum(check.level is not None for check in vehicle.checks)
         if not looked:
             return "Nothing is known of its health: the record has none of the values looked at."
-        return f"Nothing went wrong: of {count(looked, 'value')} that were looked at, none was bad."
+        return f"Nothing went wrong. Values that were looked at: {looked}, none of them bad."
     detail = f" ({first.detail})" if first.detail else ""
     return f"At {clock(first.t_s)} {first.title}{detail}."
 

@@ -30,6 +30,7 @@ from gcs.flight_report.facts import (
     Vibration,
 )
 from gcs.flight_report.log_line import read_log_line
+from gcs.flight_report.onboard_logs import AUTOPILOT_OF_PREFIX, onboard_reader
 from gcs.protocol.autopilot import autopilot_of, type_name
 from gcs.report import PointEnu
 from gcs.wire.ids import MavAutopilot, MavType
@@ -47,16 +48,18 @@ _NOT_VEHICLES = frozenset(
 class Source:
     """Whose channel it is, and how its messages are read.
 
-    `vehicle` 0 is the whole record's; a Decision names its own.  `heard` says that a message is a
-    sign of life of the vehicle.
+    `vehicle` 0 is the whole record's, or its only vehicle's; a Decision names its own.  `heard`
+    says that a message is a sign of life of the vehicle.
     """
 
     vehicle: int
     read: Read | None
     heard: bool = False
+    autopilot: str = ""
+    """Whose own log it is."""
 
 
-def source_of(topic: str) -> Source | None:
+def source_of(topic: str, schema: bytes = b"") -> Source | None:
     """None for a topic that a report does not use."""
     match topic.split("/"):
         case ["", "mavlink", sysid, compid, name] if sysid.isdecimal() and compid.isdecimal():
@@ -70,6 +73,9 @@ def source_of(topic: str) -> Source | None:
             return Source(int(sysid), _machine)
         case ["", "gate", "decision"]:
             return Source(0, _decision)
+        case ["", "dataflash" | "ulog" as log, name]:
+            read = onboard_reader(log, name, schema)
+            return read and Source(0, read, autopilot=AUTOPILOT_OF_PREFIX[log])
         case ["", "log"]:
             return Source(0, _log)
         case _:

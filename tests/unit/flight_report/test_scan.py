@@ -7,10 +7,13 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from gcs.flight_report.facts import Decision, Estimator, Gps, Identity, LogLine, Text, Vibration
 from gcs.flight_report.flight import Flight
 from gcs.flight_report.log_line import read_log_line
+from gcs.flight_report.render import page
 from gcs.flight_report.scan import scan
 from gcs.flight_report.summary import (
     consequences,
@@ -336,3 +339,52 @@ def test_a_gate_condition_reaches_the_findings(tmp_path: Path) -> None:
     assert vehicle is not None
     assert [f.title for f in vehicle.went_wrong] == ["the gate called HOLD: the GPS was lost"]
     assert [value for _, value in vehicle.lanes.severity.changes] == ["NOMINAL", "HOLD"]
+
+
+class TestWhatTheVehicleSaid:
+    LINE = LogEvent(START_NS, 4, "vehicle", "Failsafe activated")
+    """As the import of a log without STATUSTEXT writes it."""
+
+    def test_a_line_of_the_log_where_there_is_no_statustext(self, tmp_path: Path) -> None:
+        items = [heartbeat(), status(armed=True, landed="IN_AIR"), self.LINE]
+        vehicle = scanned(tmp_path, items).main_vehicle()
+        assert vehicle is not None
+        assert [(said.severity, said.text) for said in vehicle.said] == [(3, "Failsafe activated")]
+        assert [f.title for f in vehicle.went_wrong] == ["the vehicle's failsafe acted"]
+
+    def test_it_is_not_told_twice(self, tmp_path: Path) -> None:
+        text = b"Failsafe activated".ljust(50, b"\0")
+        items = [
+            heartbeat(),
+            status(armed=True, landed="IN_AIR"),
+            frame("STATUSTEXT", "<B50sHB", 2, text, 0, 0),
+            self.LINE,
+        ]
+        vehicle = scanned(tmp_path, items).main_vehicle()
+        assert vehicle is not None
+        assert len(vehicle.said) == len(vehicle.went_wrong) == 1
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    items = [*a_flight_that_loses_gps(), *a_flight()]
+    return record(tmp_path_factory.mktemp("whole"), items, 125 * MS).read_bytes()
+
+
+@given(st.data())
+def test_damage_is_counted_or_told_and_never_a_crash(
+    whole: bytes, tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
+) -> None:
+    places = data.draw(st.lists(st.integers(0, len(whole) - 1), max_size=20))
+    values = data.draw(st.binary(min_size=len(places), max_size=len(places)))
+    damaged = bytearray(whole[: data.draw(st.integers(0, len(whole)))])
+    for place, value in zip(places, values, strict=True):
+        if place < len(damaged):
+            damaged[place] = value
+    path = tmp_path_factory.mktemp("damaged") / "damaged.mcap"
+    path.write_bytes(damaged)
+    try:
+        flight = scan(path)
+    except BadRecordError:
+        return
+    assert page(flight).startswith("<!doctype html>")
