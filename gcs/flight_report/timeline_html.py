@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.html_text import text
 from gcs.flight_report.lanes import Lane, Span
-from gcs.flight_report.projection import ticks
 from gcs.flight_report.words import clock
 
 SHORTEST_SHARE = 0.004
@@ -15,6 +12,8 @@ SHORTEST_SHARE = 0.004
 SHORTEST_S = 0.4
 """Nor is a state shorter than this, which is often no more than a step on the way."""
 MAX_SPANS = 400
+_STEPS_S = (0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 43200, 86400)
+_MOST_MARKS = 6
 
 _KINDS = {
     "calm": "GROUNDED NO_VEHICLE ON_GROUND NONE NOMINAL disarmed AUTO.READY",
@@ -62,7 +61,8 @@ def _bar(span: Span, end_s: float, *, severity: bool) -> str:
 
 
 def _axis(end_s: float) -> str:
-    marks: Iterable[float] = ticks(0.0, end_s, 6)
+    step_s = next((step for step in _STEPS_S if end_s / step <= _MOST_MARKS), end_s)
+    marks = (number * step_s for number in range(int(end_s / step_s) + 1))
     labels = "".join(
         f'<span style="left:{100.0 * t_s / end_s:.3f}%">{clock(t_s).removesuffix(".0")}</span>'
         for t_s in marks

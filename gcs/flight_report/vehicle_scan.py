@@ -27,7 +27,7 @@ from gcs.flight_report.findings.estimator import EstimatorDetector
 from gcs.flight_report.findings.failsafes import FailsafeDetector
 from gcs.flight_report.findings.finding import Detector, Situation
 from gcs.flight_report.findings.gate import GateDetector
-from gcs.flight_report.findings.gps import GpsDetector
+from gcs.flight_report.findings.gps import FIX_3D, GpsDetector
 from gcs.flight_report.findings.link import LinkDetector
 from gcs.flight_report.findings.vibration import VibrationDetector
 from gcs.flight_report.flight import (
@@ -110,8 +110,9 @@ class VehicleScan:
                 self._battery(fact, t_s)
             case Vibration(x, y, z):
                 plots.vibration.add(t_s, (x, y, z))
-            case Gps(_, satellites, hdop):
-                plots.gps.add(t_s, (satellites, hdop))
+            case Gps(fix_type, satellites, hdop):
+                # Without a fix it is a number that means unknown.
+                plots.gps.add(t_s, (satellites, hdop if fix_type >= FIX_3D else None))
             case Estimator(autopilot, velocity, position, height, compass):
                 if autopilot == self.now.autopilot:
                     plots.estimator.add(t_s, (velocity, position, height, compass))

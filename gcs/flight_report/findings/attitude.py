@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Fact, Pose
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
+from gcs.flight_report.words import clock
 
 FAILURE = Limit(60.0, "deg", "FD_FAIL_R and FD_FAIL_P of a PX4 1.14: its failure detector acts")
 
@@ -36,7 +37,7 @@ class AttitudeDetector:
                     Level.CRITICAL,
                     self.beyond.first_s,
                     f"the vehicle leant by more than {FAILURE.value:g} degrees",
-                    f"up to {most:.0f} degrees at {self.tilt.t_s:.1f} s; {self.beyond.words}",
+                    f"up to {most:.0f} degrees at {clock(self.tilt.t_s)}; {self.beyond.words}",
                     source=FAILURE.source,
                 )
             )

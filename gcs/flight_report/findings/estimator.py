@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Estimator, Fact
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
+from gcs.flight_report.words import clock
 
 REJECTED = {
     "px4": Limit(1.0, "", "MAVLink, ESTIMATOR_STATUS: above 1 a measurement is rejected"),
@@ -62,7 +63,7 @@ class EstimatorDetector:
                         Level.WARNING,
                         ratio.spells.first_s,
                         f"the estimator's {ratio.name} disagreed with the sensors",
-                        f"ratio up to {worst:.2f} at {ratio.worst.t_s:.1f} s, above "
+                        f"ratio up to {worst:.2f} at {clock(ratio.worst.t_s)}, above "
                         f"{limit.value:g} {ratio.spells.words}",
                         source=limit.source,
                     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Fact, Gps
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
+from gcs.flight_report.words import clock
 
 _WIKI = "ArduPilot wiki, Diagnosing problems using Logs"
 
@@ -109,7 +110,7 @@ class GpsDetector:
                     level,
                     self.diluted.first_s,
                     f"the GPS position was imprecise: HDOP above {HDOP_BAD.value:g}",
-                    f"up to {worst:.2f} at {self.hdop.t_s:.1f} s; {self.diluted.words}",
+                    f"up to {worst:.2f} at {clock(self.hdop.t_s)}; {self.diluted.words}",
                     source=HDOP_BAD.source,
                 )
             )
@@ -129,7 +130,7 @@ class GpsDetector:
                     level,
                     self.few.first_s,
                     f"fewer than {SATELLITES_NEEDED.value:g} satellites",
-                    f"down to {fewest:.0f} at {self.satellites.t_s:.1f} s; {self.few.words}",
+                    f"down to {fewest:.0f} at {clock(self.satellites.t_s)}; {self.few.words}",
                     source=SATELLITES_NEEDED.source,
                 )
             )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Fact, Status
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
+from gcs.flight_report.words import clock
 
 GAP = Limit(2.0, "s", "two heartbeats missed; MAVLink's heartbeat comes once a second")
 LOST = Limit(3.5, "s", "heartbeat_age_s of the default policy: there is no vehicle any more")
@@ -90,7 +91,7 @@ class LinkDetector:
                     Level.WARNING,
                     self.lossy.first_s,
                     f"more than {LOSS.value:g} % of the vehicle's messages were lost",
-                    f"up to {most:.0f} % at {self.loss.t_s:.1f} s; {self.lossy.words}",
+                    f"up to {most:.0f} % at {clock(self.loss.t_s)}; {self.lossy.words}",
                     source=LOSS.source,
                 )
             )

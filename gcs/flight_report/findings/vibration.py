@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Fact, Vibration
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
+from gcs.flight_report.words import clock
 
 _WIKI = "ArduPilot wiki, Measuring Vibration"
 _REVIEW = "PX4 Flight Review, configured_plots.py, Vibration Metrics"
@@ -85,7 +86,7 @@ class VibrationDetector:
                     level,
                     spells.first_s,
                     f"vibration above {beyond.value:g} {beyond.unit}",
-                    f"up to {worst:.1f} {beyond.unit}, at {self.worst.t_s:.1f} s; "
+                    f"up to {worst:.1f} {beyond.unit}, at {clock(self.worst.t_s)}; "
                     f"above the limit {spells.words}",
                     source=beyond.source,
                 )

@@ -5,6 +5,8 @@
   const button = document.getElementById("theme");
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   const PRINT_WIDTH = 660, HEIGHT = 190;
+  const TIME_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 43200, 86400];
+  const TURN_STEPS = [1, 2, 5, 10, 15, 30, 45, 90, 180];
   let chosen = "";
   let plots = [];
 
@@ -102,8 +104,8 @@
     };
     const right = chart.lines.some((each) => each.axis);
     const axes = [
-      { ...axis, values: (u, at) => at.map(tick), size: 28, space: 70 },
-      { ...axis, size: 44, values: chart.circle ? (u, at) => at.map(compass) : undefined },
+      { ...axis, values: (u, at) => at.map(tick), incrs: TIME_STEPS, size: 28, space: 70 },
+      { ...axis, size: 44, values: chart.circle ? (u, at) => at.map(compass) : undefined, incrs: chart.circle ? TURN_STEPS : undefined },
     ];
     if (right) axes.push({ ...axis, scale: "right", side: 1, size: 44, grid: { show: false } });
     const scales = {
