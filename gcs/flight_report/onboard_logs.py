@@ -95,11 +95,11 @@ def _vibe(fields: PackedFields) -> Read:
     clips = [fields.value(name) for name in ("Clip", "Clip0", "Clip1", "Clip2")]
 
     def facts(data: bytes) -> list[Fact]:
-        levels = [read(data) for read in (x, y, z)]
-        if imu(data) or None in levels:
+        x_level, y_level, z_level = x(data), y(data), z(data)
+        if imu(data) or x_level is None or y_level is None or z_level is None:
             return []
         clipped = sum(int(read(data) or 0) for read in clips)
-        return [Vibration(*(level or 0.0 for level in levels), clipped)]
+        return [Vibration(x_level, y_level, z_level, clipped)]
 
     return facts
 

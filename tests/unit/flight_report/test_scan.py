@@ -346,7 +346,7 @@ class TestWhatTheVehicleSaid:
     """As the import of a log without STATUSTEXT writes it."""
 
     def test_a_line_of_the_log_where_there_is_no_statustext(self, tmp_path: Path) -> None:
-        items = [heartbeat(), status(armed=True, landed="IN_AIR"), self.LINE]
+        items: list[RecordItem] = [heartbeat(), status(armed=True, landed="IN_AIR"), self.LINE]
         vehicle = scanned(tmp_path, items).main_vehicle()
         assert vehicle is not None
         assert [(said.severity, said.text) for said in vehicle.said] == [(3, "Failsafe activated")]
@@ -354,7 +354,7 @@ class TestWhatTheVehicleSaid:
 
     def test_it_is_not_told_twice(self, tmp_path: Path) -> None:
         text = b"Failsafe activated".ljust(50, b"\0")
-        items = [
+        items: list[RecordItem] = [
             heartbeat(),
             status(armed=True, landed="IN_AIR"),
             frame("STATUSTEXT", "<B50sHB", 2, text, 0, 0),
