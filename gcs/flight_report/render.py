@@ -137,7 +137,8 @@ def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
 def _consequence(later: Finding, first: Finding) -> str:
     after_s = later.t_s - first.t_s
     when = "at the same time" if after_s < 0.05 else f"{after_s:.1f} s later"
-    return f"<li><span>{when}</span> {text(later.title)}</li>"
+    detail = f"<em>{text(later.detail)}</em>" if later.detail else ""
+    return f"<li><span>{when}</span><div>{text(later.title)} {detail}</div></li>"
 
 
 def _record_notes(flight: Flight, vehicle: VehicleFlight | None) -> list[str]:

@@ -19,10 +19,10 @@ from gcs.flight_report.opening import open_flight
 from gcs.flight_report.topics import UNREADABLE, Source, source_of
 from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
-from gcs.record.fence_topic import FENCE_TOPIC
 from gcs.record.reading import Condition, Message
 from gcs.report import FenceShape
 
+_FENCE = "/gate/fence"
 _POLICY = "policy.toml"
 _MAX_VEHICLES = 250
 VEHICLE_NODE = "vehicle"
@@ -30,36 +30,10 @@ _SEVERITIES = {5: 2, 4: 3, 3: 4, 2: 6, 1: 7}
 """Level of a log line -> MAV_SEVERITY."""
 
 
-class _Point(msgspec.Struct):
-    east_m: float
-    north_m: float
-
-
-class _Zone(msgspec.Struct):
-    name: str
-    inclusion: bool
-    corners: list[_Point] = []
-    centre: _Point | None = None
-    radius_m: float = 0.0
-    floor_up_m: float | None = None
-    ceiling_up_m: float | None = None
-
-    def shape(self) -> FenceShape:
-        return FenceShape(
-            self.name,
-            self.inclusion,
-            [(corner.east_m, corner.north_m) for corner in self.corners],
-            None if self.centre is None else (self.centre.east_m, self.centre.north_m),
-            self.radius_m,
-            self.floor_up_m,
-            self.ceiling_up_m,
-        )
-
-
 class _FenceMessage(msgspec.Struct):
-    """`/geofence/zones`; a margin that is not there is the policy's."""
+    """`/gate/fence`; a margin that is not there is the policy's."""
 
-    zones: list[_Zone]
+    zones: list[FenceShape]
     margin_h_m: float | None = None
     margin_v_m: float | None = None
 
@@ -107,7 +81,7 @@ class Scan:
         self._schemas[schema.id] = schema.data
 
     def channel(self, channel: Channel) -> None:
-        if channel.topic == FENCE_TOPIC:
+        if channel.topic == _FENCE:
             self._fence_channel = channel.id
         self._says_texts |= channel.topic.endswith("/STATUSTEXT")
         source = source_of(channel.topic, self._schemas.get(channel.schema_id, b""))
@@ -194,8 +168,7 @@ class Scan:
         except msgspec.MsgspecError:
             self.flight.damaged += 1
             return
-        zones = [zone.shape() for zone in found.zones]
-        self.flight.fence = Fence(zones, found.margin_h_m or 0.0, found.margin_v_m or 0.0)
+        self.flight.fence = Fence(found.zones, found.margin_h_m or 0.0, found.margin_v_m or 0.0)
 
 
 def _is_vehicle(flight: VehicleFlight) -> bool:

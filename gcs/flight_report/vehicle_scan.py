@@ -25,7 +25,7 @@ from gcs.flight_report.findings.attitude import AttitudeDetector
 from gcs.flight_report.findings.battery import BatteryDetector
 from gcs.flight_report.findings.estimator import EstimatorDetector
 from gcs.flight_report.findings.failsafes import FailsafeDetector
-from gcs.flight_report.findings.finding import Detector, Situation
+from gcs.flight_report.findings.finding import Detector, Finding, Situation
 from gcs.flight_report.findings.gate import GateDetector
 from gcs.flight_report.findings.gps import FIX_3D, GpsDetector
 from gcs.flight_report.findings.link import LinkDetector
@@ -41,6 +41,8 @@ from gcs.frames import Vec3
 
 _IN_AIR = frozenset({"IN_AIR", "TAKEOFF", "LANDING"})
 _ON_GROUND = "ON_GROUND"
+_LATER = {"failsafe": 1, "gate": 2, "request": 3}
+"""Of findings at the same time, what follows from what: sensors, vehicle, gate, requests."""
 _STEP_S = 2.0
 """Between two reports of the state that are farther apart nothing is counted as flown."""
 
@@ -89,7 +91,7 @@ class VehicleScan:
             result = detector.result(self.now)
             flight.checks += result.checks
             flight.findings += result.findings
-        flight.findings.sort(key=lambda finding: finding.t_s)
+        flight.findings.sort(key=_in_order)
         if self.now.flying:
             flight.totals.landed_s = None
         return flight
@@ -206,3 +208,8 @@ class VehicleScan:
         request.told(t_s, fact)
         if fact.phase != "verdict" or fact.outcome != "accepted":
             self._open_requests.pop(fact.request_id, None)
+
+
+def _in_order(finding: Finding) -> tuple[float, int, float]:
+    """By time; within a tenth of a second, what comes first as a cause."""
+    return round(finding.t_s, 1), _LATER.get(finding.subject, 0), finding.t_s

@@ -55,12 +55,15 @@ class GateDetector:
     refused: Counter[str] = field(default_factory=Counter)
     accepted: int = 0
     seen: bool = False
+    stood: Machine | None = None
 
     def handle(self, fact: Fact, now: Situation) -> None:
         match fact:
             case Machine(event=event):
                 self.seen = True
-                if now.armed and event in EVENTS:
+                # The record repeats where the machine stands, once a second and at its end.
+                again, self.stood = fact == self.stood, fact
+                if now.armed and event in EVENTS and not again:
                     level, title = EVENTS[event]
                     self._found(level, now.t_s, title, f"the gate went to {fact.state}")
             case Decision():
@@ -80,7 +83,7 @@ class GateDetector:
         asked_for = fact.code in ("OPERATOR", "")
         if fact.outcome in _ENDED_BADLY and not (fact.outcome == "aborted" and asked_for):
             title = f"{fact.word} #{fact.request_id} {_ending(fact.outcome)}"
-            self._found(Level.WARNING, now.t_s, title, fact.sentence)
+            self._found(Level.WARNING, now.t_s, title, fact.sentence, "request")
 
     def _condition(self, text: str, now: Situation) -> None:
         found = _CONDITION.match(text)
@@ -91,9 +94,11 @@ class GateDetector:
         title = CONDITIONS.get(condition, condition.replace("_", " "))
         self._found(level, now.t_s, f"the gate called {severity}: {title}", why or condition)
 
-    def _found(self, level: Level, t_s: float, title: str, detail: str) -> None:
+    def _found(
+        self, level: Level, t_s: float, title: str, detail: str, subject: str = "gate"
+    ) -> None:
         if len(self.findings) < MAX_FINDINGS:
-            self.findings.append(Finding("gate", level, t_s, title, detail, source=_SOURCE))
+            self.findings.append(Finding(subject, level, t_s, title, detail, source=_SOURCE))
 
     def result(self, now: Situation) -> Result:
         refused = sum(self.refused.values())

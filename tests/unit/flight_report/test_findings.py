@@ -378,6 +378,12 @@ class TestGate:
         again = Machine("HOLDING", "reminder", "OURS", "NOMINAL", None)
         assert found(GateDetector(), [(6.0, again)]).findings == []
 
+    def test_what_the_record_repeats_is_one_finding(self) -> None:
+        breach = Machine("HOLDING", "breach predicted", "OURS", "NOMINAL", None)
+        moved = Machine("MOVING", "goal cleared", "OURS", "NOMINAL", None)
+        facts = [(6.0, breach), (7.0, breach), (8.0, moved), (9.0, breach)]
+        assert [f.t_s for f in found(GateDetector(), facts).findings] == [6.0, 9.0]
+
     def test_a_condition_with_its_severity_and_reason(self) -> None:
         line = LogLine(3, "state_and_safety", "HOLD: gps_lost: no fix, 0 satellites")
         (finding,) = found(GateDetector(), [(6.0, line)]).findings

@@ -341,6 +341,30 @@ def test_a_gate_condition_reaches_the_findings(tmp_path: Path) -> None:
     assert [value for _, value in vehicle.lanes.severity.changes] == ["NOMINAL", "HOLD"]
 
 
+def test_at_one_time_the_cause_stands_before_what_follows(tmp_path: Path) -> None:
+    ending = DecisionItem(
+        vehicle=1,
+        request_id=4,
+        source="operator",
+        word="goto",
+        phase="ending",
+        outcome="aborted",
+        code="FENCE_BREACH",
+        sentence="it would come to rest 0.96 m from the edge",
+        zone="yard",
+        goal=None,
+        numbers={},
+    )
+    brake = FsaItem(1, "HOLDING", 13, "MOVING", "breach predicted", "OURS", "NOMINAL", None)
+    items: list[RecordItem] = [heartbeat(), status(armed=True, landed="IN_AIR"), ending, brake]
+    vehicle = scanned(tmp_path, items, MS).main_vehicle()
+    assert vehicle is not None
+    assert [finding.title for finding in vehicle.went_wrong] == [
+        "the gate braked: it would have come out of the fence",
+        "goto #4 was aborted",
+    ]
+
+
 class TestWhatTheVehicleSaid:
     LINE = LogEvent(START_NS, 4, "vehicle", "Failsafe activated")
     """As the import of a log without STATUSTEXT writes it."""

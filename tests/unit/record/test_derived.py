@@ -88,9 +88,9 @@ def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None
         "/link/0/garbage": "mavlink/Garbage",
         "/session/input": "session.Input",
         "/gate/decision": "gate.Decision",
+        "/gate/fence": "gate.Fence",
         "/geofence": "foxglove.SceneUpdate",
         "/geofence/geojson": "foxglove.GeoJSON",
-        "/geofence/zones": "gate.Fence",
         "/mission": "foxglove.SceneUpdate",
         "/log": "foxglove.Log",
         "/tf_static": "foxglove.FrameTransforms",
@@ -344,37 +344,15 @@ def test_the_fence_is_on_the_map_where_the_origin_is_known(tmp_path: Path) -> No
 
 def test_without_an_origin_there_is_no_fence_on_the_map(tmp_path: Path) -> None:
     path = record(tmp_path, [FenceItem([], None)])
-    assert {message.topic for message in messages_of(path)} == {"/geofence", "/geofence/zones"}
+    assert {message.topic for message in messages_of(path)} == {"/geofence", "/gate/fence"}
 
 
 def test_the_fence_as_numbers(tmp_path: Path) -> None:
     path = record(tmp_path, a_flight())
-    (message,) = [m for m in messages_of(path) if m.topic == "/geofence/zones"]
-    told = json.loads(message.data)
-    assert {name: told[name] for name in ("zones", "origin")} == {
-        "zones": [
-            {
-                "name": "home",
-                "inclusion": True,
-                "corners": [],
-                "centre": {"east_m": 0.0, "north_m": 0.0},
-                "radius_m": 150.0,
-                "floor_up_m": 0.0,
-                "ceiling_up_m": 50.0,
-            },
-            {
-                "name": "tower",
-                "inclusion": False,
-                "corners": [
-                    {"east_m": 10, "north_m": 10},
-                    {"east_m": 20, "north_m": 10},
-                    {"east_m": 20, "north_m": 20},
-                ],
-                "floor_up_m": 0.0,
-            },
-        ],
-        "origin": {"lat_deg": 47.397742, "lon_deg": 8.545594, "alt_amsl_m": 488.0},
-    }
+    (message,) = [m for m in messages_of(path) if m.topic == "/gate/fence"]
+    home, tower = json.loads(message.data)["zones"]
+    assert (home["centre_en"], home["radius_m"]) == ([0.0, 0.0], 150.0)
+    assert (tower["inclusion"], tower["corners_en"]) == (False, [[10, 10], [20, 10], [20, 20]])
 
 
 def test_a_mission_is_a_line_of_numbered_points(tmp_path: Path) -> None:
@@ -412,7 +390,7 @@ def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
             "state:string state_id:integer before:string event:string control:string"
             " severity:string goal:goal"
         ),
-        "gate.Fence": "zones:array origin:object",
+        "gate.Fence": "zones:array origin:array",
         "session.Input": "kind:string data:object",
         "vehicle.Param": "name:string value:number",
         "vehicle.State": (
