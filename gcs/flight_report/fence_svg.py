@@ -11,6 +11,7 @@ from gcs.flight_report.projection import View
 from gcs.report import FenceShape
 
 _CORNERS = 72
+FARTHEST_PX = 1e7
 
 
 def zone_outline(zone: FenceShape) -> Sequence[tuple[float, float]]:
@@ -26,9 +27,8 @@ def fence_from_above(fence: Fence, view: View) -> list[str]:
     """A margin is a stroke of twice its width: inside, cut off by the zone; outside, under it."""
     parts = []
     for number, zone in enumerate(fence.zones):
-        points = " ".join(
-            f"{x:.1f},{y:.1f}" for x, y in (view.px(*corner) for corner in zone_outline(zone))
-        )
+        places = [view.px(*corner) for corner in zone_outline(zone)]
+        points = " ".join(f"{_drawable(x):.1f},{_drawable(y):.1f}" for x, y in places)
         if not points:
             continue
         shape = f'<polygon points="{points}"'
@@ -59,9 +59,7 @@ def fence_from_aside(fence: Fence, view: View, axis: int) -> list[str]:
         ceiling = box.top if zone.ceiling_up_m is None else zone.ceiling_up_m
         left, top = view.px(min(along), ceiling)
         right, bottom = view.px(max(along), floor)
-        # Far beyond the view the numbers say no more; viewers do not like them.
-        left, right = max(left, -1e4), min(right, 1e4)
-        top, bottom = max(top, -1e4), min(bottom, 1e4)
+        left, right, top, bottom = map(_drawable, (left, right, top, bottom))
         width, height = right - left, bottom - top
         if width <= 0 or height <= 0:
             continue
@@ -81,6 +79,11 @@ def fence_from_aside(fence: Fence, view: View, axis: int) -> list[str]:
             f'height="{height:.1f}"/></g>'
         )
     return parts
+
+
+def _drawable(pixels: float) -> float:
+    """Browsers draw no coordinates of any size; farther out nobody sees the difference."""
+    return max(-FARTHEST_PX, min(FARTHEST_PX, pixels))
 
 
 def _name(zone: FenceShape) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import dist, isfinite
+from math import dist
 from typing import assert_never
 
 from gcs.flight_report.facts import (
@@ -43,6 +43,8 @@ _IN_AIR = frozenset({"IN_AIR", "TAKEOFF", "LANDING"})
 _ON_GROUND = "ON_GROUND"
 _LATER = {"failsafe": 1, "gate": 2, "request": 3}
 """Of findings at the same time, what follows from what: sensors, vehicle, gate, requests."""
+NOT_ON_EARTH_M = 1e7
+"""A position farther from its origin, or not a number, is no position."""
 _STEP_S = 2.0
 """Between two reports of the state that are farther apart nothing is counted as flown."""
 
@@ -157,7 +159,7 @@ class VehicleScan:
         self.flight.plots.link.add(t_s, (fact.rx_hz, fact.lost_pct))
 
     def _pose(self, fact: Pose, t_s: float) -> None:
-        if not all(map(isfinite, fact.pos_enu)):
+        if not all(abs(metres) < NOT_ON_EARTH_M for metres in fact.pos_enu):
             return
         flight, totals = self.flight, self.flight.totals
         self._here = fact.pos_enu

@@ -213,14 +213,20 @@ class TestPartialRecords:
             [status(armed=False, landed="ON_GROUND")],
             [PoseItem(1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), UPRIGHT)],
             [PoseItem(1, (float("inf"), 0.0, 0.0), (0.0, 0.0, 0.0), UPRIGHT)],
+            [PoseItem(1, (1e308, -1e308, 1e308), (1e308, 0.0, 0.0), UPRIGHT)] * 2,
             [status(armed=True, landed="UNDEFINED", mode="")] * 2,
             [FenceItem([], None)],
             [FenceItem([FenceShape("open", False, [(1, 1), (2, 1), (1, 2)])], None)],
+            [
+                FenceItem([FenceShape("huge", True, [], (0.0, 0.0), 1e300, -1e300, 1e300)], None),
+                PoseItem(1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), UPRIGHT),
+            ],
             a_flight(),
         ],
         ids=[
             *("nothing", "one heartbeat", "a station alone", "one state", "one position"),
-            *("a position at infinity", "no landed state", "no zones", "an open zone"),
+            *("a position at infinity", "a position off the Earth", "no landed state"),
+            *("no zones", "an open zone", "a huge zone"),
             "one of everything",
         ],
     )
@@ -231,6 +237,7 @@ class TestPartialRecords:
         assert len(found.text) > 20
         data = json.loads(found.scripts[0])
         assert set(data) == {"seconds", "marks", "charts"}
+        assert not re.search(r"\b(nan|inf)\b", " ".join(str(tag) for tag in found.tags))
         told = json.loads(report_json(flight))
         assert told["messages"] == flight.messages
 
