@@ -213,7 +213,7 @@ def _grid(view: View, x_name: str, y_name: str) -> list[str]:
     for x in ticks(box.left, box.right, 7):
         at, _ = view.px(x, 0.0)
         parts.append(f'<path d="M{at:.1f} 0V{view.height_px:.1f}"/>')
-        if 24.0 < at < view.width_px - 84.0:
+        if 24.0 < at < view.width_px - 120.0:
             parts.append(
                 f'<text x="{at:.1f}" y="{view.height_px - 5:.1f}" text-anchor="middle">{x:g}</text>'
             )

@@ -8,6 +8,7 @@ from gcs.flight_report.words import clock, count, duration, metres, sentence
 
 _NAMES = {"px4": "PX4", "ardupilot": "ArduPilot"}
 CONSEQUENCES_WITHIN_S = 15.0
+SAME_TIME_S = 0.1
 MAX_CONSEQUENCES = 6
 
 
@@ -69,7 +70,7 @@ def consequences(vehicle: VehicleFlight, first: Finding) -> list[Finding]:
     later = [
         finding
         for finding in vehicle.went_wrong
-        if 0.0 <= finding.t_s - first.t_s <= CONSEQUENCES_WITHIN_S and finding is not first
+        if -SAME_TIME_S <= finding.t_s - first.t_s <= CONSEQUENCES_WITHIN_S and finding is not first
     ]
     return later[:MAX_CONSEQUENCES]
 

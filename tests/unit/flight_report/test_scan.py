@@ -363,6 +363,9 @@ def test_at_one_time_the_cause_stands_before_what_follows(tmp_path: Path) -> Non
         "the gate braked: it would have come out of the fence",
         "goto #4 was aborted",
     ]
+    first = first_trouble(vehicle)
+    assert first is not None
+    assert [later.title for later in consequences(vehicle, first)] == ["goto #4 was aborted"]
 
 
 class TestWhatTheVehicleSaid:
