@@ -21,12 +21,18 @@ from gcs.operator.errors import ExitError
     help="The page; without it, FILE with the suffix .html.",
 )
 @click.option(
+    "--vehicle",
+    type=click.IntRange(1, 255),
+    metavar="SYSID",
+    help="Whose flight the page is about; without it, that of the one that flew longest.",
+)
+@click.option(
     "--json",
     "as_json",
     is_flag=True,
     help="Print what was found as one JSON object; the page is written only with -o.",
 )
-def report(file: Path, output: Path | None, as_json: bool) -> None:
+def report(file: Path, output: Path | None, vehicle: int | None, as_json: bool) -> None:
     """One page about the flight in FILE: what happened, and what went wrong first.
 
     The page is one HTML file that needs no network: the path inside its fence, plots, states,
@@ -45,13 +51,19 @@ def report(file: Path, output: Path | None, as_json: bool) -> None:
         raise click.UsageError(f"{output}: the page would overwrite the record")
     with told(file), reading_progress(file, "reading") as progress:
         flight = scan(file, progress)
+    if vehicle is not None and vehicle not in flight.vehicles:
+        heard = ", ".join(map(str, sorted(flight.vehicles))) or "none"
+        raise ExitError(
+            ExitCode.USAGE, f"{file}: no vehicle {vehicle} in it", f"vehicles in it: {heard}"
+        )
+    flight.chosen = vehicle
     if output is not None:
         _write(output, page(flight))
     if as_json:
         click.echo(report_json(flight).decode())
         return
-    vehicle = flight.main_vehicle()
-    for line in (what_happened(flight, vehicle), what_went_wrong(vehicle)):
+    shown = flight.main_vehicle()
+    for line in (what_happened(flight, shown), what_went_wrong(shown)):
         if line:
             click.echo(line)
     click.echo(f"{output}: open it in a browser")

@@ -151,9 +151,13 @@ class Flight:
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     fence: Fence = field(default_factory=Fence)
     vehicles: dict[int, VehicleFlight] = field(default_factory=dict)
+    chosen: int | None = None
+    """The vehicle that the page is to be about; None: the main one."""
 
     def main_vehicle(self) -> VehicleFlight | None:
-        """The one that flew longest, else was armed longest, else said most."""
+        """The chosen one, else the one that flew longest, was armed longest, said most."""
+        if self.chosen in self.vehicles:
+            return self.vehicles[self.chosen]
         return max(
             self.vehicles.values(),
             key=lambda v: (v.totals.flying_s, v.totals.armed_s, v.messages),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from gcs.report import PoseItem, StatusItem
 from tests.unit.cli.command_line import gcs
 from tests.unit.flight_report.test_scan import a_flight_that_loses_gps
 from tests.unit.record.flights import MS, record
@@ -32,6 +33,25 @@ def test_it_is_written_where_it_is_told(flight: Path, tmp_path: Path) -> None:
     assert page.exists()
     assert not flight.with_suffix(".html").exists()
     assert [path for path in tmp_path.iterdir() if path.name.startswith(".")] == []
+
+
+def test_another_vehicle_of_a_fleet(tmp_path: Path) -> None:
+    upright = (1.0, 0.0, 0.0, 0.0)
+    states = [StatusItem(n, True, "OFFBOARD", "IN_AIR", 90.0, 16.0, 9.0, 0.0) for n in (1, 2)]
+    poses = [PoseItem(n, (0.0, 0.0, -5.0 * n), (0.0, 0.0, 0.0), upright) for n in (1, 2)]
+    path = record(tmp_path, [*states, *poses], step_ns=400 * MS)
+    page = tmp_path / "two.html"
+    assert gcs("log", "report", path, "--vehicle", "2", "-o", page).exit_code == 0
+    html = page.read_text(encoding="utf-8")
+    assert "vehicle 2</li>" in html
+    assert "Also in the record: Vehicle 1" in html
+
+
+def test_a_vehicle_that_is_not_there(flight: Path) -> None:
+    ended = gcs("log", "report", flight, "--vehicle", "9")
+    assert ended.exit_code == 2
+    assert "vehicles in it: 1" in ended.output
+    assert not flight.with_suffix(".html").exists()
 
 
 def test_json_alone_writes_no_page(flight: Path) -> None:
