@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
+from gcs.record.fence_topic import FenceTopic
 from gcs.record.json_topics import JsonTopics
 from gcs.record.topics import Deriver, Out
 from gcs.report import RecordItem
@@ -13,7 +14,7 @@ class Derived:
     """All derivers as one.  Without foxglove-sdk there are the JSON topics only."""
 
     def __init__(self) -> None:
-        self._parts: list[Deriver] = [JsonTopics()]
+        self._parts: list[Deriver] = [JsonTopics(), FenceTopic()]
         if find_spec("foxglove"):
             from gcs.record.foxglove_topics import FoxgloveTopics
 

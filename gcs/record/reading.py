@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import mmap
 import struct
+import sys
 import zlib
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
@@ -26,6 +27,8 @@ _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 _CHUNK = struct.Struct("<QQQII")
 _PIECE_BYTES = 16 * 1024
+_KEPT_BYTES = 16 * 1024 * 1024
+"""So much of a mapped file, once read, stays in memory."""
 
 _READERS: dict[int, Callable[[ReadDataStream], Schema | Channel | Attachment | Metadata]] = {
     Opcode.SCHEMA: Schema.read,
@@ -96,6 +99,7 @@ class Reading:
     def _records(self, data: mmap.mmap) -> Iterator[Record]:
         condition = self.condition
         start = len(MAGIC)
+        kept_from = 0
         while start + _RECORD.size <= condition.size:
             opcode, length = _RECORD.unpack_from(data, start)
             body = start + _RECORD.size
@@ -119,6 +123,8 @@ class Reading:
             else:
                 yield from self._take(opcode, data[body:end])
             start = condition.position = end
+            if end - kept_from >= _KEPT_BYTES:
+                kept_from = _release(data, kept_from, end)
         condition.position = condition.size
 
     def _inner(self, records: bytes) -> Iterator[Record]:
@@ -139,6 +145,17 @@ class Reading:
         else:
             if record is not None:
                 yield record
+
+
+def _release(data: mmap.mmap, start: int, end: int) -> int:
+    """Drop the pages before `end` from memory, where else a whole file would stay mapped.
+
+    Gives where the kept ones begin.  They can be read again, from the disk.
+    """
+    end -= end % mmap.PAGESIZE
+    if sys.platform != "win32":
+        data.madvise(mmap.MADV_DONTNEED, start, end - start)
+    return end
 
 
 def _message(body: bytes) -> Message:

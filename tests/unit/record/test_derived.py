@@ -88,6 +88,7 @@ def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None
         "/link/0/garbage": "mavlink/Garbage",
         "/session/input": "session.Input",
         "/gate/decision": "gate.Decision",
+        "/gate/fence": "gate.Fence",
         "/geofence": "foxglove.SceneUpdate",
         "/geofence/geojson": "foxglove.GeoJSON",
         "/mission": "foxglove.SceneUpdate",
@@ -343,7 +344,15 @@ def test_the_fence_is_on_the_map_where_the_origin_is_known(tmp_path: Path) -> No
 
 def test_without_an_origin_there_is_no_fence_on_the_map(tmp_path: Path) -> None:
     path = record(tmp_path, [FenceItem([], None)])
-    assert {message.topic for message in messages_of(path)} == {"/geofence"}
+    assert {message.topic for message in messages_of(path)} == {"/geofence", "/gate/fence"}
+
+
+def test_the_fence_as_numbers(tmp_path: Path) -> None:
+    path = record(tmp_path, a_flight())
+    (message,) = [m for m in messages_of(path) if m.topic == "/gate/fence"]
+    home, tower = json.loads(message.data)["zones"]
+    assert (home["centre_en"], home["radius_m"]) == ([0.0, 0.0], 150.0)
+    assert (tower["inclusion"], tower["corners_en"]) == (False, [[10, 10], [20, 10], [20, 20]])
 
 
 def test_a_mission_is_a_line_of_numbered_points(tmp_path: Path) -> None:
@@ -381,6 +390,7 @@ def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
             "state:string state_id:integer before:string event:string control:string"
             " severity:string goal:goal"
         ),
+        "gate.Fence": "zones:array origin:array",
         "session.Input": "kind:string data:object",
         "vehicle.Param": "name:string value:number",
         "vehicle.State": (
@@ -397,12 +407,15 @@ def test_json_schemas_use_only_what_viewers_read(tmp_path: Path) -> None:
         summary = make_reader(file).get_summary()
     assert summary is not None
     found = [s for s in summary.schemas.values() if s.encoding == "jsonschema"]
-    assert len(found) == 5
+    assert len(found) == 6
 
     def check(schema: dict[str, Any]) -> None:
         if schema["type"] == "object":
             for inner in schema["properties"].values():
                 check(inner)
+        elif schema["type"] == "array":
+            assert schema["items"]["type"] != "array"
+            check(schema["items"])
         else:
             assert schema["type"] in ("string", "number", "integer", "boolean")
 

@@ -1,0 +1,165 @@
+"""What a flight was: everything that the page shows, as the scan of the record leaves it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gcs.flight_report.facts import Decision
+from gcs.flight_report.findings.finding import WENT_WRONG, Check, Finding
+from gcs.flight_report.lanes import Lane
+from gcs.flight_report.series import Series
+from gcs.flight_report.track import Track
+from gcs.frames import Vec3
+from gcs.report import FenceShape
+
+MAX_REQUESTS = 500
+MAX_TEXTS = 300
+
+
+@dataclass(slots=True)
+class Request:
+    """A request from its verdict to its ending; None where the record has no such message."""
+
+    request_id: int
+    t_s: float
+    word: str
+    source: str
+    outcome: str = ""
+    code: str = ""
+    sentence: str = ""
+    goal_enu: Vec3 | None = None
+    numbers: dict[str, float | None] = field(default_factory=dict)
+    ended_s: float | None = None
+    ending: str = ""
+    ending_sentence: str = ""
+
+    def told(self, t_s: float, fact: Decision) -> None:
+        if fact.phase == "verdict":
+            self.outcome, self.code, self.sentence = fact.outcome, fact.code, fact.sentence
+            self.goal_enu, self.numbers = fact.goal_enu, fact.numbers
+        else:
+            self.ended_s, self.ending, self.ending_sentence = t_s, fact.outcome, fact.sentence
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """A text of the vehicle; `severity` as MAV_SEVERITY."""
+
+    t_s: float
+    severity: int
+    text: str
+
+
+@dataclass(slots=True)
+class Fence:
+    """The fence and the margins that goals keep from it, metres; an empty one: none recorded."""
+
+    zones: list[FenceShape] = field(default_factory=list)
+    margin_h_m: float = 0.0
+    margin_v_m: float = 0.0
+
+
+@dataclass(slots=True)
+class Totals:
+    """The flight in numbers; None is not known."""
+
+    armed_s: float = 0.0
+    flying_s: float = 0.0
+    take_offs: int = 0
+    first_armed_s: float | None = None
+    took_off_s: float | None = None
+    landed_s: float | None = None
+    """The last time; None while it flies at the end of the record."""
+    max_up_m: float | None = None
+    """Above the take-off point."""
+    max_distance_m: float | None = None
+    """From the take-off point, horizontally."""
+    max_speed_mps: float | None = None
+    voltage_v: tuple[float, float] | None = None
+    """First and last."""
+    remaining_pct: tuple[float, float] | None = None
+
+
+@dataclass(slots=True)
+class Lanes:
+    state: Lane = field(default_factory=lambda: Lane("Gate"))
+    control: Lane = field(default_factory=lambda: Lane("Control"))
+    severity: Lane = field(default_factory=lambda: Lane("Severity"))
+    mode: Lane = field(default_factory=lambda: Lane("Vehicle's mode"))
+    landed: Lane = field(default_factory=lambda: Lane("Vehicle"))
+
+    @property
+    def all(self) -> tuple[Lane, ...]:
+        return (self.state, self.control, self.severity, self.mode, self.landed)
+
+
+@dataclass(slots=True)
+class Plots:
+    """One series a plot."""
+
+    height: Series = field(default_factory=lambda: Series(("height", "goal")))
+    speed: Series = field(default_factory=lambda: Series(("over ground", "climb")))
+    attitude: Series = field(default_factory=lambda: Series(("roll", "pitch")))
+    heading: Series = field(default_factory=lambda: Series(("heading",)))
+    battery: Series = field(default_factory=lambda: Series(("voltage", "left", "current")))
+    link: Series = field(default_factory=lambda: Series(("messages", "lost")))
+    vibration: Series = field(default_factory=lambda: Series(("x", "y", "z")))
+    gps: Series = field(default_factory=lambda: Series(("satellites", "HDOP")))
+    estimator: Series = field(
+        default_factory=lambda: Series(("velocity", "position", "height", "compass"))
+    )
+
+
+@dataclass(slots=True)
+class VehicleFlight:
+    """The flight of one vehicle."""
+
+    sysid: int
+    autopilot: str = ""
+    kind: str = ""
+    messages: int = 0
+    totals: Totals = field(default_factory=Totals)
+    lanes: Lanes = field(default_factory=Lanes)
+    plots: Plots = field(default_factory=Plots)
+    track: Track = field(default_factory=Track)
+    requests: list[Request] = field(default_factory=list)
+    requests_left_out: int = 0
+    said: list[Said] = field(default_factory=list)
+    said_left_out: int = 0
+    findings: list[Finding] = field(default_factory=list)
+    """In time order."""
+    checks: list[Check] = field(default_factory=list)
+
+    @property
+    def went_wrong(self) -> list[Finding]:
+        """The findings that are more than notes, in time order."""
+        return [finding for finding in self.findings if finding.level in WENT_WRONG]
+
+
+@dataclass(slots=True)
+class Flight:
+    """The whole record."""
+
+    name: str
+    """Of the file."""
+    size: int
+    closed: bool = True
+    damaged: int = 0
+    start_ns: int | None = None
+    seconds: float = 0.0
+    messages: int = 0
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    fence: Fence = field(default_factory=Fence)
+    vehicles: dict[int, VehicleFlight] = field(default_factory=dict)
+    chosen: int | None = None
+    """The vehicle that the page is to be about; None: the main one."""
+
+    def main_vehicle(self) -> VehicleFlight | None:
+        """The chosen one, else the one that flew longest, was armed longest, said most."""
+        if self.chosen in self.vehicles:
+            return self.vehicles[self.chosen]
+        return max(
+            self.vehicles.values(),
+            key=lambda v: (v.totals.flying_s, v.totals.armed_s, v.messages),
+            default=None,
+        )

@@ -1,0 +1,150 @@
+"""MAVLink messages -> facts: one reader for each message that a report uses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import isfinite
+from typing import TypeAlias
+
+from gcs.flight_report import payload
+from gcs.flight_report.facts import (
+    Battery,
+    Cells,
+    Estimator,
+    Fact,
+    Gps,
+    Identity,
+    Text,
+    Vibration,
+)
+from gcs.protocol.autopilot import autopilot_of, type_name
+from gcs.wire.ids import MavAutopilot, MavType
+
+Read: TypeAlias = Callable[[bytes], "list[Fact]"]
+
+_TEXT_BYTES = 50
+_NOT_VEHICLES = frozenset(
+    {MavType.GCS, MavType.ANTENNA_TRACKER, MavType.ONBOARD_CONTROLLER, MavType.ADSB}
+)
+
+
+def _heartbeat() -> Read:
+    read = payload.numbers("HEARTBEAT", "autopilot", "type")
+
+    def facts(data: bytes) -> list[Fact]:
+        autopilot, kind = (int(value) for value in read(data))
+        if autopilot == MavAutopilot.INVALID or kind in _NOT_VEHICLES:
+            return []
+        return [Identity(autopilot_of(autopilot, kind).name, type_name(kind))]
+
+    return facts
+
+
+def _sys_status() -> Read:
+    read = payload.numbers("SYS_STATUS", "voltage_battery", "current_battery", "battery_remaining")
+
+    def facts(data: bytes) -> list[Fact]:
+        millivolts, centiamperes, percent = read(data)
+        return [
+            Battery(
+                millivolts / 1e3 if 0 < millivolts < 0xFFFF else None,
+                centiamperes / 1e2 if centiamperes >= 0 else None,
+                float(percent) if percent >= 0 else None,
+            )
+        ]
+
+    return facts
+
+
+def _battery_status() -> Read:
+    read = payload.numbers("BATTERY_STATUS", "id", "voltages")
+
+    def facts(data: bytes) -> list[Fact]:
+        battery, *millivolts = read(data)
+        # A pack without cells has its whole voltage in the first; a cell has less than 4.5 V.
+        cells = [mv for mv in millivolts if 0 < mv < 4500]
+        return [Cells(len(cells))] if battery == 0 and len(cells) > 1 else []
+
+    return facts
+
+
+def _vibration() -> Read:
+    read = payload.numbers(
+        "VIBRATION",
+        *("vibration_x", "vibration_y", "vibration_z", "clipping_0", "clipping_1", "clipping_2"),
+    )
+
+    def facts(data: bytes) -> list[Fact]:
+        x, y, z, *clipped = read(data)
+        return [Vibration(x, y, z, int(sum(clipped)))]
+
+    return facts
+
+
+def _gps_raw() -> Read:
+    read = payload.numbers("GPS_RAW_INT", "fix_type", "satellites_visible", "eph", "h_acc")
+
+    def facts(data: bytes) -> list[Fact]:
+        fix_type, satellites, eph, h_acc_mm = read(data)
+        return [
+            Gps(
+                int(fix_type),
+                int(satellites) if satellites != 0xFF else None,
+                eph / 100.0 if eph != 0xFFFF else None,
+                h_acc_mm / 1e3 if h_acc_mm else None,
+            )
+        ]
+
+    return facts
+
+
+def _ratios(autopilot: str, message: str, *names: str) -> Callable[[], Read]:
+    def make() -> Read:
+        read = payload.numbers(message, *names)
+
+        def facts(data: bytes) -> list[Fact]:
+            ratios = (value if isfinite(value) else None for value in read(data))
+            return [Estimator(autopilot, *ratios)]
+
+        return facts
+
+    return make
+
+
+def _statustext() -> Read:
+    """Joins the chunks of a long text, which come in order and carry the text's `id`."""
+    read = payload.numbers("STATUSTEXT", "severity", "id", "chunk_seq")
+    begun: dict[int, str] = {}
+
+    def facts(data: bytes) -> list[Fact]:
+        severity, number, chunk = (int(value) for value in read(data))
+        part = payload.text("STATUSTEXT", "text", data)
+        if number == 0:
+            return [Text(severity, part.strip())]
+        whole = (begun.pop(number, "") if chunk else "") + part
+        if len(part.encode()) < _TEXT_BYTES:
+            return [Text(severity, whole.strip())]
+        begun[number] = whole
+        return []
+
+    return facts
+
+
+MAVLINK_READERS: Mapping[str, Callable[[], Read]] = {
+    "HEARTBEAT": _heartbeat,
+    "SYS_STATUS": _sys_status,
+    "BATTERY_STATUS": _battery_status,
+    "VIBRATION": _vibration,
+    "GPS_RAW_INT": _gps_raw,
+    "ESTIMATOR_STATUS": _ratios(
+        "px4",
+        "ESTIMATOR_STATUS",
+        *("vel_ratio", "pos_horiz_ratio", "pos_vert_ratio", "mag_ratio"),
+    ),
+    "EKF_STATUS_REPORT": _ratios(
+        "ardupilot",
+        "EKF_STATUS_REPORT",
+        *("velocity_variance", "pos_horiz_variance", "pos_vert_variance", "compass_variance"),
+    ),
+    "STATUSTEXT": _statustext,
+}

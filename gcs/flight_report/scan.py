@@ -1,0 +1,180 @@
+"""One pass over a record: its messages become what the flight was.
+
+Nothing is kept a message: series are reduced while they come in, lists have a limit, so the memory
+does not grow with the length of the record.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+from mcap.records import Attachment, Channel, Metadata, Schema
+
+from gcs.flight_report.facts import Decision, Fact, Identity, LogLine, Text
+from gcs.flight_report.flight import Fence, Flight, VehicleFlight
+from gcs.flight_report.opening import open_flight
+from gcs.flight_report.topics import UNREADABLE, Source, source_of
+from gcs.flight_report.vehicle_scan import VehicleScan
+from gcs.gate.policy.parse import DEFAULT
+from gcs.record.reading import Condition, Message
+from gcs.report import FenceShape
+
+_FENCE = "/gate/fence"
+_POLICY = "policy.toml"
+_MAX_VEHICLES = 250
+VEHICLE_NODE = "vehicle"
+_SEVERITIES = {5: 2, 4: 3, 3: 4, 2: 6, 1: 7}
+"""Level of a log line -> MAV_SEVERITY."""
+
+
+class _FenceMessage(msgspec.Struct):
+    """`/gate/fence`; a margin that is not there is the policy's."""
+
+    zones: list[FenceShape]
+    margin_h_m: float | None = None
+    margin_v_m: float | None = None
+
+
+_decode_fence = msgspec.json.Decoder(_FenceMessage).decode
+
+
+def scan(path: Path, progress: Callable[[Condition], None] | None = None) -> Flight:
+    """Read the whole record.  Raises BadRecordError and OSError."""
+    records = open_flight(path)
+    scanning = Scan(Flight(path.name, records.condition.size))
+    for number, record in enumerate(records):
+        match record:
+            case Message():
+                scanning.message(record)
+            case Schema():
+                scanning.schema(record)
+            case Channel():
+                scanning.channel(record)
+            case Metadata(name=name, metadata=values):
+                scanning.flight.metadata[name] = values
+            case Attachment(name=name, data=data) if Path(name).name == _POLICY:
+                scanning.policy(data)
+            case _:
+                pass
+        if progress is not None and number % 4096 == 0:
+            progress(records.condition)
+    return scanning.finish(records.condition)
+
+
+class Scan:
+    """The records of one file, in file order."""
+
+    def __init__(self, flight: Flight) -> None:
+        self.flight = flight
+        self._schemas: dict[int, bytes] = {}
+        self._sources: dict[int, Source] = {}
+        self._says_texts = False
+        self._fence_channel: int | None = None
+        self._vehicles: dict[int, VehicleScan] = {}
+        self._last_ns = 0
+        self._margins = (0.0, 0.0)
+
+    def schema(self, schema: Schema) -> None:
+        self._schemas[schema.id] = schema.data
+
+    def channel(self, channel: Channel) -> None:
+        if channel.topic == _FENCE:
+            self._fence_channel = channel.id
+        self._says_texts |= channel.topic.endswith("/STATUSTEXT")
+        source = source_of(channel.topic, self._schemas.get(channel.schema_id, b""))
+        if source is not None:
+            self._sources.setdefault(channel.id, source)
+
+    def policy(self, data: bytes) -> None:
+        """The margins of a policy file, and the default policy's where it has none."""
+        try:
+            found = tomllib.loads(data.decode())
+        except (UnicodeDecodeError, tomllib.TOMLDecodeError):
+            return
+        self._margins = (
+            _number(found.get("margin_h_m"), DEFAULT.margin_h_m),
+            _number(found.get("margin_v_m"), DEFAULT.margin_v_m),
+        )
+
+    def message(self, message: Message) -> None:
+        flight, at_ns = self.flight, message.log_time_ns
+        if flight.start_ns is None:
+            flight.start_ns = self._last_ns = at_ns
+        # A record whose times go back is read as it stands; plots need times that rise.
+        self._last_ns = max(self._last_ns, at_ns)
+        flight.messages += 1
+        if message.channel_id == self._fence_channel:
+            self._fence(message.data)
+            return
+        source = self._sources.get(message.channel_id)
+        if source is None:
+            return
+        t_s = (self._last_ns - flight.start_ns) / 1e9
+        if source.heard:
+            self._vehicle(source.vehicle).heard(t_s)
+        if source.read is None:
+            return
+        try:
+            facts = source.read(message.data)
+        except UNREADABLE:
+            flight.damaged += 1
+            return
+        for fact in facts:
+            self._fact(fact, source, t_s)
+
+    def _fact(self, fact: Fact, source: Source, t_s: float) -> None:
+        match fact:
+            case Decision(vehicle=sysid):
+                self._vehicle(sysid).handle(fact, t_s)
+            case LogLine(level, node, text):
+                # Where there is no STATUSTEXT, the log has what the vehicle said.
+                said = node == VEHICLE_NODE and not self._says_texts
+                for vehicle in self._vehicles.values():
+                    vehicle.handle(Text(_SEVERITIES.get(level, 6), text) if said else fact, t_s)
+            case _:
+                vehicle = self._vehicle(source.vehicle or min(self._vehicles, default=1))
+                if source.autopilot and not vehicle.flight.autopilot:
+                    vehicle.handle(Identity(source.autopilot, "vehicle"), t_s)
+                vehicle.handle(fact, t_s)
+
+    def finish(self, condition: Condition) -> Flight:
+        flight = self.flight
+        flight.closed = condition.closed
+        flight.damaged += condition.damaged
+        if flight.start_ns is not None:
+            flight.seconds = (self._last_ns - flight.start_ns) / 1e9
+        for sysid, vehicle in self._vehicles.items():
+            found = vehicle.finish(flight.seconds)
+            if _is_vehicle(found):
+                flight.vehicles[sysid] = found
+        if not flight.fence.margin_h_m:
+            flight.fence.margin_h_m, flight.fence.margin_v_m = self._margins
+        return flight
+
+    def _vehicle(self, sysid: int) -> VehicleScan:
+        known = self._vehicles.get(sysid)
+        if known is None:
+            known = VehicleScan(VehicleFlight(sysid))
+            if len(self._vehicles) < _MAX_VEHICLES:
+                self._vehicles[sysid] = known
+        return known
+
+    def _fence(self, data: bytes) -> None:
+        try:
+            found = _decode_fence(data)
+        except msgspec.MsgspecError:
+            self.flight.damaged += 1
+            return
+        self.flight.fence = Fence(found.zones, found.margin_h_m or 0.0, found.margin_v_m or 0.0)
+
+
+def _is_vehicle(flight: VehicleFlight) -> bool:
+    """A ground station has frames of its own in the record, and nothing of these."""
+    return bool(flight.kind or flight.track.points or flight.lanes.mode.changes or flight.requests)
+
+
+def _number(value: object, default: float) -> float:
+    return float(value) if isinstance(value, int | float) else default

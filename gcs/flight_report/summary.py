@@ -1,0 +1,100 @@
+"""What happened, and what went wrong first, in a sentence each."""
+
+from __future__ import annotations
+
+from gcs.flight_report.findings.finding import Finding
+from gcs.flight_report.flight import Flight, VehicleFlight
+from gcs.flight_report.words import clock, count, duration, metres, sentence
+
+_NAMES = {"px4": "PX4", "ardupilot": "ArduPilot"}
+CONSEQUENCES_WITHIN_S = 15.0
+SAME_TIME_S = 0.1
+MAX_CONSEQUENCES = 6
+
+
+def vehicle_name(vehicle: VehicleFlight) -> str:
+    """ "PX4 quadrotor"."""
+    autopilot = _NAMES.get(vehicle.autopilot, "")
+    return f"{autopilot} {vehicle.kind or 'vehicle'}".strip()
+
+
+def what_happened(flight: Flight, vehicle: VehicleFlight | None) -> str:
+    """One sentence about the flight itself."""
+    if flight.messages == 0:
+        return "The record is empty: nothing was written into it."
+    if vehicle is None:
+        return f"No vehicle was heard in {duration(flight.seconds)} of record."
+    name, totals = vehicle_name(vehicle), vehicle.totals
+    if not totals.take_offs:
+        if totals.first_armed_s is None:
+            return f"The {name} was on the ground throughout, and never armed."
+        return f"The {name} was armed for {duration(totals.armed_s)} and did not take off."
+    parts = [f"The {name} flew for {duration(totals.flying_s)}"]
+    if totals.max_up_m is not None and totals.max_distance_m is not None:
+        parts.append(
+            f"up to {metres(totals.max_up_m)} above its take-off point "
+            f"and {metres(totals.max_distance_m)} away from it"
+        )
+    if totals.take_offs > 1:
+        parts.append(f"in {totals.take_offs} flights")
+    end = "and landed" if totals.landed_s is not None else "and was in the air at the record's end"
+    return f"{', '.join(parts)}, {end}."
+
+
+def what_was_asked(vehicle: VehicleFlight) -> str:
+    """One sentence about the requests; empty where there were none."""
+    total = len(vehicle.requests) + vehicle.requests_left_out
+    if not total:
+        return ""
+    refused = sum(request.outcome == "refused" for request in vehicle.requests)
+    if not refused:
+        return f"{count(total, 'request')}, none refused."
+    return f"{count(total, 'request')}, {refused} of them refused."
+
+
+def first_trouble(vehicle: VehicleFlight | None) -> Finding | None:
+    """The first thing that went wrong in flight; else the first before it."""
+    if vehicle is None:
+        return None
+    troubles = vehicle.went_wrong
+    armed_s = vehicle.totals.first_armed_s
+    if armed_s is not None:
+        for finding in troubles:
+            if finding.t_s >= armed_s:
+                return finding
+    return troubles[0] if troubles else None
+
+
+def consequences(vehicle: VehicleFlight, first: Finding) -> list[Finding]:
+    """What else went wrong soon after it."""
+    later = [
+        finding
+        for finding in vehicle.went_wrong
+        if -SAME_TIME_S <= finding.t_s - first.t_s <= CONSEQUENCES_WITHIN_S and finding is not first
+    ]
+    return later[:MAX_CONSEQUENCES]
+
+
+def what_went_wrong(vehicle: VehicleFlight | None) -> str:
+    """One sentence: the first trouble, with its time."""
+    first = first_trouble(vehicle)
+    if vehicle is None:
+        return ""
+    if first is None:
+        looked = sum(check.level is not None for check in vehicle.checks)
+        if not looked:
+            return "Nothing is known of its health: the record has none of the values looked at."
+        return f"Nothing went wrong. Values that were looked at: {looked}, none of them bad."
+    detail = f" ({first.detail})" if first.detail else ""
+    return f"At {clock(first.t_s)} {first.title}{detail}."
+
+
+def other_vehicles(flight: Flight, vehicle: VehicleFlight | None) -> list[str]:
+    """A line for each vehicle that this report is not about."""
+    return [
+        sentence(
+            f"vehicle {sysid}: {vehicle_name(other)}, flew for {duration(other.totals.flying_s)}"
+        )
+        for sysid, other in sorted(flight.vehicles.items())
+        if other is not vehicle
+    ]

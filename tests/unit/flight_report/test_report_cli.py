@@ -1,0 +1,99 @@
+"""`gcs log report`, as a user calls it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from gcs.report import PoseItem, StatusItem
+from tests.unit.cli.command_line import gcs
+from tests.unit.flight_report.test_scan import a_flight_that_loses_gps
+from tests.unit.record.flights import MS, record
+
+
+@pytest.fixture
+def flight(tmp_path: Path) -> Path:
+    return record(tmp_path, a_flight_that_loses_gps(), step_ns=125 * MS)
+
+
+def test_the_page_stands_beside_the_record(flight: Path) -> None:
+    ended = gcs("log", "report", flight)
+    written = flight.with_suffix(".html")
+    assert ended.exit_code == 0
+    assert str(written) in ended.output
+    assert "the GPS lost its fix" in ended.output
+    assert written.read_text(encoding="utf-8").startswith("<!doctype html>")
+
+
+def test_it_is_written_where_it_is_told(flight: Path, tmp_path: Path) -> None:
+    page = tmp_path / "mine.html"
+    assert gcs("log", "report", flight, "-o", page).exit_code == 0
+    assert page.exists()
+    assert not flight.with_suffix(".html").exists()
+    assert [path for path in tmp_path.iterdir() if path.name.startswith(".")] == []
+
+
+def test_another_vehicle_of_a_fleet(tmp_path: Path) -> None:
+    upright = (1.0, 0.0, 0.0, 0.0)
+    states = [StatusItem(n, True, "OFFBOARD", "IN_AIR", 90.0, 16.0, 9.0, 0.0) for n in (1, 2)]
+    poses = [PoseItem(n, (0.0, 0.0, -5.0 * n), (0.0, 0.0, 0.0), upright) for n in (1, 2)]
+    path = record(tmp_path, [*states, *poses], step_ns=400 * MS)
+    page = tmp_path / "two.html"
+    assert gcs("log", "report", path, "--vehicle", "2", "-o", page).exit_code == 0
+    html = page.read_text(encoding="utf-8")
+    assert "vehicle 2</li>" in html
+    assert "Also in the record: Vehicle 1" in html
+
+
+def test_a_vehicle_that_is_not_there(flight: Path) -> None:
+    ended = gcs("log", "report", flight, "--vehicle", "9")
+    assert ended.exit_code == 2
+    assert "vehicles in it: 1" in ended.output
+    assert not flight.with_suffix(".html").exists()
+
+
+def test_json_alone_writes_no_page(flight: Path) -> None:
+    ended = gcs("log", "report", flight, "--json")
+    assert ended.exit_code == 0
+    assert json.loads(ended.output)["vehicles"][0]["name"] == "PX4 quadrotor"
+    assert not flight.with_suffix(".html").exists()
+
+
+def test_json_and_page(flight: Path, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    ended = gcs("log", "report", flight, "--json", "-o", page)
+    assert json.loads(ended.output)["closed"] is True
+    assert page.exists()
+
+
+@pytest.mark.parametrize("data", [b"", b"text", b"\x89MCAP0\r"])
+def test_a_broken_input_is_exit_4_and_a_sentence(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "broken.mcap"
+    path.write_bytes(data)
+    ended = gcs("log", "report", path)
+    assert ended.exit_code == 4
+    assert "broken.mcap" in ended.output
+    assert "Traceback" not in ended.output
+    assert not path.with_suffix(".html").exists()
+
+
+def test_a_log_of_another_program_is_exit_4(tmp_path: Path) -> None:
+    path = tmp_path / "old.tlog"
+    path.write_bytes(bytes(100))
+    ended = gcs("log", "report", path)
+    assert ended.exit_code == 4
+    assert "imported" in ended.output
+
+
+def test_the_record_is_never_overwritten(flight: Path) -> None:
+    before = flight.read_bytes()
+    assert gcs("log", "report", flight, "-o", flight).exit_code == 2
+    assert flight.read_bytes() == before
+
+
+def test_a_folder_that_is_not_there(flight: Path, tmp_path: Path) -> None:
+    ended = gcs("log", "report", flight, "-o", tmp_path / "no" / "page.html")
+    assert ended.exit_code == 7
+    assert "cannot write" in ended.output
