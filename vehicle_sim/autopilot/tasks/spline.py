@@ -1,8 +1,12 @@
 """Smooth curves through waypoints: ArduCopter's spline waypoints.
 
 A leg is a cubic Hermite curve; its goal runs along it at the flight's own speed, and waits for
-a vehicle that falls behind.  Where two splines meet both have the same tangent, that of
-Catmull and Rom: half of the way from the point before to the point after.
+a vehicle that falls behind.  The tangents have the directions of ArduCopter's, by memory of its
+sources: where two splines meet, from the point before to the point after; where a straight leg
+follows, along that leg (AC_WPNav::set_spline_destination); and both are shortened alike where they
+are longer together than four times the way between the ends
+(SplineCurve::set_origin_and_destination).  They are half as long as ArduCopter's (Catmull and Rom):
+the goal's speed here does not look ahead to a sharper bend.
 """
 
 from __future__ import annotations
@@ -21,6 +25,9 @@ _BRAKE_SHARE = 0.5  # of the acceleration, along the curve; as much is left to b
 _SLOWEST_M_S = 0.3
 _BEHIND_M = 2.0  # the goal slows down from here on, and stands still at twice as much
 _CHORDS = 32  # in which the length is measured
+_REST: Vec3 = (0.0, 0.0, 0.0)
+_HALF = 0.5  # of ArduCopter's tangents
+_TANGENTS_MAX = 4.0  # both together, in lengths of the straight way
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +68,21 @@ class Curve:
         return sum(distance(a, b) for a, b in pairwise(points))
 
 
-def curve(start: Vec3, end: Vec3, before: Vec3 | None, after: Vec3 | None) -> Curve:
+def curve(
+    start: Vec3, end: Vec3, before: Vec3 | None, after: Vec3 | None, *, after_is_spline: bool = True
+) -> Curve:
     """Through `start` and `end`; None = the flight begins, or ends, at rest there."""
     straight = _between(start, end, 1.0)
+    onward = start if after_is_spline else end
+    leaving = _REST if before is None else _between(before, end, 1.0)
+    arriving = _REST if after is None else _between(onward, after, 1.0)
+    size, most = _size(leaving) + _size(arriving), _TANGENTS_MAX * _size(straight)
+    share = _HALF * (most / size if size > most else 1.0)
     return Curve(
         start,
         end,
-        straight if before is None else _between(before, end, 0.5),
-        straight if after is None else _between(start, after, 0.5),
+        straight if before is None else _between(_REST, leaving, share),
+        straight if after is None else _between(_REST, arriving, share),
     )
 
 
@@ -77,7 +91,7 @@ def _between(a: Vec3, b: Vec3, share: float) -> Vec3:
 
 
 def _size(v: Vec3) -> float:
-    return distance(v, (0.0, 0.0, 0.0))
+    return distance(v, _REST)
 
 
 class Spline:
