@@ -226,6 +226,27 @@ def test_no_speed_is_left_over_where_a_straight_leg_follows_a_spline() -> None:
     assert farthest_north_m < 63.0
 
 
+def test_a_spline_is_flown_no_faster_than_its_next_bend_allows() -> None:
+    """It left this one by 5 m: from 8 m/s into a bend that leads back."""
+    end, after = (-21.3, -32.2, -5.0), (-57.0, 45.7, -5.0)
+    flight = started(
+        "ardupilot",
+        TAKE_OFF,
+        item(1, 82, end[0], end[1], 5.0),
+        item(2, 16, after[0], after[1], 5.0),
+    )
+    bow = curve((0.0, 0.0, -5.0), end, None, after, after_is_spline=False)
+    way = [bow.at(n / 100) for n in range(101)]
+    flight.fly(30.0, lambda: reached_now(flight) == [0])
+    farthest_m = 0.0
+    while 1 not in reached_now(flight):
+        flight.fly(0.1)
+        n, e, _ = flight.pos
+        farthest_m = max(farthest_m, min(hypot(n - at[0], e - at[1]) for at in way))
+        assert flight.vehicle.time_ns < 90e9
+    assert farthest_m < 2.0
+
+
 def test_a_mission_that_ends_on_a_circle_stays_where_its_turns_end() -> None:
     flight = started("ardupilot", TAKE_OFF, item(1, 18, 30.0, 0.0, 5.0, p1=0.5, p3=10.0))
     flight.fly(90.0, lambda: flight.vehicle.mission_state == 5)
