@@ -171,7 +171,7 @@ class Verifying:
         return LegVerdict(leg.item, leg.kind.value, leg.from_ned, leg.to_ned, 0.0, refusal)
 
     def _region(self, region: Region) -> LegVerdict:
-        to_ned = region.ends[0]
+        to_ned = region.aim_ned
         refusal = self._verifier.mission_region(
             f"{region.kind.value} {place(to_ned)}",
             region.starts,

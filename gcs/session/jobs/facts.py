@@ -36,6 +36,9 @@ QUANTITIES: dict[AutopilotName, tuple[Quantity, ...]] = {
         Quantity("return_type", "RTL_TYPE", needed=False),
         Quantity("cone", "RTL_CONE_ANG", needed=False),
         Quantity("cone_within_m", "RTL_MIN_DIST", needed=False),
+        Quantity("speed_m_s", "MPC_XY_CRUISE", needed=False),
+        Quantity("accel_m_s2", "MPC_ACC_HOR", needed=False),
+        Quantity("jerk_m_s3", "MPC_JERK_AUTO", needed=False),
     ),
     "ardupilot": (
         Quantity("accept_m", "WP_RADIUS_M"),
@@ -133,6 +136,7 @@ class Learning:
             return_type=int(values.get("return_type", usual.return_type)),
             speed_m_s=values.get("speed_m_s", usual.speed_m_s),
             accel_m_s2=values.get("accel_m_s2", 0.0) or usual.accel_m_s2,
+            jerk_m_s3=values.get("jerk_m_s3", 0.0) or usual.jerk_m_s3,
             return_climb_m=values.get("return_climb_m", usual.return_climb_m),
             accept_up_m=values.get("accept_up_m", usual.accept_up_m),
         )
