@@ -43,16 +43,18 @@ class FenceJudge:
     """Judges by the zones of one fence; see `clearance.py` for the three rules.
 
     `subject` is what a refusal's sentence begins with.  `floor_applies` says whether the floors of
-    inclusion zones are considered.
+    inclusion zones are considered.  `least_h_m`: the margin beside zones is no less, whatever the
+    policy's.
     """
 
     zones: tuple[Zone, ...]
     policy: Policy
     braking: Braking
+    least_h_m: float = 0.0
 
     @property
     def margins(self) -> Margins:
-        return Margins(self.policy.margin_h_m, self.policy.margin_v_m)
+        return Margins(max(self.policy.margin_h_m, self.least_h_m), self.policy.margin_v_m)
 
     def point(self, subject: str, pos_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
         """Refuses a point that does not keep the margin."""
