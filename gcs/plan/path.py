@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from gcs.frames import Vec3
@@ -28,7 +27,7 @@ from gcs.plan import commands, returns
 from gcs.plan.carry import Motion, Moving, still_moving
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
-from gcs.plan.curves import Neighbours, Onward, pieces, splines
+from gcs.plan.curves import Neighbours, pieces, splines
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import (
@@ -43,6 +42,7 @@ from gcs.plan.legs import (
     RegionKind,
 )
 from gcs.plan.model import Item, Plan
+from gcs.plan.onward import ways_on
 from gcs.plan.turns import arrivals, blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
@@ -53,10 +53,6 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.REFUSED: ProblemKind.REFUSED,
     Flown.NEVER_STARTS: ProblemKind.NEVER_STARTS,
 }
-_THROUGH = (Flown.STRAIGHT, Flown.STAYS, Flown.CURVE)
-"""A spline leads on to these without a stop."""
-
-
 _CURVE_BESIDE_M = 1.0
 """So far beside a curve the vehicle may be."""
 
@@ -363,7 +359,7 @@ class PathWalk:
     def _curve(self, index: int, item: Item, here: _Here) -> _Here:
         to_ned = self._places.place(item, here.pos_ned)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
-        onward, may_stop = self._onward(index, item, to_ned)
+        onward, may_stop = ways_on(self._plan, index, self._places, self._ground.autopilot, to_ned)
         neighbours = Neighbours(here.before_ned, here.before_curved, here.rests, onward, may_stop)
         stops = tuple(one.stopped(self._motion) for one in here.moving if here.rests)
         starts = (here.pos_ned, *fewer((*here.also, *stops), without=here.pos_ned))
@@ -383,40 +379,6 @@ class PathWalk:
         )
         also = fewer(tuple(one.pos_ned for one in ends), without=to_ned)
         return _Here(to_ned, also, ends, here.pos_ned, before_curved=True, rests=may_stop)
-
-    def _onward(self, index: int, item: Item, to_ned: Vec3) -> tuple[tuple[Onward, ...], bool]:
-        """Where a curve may go on to without a stop, and whether it may end at rest."""
-        if item.params[0] > 0.0:
-            return (), True
-        onward = self._next_places(index, to_ned)
-        follower = self._plan.items[index + 1] if index + 1 < len(self._plan.items) else None
-        goes_on = follower is not None and (
-            flown_as(follower.command, self._ground.autopilot) in _THROUGH
-        )
-        return onward, not (goes_on and onward)
-
-    def _next_places(self, index: int, pos_ned: Vec3) -> tuple[Onward, ...]:
-        """Where it may go on to from item `index`, by every jump."""
-        found: list[Onward] = []
-        waiting, seen = [index + 1], set[int]()
-        while waiting:
-            at = waiting.pop()
-            if at in seen or at >= len(self._plan.items):
-                continue
-            seen.add(at)
-            item = self._plan.items[at]
-            if KINDS.get(item.command) in (Kind.MOVE, Kind.RETURN, Kind.WAIT):
-                flown = flown_as(item.command, self._ground.autopilot)
-                if flown in _THROUGH:
-                    with suppress(PlaceUnknownError):  # told when the walk comes to it
-                        place = self._places.place(item, pos_ned)
-                        found.append(Onward(place, flown is Flown.CURVE))
-                continue
-            waiting.append(at + 1)
-            target = self._plan.index_of(item.params[0]) if item.command == Cmd.DO_JUMP else None
-            if target is not None:
-                waiting.append(target)
-        return tuple(found)
 
     def _aims(self, item: Item, here: _Here) -> tuple[Vec3, ...]:
         """Where the item leads; one without a place of its own may lead to any of `here`."""
