@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 
 from gcs.frames import Vec3
 from gcs.plan.carry import Motion, Moving, all_round, moving
@@ -159,6 +160,7 @@ def _towards(start: Vec3, to_ned: Vec3, left_m: float) -> Vec3:
     return (n, e, d)
 
 
+@lru_cache(maxsize=4)
 def _widest_angle(places: tuple[Vec3, ...], seen_from: Vec3) -> float:
     return max(
         (
