@@ -65,6 +65,11 @@ class Motion:
         turned_m = turned / (2.0 * self.accel_m_s2)
         return turned_m + 0.5 * speed_m_s * self.accel_m_s2 / self.jerk_m_s3
 
+    def slowed_m_s(self, stay_s: float) -> float:
+        """By how much it has become slower after a stay, which begins where it arrives."""
+        brake_m_s2 = _BRAKE_SHARE * self.accel_m_s2
+        return brake_m_s2 * max(0.0, stay_s - 0.5 * brake_m_s2 / self.jerk_m_s3)
+
     def stops_in_m(self, speed_m_s: float) -> float:
         """How far on it comes to rest (vehicle-sim)."""
         brake_m_s2 = _BRAKE_SHARE * self.accel_m_s2
@@ -133,15 +138,21 @@ def still_moving(
     if not found or motion.settled_m <= 0.0:
         return ()
     left = min(1.0, max(0.0, 1.0 - leg_m / motion.settled_m))
-    slower = (
+    later = (
         replace(one, pos_ned=to_ned, speed_m_s=round(left * one.speed_m_s, 1), onward_ned=None)
         for one in found
     )
-    kept = tuple(dict.fromkeys(one for one in slower if one.speed_m_s >= _SLOWEST_M_S))
+    kept = tuple(dict.fromkeys(one for one in later if one.speed_m_s >= _SLOWEST_M_S))
     if len(kept) <= _MOST_MOVING:
         return kept
     fastest = max(one.speed_m_s for one in kept)
     return all_round(to_ned, fastest)
+
+
+def slower(found: tuple[Moving, ...], by_m_s: float) -> tuple[Moving, ...]:
+    """Those that still move when they have become so much slower."""
+    left = (replace(one, speed_m_s=round(one.speed_m_s - by_m_s, 1)) for one in found)
+    return tuple(one for one in left if one.speed_m_s >= _SLOWEST_M_S)
 
 
 def all_round(pos_ned: Vec3, speed_m_s: float) -> tuple[Moving, ...]:

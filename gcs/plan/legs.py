@@ -83,8 +83,8 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """The vehicle may be anywhere in the hull of `starts` and `ends`; it comes from `starts`, and
-    is on its way to `aim_ned`."""
+    """The vehicle may be anywhere in the hull of `starts` and `ends`; it comes from `starts`,
+    () where it was in another region before, and is on its way to `aim_ned`."""
 
     item: int
     kind: RegionKind

@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 
 from gcs.frames import Vec3
 from gcs.plan import commands, returns
-from gcs.plan.carry import Motion, Moving, still_moving
+from gcs.plan.carry import Motion, Moving, slower, still_moving
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.curves import Neighbours, pieces, splines
@@ -198,14 +198,22 @@ class PathWalk:
             aim_ned = ends[0] if aim_ned is None else aim_ned
             self._regions[Region(index, kind, starts, ends, aim_ned)] = None
 
-    def _starts(self, here: _Here, aim_ned: Vec3 | None = None) -> tuple[Vec3, ...]:
+    def _starts(self, index: int, here: _Here, aim_ned: Vec3 | None = None) -> tuple[Vec3, ...]:
         """Where it is, and where its speed may carry it on its way to `aim_ned`; None: to any."""
         carried = (
             one.carried(self._motion, aim_ned)
             for one in here.moving
             if aim_ned is None or one.onward_ned in (None, aim_ned)
         )
+        return self._with(index, here, tuple(carried), here.pos_ned if aim_ned is None else aim_ned)
+
+    def _with(
+        self, index: int, here: _Here, carried: tuple[Vec3, ...], aim_ned: Vec3
+    ) -> tuple[Vec3, ...]:
+        """Where it is, and `carried`.  That is judged at once: what begins at a place may be as
+        near to a boundary as the place is, and it was at none of these yet."""
         also = fewer((*here.also, *carried), without=here.pos_ned)
+        self._region(index, RegionKind.TURN, here.places, also, aim_ned)
         return (here.pos_ned, *also)
 
     def _stop(self, index: int, here: _Here) -> None:
@@ -251,7 +259,7 @@ class PathWalk:
     def _straight(self, index: int, item: Item, here: _Here) -> _Here:
         aims = self._aims(item, here)
         to_ned = self._leg(index, LegKind.STRAIGHT, here.pos_ned, aims[0])
-        starts = self._starts(here, to_ned if len(aims) == 1 else None)
+        starts = self._starts(index, here, to_ned if len(aims) == 1 else None)
         self._region(index, RegionKind.TURN, starts, aims)
         if here.before_ned is not None and self._ground.autopilot == "ardupilot":
             accept_m = self._ground.settings.accept_m
@@ -275,7 +283,9 @@ class PathWalk:
         also = turning_places(starts, to_ned, *radii)
         entry_m_s = max((one.speed_m_s for one in here.moving), default=0.0)
         found = arrivals(starts, to_ned, *radii, self._motion, entry_m_s)
-        return _Here(to_ned, also, (*found, *left))
+        stay_s = item.params[0] if item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_LOITER_TIME) else 0.0
+        slowed_m_s = self._motion.slowed_m_s(stay_s) if stay_s > 0.0 else 0.0
+        return _Here(to_ned, also, slower((*found, *left), slowed_m_s))
 
     def _climb(self, index: int, from_ned: Vec3, down_m: float) -> _Here:
         """Straight up; px4 counts a climb as done while something of it is left."""
@@ -299,7 +309,7 @@ class PathWalk:
 
     def _land(self, index: int, item: Item, here: _Here) -> _Here:
         down_m = self._ground.home_ned[2]
-        starts = self._starts(here)
+        starts = self._starts(index, here)
         nominal = self._places.horizontal(item, here.pos_ned)
         spots = [place[:2] if is_here(item) else nominal for place in starts]
         overs = tuple((*at, place[2]) for at, place in zip(spots, starts, strict=True))
@@ -313,7 +323,7 @@ class PathWalk:
 
     def _level_then_height(self, index: int, item: Item, here: _Here) -> _Here:
         """LOITER_TO_ALT: over the place at the height it has, then up or down; or straight."""
-        starts = self._starts(here)
+        starts = self._starts(index, here)
         to_ned = self._places.place(item, here.pos_ned)
         overs = tuple((*to_ned[:2], place[2]) for place in starts)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
@@ -327,7 +337,7 @@ class PathWalk:
             raise self._problem(index, ProblemKind.NO_RETURN_HEIGHT)
         if not returns.straight(ground, self._plan):
             raise self._problem(index, ProblemKind.RETURN_ROUTE)
-        starts = self._starts(here)
+        starts = self._starts(index, here)
         for landing in returns.landing_places(ground, starts):
             way = returns.way_to(landing, ground, here.pos_ned)
             self._leg(index, LegKind.CLIMB, here.pos_ned, way.top_ned)
@@ -344,7 +354,7 @@ class PathWalk:
             raise self._problem(index, ProblemKind.NO_RADIUS)
         for centre in centres:
             self._circles[LoiterCircle(index, centre, abs(radius_m))] = None
-        starts = self._starts(here)
+        starts = self._starts(index, here)
         begun = entries(starts, centre_ned, abs(radius_m))
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, begun[0])
         around = way_on(starts, begun, centre_ned, abs(radius_m))
@@ -362,7 +372,7 @@ class PathWalk:
         onward, may_stop = ways_on(self._plan, index, self._places, self._ground.autopilot, to_ned)
         neighbours = Neighbours(here.before_ned, here.before_curved, here.rests, onward, may_stop)
         stops = tuple(one.stopped(self._motion) for one in here.moving if here.rests)
-        starts = (here.pos_ned, *fewer((*here.also, *stops), without=here.pos_ned))
+        starts = self._with(index, here, stops, to_ned)
         begins = starts if here.rests else (here.pos_ned,)
         found = splines(begins, to_ned, neighbours)
         first, *others = pieces(found, _CURVE_BESIDE_M)
@@ -372,7 +382,7 @@ class PathWalk:
             past = fewer(tuple(way.overshoots(entry_m_s, self._motion) for way in found))
             self._region(index, RegionKind.CURVE, starts, (*first, *others[0], *past), to_ned)
         for piece in others:
-            self._region(index, RegionKind.CURVE, piece[:1], piece[1:], to_ned)
+            self._region(index, RegionKind.CURVE, (), piece, to_ned)
         accept_m = self._ground.settings.accept_m
         ends = tuple(
             dict.fromkeys(one for way in found for one in way.arrives(accept_m, self._motion))

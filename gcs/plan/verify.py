@@ -179,7 +179,7 @@ class Verifying:
             floor_applies=region.floor_applies,
         )
         kind = region.kind.name.lower()
-        return LegVerdict(region.item, kind, region.starts[0], to_ned, 0.0, refusal)
+        return LegVerdict(region.item, kind, region.points[0], to_ned, 0.0, refusal)
 
     def _judge_rally_points(self) -> None:
         """Inside the fence by the margin, from the height that it is flown to down to the ground.

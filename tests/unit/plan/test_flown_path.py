@@ -314,6 +314,31 @@ def test_a_velocity_that_changes_along_a_straight_line_stays_in_the_hull(seed: i
         assert hull.distance(shapely.Point(at)) < 0.5
 
 
+@pytest.mark.parametrize("command", [16, 82])
+@pytest.mark.parametrize("away_m", [0.3, 1.0, 1.9])
+def test_no_vehicle_begins_from_where_it_swings_to(command: int, away_m: float) -> None:
+    """A way that begins near a boundary may be as near; a swing, or the part of a curve, not."""
+    way = (item(command, 60, 0), item(command, 60, 60), item(16, 0, 60))
+    on = ground("ardupilot", QUICK)
+    north_m = max(point[0] for one in path(on, *way).regions for point in one.points)
+    assert north_m > 62.0
+    found = checked(on, mast(north_m + away_m + 9e4, 30.0, 9e4), *way)
+    assert refused(found).code is Code.TOO_CLOSE
+    assert checked(on, mast(north_m + 3.0 + 9e4, 30.0, 9e4), *way).refusal is None
+
+
+def test_a_stay_takes_speed_away() -> None:
+    """0.6 of 2.5 m/s^2: after 2 s 3 m/s are gone; PX4's jerk takes 0.2 s of it."""
+    assert Motion(10.0, 2.5).slowed_m_s(2.0) == pytest.approx(3.0)
+    assert Motion(5.0, 3.0, 4.0).slowed_m_s(1.0) == pytest.approx(1.8 * 0.775)
+    quick = ground("ardupilot", QUICK)
+    last = item(16, 60, 60)
+    stays = path(quick, item(16, 60, 0, 10.0, 5.0), last)
+    goes_on = path(quick, item(16, 60, 0), last)
+    assert max(point[0] for one in goes_on.regions for point in one.points) > 62.0
+    assert max(point[0] for one in stays.regions for point in one.points) == 60.0
+
+
 def test_a_speed_that_an_item_asks_for_counts_from_there_on() -> None:
     slow = item(178, 0, 0, 0.0, 1.0, 2.0)
     way = (item(16, 60, 0), item(16, 0, 60), item(16, 60, 60))
@@ -387,7 +412,7 @@ def test_the_way_onto_a_circle_and_off_it_are_legs_and_regions() -> None:
     flown = path(ground("ardupilot", QUICK), turns, item(16, 80, 0))
     assert flown.legs[0].to_ned == pytest.approx((25, 0, -10))
     assert flown.legs[1].from_ned == pytest.approx((55, 0, -10))
-    (turn,) = [one for one in flown.regions if one.kind is RegionKind.TURN]
+    turn = [one for one in flown.regions if one.kind is RegionKind.TURN][-1]
     carried_m = max(east for _, east, _ in turn.points)
     assert 9.6 < carried_m < 15.0, "4.3 m/s to the east, then 10 to the north: 4.3 * 11 / 5 m"
 
