@@ -149,10 +149,9 @@ def still_moving(
     return all_round(to_ned, fastest)
 
 
-def slower(found: tuple[Moving, ...], by_m_s: float) -> tuple[Moving, ...]:
-    """Those that still move when they have become so much slower."""
-    left = (replace(one, speed_m_s=round(one.speed_m_s - by_m_s, 1)) for one in found)
-    return tuple(one for one in left if one.speed_m_s >= _SLOWEST_M_S)
+def not_stopped(found: tuple[Moving, ...], slowed_m_s: float) -> tuple[Moving, ...]:
+    """Without those that are at rest when they have become so much slower."""
+    return tuple(one for one in found if one.speed_m_s - slowed_m_s >= _SLOWEST_M_S)
 
 
 def all_round(pos_ned: Vec3, speed_m_s: float) -> tuple[Moving, ...]:

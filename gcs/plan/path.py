@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 
 from gcs.frames import Vec3
 from gcs.plan import commands, returns
-from gcs.plan.carry import Motion, Moving, slower, still_moving
+from gcs.plan.carry import Motion, Moving, not_stopped, still_moving
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.curves import Neighbours, pieces, splines
@@ -285,7 +285,7 @@ class PathWalk:
         found = arrivals(starts, to_ned, *radii, self._motion, entry_m_s)
         stay_s = item.params[0] if item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_LOITER_TIME) else 0.0
         slowed_m_s = self._motion.slowed_m_s(stay_s) if stay_s > 0.0 else 0.0
-        return _Here(to_ned, also, slower((*found, *left), slowed_m_s))
+        return _Here(to_ned, also, (*not_stopped(found, slowed_m_s), *left))
 
     def _climb(self, index: int, from_ned: Vec3, down_m: float) -> _Here:
         """Straight up; px4 counts a climb as done while something of it is left."""
