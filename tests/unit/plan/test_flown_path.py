@@ -194,7 +194,7 @@ def outlines(
 
 
 def beside(point: Vec3, tracks: list[shapely.Geometry]) -> float:
-    return min(track.distance(shapely.Point(point[:2])) for track in tracks)
+    return min(float(track.distance(shapely.Point(point[:2]))) for track in tracks)
 
 
 @pytest.mark.parametrize("seed", range(50))
