@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 
 from gcs.frames import Vec3
+from gcs.plan.carry import Motion, Moving
 
-_CARRY = 0.3
-"""Of the radius.  A vehicle that flies circles with half its acceleration (AC_Circle, and
-vehicle-sim) comes to rest within v^2 / 2a = radius / 4 beyond where it leaves the circle."""
 _CORNERS = 8
+_GAINS_RAD = 1.0
+"""Of the ring.  The goal goes round it from the first moment at the speed v, v^2 = a r / 2
+(`Motion.circling_m_s`); a vehicle at rest is v^2 / 2a behind it when it has that speed, and has
+caught up after twice the way that it takes for that: 4 v^2 / 2a, which is r."""
+_ARC_STEP_RAD = 0.5
 
 
 def entries(places: tuple[Vec3, ...], centre_ned: Vec3, radius_m: float) -> tuple[Vec3, ...]:
@@ -33,30 +36,40 @@ def way_on(
     return (*begun, top)
 
 
+def first_arc(begun: tuple[Vec3, ...], centre_ned: Vec3, radius_m: float) -> tuple[Vec3, ...]:
+    """Points whose hull holds the first part of the ring, where a vehicle that gains speed cuts
+    inside it (vehicle-sim)."""
+    way = math.copysign(1.0, radius_m)
+    first = _bearing(begun[0], centre_ned)
+    turned = [math.remainder(_bearing(p, centre_ned) - first, 2.0 * math.pi) for p in begun]
+    low, high = min(turned), max(turned)
+    low, high = (low, high + _GAINS_RAD) if way > 0.0 else (low - _GAINS_RAD, high)
+    parts = math.ceil((high - low) / _ARC_STEP_RAD)
+    step = (high - low) / parts
+    if high - low > 1.5 * math.pi:
+        return _around(centre_ned, abs(radius_m))
+    outer_m = abs(radius_m) / math.cos(0.5 * step)
+    tops = (_on_circle(centre_ned, outer_m, first + low + (n + 0.5) * step) for n in range(parts))
+    ends = (_on_circle(centre_ned, abs(radius_m), first + turn) for turn in (low, high))
+    return (*ends, *tops)
+
+
 def circle_ends(
-    begun: tuple[Vec3, ...], centre_ned: Vec3, radius_m: float, turns: float
-) -> tuple[Vec3, ...]:
-    """Where it leaves the circle from each entry, and where its speed may carry it from there.
+    begun: tuple[Vec3, ...], centre_ned: Vec3, radius_m: float, turns: float, motion: Motion
+) -> tuple[Moving, ...]:
+    """Where it leaves the circle from each entry, and how it moves there.
 
     A positive radius is clockwise seen from above.
     """
     part_rad = math.copysign(2.0 * math.pi * math.fmod(turns, 1.0), radius_m)
     reach_m, way = abs(radius_m), math.copysign(1.0, radius_m)
-    leaves: list[Vec3] = []
-    carried: list[Vec3] = []
+    leaves: list[Moving] = []
     for entry in begun:
         angle = _bearing(entry, centre_ned) + part_rad
         leave = entry if part_rad == 0.0 else _on_circle(centre_ned, reach_m, angle)
-        carry_m = _CARRY * reach_m * way
-        leaves.append(leave)
-        carried.append(
-            (
-                leave[0] - carry_m * math.sin(angle),
-                leave[1] + carry_m * math.cos(angle),
-                leave[2],
-            )
-        )
-    return (*leaves, *carried)
+        along = (-way * math.sin(angle), way * math.cos(angle), 0.0)
+        leaves.append(Moving(leave, along, motion.circling_m_s(reach_m)))
+    return tuple(leaves)
 
 
 def _around(centre_ned: Vec3, radius_m: float) -> tuple[Vec3, ...]:

@@ -1,98 +1,217 @@
-"""A bound on ArduCopter's spline waypoints: the convex hull of the curve's control points.
+"""Where ArduCopter's spline waypoints lead: hulls of the curve, piece by piece.
 
 A spline leg is a cubic Hermite curve from P to Q with tangents m and n, which is the Bezier curve
-with the control points P, P + m / 3, Q - n / 3 and Q, and lies in their hull.  The tangents, by
-AC_WPNav::set_spline_destination and SplineCurve::set_origin_and_destination:
+with the control points P, P + m / 3, Q - n / 3 and Q.  Any piece of it is a Bezier curve too, and
+lies in the hull of its own control points.  The tangents, by memory of
+AC_WPNav::set_spline_destination:
 
-m   at rest none; after a straight leg the direction of that leg; after a spline that spline's n;
+m   at rest none; after a straight leg that leg; after a spline that spline's n;
 n   where a spline follows, from P to the place after Q; where a straight leg follows, from Q to
     the place after it; else none;
 
-and both may be scaled down, when they are longer together than four times the way from P to Q.  A
-tangent that is shorter gives a control point between P and P + m / 3, so the hull over all of
-these choices holds the curve, whichever of them the vehicle takes.
+both scaled down, where they are longer together than four times the way from P to Q
+(SplineCurve::set_origin_and_destination).  vehicle-sim's are half as long, and at rest they are the
+way from P to Q.  The hull of a piece is that of both, and so of all that lies between.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.hulls import ground_track
+from gcs.plan.carry import Motion, Moving, ahead, between, moving
 
 _LAG_M = 4.0
 """Where the target has left the curve, the vehicle may be so far behind it (vehicle-sim's; an
 ArduCopter's error of position in WP_NAV is limited to a few metres as well, by memory)."""
+_PIECES = 8
+_TANGENTS_MAX = 4.0
+_SHARES = (0.5, 1.0)
+_REST: Vec3 = (0.0, 0.0, 0.0)
+_STEPS = 16
+"""In which the place is looked for where the vehicle is at the end of a curve."""
+
+_ROUND = tuple((math.sin(0.25 * math.pi * n), math.cos(0.25 * math.pi * n)) for n in range(8))
+
+Bezier: TypeAlias = tuple[Vec3, Vec3, Vec3, Vec3]
 
 
-_BRAKE_SHARE = 0.6
-"""Of the acceleration that a vehicle plans to brake with (vehicle-sim; an ArduCopter's corner too
-leaves some of it)."""
+@dataclass(frozen=True, slots=True)
+class Onward:
+    """Where the mission goes on to after a curve, and whether as a curve."""
 
-_CARRY_UP_M = 4.0
-"""2.5 m/s of climb and 1 m/s^2, as delivered, are 3.1 m."""
+    to_ned: Vec3
+    curved: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Neighbours:
-    """Where the leg before began, if the vehicle does not begin at rest, and where it may go on."""
+    """Where the leg before began, None if there was none, whether that was a curve, and whether it
+    may have ended at rest; where this one may go on to without a stop, and whether it may end at
+    rest."""
 
     before_ned: Vec3 | None
-    after_ned: tuple[Vec3, ...]
+    before_curved: bool
+    may_rest: bool
+    onward: tuple[Onward, ...]
+    may_stop: bool
 
 
-def curve_hull(
-    starts: tuple[Vec3, ...], to_ned: Vec3, neighbours: Neighbours, accept_m: float
-) -> tuple[tuple[Vec3, ...], tuple[Vec3, ...]]:
-    """The points whose hull, with `starts`, holds the curve; and where the vehicle may be when the
-    curve ends, beside `to_ned`."""
-    controls: dict[Vec3, None] = {to_ned: None}
-    arrivals: dict[Vec3, None] = {}
-    for start in starts:
-        tangents = [_from(start, to_ned)]
-        if neighbours.before_ned is not None:
-            tangents += [_from(neighbours.before_ned, start), _from(neighbours.before_ned, to_ned)]
-        for tangent in tangents:
-            controls[_moved(start, tangent, 1.0 / 3.0)] = None
-        leaving = [_from(start, to_ned)]
-        for after in neighbours.after_ned:
-            leaving += [_from(start, after), _from(to_ned, after)]
-        for tangent in leaving:
-            controls[_moved(to_ned, tangent, -1.0 / 3.0)] = None
-            size = math.hypot(*tangent)
-            if size > 0.0:
-                arrivals[_moved(to_ned, tangent, -max(accept_m, _LAG_M) / size)] = None
-    return tuple(controls), tuple(arrivals)
+@dataclass(frozen=True, slots=True)
+class Spline:
+    """One way to fly the curve; `onward` None: it ends at rest."""
+
+    controls: Bezier
+    onward: Onward | None
+
+    def at(self, share: float) -> Vec3:
+        return _blossom(self.controls, share, share, share)
+
+    def arrives(self, accept_m: float, motion: Motion) -> tuple[Moving, ...]:
+        """How the vehicle moves where the curve ends for it: at its end, or behind that."""
+        *_, q_before, q = self.controls
+        left_m = max(accept_m, _LAG_M)
+        fast_m_s = self._allowed_m_s(1.0, motion)
+        steps = (1.0 - step / _STEPS for step in range(1, _STEPS + 1))
+        share = next((s for s in steps if math.dist(self.at(s), q) >= left_m), 0.0)
+        behind = _blossom(self.controls, share, share, share)
+        on = _blossom(self.controls, share, share, 1.0)
+        if self.onward is None:
+            speed_m_s = motion.arrival_m_s(left_m)
+            return (*moving(behind, behind, on, speed_m_s), *moving(q, q_before, q, speed_m_s))
+        found = (
+            *moving(behind, behind, on, max(fast_m_s, self._allowed_m_s(share, motion))),
+            *moving(q, q_before, q, fast_m_s),
+        )
+        to_ned = self.onward.to_ned
+        return tuple(Moving(one.pos_ned, one.way, one.speed_m_s, to_ned) for one in found)
+
+    def overshoots(self, entry_m_s: float, motion: Motion) -> Vec3:
+        """Where a vehicle that begins it too fast for its bends would brake to what they allow."""
+        brake_m_s2 = 0.5 * motion.accel_m_s2
+        places = [self.at(step / _STEPS) for step in range(_STEPS + 1)]
+        least = self._allowed_m_s(1.0, motion)
+        for step in range(_STEPS - 1, -1, -1):
+            way_m = math.dist(places[step], places[step + 1])
+            braked = math.sqrt(least * least + 2.0 * brake_m_s2 * way_m)
+            least = min(self._allowed_m_s(step / _STEPS, motion), braked)
+        too_far_m = max(0.0, (entry_m_s * entry_m_s - least * least) / (2.0 * brake_m_s2))
+        p, q, *_ = self.controls
+        way = between(p, q)
+        size = math.hypot(*way)
+        return ahead(p, way, too_far_m / size) if size > 0.0 else p
+
+    def _allowed_m_s(self, share: float, motion: Motion) -> float:
+        """Half the acceleration bends the way (vehicle-sim): at the speed v by v^2 / r."""
+        a, b, c = (_blossom(self.controls, share, *ends) for ends in ((0, 0), (0, 1), (1, 1)))
+        first, last = between(a, b), between(b, c)
+        # The derivatives are 3 (b(t, t, 1) - b(t, t, 0)) and 6 (b(t, 1, 1) - 2 b(t, 0, 1) + ...).
+        along = _mixed(first, last, share)
+        change = between(first, last)
+        flat = math.hypot(along[0], along[1])
+        cross = abs(along[0] * change[1] - along[1] * change[0]) * 2.0 / 3.0
+        if cross == 0.0 or flat == 0.0:
+            return motion.speed_m_s
+        return min(motion.speed_m_s, math.sqrt(0.5 * motion.accel_m_s2 * flat**3 / cross))
 
 
-def _from(a: Vec3, b: Vec3) -> Vec3:
-    return (b[0] - a[0], b[1] - a[1], b[2] - a[2])
+def splines(starts: Sequence[Vec3], to_ned: Vec3, neighbours: Neighbours) -> tuple[Spline, ...]:
+    """All ways to fly it from each of `starts`."""
+    return tuple(
+        Spline(_controls(start, to_ned, entering, leaving, share), onward)
+        for start in starts
+        for entering in _entering(start, to_ned, neighbours)
+        for leaving, onward in _leaving(start, to_ned, neighbours)
+        for share in _SHARES
+    )
 
 
-def _moved(at: Vec3, by: Vec3, share: float) -> Vec3:
-    return (at[0] + share * by[0], at[1] + share * by[1], at[2] + share * by[2])
+def pieces(found: Sequence[Spline], wider_m: float) -> tuple[tuple[Vec3, ...], ...]:
+    """Points whose hulls hold the pieces of the curves, one after the other, and `wider_m` about
+    them."""
+    return tuple(
+        prism([point for one in found for point in _piece(one.controls, n)], wider_m)
+        for n in range(_PIECES)
+    )
 
 
-def carried(
-    starts: tuple[Vec3, ...],
-    to_ned: Vec3,
-    straight_after: tuple[Vec3, ...],
-    speed_m_s: float,
-    accel_m_s2: float,
-) -> tuple[Vec3, ...]:
-    """How far its speed may carry a vehicle past `to_ned` before it is on the straight leg that
-    follows: along the tangent of a curve that looks ahead to that leg's end.
+def prism(points: Sequence[Vec3], wider_m: float) -> tuple[Vec3, ...]:
+    """The corners of the points' outline on the ground, so much wider, at their lowest and their
+    highest."""
+    low, high = max(d for _, _, d in points), min(d for _, _, d in points)
+    outline = ground_track([((e, n), 0.0) for n, e, _ in points])
+    if wider_m > 0.0:
+        reach_m = wider_m / math.cos(math.pi / len(_ROUND))
+        spread = [((e + reach_m * x, n + reach_m * y), 0.0) for e, n in outline for x, y in _ROUND]
+        outline = ground_track(spread)
+    return tuple((n, e, d) for e, n in outline for d in dict.fromkeys((low, high)))
 
-    To whole metres, so that a loop comes back to what it was before; one metre more for that.
-    """
-    reach_m = 1.0 + speed_m_s * speed_m_s / (2.0 * _BRAKE_SHARE * accel_m_s2)
-    found: dict[Vec3, None] = {}
-    for start in starts:
-        for after in straight_after:
-            tangent = _from(start, after)
-            size = math.hypot(*tangent)
-            if size > 0.0:
-                n, e, d = _moved(to_ned, tangent, reach_m / size)
-                height_m = max(-_CARRY_UP_M, min(_CARRY_UP_M, float(round(d - to_ned[2]))))
-                found[(float(round(n)), float(round(e)), to_ned[2] + height_m)] = None
-    return tuple(found)
+
+@dataclass(frozen=True, slots=True)
+class _Tangent:
+    """`whole`: as it is, neither shortened nor halved."""
+
+    vector: Vec3
+    whole: bool = False
+
+
+def _at_rest(start: Vec3, to_ned: Vec3) -> tuple[_Tangent, ...]:
+    return (_Tangent(_REST, whole=True), _Tangent(between(start, to_ned), whole=True))
+
+
+def _entering(start: Vec3, to_ned: Vec3, neighbours: Neighbours) -> tuple[_Tangent, ...]:
+    before_ned = neighbours.before_ned
+    rest = _at_rest(start, to_ned) if neighbours.may_rest or before_ned is None else ()
+    if before_ned is None:
+        return rest
+    return (*rest, _Tangent(between(before_ned, to_ned if neighbours.before_curved else start)))
+
+
+def _leaving(
+    start: Vec3, to_ned: Vec3, neighbours: Neighbours
+) -> tuple[tuple[_Tangent, Onward | None], ...]:
+    rest = _at_rest(start, to_ned) if neighbours.may_stop else ()
+    return (
+        *((tangent, None) for tangent in rest),
+        *(
+            (_Tangent(between(start if onward.curved else to_ned, onward.to_ned)), onward)
+            for onward in neighbours.onward
+        ),
+    )
+
+
+def _controls(
+    start: Vec3, to_ned: Vec3, entering: _Tangent, leaving: _Tangent, share: float
+) -> Bezier:
+    size = sum(math.hypot(*one.vector) for one in (entering, leaving) if not one.whole)
+    most = _TANGENTS_MAX * math.dist(start, to_ned)
+    shorter = share * (most / size if size > most else 1.0)
+    first, last = ((1.0 if one.whole else shorter) / 3.0 for one in (entering, leaving))
+    after, before = ahead(start, entering.vector, first), ahead(to_ned, leaving.vector, -last)
+    return start, after, before, to_ned
+
+
+def _piece(controls: Bezier, number: int) -> Bezier:
+    """The control points of the part from number / _PIECES on."""
+    a, b = number / _PIECES, (number + 1) / _PIECES
+    return (
+        _blossom(controls, a, a, a),
+        _blossom(controls, a, a, b),
+        _blossom(controls, a, b, b),
+        _blossom(controls, b, b, b),
+    )
+
+
+def _blossom(controls: Bezier, r: float, s: float, t: float) -> Vec3:
+    """The polar form of the cubic (L. Ramshaw, 1989): at t, t, t it is the curve's point."""
+    p, q, u, v = controls
+    a, b, c = _mixed(p, q, r), _mixed(q, u, r), _mixed(u, v, r)
+    return _mixed(_mixed(a, b, s), _mixed(b, c, s), t)
+
+
+def _mixed(a: Vec3, b: Vec3, t: float) -> Vec3:
+    return (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]))

@@ -83,12 +83,14 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """The vehicle may be anywhere in the hull of `starts` and `ends`; it comes from `starts`."""
+    """The vehicle may be anywhere in the hull of `starts` and `ends`; it comes from `starts`,
+    () where it was in another region before, and is on its way to `aim_ned`."""
 
     item: int
     kind: RegionKind
     starts: tuple[Vec3, ...]
     ends: tuple[Vec3, ...]
+    aim_ned: Vec3
 
     @property
     def floor_applies(self) -> bool:
@@ -140,11 +142,14 @@ class FlightSettings:
     return_type: int = 0
     """PX4's RTL_TYPE."""
     speed_m_s: float = 0.0
-    """How fast it flies its legs at most (WPNAV_SPEED), where no item says otherwise."""
+    """How fast it flies its legs at most (WPNAV_SPEED, MPC_XY_CRUISE), where no item says
+    otherwise."""
     accel_m_s2: float = 2.5
-    """Its acceleration on legs (WPNAV_ACCEL)."""
+    """Its acceleration on legs (WPNAV_ACCEL, MPC_ACC_HOR)."""
     return_climb_m: float = 0.0
     """A return climbs so much at least (RTL_CLIMB_MIN)."""
+    jerk_m_s3: float = math.inf
+    """What limits the change of its acceleration on legs (MPC_JERK_AUTO)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,14 +20,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcs.frames import Vec3
 from gcs.plan import commands, returns
-from gcs.plan.circles import circle_ends, entries, way_on
+from gcs.plan.carry import Motion, Moving, not_stopped, still_moving
+from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
-from gcs.plan.curves import Neighbours, carried, curve_hull
+from gcs.plan.curves import Neighbours, pieces, splines
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import (
@@ -42,7 +42,8 @@ from gcs.plan.legs import (
     RegionKind,
 )
 from gcs.plan.model import Item, Plan
-from gcs.plan.turns import blend, fewer, turning_places
+from gcs.plan.onward import ways_on
+from gcs.plan.turns import arrivals, blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
 _VISITS_MAX = 32
@@ -52,20 +53,26 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.REFUSED: ProblemKind.REFUSED,
     Flown.NEVER_STARTS: ProblemKind.NEVER_STARTS,
 }
-_THROUGH = (Flown.STRAIGHT, Flown.STAYS, Flown.CURVE)
-"""A spline leads on to these without a stop."""
+_CURVE_BESIDE_M = 1.0
+"""So far beside a curve the vehicle may be."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Here:
-    """Where the vehicle is when an item begins: at `pos_ned`, or at one of `also`.
+    """Where the vehicle is when an item begins: at `pos_ned`, or at one of `also`, and how it moves
+    there.
 
-    `before_ned` is where the waypoint leg that ended at `pos_ned` began; None after anything else.
+    `before_ned` is where the waypoint leg that ended at `pos_ned` began, `before_curved` whether
+    it was a curve; None after anything else.  `rests`: a curve may begin at rest.
     """
 
     pos_ned: Vec3
     also: tuple[Vec3, ...] = ()
+    moving: tuple[Moving, ...] = ()
     before_ned: Vec3 | None = None
+    before_curved: bool = False
+    leaves_circle: bool = False
+    rests: bool = True
 
     @property
     def places(self) -> tuple[Vec3, ...]:
@@ -91,19 +98,21 @@ class PathWalk:
         self._plan = plan
         self._ground = ground
         self._places = ItemPlaces(ground)
+        settings = ground.settings
+        self._motion = Motion(settings.speed_m_s, settings.accel_m_s2, settings.jerk_m_s3)
         self._legs: dict[Leg, None] = {}
         self._circles: dict[LoiterCircle, None] = {}
         self._regions: dict[Region, None] = {}
         self._problems: dict[Problem, None] = {}
-        self._seen: set[tuple[int, _Here]] = set()
+        self._seen: set[tuple[int, _Here, Motion]] = set()
         self._visits: dict[int, int] = {}
-        self._branches: list[tuple[int, _Here]] = []
+        self._branches: list[tuple[int, _Here, Motion]] = []
 
     def steps(self) -> Iterator[None]:
         """One item a step; after the last one `path` is whole."""
-        self._branches.append((0, self._begin()))
+        self._branches.append((0, self._begin(), self._motion))
         while self._branches:
-            index, here = self._branches.pop()
+            index, here, self._motion = self._branches.pop()
             try:
                 yield from self._follow(index, here)
             except _DeadEndError:
@@ -136,9 +145,9 @@ class PathWalk:
     def _follow(self, index: int, here: _Here) -> Iterator[None]:
         """Walk from item `index`, entered at `here`, to the end of the mission or to where this
         walk was before."""
-        while index < len(self._plan.items) and (index, here) not in self._seen:
+        while index < len(self._plan.items) and (index, here, self._motion) not in self._seen:
             yield
-            self._seen.add((index, here))
+            self._seen.add((index, here, self._motion))
             self._visits[index] = self._visits.get(index, 0) + 1
             if self._visits[index] > _VISITS_MAX:
                 raise self._problem(index, ProblemKind.TOO_MANY_WAYS)
@@ -158,10 +167,12 @@ class PathWalk:
                 case Kind.JUMP:
                     self._jump(index, item, here)
                 case Kind.WAIT | Kind.ACT:
-                    pass
+                    self._change_speed(item)
                 case Kind.SET_HOME | Kind.FENCE | None:
                     raise self._problem(index, ProblemKind.NOT_FLOWN)
             index += 1
+        if index == len(self._plan.items):
+            self._stop(index - 1, here)
 
     def _problem(self, index: int, kind: ProblemKind) -> _DeadEndError:
         label = commands.name(self._plan.items[index].command)
@@ -180,10 +191,36 @@ class PathWalk:
         kind: RegionKind,
         starts: tuple[Vec3, ...],
         ends: tuple[Vec3, ...],
+        aim_ned: Vec3 | None = None,
     ) -> None:
         """What is no more than its own straight leg is judged as the leg."""
         if len(set(starts) | set(ends)) > 2:
-            self._regions[Region(index, kind, starts, ends)] = None
+            aim_ned = ends[0] if aim_ned is None else aim_ned
+            self._regions[Region(index, kind, starts, ends, aim_ned)] = None
+
+    def _starts(self, index: int, here: _Here, aim_ned: Vec3 | None = None) -> tuple[Vec3, ...]:
+        """Where it is, and where its speed may carry it on its way to `aim_ned`; None: to any."""
+        carried = (
+            one.carried(self._motion, aim_ned)
+            for one in here.moving
+            if aim_ned is None or one.onward_ned in (None, aim_ned)
+        )
+        return self._with(index, here, tuple(carried), here.pos_ned if aim_ned is None else aim_ned)
+
+    def _with(
+        self, index: int, here: _Here, carried: tuple[Vec3, ...], aim_ned: Vec3
+    ) -> tuple[Vec3, ...]:
+        """Where it is, and `carried`.  That is judged at once: what begins at a place may be as
+        near to a boundary as the place is, and it was at none of these yet."""
+        also = fewer((*here.also, *carried), without=here.pos_ned)
+        self._region(index, RegionKind.TURN, here.places, also, aim_ned)
+        return (here.pos_ned, *also)
+
+    def _stop(self, index: int, here: _Here) -> None:
+        """The mission's end: from a circle it goes on until it has braked."""
+        if here.leaves_circle:
+            stops = tuple(one.stopped(self._motion) for one in here.moving)
+            self._region(index, RegionKind.ENTRY, here.places, fewer(stops), here.pos_ned)
 
     # ---------------------------------------------------------------------------- items
 
@@ -194,7 +231,15 @@ class PathWalk:
         target = self._plan.index_of(item.params[0])
         if target is None:
             raise self._problem(index, ProblemKind.JUMP_NOWHERE)
-        self._branches.append((target, here))
+        self._branches.append((target, here, self._motion))
+
+    def _change_speed(self, item: Item) -> None:
+        """DO_CHANGE_SPEED over ground or through the air; below zero: its own speed again."""
+        kind, speed_m_s, *_ = item.params
+        if item.command == Cmd.DO_CHANGE_SPEED and kind in (0.0, 1.0) and not math.isnan(speed_m_s):
+            own_m_s = self._ground.settings.speed_m_s
+            changed_m_s = speed_m_s if speed_m_s > 0.0 else max(own_m_s, self._motion.speed_m_s)
+            self._motion = replace(self._motion, speed_m_s=changed_m_s)
 
     def _move(self, index: int, item: Item, here: _Here) -> _Here:
         match flown_as(item.command, self._ground.autopilot):
@@ -214,22 +259,33 @@ class PathWalk:
     def _straight(self, index: int, item: Item, here: _Here) -> _Here:
         aims = self._aims(item, here)
         to_ned = self._leg(index, LegKind.STRAIGHT, here.pos_ned, aims[0])
-        self._region(index, RegionKind.TURN, here.places, aims)
+        starts = self._starts(index, here, to_ned if len(aims) == 1 else None)
+        self._region(index, RegionKind.TURN, starts, aims)
         if here.before_ned is not None and self._ground.autopilot == "ardupilot":
             accept_m = self._ground.settings.accept_m
             ends = blend(here.before_ned, here.pos_ned, to_ned, accept_m)
             self._region(index, RegionKind.TURN, (ends[0], here.pos_ned), (ends[1],))
-        also = fewer((*self._turning(item, here.places, to_ned), *aims[1:]), without=to_ned)
         fast = item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_SPLINE_WAYPOINT)
-        return _Here(to_ned, also, here.pos_ned if fast else None)
+        turning = self._turning(item, starts, to_ned, here)
+        also = fewer((*turning.also, *aims[1:]), without=to_ned)
+        return replace(turning, also=also, before_ned=here.pos_ned if fast else None)
 
-    def _turning(self, item: Item, starts: tuple[Vec3, ...], to_ned: Vec3) -> tuple[Vec3, ...]:
+    def _turning(self, item: Item, starts: tuple[Vec3, ...], to_ned: Vec3, here: _Here) -> _Here:
+        """Where it is, and how it moves, when it turns at `to_ned`."""
         settings = self._ground.settings
         accept_m = settings.accept_m
         own_m = item.params[1]
         if self._ground.autopilot == "px4" and item.command == Cmd.NAV_WAYPOINT and own_m > 0.0:
             accept_m = own_m
-        return turning_places(starts, to_ned, accept_m, settings.accept_up_m)
+        radii = accept_m, settings.accept_up_m
+        leg_m = math.dist(here.pos_ned, to_ned) - accept_m - settings.accept_m
+        left = still_moving(here.moving, self._motion, leg_m, to_ned)
+        also = turning_places(starts, to_ned, *radii)
+        entry_m_s = max((one.speed_m_s for one in here.moving), default=0.0)
+        found = arrivals(starts, to_ned, *radii, self._motion, entry_m_s)
+        stay_s = item.params[0] if item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_LOITER_TIME) else 0.0
+        slowed_m_s = self._motion.slowed_m_s(stay_s) if stay_s > 0.0 else 0.0
+        return _Here(to_ned, also, (*not_stopped(found, slowed_m_s), *left))
 
     def _climb(self, index: int, from_ned: Vec3, down_m: float) -> _Here:
         """Straight up; px4 counts a climb as done while something of it is left."""
@@ -249,29 +305,31 @@ class PathWalk:
         over_ned = (*self._places.horizontal(item, top.pos_ned), top.pos_ned[2])
         self._leg(index, LegKind.STRAIGHT, top.pos_ned, over_ned)
         self._region(index, RegionKind.TURN, top.places, (over_ned,))
-        return _Here(over_ned, self._turning(item, top.places, over_ned))
+        return self._turning(item, top.places, over_ned, top)
 
     def _land(self, index: int, item: Item, here: _Here) -> _Here:
         down_m = self._ground.home_ned[2]
+        starts = self._starts(index, here)
         nominal = self._places.horizontal(item, here.pos_ned)
-        spots = [place[:2] if is_here(item) else nominal for place in here.places]
-        overs = tuple((*at, place[2]) for at, place in zip(spots, here.places, strict=True))
+        spots = [place[:2] if is_here(item) else nominal for place in starts]
+        overs = tuple((*at, place[2]) for at, place in zip(spots, starts, strict=True))
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
-        self._region(index, RegionKind.TURN, here.places, overs)
+        self._region(index, RegionKind.TURN, starts, overs)
         grounds = tuple((*at, down_m) for at in dict.fromkeys(spots))
         self._leg(index, LegKind.DESCENT, overs[0], grounds[0])
-        near = self._turning(item, (*here.places, *overs), overs[0])
+        near = self._turning(item, (*starts, *overs), overs[0], here).also
         self._region(index, RegionKind.LANDING, (*overs, *near), grounds)
         return _Here(grounds[0], grounds[1:])
 
     def _level_then_height(self, index: int, item: Item, here: _Here) -> _Here:
         """LOITER_TO_ALT: over the place at the height it has, then up or down; or straight."""
+        starts = self._starts(index, here)
         to_ned = self._places.place(item, here.pos_ned)
-        overs = tuple((*to_ned[:2], place[2]) for place in here.places)
+        overs = tuple((*to_ned[:2], place[2]) for place in starts)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
         self._leg(index, LegKind.STRAIGHT, overs[0], to_ned)
-        self._region(index, RegionKind.TURN, here.places, (*overs, to_ned))
-        return _Here(to_ned, self._turning(item, (*here.places, *overs), to_ned))
+        self._region(index, RegionKind.TURN, starts, (*overs, to_ned))
+        return self._turning(item, (*starts, *overs), to_ned, here)
 
     def _return(self, index: int, here: _Here) -> None:
         ground = self._ground
@@ -279,13 +337,14 @@ class PathWalk:
             raise self._problem(index, ProblemKind.NO_RETURN_HEIGHT)
         if not returns.straight(ground, self._plan):
             raise self._problem(index, ProblemKind.RETURN_ROUTE)
-        for landing in returns.landing_places(ground, here.places):
+        starts = self._starts(index, here)
+        for landing in returns.landing_places(ground, starts):
             way = returns.way_to(landing, ground, here.pos_ned)
             self._leg(index, LegKind.CLIMB, here.pos_ned, way.top_ned)
             self._leg(index, LegKind.RETURN, way.top_ned, way.over_ned)
             self._leg(index, LegKind.DESCENT, way.over_ned, way.ground_ned)
-            for starts, ends in returns.regions(landing, ground, here.places):
-                self._region(index, RegionKind.RETURN, starts, ends)
+            for region in returns.regions(landing, ground, starts):
+                self._region(index, RegionKind.RETURN, *region)
 
     def _turns(self, index: int, item: Item, here: _Here) -> _Here:
         centres = self._aims(item, here)
@@ -295,55 +354,41 @@ class PathWalk:
             raise self._problem(index, ProblemKind.NO_RADIUS)
         for centre in centres:
             self._circles[LoiterCircle(index, centre, abs(radius_m))] = None
-        begun = entries(here.places, centre_ned, abs(radius_m))
+        starts = self._starts(index, here)
+        begun = entries(starts, centre_ned, abs(radius_m))
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, begun[0])
-        around = way_on(here.places, begun, centre_ned, abs(radius_m))
-        self._region(index, RegionKind.ENTRY, here.places, around)
-        ends = circle_ends(begun, centre_ned, radius_m, turns)
-        return _Here(ends[0], fewer(ends[1:], without=ends[0]))
+        around = way_on(starts, begun, centre_ned, abs(radius_m))
+        self._region(index, RegionKind.ENTRY, starts, around)
+        arc = first_arc(begun, centre_ned, radius_m)
+        self._region(index, RegionKind.ENTRY, begun, arc, begun[0])
+        ends = circle_ends(begun, centre_ned, radius_m, turns, self._motion)
+        also = fewer(tuple(one.pos_ned for one in ends), without=ends[0].pos_ned)
+        moving = tuple(dict.fromkeys(ends))
+        return _Here(ends[0].pos_ned, also, moving, leaves_circle=True)
 
     def _curve(self, index: int, item: Item, here: _Here) -> _Here:
-        """Where a straight leg follows, the vehicle's speed carries it past the curve's end."""
         to_ned = self._places.place(item, here.pos_ned)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
-        settings = self._ground.settings
-        after = self._next_places(index, to_ned)
-        neighbours = Neighbours(here.before_ned, tuple(place for place, _ in after))
-        hull, arrivals = curve_hull(here.places, to_ned, neighbours, settings.accept_m)
-        self._region(index, RegionKind.CURVE, here.places, hull)
-        straight = tuple(place for place, curved in after if not curved)
-        speed_m_s = max(settings.speed_m_s, self._fastest_item_m_s)
-        past = carried(here.places, to_ned, straight, speed_m_s, settings.accel_m_s2)
-        return _Here(to_ned, fewer((*arrivals, *past), without=to_ned), here.pos_ned)
-
-    @property
-    def _fastest_item_m_s(self) -> float:
-        """The largest DO_CHANGE_SPEED of the plan; 0 without one."""
-        changes = (one for one in self._plan.items if one.command == Cmd.DO_CHANGE_SPEED)
-        return max((change.params[1] for change in changes), default=0.0)
-
-    def _next_places(self, index: int, pos_ned: Vec3) -> tuple[tuple[Vec3, bool], ...]:
-        """Where it may go on to from item `index`, by every jump; True for curves."""
-        found: list[tuple[Vec3, bool]] = []
-        waiting, seen = [index + 1], set[int]()
-        while waiting:
-            at = waiting.pop()
-            if at in seen or at >= len(self._plan.items):
-                continue
-            seen.add(at)
-            item = self._plan.items[at]
-            if KINDS.get(item.command) in (Kind.MOVE, Kind.RETURN, Kind.WAIT):
-                flown = flown_as(item.command, self._ground.autopilot)
-                if flown in _THROUGH:
-                    with suppress(PlaceUnknownError):  # told when the walk comes to it
-                        place = self._places.place(item, pos_ned)
-                        found.append((place, flown is Flown.CURVE))
-                continue
-            waiting.append(at + 1)
-            target = self._plan.index_of(item.params[0]) if item.command == Cmd.DO_JUMP else None
-            if target is not None:
-                waiting.append(target)
-        return tuple(found)
+        onward, may_stop = ways_on(self._plan, index, self._places, self._ground.autopilot, to_ned)
+        neighbours = Neighbours(here.before_ned, here.before_curved, here.rests, onward, may_stop)
+        stops = tuple(one.stopped(self._motion) for one in here.moving if here.rests)
+        starts = self._with(index, here, stops, to_ned)
+        begins = starts if here.rests else (here.pos_ned,)
+        found = splines(begins, to_ned, neighbours)
+        first, *others = pieces(found, _CURVE_BESIDE_M)
+        self._region(index, RegionKind.CURVE, starts, first, to_ned)
+        if here.before_curved:
+            entry_m_s = max((one.speed_m_s for one in here.moving), default=0.0)
+            past = fewer(tuple(way.overshoots(entry_m_s, self._motion) for way in found))
+            self._region(index, RegionKind.CURVE, starts, (*first, *others[0], *past), to_ned)
+        for piece in others:
+            self._region(index, RegionKind.CURVE, (), piece, to_ned)
+        accept_m = self._ground.settings.accept_m
+        ends = tuple(
+            dict.fromkeys(one for way in found for one in way.arrives(accept_m, self._motion))
+        )
+        also = fewer(tuple(one.pos_ned for one in ends), without=to_ned)
+        return _Here(to_ned, also, ends, here.pos_ned, before_curved=True, rests=may_stop)
 
     def _aims(self, item: Item, here: _Here) -> tuple[Vec3, ...]:
         """Where the item leads; one without a place of its own may lead to any of `here`."""

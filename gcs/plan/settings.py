@@ -14,6 +14,9 @@ USUAL: dict[AutopilotName, FlightSettings] = {
         accept_up_m=0.8,
         first_climb_m=2.5,
         return_low_within_m=10.0,
+        speed_m_s=5.0,
+        accel_m_s2=3.0,
+        jerk_m_s3=4.0,
     ),
     "ardupilot": FlightSettings(
         accept_m=2.0,

@@ -1,9 +1,10 @@
 """Where a vehicle is when it turns from a waypoint to the next.
 
 It does not fly to the waypoint: it turns as soon as it is near enough, and its speed carries it on
-towards the waypoint that it turned from.  So from a set of places where it may begin, every place
-on its way lies in the hull of that set and the waypoint, and the set where it turns next is the
-waypoint itself and the places where it enters the sphere of acceptance.
+towards the waypoint that it turned from, and past it (`carry.py`).  So from a set of places where
+it may begin, and where its speed may carry it from there, every place on its way lies in the hull
+of that set and the waypoint; the set where it turns next is the waypoint itself and the places
+where it enters the sphere of acceptance.
 
 PX4: mission_block.cpp, is_mission_item_reached_or_completed: horizontally within NAV_WAYPOINT's
 param 2 or NAV_ACC_RAD, vertically within NAV_MC_ALT_RAD; vehicle-sim takes the distance in space.
@@ -19,14 +20,18 @@ jerk), so a turn by the angle t with its apex r away begins no earlier than 3 r 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from functools import lru_cache
 
 from gcs.frames import Vec3
+from gcs.plan.carry import Motion, Moving, all_round, moving
 
 WIDEST_RAD = math.radians(120.0)
 """From places that are seen from the waypoint under a wider angle it may turn all round it."""
 _OVERLAP = 3.0
 _MOST_PLACES = 8
 _DIGITS = 2
+_EIGHT = tuple((math.cos(0.25 * math.pi * n), math.sin(0.25 * math.pi * n)) for n in range(8))
 
 
 def turning_places(
@@ -50,6 +55,37 @@ def turning_places(
     return fewer(tuple(found), without=to_ned)
 
 
+def arrivals(
+    starts: tuple[Vec3, ...],
+    to_ned: Vec3,
+    accept_m: float,
+    accept_up_m: float | None,
+    motion: Motion,
+    entry_m_s: float = math.inf,
+) -> tuple[Moving, ...]:
+    """How a vehicle that flies from `starts` to `to_ned` moves when it turns there.
+
+    `entry_m_s` is its speed at `starts`.  One that is near enough from its start moves as there.
+    """
+    reaches = [_turn_m(start, to_ned, accept_m, accept_up_m) for start in starts]
+    angle_rad = _widest_angle(starts, to_ned)
+    if angle_rad > WIDEST_RAD:
+        return all_round(to_ned, motion.arrival_m_s(max(reaches)))
+    longest_m = max(
+        0.0,
+        *(math.dist(a, to_ned) - reach_m for a, reach_m in zip(starts, reaches, strict=True)),
+    )
+    fastest_m_s = math.hypot(entry_m_s, math.sqrt(2.0 * motion.accel_m_s2 * longest_m))
+    wider = 1.0 / math.cos(0.5 * angle_rad)
+    found: list[Moving] = []
+    for start, reach_m in zip(starts, reaches, strict=True):
+        if math.dist(start, to_ned) > reach_m:
+            place = _rounded(_towards(start, to_ned, wider * reach_m))
+            speed_m_s = min(fastest_m_s, motion.arrival_m_s(wider * reach_m))
+            found += moving(place, start, to_ned, speed_m_s)
+    return tuple(dict.fromkeys(found))
+
+
 def _box_about(starts: tuple[Vec3, ...], to_ned: Vec3, reach_m: float) -> tuple[Vec3, ...]:
     """A square round the circle where it may turn, at the heights that it may have there."""
     heights = [_towards(start, to_ned, reach_m)[2] for start in starts]
@@ -65,20 +101,30 @@ def _box_about(starts: tuple[Vec3, ...], to_ned: Vec3, reach_m: float) -> tuple[
 
 
 def fewer(places: tuple[Vec3, ...], without: Vec3 | None = None) -> tuple[Vec3, ...]:
-    """Places to the centimetre, each once; where there are many, a box around them."""
+    """Places to the centimetre, each once; where there are many, an octagon around them, at the
+    lowest and at the highest of them."""
     rounded = dict.fromkeys(_rounded(place) for place in places)
     if without is not None:
         rounded.pop(_rounded(without), None)
     if len(rounded) <= _MOST_PLACES:
         return tuple(sorted(rounded))
-    lows = [min(place[axis] for place in rounded) for axis in range(3)]
-    highs = [max(place[axis] for place in rounded) for axis in range(3)]
-    return tuple(
-        (north, east, down)
-        for north in dict.fromkeys((lows[0], highs[0]))
-        for east in dict.fromkeys((lows[1], highs[1]))
-        for down in dict.fromkeys((lows[2], highs[2]))
+    downs = [down for _, _, down in rounded]
+    found = (
+        _rounded((north, east, down))
+        for north, east in _octagon([(north, east) for north, east, _ in rounded])
+        for down in (min(downs), max(downs))
     )
+    return tuple(sorted(dict.fromkeys(found)))
+
+
+def _octagon(points: list[tuple[float, float]]) -> Iterator[tuple[float, float]]:
+    """The corners of the smallest octagon, of eight given directions, about the points."""
+    reaches = [max(x * c + y * s for x, y in points) for c, s in _EIGHT]
+    for number, (c, s) in enumerate(_EIGHT):
+        d, t = _EIGHT[(number + 1) % 8]
+        reach, next_reach = reaches[number], reaches[(number + 1) % 8]
+        cross = c * t - s * d
+        yield (reach * t - next_reach * s) / cross, (next_reach * c - reach * d) / cross
 
 
 def blend(before_ned: Vec3, at_ned: Vec3, to_ned: Vec3, accept_m: float) -> tuple[Vec3, Vec3]:
@@ -114,6 +160,7 @@ def _towards(start: Vec3, to_ned: Vec3, left_m: float) -> Vec3:
     return (n, e, d)
 
 
+@lru_cache(maxsize=4)
 def _widest_angle(places: tuple[Vec3, ...], seen_from: Vec3) -> float:
     return max(
         (

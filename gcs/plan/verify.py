@@ -184,7 +184,7 @@ class Verifying:
         return LegVerdict(leg.item, leg.kind.value, leg.from_ned, leg.to_ned, 0.0, refusal)
 
     def _region(self, region: Region) -> LegVerdict:
-        to_ned = region.ends[0]
+        to_ned = region.aim_ned
         refusal = self._verifier.mission_region(
             f"{region.kind.value} {place(to_ned)}",
             region.starts,
@@ -192,7 +192,7 @@ class Verifying:
             floor_applies=region.floor_applies,
         )
         kind = region.kind.name.lower()
-        return LegVerdict(region.item, kind, region.starts[0], to_ned, 0.0, refusal)
+        return LegVerdict(region.item, kind, region.points[0], to_ned, 0.0, refusal)
 
     def _judge_rally_points(self) -> None:
         """Inside the fence by the margin, from the height that it is flown to down to the ground.

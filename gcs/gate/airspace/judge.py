@@ -43,16 +43,18 @@ class FenceJudge:
     """Judges by the zones of one fence; see `clearance.py` for the three rules.
 
     `subject` is what a refusal's sentence begins with.  `floor_applies` says whether the floors of
-    inclusion zones are considered.
+    inclusion zones are considered.  `least_h_m`: the margin beside zones is no less, whatever the
+    policy's.
     """
 
     zones: tuple[Zone, ...]
     policy: Policy
     braking: Braking
+    least_h_m: float = 0.0
 
     @property
     def margins(self) -> Margins:
-        return Margins(self.policy.margin_h_m, self.policy.margin_v_m)
+        return Margins(max(self.policy.margin_h_m, self.least_h_m), self.policy.margin_v_m)
 
     def point(self, subject: str, pos_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
         """Refuses a point that does not keep the margin."""
@@ -92,7 +94,8 @@ class FenceJudge:
     ) -> Refusal | None:
         """Refuses the convex hull of the points if any of it does not keep the margin.
 
-        A hull that starts closer than the margin must not come closer than its starts are.
+        A hull that starts closer than the margin must not come closer than its starts are; one
+        without starts keeps the margin.
         """
         margins = self.margins if margins is None else margins
         for zone in self.zones:
@@ -203,7 +206,8 @@ class FenceJudge:
         points = [(m.a_en, m.a_up_m) for m in starts]
         points += [(end[:2], end[2]) for end in map(enu_from_ned, ends_ned)]
         if not zone.inclusion:
-            start_m = min(body_clearance(zone, m.a_en, m.a_up_m) for m in starts)
+            near = (body_clearance(zone, m.a_en, m.a_up_m) for m in starts)
+            start_m = min(near, default=math.inf)
             if not start_m >= TOLERANCE_M:
                 yield Measure(zone, Face.BODY, start_m, start_m)
                 return
@@ -214,8 +218,9 @@ class FenceJudge:
                 yield Measure(zone, Face.BODY, start_m, hull_outside(zone.shape, track))
             return
         low, high = min(up for _, up in points), max(up for _, up in points)
-        start_low, start_high = min(m.a_up_m for m in starts), max(m.a_up_m for m in starts)
-        start_m = min(zone.shape.clearance(m.a_en) for m in starts)
+        start_low = min((m.a_up_m for m in starts), default=math.inf)
+        start_high = max((m.a_up_m for m in starts), default=-math.inf)
+        start_m = min((zone.shape.clearance(m.a_en) for m in starts), default=math.inf)
         yield Measure(zone, Face.SIDES, start_m, hull_inside(zone.shape, ground_track(points)))
         top = zone.ceiling_up_m
         yield Measure(zone, Face.CEILING, top - start_high, top - high)

@@ -121,6 +121,7 @@ class Policy(_Section, frozen=True):
     bounds_inclusive: bool
     margin_h_m: FromZero
     margin_v_m: FromZero
+    mission_wind_m_s: FromZero
     max_up_m: FromZero
     min_up_m: Height
     max_distance_m: FromZero

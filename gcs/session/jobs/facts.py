@@ -36,6 +36,9 @@ QUANTITIES: dict[AutopilotName, tuple[Quantity, ...]] = {
         Quantity("return_type", "RTL_TYPE", needed=False),
         Quantity("cone", "RTL_CONE_ANG", needed=False),
         Quantity("cone_within_m", "RTL_MIN_DIST", needed=False),
+        Quantity("speed_m_s", "MPC_XY_CRUISE", needed=False),
+        Quantity("accel_m_s2", "MPC_ACC_HOR", needed=False),
+        Quantity("jerk_m_s3", "MPC_JERK_AUTO", needed=False),
     ),
     "ardupilot": (
         Quantity("accept_m", "WP_RADIUS_M"),
@@ -131,13 +134,19 @@ class Learning:
             first_climb_m=values.get("first_climb_m", usual.first_climb_m),
             return_low_within_m=self._low_within_m(usual),
             return_type=int(values.get("return_type", usual.return_type)),
-            speed_m_s=values.get("speed_m_s", usual.speed_m_s),
-            accel_m_s2=values.get("accel_m_s2", 0.0) or usual.accel_m_s2,
+            speed_m_s=self._positive("speed_m_s", usual.speed_m_s),
+            accel_m_s2=self._positive("accel_m_s2", usual.accel_m_s2),
+            jerk_m_s3=self._positive("jerk_m_s3", usual.jerk_m_s3),
             return_climb_m=values.get("return_climb_m", usual.return_climb_m),
             accept_up_m=values.get("accept_up_m", usual.accept_up_m),
         )
         rally = tuple(item_of(item) for item in items)
         self.facts = Facts(settings, values.get("return_up_m"), rally)
+
+    def _positive(self, name: str, usual: float) -> float:
+        """What a vehicle cannot fly with (zero, less, not a number) is not believed."""
+        value = self._reader.values.get(name, usual)
+        return value if value > 0.0 else usual
 
     def _low_within_m(self, usual: FlightSettings) -> float:
         """PX4 returns lower within RTL_MIN_DIST, ArduCopter within its cone."""

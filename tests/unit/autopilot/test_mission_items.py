@@ -190,9 +190,71 @@ def test_a_curve_goes_through_its_ends_with_its_tangents() -> None:
         ahead, behind = bow.tangent(u + h), bow.tangent(u - h)
         slope = tuple((a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True))
         assert bow.bend(u) == pytest.approx(slope, abs=1e-4)
+    ends_straight = curve(
+        (0.0, 0.0, -5.0), (10.0, 10.0, -6.0), None, (20.0, 0.0, -5.0), after_is_spline=False
+    )
+    assert ends_straight.tangent(1.0) == pytest.approx((5.0, -5.0, 0.5))
     straight = curve((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), None, None)
     assert straight.length_from(0.0) == pytest.approx(5.0)
     assert straight.length_from(1.0) == 0.0
+
+
+def test_long_tangents_are_shortened_alike() -> None:
+    """SplineCurve::set_origin_and_destination: to four times the straight way, both together;
+    half of it here."""
+    bow = curve((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, -6.0, 0.0), (0.0, 2.0, 0.0))
+    first, last = bow.tangent(0.0), bow.tangent(1.0)
+    assert hypot(*first) + hypot(*last) == pytest.approx(2.0)
+    assert (first[1] / first[0], last[0]) == pytest.approx((6.0, 0.0))
+    assert hypot(*first) / hypot(*last) == pytest.approx(hypot(1.0, 6.0) / 2.0)
+
+
+def test_no_speed_is_left_over_where_a_straight_leg_follows_a_spline() -> None:
+    """The curve ends along that leg, so the vehicle does not swing past it."""
+    flight = started(
+        "ardupilot",
+        TAKE_OFF,
+        item(1, 82, 60.0, 0.0, 5.0),
+        item(2, 16, 60.0, 60.0, 5.0),
+    )
+    farthest_north_m = 0.0
+    while flight.vehicle.mission_state == 3:
+        flight.fly(0.1)
+        if flight.pos[1] > 1.0:
+            farthest_north_m = max(farthest_north_m, flight.pos[0])
+        assert flight.vehicle.time_ns < 90e9
+    assert farthest_north_m < 63.0
+
+
+def test_a_spline_is_flown_no_faster_than_its_next_bend_allows() -> None:
+    """It left this one by 5 m: from 8 m/s into a bend that leads back."""
+    end, after = (-21.3, -32.2, -5.0), (-57.0, 45.7, -5.0)
+    flight = started(
+        "ardupilot",
+        TAKE_OFF,
+        item(1, 82, end[0], end[1], 5.0),
+        item(2, 16, after[0], after[1], 5.0),
+    )
+    bow = curve((0.0, 0.0, -5.0), end, None, after, after_is_spline=False)
+    way = [bow.at(n / 100) for n in range(101)]
+    flight.fly(30.0, lambda: reached_now(flight) == [0])
+    farthest_m = 0.0
+    while 1 not in reached_now(flight):
+        flight.fly(0.1)
+        n, e, _ = flight.pos
+        farthest_m = max(farthest_m, min(hypot(n - at[0], e - at[1]) for at in way))
+        assert flight.vehicle.time_ns < 90e9
+    assert farthest_m < 2.0
+
+
+def test_a_mission_that_ends_on_a_circle_stays_where_its_turns_end() -> None:
+    flight = started("ardupilot", TAKE_OFF, item(1, 18, 30.0, 0.0, 5.0, p1=0.5, p3=10.0))
+    flight.fly(90.0, lambda: flight.vehicle.mission_state == 5)
+    flight.fly(8.0)
+    there = flight.pos
+    assert there[0] > 35.0, "on the far side, not where the circle began"
+    flight.fly(3.0)
+    assert flight.off(there) < 0.3
 
 
 def test_splines_are_flown_smoothly_through_their_points() -> None:

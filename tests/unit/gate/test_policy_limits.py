@@ -38,6 +38,7 @@ def value(policy: Policy, key: str) -> object:
     ("key", "least", "below"),
     [
         ("max_distance_m", 0.0, -0.001),
+        ("mission_wind_m_s", 0.0, -0.001),
         ("creep_m", 0.0, -0.001),
         ("stale_grace_s", 0.0, -0.001),
         ("arrival.dwell_s", 0.0, -0.001),
@@ -69,6 +70,7 @@ def test_the_least_value(key: str, least: float, below: float) -> None:
     [
         "max_up_m",
         "max_distance_m",
+        "mission_wind_m_s",
         "creep_m",
         "arrival.radius_m",
         "arrival.max_radius_m",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from msgspec import structs
+
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.verifier import Cleared, Verifier, check_start, verifier_for
@@ -114,6 +116,34 @@ def test_a_leg_that_leaves_or_reaches_the_ground_is_free_of_the_floor() -> None:
     assert verifier.mission_leg(ground, over, floor_applies=False) is None
     assert verifier.mission_leg(over, ground, floor_applies=False) is None
     assert code_of(verifier.mission_leg(over, ground, floor_applies=True)) is Code.TOO_CLOSE
+
+
+def test_a_mission_keeps_room_for_the_wind_that_it_is_verified_for() -> None:
+    """A quarter of a metre for each m/s, where that is more than the margin of a goal."""
+    near = CircleSpec(5.0, (0.0, 0.0), name="mast", inclusion=False)
+    wide = CircleSpec(100.0, (0.0, 0.0), name="field", inclusion=True)
+
+    def verdicts(margin_m: float, wind_m_s: float, away_m: float) -> list[Code | None]:
+        policy = structs.replace(DEFAULT, margin_h_m=margin_m, mission_wind_m_s=wind_m_s)
+        verifier = verifier_for(policy, "px4", HOME, Origin(47.0, 8.0, 400.0), (wide, near))
+        east = 5.0 + away_m
+        a, b = at(east, -20, 10), at(east, 20, 10)
+        leg = verifier.mission_leg(a, b, floor_applies=True)
+        region = verifier.mission_region("it", (a, b), (at(east + 9, 0, 10),), floor_applies=True)
+        ring = verifier.mission_circle(at(0, 0, 10), east)
+        goal = verifier.goal(b, None, a, STILL)
+        return [
+            *map(code_of, (leg, region, ring)),
+            goal.code if isinstance(goal, Refusal) else None,
+        ]
+
+    close = Code.TOO_CLOSE
+    assert verdicts(0.5, 0.0, 0.6) == [None, None, None, None]
+    assert verdicts(0.5, 8.0, 1.9) == [close, close, close, None]
+    assert verdicts(0.5, 8.0, 2.1) == [None, None, None, None]
+    assert verdicts(0.5, 12.0, 2.9) == [close, close, close, None]
+    assert verdicts(2.0, 8.0, 2.1) == [None, None, None, None]
+    assert verdicts(2.0, 2.0, 1.9) == [close, close, close, close]
 
 
 def test_a_loiter_circle_is_judged_by_its_line_and_not_by_what_it_goes_round() -> None:

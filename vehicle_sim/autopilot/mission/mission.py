@@ -250,6 +250,8 @@ class Mission:
                 return
             if isinstance(self._leg, Spline) and not self._leg.stops:
                 entry_m_s = self._leg.speed
+            if self._circle is not None:
+                self._goal = s.stop_ned
             self._reached()
         for _ in range(_SEARCHED_MAX):
             if self._next > self._last:
@@ -334,9 +336,9 @@ class Mission:
             case Cmd.LOITER_TO_ALT:
                 return GoToHeight(place, here[2])
             case Cmd.SPLINE:
-                after = self._after(item, place)
+                after, by_spline = self._after(item, place)
                 before = self._before_ned if entry_m_s > 0.0 else None
-                along = curve(here, place, before, after)
+                along = curve(here, place, before, after, after_is_spline=by_spline)
                 return Spline(along, entry_m_s, after is None, accept_m, seconds(item))
             case _:
                 goal = self._goal or s.stop_ned
@@ -346,16 +348,18 @@ class Mission:
     def _guided_limits(self) -> GuidedLimits:
         return self._errands.guided_limits
 
-    def _after(self, item: PlanItem, place: Vec3) -> Vec3 | None:
-        """Where a spline goes on to without a stop; None = it ends at rest."""
+    def _after(self, item: PlanItem, place: Vec3) -> tuple[Vec3 | None, bool]:
+        """Where a spline goes on to without a stop, and whether as a spline; None = it ends at
+        rest."""
         if seconds(item) > 0.0 or self._next > self._last:
-            return None
+            return None, False
         follower = self._flown_from(self._next)
         if follower is None or follower.command not in _THROUGH:
-            return None
+            return None, False
         if any(each.command in JUMPS for each in self.items[self._next : follower.seq]):
-            return None
-        return place_of(follower, self._vehicle.datum(), place)
+            return None, False
+        onward = place_of(follower, self._vehicle.datum(), place)
+        return onward, follower.command == Cmd.SPLINE
 
     def _take_off(self, goal_d: float) -> TakeOff:
         return TakeOff(goal_d, self._parameters)

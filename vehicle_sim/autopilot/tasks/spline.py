@@ -1,8 +1,11 @@
 """Smooth curves through waypoints: ArduCopter's spline waypoints.
 
 A leg is a cubic Hermite curve; its goal runs along it at the flight's own speed, and waits for
-a vehicle that falls behind.  Where two splines meet both have the same tangent, that of
-Catmull and Rom: half of the way from the point before to the point after.
+a vehicle that falls behind.  The tangents have the directions of ArduCopter's, by memory of its
+sources: where two splines meet, from the point before to the point after; where a straight leg
+follows, along that leg (AC_WPNav::set_spline_destination); and both are shortened alike where they
+are longer together than four times the way between the ends
+(SplineCurve::set_origin_and_destination).  They are half as long as ArduCopter's (Catmull and Rom).
 """
 
 from __future__ import annotations
@@ -14,13 +17,16 @@ from math import atan2, sqrt
 from vehicle_sim.autopilot.control.demands import Demand, FlyTo, Situation, Turner
 from vehicle_sim.autopilot.interface import Landed, Target
 from vehicle_sim.autopilot.tasks.tasks import distance
-from vehicle_sim.control_loops.trajectory import approach_speed
+from vehicle_sim.control_loops.trajectory import MotionLimits, approach_speed
 from vehicle_sim.numerics.vectors import Vec3
 
 _BRAKE_SHARE = 0.5  # of the acceleration, along the curve; as much is left to bend the path
 _SLOWEST_M_S = 0.3
 _BEHIND_M = 2.0  # the goal slows down from here on, and stands still at twice as much
 _CHORDS = 32  # in which the length is measured
+_REST: Vec3 = (0.0, 0.0, 0.0)
+_HALF = 0.5  # of ArduCopter's tangents
+_TANGENTS_MAX = 4.0  # both together, in lengths of the straight way
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +67,21 @@ class Curve:
         return sum(distance(a, b) for a, b in pairwise(points))
 
 
-def curve(start: Vec3, end: Vec3, before: Vec3 | None, after: Vec3 | None) -> Curve:
+def curve(
+    start: Vec3, end: Vec3, before: Vec3 | None, after: Vec3 | None, *, after_is_spline: bool = True
+) -> Curve:
     """Through `start` and `end`; None = the flight begins, or ends, at rest there."""
     straight = _between(start, end, 1.0)
+    onward = start if after_is_spline else end
+    leaving = _REST if before is None else _between(before, end, 1.0)
+    arriving = _REST if after is None else _between(onward, after, 1.0)
+    size, most = _size(leaving) + _size(arriving), _TANGENTS_MAX * _size(straight)
+    share = _HALF * (most / size if size > most else 1.0)
     return Curve(
         start,
         end,
-        straight if before is None else _between(before, end, 0.5),
-        straight if after is None else _between(start, after, 0.5),
+        straight if before is None else _between(_REST, leaving, share),
+        straight if after is None else _between(_REST, arriving, share),
     )
 
 
@@ -77,7 +90,7 @@ def _between(a: Vec3, b: Vec3, share: float) -> Vec3:
 
 
 def _size(v: Vec3) -> float:
-    return distance(v, (0.0, 0.0, 0.0))
+    return distance(v, _REST)
 
 
 class Spline:
@@ -85,7 +98,18 @@ class Spline:
 
     landed_word = Landed.IN_AIR
 
-    __slots__ = ("_accept_m", "_curve", "_stay_s", "_time_ns", "_u", "_until_ns", "speed", "stops")
+    __slots__ = (
+        "_accept_m",
+        "_caps",
+        "_curve",
+        "_limits",
+        "_stay_s",
+        "_time_ns",
+        "_u",
+        "_until_ns",
+        "speed",
+        "stops",
+    )
 
     def __init__(
         self, along: Curve, entry_m_s: float, stops: bool, accept_m: float, stay_s: float
@@ -97,6 +121,8 @@ class Spline:
         self._u = 0.0
         self._time_ns: int | None = None
         self._until_ns: int | None = None
+        self._limits: MotionLimits | None = None
+        self._caps: list[float] = []
         self.speed = entry_m_s
 
     def done(self, s: Situation) -> bool:
@@ -143,12 +169,34 @@ class Spline:
         self.speed *= max(0.0, min(1.0, 2.0 - behind_m / _BEHIND_M))
 
     def _fastest(self, s: Situation) -> float:
-        limits = s.limits
-        brake = _BRAKE_SHARE * limits.accel_m_s2
-        top = limits.speed_m_s
+        """What this place allows, and what the bends allow that come after it."""
+        if s.limits is not self._limits:
+            self._limits = s.limits
+            self._caps = self._plan(s.limits)
+        top = self._allowed(self._u, s.limits)
+        ahead = min(_CHORDS, int(self._u * _CHORDS) + 1)
+        way_m = distance(self._curve.at(self._u), self._curve.at(ahead / _CHORDS))
+        brake = _BRAKE_SHARE * s.limits.accel_m_s2
+        top = min(top, sqrt(self._caps[ahead] * self._caps[ahead] + 2.0 * brake * way_m))
         if self.stops:
             top = min(top, approach_speed(self._curve.length_from(self._u), brake))
-        tangent, bend = self._curve.tangent(self._u), self._curve.bend(self._u)
+        return top
+
+    def _plan(self, limits: MotionLimits) -> list[float]:
+        """The greatest speed at the end of each chord from which it can brake for all bends."""
+        brake = _BRAKE_SHARE * limits.accel_m_s2
+        caps = [self._allowed(1.0, limits)]
+        places = [self._curve.at(n / _CHORDS) for n in range(_CHORDS + 1)]
+        for n in range(_CHORDS - 1, -1, -1):
+            way_m = distance(places[n], places[n + 1])
+            braked = sqrt(caps[-1] * caps[-1] + 2.0 * brake * way_m)
+            caps.append(min(self._allowed(n / _CHORDS, limits), braked))
+        return caps[::-1]
+
+    def _allowed(self, u: float, limits: MotionLimits) -> float:
+        brake = _BRAKE_SHARE * limits.accel_m_s2
+        top = limits.speed_m_s
+        tangent, bend = self._curve.tangent(u), self._curve.bend(u)
         flat = sqrt(tangent[0] * tangent[0] + tangent[1] * tangent[1])
         size = _size(tangent)
         cross = abs(tangent[0] * bend[1] - tangent[1] * bend[0])
