@@ -72,7 +72,8 @@ class GatePort:
                 goal_ned = request.goal_ned if isinstance(request, GoTo) else None
                 return [Decide(request_id, ruling, refusal, evidence, goal_ned)]
             case effects.Transition():
-                return [*teller.transition(effect, self.gate.active_goal_ned, sysid)]
+                goal_ned = self.gate.active_goal_ned
+                return [*teller.transition(effect, goal_ned, teller.conditions(self.gate), sysid)]
             case effects.Say(level, text):
                 return [Log(level, teller.NODE, text)]
             case effects.SwitchedFence(on):
@@ -94,7 +95,7 @@ class GatePort:
         )
         return [
             ToGate(inputs.VerifierChanged(verifier)),
-            *teller.fence(verifier.zones, telemetry.origin),
+            *teller.fence(verifier.zones, telemetry.origin, self.policy),
         ]
 
     @property

@@ -130,7 +130,7 @@ class Session:
         queue = self._queue
         if not self._introduced:
             self._introduced = True
-            queue.run(introduction(self._setup), now_ns)
+            queue.run([*introduction(self._setup), *self._vehicle.remind()], now_ns)
         if isinstance(given, Datagram):
             self._datagram(given, now_ns)
         else:
@@ -238,7 +238,7 @@ class Session:
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
-                return [Emit(self._snapshot(now_ns))]
+                return [Emit(self._snapshot(now_ns)), *self._vehicle.predicted_stop()]
             case _:
                 raise AssertionError(f"the queue keeps {item} for itself")
 

@@ -12,6 +12,7 @@ from typing import Final, get_args
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.gate import effects, inputs
+from gcs.gate.airspace.stopping import stop_point
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.gate import Gate
@@ -22,7 +23,7 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
-from gcs.report import FenceShape, ParamItem, SetpointItem, StatusItem
+from gcs.report import FenceShape, ParamItem, SetpointItem, StatusItem, StopItem
 from gcs.session import settings, teller
 from gcs.session.commands import Commands
 from gcs.session.delay import Delay
@@ -52,6 +53,11 @@ from gcs.wire.messages import CommandLong
 
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
+
+SIM_SYSID: Final = 1
+"""The system id of a vehicle of the station's own: vehicle-sim's default."""
+
+NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
 
 NODE = "link"
 
@@ -288,8 +294,19 @@ class Vehicle:
         return [work for each in commands for work in self._commands.send_own(each, now_ns)]
 
     def remind(self) -> list[Work]:
-        """The gate's state once more, for the record."""
-        return [] if self.telemetry is None else [*teller.reminder(self.gate, self.sysid)]
+        """The gate's state once more, for the record; before a vehicle is heard, of the one that
+        is expected, where its number is known."""
+        sysid = self.sysid or self._config.target_sysid or (SIM_SYSID if self._config.sim else 0)
+        return [*teller.reminder(self.gate, sysid)] if sysid else []
+
+    def predicted_stop(self) -> list[Work]:
+        """Where it would come to rest if it were told to stop now, for the record.  In flight."""
+        telemetry = self.telemetry
+        if telemetry is None or telemetry.pos_ned is None or self.gate.state in NOT_FLYING:
+            return []
+        braking = self._port.policy.braking_of(telemetry.autopilot.name)
+        stop_ned = stop_point(telemetry.pos_ned, telemetry.v_ned, braking)
+        return [Record(StopItem(telemetry.sysid, telemetry.pos_ned, stop_ned))]
 
     # ----------------------------------------------------------------------------- requests
 

@@ -44,6 +44,22 @@ def test_first_of_all_it_is_told_and_recorded_what_this_session_is() -> None:
     assert told.events(script.feed(LinkEvent(0, "still open")), ipc.Hello) == []
 
 
+@pytest.mark.parametrize(
+    ("config", "sysids"),
+    [
+        (StationConfig(sim=SimConfig()), [1]),
+        (StationConfig(target_sysid=7), [7]),
+        (StationConfig(), []),
+    ],
+)
+def test_the_record_begins_with_the_state_of_a_vehicle_whose_number_is_known(
+    config: StationConfig, sysids: list[int]
+) -> None:
+    effects = Script(config=config).feed(LinkEvent(0, "open"))
+    found = [(item.sysid, item.state) for item in told.recorded(effects, "FsaItem")]
+    assert found == [(sysid, "NO_VEHICLE") for sysid in sysids]
+
+
 def test_every_frame_is_recorded_before_anything_that_it_leads_to() -> None:
     script = Script()
     first = script.sender.frame(wire.heartbeat())
