@@ -11,13 +11,15 @@ from gcs.record.derived.trail import MOST_CORNERS, TOLERANCE_M, Trail
 
 
 def to_line(point: Vec3, line: list[Vec3]) -> float:
-    """The distance of a point to a line through points; sampled, to be another computation."""
+    """The distance of a point to a line through points."""
     least = math.inf
     for a, b in pairwise(line):
-        for step in range(201):
-            t = step / 200
-            at = [p + t * (q - p) for p, q in zip(a, b, strict=True)]
-            least = min(least, math.dist(point, at))
+        sides = (math.dist(a, b), math.dist(point, a), math.dist(point, b))
+        half = sum(sides) / 2
+        square = half * math.prod(half - side for side in sides)  # Heron's formula
+        inner = abs(sides[1] ** 2 - sides[2] ** 2) < sides[0] ** 2
+        off_m = 2 * math.sqrt(max(0.0, square)) / sides[0] if inner else min(sides[1:])
+        least = min(least, off_m)
     return least
 
 
