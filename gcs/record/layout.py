@@ -108,7 +108,9 @@ def _one(panels: Panels, bodies: Sequence[Body], extent: Extent | None) -> Json:
         [Line(f"{base}/state.battery_pct", "left [%]"), Line(f"{base}/state.battery_v", "volts")],
     )
     now = _column(panels.indicator(f"{base}/phase.state"), _gauge(panels, base), battery)
-    words = _column(_requests(panels), _conditions(panels, base), panels.log())
+    last = panels.messages("RawMessages!decision", "Last decision", "/gate/decision")
+    beside = _column(_conditions(panels, base), last)
+    words = _column(_requests(panels), _split("row", 60, panels.log(), beside))
     right = _split("column", 52, _split("row", 36, now, plots), words)
     return _split("column", 80, _split("row", 58, left, right), _states(panels, bodies))
 
