@@ -12,6 +12,7 @@ class SimConfig(msgspec.Struct, frozen=True):
     home: str = ""  # LAT,LON,ALT; empty = the autopilot's own
     seed: int = 1
     speedup: float = 1.0
+    params: dict[str, float] = {}  # parameters that are set at its start
 
 
 class StationConfig(msgspec.Struct, frozen=True):

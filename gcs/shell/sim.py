@@ -29,6 +29,8 @@ class SimProcess:
         words += ["--speedup", str(sim.speedup), "--link", f"udpout://127.0.0.1:{port}"]
         if sim.home:
             words += ["--home", sim.home]
+        for name, value in sim.params.items():
+            words += ["--param", f"{name}={value:g}"]
         # In a session of its own: a terminal that closes hangs up on all its programs at once, and
         # would take the vehicle away before it is seen holding.  On Windows a Ctrl-C goes to all
         # programs of a console, but not to other groups.

@@ -47,6 +47,10 @@ class FakeStation:
     upload_until_s: float = 0.0
     done: bool = False
     time_s: float = 0.0
+    refusals: dict[ipc.Vec3, tuple[str, str]] = field(default_factory=dict)
+    """Goals that are refused, with code and sentence."""
+    brakes: dict[ipc.Vec3, str] = field(default_factory=dict)
+    """Goals on whose way it is stopped, with the sentence."""
 
     def hello(self) -> list[ipc.Event]:
         fence = ipc.FenceShape(
@@ -135,6 +139,8 @@ class FakeStation:
             return self._begin(ask, "FLYING_MISSION", self.left.pop(0))
         assert goal is not None
         east, north, up = (metres or 0.0 for metres in goal)
+        if (east, north, up) in self.refusals:
+            return self._refuse(ask, *self.refusals[east, north, up])
         if math.hypot(east, north) > FENCE_M:
             distance_m = math.hypot(east, north) - FENCE_M
             sentence = f"{distance_m:.0f} m outside the fence `circle`"
@@ -180,6 +186,8 @@ class FakeStation:
         if self.left:
             self.target = self.left.pop(0)
             return []
+        if self.target in self.brakes:
+            return [*self._to("HOLDING", "breach"), *self._end("aborted", "FENCE_BREACH")]
         self.target = None
         landed = self.state == "LANDING"
         self.armed = self.armed and not landed

@@ -192,6 +192,7 @@ def test_the_layout_names_only_topics_that_the_file_has(flight: Path, tmp_path: 
         "RawMessages",
         "Indicator",
         "Gauge",
+        "Table",
     }
 
 
