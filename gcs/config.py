@@ -30,6 +30,7 @@ class StationConfig(msgspec.Struct, frozen=True):
     connect_timeout_s: float = 10.0
     operator: str = "first operator"  # its name, for the others who look at the station
     keep: bool = False  # the station lives on when the operator who started it leaves
+    command_line: str = ""  # what was typed, for the record
     record: bool = True  # False: nothing is written, as for a short look at the vehicle
 
 

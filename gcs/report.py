@@ -13,11 +13,21 @@ order (`gcs/record/derived/json_topic.py`): renaming a field renames it in every
 from __future__ import annotations
 
 from enum import IntEnum
+from pathlib import PurePath
 from typing import Literal, TypeAlias
 
 import msgspec
 
 from gcs.frames import Vec3, enu_from_ned
+
+MEDIA_TYPES = {
+    ".toml": "application/toml",
+    ".json": "application/json",
+    ".plan": "application/json",
+    ".waypoints": "text/plain",
+    ".txt": "text/plain",
+}
+"""Of the files that belong to a flight, by their suffix."""
 
 Quat = tuple[float, float, float, float]
 """w, x, y, z as MAVLink orders it."""
@@ -238,6 +248,18 @@ class AttachmentItem(msgspec.Struct, frozen=True):
     name: str
     media_type: str
     data: bytes
+
+    @classmethod
+    def of_file(cls, path: str, data: bytes) -> AttachmentItem:
+        """Named without its folder, which says more of the machine than of the flight."""
+        name = PurePath(path).name
+        suffix = PurePath(path).suffix.lower()
+        return cls(name, MEDIA_TYPES.get(suffix, "application/octet-stream"), data)
+
+    @classmethod
+    def of_json(cls, name: str, value: object) -> AttachmentItem:
+        """Raises TypeError where `value` has no JSON."""
+        return cls(name, MEDIA_TYPES[".json"], msgspec.json.encode(value))
 
 
 class MetadataItem(msgspec.Struct, frozen=True):

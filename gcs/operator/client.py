@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import select
+import shlex
 import subprocess
 import sys
 import threading
@@ -87,6 +88,8 @@ class StationClient:
         cls, setup: config.StationConfig, command: Sequence[str] | None = None
     ) -> StationClient:
         """Start `python -m gcs.shell.station '<config>'` (or `command` in its place)."""
+        if not setup.command_line:
+            setup = msgspec.structs.replace(setup, command_line=shlex.join(sys.argv))
         words = [*(command or STATION_COMMAND), config.encode(setup)]
         # In a session of its own: a Ctrl-C is for the operator's program, which then leaves in
         # good order; the station hears of everything through its pipe.

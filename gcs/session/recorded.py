@@ -11,7 +11,12 @@ from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.inputs import FileRead, OtherInput, RecorderGrew
 from gcs.session.setup import Setup
+from gcs.session.telemetry import Telemetry
 from gcs.session.work import Log, Work
+from gcs.wire.messages import AutopilotVersion
+
+STAGES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
+"""FIRMWARE_VERSION_TYPE, as PX4 writes it behind the version."""
 
 
 def introduction(setup: Setup) -> list[Effect]:
@@ -24,11 +29,11 @@ def introduction(setup: Setup) -> list[Effect]:
         ("station", f"{config.sysid}/{config.compid}"),
         ("speedup", f"{config.speedup:g}"),
         ("seed", str(config.sim.seed) if config.sim else ""),
+        ("command_line", config.command_line),
     )
-    policy = setup.policy_text.encode()
     return [
         Record(MetadataItem("mavgate", values)),
-        Record(AttachmentItem("policy.toml", "application/toml", policy)),
+        Record(AttachmentItem.of_file("policy.toml", setup.policy_text.encode())),
         Record(InputItem.of("Setup", config)),
         Emit(hello(setup, setup.log_path), FIRST),
     ]
@@ -55,13 +60,31 @@ def recorded(given: OtherInput) -> list[Effect]:
             return [Record(InputItem.of(type(given).__name__, given))]
 
 
+def vehicle(telemetry: Telemetry, told: AutopilotVersion) -> MetadataItem:
+    """What vehicle this was, and with what firmware."""
+    values = (
+        ("vehicle", telemetry.label),
+        ("firmware", firmware(told.flight_sw_version)),
+        ("firmware_hash", bytes(told.flight_custom_version).hex()),
+        ("uid", f"{told.uid:016x}"),
+    )
+    return MetadataItem("vehicle", values)
+
+
+def firmware(flight_sw_version: int) -> str:
+    """AUTOPILOT_VERSION.flight_sw_version: major, minor and patch, then FIRMWARE_VERSION_TYPE."""
+    major, minor, patch, kind = flight_sw_version.to_bytes(4, "big")
+    stage = next((name for least, name in STAGES if kind >= least), "")
+    return f"{major}.{minor}.{patch}{stage}"
+
+
 def sim_line(text: str, now_ns: int) -> Work:
     """`LEVEL node: text`, as vehicle-sim prints it; anything else is an INFO line."""
     word, _, rest = text.partition(" ")
     node, colon, line = rest.partition(": ")
     if word in Level.__members__ and colon and node.startswith("vehicle"):
-        # The operator has it from the vehicle itself; the record keeps both.
-        return Record(LogEvent(now_ns, Level[word], f"sim.{node}", line))
+        # The operator has it from the vehicle itself; the record keeps both, this one out of sight.
+        return Record(LogEvent(now_ns, Level.DEBUG, f"sim.{node}", line))
     if word in Level.__members__ and colon:
         return Log(Level[word], f"sim.{node}", line)
     return Log(Level.INFO, "sim", text)

@@ -23,8 +23,8 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
-from gcs.report import FenceShape, ParamItem, SetpointItem, StatusItem, StopItem
-from gcs.session import settings, teller
+from gcs.report import AttachmentItem, FenceShape, ParamItem, SetpointItem, StatusItem, StopItem
+from gcs.session import recorded, settings, teller
 from gcs.session.commands import Commands
 from gcs.session.delay import Delay
 from gcs.session.discovery import Discovery
@@ -86,6 +86,7 @@ class Vehicle:
         self._roster = Roster(config.target_sysid, times, gone_ns)
         self._reasons = Reasons(self._words, times)
         self._met_ns = 0
+        self._parameters: dict[str, float] = {}
         self._presence = Presence(times, gone_ns)
         self.telemetry: Telemetry | None = None
 
@@ -165,6 +166,8 @@ class Vehicle:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
             work += logged(self._words.text(heard.compid, message, now_ns))
+        elif isinstance(message, m.AutopilotVersion):
+            work.append(Record(recorded.vehicle(telemetry, message)))
         elif isinstance(message, m.Event) and heard.compid == telemetry.compid:
             self._words.event(message)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
@@ -227,6 +230,7 @@ class Vehicle:
                 case Send():
                     work.append(item)
                 case settings.ParameterKnown(name, value):
+                    self._parameters[name] = value
                     work.append(Record(ParamItem(telemetry.sysid, name, value)))
                 case settings.ReturnHeightKnown(up_m):
                     telemetry.return_up_m, telemetry.return_told = up_m, True
@@ -345,8 +349,14 @@ class Vehicle:
         return self._missions.stop(request_id)
 
     def leave(self) -> list[Work]:
-        """The session ends: a mission job that is under way ends with it."""
-        return self._missions.leave()
+        """The session ends: a mission job that is under way ends with it; what the flight stood on
+        is attached to the record."""
+        work = [*self._missions.leave()]
+        if self._parameters:
+            work.append(Record(AttachmentItem.of_json("parameters.json", self._parameters)))
+        if self.fence_shapes:
+            work.append(Record(AttachmentItem.of_json("fence.json", self.fence_shapes)))
+        return work
 
     # --------------------------------------------------------------------------------- gate
 

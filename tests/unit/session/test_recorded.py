@@ -10,6 +10,7 @@ import pytest
 from gcs import ipc
 from gcs.config import SimConfig, StationConfig
 from gcs.gate.policy.parse import DEFAULT
+from gcs.report import AttachmentItem, LogEvent
 from gcs.session.effects import Record
 from gcs.session.inputs import (
     FileRead,
@@ -26,7 +27,7 @@ from gcs.session.inputs import (
     SimLine,
     Wake,
 )
-from gcs.session.recorded import introduction, recorded, sim_line
+from gcs.session.recorded import firmware, introduction, recorded, sim_line
 from gcs.session.setup import Setup
 from gcs.session.work import Log, Work
 from tests.unit.session import told
@@ -78,7 +79,7 @@ def test_the_growth_of_the_record_is_not_recorded() -> None:
 
 
 def test_the_set_up_is_told_before_anything_else() -> None:
-    config = StationConfig(sysid=254, speedup=2.0, sim=SimConfig(seed=42))
+    config = StationConfig(sysid=254, speedup=2.0, sim=SimConfig(seed=42), command_line="gcs demo")
     setup = Setup(config, "1.2.3", DEFAULT, "name = 'x'", ("udpin://:1", "tcp:h:2"), "logs/a.mcap")
     effects = introduction(setup)
     (values,) = told.recorded(effects, "MetadataItem")
@@ -89,9 +90,11 @@ def test_the_set_up_is_told_before_anything_else() -> None:
         "station": "254/190",
         "speedup": "2",
         "seed": "42",
+        "command_line": "gcs demo",
     }
     (policy,) = told.recorded(effects, "AttachmentItem")
     assert policy.data == b"name = 'x'"
+    assert (policy.name, policy.media_type) == ("policy.toml", "application/toml")
     (kept,) = told.recorded(effects, "InputItem")
     assert as_json(kept)["sysid"] == 254
     (hello,) = told.events(effects, ipc.Hello)
@@ -103,6 +106,33 @@ def test_without_a_vehicle_of_our_own_there_is_no_seed() -> None:
         introduction(Setup(StationConfig(), "1", DEFAULT, "", (), "")), "MetadataItem"
     )
     assert dict(values.values)["seed"] == ""
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (17695743, "1.14.3"),  # data/autopilots/scenarios_px4.json: PX4 1.14.3
+        (67567616, "4.7.0-dev"),  # scenarios_arducopter.json: ArduCopter 4.7.0-dev
+        (0x010F00C0, "1.15.0-rc"),
+        (0x01100000, "1.16.0-dev"),
+    ],
+)
+def test_the_firmware_is_read_as_its_makers_write_it(number: int, text: str) -> None:
+    assert firmware(number) == text
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "media_type"),
+    [
+        ("/home/me/fields/north.plan", "north.plan", "application/json"),
+        ("missions/demo.toml", "demo.toml", "application/toml"),
+        ("x.WAYPOINTS", "x.WAYPOINTS", "text/plain"),
+        ("odd", "odd", "application/octet-stream"),
+    ],
+)
+def test_an_attachment_has_its_own_name_and_kind(path: str, name: str, media_type: str) -> None:
+    item = AttachmentItem.of_file(path, b"x")
+    assert (item.name, item.media_type, item.data) == (name, media_type, b"x")
 
 
 def work_of(line: str) -> Work:
@@ -131,5 +161,7 @@ def test_a_line_of_our_own_vehicle_s_process_is_logged_for_what_it_is(
 def test_what_the_vehicle_says_itself_is_not_shown_twice_and_is_kept() -> None:
     work = work_of("ERROR vehicle 1: no GPS")
     assert isinstance(work, Record)
+    assert isinstance(work.item, LogEvent)
+    assert work.item.level == 1  # below what a viewer shows: the vehicle said it itself
     assert "no GPS" in repr(work.item)
     assert "sim.vehicle 1" in repr(work.item)
