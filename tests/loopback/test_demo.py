@@ -11,14 +11,16 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
+from gcs import ipc
 from gcs.cli.demo_script import FAILSAFES_ON, MISSION, SCRIPT, Step
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
 from gcs.policy_file import load_policy
 from gcs.record.layout import PURPOSES, Purpose, layout_for
 from gcs.record.writer import Recorder
-from gcs.report import FsaItem
+from gcs.report import AttachmentItem, FsaItem, MetadataItem
 from gcs.resources import find
+from gcs.session.inputs import OperatorLine
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
 from tests.loopback.looks import START_NS
 
@@ -91,6 +93,29 @@ def test_nothing_is_wrong_from_beginning_to_end(demo: tuple[Flight, object]) -> 
     flight, _ = demo
     told = [item for _, item in flight.records if isinstance(item, FsaItem)]
     assert {(item.severity, item.conditions) for item in told} == {("NOMINAL", ())}
+
+
+def test_the_record_says_which_vehicle_and_firmware_this_was(demo: tuple[Flight, object]) -> None:
+    flight, _ = demo
+    (vehicle, *_) = [
+        dict(item.values)
+        for _, item in flight.records
+        if isinstance(item, MetadataItem) and item.name == "vehicle"
+    ]
+    assert re.fullmatch(r"\d+\.\d+\.\d+(-\w+)?", vehicle["firmware"])
+    assert vehicle["vehicle"].startswith(f"1/1 {flight.personality}")
+
+
+def test_what_the_flight_stood_on_is_attached(demo: tuple[Flight, object]) -> None:
+    flight, _ = demo
+    flight.feed(OperatorLine(1, ipc.Leave("the test is over")))
+    flight.run(4.0)
+    kept = {i.name: i for _, i in flight.records if isinstance(i, AttachmentItem)}
+    assert kept.keys() == {"policy.toml", MISSION, "fence.json", "parameters.json"}
+    zones = json.loads(kept["fence.json"].data)
+    assert [zone["name"] for zone in zones] == ["yard", "mast"]
+    known = json.loads(kept["parameters.json"].data)
+    assert known.items() >= FAILSAFES_ON[flight.personality].items()
 
 
 def test_a_refusal_and_a_hold_are_long_enough_to_be_seen(path: Path) -> None:
