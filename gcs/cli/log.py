@@ -181,7 +181,9 @@ def _print(flight: FlightInfo) -> None:
     state = "complete" if flight.closed else "NOT CLOSED: its writer was killed or is still writing"
     click.echo(f"{flight.path}: {flight.size / 1e6:.2f} MB, {state}")
     if not flight.closed:
-        click.echo(f"  hint: gcs log recover {flight.path} -o whole.mcap")
+        click.echo(
+            f"  hint: gcs log recover {flight.path} -o whole.mcap (viewers refuse it as it is)"
+        )
     if flight.damaged:
         click.echo(f"  {flight.damaged} damaged records were skipped")
     click.echo(f"{flight.messages} messages in {flight.seconds:.1f} s{_began(flight.start_ns)}")

@@ -160,11 +160,13 @@ def _policy_file(name: str) -> str:
         return str(path)
     if path.is_dir():
         raise ExitError(
-            ExitCode.BAD_FILE, f"{name}: is a directory", "a policy is a TOML file, or default, lab"
+            ExitCode.BAD_FILE,
+            f"{name}: is a directory",
+            "a policy is a TOML file, or default, lab, demo",
         )
     if not path.is_file():
         raise ExitError(
-            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab"
+            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab, demo"
         )
     return UTF8.convert(name, POLICY, None)
 

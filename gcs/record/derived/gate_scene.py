@@ -27,6 +27,7 @@ MARKER_HZ = 5.0
 SHORTEST_STOP_M = 0.3
 """A shorter way to stop is not drawn."""
 RING_M = 0.6
+RING_CORNERS = 12
 FARTHEST_LABEL_M = 30.0
 """The label of a goal that is farther away stands this far from the vehicle, to be in the view."""
 LONGEST_LABEL = 90
@@ -159,7 +160,7 @@ def _stop(vehicle: _Vehicle, item: StopItem, now_ns: int) -> list[Out]:
     if dist(here, there) < SHORTEST_STOP_M or not vehicle.stop_grid.due(now_ns):
         return []
     radius_m = RING_M
-    turns = [2 * pi * i / 24 for i in range(24)]
+    turns = [2 * pi * i / RING_CORNERS for i in range(RING_CORNERS)]
     ring = [(there[0] + radius_m * cos(a), there[1] + radius_m * sin(a), there[2]) for a in turns]
     lines = [line([here, there], color(_AMBER)), line(ring, color(_AMBER), closed=True)]
     drawn = entity("stop", stamp(now_ns), MARKER_NS, lines=lines)
