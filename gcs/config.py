@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
+SIM_SYSID = 1
+"""The system id of a vehicle of the station's own: vehicle-sim's default."""
+
 
 class SimConfig(msgspec.Struct, frozen=True):
     """A vehicle of the station's own (`--sim`), stopped once it holds or has landed."""
@@ -32,6 +35,11 @@ class StationConfig(msgspec.Struct, frozen=True):
     keep: bool = False  # the station lives on when the operator who started it leaves
     command_line: str = ""  # what was typed, for the record
     record: bool = True  # False: nothing is written, as for a short look at the vehicle
+
+    @property
+    def expected_sysid(self) -> int:
+        """The number of the vehicle that is waited for; 0 = not known."""
+        return self.target_sysid or (SIM_SYSID if self.sim is not None else 0)
 
 
 def encode(config: StationConfig) -> str:

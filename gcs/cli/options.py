@@ -162,11 +162,11 @@ def _policy_file(name: str) -> str:
         raise ExitError(
             ExitCode.BAD_FILE,
             f"{name}: is a directory",
-            "a policy is a TOML file, or default, lab, demo",
+            "a policy is a TOML file or " + ", ".join(POLICIES),
         )
     if not path.is_file():
         raise ExitError(
-            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab, demo"
+            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: " + ", ".join(POLICIES)
         )
     return UTF8.convert(name, POLICY, None)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 
 from gcs import ipc
 from gcs.gate.effects import Level
@@ -76,6 +76,12 @@ def firmware(flight_sw_version: int) -> str:
     major, minor, patch, kind = flight_sw_version.to_bytes(4, "big")
     stage = next((name for least, name in STAGES if kind >= least), "")
     return f"{major}.{minor}.{patch}{stage}"
+
+
+def stood_on(parameters: Mapping[str, float], fence: Sequence[FenceShape]) -> list[Effect]:
+    """What the vehicle's parameters and the fence were, as files; nothing of what is not known."""
+    kept = {"parameters.json": parameters, "fence.json": fence}
+    return [Record(AttachmentItem.of_json(name, what)) for name, what in kept.items() if what]
 
 
 def sim_line(text: str, now_ns: int) -> Work:

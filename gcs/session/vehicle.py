@@ -12,7 +12,6 @@ from typing import Final, get_args
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.gate import effects, inputs
-from gcs.gate.airspace.stopping import stop_point
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.gate import Gate
@@ -23,7 +22,7 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
-from gcs.report import AttachmentItem, FenceShape, ParamItem, SetpointItem, StatusItem, StopItem
+from gcs.report import FenceShape, ParamItem, SetpointItem, StatusItem
 from gcs.session import recorded, settings, teller
 from gcs.session.commands import Commands
 from gcs.session.delay import Delay
@@ -53,11 +52,6 @@ from gcs.wire.messages import CommandLong
 
 ORIGIN_PATIENCE_NS = 10_000_000_000
 """How long a vehicle may take to tell its origin before that is a condition."""
-
-SIM_SYSID: Final = 1
-"""The system id of a vehicle of the station's own: vehicle-sim's default."""
-
-NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
 
 NODE = "link"
 
@@ -300,17 +294,12 @@ class Vehicle:
     def remind(self) -> list[Work]:
         """The gate's state once more, for the record; before a vehicle is heard, of the one that
         is expected, where its number is known."""
-        sysid = self.sysid or self._config.target_sysid or (SIM_SYSID if self._config.sim else 0)
+        sysid = self.sysid or self._config.expected_sysid
         return [*teller.reminder(self.gate, sysid)] if sysid else []
 
     def predicted_stop(self) -> list[Work]:
         """Where it would come to rest if it were told to stop now, for the record.  In flight."""
-        telemetry = self.telemetry
-        if telemetry is None or telemetry.pos_ned is None or self.gate.state in NOT_FLYING:
-            return []
-        braking = self._port.policy.braking_of(telemetry.autopilot.name)
-        stop_ned = stop_point(telemetry.pos_ned, telemetry.v_ned, braking)
-        return [Record(StopItem(telemetry.sysid, telemetry.pos_ned, stop_ned))]
+        return [] if self.telemetry is None else self._port.predicted_stop(self.telemetry)
 
     # ----------------------------------------------------------------------------- requests
 
@@ -351,12 +340,10 @@ class Vehicle:
     def leave(self) -> list[Work]:
         """The session ends: a mission job that is under way ends with it; what the flight stood on
         is attached to the record."""
-        work = [*self._missions.leave()]
-        if self._parameters:
-            work.append(Record(AttachmentItem.of_json("parameters.json", self._parameters)))
-        if self.fence_shapes:
-            work.append(Record(AttachmentItem.of_json("fence.json", self.fence_shapes)))
-        return work
+        return [
+            *self._missions.leave(),
+            *recorded.stood_on(self._parameters, self.fence_shapes),
+        ]
 
     # --------------------------------------------------------------------------------- gate
 
