@@ -19,6 +19,9 @@ REQUESTS_HZ = 4.0
 MOST_ROWS = 100
 """Of the table; an older request is on /gate/decision only."""
 
+NOTHING_TO_SAY = "Complete"
+"""The sentence of an ending that needs none: the table has a column for that."""
+
 DECIMALS = 3
 DECIMALS_OF_DEGREES = 7
 
@@ -81,7 +84,8 @@ class GateJson(Deriver):
 
     def _enter(self, item: DecisionItem, now_ns: int) -> None:
         key = item.vehicle, item.request_id
-        reason = ": ".join(part for part in (item.code, item.sentence) if part)
+        said = "" if item.sentence == NOTHING_TO_SAY else item.sentence
+        reason = ": ".join(part for part in (item.code, said) if part)
         if item.phase == "verdict":
             at_s = round((now_ns - self._start_ns) / 1e9, 1)
             row = RequestRow(

@@ -198,10 +198,13 @@ def test_the_table_of_requests_grows_and_stands_after_any_seek(tmp_path: Path) -
         decision(1, "accepted", goal=PointEnu(3.0, 0.0, 2.0)),
         decision(2, "refused", goal=FAR, code="OUTSIDE_FENCE", sentence="350.2 m outside"),
         decision(1, "aborted", phase="ending", code="OPERATOR", sentence="stopped"),
+        decision(3, "accepted", word="arm"),
+        decision(3, "complete", phase="ending", sentence="Complete"),
     ]
     tables = readings(record(tmp_path, flight, step_ns=SECOND), "/gate/requests")
-    assert [len(table["rows"]) for table in tables] == [0, 1, 2, 2]
-    newest, oldest = tables[-1]["rows"]
+    assert [len(table["rows"]) for table in tables] == [0, 1, 2, 2, 3, 3]
+    arm, newest, oldest = tables[-1]["rows"]
+    assert (arm["request"], arm["ending"], "reason" in arm) == ("arm", "complete", False)
     assert newest == {
         "at_s": 2.0,
         "vehicle": 1,
