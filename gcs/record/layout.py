@@ -107,7 +107,9 @@ def _one(panels: Panels, bodies: Sequence[Body], extent: Extent | None) -> Json:
         "Battery",
         [Line(f"{base}/state.battery_pct", "left [%]"), Line(f"{base}/state.battery_v", "volts")],
     )
-    now = _column(panels.indicator(f"{base}/phase.state"), _gauge(panels, base), battery)
+    now = _column(
+        panels.indicator(_gate_path(panels, base, "state")), _gauge(panels, base), battery
+    )
     last = panels.messages("RawMessages!decision", "Last decision", "/gate/decision")
     beside = _column(_conditions(panels, base), last)
     words = _column(_requests(panels), _split("row", 60, panels.log(), beside))
@@ -167,7 +169,9 @@ def _lab(panels: Panels, bodies: Sequence[Body]) -> Json:
             for name, axis in axes
         )
     )
-    words = _column(panels.indicator(f"{base}/phase.state"), _requests(panels), panels.log())
+    words = _column(
+        panels.indicator(_gate_path(panels, base, "state")), _requests(panels), panels.log()
+    )
     right = _split("row", 50, plots, words)
     return _split("column", 80, _split("row", 50, cage, right), _states(panels, bodies))
 
@@ -204,12 +208,19 @@ def _conditions(panels: Panels, base: str) -> Json:
 
 def _states(panels: Panels, bodies: Sequence[Body]) -> Json:
     base = f"/vehicle/{bodies[0].sysid}"
+    mode = f"{base}/phase.mode" if panels.has(f"{base}/phase") else f"{base}/state.mode"
     rows = [
-        (f"{base}/phase.state", "gate"),
-        (f"{base}/phase.mode", "flight mode"),
-        (f"{base}/phase.severity", "severity"),
+        (_gate_path(panels, base, "state"), "gate"),
+        (mode, "flight mode"),
+        (_gate_path(panels, base, "severity"), "severity"),
     ]
     return panels.states("StateTransitions!phase", "States", rows)
+
+
+def _gate_path(panels: Panels, base: str, name: str) -> str:
+    """As it stood for a while; in a record of before there was such a topic, as it was."""
+    leaf = "phase" if panels.has(f"{base}/phase") else "fsa"
+    return f"{base}/{leaf}.{name}"
 
 
 def _vehicles(topics: Collection[str]) -> list[int]:

@@ -23,7 +23,6 @@ OURS = {
     "lichtblickPanelTitle",  # Lichtblick's name for foxglovePanelTitle
     "showLine",  # of a plot's path: points alone
     "foxglovePanelTitle",
-    "followTopic",
 }
 """Keys that the example has no use for in a panel of that kind."""
 
@@ -171,6 +170,14 @@ def test_three_rows_of_states_over_the_whole_width() -> None:
         "column",
         "StateTransitions!phase",
     )
+
+
+def test_a_record_without_phases_shows_the_states_as_they_were() -> None:
+    topics = {"/vehicle/1/fsa", "/vehicle/1/state", "/vehicle/1/tf"}
+    made: Any = layout(topics)
+    rows = [row["value"] for row in made["configById"]["StateTransitions!phase"]["paths"]]
+    assert rows == ["/vehicle/1/fsa.state", "/vehicle/1/state.mode", "/vehicle/1/fsa.severity"]
+    assert made["configById"]["Indicator!fsa"]["path"] == "/vehicle/1/fsa.state"
 
 
 @pytest.mark.parametrize(
