@@ -95,7 +95,7 @@ class GeodeticItem(msgspec.Struct, frozen=True):
 
 
 class StatusItem(msgspec.Struct, frozen=True):
-    """Battery, mode, landed state and link quality, once a second."""
+    """Battery, mode, landed state and link quality: once a second, and when a state changes."""
 
     sysid: int
     armed: bool

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from gcs import ipc
 from gcs.gate.effects import Level
-from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem
+from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem, StatusItem
 from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.inputs import FileRead, OtherInput, RecorderGrew
@@ -76,6 +76,20 @@ def firmware(flight_sw_version: int) -> str:
     major, minor, patch, kind = flight_sw_version.to_bytes(4, "big")
     stage = next((name for least, name in STAGES if kind >= least), "")
     return f"{major}.{minor}.{patch}{stage}"
+
+
+def status(telemetry: Telemetry, lost_pct: float) -> StatusItem:
+    """How the vehicle is: once a second, and when its mode, armed or landed state changes."""
+    return StatusItem(
+        telemetry.sysid,
+        bool(telemetry.armed),
+        telemetry.mode_name,
+        telemetry.landed.name,
+        telemetry.battery_pct,
+        telemetry.battery_v,
+        telemetry.rx_hz,
+        lost_pct,
+    )
 
 
 def stood_on(parameters: Mapping[str, float], fence: Sequence[FenceShape]) -> list[Effect]:

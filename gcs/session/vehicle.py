@@ -22,7 +22,7 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
-from gcs.report import FenceShape, ParamItem, SetpointItem, StatusItem
+from gcs.report import FenceShape, ParamItem, SetpointItem
 from gcs.session import recorded, settings, teller
 from gcs.session.commands import Commands
 from gcs.session.delay import Delay
@@ -144,7 +144,10 @@ class Vehicle:
                 work.append(ToGate(inputs.MessageSeen()))
         if message is not None and not self._presence.overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
+            before = telemetry.armed, telemetry.mode_name, telemetry.landed
             work += self._heard(telemetry, heard, now_ns)
+            if before != (telemetry.armed, telemetry.mode_name, telemetry.landed):
+                work.append(Record(recorded.status(telemetry, lost_pct(self.losses))))
         return work
 
     def _heard(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
@@ -275,17 +278,7 @@ class Vehicle:
         )
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
         work.append(condition(Condition.ORIGIN_MISSING, missing, text))
-        status = StatusItem(
-            telemetry.sysid,
-            bool(telemetry.armed),
-            telemetry.mode_name,
-            telemetry.landed.name,
-            telemetry.battery_pct,
-            telemetry.battery_v,
-            telemetry.rx_hz,
-            lost_pct(self.losses),
-        )
-        return [*work, Record(status)]
+        return [*work, Record(recorded.status(telemetry, lost_pct(self.losses)))]
 
     def send_own(self, commands: Iterable[CommandLong], now_ns: int) -> list[Work]:
         """Harmless commands of the station's own, such as for a stream."""

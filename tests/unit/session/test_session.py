@@ -380,3 +380,14 @@ def test_a_session_that_heard_a_vehicle_or_has_one_of_its_own_is_worth_keeping()
     heard.append(script.session.nothing_heard)
     assert heard == [True, False]
     assert not Script(config=StationConfig(sim=SimConfig())).session.nothing_heard
+
+
+def test_how_the_vehicle_is_is_recorded_when_its_mode_or_armed_state_changes() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    script.hear(wire.heartbeat())
+    effects = script.hear(wire.heartbeat(mode=wire.OFFBOARD))
+    effects += script.hear(wire.heartbeat(mode=wire.OFFBOARD))
+    effects += script.hear(wire.heartbeat(mode=wire.OFFBOARD, armed=True))
+    found = [(item.mode, item.armed) for item in told.recorded(effects, "StatusItem")]
+    assert found == [("OFFBOARD", False), ("OFFBOARD", True)]
