@@ -101,7 +101,7 @@ POLICY = click.Option(
     ["--policy"],
     default="default",
     show_default=True,
-    metavar="FILE|default|lab",
+    metavar="FILE|default|lab|demo",
     help="What the gate allows.",
 )
 LOG_DIR = click.Option(

@@ -62,4 +62,4 @@ def _path(vehicle: _Vehicle, now_ns: int) -> Out:
         for east, north, up in points
     ]
     path = PosesInFrame(timestamp=stamp(now_ns), frame_id="map", poses=poses)
-    return Out(vehicle.path, path.encode())
+    return Out(vehicle.path, path.encode(), latch="path")
