@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
+SIM_SYSID = 1
+"""The system id of a vehicle of the station's own: vehicle-sim's default."""
+
 
 class SimConfig(msgspec.Struct, frozen=True):
     """A vehicle of the station's own (`--sim`), stopped once it holds or has landed."""
@@ -12,6 +15,7 @@ class SimConfig(msgspec.Struct, frozen=True):
     home: str = ""  # LAT,LON,ALT; empty = the autopilot's own
     seed: int = 1
     speedup: float = 1.0
+    params: dict[str, float] = {}  # parameters that are set at its start
 
 
 class StationConfig(msgspec.Struct, frozen=True):
@@ -29,7 +33,13 @@ class StationConfig(msgspec.Struct, frozen=True):
     connect_timeout_s: float = 10.0
     operator: str = "first operator"  # its name, for the others who look at the station
     keep: bool = False  # the station lives on when the operator who started it leaves
+    command_line: str = ""  # what was typed, for the record
     record: bool = True  # False: nothing is written, as for a short look at the vehicle
+
+    @property
+    def expected_sysid(self) -> int:
+        """The number of the vehicle that is waited for; 0 = not known."""
+        return self.target_sysid or (SIM_SYSID if self.sim is not None else 0)
 
 
 class Wanted(msgspec.Struct, frozen=True):

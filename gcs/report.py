@@ -7,17 +7,27 @@ shorter line that goes through the pipe, and `gcs/session/teller.py` makes that 
 Positions that come from the vehicle or go to it are as MAVLink has them (NED, metres, radians);
 what a person reads is in the operator's frame (ENU, metres).  The messages and JSON schemas of
 `/gate/decision`, `/vehicle/N/fsa` and `/vehicle/N/param` are the fields of their struct, in their
-order (`gcs/record/json_topics.py`): renaming a field renames it in every new record.
+order (`gcs/record/derived/json_topic.py`): renaming a field renames it in every new record.
 """
 
 from __future__ import annotations
 
 from enum import IntEnum
+from pathlib import PurePath
 from typing import Literal, TypeAlias
 
 import msgspec
 
 from gcs.frames import Vec3, enu_from_ned
+
+MEDIA_TYPES = {
+    ".toml": "application/toml",
+    ".json": "application/json",
+    ".plan": "application/json",
+    ".waypoints": "text/plain",
+    ".txt": "text/plain",
+}
+"""Of the files that belong to a flight, by their suffix."""
 
 Quat = tuple[float, float, float, float]
 """w, x, y, z as MAVLink orders it."""
@@ -85,7 +95,7 @@ class GeodeticItem(msgspec.Struct, frozen=True):
 
 
 class StatusItem(msgspec.Struct, frozen=True):
-    """Battery, mode, landed state and link quality, once a second."""
+    """Battery, mode, landed state and link quality: once a second, and when a state changes."""
 
     sysid: int
     armed: bool
@@ -103,6 +113,14 @@ class SetpointItem(msgspec.Struct, frozen=True):
     sysid: int
     pos_ned: Vec3
     yaw_rad: float | None
+
+
+class StopItem(msgspec.Struct, frozen=True):
+    """Where the vehicle would come to rest if it were told to stop now, as the gate predicts it."""
+
+    sysid: int
+    pos_ned: Vec3
+    stop_ned: Vec3
 
 
 class ParamItem(msgspec.Struct, frozen=True):
@@ -132,8 +150,19 @@ class PointEnu(msgspec.Struct, frozen=True):
         return (self.east_m, self.north_m, self.up_m)
 
 
+class ConditionItem(msgspec.Struct, frozen=True):
+    """Something that is wrong: its name, how severe the policy says it is, the reason in words."""
+
+    name: str
+    severity: str
+    text: str
+
+
 class FsaItem(msgspec.Struct, frozen=True):
-    """The gate's state machine after a transition; `event` "reminder" repeats where it stands."""
+    """The gate's state machine after a transition; `event` "reminder" repeats where it stands.
+
+    `conditions` are what makes up `severity`: of all that is wrong, the worst counts.
+    """
 
     sysid: int
     state: str
@@ -143,6 +172,7 @@ class FsaItem(msgspec.Struct, frozen=True):
     control: str
     severity: str
     goal: PointEnu | None
+    conditions: tuple[ConditionItem, ...] = ()
 
 
 class DecisionItem(msgspec.Struct, frozen=True):
@@ -184,10 +214,13 @@ class FenceItem(msgspec.Struct, frozen=True):
     """The whole fence as the verifier sees it, and the local origin that it stands on.
 
     `origin` is latitude and longitude in degrees and metres above mean sea level; None: not known.
+    Goals and legs keep the margins, beside and above or below, from every boundary.
     """
 
     zones: list[FenceShape]
     origin: tuple[float, float, float] | None
+    margin_h_m: float = 0.0
+    margin_v_m: float = 0.0
 
 
 class MissionItem(msgspec.Struct, frozen=True):
@@ -216,6 +249,18 @@ class AttachmentItem(msgspec.Struct, frozen=True):
     media_type: str
     data: bytes
 
+    @classmethod
+    def of_file(cls, path: str, data: bytes) -> AttachmentItem:
+        """Named without its folder, which says more of the machine than of the flight."""
+        name = PurePath(path).name
+        suffix = PurePath(path).suffix.lower()
+        return cls(name, MEDIA_TYPES.get(suffix, "application/octet-stream"), data)
+
+    @classmethod
+    def of_json(cls, name: str, value: object) -> AttachmentItem:
+        """Raises TypeError where `value` has no JSON."""
+        return cls(name, MEDIA_TYPES[".json"], msgspec.json.encode(value))
+
 
 class MetadataItem(msgspec.Struct, frozen=True):
     """Versions, endpoints, policy, seed."""
@@ -232,6 +277,7 @@ RecordItem: TypeAlias = (
     | GeodeticItem
     | StatusItem
     | SetpointItem
+    | StopItem
     | ParamItem
     | FsaItem
     | DecisionItem

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-POLICIES = ("default", "lab")
+POLICIES = ("default", "lab", "demo")
 SUFFIXES = (".toml", ".plan", ".waypoints", ".txt")
 
 

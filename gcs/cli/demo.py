@@ -38,21 +38,16 @@ def demo(
     log_dir: str,
     timeout: float,
 ) -> None:
-    """Fly a whole flight in about a minute: hops, refusals, a picture, an abort, a mission."""
+    """Fly a whole flight in about a minute: goals, refusals, a picture, an abort, a brake."""
     from rich.console import Console
 
     from gcs import resources
-    from gcs.config import SimConfig, StationConfig
+    from gcs.cli.demo_script import MISSION, station_config
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 
-    config = StationConfig(
-        sim=SimConfig(autopilot=autopilot),
-        log_dir=log_dir,
-        name="demo",
-        connect_timeout_s=timeout,
-    )
-    mission_path = str(resources.find("demo.toml"))
+    config = station_config(autopilot, log_dir, timeout)
+    mission_path = str(resources.find(MISSION))
     with Interrupts() as interrupts:
         station = StationClient.start(config)
         console = Console(highlight=False)
@@ -68,6 +63,7 @@ def run_over(
     timeout_s: float,
 ) -> int:
     """Fly the script with a station that is there already; returns the exit code."""
+    from gcs.cli.demo_files import write_beside
     from gcs.cli.demo_script import SCRIPT, perform, wait_for_all
     from gcs.cli.demo_show import FlightPrinter, show_table, show_what_to_do
     from gcs.operator import event_text
@@ -98,7 +94,7 @@ def run_over(
         ended = dialogue.leave("the demo is over")
     show_table(console, flown)
     log_path = ended.bye.log_path if ended.bye else ""
-    show_what_to_do(console, log_path)
+    show_what_to_do(console, log_path, write_beside(log_path) if log_path else [])
     unexpected = [one for one in flown if not one.as_expected]
     if unexpected:
         first = unexpected[0]

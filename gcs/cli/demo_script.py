@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final
 
+from gcs.config import SimConfig, StationConfig
 from gcs.operator.dialogue import Dialogue, TrackedRequest
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
@@ -13,17 +15,34 @@ from gcs.operator.request_words import SendRequests
 STEP_WAIT_S: Final = 40.0
 COMPLETE: Final = "complete"
 ABORTED: Final = "aborted OPERATOR"
+BRAKED: Final = "aborted FENCE_BREACH"
 BUSY: Final = "refused BUSY"
 OUTSIDE: Final = "refused OUTSIDE_FENCE"
+IN_THE_WAY: Final = "refused LEG_LEAVES_FENCE"
+
+POLICY: Final = "demo"
+MISSION: Final = "yard.toml"
+FAILSAFES_ON: Final[Mapping[str, Mapping[str, float]]] = MappingProxyType(
+    {
+        "px4": MappingProxyType({"NAV_DLL_ACT": 2.0}),
+        "ardupilot": MappingProxyType(
+            {"FS_GCS_ENABLE": 1.0, "FENCE_ENABLE": 1.0, "BATT_FS_LOW_ACT": 2.0}
+        ),
+    }
+)
+"""What the vehicle has switched off as delivered, and the station would warn of all the time."""
+
+LOOK_S: Final = 1.6
+"""How long the flight stands still after a refusal and an abort, for those who watch it later."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
     """One request.  `{mission}` in the line stands for the mission file.
 
-    Where `wait` is False the next step follows `pause_s` after the verdict, while this one is
-    still under way.  A step that has something to `say` opens a paragraph: it begins when
-    everything before has ended.
+    Where `wait` is False the next step follows the verdict, while this one is still under way.
+    Before the next step `pause_s` pass, of the vehicle's time.  A step that has something to `say`
+    opens a paragraph: it begins when everything before has ended.
     """
 
     line: str
@@ -35,30 +54,62 @@ class Step:
 
 SCRIPT: Final[tuple[Step, ...]] = (
     Step("arm", say="Motors on, and up: a take-off takes control and ends in a hover."),
-    Step("takeoff 2"),
+    Step("takeoff 3"),
     Step("control"),
-    Step("goto 1 0 2", say="The lab's goals, each verified before it is flown."),
-    Step("goto 1 1 3"),
-    Step("goto 0 1 2"),
-    Step("goto 500 0 2", OUTSIDE, "A goal outside the fence: it never reaches the vehicle."),
-    Step("photo", say="Taking a picture: a move that arrives meanwhile is refused.", wait=False),
-    Step("goto 0 0 2", BUSY),
+    Step("goto 12 0 4", say="A goal in the yard, verified before it is flown."),
     Step(
-        "goto 12 1 2",
+        "goto 12 16 5",
+        IN_THE_WAY,
+        "The mast stands in the straight way: refused.  So round it.",
+        pause_s=LOOK_S,
+    ),
+    Step("goto 2 8 6"),
+    Step(
+        "goto 60 8 5",
+        OUTSIDE,
+        "A goal outside the fence: it never reaches the vehicle.",
+        pause_s=LOOK_S,
+    ),
+    Step(
+        "photo",
+        say="Taking a picture: a move that arrives meanwhile is refused.",
+        wait=False,
+        pause_s=0.4,
+    ),
+    Step("goto 2 0 5", BUSY, pause_s=LOOK_S),
+    Step(
+        "goto 9 18 5",
         ABORTED,
         "A longer move; another one on top of it is refused; then an abort.",
         wait=False,
-        pause_s=1.0,
+        pause_s=1.2,
     ),
-    Step("goto 0 0 2", BUSY),
-    Step("abort"),
+    Step("goto 0 0 4", BUSY, pause_s=0.8),
+    Step("abort", pause_s=LOOK_S),
     Step("resume", say="After an abort the vehicle holds until an explicit resume."),
-    Step("goto 0 0 2"),
     Step("mission upload {mission}", say="A mission file: verified whole, uploaded, read back."),
     Step("mission start"),
+    Step(
+        "goto 23.5 0 4",
+        BRAKED,
+        "Fast towards the fence: where the gate sees that it could not stop in time, it brakes.",
+        pause_s=LOOK_S,
+    ),
+    Step("resume"),
     Step("land", say="Down again."),
     Step("disarm"),
 )
+
+
+def station_config(autopilot: str, log_dir: str, timeout_s: float) -> StationConfig:
+    """The demo's station, with a vehicle of its own whose failsafes are all on."""
+    return StationConfig(
+        sim=SimConfig(autopilot=autopilot, params=dict(FAILSAFES_ON[autopilot])),
+        policy_path=POLICY,
+        log_dir=log_dir,
+        name="demo",
+        connect_timeout_s=timeout_s,
+    )
 
 
 @dataclass(slots=True)
@@ -102,5 +153,17 @@ def perform(dialogue: Dialogue, step: Step, mission_path: str) -> Flown:
         dialogue.wait_settled(request, STEP_WAIT_S)
     else:
         dialogue.wait_until(lambda: request.verdict is not None, STEP_WAIT_S)
-        dialogue.wait_until(lambda: request.settled, step.pause_s)
+    if step.pause_s:
+        _pause(dialogue, step.pause_s)
     return Flown(step, request)
+
+
+def _pause(dialogue: Dialogue, seconds: float) -> None:
+    """By the station's clock, which runs faster where the simulation does."""
+    start_ns = _time_ns(dialogue)
+    end_ns = start_ns + round(seconds * 1e9)
+    dialogue.wait_until(lambda: _time_ns(dialogue) >= end_ns, STEP_WAIT_S)
+
+
+def _time_ns(dialogue: Dialogue) -> int:
+    return 0 if dialogue.snapshot is None else dialogue.snapshot.time_ns

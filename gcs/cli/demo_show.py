@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gcs import ipc
+from gcs.cli.demo_files import Written
 from gcs.cli.demo_script import Flown
 from gcs.enu_text import signed_enu
 from gcs.operator import event_text
@@ -117,15 +118,21 @@ def show_table(console: Console, flown: Sequence[Flown]) -> None:
     console.print(table)
 
 
-def show_what_to_do(console: Console, log_path: str) -> None:
-    """Where the record is and how to look at it."""
+def show_what_to_do(console: Console, log_path: str, beside: Sequence[Written]) -> None:
+    """Where the record is, and what lies beside it; how to look at them."""
     if not log_path:
         console.print(Text("The flight was not recorded.", "bold red"))
         return
     console.print(Text.assemble("The whole flight is in ", (log_path, "bold")), soft_wrap=True)
+    for file in beside:
+        console.print(
+            Text.assemble("  ", (str(file.path), "bold"), f"  {file.purpose}"), soft_wrap=True
+        )
+    if beside:
+        steps = "Open the record in Foxglove or Lichtblick, then Layouts > Import from file."
+        console.print(Text(f"  {steps}"), soft_wrap=True)
     for command, purpose in (
         (f"gcs log info {log_path}", "what is in it"),
-        ("gcs log layout", "write a layout for Foxglove, then open file and layout there"),
         ("gcs fly --sim", "fly yourself: ? shows the keys"),
     ):
         console.print(Text.assemble("  ", (command, "cyan"), f"  {purpose}"), soft_wrap=True)

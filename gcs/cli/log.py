@@ -17,6 +17,7 @@ from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.record.info import FlightInfo
+    from gcs.record.layout import Purpose
 
 _LOGS = Path("logs")
 
@@ -83,23 +84,32 @@ def _chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
     type=click.Path(dir_okay=False, path_type=Path),
     help="Where to write the layout; without it, it is printed.",
 )
-def layout(file: Path | None, output: Path | None) -> None:
-    """A Foxglove layout for FILE (without FILE: for any flight of vehicle 1).
+@click.option(
+    "--for",
+    "purpose",
+    type=click.Choice(["one", "fleet", "lab"]),
+    default="one",
+    show_default=True,
+    help="One vehicle, all of them, or the lab's cage.",
+)
+def layout(file: Path | None, output: Path | None, purpose: Purpose) -> None:
+    """A layout for Foxglove or Lichtblick: camera, grid and map fitted to the flight in FILE.
 
-    Import it in Foxglove by Layouts > Import from file, then open the record.
+    Without FILE it is for any flight: the camera follows the vehicle.  Open the record, then import
+    the layout (Layouts > Import from file).
 
     Example: gcs log layout logs/20260101-120000_flight.mcap -o flight-layout.json
     """
     import json
 
-    from gcs.record.info import read_info
-    from gcs.record.layout import ANY_FLIGHT, layout
+    from gcs.record.layout import layout_for
 
-    topics = set(ANY_FLIGHT)
-    if file is not None:
+    if file is None:
+        made = layout_for(None, purpose)
+    else:
         with told(file), reading_progress(file, "reading") as progress:
-            topics = {topic.topic for topic in read_info(file, progress).topics}
-    text = json.dumps(layout(topics), indent=1) + "\n"
+            made = layout_for(file, purpose, progress)
+    text = json.dumps(made, indent=1) + "\n"
     if output is None:
         click.echo(text, nl=False)
         return
@@ -170,7 +180,9 @@ def _print(flight: FlightInfo) -> None:
     state = "complete" if flight.closed else "NOT CLOSED: its writer was killed or is still writing"
     click.echo(f"{flight.path}: {flight.size / 1e6:.2f} MB, {state}")
     if not flight.closed:
-        click.echo(f"  hint: gcs log recover {flight.path} -o whole.mcap")
+        click.echo(
+            f"  hint: gcs log recover {flight.path} -o whole.mcap (viewers refuse it as it is)"
+        )
     if flight.damaged:
         click.echo(f"  {flight.damaged} damaged records were skipped")
     click.echo(f"{flight.messages} messages in {flight.seconds:.1f} s{_began(flight.start_ns)}")

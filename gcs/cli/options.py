@@ -102,7 +102,7 @@ POLICY = click.Option(
     ["--policy"],
     default="default",
     show_default=True,
-    metavar="FILE|default|lab",
+    metavar="FILE|default|lab|demo",
     help="What the gate allows.",
 )
 LOG_DIR = click.Option(
@@ -172,11 +172,13 @@ def _policy_file(name: str) -> str:
         return str(path)
     if path.is_dir():
         raise ExitError(
-            ExitCode.BAD_FILE, f"{name}: is a directory", "a policy is a TOML file, or default, lab"
+            ExitCode.BAD_FILE,
+            f"{name}: is a directory",
+            "a policy is a TOML file or " + ", ".join(POLICIES),
         )
     if not path.is_file():
         raise ExitError(
-            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: default, lab"
+            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: " + ", ".join(POLICIES)
         )
     return UTF8.convert(name, POLICY, None)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import select
+import shlex
 import subprocess
 import sys
 import threading
@@ -11,6 +12,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import PurePath
 from typing import Protocol
 
 import msgspec
@@ -57,6 +59,13 @@ class Polled:
     ready: list[Readable] = field(default_factory=list)
 
 
+def command_line(argv: Sequence[str]) -> str:
+    """What was typed, for the record: `gcs` stands for the file that it was started as."""
+    program, *words = argv or [""]
+    name = PurePath(program).name
+    return shlex.join(["gcs" if name in ("gcs", "gcs.exe", "__main__.py") else name, *words])
+
+
 class StationClient:
     """A station process that was started by this program, and ends with it.
 
@@ -87,6 +96,8 @@ class StationClient:
         cls, setup: config.StationConfig, command: Sequence[str] | None = None
     ) -> StationClient:
         """Start `python -m gcs.shell.station '<config>'` (or `command` in its place)."""
+        if not setup.command_line:
+            setup = msgspec.structs.replace(setup, command_line=command_line(sys.argv))
         words = [*(command or STATION_COMMAND), config.encode(setup)]
         # In a session of its own: a Ctrl-C is for the operator's program, which then leaves in
         # good order; the station hears of everything through its pipe.

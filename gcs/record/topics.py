@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar
 
 from gcs.record.backend import Channel
 from gcs.report import RecordItem
@@ -25,17 +25,29 @@ class Out:
     latch: str = ""
 
 
-class Deriver(Protocol):
-    """Makes messages for viewers of what the session reports; `now_ns` becomes their log_time."""
+class Deriver:
+    """Makes messages for viewers of what the session reports; `now_ns` becomes their log_time.
 
-    def handle(self, item: RecordItem, now_ns: int) -> list[Out]: ...
+    `takes` are the kinds of items that `handle` is given.
+    """
+
+    takes: ClassVar[frozenset[type[RecordItem]]] = frozenset()
+
+    def start(self, now_ns: int) -> list[Out]:
+        """What is written before everything else: a viewer opens a record at its start."""
+        return []
+
+    def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
+        """What follows from one item."""
+        return []
+
     def tick(self, now_ns: int) -> list[Out]:
         """What is due by the clock alone: a state is repeated once a second."""
-        ...
+        return []
 
     def close(self, now_ns: int) -> list[Out]:
         """What is written at the end: a viewer's state bar stops at its last message."""
-        ...
+        return []
 
 
 class Grid:

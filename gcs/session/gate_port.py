@@ -6,7 +6,10 @@ reaches the vehicle's motion on any other path.
 
 from __future__ import annotations
 
+from typing import Final
+
 from gcs.gate import effects, inputs
+from gcs.gate.airspace.stopping import stop_point
 from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
 from gcs.gate.condition import Condition
 from gcs.gate.machine.gate import Gate
@@ -14,10 +17,13 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import State
-from gcs.report import FenceShape
+from gcs.report import FenceShape, StopItem
 from gcs.session import teller
+from gcs.session.effects import Record
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
+
+NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
 
 
 class GatePort:
@@ -72,12 +78,21 @@ class GatePort:
                 goal_ned = request.goal_ned if isinstance(request, GoTo) else None
                 return [Decide(request_id, ruling, refusal, evidence, goal_ned)]
             case effects.Transition():
-                return [*teller.transition(effect, self.gate.active_goal_ned, sysid)]
+                goal_ned = self.gate.active_goal_ned
+                return [*teller.transition(effect, goal_ned, teller.conditions(self.gate), sysid)]
             case effects.Say(level, text):
                 return [Log(level, teller.NODE, text)]
             case effects.SwitchedFence(on):
                 self._fence_on = on
                 return [PlaceFence()]
+
+    def predicted_stop(self, telemetry: Telemetry) -> list[Work]:
+        """Where the vehicle would come to rest if it were told to stop now; in flight only."""
+        if telemetry.pos_ned is None or self.gate.state in NOT_FLYING:
+            return []
+        braking = self.policy.braking_of(telemetry.autopilot.name)
+        stop_ned = stop_point(telemetry.pos_ned, telemetry.v_ned, braking)
+        return [Record(StopItem(telemetry.sysid, telemetry.pos_ned, stop_ned))]
 
     # -------------------------------------------------------------------------- the fence
 
@@ -94,7 +109,7 @@ class GatePort:
         )
         return [
             ToGate(inputs.VerifierChanged(verifier)),
-            *teller.fence(verifier.zones, telemetry.origin),
+            *teller.fence(verifier.zones, telemetry.origin, self.policy),
         ]
 
     @property

@@ -6,7 +6,7 @@ With the frames that were received it is all that a fresh session needs to do th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import PurePath
@@ -15,12 +15,17 @@ import msgspec
 
 from gcs import ipc
 from gcs.gate.effects import Level
-from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem
+from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem, StatusItem
 from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.inputs import FileRead, Input, OtherInput
 from gcs.session.setup import Setup
+from gcs.session.telemetry import Telemetry
 from gcs.session.work import Log, Work
+from gcs.wire.messages import AutopilotVersion
+
+STAGES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
+"""FIRMWARE_VERSION_TYPE, as PX4 writes it behind the version."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +81,11 @@ def introduction(setup: Setup, start_ns: int) -> list[Effect]:
         ("speedup", f"{config.speedup:g}"),
         ("seed", str(config.sim.seed) if config.sim else ""),
         ("environment", setup.environment),
+        ("command_line", config.command_line),
     )
-    policy = setup.policy_text.encode()
     return [
         Record(MetadataItem("mavgate", values)),
-        Record(AttachmentItem("policy.toml", "application/toml", policy)),
+        Record(AttachmentItem.of_file("policy.toml", setup.policy_text.encode())),
         Record(InputItem.of("Setup", Start(setup, start_ns))),
         Emit(hello(setup, setup.log_path), FIRST),
     ]
@@ -134,13 +139,51 @@ def fault(given: Input, report: str, handled: bool, at_ns: int) -> Record:
     return Record(InputItem.of("Fault", kept))
 
 
+def vehicle(telemetry: Telemetry, told: AutopilotVersion) -> MetadataItem:
+    """What vehicle this was, and with what firmware."""
+    values = (
+        ("vehicle", telemetry.label),
+        ("firmware", firmware(told.flight_sw_version)),
+        ("firmware_hash", bytes(told.flight_custom_version).hex()),
+        ("uid", f"{told.uid:016x}"),
+    )
+    return MetadataItem("vehicle", values)
+
+
+def firmware(flight_sw_version: int) -> str:
+    """AUTOPILOT_VERSION.flight_sw_version: major, minor and patch, then FIRMWARE_VERSION_TYPE."""
+    major, minor, patch, kind = flight_sw_version.to_bytes(4, "big")
+    stage = next((name for least, name in STAGES if kind >= least), "")
+    return f"{major}.{minor}.{patch}{stage}"
+
+
+def status(telemetry: Telemetry, lost_pct: float) -> StatusItem:
+    """How the vehicle is: once a second, and when its mode, armed or landed state changes."""
+    return StatusItem(
+        telemetry.sysid,
+        bool(telemetry.armed),
+        telemetry.mode_name,
+        telemetry.landed.name,
+        telemetry.battery_pct,
+        telemetry.battery_v,
+        telemetry.rx_hz,
+        lost_pct,
+    )
+
+
+def stood_on(parameters: Mapping[str, float], fence: Sequence[FenceShape]) -> list[Effect]:
+    """What the vehicle's parameters and the fence were, as files; nothing of what is not known."""
+    kept = {"parameters.json": parameters, "fence.json": fence}
+    return [Record(AttachmentItem.of_json(name, what)) for name, what in kept.items() if what]
+
+
 def sim_line(text: str, now_ns: int) -> Work:
     """`LEVEL node: text`, as vehicle-sim prints it; anything else is an INFO line."""
     word, _, rest = text.partition(" ")
     node, colon, line = rest.partition(": ")
     if word in Level.__members__ and colon and node.startswith("vehicle"):
-        # The operator has it from the vehicle itself; the record keeps both.
-        return Record(LogEvent(now_ns, Level[word], f"sim.{node}", line))
+        # The operator has it from the vehicle itself; the record keeps both, this one out of sight.
+        return Record(LogEvent(now_ns, Level.DEBUG, f"sim.{node}", line))
     if word in Level.__members__ and colon:
         return Log(Level[word], f"sim.{node}", line)
     return Log(Level.INFO, "sim", text)

@@ -132,7 +132,8 @@ class Session:
         self._unfinished = given
         if not self._introduced:
             self._introduced = True
-            queue.run(introduction(self._setup, self._start_ns), now_ns)
+            begin = [*introduction(self._setup, self._start_ns), *self._vehicle.remind()]
+            queue.run(begin, now_ns)
         if isinstance(given, Datagram):
             self._datagram(given, now_ns)
         else:
@@ -242,7 +243,7 @@ class Session:
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
-                return [Emit(self._snapshot(now_ns))]
+                return [Emit(self._snapshot(now_ns)), *self._vehicle.predicted_stop()]
             case _:
                 raise AssertionError(f"the queue keeps {item} for itself")
 

@@ -17,8 +17,17 @@ from gcs.gate.airspace.zones import Zone
 from gcs.gate.effects import Level
 from gcs.gate.geometry import Circle
 from gcs.gate.machine.gate import Gate
+from gcs.gate.policy.policy import Policy
 from gcs.gate.requests import GoTo, Request
-from gcs.report import DecisionItem, FenceItem, FenceShape, FsaItem, LogEvent, PointEnu
+from gcs.report import (
+    ConditionItem,
+    DecisionItem,
+    FenceItem,
+    FenceShape,
+    FsaItem,
+    LogEvent,
+    PointEnu,
+)
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.requests import Asked
 from gcs.session.work import Decide, Log
@@ -88,7 +97,12 @@ def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
     return [Emit(event, asked.client), Record(item)]
 
 
-def transition(told: effects.Transition, goal_ned: Vec3 | None, sysid: int) -> list[Effect]:
+def transition(
+    told: effects.Transition,
+    goal_ned: Vec3 | None,
+    wrong: tuple[ConditionItem, ...],
+    sysid: int,
+) -> list[Effect]:
     """The gate's state machine went to another state."""
     item = FsaItem(
         sysid,
@@ -99,6 +113,7 @@ def transition(told: effects.Transition, goal_ned: Vec3 | None, sysid: int) -> l
         control=told.control.name,
         severity=told.severity.name,
         goal=_point(goal_ned),
+        conditions=wrong,
     )
     event = ipc.StateEvent(item.before, item.state, item.event, item.control, item.severity)
     return [Emit(event), Record(item)]
@@ -115,20 +130,29 @@ def reminder(gate: Gate, sysid: int) -> list[Effect]:
         control=gate.control.name,
         severity=gate.severity.name,
         goal=_point(gate.active_goal_ned),
+        conditions=conditions(gate),
     )
     return [Record(item)]
 
 
-def fence(zones: Iterable[Zone], origin: Origin | None) -> list[Effect]:
+def fence(zones: Iterable[Zone], origin: Origin | None, policy: Policy) -> list[Effect]:
     """The fence as the verifier stands on it, zones in the local tangent plane."""
     where = None if origin is None else (origin.lat_deg, origin.lon_deg, origin.alt_amsl_m)
-    item = FenceItem([_shape(zone) for zone in zones], where)
+    shown = [_shape(zone) for zone in zones]
+    item = FenceItem(shown, where, policy.margin_h_m, policy.margin_v_m)
     return [Record(item), Emit(ipc.Fences(item.zones))]
 
 
 def shapes(zones: Iterable[Zone]) -> list[FenceShape]:
     """The zones as an operator that has just joined is told of them."""
     return [_shape(zone) for zone in zones]
+
+
+def conditions(gate: Gate) -> tuple[ConditionItem, ...]:
+    """What is wrong, the worst first."""
+    active = [(gate.severity_of(name), name, text) for name, text in gate.reasons]
+    active.sort(key=lambda one: -one[0])
+    return tuple(ConditionItem(name.value, worth.name, text) for worth, name, text in active)
 
 
 def _point(pos_ned: Vec3 | None) -> PointEnu | None:

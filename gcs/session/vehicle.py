@@ -22,8 +22,8 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
-from gcs.report import FenceShape, ParamItem, SetpointItem, StatusItem
-from gcs.session import settings, teller
+from gcs.report import FenceShape, ParamItem, SetpointItem
+from gcs.session import recorded, settings, teller
 from gcs.session.commands import Commands
 from gcs.session.delay import Delay
 from gcs.session.discovery import Discovery
@@ -82,6 +82,7 @@ class Vehicle:
         self._roster = Roster(config.target_sysid, times, gone_ns)
         self._reasons = Reasons(self._words, times)
         self._met_ns = 0
+        self._parameters: dict[str, float] = {}
         self._presence = Presence(times, gone_ns)
         self.telemetry: Telemetry | None = None
 
@@ -146,7 +147,10 @@ class Vehicle:
                 work.append(ToGate(inputs.MessageSeen()))
         if message is not None and not self._presence.overtaken(frame, message, number):
             heard = Heard(frame.sysid, frame.compid, message)
+            before = telemetry.armed, telemetry.mode_name, telemetry.landed
             work += self._heard(telemetry, heard, now_ns)
+            if before != (telemetry.armed, telemetry.mode_name, telemetry.landed):
+                work.append(Record(recorded.status(telemetry, lost_pct(self.losses))))
         return work
 
     def _heard(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
@@ -162,6 +166,8 @@ class Vehicle:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif isinstance(message, m.Statustext):
             work += logged(self._words.text(heard.compid, message, now_ns))
+        elif isinstance(message, m.AutopilotVersion):
+            work.append(Record(recorded.vehicle(telemetry, message)))
         elif type(message) in EVENT_MESSAGES and heard.compid == telemetry.compid:
             work += self._events.heard(heard, now_ns)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
@@ -225,6 +231,7 @@ class Vehicle:
                 case Send():
                     work.append(item)
                 case settings.ParameterKnown(name, value):
+                    self._parameters[name] = value
                     work.append(Record(ParamItem(telemetry.sysid, name, value)))
                 case settings.ReturnHeightKnown(up_m):
                     telemetry.return_up_m, telemetry.return_told = up_m, True
@@ -276,25 +283,21 @@ class Vehicle:
         )
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
         work.append(condition(Condition.ORIGIN_MISSING, missing, text))
-        status = StatusItem(
-            telemetry.sysid,
-            bool(telemetry.armed),
-            telemetry.mode_name,
-            telemetry.landed.name,
-            telemetry.battery_pct,
-            telemetry.battery_v,
-            telemetry.rx_hz,
-            lost_pct(self.losses),
-        )
-        return [*work, Record(status)]
+        return [*work, Record(recorded.status(telemetry, lost_pct(self.losses)))]
 
     def send_own(self, commands: Iterable[CommandLong], now_ns: int) -> list[Work]:
         """Harmless commands of the station's own, such as for a stream."""
         return [work for each in commands for work in self._commands.send_own(each, now_ns)]
 
     def remind(self) -> list[Work]:
-        """The gate's state once more, for the record."""
-        return [] if self.telemetry is None else [*teller.reminder(self.gate, self.sysid)]
+        """The gate's state once more, for the record; before a vehicle is heard, of the one that
+        is expected, where its number is known."""
+        sysid = self.sysid or self._config.expected_sysid
+        return [*teller.reminder(self.gate, sysid)] if sysid else []
+
+    def predicted_stop(self) -> list[Work]:
+        """Where it would come to rest if it were told to stop now, for the record.  In flight."""
+        return [] if self.telemetry is None else self._port.predicted_stop(self.telemetry)
 
     # ----------------------------------------------------------------------------- requests
 
@@ -333,8 +336,12 @@ class Vehicle:
         return self._missions.stop(request_id)
 
     def leave(self) -> list[Work]:
-        """The session ends: a mission job that is under way ends with it."""
-        return self._missions.leave()
+        """The session ends: a mission job that is under way ends with it; what the flight stood on
+        is attached to the record."""
+        return [
+            *self._missions.leave(),
+            *recorded.stood_on(self._parameters, self.fence_shapes),
+        ]
 
     # --------------------------------------------------------------------------------- gate
 

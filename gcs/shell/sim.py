@@ -16,6 +16,18 @@ else:
     _CREATION_FLAGS = 0
 
 
+def words_of(sim: SimConfig, port: int) -> list[str]:
+    """The command that starts it, to send to a UDP port of ours on loopback."""
+    words = [sys.executable, "-m", "vehicle_sim", "--lifeline"]
+    words += ["--autopilot", sim.autopilot, "--seed", str(sim.seed)]
+    words += ["--speedup", str(sim.speedup), "--link", f"udpout://127.0.0.1:{port}"]
+    if sim.home:
+        words += ["--home", sim.home]
+    for name, value in sim.params.items():
+        words += ["--param", f"{name}={value:g}"]
+    return words
+
+
 class SimProcess:
     """`vehicle-sim` as a child that dies with us: its standard input is its lifeline.
 
@@ -24,16 +36,11 @@ class SimProcess:
 
     def __init__(self, sim: SimConfig, port: int) -> None:
         """`port`: the UDP port of ours, on loopback, that the vehicle is to send to."""
-        words = [sys.executable, "-m", "vehicle_sim", "--lifeline"]
-        words += ["--autopilot", sim.autopilot, "--seed", str(sim.seed)]
-        words += ["--speedup", str(sim.speedup), "--link", f"udpout://127.0.0.1:{port}"]
-        if sim.home:
-            words += ["--home", sim.home]
         # In a session of its own: a terminal that closes hangs up on all its programs at once, and
         # would take the vehicle away before it is seen holding.  On Windows a Ctrl-C goes to all
         # programs of a console, but not to other groups.
         self._child = subprocess.Popen(
-            words,
+            words_of(sim, port),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

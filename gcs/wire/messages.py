@@ -333,6 +333,24 @@ class Timesync(Message, frozen=True, gc=False):
     target_component: int = 0
 
 
+class AutopilotVersion(Message, frozen=True, gc=False):
+    """AUTOPILOT_VERSION (148): 60 bytes, 78 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.AUTOPILOT_VERSION
+    capabilities: int  # MAV_PROTOCOL_CAPABILITY
+    uid: int
+    flight_sw_version: int
+    middleware_sw_version: int
+    os_sw_version: int
+    board_version: int
+    vendor_id: int
+    product_id: int
+    flight_custom_version: tuple[int, ...]  # 8 values
+    middleware_custom_version: tuple[int, ...]  # 8 values
+    os_custom_version: tuple[int, ...]  # 8 values
+    uid2: tuple[int, ...] = (0,) * 18  # 18 values
+
+
 class CameraFeedback(Message, frozen=True, gc=False):
     """CAMERA_FEEDBACK (180): 45 bytes, 47 with extensions."""
 

@@ -44,13 +44,13 @@ MESSAGES = (
     "ESTIMATOR_STATUS",
     "EKF_STATUS_REPORT",
     "TIMESYNC",
+    "AUTOPILOT_VERSION",
 )
 """Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
 
 IDS_ONLY = (
     "POSITION_TARGET_LOCAL_NED",
     "BATTERY_STATUS",
-    "AUTOPILOT_VERSION",
 )
 """Messages that are requested for the record and not interpreted: each gets an id only."""
 

@@ -16,7 +16,7 @@ TICK_S = 0.05
 
 
 def completed(flight: Flight) -> list[str]:
-    return [line for line in flight.lines("state_and_safety") if line == "Complete"]
+    return [line for line in flight.lines("state_and_safety") if line.startswith("Complete")]
 
 
 @both_policies
@@ -46,7 +46,7 @@ def test_L06_arrival_is_complete_and_the_stream_goes_on_at_the_same_goal(
     flight = Flight(personality, policy=lab_policy()).hovering(1.0)
     assert flight.done(flight.goto(1.0, 0.0, 0.5)) == "complete"
     assert flight.is_in(State.HOVERING)
-    assert completed(flight)[-1] == "Complete"
+    assert completed(flight)[-1] == "Complete: goto"
     since_ns = flight.now_ns
     flight.run(2.0)
     stream = flight.setpoints(since_ns + 1)

@@ -126,10 +126,15 @@ def simulated(log_dir: Path, speedup: float = 1.0, policy_path: str = "") -> Ite
 
 @contextmanager
 def tapped(
-    log_dir: Path, speedup: float = 1.0, tap: WireTap | None = None
+    log_dir: Path, speedup: float = 1.0, tap: WireTap | None = None, policy: str = ""
 ) -> Iterator[tuple[Station, WireTap]]:
     """A station and a vehicle, separate programs, with an ear on the wire between them."""
-    config = StationConfig(endpoints=["udpin://127.0.0.1:0"], speedup=speedup, log_dir=str(log_dir))
+    config = StationConfig(
+        endpoints=["udpin://127.0.0.1:0"],
+        speedup=speedup,
+        log_dir=str(log_dir),
+        policy_path=policy,
+    )
     with tap or WireTap() as ear, station(config) as made:
         ear.connect(made.ports[0])
         url = f"udpout://127.0.0.1:{ear.vehicle_port}"

@@ -12,6 +12,7 @@ from rich.console import Console
 
 from gcs import ipc, resources
 from gcs.cli.demo import run_over
+from gcs.cli.demo_script import MISSION, POLICY
 from gcs.operator.client import Polled, Readable, StationClient
 from gcs.report import Direction
 from tests.system.flight_log import Json, decoded, frames, readings, whole, wire
@@ -56,11 +57,11 @@ class SilencingConnection:
 @pytest.fixture(scope="module")
 def flight(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Flight]:
     folder = tmp_path_factory.mktemp("logs")
-    with tapped(folder, speedup=3.0) as (operator, tap):
+    with tapped(folder, speedup=3.0, policy=POLICY) as (operator, tap):
         told = StringIO()
         assert operator.dialogue.hello is not None
         connection = SilencingConnection(operator.client, tap, operator.dialogue.hello)
-        mission = str(resources.find("demo.toml"))
+        mission = str(resources.find(MISSION))
         exit_code = run_over(connection, operator.interrupts, Console(file=told), mission, 10.0)
         tap.drained()
         yield Flight(operator.log_path, exit_code, told.getvalue(), tap)
@@ -91,15 +92,15 @@ def test_the_refused_goal_is_on_record_with_its_numbers_and_in_no_setpoint(fligh
     refused: list[dict[str, Json]] = [
         decision
         for _, decision in readings(flight.path, "/gate/decision")
-        if decision["code"] == "OUTSIDE_FENCE"
+        if decision.get("code") == "OUTSIDE_FENCE"
     ]
     (far,) = refused
-    assert far["goal"] == {"east_m": 500.0, "north_m": 0.0, "up_m": 2.0}
-    assert far["zone"] == "home"
+    assert far["goal"] == {"east_m": 60.0, "north_m": 8.0, "up_m": 5.0}
+    assert far["zone"] == "yard"
     assert isinstance(far["numbers"], dict)
-    assert far["numbers"]["outside_m"] == pytest.approx(350.0, abs=0.5)
-    assert "350" in str(far["sentence"])
+    assert far["numbers"]["outside_m"] == pytest.approx(34.0, abs=0.5)
+    assert "34." in str(far["sentence"])
 
     flown = [message for topic, message in decoded(flight.path) if topic == SETPOINT]
     assert len(flown) > 100
-    assert max(abs(setpoint.y) for setpoint in flown) < 20.0
+    assert max(abs(setpoint.y) for setpoint in flown) < 26.0  # the yard's wall

@@ -101,6 +101,15 @@ class Gate:
         return tuple(condition for condition, _ in self._turn.memory.conditions)
 
     @property
+    def reasons(self) -> tuple[tuple[Condition, str], ...]:
+        """The active conditions, and what each was reported with."""
+        return tuple(self._turn.memory.conditions)
+
+    def severity_of(self, condition: Condition) -> Severity:
+        """What the policy makes of a condition."""
+        return self._turn.policy.severities[condition]
+
+    @property
     def control(self) -> Control:
         return self._turn.memory.control
 

@@ -209,7 +209,9 @@ class Turn:
         code, sentence = (None, "Complete") if why is None else (why.code, why.sentence)
         self.out.append(Outcome(task.requested.request_id, end.kind, code, sentence))
         level = Level.INFO if end.kind is OutcomeKind.COMPLETE else Level.WARNING
-        self.say(level, sentence if code is None else f"{task.kind}: {end.kind}: {sentence}")
+        # The lab's word, and of what.
+        done = f"Complete: {task.kind}"
+        self.say(level, done if code is None else f"{task.kind}: {end.kind}: {sentence}")
 
     def _why(self, end: End) -> Refusal | None:
         """Code and sentence of an outcome; None where it is COMPLETE."""

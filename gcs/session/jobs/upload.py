@@ -127,7 +127,7 @@ class Upload(VerifiedJob):
         ]
         self._flown = found.path
         work += [
-            Record(AttachmentItem(path, "application/octet-stream", self._plan.data)),
+            Record(AttachmentItem.of_file(path, self._plan.data)),
             self.accept(answer.evidence),
             ToGate(MissionLoaded("", 0)),
             OnBoardChanged(None),

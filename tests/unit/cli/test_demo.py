@@ -13,7 +13,16 @@ from gcs.cli import demo, demo_script
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.operator.line_parser import parse_line
-from tests.unit.operator.fake_station import FakeConnection, NoInterrupts
+from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
+
+
+def yard() -> FakeConnection:
+    """A station whose gate answers as that of the demo's policy."""
+    mast = ("LEG_LEAVES_FENCE", "the leg goes inside the mast")
+    outside = ("OUTSIDE_FENCE", "34.2 m outside")
+    refusals = {(12.0, 16.0, 5.0): mast, (60.0, 8.0, 5.0): outside}
+    brakes = {(23.5, 0.0, 4.0): "it would come to rest 0.9 m from the fence"}
+    return FakeConnection(FakeStation(refusals=refusals, brakes=brakes))
 
 
 def fly(connection: FakeConnection) -> tuple[int, str]:
@@ -24,12 +33,13 @@ def fly(connection: FakeConnection) -> tuple[int, str]:
 
 
 def test_the_script_comes_out_as_written_and_is_told_on_a_pipe() -> None:
-    connection = FakeConnection()
+    connection = yard()
     code, told = fly(connection)
     assert code == ExitCode.DONE
     assert "\x1b" not in told
-    assert "goto 500 0 2: refused OUTSIDE_FENCE: 350 m outside" in told
-    assert "goto 12 1 2: aborted OPERATOR" in told
+    assert "goto 60 8 5: refused OUTSIDE_FENCE: 34.2 m outside" in told
+    assert "goto 9 18 5: aborted OPERATOR" in told
+    assert "goto 23.5 0 4: aborted FENCE_BREACH" in told
     assert "✗" not in told
     assert "logs/x.mcap" in told
     assert connection.station.state == "GROUNDED"
@@ -38,7 +48,14 @@ def test_the_script_comes_out_as_written_and_is_told_on_a_pipe() -> None:
 
 def test_it_shows_all_that_it_must() -> None:
     expected = {step.expect for step in demo_script.SCRIPT}
-    assert expected == {"complete", "refused OUTSIDE_FENCE", "refused BUSY", "aborted OPERATOR"}
+    assert expected == {
+        "complete",
+        "refused OUTSIDE_FENCE",
+        "refused LEG_LEAVES_FENCE",
+        "refused BUSY",
+        "aborted OPERATOR",
+        "aborted FENCE_BREACH",
+    }
     lines = " ".join(step.line for step in demo_script.SCRIPT)
     for word in ("arm", "takeoff", "control", "photo", "abort", "resume", "mission", "land"):
         assert word in lines
@@ -52,7 +69,7 @@ def test_a_flight_that_is_not_as_scripted_is_an_error(monkeypatch: pytest.Monkey
     with pytest.raises(
         ExitError, match="arm came to 'complete', expected 'refused BUSY'"
     ) as failed:
-        fly(FakeConnection())
+        fly(yard())
     assert failed.value.exit_code == ExitCode.NOT_COMPLETED
 
 

@@ -166,7 +166,7 @@ def test_a_directory_is_no_policy(tmp_path: Path) -> None:
     ended = gcs("fly", "--plain", "--policy", tmp_path)
     assert ended == (
         ExitCode.BAD_FILE,
-        f"gcs: {tmp_path}: is a directory\n  hint: a policy is a TOML file, or default, lab\n",
+        f"gcs: {tmp_path}: is a directory\n  hint: a policy is a TOML file or default, lab, demo\n",
     )
 
 

@@ -50,7 +50,7 @@ class TestLines:
         script.ask(Arm())
         script.forget()
         script.heartbeat(armed=True)
-        assert script.all(Say) == [Say(Level.INFO, "Complete")]
+        assert script.all(Say) == [Say(Level.INFO, "Complete: arm")]
 
     def test_any_other_end_is_a_warning_with_the_request_and_the_reason(self) -> None:
         script = Script(policy("default")).take_control(UP)

@@ -51,6 +51,10 @@ class FakeStation:
     done: bool = False
     time_s: float = 0.0
     in_control: ipc.OperatorInfo | None = FIRST
+    refusals: dict[ipc.Vec3, tuple[str, str]] = field(default_factory=dict)
+    """Goals that are refused, with code and sentence."""
+    brakes: dict[ipc.Vec3, str] = field(default_factory=dict)
+    """Goals on whose way it is stopped, with the sentence."""
 
     def hello(self) -> list[ipc.Event]:
         fence = ipc.FenceShape(
@@ -139,6 +143,8 @@ class FakeStation:
             return self._begin(ask, "FLYING_MISSION", self.left.pop(0))
         assert goal is not None
         east, north, up = (metres or 0.0 for metres in goal)
+        if (east, north, up) in self.refusals:
+            return self._refuse(ask, *self.refusals[east, north, up])
         if math.hypot(east, north) > FENCE_M:
             distance_m = math.hypot(east, north) - FENCE_M
             sentence = f"{distance_m:.0f} m outside the fence `circle`"
@@ -184,6 +190,8 @@ class FakeStation:
         if self.left:
             self.target = self.left.pop(0)
             return []
+        if self.target in self.brakes:
+            return [*self._to("HOLDING", "breach"), *self._end("aborted", "FENCE_BREACH")]
         self.target = None
         landed = self.state == "LANDING"
         self.armed = self.armed and not landed

@@ -12,7 +12,7 @@ import pytest
 
 from gcs import ipc
 from gcs.config import StationConfig
-from gcs.operator.client import StationClient, StationEnded, StationEvent
+from gcs.operator.client import StationClient, StationEnded, StationEvent, command_line
 
 pytestmark = pytest.mark.slow  # a station's process
 
@@ -105,3 +105,16 @@ def test_a_wait_ends_when_something_else_is_readable() -> None:
         writer.send(b"x")
         assert client.poll(60.0, (reader,)).ready == [reader]
     client.close()
+
+
+@pytest.mark.parametrize(
+    ("argv", "typed"),
+    [
+        (["/home/me/.venv/bin/gcs", "fly", "--sim"], "gcs fly --sim"),
+        (["/x/gcs/__main__.py", "demo"], "gcs demo"),
+        (["my flight.py", "a b"], "'my flight.py' 'a b'"),
+        ([], "''"),
+    ],
+)
+def test_what_was_typed_is_kept_without_the_machines_folders(argv: list[str], typed: str) -> None:
+    assert command_line(argv) == typed

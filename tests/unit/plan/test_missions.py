@@ -26,6 +26,7 @@ def test_what_is_promised_is_shipped() -> None:
         "square.toml",
         "survey.plan",
         "triangle.waypoints",
+        "yard.toml",
     ]
 
 

@@ -33,6 +33,7 @@ from gcs.report import (
     RecordItem,
     SetpointItem,
     StatusItem,
+    StopItem,
 )
 
 START_NS = 1_767_225_600_000_000_000
@@ -113,6 +114,7 @@ def a_flight() -> list[RecordItem]:
         StatusItem(1, True, "OFFBOARD", "in_air", 80.0, 15.2, 100.0, 0.0),
         FsaItem(1, "HOVERING", 1, "GROUNDED", "airborne", "ours", "nominal", None),
         SetpointItem(1, (1.0, 2.0, -3.0), None),
+        StopItem(1, (1.0, 2.0, -3.0), (1.0, 5.0, -3.0)),
         DecisionItem(
             vehicle=1,
             request_id=7,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -12,65 +11,24 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from gcs.frames import Vec3, enu_from_ned
-from gcs.record.foxglove_topics import PATH_POINTS, Trail
-from gcs.record.json_topics import euler_deg
+from gcs.frames import enu_from_ned
+from gcs.record.derived.vehicle_json import euler_deg
 from gcs.record.topics import Grid
 from gcs.report import (
     DecisionItem,
     FenceItem,
-    FsaItem,
     GeodeticItem,
     InputItem,
     LogEvent,
     MissionItem,
     PointEnu,
     PoseItem,
-    Quat,
     RecordItem,
     SetpointItem,
     StatusItem,
 )
 from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
-
-UPRIGHT: Quat = (1.0, 0.0, 0.0, 0.0)
-
-
-def pose(pos_ned: Vec3, sysid: int = 1, q: Quat = UPRIGHT) -> PoseItem:
-    return PoseItem(sysid, pos_ned, (0.0, 0.0, 0.0), q)
-
-
-def fsa(state: str, number: int = 1) -> FsaItem:
-    return FsaItem(1, state, number, "", "event", "ours", "nominal", None)
-
-
-def pictures(path: Path, topic: str) -> list[Any]:
-    """The decoded protobuf messages of a topic."""
-    with open(path, "rb") as file:
-        reader = make_reader(file, decoder_factories=[DecoderFactory()])
-        return [decoded for *_, decoded in reader.iter_decoded_messages(topics=[topic])]
-
-
-def readings(path: Path, topic: str) -> list[Any]:
-    """The JSON messages of a topic; NaN and infinity are an error, as in a viewer."""
-
-    def refuse(word: str) -> None:
-        raise ValueError(f"{word} is no JSON")
-
-    found = [message for message in messages_of(path) if message.topic == topic]
-    return [json.loads(message.data, parse_constant=refuse) for message in found]
-
-
-def turned(q: Any, v: Vec3) -> Vec3:
-    """The vector `v` rotated by the quaternion `q` (Rodrigues)."""
-    x, y, z, w = q.x, q.y, q.z, q.w
-    vx, vy, vz = v
-    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
-    return (
-        vx + w * tx + y * tz - z * ty,
-        vy + w * ty + z * tx - x * tz,
-        vz + w * tz + x * ty - y * tx,
-    )
+from tests.unit.record.viewer import fsa, pictures, pose, readings, turned
 
 
 def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None:
@@ -88,7 +46,11 @@ def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None
         "/link/0/garbage": "mavlink/Garbage",
         "/session/input": "session.Input",
         "/gate/decision": "gate.Decision",
+        "/gate/requests": "gate.Requests",
         "/gate/fence": "gate.Fence",
+        "/gate/goals": "foxglove.SceneUpdate",
+        "/events": "foxglove.Event",
+        "/origin": "foxglove.LocationFix",
         "/geofence": "foxglove.SceneUpdate",
         "/geofence/geojson": "foxglove.GeoJSON",
         "/mission": "foxglove.SceneUpdate",
@@ -98,6 +60,10 @@ def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None
         "/vehicle/1/model": "foxglove.SceneUpdate",
         "/vehicle/1/path": "foxglove.PosesInFrame",
         "/vehicle/1/setpoint": "foxglove.PoseInFrame",
+        "/vehicle/1/target": "foxglove.SceneUpdate",
+        "/vehicle/1/stop": "foxglove.SceneUpdate",
+        "/vehicle/1/odometry": "foxglove.Odometry",
+        "/vehicle/1/phase": "vehicle.Phase",
         "/vehicle/1/location": "foxglove.LocationFix",
         "/vehicle/1/state": "vehicle.State",
         "/vehicle/1/fsa": "gate.Fsa",
@@ -196,17 +162,6 @@ def test_every_setpoint_is_recorded_heights_up(tmp_path: Path) -> None:
     assert (at.x, at.y, at.z) == (2.0, 1.0, 3.0)
     facing = turned(found[0].pose.orientation, (1.0, 0.0, 0.0))
     assert facing == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)  # heading 0 is north
-
-
-def test_the_trail_grows_and_stays_repeatable() -> None:
-    trail = Trail()
-    for number in range(10_000):
-        trail.add((number * 0.25, 0.0, 1.0))
-    assert len(trail.points_enu) <= PATH_POINTS
-    assert trail.points_enu[0] == (0.0, 0.0, 1.0)
-    assert trail.points_enu[-1][0] > 2400
-    gaps = [b[0] - a[0] for a, b in pairwise(trail.points_enu)]
-    assert max(gaps) <= 4 * min(gaps)
 
 
 def test_a_hovering_vehicle_does_not_repeat_its_trail(tmp_path: Path) -> None:
@@ -344,15 +299,8 @@ def test_the_fence_is_on_the_map_where_the_origin_is_known(tmp_path: Path) -> No
 
 def test_without_an_origin_there_is_no_fence_on_the_map(tmp_path: Path) -> None:
     path = record(tmp_path, [FenceItem([], None)])
-    assert {message.topic for message in messages_of(path)} == {"/geofence", "/gate/fence"}
-
-
-def test_the_fence_as_numbers(tmp_path: Path) -> None:
-    path = record(tmp_path, a_flight())
-    (message,) = [m for m in messages_of(path) if m.topic == "/gate/fence"]
-    home, tower = json.loads(message.data)["zones"]
-    assert (home["centre_en"], home["radius_m"]) == ([0.0, 0.0], 150.0)
-    assert (tower["inclusion"], tower["corners_en"]) == (False, [[10, 10], [20, 10], [20, 20]])
+    assert "/geofence" in {message.topic for message in messages_of(path)}
+    assert "/geofence/geojson" not in {message.topic for message in messages_of(path)}
 
 
 def test_a_mission_is_a_line_of_numbered_points(tmp_path: Path) -> None:
@@ -388,10 +336,12 @@ def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
         ),
         "gate.Fsa": (
             "state:string state_id:integer before:string event:string control:string"
-            " severity:string goal:goal"
+            " severity:string goal:goal conditions:array"
         ),
-        "gate.Fence": "zones:array origin:array",
+        "gate.Fence": "zones:array origin:array margin_h_m:number margin_v_m:number",
+        "gate.Requests": "rows:array",
         "session.Input": "kind:string data:object",
+        "vehicle.Phase": "state:string control:string severity:string mode:string landed:string",
         "vehicle.Param": "name:string value:number",
         "vehicle.State": (
             "east_m:number north_m:number up_m:number groundspeed_mps:number climb_mps:number"
@@ -407,9 +357,12 @@ def test_json_schemas_use_only_what_viewers_read(tmp_path: Path) -> None:
         summary = make_reader(file).get_summary()
     assert summary is not None
     found = [s for s in summary.schemas.values() if s.encoding == "jsonschema"]
-    assert len(found) == 6
+    assert len(found) == 8
 
     def check(schema: dict[str, Any]) -> None:
+        if schema["type"] == "array":
+            check(schema["items"])
+            return
         if schema["type"] == "object":
             for inner in schema["properties"].values():
                 check(inner)

@@ -11,6 +11,7 @@ import pytest
 from gcs import ipc
 from gcs.config import SimConfig, StationConfig
 from gcs.gate.policy.parse import DEFAULT
+from gcs.report import AttachmentItem, LogEvent
 from gcs.session.effects import Record
 from gcs.session.inputs import (
     FileRead,
@@ -27,7 +28,7 @@ from gcs.session.inputs import (
     SimLine,
     Wake,
 )
-from gcs.session.recorded import Start, introduction, recorded, sim_line
+from gcs.session.recorded import Start, firmware, introduction, recorded, sim_line
 from gcs.session.setup import Setup
 from gcs.session.work import Log, Work
 from tests.unit.session import told
@@ -88,7 +89,7 @@ def test_every_input_is_kept_under_its_own_name(given: OtherInput, told_as: obje
 
 
 def test_the_set_up_is_told_before_anything_else() -> None:
-    config = StationConfig(sysid=254, speedup=2.0, sim=SimConfig(seed=42))
+    config = StationConfig(sysid=254, speedup=2.0, sim=SimConfig(seed=42), command_line="gcs demo")
     setup = Setup(
         config,
         "1.2.3",
@@ -110,9 +111,11 @@ def test_the_set_up_is_told_before_anything_else() -> None:
         "speedup": "2",
         "seed": "42",
         "environment": "Python 3 on a machine",
+        "command_line": "gcs demo",
     }
     (policy,) = told.recorded(effects, "AttachmentItem")
     assert policy.data == b"name = 'x'"
+    assert (policy.name, policy.media_type) == ("policy.toml", "application/toml")
     (kept,) = told.recorded(effects, "InputItem")
     assert msgspec.json.decode(kept.data, type=Start) == Start(setup, 1_000)
     (hello,) = told.events(effects, ipc.Hello)
@@ -124,6 +127,33 @@ def test_without_a_vehicle_of_our_own_there_is_no_seed() -> None:
         introduction(Setup(StationConfig(), "1", DEFAULT, "", (), ""), 0), "MetadataItem"
     )
     assert dict(values.values)["seed"] == ""
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (17695743, "1.14.3"),  # data/autopilots/scenarios_px4.json: PX4 1.14.3
+        (67567616, "4.7.0-dev"),  # scenarios_arducopter.json: ArduCopter 4.7.0-dev
+        (0x010F00C0, "1.15.0-rc"),
+        (0x01100000, "1.16.0-dev"),
+    ],
+)
+def test_the_firmware_is_read_as_its_makers_write_it(number: int, text: str) -> None:
+    assert firmware(number) == text
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "media_type"),
+    [
+        ("/home/me/fields/north.plan", "north.plan", "application/json"),
+        ("missions/demo.toml", "demo.toml", "application/toml"),
+        ("x.WAYPOINTS", "x.WAYPOINTS", "text/plain"),
+        ("odd", "odd", "application/octet-stream"),
+    ],
+)
+def test_an_attachment_has_its_own_name_and_kind(path: str, name: str, media_type: str) -> None:
+    item = AttachmentItem.of_file(path, b"x")
+    assert (item.name, item.media_type, item.data) == (name, media_type, b"x")
 
 
 def work_of(line: str) -> Work:
@@ -152,5 +182,7 @@ def test_a_line_of_our_own_vehicle_s_process_is_logged_for_what_it_is(
 def test_what_the_vehicle_says_itself_is_not_shown_twice_and_is_kept() -> None:
     work = work_of("ERROR vehicle 1: no GPS")
     assert isinstance(work, Record)
+    assert isinstance(work.item, LogEvent)
+    assert work.item.level == 1  # below what a viewer shows: the vehicle said it itself
     assert "no GPS" in repr(work.item)
     assert "sim.vehicle 1" in repr(work.item)

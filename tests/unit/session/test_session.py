@@ -46,6 +46,22 @@ def test_first_of_all_it_is_told_and_recorded_what_this_session_is() -> None:
     assert told.events(script.feed(LinkEvent(0, "still open")), ipc.Hello) == []
 
 
+@pytest.mark.parametrize(
+    ("config", "sysids"),
+    [
+        (StationConfig(sim=SimConfig()), [1]),
+        (StationConfig(target_sysid=7), [7]),
+        (StationConfig(), []),
+    ],
+)
+def test_the_record_begins_with_the_state_of_a_vehicle_whose_number_is_known(
+    config: StationConfig, sysids: list[int]
+) -> None:
+    effects = Script(config=config).feed(LinkEvent(0, "open"))
+    found = [(item.sysid, item.state) for item in told.recorded(effects, "FsaItem")]
+    assert found == [(sysid, "NO_VEHICLE") for sysid in sysids]
+
+
 def test_every_frame_is_recorded_before_anything_that_it_leads_to() -> None:
     script = Script()
     first = script.sender.frame(wire.heartbeat())
@@ -382,3 +398,14 @@ def test_a_session_that_heard_a_vehicle_or_has_one_of_its_own_is_worth_keeping()
     heard.append(script.session.nothing_heard)
     assert heard == [True, False]
     assert not Script(config=StationConfig(sim=SimConfig())).session.nothing_heard
+
+
+def test_how_the_vehicle_is_is_recorded_when_its_mode_or_armed_state_changes() -> None:
+    script = Script()
+    script.hear(wire.heartbeat())
+    script.hear(wire.heartbeat())
+    effects = script.hear(wire.heartbeat(mode=wire.OFFBOARD))
+    effects += script.hear(wire.heartbeat(mode=wire.OFFBOARD))
+    effects += script.hear(wire.heartbeat(mode=wire.OFFBOARD, armed=True))
+    found = [(item.mode, item.armed) for item in told.recorded(effects, "StatusItem")]
+    assert found == [("OFFBOARD", False), ("OFFBOARD", True)]

@@ -7,32 +7,36 @@ import math
 from gcs import ipc
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.zones import Zone
-from gcs.gate.condition import Severity
+from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, Transition
 from gcs.gate.geometry import Circle, Polygon
+from gcs.gate.inputs import ConditionChanged
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
-from gcs.record.json_topics import JsonTopics
-from gcs.report import FenceItem, LogEvent
+from gcs.record.derived.gate_json import GateJson
+from gcs.record.derived.vehicle_json import VehicleJson
+from gcs.report import ConditionItem, FenceItem, FsaItem, LogEvent
 from gcs.session import teller
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.requests import Asked
 from gcs.session.work import Decide, Log
 
 ASKED = Asked(ipc.Ask(3, "goto"))
+WRONG = (ConditionItem("battery_low", "CAUTION", "14 % are left"),)
 NOW_NS = 1_700_000_000_000_000_000
 
 
 def told(effects: list[Effect]) -> tuple[list[str], list[str]]:
     """The operator's lines, and the messages of the JSON topics."""
-    lines, messages, topics = [], [], JsonTopics()
+    lines, messages, topics = [], [], (GateJson(), VehicleJson())
     for effect in effects:
         if isinstance(effect, Emit):
             lines.append(ipc.encode(effect.event).decode().rstrip("\n"))
         elif isinstance(effect, Record):
-            messages += [made.message.decode() for made in topics.handle(effect.item, NOW_NS)]
+            made = [out for part in topics for out in part.handle(effect.item, NOW_NS)]
+            messages += [m.message.decode() for m in made if m.channel.topic != "/gate/requests"]
     return lines, messages
 
 
@@ -67,7 +71,7 @@ def test_an_acceptance_has_its_evidence_and_a_request_without_a_goal_none() -> N
     decide = Decide(7, Ruling.ACCEPTED, evidence=(("stop_m", 1.5),))
     (line,), (message,) = told(teller.verdict(decide, ASKED, 1))
     assert '"numbers":{"stop_m":1.5},"goal_enu":null,"operation":7}' in line
-    assert '"code":"","sentence":"","zone":"","numbers":{"stop_m":1.5}}' in message
+    assert '"outcome":"accepted","numbers":{"stop_m":1.5}}' in message
     assert "goal" not in message
 
 
@@ -80,7 +84,7 @@ def test_an_ending_is_a_decision_of_the_record() -> None:
         ],
         [
             '{"vehicle":1,"request_id":7,"source":"operator","word":"goto","phase":"ending",'
-            '"outcome":"aborted","code":"STALE","sentence":"no position","zone":"","numbers":{}}'
+            '"outcome":"aborted","code":"STALE","sentence":"no position","numbers":{}}'
         ],
     )
 
@@ -89,7 +93,7 @@ def test_a_transition_and_its_goal() -> None:
     moved = Transition(
         State.HOVERING, State.MOVING, "goal verified", Control.OURS, Severity.CAUTION
     )
-    assert told(teller.transition(moved, (1.0, 2.0, -3.0), 1)) == (
+    assert told(teller.transition(moved, (1.0, 2.0, -3.0), WRONG, 1)) == (
         [
             '{"type":"state","before":"HOVERING","after":"MOVING","event":"goal verified",'
             '"control":"OURS","severity":"CAUTION"}'
@@ -97,7 +101,8 @@ def test_a_transition_and_its_goal() -> None:
         [
             '{"state":"MOVING","state_id":3,"before":"HOVERING","event":"goal verified",'
             '"control":"OURS","severity":"CAUTION",'
-            '"goal":{"east_m":2.0,"north_m":1.0,"up_m":3.0}}'
+            '"goal":{"east_m":2.0,"north_m":1.0,"up_m":3.0},'
+            '"conditions":[{"name":"battery_low","severity":"CAUTION","text":"14 % are left"}]}'
         ],
     )
 
@@ -107,19 +112,35 @@ def test_a_reminder_is_for_the_record_only() -> None:
         [],
         [
             '{"state":"NO_VEHICLE","state_id":4,"before":"NO_VEHICLE","event":"reminder",'
-            '"control":"NONE","severity":"NOMINAL"}'
+            '"control":"NONE","severity":"NOMINAL","conditions":[]}'
         ],
     )
+
+
+def test_what_is_wrong_is_told_in_words_the_worst_first() -> None:
+    gate = Gate(DEFAULT, "px4", NOW_NS)
+    gate.handle(ConditionChanged(Condition.BATTERY_LOW, True, "14 % are left"), NOW_NS)
+    gate.handle(ConditionChanged(Condition.GPS_LOST, True, "no 3D fix"), NOW_NS)
+    assert teller.conditions(gate) == (
+        ConditionItem("gps_lost", "HOLD", "no 3D fix"),
+        ConditionItem("battery_low", "CAUTION", "14 % are left"),
+    )
+    gate.handle(ConditionChanged(Condition.GPS_LOST, False, "3D fix"), NOW_NS)
+    (effect,) = teller.reminder(gate, 1)
+    assert isinstance(effect, Record)
+    assert isinstance(effect.item, FsaItem)
+    assert [one.name for one in effect.item.conditions] == ["battery_low"]
 
 
 def test_the_fence_is_one_list_of_zones_for_both() -> None:
     circle = Zone("home", True, Circle((1.0, 2.0), 150.0), 0.0, 50.0)
     corners = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0))
     open_above = Zone("tower", False, Polygon(corners))
-    record, emit = teller.fence([circle, open_above], Origin(47.4, 8.5, 488.0))
+    record, emit = teller.fence([circle, open_above], Origin(47.4, 8.5, 488.0), DEFAULT)
     assert isinstance(record, Record)
     assert isinstance(record.item, FenceItem)
     assert record.item.origin == (47.4, 8.5, 488.0)
+    assert (record.item.margin_h_m, record.item.margin_v_m) == (2.0, 0.3)  # default.toml
     assert isinstance(emit, Emit)
     assert isinstance(emit.event, ipc.Fences)
     assert emit.event.zones is record.item.zones

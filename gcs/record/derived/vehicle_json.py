@@ -1,27 +1,22 @@
-"""Topics for plots, state bars and programs: JSON with a schema, in the operator's frame.
+"""What plots and programs read of a vehicle: /vehicle/N/state, /vehicle/N/fsa, /vehicle/N/param.
 
-Heights are up, angles degrees.  Schema and messages come from the fields of a struct.  A value
-that is not known is left out rather than null: viewers read `type` as one plain type.
+In the operator's frame: heights are up, angles degrees.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
-from math import asin, atan2, degrees, hypot, isfinite
-from typing import TypeAlias
+from math import asin, atan2, degrees, hypot
+from typing import ClassVar
 
 import msgspec
-from msgspec import inspect
 
 from gcs.frames import enu_from_ned
-from gcs.record.backend import Channel
-from gcs.record.topics import INPUT_TOPIC, Grid, Out
+from gcs.record.derived.json_topic import JsonTopic
+from gcs.record.topics import Deriver, Grid, Out
 from gcs.report import (
-    DecisionItem,
     FsaItem,
     GeodeticItem,
-    InputItem,
     ParamItem,
     PoseItem,
     Quat,
@@ -31,17 +26,8 @@ from gcs.report import (
 
 STATE_HZ = 5.0
 FSA_PERIOD_NS = 1_000_000_000
-
-_encode = msgspec.json.Encoder().encode
-
-Json: TypeAlias = "str | dict[str, Json]"
-_TYPES: dict[type[inspect.Type], str] = {
-    inspect.FloatType: "number",
-    inspect.IntType: "integer",
-    inspect.BoolType: "boolean",
-    inspect.StrType: "string",
-    inspect.LiteralType: "string",
-}
+DECIMALS = 3
+"""Millimetres and thousandths of a degree: no autopilot reports better."""
 
 
 class Motion(msgspec.Struct, frozen=True):
@@ -63,56 +49,8 @@ class Motion(msgspec.Struct, frozen=True):
     def of(cls, pose: PoseItem) -> Motion:
         v_north, v_east, v_down = pose.v_ned
         speeds = hypot(v_north, v_east), 0.0 - v_down
-        return cls(*enu_from_ned(pose.pos_ned), *speeds, *euler_deg(pose.q_ned_from_frd))
-
-
-class JsonTopic:
-    """A topic whose messages are the fields of a struct, or of several structs in a row.
-
-    `without` names fields that are left out: `sysid` is in the topic's name.
-    """
-
-    def __init__(
-        self,
-        topic: str,
-        title: str,
-        *kinds: type[msgspec.Struct],
-        without: Collection[str] = ("sysid",),
-    ) -> None:
-        self._names = {
-            kind: [name for name in kind.__struct_fields__ if name not in without] for kind in kinds
-        }
-        schema: dict[str, Json] = {"title": title, **_object(kinds, without)}
-        self.channel = Channel(topic, "json", title, "jsonschema", _encode(schema))
-
-    def out(self, *facts: msgspec.Struct | None, latch: str = "") -> Out:
-        """Without what is None, NaN or infinite; deeper inside, NaN and infinity become null."""
-        values = {}
-        for fact in facts:
-            for name in self._names[type(fact)] if fact is not None else ():
-                value = getattr(fact, name)
-                if value is not None and not (isinstance(value, float) and not isfinite(value)):
-                    values[name] = value
-        return Out(self.channel, _encode(values), latch)
-
-
-def _object(kinds: Iterable[type[msgspec.Struct]], without: Collection[str]) -> dict[str, Json]:
-    fields = [one for kind in kinds for one in msgspec.structs.fields(kind)]
-    properties: dict[str, Json] = {
-        one.name: _schema(inspect.type_info(one.type)) for one in fields if one.name not in without
-    }
-    return {"type": "object", "properties": properties}
-
-
-def _schema(kind: inspect.Type) -> dict[str, Json]:
-    """One plain type; an object's properties only where they are always the same."""
-    if isinstance(kind, inspect.UnionType):
-        (kind,) = (each for each in kind.types if not isinstance(each, inspect.NoneType))
-    if isinstance(kind, inspect.StructType):
-        return _object([kind.cls], ())
-    if isinstance(kind, inspect.DictType | inspect.RawType):
-        return {"type": "object", "properties": {}}
-    return {"type": _TYPES[type(kind)]}
+        values = (*enu_from_ned(pose.pos_ned), *speeds, *euler_deg(pose.q_ned_from_frd))
+        return cls(*(round(value, DECIMALS) for value in values))
 
 
 def euler_deg(q: Quat) -> tuple[float, float, float]:
@@ -142,18 +80,16 @@ class _Vehicle:
     fsa_sent_ns: int = 0
 
 
-class JsonTopics:
-    """/vehicle/N/state, /vehicle/N/fsa, /vehicle/N/param, /gate/decision and /session/input."""
+class VehicleJson(Deriver):
+    """The state at 5 Hz; the gate's machine on change, every second and at the end."""
+
+    takes: ClassVar = frozenset({PoseItem, GeodeticItem, StatusItem, FsaItem, ParamItem})
 
     def __init__(self) -> None:
         self._vehicles: dict[int, _Vehicle] = {}
-        self._decision = JsonTopic("/gate/decision", "gate.Decision", DecisionItem)
-        self._input = JsonTopic(INPUT_TOPIC, "session.Input", InputItem)
 
     def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
         match item:
-            case InputItem():
-                return [Out(self._input.channel, _encode(item))]
             case PoseItem(sysid):
                 vehicle = self._vehicle(sysid)
                 vehicle.pose = item
@@ -167,8 +103,6 @@ class JsonTopics:
                 return _state(vehicle, now_ns)
             case FsaItem():
                 return self._fsa(item, now_ns)
-            case DecisionItem():
-                return [self._decision.out(item)]
             case ParamItem(sysid, name):
                 return [self._vehicle(sysid).param.out(item, latch=name)]
             case _:
