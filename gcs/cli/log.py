@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli.log_export import export_log
+from gcs.cli.log_import import import_log
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -240,3 +242,7 @@ def _progress(file: Path, label: str) -> Iterator[Callable[[Condition], None] | 
         return
     with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
         yield lambda condition: bar.update(condition.position - bar.pos)
+
+
+log.add_command(import_log)
+log.add_command(export_log)

@@ -50,14 +50,15 @@ def crc_of_rows(rows: Bytes, crc_extra: Bytes) -> Words:
 @cache
 def _step_table() -> Words:
     """What one byte makes of a register of 0 (polynomial 0x1021, reflected: 0x8408)."""
-    table = np.arange(256, dtype=np.uint16)
+    table: Words = np.arange(256, dtype=np.uint16)
     for _ in range(8):
-        table = (table >> 1) ^ np.where(table & 1, 0x8408, 0).astype(np.uint16)
+        table = ((table >> 1) ^ np.where(table & 1, 0x8408, 0)).astype(np.uint16)
     return table
 
 
 def _push_zero(register: Words) -> Words:
-    return (register >> 8) ^ _step_table()[register & 0xFF]
+    pushed: Words = (register >> 8) ^ _step_table()[register & 0xFF]
+    return pushed
 
 
 @cache

@@ -55,6 +55,15 @@ class Frames:
         """Those that a mask or an index array names."""
         return Frames(*(getattr(self, each.name)[which] for each in fields(self)))
 
+    def and_also(self, others: Frames) -> Frames:
+        """These, then the others."""
+        return Frames(
+            *(
+                np.concatenate((getattr(self, each.name), getattr(others, each.name)))
+                for each in fields(self)
+            )
+        )
+
     @property
     def end(self) -> Index:
         return self.start + self.size
@@ -104,9 +113,7 @@ def candidates(data: Bytes, size: int) -> Frames:
     two = _version_2(data, start[magic == MAGIC_V2], size)
     if not len(one) or not len(two):
         return two if len(two) else one
-    both = Frames(
-        *(np.concatenate((getattr(one, f.name), getattr(two, f.name))) for f in fields(Frames))
-    )
+    both = one.and_also(two)
     return both.pick(np.argsort(both.start, kind="stable"))
 
 

@@ -125,7 +125,7 @@ def _pieces(path: Path, window_bytes: int) -> Iterator[_Piece]:
         last = False
         while not last:
             at = STAMP_BYTES + kept
-            view = memoryview(data)[at : at + window_bytes]
+            view = data.data[at : at + window_bytes]
             count = file.readinto(view)
             read_bytes += count
             size = at + count
@@ -194,12 +194,15 @@ def _fill_gaps(data: Bytes, frames: Frames, begin: int, end: int) -> tuple[Frame
         return frames, stamped, gaps
     added = np.array(more, np.int64)
     order = np.argsort(np.concatenate((frames.start, added[:, 0])), kind="stable")
-    columns = (frames.start, frames.size, frames.header, frames.length, frames.msgid, stamped)
-    whole = [
-        np.concatenate((column, added[:, number].astype(column.dtype)))[order]
-        for number, column in enumerate(columns)
-    ]
-    return Frames(*whole[:-1]), whole[-1], gaps
+    extra = Frames(
+        added[:, 0],
+        added[:, 1].astype(np.int32),
+        added[:, 2].astype(np.int32),
+        added[:, 3].astype(np.int32),
+        added[:, 4].astype(np.int32),
+    )
+    with_stamp = np.concatenate((stamped, added[:, 5] != 0))[order]
+    return frames.and_also(extra).pick(order), with_stamp, gaps
 
 
 def _search(data: Bytes, begin: int, end: int) -> Iterator[Gap | _Found]:

@@ -1,4 +1,4 @@
-"""How a message lies in memory: a MAVLink payload is a packed little-endian struct, as numpy has."""
+"""How a message lies in memory: a MAVLink payload is a packed little-endian struct, as here."""
 
 from __future__ import annotations
 
