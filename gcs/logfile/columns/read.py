@@ -9,7 +9,7 @@ import numpy as np
 from mcap.records import Channel
 
 from gcs.logfile import tlog
-from gcs.logfile.checksums import rows_at
+from gcs.logfile.checksums import Index, rows_at
 from gcs.logfile.chunks import MESSAGE_BYTES, MESSAGE_HEAD, Chunk, ChunkFile
 from gcs.logfile.columns.layout import Records, fill_payload, record_type, records
 from gcs.record.reading import MAGIC
@@ -75,7 +75,7 @@ def from_mcap(path: Path, definition: MessageDef) -> Iterator[Records]:
 
     for chunk in file.chunks(has_it):
         parts = [
-            _records_of(definition, file.channels[number], chunk, offsets)
+            frames_as_records(definition, file.channels[number], chunk, offsets)
             for number, offsets in chunk.offsets.items()
             if number in file.channels and has_it(file.channels[number])
         ]
@@ -92,9 +92,10 @@ def is_frames_of(channel: Channel, definition: MessageDef) -> bool:
     return len(parts) == 5 and parts[:2] == ["", "mavlink"] and parts[4] == definition.name
 
 
-def _records_of(
-    definition: MessageDef, channel: Channel, chunk: Chunk, offsets: np.ndarray
+def frames_as_records(
+    definition: MessageDef, channel: Channel, chunk: Chunk, offsets: Index
 ) -> Records:
+    """The recorded frames of one channel in a chunk."""
     recorded = _payload_bytes(channel, definition)
     kind = np.dtype(
         [*MESSAGE_HEAD.descr, *_FRAME, *([("payload", f"V{recorded}")] if recorded else [])]

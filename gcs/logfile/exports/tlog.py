@@ -19,7 +19,7 @@ from gcs.logfile.batch_writer import Sink
 from gcs.logfile.checksums import Bytes, Index, rows_at
 from gcs.logfile.chunks import MESSAGE_BYTES, MESSAGE_HEAD, Chunk, ChunkFile, heads_of
 from gcs.logfile.errors import BadLogError
-from gcs.logfile.imports.tlog import METADATA
+from gcs.logfile.imports.result import METADATA
 from gcs.logfile.tlog import STAMP_BYTES
 from gcs.record import ros1
 from gcs.report import Direction

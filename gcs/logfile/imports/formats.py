@@ -1,4 +1,4 @@
-"""Which kind of log a file is, by its first bytes, and what reads it."""
+"""What makes a record of which kind of log."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import TypeAlias
 
 from gcs.logfile.batch_writer import BatchWriter
 from gcs.logfile.errors import BadLogError
+from gcs.logfile.formats import Format, format_of
 from gcs.logfile.imports.result import Imported
 from gcs.logfile.imports.tlog import import_tlog
-from gcs.record.reading import MAGIC as MCAP_MAGIC
 
 Progress: TypeAlias = Callable[[int], None] | None
 Import: TypeAlias = Callable[[Path, BatchWriter, Progress], Imported]
@@ -18,10 +18,16 @@ Import: TypeAlias = Callable[[Path, BatchWriter, Progress], Imported]
 
 def importer_of(source: Path) -> Import:
     """Raises BadLogError where nothing here reads such a file, and OSError."""
-    with open(source, "rb") as file:
-        head = file.read(16)
-    if not head:
-        raise BadLogError(source, "the file is empty")
-    if head.startswith(MCAP_MAGIC):
-        raise BadLogError(source, "an MCAP file", "it can be opened as it is: gcs log info")
-    return import_tlog
+    match format_of(source):
+        case Format.TLOG:
+            return import_tlog
+        case Format.MCAP:
+            raise BadLogError(source, "an MCAP file", "it can be opened as it is: gcs log info")
+        case Format.DATAFLASH:
+            from gcs.logfile.imports.dataflash import import_dataflash
+
+            return import_dataflash
+        case Format.ULOG:
+            from gcs.logfile.imports.ulog import import_ulog
+
+            return import_ulog

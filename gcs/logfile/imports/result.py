@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+METADATA = "import"
+"""Name of the metadata that says from what a record was made."""
+
 
 @dataclass(slots=True)
 class Imported:

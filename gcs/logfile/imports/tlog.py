@@ -15,7 +15,7 @@ import numpy as np
 from gcs.logfile.batch_writer import BatchWriter, Loose, Rows, Times
 from gcs.logfile.frames import Mask, Small
 from gcs.logfile.imports.frame_rows import FrameRows
-from gcs.logfile.imports.result import Imported
+from gcs.logfile.imports.result import METADATA, Imported
 from gcs.logfile.imports.telemetry import Telemetry
 from gcs.logfile.imports.times import LAST_US, log_times
 from gcs.logfile.tlog import STAMP_BYTES, Gap, Window, read_windows
@@ -24,8 +24,6 @@ from gcs.record.derived import Derived
 from gcs.wire.dialect import MESSAGES
 from gcs.wire.frame import why_not
 
-METADATA = "import"
-"""Name of the metadata that says from what a record was made."""
 TICK_NS = 500_000_000
 """How often the derived topics are asked for what is due by the clock."""
 

@@ -1,0 +1,250 @@
+"""A PX4 flight log (.ulg) into a record; pyulog, PX4's own reader, reads it.
+
+Every topic and instance is a topic `/ulog/<name>_<instance>`, with the log's own fields (`q[0]` is
+`q_0`, as ROS 1 has no such names).  Texts, parameters and drop-outs are topics too, what the log
+says about itself is metadata.  Times are UTC where the log has a GPS time, else since the autopilot
+started.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable, Iterator
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gcs.gate.states import LandedState
+from gcs.logfile.batch_writer import BatchWriter
+from gcs.logfile.columns.layout import Records
+from gcs.logfile.errors import BadLogError
+from gcs.logfile.imports.flight import Told, import_flight
+from gcs.logfile.imports.result import Imported
+from gcs.logfile.imports.vehicle import ReportedVehicle
+from gcs.logfile.packed import TIME_FIELD
+from gcs.protocol.autopilot import PX4
+from gcs.report import LogEvent, ParamItem
+from gcs.wire.ids import ModeFlag
+
+TEXTS, PARAMETERS, DROPOUTS = "logged_messages", "parameters", "dropouts"
+_LAST_US = 2**63 // 1000 - 1
+"""Nanoseconds since 1970 in 63 bits end here."""
+_ARMED = 2
+"""vehicle_status.arming_state (PX4's vehicle_status.msg)."""
+_CUSTOM_MODES = {
+    0: (1, 0),
+    1: (2, 0),
+    2: (3, 0),
+    3: (4, 4),
+    4: (4, 3),
+    5: (4, 5),
+    10: (5, 0),
+    13: (10, 0),
+    14: (6, 0),
+    15: (7, 0),
+    17: (4, 2),
+    18: (4, 6),
+    19: (4, 8),
+    20: (4, 9),
+    21: (3, 1),
+}
+"""vehicle_status.nav_state -> main and sub mode of px4_custom_mode.h (from memory of PX4 1.14)."""
+_LEVELS = {7: 1, 6: 2, 5: 2, 4: 3, 3: 4, 2: 4, 1: 4, 0: 5}
+"""syslog level -> LogEvent.level."""
+
+
+@dataclass(slots=True)
+class Ulog:
+    """A log as tables, one for each topic and instance."""
+
+    tables: dict[str, Records]
+    info: dict[str, str]
+
+
+def import_ulog(
+    source: Path, writer: BatchWriter, progress: Callable[[int], None] | None = None
+) -> Imported:
+    """Raises BadLogError and OSError."""
+    log = read_ulog(source)
+    told = _told(log.tables)
+    writer.metadata("ulog", log.info)
+    result = import_flight(".ulg", "/ulog", source, writer, log.tables, told, [])
+    if progress is not None:
+        progress(source.stat().st_size)
+    return result
+
+
+def read_ulog(source: Path) -> Ulog:
+    """The whole log in memory.  Raises BadLogError and OSError."""
+    log = _load(source)
+    base_us = _utc_of_start_us(log)
+    tables = {f"{each.name}_{each.multi_id}": _table(each.data, base_us) for each in log.data_list}
+    tables |= _rest(log, base_us)
+    tables = {name: table for name, table in tables.items() if len(table)}
+    if not tables:
+        raise BadLogError(source, "there are no messages in it")
+    info = {str(name): str(value) for name, value in log.msg_info_dict.items()}
+    if log.file_corruption:
+        info["file_corruption"] = "parts of the log are damaged and could not be read"
+    return Ulog(tables, info)
+
+
+def _load(source: Path) -> Any:
+    """What pyulog, which is untyped, makes of it: `Any` ends in this module."""
+    try:
+        import pyulog
+    except ModuleNotFoundError as error:
+        hint = "pip install 'mavgate[logs]'"
+        raise BadLogError(source, "reading a .ulg needs the package pyulog", hint) from error
+    try:
+        with (
+            open(source, "rb") as file,
+            redirect_stdout(io.StringIO()),
+            redirect_stderr(io.StringIO()),
+        ):
+            return pyulog.ULog(file)
+    except OSError:
+        raise
+    except Exception as error:
+        raise BadLogError(source, f"pyulog cannot read it: {error!r}") from error
+
+
+def _utc_of_start_us(log: Any) -> int:
+    """What is to be added to its time stamps; 0 where no GPS told the time."""
+    for each in log.data_list:
+        if each.name in ("vehicle_gps_position", "sensor_gps") and "time_utc_usec" in each.data:
+            known = np.flatnonzero(each.data["time_utc_usec"])
+            if len(known):
+                first = known[0]
+                utc_us, since_us = each.data["time_utc_usec"][first], each.data["timestamp"][first]
+                return min(max(0, int(utc_us) - int(since_us)), _LAST_US // 2)
+    return 0
+
+
+def _table(data: dict[str, Any], base_us: int) -> Records:
+    names = _names(list(data))
+    fields = [(names[name], column.dtype) for name, column in data.items()]
+    table = np.zeros(len(data["timestamp"]), [(TIME_FIELD, "<i8"), *fields])
+    table[TIME_FIELD] = _ns(data["timestamp"], base_us)
+    for name, column in data.items():
+        table[names[name]] = column
+    return table
+
+
+def _names(given: list[str]) -> dict[str, str]:
+    """Names of fields as ROS 1 allows them, all different."""
+    taken: dict[str, str] = {}
+    for name in given:
+        plain = re.sub(r"\W+", "_", name).strip("_") or "field"
+        while plain in taken.values() or plain == TIME_FIELD:
+            plain += "_"
+        taken[name] = plain
+    return taken
+
+
+def _ns(since_us: Any, base_us: int) -> Any:
+    limit = np.uint64(_LAST_US - base_us)
+    return (np.minimum(np.asarray(since_us, np.uint64), limit).astype(np.int64) + base_us) * 1000
+
+
+def _rest(log: Any, base_us: int) -> dict[str, Records]:
+    """Texts, parameters and drop-outs as tables."""
+    texts = [(m.timestamp, m.log_level - ord("0"), m.message.encode()) for m in log.logged_messages]
+    for tagged in log.logged_messages_tagged.values():
+        texts += [(m.timestamp, m.log_level - ord("0"), m.message.encode()) for m in tagged]
+    start = log.start_timestamp
+    values = [(start, name.encode(), value) for name, value in log.initial_parameters.items()]
+    values += [(at, name.encode(), value) for at, name, value in log.changed_parameters]
+    # In a damaged log one may be bytes.
+    values = [row for row in values if isinstance(row[2], int | float)]
+    gaps = [(each.timestamp, each.duration) for each in log.dropouts]
+    return {
+        TEXTS: _made(texts, [("level", "u1"), ("text", _text_type(texts, 2))], base_us),
+        PARAMETERS: _made(values, [("name", _text_type(values, 1)), ("value", "<f8")], base_us),
+        DROPOUTS: _made(gaps, [("duration_ms", "<u4")], base_us),
+    }
+
+
+def _text_type(rows: list[Any], column: int) -> str:
+    return f"S{max((len(row[column]) for row in rows), default=1) or 1}"
+
+
+def _made(rows: list[Any], fields: list[tuple[str, str]], base_us: int) -> Records:
+    table = np.zeros(len(rows), [(TIME_FIELD, "<i8"), *fields])
+    table[TIME_FIELD] = _ns([row[0] for row in rows], base_us)
+    for number, (name, _) in enumerate(fields, 1):
+        table[name] = [row[number] for row in rows]
+    return table
+
+
+# ------------------------------------------------------------------------------ the flight
+
+
+def _told(tables: dict[str, Records]) -> list[Told]:
+    """What PX4's topics tell of the vehicle (fields: PX4's msg folder, 1.14 and before)."""
+    vehicle = ReportedVehicle(_system_id(tables))
+
+    def local(row: Any, now_ns: int) -> Iterator[Any]:
+        return vehicle.local_position(tuple(row[:3]), tuple(row[3:]), now_ns)
+
+    def fixed(row: Any, now_ns: int) -> Iterator[Any]:
+        # This topic has no height above home.
+        return vehicle.global_position((*row, 0.0), (0.0, 0.0, 0.0), now_ns)
+
+    def attitude(row: Any, now_ns: int) -> Iterator[Any]:
+        if all(map(isfinite, row)):
+            vehicle.q_ned_from_frd = row
+        return iter(())
+
+    def status(row: Any, now_ns: int) -> Iterator[Any]:
+        main, sub = _CUSTOM_MODES.get(row[1], (0, 0))
+        armed = ModeFlag.SAFETY_ARMED if row[0] == _ARMED else 0
+        vehicle.heartbeat(PX4, ModeFlag.CUSTOM_MODE_ENABLED | armed, main << 16 | sub << 24)
+        return iter(())
+
+    def landed(row: Any, now_ns: int) -> Iterator[Any]:
+        vehicle.landed = LandedState.ON_GROUND if row[0] else LandedState.IN_AIR
+        return iter(())
+
+    def battery(row: Any, now_ns: int) -> Iterator[Any]:
+        vehicle.battery(row[0], 100.0 * row[1])
+        return iter(())
+
+    def text(row: Any, now_ns: int) -> Iterator[Any]:
+        said = row[1].decode("utf-8", "replace")
+        yield LogEvent(now_ns, _LEVELS.get(row[0], 2), "vehicle", said)
+
+    def parameter(row: Any, now_ns: int) -> Iterator[Any]:
+        yield ParamItem(vehicle.sysid, row[0].decode("utf-8", "replace"), row[1])
+
+    q = ("q_0", "q_1", "q_2", "q_3")
+    return [
+        Told(vehicle, PARAMETERS, ("name", "value"), parameter),
+        Told(vehicle, TEXTS, ("level", "text"), text),
+        Told(vehicle, "vehicle_status_0", ("arming_state", "nav_state"), status),
+        Told(vehicle, "vehicle_land_detected_0", ("landed",), landed),
+        Told(vehicle, "battery_status_0", ("voltage_v", "remaining"), battery),
+        Told(vehicle, "vehicle_attitude_0", q, attitude, often=True),
+        Told(
+            vehicle,
+            "vehicle_local_position_0",
+            ("x", "y", "z", "vx", "vy", "vz"),
+            local,
+            often=True,
+        ),
+        Told(vehicle, "vehicle_global_position_0", ("lat", "lon", "alt"), fixed, often=True),
+    ]
+
+
+def _system_id(tables: dict[str, Records]) -> int:
+    rows = tables.get(PARAMETERS)
+    if rows is not None:
+        for value in rows["value"][rows["name"] == b"MAV_SYS_ID"].tolist():
+            if 0 < value < 256:
+                return int(value)
+    return 1
