@@ -40,7 +40,7 @@ MESSAGE_HEAD = np.dtype(
 """A Message record up to its data."""
 MESSAGE_BYTES = MESSAGE_HEAD.itemsize - RECORD.size
 """What a Message record without data says as its length."""
-MAX_CHUNK_BYTES = 256 << 20
+MAX_CHUNK_BYTES = 128 << 20
 """A chunk that says that it is larger is damaged."""
 
 _CHUNK = struct.Struct("<QQQII")

@@ -34,6 +34,9 @@ PADDING = MAX_FRAME
 """Bytes that a buffer must have behind its end, so that whole rows can be read near it."""
 
 
+_CACHED_BYTES = 1 << 18
+
+
 @dataclass(frozen=True, slots=True)
 class Frames:
     """Frames in a buffer, one an element of each array, in order of their start."""
@@ -106,8 +109,7 @@ def candidates(data: Bytes, size: int) -> Frames:
     `data` must have `PADDING` bytes more than `size`.
     """
     assert len(data) >= size + PADDING
-    # 0xFC to 0xFF first: one pass over all bytes instead of three.
-    start = np.flatnonzero((data[:size] | 3) == 0xFF)
+    start = _magic_places(data[:size])
     magic = data[start]
     one = _version_1(data, start[magic == MAGIC_V1], size)
     two = _version_2(data, start[magic == MAGIC_V2], size)
@@ -115,6 +117,15 @@ def candidates(data: Bytes, size: int) -> Frames:
         return two if len(two) else one
     both = one.and_also(two)
     return both.pick(np.argsort(both.start, kind="stable"))
+
+
+def _magic_places(data: Bytes) -> Index:
+    """Where a byte is 0xFD or 0xFE, in pieces that fit into the processor's cache."""
+    places = [np.zeros(0, np.int64)]
+    for first in range(0, len(data), _CACHED_BYTES):
+        piece = data[first : first + _CACHED_BYTES] - np.uint8(MAGIC_V2)
+        places.append(np.flatnonzero(piece <= MAGIC_V1 - MAGIC_V2) + first)
+    return np.concatenate(places)
 
 
 def _version_1(data: Bytes, start: Index, size: int) -> Frames:

@@ -31,12 +31,12 @@ _READ: Mapping[str, tuple[str, ...]] = {
 """Messages that tell something of a vehicle, and their fields that do."""
 _IDS = {MESSAGES_BY_NAME[name].msgid: name for name in _READ}
 _PERIOD_NS: Mapping[str, int] = {
-    "ATTITUDE": 40_000_000,
-    "LOCAL_POSITION_NED": 40_000_000,
-    "GLOBAL_POSITION_INT": 100_000_000,
+    "ATTITUDE": 80_000_000,
+    "LOCAL_POSITION_NED": 80_000_000,
+    "GLOBAL_POSITION_INT": 160_000_000,
 }
-"""Derived topics have at most 25 Hz, those of global positions 5 Hz.  Of what comes more often, one
-a period is looked at."""
+"""Of what comes more often, one a period is looked at for the derived topics: viewers interpolate
+between transforms, and every message is on its own topic anyway."""
 
 
 class Reported(NamedTuple):
@@ -156,13 +156,6 @@ def _not_too_often(rows: Records, period_ns: int) -> Index:
 def _items(vehicle: ReportedVehicle, name: str, m: list[Any], now_ns: int) -> Iterator[RecordItem]:
     """`m`: the fields of `_READ`."""
     match name:
-        case "HEARTBEAT":
-            vehicle.heartbeat(autopilot_of(m[0], m[1]), m[2], m[3])
-        case "EXTENDED_SYS_STATE":
-            vehicle.landed_state(m[0])
-        case "SYS_STATUS":
-            volts = None if m[0] in (0, 0xFFFF) else m[0] / 1e3
-            vehicle.battery(volts, None if m[1] < 0 else float(m[1]))
         case "ATTITUDE":
             vehicle.attitude(*m)
         case "LOCAL_POSITION_NED":
@@ -170,6 +163,13 @@ def _items(vehicle: ReportedVehicle, name: str, m: list[Any], now_ns: int) -> It
         case "GLOBAL_POSITION_INT":
             fix = (m[0] / 1e7, m[1] / 1e7, m[2] / 1e3, m[3] / 1e3)
             yield from vehicle.global_position(fix, (m[4] / 1e2, m[5] / 1e2, m[6] / 1e2), now_ns)
+        case "HEARTBEAT":
+            vehicle.heartbeat(autopilot_of(m[0], m[1]), m[2], m[3])
+        case "EXTENDED_SYS_STATE":
+            vehicle.landed_state(m[0])
+        case "SYS_STATUS":
+            volts = None if m[0] in (0, 0xFFFF) else m[0] / 1e3
+            vehicle.battery(volts, None if m[1] < 0 else float(m[1]))
         case "GPS_GLOBAL_ORIGIN":
             vehicle.origin(m[0] / 1e7, m[1] / 1e7, m[2] / 1e3)
         case "PARAM_VALUE":
