@@ -26,7 +26,9 @@ from gcs.logfile.imports.flight import import_flight
 from gcs.logfile.imports.result import Imported
 from gcs.logfile.packed import TIME_FIELD
 
+_HEAD = b"\xa3\x95"
 _HEAD_BYTES = 3
+_FMT, _FMT_BYTES = 0x80, 89
 _CODES: dict[str, Any] = {
     "a": ("<i2", 32),
     "b": "i1",
@@ -78,6 +80,7 @@ def import_dataflash(
 
 def read_dataflash(source: Path) -> Dataflash:
     """The whole log in memory.  Raises BadLogError and OSError."""
+    _refuse_endless(source)
     reader = _opened(source)
     reader.close()  # what it found stays in it
     data = np.fromfile(source, np.uint8)
@@ -94,6 +97,24 @@ def read_dataflash(source: Path) -> Dataflash:
         raise BadLogError(source, "there are no messages in it")
     lengths = np.array([reader.formats[kind].len for kind in kinds.tolist()], np.int64)
     return Dataflash(tables, _garbage(data, places, places + lengths, times_ns))
+
+
+def _refuse_endless(source: Path) -> None:
+    """Raises BadLogError where a message says that it is shorter than its own header.
+
+    DFReader goes on by that length, and so would stay where it is for ever.
+    """
+    data = source.read_bytes()
+    lengths = {_FMT: _FMT_BYTES}
+    at = 0
+    while (at := data.find(_HEAD, at)) >= 0 and at + _HEAD_BYTES <= len(data):
+        kind = data[at + 2]
+        if kind == _FMT and at + _HEAD_BYTES + 2 <= len(data):
+            about, length = data[at + 3], data[at + 4]
+            if length < _HEAD_BYTES:
+                raise BadLogError(source, f"byte {at}: messages of type {about} have no length")
+            lengths[about] = length
+        at += lengths.get(kind, 1)
 
 
 def _opened(source: Path) -> Any:

@@ -27,6 +27,13 @@ from gcs.logfile.imports.ulog_vehicle import PARAMETERS, TEXTS, told
 from gcs.logfile.packed import TIME_FIELD
 
 DROPOUTS = "dropouts"
+_HEADER_BYTES = 16
+_DEFINITIONS = "BFIMPQ"
+"""Types of messages that stand before the data (PX4 User Guide, ULog File Format)."""
+_FIELD_TYPE = re.compile(r"(\w+)(?:\[(\d{1,18})\])? \w+;")
+_TOO_LARGE = 1 << 16
+"""A message has 16 bits for its length."""
+_ROUNDS = 40
 _LAST_US = 2**63 // 1000 - 1
 """Nanoseconds since 1970 in 63 bits end here."""
 
@@ -73,6 +80,7 @@ def _load(source: Path) -> Any:
     except ModuleNotFoundError as error:
         hint = "pip install 'mavgate[logs]'"
         raise BadLogError(source, "reading a .ulg needs the package pyulog", hint) from error
+    _refuse_too_large(source)
     try:
         with (
             open(source, "rb") as file,
@@ -84,6 +92,33 @@ def _load(source: Path) -> Any:
         raise
     except Exception as error:
         raise BadLogError(source, f"pyulog cannot read it: {error!r}") from error
+
+
+def _refuse_too_large(source: Path) -> None:
+    """Raises BadLogError where a format says that its message is longer than one can be.
+
+    pyulog makes an entry of each element of each array of it, however many there are said to be.
+    """
+    fields: dict[str, list[tuple[str, int]]] = {}
+    with open(source, "rb") as file:
+        file.seek(_HEADER_BYTES)
+        while len(head := file.read(3)) == 3 and chr(head[2]) in _DEFINITIONS:
+            body = file.read(int.from_bytes(head[:2], "little"))
+            if chr(head[2]) == "F":
+                name, _, text = body.decode("utf-8", "replace").partition(":")
+                fields[name] = [
+                    (kind, int(count or 1)) for kind, count in _FIELD_TYPE.findall(text)
+                ]
+    sizes: dict[str, int] = {}
+    # A round for each level of nesting; what is nested in itself doubles until it is too large.
+    for _ in range(len(fields) + _ROUNDS):
+        sizes = {
+            name: min(_TOO_LARGE, sum(sizes.get(kind, 1) * count for kind, count in each))
+            for name, each in fields.items()
+        }
+        if max(sizes.values(), default=0) >= _TOO_LARGE:
+            name = max(sizes, key=sizes.__getitem__)
+            raise BadLogError(source, f"the format of {name} is longer than a message can be")
 
 
 def _utc_of_start_us(log: Any) -> int:

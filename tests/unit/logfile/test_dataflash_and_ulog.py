@@ -173,6 +173,37 @@ def test_without_pyulog_the_command_that_installs_it_is_told(
     assert "pip install 'mavgate[logs]'" in ended.output
 
 
+def test_a_dataflash_message_without_a_length_is_refused(tmp_path: Path, bin_file: Path) -> None:
+    """DFReader would read it for ever."""
+    raw = bytearray(bin_file.read_bytes())
+    with DFReader_binary(str(bin_file)) as reader:
+        second = reader.offsets[0x80][1]
+    raw[second + 4] = 0
+    bin_file.write_bytes(raw)
+    ended = run_gcs("log", "import", bin_file, "-o", tmp_path / "a.mcap")
+    assert ended.exit_code == 4
+    assert "have no length" in ended.output
+
+
+@pytest.mark.parametrize(
+    "formats",
+    [
+        [b"big:uint64_t timestamp;float[4000000000] x;"],
+        [b"a:b[60000] x;", b"b:uint8_t[60000] y;"],
+        [b"a:b x;", b"b:a[2] y;"],
+    ],
+)
+def test_a_ulog_format_that_would_fill_the_memory_is_refused(
+    tmp_path: Path, formats: list[bytes]
+) -> None:
+    raw = b"ULog\x01\x12\x35\x01" + bytes(8)
+    raw += b"".join(len(each).to_bytes(2, "little") + b"F" + each for each in formats)
+    (tmp_path / "a.ulg").write_bytes(raw)
+    ended = run_gcs("log", "import", tmp_path / "a.ulg", "-o", tmp_path / "a.mcap")
+    assert ended.exit_code == 4
+    assert "longer than a message can be" in ended.output
+
+
 @settings(max_examples=60)
 @given(st.data(), st.sampled_from(["ardupilot", "px4"]))
 def test_a_damaged_log_is_read_as_far_as_it_goes_or_refused(
