@@ -67,7 +67,8 @@ def tracks_of(path: Path, progress: Callable[[int], None] | None = None) -> list
         if source is None:
             continue
         for sysid, rows in _by_vehicle(table.rows):
-            found.setdefault((sysid, rank), []).append(_points(rows, source))
+            points = _not_too_often(_points(rows, source))
+            found.setdefault((sysid, rank), []).append(points)
     tracks = []
     for sysid in sorted({sysid for sysid, _ in found}):
         for rank in sorted(rank for who, rank in found if who == sysid):
@@ -97,20 +98,24 @@ def _by_vehicle(rows: Records) -> list[tuple[int, Records]]:
 
 
 def _points(rows: Records, source: _Source) -> NDArray[Any]:
+    """Those that are a fix."""
     points = np.zeros(len(rows), [("t", "<i8"), ("lat", "f8"), ("lon", "f8"), ("alt", "f8")])
     points["t"] = rows["time_ns"]
     points["lat"] = rows[source.lat] * source.degrees
     points["lon"] = rows[source.lon] * source.degrees
     points["alt"] = rows[source.alt] * source.metres
-    return points
-
-
-def _track(name: str, points: NDArray[Any]) -> Track:
-    """In order of time, without what is no fix, and not more often than `PERIOD_NS`."""
-    points = points[np.argsort(points["t"], kind="stable")]
     good = np.isfinite(points["lat"]) & np.isfinite(points["lon"]) & np.isfinite(points["alt"])
     good &= (abs(points["lat"]) <= 90) & (abs(points["lon"]) <= 180)
     good &= (points["lat"] != 0) | (points["lon"] != 0)
-    points = points[good]
-    points = points[np.diff(points["t"] // PERIOD_NS, prepend=-1) != 0]
+    return points[good]
+
+
+def _not_too_often(points: NDArray[Any]) -> NDArray[Any]:
+    """The first in each period.  Of a large log this is done part by part, to bound memory."""
+    return points[np.diff(points["t"] // PERIOD_NS, prepend=-1) != 0]
+
+
+def _track(name: str, points: NDArray[Any]) -> Track:
+    """In order of time, and not more often than `PERIOD_NS`."""
+    points = _not_too_often(points[np.argsort(points["t"], kind="stable")])
     return Track(name, points["t"], points["lat"], points["lon"], points["alt"])
