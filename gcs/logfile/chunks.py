@@ -50,7 +50,8 @@ _LENGTH = struct.Struct("<Q")
 _CHANNEL_ID = struct.Struct("<H")
 _FOOTER_BYTES = RECORD.size + 20
 _ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
-_INDEX_PLACE = np.dtype([("channel", "<u2"), ("offset", "<u8")])
+_INDEX_PLACE = struct.Struct("<HQ")
+"""Channel, and the place of its index in the file."""
 
 Wanted: TypeAlias = Callable[[Channel], bool]
 
@@ -129,12 +130,12 @@ class ChunkFile:
         try:
             _, _, start, chunk_bytes, list_bytes = _CHUNK_INDEX.unpack_from(body)
             at = _CHUNK_INDEX.size
-            listed = np.frombuffer(body, _INDEX_PLACE, list_bytes // _INDEX_PLACE.itemsize, at)
+            indexes = tuple(_INDEX_PLACE.iter_unpack(body[at : at + list_bytes]))
             (index_bytes,) = _LENGTH.unpack_from(body, at + list_bytes)
-        except (struct.error, ValueError):
+        except struct.error:
             self.damaged += 1
             return
-        self._places.append(_Place(start, chunk_bytes, index_bytes, tuple(listed.tolist())))
+        self._places.append(_Place(start, chunk_bytes, index_bytes, indexes))
 
     def _metadata(self, file: BinaryIO, body: bytes) -> None:
         try:

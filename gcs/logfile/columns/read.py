@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import numpy as np
+from mcap.opcode import Opcode
 from mcap.records import Channel
 
 from gcs.logfile import tlog
-from gcs.logfile.checksums import Index, rows_at
+from gcs.logfile.checksums import Bytes, Index, rows_at
 from gcs.logfile.chunks import MESSAGE_BYTES, MESSAGE_HEAD, Chunk, ChunkFile
 from gcs.logfile.columns.layout import Records, fill_payload, record_type, records
 from gcs.record.reading import MAGIC
@@ -29,7 +31,6 @@ _FRAME = [
 ]
 """`mavlink/Frame`, with which every recorded frame begins (`gcs/record/ros1.py`)."""
 _TAIL_LENGTH_BYTES = 4
-_NO_OFFSET = np.int64(2**62)
 
 
 def columns(
@@ -50,8 +51,12 @@ def columns(
     path = Path(path)
     with open(path, "rb") as file:
         is_mcap = file.read(len(MAGIC)) == MAGIC
-    parts = list((from_mcap if is_mcap else from_tlog)(path, definition))
-    found = np.concatenate(parts) if parts else np.zeros(0, record_type(definition))
+    parts = [*(_from_mcap if is_mcap else _from_tlog)(path, definition)]
+    # Of bytes: numpy compares the fields of records before it puts them together.
+    every = np.concatenate([np.zeros(0, np.uint8), *(part.view(np.uint8) for part in parts)])
+    found = every.view(record_type(definition))
+    if is_mcap and len(parts) > 1:
+        found = found[np.argsort(found["time_ns"], kind="stable")]
     if sysid is not None:
         found = found[found["sysid"] == sysid]
     if compid is not None:
@@ -59,31 +64,25 @@ def columns(
     return found
 
 
-def from_tlog(path: Path, definition: MessageDef) -> Iterator[Records]:
+def _from_tlog(path: Path, definition: MessageDef) -> Iterator[Records]:
     """An array for each window of the file that has such messages."""
     for data, frames, time_us in tlog.read_message(path, definition.msgid):
         if len(frames):
             yield records(definition, data, frames, time_us)
 
 
-def from_mcap(path: Path, definition: MessageDef) -> Iterator[Records]:
-    """An array for each chunk that has such messages, in order of log time within it."""
+def _from_mcap(path: Path, definition: MessageDef) -> Iterator[Records]:
+    """An array for each channel that has such messages."""
     file = ChunkFile(path)
-
-    def has_it(channel: Channel) -> bool:
-        return is_frames_of(channel, definition)
-
-    for chunk in file.chunks(has_it):
-        parts = [
-            frames_as_records(definition, file.channels[number], chunk, offsets)
-            for number, offsets in chunk.offsets.items()
-            if number in file.channels and has_it(file.channels[number])
-        ]
-        if len(parts) == 1:
-            yield parts[0]
-        elif parts:
-            both = np.concatenate(parts)
-            yield both[np.argsort(both["time_ns"], kind="stable")]
+    found: dict[int, list[Bytes]] = {}
+    for chunk in file.chunks(lambda channel: is_frames_of(channel, definition)):
+        for number, offsets in chunk.offsets.items():
+            channel = file.channels.get(number)
+            if channel is not None and is_frames_of(channel, definition):
+                rows = _rows(chunk, offsets, _recorded_type(channel, definition))
+                found.setdefault(number, []).append(rows)
+    for number, parts in found.items():
+        yield _records_of(definition, file.channels[number], np.concatenate(parts))
 
 
 def is_frames_of(channel: Channel, definition: MessageDef) -> bool:
@@ -96,23 +95,38 @@ def frames_as_records(
     definition: MessageDef, channel: Channel, chunk: Chunk, offsets: Index
 ) -> Records:
     """The recorded frames of one channel in a chunk."""
-    recorded = _payload_bytes(channel, definition)
-    kind = np.dtype(
-        [*MESSAGE_HEAD.descr, *_FRAME, *([("payload", f"V{recorded}")] if recorded else [])]
-    )
+    rows = _rows(chunk, offsets, _recorded_type(channel, definition))
+    return _records_of(definition, channel, rows)
+
+
+def _recorded_type(channel: Channel, definition: MessageDef) -> np.dtype[np.void]:
+    return _type_with_payload(_payload_bytes(channel, definition))
+
+
+@cache
+def _type_with_payload(recorded: int) -> np.dtype[np.void]:
+    """A Message record up to the end of the payload, which is `recorded` bytes long."""
+    payload = [("payload", f"V{recorded}")] if recorded else []
+    return np.dtype([*MESSAGE_HEAD.descr, *_FRAME, *payload])
+
+
+def _rows(chunk: Chunk, offsets: Index, kind: np.dtype[np.void]) -> Bytes:
     inside = (offsets >= 0) & (offsets <= len(chunk.data) - kind.itemsize)
-    offsets = offsets[inside]
-    rows = rows_at(chunk.data, offsets, kind.itemsize).view(kind).ravel()
+    return rows_at(chunk.data, offsets if inside.all() else offsets[inside], kind.itemsize)
+
+
+def _records_of(definition: MessageDef, channel: Channel, raw: Bytes) -> Records:
+    kind = _recorded_type(channel, definition)
+    recorded = kind["payload"].itemsize if "payload" in (kind.names or ()) else 0
+    rows = raw.view(kind).ravel()
     least = MESSAGE_BYTES + FRAME_BYTES + recorded + _TAIL_LENGTH_BYTES
-    whole = (rows["opcode"] == 5) & (rows["length"] >= least)
+    whole = (rows["opcode"] == Opcode.MESSAGE) & (rows["length"] >= least)
     if not whole.all():
-        rows = rows[whole]
+        rows, raw = rows[whole], raw[whole]
     made = np.zeros(len(rows), record_type(definition))
     made["time_ns"] = np.minimum(rows["log_time"], 2**63 - 1).astype(np.int64)
     made["frame_seq"], made["sysid"], made["compid"] = rows["seq"], rows["sysid"], rows["compid"]
-    if recorded:
-        payload = np.ascontiguousarray(rows["payload"]).view(np.uint8).reshape(len(rows), recorded)
-        fill_payload(definition, made, payload[:, : definition.max_len])
+    fill_payload(definition, made, raw[:, kind.itemsize - recorded :][:, : definition.max_len])
     return made
 
 
