@@ -67,8 +67,11 @@ class ReportedVehicle:
         self.mode = mode_of(autopilot, base_mode, custom_mode).name
 
     def landed_state(self, value: int) -> None:
-        known = {state.value for state in LandedState}
-        self.landed = LandedState(value) if value in known else LandedState.UNDEFINED
+        """EXTENDED_SYS_STATE.landed_state."""
+        try:
+            self.landed = LandedState(value)
+        except ValueError:
+            self.landed = LandedState.UNDEFINED
 
     def attitude(self, roll_rad: float, pitch_rad: float, yaw_rad: float) -> None:
         if all(map(math.isfinite, (roll_rad, pitch_rad, yaw_rad))):
