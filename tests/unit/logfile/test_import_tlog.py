@@ -153,6 +153,17 @@ def test_a_damaged_time_stamp_neither_moves_the_rest_nor_is_lost(tmp_path: Path)
     assert told["garbage_bytes"] == 8
 
 
+@pytest.mark.parametrize(("step_us", "seconds"), [(10**12, 10**6 + 59 * 0.02), (-(10**12), 0.58)])
+def test_a_clock_that_is_set_is_believed(tmp_path: Path, step_us: int, seconds: float) -> None:
+    """A million seconds on, as when a GPS tells the time; back, log times stand still."""
+    times = [START_US + 20_000 * n + (step_us if n >= 30 else 0) for n in range(60)]
+    source = tmp_path / "a.tlog"
+    source.write_bytes(b"".join(stamped(f, t) for f, t in zip(flight(60), times, strict=True)))
+    told = the_way_back(source, tmp_path)
+    assert told["seconds"] == pytest.approx(seconds, abs=1e-6)
+    assert told["garbage_bytes"] == 0
+
+
 def test_unknown_messages_and_forged_ids_are_kept(tmp_path: Path) -> None:
     frames = [unknown(), *flight(3), unknown(b"again")]
     told = the_way_back(write(tmp_path / "a.tlog", frames), tmp_path)
