@@ -77,11 +77,11 @@ print(len(found), time.perf_counter() - began)
 
 
 class Run(NamedTuple):
-    """Seconds; `count` is what the program says that it found."""
+    """Seconds; `found` is how many messages the program says that it found."""
 
     whole: float
     within: float
-    count: int
+    found: int
 
 
 def frames() -> list[bytes]:
@@ -170,10 +170,10 @@ def main(rounds: int) -> None:
         mavio: list[tuple[float, float]] = []
         for _ in range(rounds):
             columns.append((run(OUR_COLUMNS, log, NAME), run(PYMAVLINK_COLUMNS, log, NAME)))
-            assert columns[-1][0].count == columns[-1][1].count
+            assert columns[-1][0].found == columns[-1][1].found
             imports.append((our_import(log, record), run(PYMAVLINK_READ, log).whole))
             records.append((run(OUR_COLUMNS, record, NAME), run(MCAP_COLUMNS, record, NAME)))
-            assert records[-1][0].count == records[-1][1].count
+            assert records[-1][0].found == records[-1][1].found
             if MAVIO.exists():
                 mavio.append((our_import(small, record), _mavio(small, folder / "mavio.mcap")))
         report(

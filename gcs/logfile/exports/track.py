@@ -107,12 +107,14 @@ def _points(rows: Records, source: _Source) -> NDArray[Any]:
     good = np.isfinite(points["lat"]) & np.isfinite(points["lon"]) & np.isfinite(points["alt"])
     good &= (abs(points["lat"]) <= 90) & (abs(points["lon"]) <= 180)
     good &= (points["lat"] != 0) | (points["lon"] != 0)
-    return points[good]
+    found: NDArray[Any] = points[good]
+    return found
 
 
 def _not_too_often(points: NDArray[Any]) -> NDArray[Any]:
     """The first in each period.  Of a large log this is done part by part, to bound memory."""
-    return points[np.diff(points["t"] // PERIOD_NS, prepend=-1) != 0]
+    kept: NDArray[Any] = points[np.diff(points["t"] // PERIOD_NS, prepend=-1) != 0]
+    return kept
 
 
 def _track(name: str, points: NDArray[Any]) -> Track:
