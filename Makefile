@@ -53,7 +53,7 @@ soak: $(TEST) ## the properties on new random examples, and what `test` has a sh
 mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? ARGS="vehicle --share 1/20" another part
 	$(BIN)/python -m tests.mutants $(ARGS)
 
-bench: $(TEST) ## paired speed ratios against peers, in one run
+bench: $(TEST) $(CLIENTS)/mavio/.installed ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tests.bench
 
 messages: $(RUN) ## regenerate the message classes of gcs and vehicle_sim from the dialect

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.log_audit import audit
+from gcs.cli.log_export import export_log
+from gcs.cli.log_import import import_log
 from gcs.cli.log_report import report
 from gcs.cli.record_files import RECORD, reading_progress, told
 from gcs.exit_codes import ExitCode
@@ -34,6 +36,8 @@ def log() -> None:
 
 log.add_command(audit)
 log.add_command(report)
+log.add_command(import_log)
+log.add_command(export_log)
 
 
 @log.command()

@@ -85,7 +85,7 @@ def split(data: bytes) -> list[Item]:
     if len(data) > MAX_DATAGRAM:
         return [Garbage(data, Reason.OVERSIZE)]
     if data:
-        frame = _frame_at(data, 0, known=True)
+        frame = frame_at(data, 0, known=True)
         if frame is not None and len(frame.raw) == len(data):
             return [frame]
     items, _ = _scan(data, whole=True)
@@ -134,7 +134,7 @@ def _scan(data: bytes, whole: bool) -> tuple[list[Item], int]:
     size = len(data)
     at = rest = 0
     while at < size:
-        frame = _frame_at(data, at, known=True)
+        frame = frame_at(data, at, known=True)
         if frame is None:
             magic = _MAGIC.search(data, at + 1)
             at = magic.start() if magic else size
@@ -149,7 +149,7 @@ def _scan(data: bytes, whole: bool) -> tuple[list[Item], int]:
     return items + more, rest + taken
 
 
-def _frame_at(data: bytes, at: int, known: bool) -> Frame | None:
+def frame_at(data: bytes, at: int, known: bool) -> Frame | None:
     """The frame that starts at `at`, if there is one: of a message that the dialect has and with
     a right checksum if `known`, else of a message that the dialect lacks.
     """
@@ -191,7 +191,7 @@ def _without_known(run: bytes, closed: bool) -> tuple[list[Item], int]:
     """
     items: list[Item] = []
     at = 0
-    while at < len(run) and (frame := _frame_at(run, at, known=False)) is not None:
+    while at < len(run) and (frame := frame_at(run, at, known=False)) is not None:
         end = at + len(frame.raw)
         accepted = closed if end == len(run) else run[end] in _MAGICS
         if not accepted:
@@ -200,7 +200,7 @@ def _without_known(run: bytes, closed: bool) -> tuple[list[Item], int]:
         at = end
     stop = len(run) if closed else _unfinished_from(run, at)
     if at < stop:
-        items.append(Garbage(run[at:stop], _why_not(run[at:stop])))
+        items.append(Garbage(run[at:stop], why_not(run[at:stop])))
     return items, stop
 
 
@@ -211,7 +211,7 @@ def _unfinished_from(run: bytes, at: int) -> int:
         length = _length_at(run, start)
         if length is None or start + length > len(run):
             return start
-        if start + length == len(run) and _frame_at(run, start, known=False):
+        if start + length == len(run) and frame_at(run, start, known=False):
             return start
     return len(run)
 
@@ -229,8 +229,8 @@ def _length_at(run: bytes, at: int) -> int | None:
     return HEADER_V2 + header[1] + CHECKSUM_SIZE + signature
 
 
-def _why_not(run: bytes) -> Reason:
-    """Why bytes are not a frame, judged by the first magic byte in them."""
+def why_not(run: bytes) -> Reason:
+    """Why bytes are no frame, judged by the first magic byte in them."""
     magic = _MAGIC.search(run)
     if magic is None:
         return Reason.TEXT if _TEXT.match(run) else Reason.GARBAGE

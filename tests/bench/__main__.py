@@ -12,6 +12,7 @@ import sys
 PROGRAMS = (
     "bench_wire",
     "bench_record",
+    "bench_logfile",
     "bench_loop",
     "bench_vehicle",
     "measure_starts",

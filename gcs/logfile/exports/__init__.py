@@ -1,0 +1,1 @@
+"""Records, and other finished logs, into files for other programs."""

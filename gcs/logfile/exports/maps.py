@@ -1,0 +1,71 @@
+"""The paths of the vehicles of a log as KML 2.2 and as GPX 1.1; heights above mean sea level."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from gcs.logfile.batch_writer import Sink
+from gcs.logfile.exports.track import Track
+
+
+def write_kml(title: str, tracks: list[Track], target: Sink) -> None:
+    """For each vehicle its path as a line, and the same with times (`gx:Track`)."""
+    target.write(
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<kml xmlns="http://www.opengis.net/kml/2.2"'
+        ' xmlns:gx="http://www.google.com/kml/ext/2.2">\n'
+        f"<Document><name>{escape(title)}</name>\n".encode()
+    )
+    for track in tracks:
+        places = [f"{lon:.7f},{lat:.7f},{alt:.2f}" for lat, lon, alt in _places(track)]
+        target.write(
+            f"<Placemark><name>{track.name}</name><LineString>"
+            "<altitudeMode>absolute</altitudeMode><coordinates>\n".encode()
+        )
+        target.write("\n".join(places).encode())
+        target.write(b"\n</coordinates></LineString></Placemark>\n")
+        target.write(
+            f"<Placemark><name>{track.name}, with times</name><gx:Track>"
+            "<altitudeMode>absolute</altitudeMode>\n".encode()
+        )
+        target.write("".join(f"<when>{each}</when>\n" for each in _times(track)).encode())
+        coordinates = (place.replace(",", " ") for place in places)
+        target.write("".join(f"<gx:coord>{each}</gx:coord>\n" for each in coordinates).encode())
+        target.write(b"</gx:Track></Placemark>\n")
+    target.write(b"</Document></kml>\n")
+
+
+def write_gpx(title: str, tracks: list[Track], target: Sink) -> None:
+    """For each vehicle a track."""
+    target.write(
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<gpx version="1.1" creator="mavgate" xmlns="http://www.topografix.com/GPX/1/1">\n'
+        f"<metadata><name>{escape(title)}</name></metadata>\n".encode()
+    )
+    for track in tracks:
+        target.write(f"<trk><name>{track.name}</name><trkseg>\n".encode())
+        points = [
+            f'<trkpt lat="{lat:.7f}" lon="{lon:.7f}"><ele>{alt:.2f}</ele>'
+            f"<time>{when}</time></trkpt>\n"
+            for (lat, lon, alt), when in zip(_places(track), _times(track), strict=True)
+        ]
+        target.write("".join(points).encode())
+        target.write(b"</trkseg></trk>\n")
+    target.write(b"</gpx>\n")
+
+
+def _places(track: Track) -> Iterator[tuple[float, float, float]]:
+    return zip(
+        track.lat_deg.tolist(), track.lon_deg.tolist(), track.alt_amsl_m.tolist(), strict=True
+    )
+
+
+def _times(track: Track) -> list[str]:
+    """ISO 8601, UTC."""
+    times: list[str] = np.datetime_as_string(
+        track.time_ns.astype("datetime64[ns]"), unit="ms", timezone="UTC"
+    ).tolist()
+    return times

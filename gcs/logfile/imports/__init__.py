@@ -1,0 +1,1 @@
+"""Finished logs of other programs into records."""

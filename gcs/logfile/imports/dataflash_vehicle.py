@@ -1,0 +1,106 @@
+"""What the messages of an ArduPilot dataflash log tell of the vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import radians
+from typing import Any
+
+from gcs.logfile.columns.layout import Records
+from gcs.logfile.imports.flight import Told
+from gcs.logfile.imports.vehicle import ReportedVehicle
+from gcs.protocol.autopilot import ARDUPILOT, ARDUPILOT_OTHER
+from gcs.report import LogEvent
+from gcs.wire.ids import ModeFlag
+
+INFO = 2
+"""LogEvent.level of a text, which has no severity in such a log."""
+_EVENT_ARMED, _EVENT_DISARMED = 10, 11
+"""EV.Id (LogEvent of ArduPilot's AP_Logger.h)."""
+
+
+def told(tables: dict[str, Records]) -> list[Told]:
+    """What the messages of ArduCopter's log tell of the vehicle (AP_Logger's LogStructure.h).
+
+    One position of the estimator (the first core), else POS, else GPS.
+    """
+    vehicle = ReportedVehicle(_system_id(tables))
+    is_copter = any(b"ArduCopter" in text for text in _column_of(tables, "MSG", "Message"))
+    autopilot = ARDUPILOT if is_copter else ARDUPILOT_OTHER
+    state = {"mode": 0, "armed": 0}
+
+    def heartbeat() -> None:
+        flags = ModeFlag.CUSTOM_MODE_ENABLED | (ModeFlag.SAFETY_ARMED if state["armed"] else 0)
+        vehicle.heartbeat(autopilot, flags, state["mode"])
+
+    def mode(row: Any, now_ns: int) -> Iterator[Any]:
+        state["mode"] = int(row[0])
+        heartbeat()
+        return iter(())
+
+    def armed(row: Any, now_ns: int) -> Iterator[Any]:
+        state["armed"] = int(row[0])
+        heartbeat()
+        return iter(())
+
+    def event(row: Any, now_ns: int) -> Iterator[Any]:
+        if row[0] in (_EVENT_ARMED, _EVENT_DISARMED):
+            return armed((row[0] == _EVENT_ARMED,), now_ns)
+        return iter(())
+
+    def attitude(row: Any, now_ns: int) -> Iterator[Any]:
+        vehicle.attitude(*map(radians, row))
+        return iter(())
+
+    def battery(row: Any, now_ns: int) -> Iterator[Any]:
+        vehicle.battery(row[0], None if len(row) < 2 else float(row[1]))
+        return iter(())
+
+    def local(row: Any, now_ns: int) -> Iterator[Any]:
+        return vehicle.local_position(tuple(row[:3]), tuple(row[3:]), now_ns)
+
+    def fixed(row: Any, now_ns: int) -> Iterator[Any]:
+        height_m = row[3] if len(row) > 3 else 0.0
+        return vehicle.global_position((*row[:3], height_m), (0.0, 0.0, 0.0), now_ns)
+
+    def parameter(row: Any, now_ns: int) -> Iterator[Any]:
+        return vehicle.parameter(row[0].decode("latin1"), row[1], 0)
+
+    def text(row: Any, now_ns: int) -> Iterator[Any]:
+        said = row[0].decode("utf-8", "replace")
+        return iter((LogEvent(now_ns, INFO, "vehicle", said),) if said else ())
+
+    place = "POS" if "POS" in tables else "GPS"
+    core = "XKF1" if "XKF1" in tables else "NKF1"
+    return [
+        Told(vehicle, "PARM", ("Name", "Value"), parameter),
+        Told(vehicle, "MSG", ("Message",), text),
+        Told(vehicle, "MODE", ("ModeNum",), mode),
+        Told(vehicle, "ARM", ("ArmState",), armed),
+        Told(vehicle, "EV", ("Id",), event),
+        Told(vehicle, "ATT", ("Roll", "Pitch", "Yaw"), attitude, often=True),
+        Told(vehicle, "BAT", ("Volt", "RemPct"), battery),
+        Told(vehicle, "BAT", ("Volt",), battery),
+        Told(vehicle, "CURR", ("Volt",), battery),
+        Told(vehicle, core, ("PN", "PE", "PD", "VN", "VE", "VD"), local, often=True, only=("C", 0)),
+        Told(vehicle, place, ("Lat", "Lng", "Alt", "RelHomeAlt"), fixed, often=True),
+        Told(vehicle, place, ("Lat", "Lng", "Alt"), fixed, often=True),
+    ]
+
+
+def _system_id(tables: dict[str, Records]) -> int:
+    """By the parameter of ArduCopter 4.5 or 4.7; 1 where it is not there."""
+    names = _column_of(tables, "PARM", "Name")
+    values = _column_of(tables, "PARM", "Value")
+    for name, value in zip(names, values, strict=True):
+        if name in (b"SYSID_THISMAV", b"MAV_SYSID") and 0 < value < 256:
+            return int(value)
+    return 1
+
+
+def _column_of(tables: dict[str, Records], table: str, column: str) -> list[Any]:
+    rows = tables.get(table)
+    if rows is None or column not in (rows.dtype.names or ()):
+        return []
+    values: list[Any] = rows[column].tolist()
+    return values
