@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from mcap.reader import make_reader
 
 from gcs import ipc
 from gcs.audit.audit import AuditResult
@@ -227,9 +228,14 @@ def test_an_attached_file_that_was_altered_is_found(
 
 
 def test_a_byte_changed_on_the_disk_is_found(record: Path, tmp_path: Path) -> None:
+    with open(record, "rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    chunks = summary.chunk_indexes
+    chunk = chunks[len(chunks) // 2]
     damaged = tmp_path / "damaged.mcap"
     data = bytearray(record.read_bytes())
-    data[len(data) // 2] ^= 1
+    data[chunk.chunk_start_offset + chunk.chunk_length // 2] ^= 1  # in what was recorded
     damaged.write_bytes(data)
     result = gcs_log_audit(damaged)
     assert result.exit_code == 1

@@ -19,7 +19,7 @@ from gcs.record.backend import Channel, FoxgloveBackend, McapBackend
 from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
 from gcs.record.reading import Reading
-from gcs.record.topics import Out
+from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.record.writer import Recorder, RecorderError, RecordLost, RecordResumed
 from gcs.report import (
     AttachmentItem,
@@ -429,6 +429,10 @@ def sealed(found: list[Logged]) -> list[tuple[str, dict[str, int]]]:
     return [(each["kind"], each["data"]) for each in said if each["kind"].startswith("Record")]
 
 
+def checksum_of(messages: list[Logged]) -> int:
+    return crc32(b"".join(message.data for message in messages))
+
+
 def test_a_session_s_record_is_sealed_at_every_flush_and_at_its_end(tmp_path: Path) -> None:
     recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS, sealed=True)
     for number in range(3):
@@ -438,10 +442,14 @@ def test_a_session_s_record_is_sealed_at_every_flush_and_at_its_end(tmp_path: Pa
     assert recorder.close(recorder.deadline_ns)
     found = messages_of(recorder.path)
     first, last = sealed(found)
-    frames, tick, garbage = found[:3], found[3], found[4]
-    checksum = crc32(b"".join(message.data for message in frames))
-    assert first == ("RecordTick", {"messages": 3, "crc32": checksum})
-    assert last == ("RecordEnd", {"messages": 5, "crc32": crc32(tick.data + garbage.data)})
+    # The first seal itself, what every picture begins with, and the garbage.
+    topics = [message.topic for message in found]
+    end = topics.index("/link/0/garbage") + 1
+    frames, between = found[:3], found[3:end]
+    assert (topics[3], topics[end]) == (INPUT_TOPIC, INPUT_TOPIC)
+    assert first == ("RecordTick", {"messages": 3, "crc32": checksum_of(frames)})
+    told = {"messages": 3 + len(between), "crc32": checksum_of(between)}
+    assert last == ("RecordEnd", told)
 
 
 def test_a_later_part_says_what_it_repeats_and_what_was_before_it(tmp_path: Path) -> None:
@@ -462,12 +470,17 @@ def test_a_later_part_says_what_it_repeats_and_what_was_before_it(tmp_path: Path
     recorder.close(lost_ns + 6 * SECOND)
     found = messages_of(recorder.path)
     began, *_, end = sealed(found)
-    # Two parameters, a seal, a frame.
-    part = {"part": 2, "of": "20260101-000000_test", "repeated": 2, "messages": 4}
-    assert found[0].topic == "/session/input"
+    begun = Derived().handle(LogEvent(START_NS, 2, "gate", "Complete"), START_NS)[:-1]
+    picture = [out.channel.topic for out in begun if out.latch]
+    repeated = len(picture) + 2
+    # What every picture begins with, two parameters, a seal, a frame.
+    before = len(begun) + 4
+    part = {"part": 2, "of": "20260101-000000_test", "repeated": repeated, "messages": before}
+    assert found[0].topic == INPUT_TOPIC
     assert began == ("RecordPart", part)
-    assert [m.topic for m in found[1:3]] == ["/vehicle/1/param"] * 2
-    assert end[1]["messages"] == 5, "what is repeated does not count"
+    topics = [m.topic for m in found[1 : 1 + repeated]]
+    assert sorted(topics) == sorted([*picture, *["/vehicle/1/param"] * 2])
+    assert end[1]["messages"] == before + 1, "what is repeated does not count"
     assert end[1]["crc32"] == crc32(b"".join(message.data for message in found[:-1]))
 
 
@@ -492,6 +505,6 @@ def test_an_input_is_the_first_of_what_is_recorded_of_it(
     """So its log_time is the time at which it was handled."""
     monkeypatch.setattr(writer, "Derived", DrawsFirst)
     path = record(tmp_path, [InputItem.of("Wake", {}), LogEvent(START_NS, 2, "gate", "Complete")])
-    first, second, third, *_ = messages_of(path)
-    assert (first.topic, first.log_time_ns) == ("/session/input", START_NS)
-    assert [second.topic, third.topic] == ["/drawn", "/drawn"]
+    first, *others = messages_of(path)
+    assert (first.topic, first.log_time_ns) == (INPUT_TOPIC, START_NS)
+    assert [other.topic for other in others].count("/drawn") == 2

@@ -76,7 +76,11 @@ class Script:
 
     def upload(self, data: bytes) -> None:
         self.ask("mission_upload", "a.plan")
-        (ended,) = [item for item in self.read(data) if isinstance(item, Outcome)]
+        work = self.read(data)
+        while (due_ns := self.missions.deadline_ns) is not None:
+            self.now_ns = max(self.now_ns, due_ns)  # a long plan is verified in steps
+            work += self._with_replies(self.missions.wake(self._view(), self.now_ns))
+        (ended,) = [item for item in work if isinstance(item, Outcome)]
         assert ended.code is None
 
     def _view(self) -> VehicleView:
