@@ -116,8 +116,10 @@ def verify(plan: Plan, ground: Ground, verifier: Verifier) -> Verification:
     return verifying.result
 
 
-STEP_QUESTIONS = 25
+STEP_QUESTIONS = 80
 """Questions to the verifier in one step: some milliseconds."""
+ITEM_COST = 10
+"""How an item of the path is flown takes as long to find out as so many questions."""
 
 
 class Verifying:
@@ -137,8 +139,12 @@ class Verifying:
 
     def step(self) -> None:
         """Walk on, or ask a few questions more; the last step has the result."""
-        for _ in range(STEP_QUESTIONS):
-            if next(self._questions, None) is None:
+        spent = 0
+        while spent < STEP_QUESTIONS:
+            cost = next(self._questions, None)
+            if cost is not None:
+                spent += cost
+            else:
                 self.result = Verification(
                     self._walk.path,
                     tuple(self._verdicts),
@@ -147,32 +153,32 @@ class Verifying:
                 )
                 return
 
-    def _ask_all(self) -> Iterator[bool]:
-        """Yields once an item of the path, and once a question."""
+    def _ask_all(self) -> Iterator[int]:
+        """Yields what each item of the path and each question costs, in questions."""
         for _ in self._walk.steps():
-            yield True
+            yield ITEM_COST
         path = self._walk.path
         for leg in path.legs:
             self._verdicts.append(self._leg(leg))
-            yield True
+            yield 1
         for region in path.regions:
             self._verdicts.append(self._region(region))
-            yield True
+            yield 1
         for circle in path.circles:
             refusal = self._verifier.mission_circle(circle.centre_ned, circle.radius_m)
             at_ned = circle.centre_ned
             self._verdicts.append(
                 LegVerdict(circle.item, "circle", at_ned, at_ned, circle.radius_m, refusal)
             )
-            yield True
+            yield 1
         self._judge_rally_points()
-        yield True
+        yield 1
         if self._ground.return_up_m is None:
             return
         for leg in path.legs:
             if leg.kind is not LegKind.DESCENT and leg.item not in self._blocked:
                 self._judge_return(leg)
-                yield True
+                yield 1
 
     def _leg(self, leg: Leg) -> LegVerdict:
         refusal = None
