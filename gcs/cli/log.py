@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli.log_replay import replay
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -240,3 +241,6 @@ def _progress(file: Path, label: str) -> Iterator[Callable[[Condition], None] | 
         return
     with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
         yield lambda condition: bar.update(condition.position - bar.pos)
+
+
+log.add_command(replay)
