@@ -120,11 +120,12 @@ def _play(
         wait_s = LONGEST_WAIT_S
         if deadline_ns is not None:
             wait_s = min(max(0.0, (deadline_ns - time.perf_counter_ns()) / 1e9), LONGEST_WAIT_S)
-        ready, _, _ = select.select([*outlets, *keyboard.sources], [], [], wait_s)
+        watched = [link.fileno() for link in outlets] + keyboard.filenos
+        ready, _, _ = select.select(watched, [], [], wait_s)
         for link in outlets:
-            if link in ready:
+            if link.fileno() in ready:
                 told.ignored += len(link.drain(BURST))
-        if keyboard in ready and not keyboard.act(player):
+        if any(fd in ready for fd in keyboard.filenos) and not keyboard.act(player):
             return
         told.show(player)
 
@@ -185,11 +186,8 @@ class _Keyboard:
     usable = False
 
     @property
-    def sources(self) -> list[_Keyboard]:
-        return [self] if self.usable else []
-
-    def fileno(self) -> int:
-        return sys.stdin.fileno()
+    def filenos(self) -> list[int]:
+        return [sys.stdin.fileno()] if self.usable else []
 
     def act(self, player: Player) -> bool:
         """Do what was pressed; False to end."""
@@ -197,7 +195,7 @@ class _Keyboard:
 
         from gcs.replay.keys import keys_of
 
-        pressed = os.read(self.fileno(), 64)
+        pressed = os.read(sys.stdin.fileno(), 64)
         for key in keys_of(pressed):
             if key is None:
                 return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import BinaryIO
+from typing import IO
 
 from mcap.records import Channel
 
@@ -26,7 +26,7 @@ class Frames:
     `file` is one that was opened for this and can be read and written.
     """
 
-    file: BinaryIO
+    file: IO[bytes]
     times_ns: array[int] = field(default_factory=lambda: array("q"))
     left_out: int = 0
     """Frames that the station sent, or another ground station."""
@@ -52,7 +52,7 @@ class Frames:
 
 def vehicle_frames(
     records: Iterable[Record],
-    file: BinaryIO,
+    file: IO[bytes],
     *,
     sysid: int | None = None,
     from_s: float | None = None,

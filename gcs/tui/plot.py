@@ -55,7 +55,7 @@ def draw(curves: Sequence[Curve], columns: int, rows: int) -> Text:
         ends = [place(t, v) for t, v in curve.points if math.isfinite(v)]
         if ends and len(curves) > 1:
             canvas.glyph(min(ends[-1][0] + 2, canvas.width - 1), ends[-1][1], MARKS[number], style)
-    picture = _with_figures(canvas.render().split("\n"), low, high)
+    picture = _with_figures([*canvas.render().split("\n")], low, high)
     picture.append(_time_axis(t_low, t_high, columns), "dim")
     for number, curve in enumerate(curves):
         values = [v for _, v in curve.points if math.isfinite(v)]

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs.topics.filters import Filter, FilterError
-from gcs.topics.topic import Topic
+from gcs.topics.topic import Fields, Topic
 
-FIELDS = {
+FIELDS: Fields = {
     "z": -6.0,
     "vx": -2.0,
     "name": "abc",
