@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from gcs.cli.options import AS_JSON, with_options
+from gcs.cli.topic_reading import (
+    Started,
+    condition_of,
+    decoded,
+    ended_by_hand,
+    nothing_heard,
+    selected,
+    selectors,
+    value_of,
+)
 from gcs.cli.topic_source import FROM, LAST, LINK, LOG, SECONDS, TO, Where, print_now
-from gcs.exit_codes import ExitCode
-from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
-    from gcs.cli.topic_source import Heards
     from gcs.topics.rates import Intervals, Rate
     from gcs.topics.selector import Path as FieldPath
     from gcs.topics.selector import Selector
-    from gcs.topics.topic import Fields, Heard, Topic, Value
+    from gcs.topics.topic import Fields, Heard, Topic
 
 LISTEN_S = 3.0
 """How long `list` and `info` listen on a link, where nobody says."""
@@ -68,16 +74,16 @@ def list_topics(
 
     from gcs.topics.rates import LIST_SPAN_S, Intervals
 
-    wanted = _selectors(topics)
+    wanted = selectors(topics)
     found: dict[str, tuple[Topic, Intervals]] = {}
     where = Where(log_file, last, links, from_s, to_s)
-    with _ended_by_hand():
-        for heard, _ in _selected(where.heard(seconds or LISTEN_S), wanted):
+    with ended_by_hand():
+        for heard, _ in selected(where.heard(seconds or LISTEN_S), wanted):
             one = found.setdefault(heard.topic.name, (heard.topic, Intervals.over(None)))
             one[1].add(heard.time_ns)
     rows = [(each, times, times.rate(LIST_SPAN_S)) for _, (each, times) in sorted(found.items())]
     if not rows:
-        raise _nothing(where, wanted)
+        raise nothing_heard(where, wanted)
     if as_json:
         told = [
             {"topic": e.name, "type": e.schema, "messages": t.total, "hz": r.hz if r else None}
@@ -117,26 +123,22 @@ def echo(
     EXPR compares fields, as in 'z < -5 and abs(vx) > 1', and enum values by their names, as in
     'system_status == MAV_STATE_ACTIVE'.
     """
-    wanted = _selectors(topics)
-    keep = _filter(condition)
+    wanted = selectors(topics)
+    keep = condition_of(condition)
     where = Where(log_file, last, links, from_s, to_s)
     printed = 0
-    start_ns = 0
-    matched: set[str] = set()
-    with _ended_by_hand():
-        for heard, paths in _selected(where.heard(seconds), wanted):
-            start_ns = start_ns or heard.time_ns
-            matched.add(heard.topic.name)
-            fields = _decoded(heard)
-            if keep is not None and not _keeps(keep, heard.topic, fields):
-                continue
-            for line in _echoed(heard, fields, paths, start_ns, as_json, several=len(wanted) > 1):
+    started = Started(where.heard(seconds))
+    with ended_by_hand():
+        for heard, fields, paths in decoded(started.heards(), wanted, keep):
+            for line in _echoed(
+                heard, fields, paths, started.at_ns, as_json, several=len(wanted) > 1
+            ):
                 print_now(line)
             printed += 1
             if count is not None and printed >= count:
                 return
-    if not matched:
-        raise _nothing(where, wanted)
+    if not printed and keep is None:
+        raise nothing_heard(where, wanted)
 
 
 def _echoed(
@@ -158,13 +160,13 @@ def _echoed(
     if as_json:
         told: dict[str, Any] = {"topic": name, "time_ns": heard.time_ns}
         if all(paths):
-            told["values"] = {path_text(path)[1:]: _value(heard, fields, path) for path in paths}
+            told["values"] = {path_text(path)[1:]: value_of(heard, fields, path) for path in paths}
         else:
             told["fields"] = fields
         yield msgspec.json.encode(told).decode()
     elif all(paths):
         for path in paths:
-            text = value_text(_value(heard, fields, path))
+            text = value_text(value_of(heard, fields, path))
             yield f"{name}{path_text(path)}: {text}" if several else text
     else:
         yield f"# {name}  {(heard.time_ns - start_ns) / 1e9:.3f} s"
@@ -203,13 +205,13 @@ def hz(
     """
     from gcs.topics.rates import DEFAULT_WINDOW, Intervals
 
-    wanted = _selectors(topics)
+    wanted = selectors(topics)
     where = Where(log_file, last, links, from_s, to_s)
     kept = window if window is not None or where.recorded else DEFAULT_WINDOW
     found: dict[str, Intervals] = {}
     since: dict[str, int] = {}
     next_s = time.monotonic() + EVERY_S
-    with _ended_by_hand():
+    with ended_by_hand():
         for heard in where.heard(seconds):
             for name in _names(heard, wanted):
                 times = found.setdefault(name, Intervals.over(kept))
@@ -222,7 +224,7 @@ def hz(
                 _print_rates(found, since, as_json)
                 since.clear()
     if not found:
-        raise _nothing(where, wanted)
+        raise nothing_heard(where, wanted)
     if where.recorded and kept is None:
         for name, times in sorted(found.items()):
             _print_rate(name, times.rate(), as_json, alone=len(found) == 1)
@@ -284,18 +286,18 @@ def info(
     from gcs.topics.describe import message_info, topic_info
     from gcs.topics.rates import LIST_SPAN_S, Intervals
 
-    (selector,) = _selectors((name,))
+    (selector,) = selectors((name,))
     known = message_info(selector.topic.rpartition("/")[2])
     where = Where(log_file, last, links)
     senders: dict[str, Intervals] = {}
     looked = where.recorded or bool(links) or known is None
     if looked:
-        with _ended_by_hand():
-            for heard, _ in _selected(where.heard(seconds or LISTEN_S), [selector]):
+        with ended_by_hand():
+            for heard, _ in selected(where.heard(seconds or LISTEN_S), [selector]):
                 known = known or topic_info(heard.topic)
                 senders.setdefault(heard.topic.name, Intervals.over(None)).add(heard.time_ns)
     if known is None:
-        raise _nothing(where, [selector])
+        raise nothing_heard(where, [selector])
     rates = {
         each: (times.total, times.rate(LIST_SPAN_S)) for each, times in sorted(senders.items())
     }
@@ -351,110 +353,15 @@ def show(
     """Plot fields over time in the terminal, of a whole record or as they come."""
     from gcs.cli.topic_show import Plot
 
-    wanted = _selectors(topics)
+    wanted = selectors(topics)
     fieldless = [each.text for each in wanted if not each.path]
     if fieldless and not any("/" in text for text in fieldless):
         raise click.UsageError(f"{fieldless[0]}: name a field of it, such as ATTITUDE.roll")
-    keep = _filter(condition)
+    keep = condition_of(condition)
     where = Where(log_file, last, links, from_s, to_s)
-    with Plot(None if where.recorded else window) as plot, _ended_by_hand():
-        for heard, paths in _selected(where.heard(seconds), wanted, plot.redraw):
-            fields = _decoded(heard)
-            if keep is None or _keeps(keep, heard.topic, fields):
-                for path in paths:
-                    plot.add(heard, path, _value(heard, fields, path))
+    with Plot(None if where.recorded else window) as plot, ended_by_hand():
+        for heard, fields, paths in decoded(where.heard(seconds), wanted, keep, plot.redraw):
+            for path in paths:
+                plot.add(heard, path, value_of(heard, fields, path))
     if not plot.curves:
-        raise _nothing(where, wanted)
-
-
-# --------------------------------------------------------------------------------- common
-
-
-def _selectors(topics: Sequence[str]) -> list[Selector]:
-    """Raises UsageError."""
-    from gcs.topics.selector import Selector, SelectorError
-
-    try:
-        return [Selector.parse(text) for text in topics]
-    except SelectorError as error:
-        raise _usage(error, error.hint) from error
-
-
-def _filter(condition: str | None) -> Any:
-    """Raises UsageError."""
-    from gcs.topics.filters import Filter, FilterError
-
-    try:
-        return None if condition is None else Filter(condition)
-    except FilterError as error:
-        raise _usage(error, error.hint) from error
-
-
-def _keeps(keep: Any, topic: Topic, fields: Fields) -> bool:
-    from gcs.topics.filters import FilterError
-
-    try:
-        return bool(keep(topic, fields))
-    except FilterError as error:
-        raise _usage(error, error.hint) from error
-
-
-def _usage(error: Exception, hint: str) -> ExitError:
-    return ExitError(ExitCode.USAGE, str(error), hint)
-
-
-def _selected(
-    heards: Heards, wanted: Sequence[Selector], idle: Any = None
-) -> Iterator[tuple[Heard, list[FieldPath]]]:
-    """Messages of the topics that are wanted, and which fields of them; without any, all."""
-    known: dict[str, list[FieldPath]] = {}
-    for heard in heards:
-        if heard is not None:
-            name = heard.topic.name
-            paths = known.get(name)
-            if paths is None:
-                each = [one.path_in(name) for one in wanted]
-                paths = known[name] = [path for path in each if path is not None]
-            if paths or not wanted:
-                yield heard, paths
-        if idle is not None:
-            idle()
-
-
-def _decoded(heard: Heard) -> Fields:
-    from gcs.topics.topic import DecodeError
-
-    try:
-        return heard.fields()
-    except DecodeError as error:
-        hint = "gcs topic list tells types; mavlink and JSON topics are printed"
-        raise ExitError(ExitCode.BAD_FILE, f"{heard.topic.name}: {error}", hint) from error
-
-
-def _value(heard: Heard, fields: Fields, path: FieldPath) -> Value:
-    from gcs.topics.selector import SelectorError, value_at
-
-    try:
-        return value_at(fields, path, heard.topic.message)
-    except SelectorError as error:
-        if not heard.topic.is_mavlink:
-            return None  # a JSON topic leaves out what is not known
-        raise _usage(error, error.hint) from error
-
-
-def _nothing(where: Where, wanted: Sequence[Selector]) -> ExitError:
-    """Nothing that was wanted was there."""
-    names = ", ".join(each.text for each in wanted) or "a message"
-    if where.recorded:
-        hint = f"gcs topic list --log {where.path} lists its topics"
-        return ExitError(ExitCode.BAD_FILE, f"{where.path}: no {names} in it", hint)
-    return ExitError(ExitCode.NO_VEHICLE, f"{names}: not heard", "gcs topic list tells what is")
-
-
-@contextmanager
-def _ended_by_hand() -> Iterator[None]:
-    """Ctrl-C ends what listens in good order: what was heard until then counts."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        click.echo()
+        raise nothing_heard(where, wanted)

@@ -25,7 +25,7 @@ class Node(msgspec.Struct, frozen=True):
 
 
 class Flow(msgspec.Struct, frozen=True):
-    """Messages of one name on one edge; `hz` None: too few, or in a burst."""
+    """Messages of one name on one edge; `hz` while it is sent, None: too few, or a burst."""
 
     name: str
     messages: int

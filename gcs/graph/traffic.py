@@ -14,7 +14,9 @@ from gcs.wire.dialect import MESSAGES_BY_NAME
 HUB = "hub"
 RECORDER = "recorder"
 LEAST_SPAN_NS = 2_000_000_000
-"""What is over sooner has no rate."""
+"""What is sent for less time has no rate."""
+PAUSE_NS = 2_500_000_000
+"""A longer silence is a pause: setpoints are streamed at 20 Hz, but not all the time."""
 LEAST_MESSAGES = 4
 MAX_COMPONENTS = 64
 """Forged system ids make no more nodes than this."""
@@ -22,22 +24,29 @@ MAX_COMPONENTS = 64
 
 @dataclass(slots=True)
 class _Count:
+    """The messages of one flow; the rate is of the time in which they were sent, without pauses."""
+
     messages: int = 0
     first_ns: int = 0
     last_ns: int = 0
+    _sent_ns: int = 0
+    _gaps: int = 0
 
     def add(self, time_ns: int) -> None:
+        gap_ns = time_ns - self.last_ns
         if not self.messages:
             self.first_ns = time_ns
+        elif 0 <= gap_ns <= PAUSE_NS:
+            self._sent_ns += gap_ns
+            self._gaps += 1
         self.messages += 1
         self.last_ns = max(self.last_ns, time_ns)
 
     @property
     def hz(self) -> float | None:
-        span_ns = self.last_ns - self.first_ns
-        if span_ns < LEAST_SPAN_NS or self.messages < LEAST_MESSAGES:
+        if self._sent_ns < LEAST_SPAN_NS or self.messages < LEAST_MESSAGES:
             return None
-        return (self.messages - 1) * 1e9 / span_ns
+        return self._gaps * 1e9 / self._sent_ns
 
 
 @dataclass(slots=True)

@@ -162,6 +162,20 @@ def test_nothing_in_a_picture_lies_over_another(session: Path) -> None:
             assert x + w <= x2 or x2 + w2 <= x or y + h <= y2 or y2 + h2 <= y
 
 
+def test_a_rate_is_of_the_time_in_which_it_is_sent() -> None:
+    """Setpoints at 20 Hz for 5 s, a hold of a minute, and 5 s again."""
+    traffic = Traffic(recorded=False, where="link")
+    raw = position_frame(0).raw
+    (frame,) = split(raw)
+    assert isinstance(frame, Frame)
+    topic = live_topic(frame)
+    for start_s in (0, 65):
+        for number in range(101):
+            traffic.hear(Heard(topic, START_NS + start_s * 1000 * MS + number * 50 * MS, raw))
+    (edge,) = traffic.graph().edges
+    assert [(flow.messages, flow.hz) for flow in edge.flows] == [(202, 20.0)]
+
+
 def test_text_tells_the_rest_as_one_line() -> None:
     lines = as_text(HOSTILE, 5)
     assert [line.split() for line in lines if "more" in line] == [["26", "more", "39.0", "Hz"]]

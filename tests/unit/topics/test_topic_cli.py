@@ -138,6 +138,16 @@ def test_what_is_wrong_is_told_in_a_sentence(
     assert (ended.exit_code, said in ended.output) == (code, True), ended.output
 
 
+def test_what_is_not_decoded_is_passed_over_and_told(flight: Path) -> None:
+    ended = topic(flight, "echo", "/tf_static", "HEARTBEAT.type", "-n", "1")
+    assert ended.output == "/mavlink/1/1/HEARTBEAT.type: 2\n"
+    ended = topic(flight, "echo", "/tf_static", "HEARTBEAT.type")
+    assert ended.exit_code == ExitCode.DONE
+    assert "passed over: /tf_static: 1 messages" in ended.output
+    nothing_kept = topic(flight, "echo", "HEARTBEAT", "--filter", "type == 99")
+    assert (nothing_kept.exit_code, nothing_kept.output) == (ExitCode.DONE, "")
+
+
 def broken(flight: Path) -> dict[str, bytes]:
     whole = flight.read_bytes()
     return {
