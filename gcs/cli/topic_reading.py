@@ -132,9 +132,24 @@ def nothing_heard(where: Where, wanted: Sequence[Selector]) -> ExitError:
     """Nothing that was wanted was there."""
     names = ", ".join(each.text for each in wanted) or "a message"
     if where.recorded:
-        hint = f"gcs topic list --log {where.path} lists its topics"
+        hint = _near(wanted) or f"gcs topic list --log {where.path} lists its topics"
         return ExitError(ExitCode.BAD_FILE, f"{where.path}: no {names} in it", hint)
-    return ExitError(ExitCode.NO_VEHICLE, f"{names}: not heard", "gcs topic list tells what is")
+    hint = _near(wanted) or "gcs topic list tells what is"
+    return ExitError(ExitCode.NO_VEHICLE, f"{names}: not heard", hint)
+
+
+def _near(wanted: Sequence[Selector]) -> str:
+    """The dialect's name that somebody may have meant."""
+    import difflib
+
+    from gcs.wire.dialect import MESSAGES_BY_NAME
+
+    for each in wanted:
+        name = each.topic.rpartition("/")[2].upper()
+        if name not in MESSAGES_BY_NAME:
+            near = difflib.get_close_matches(name, MESSAGES_BY_NAME, n=1)
+            return f"did you mean {near[0]!r}?" if near else ""
+    return ""
 
 
 @contextmanager

@@ -18,6 +18,8 @@ LEAST_SPAN_NS = 2_000_000_000
 PAUSE_NS = 2_500_000_000
 """A longer silence is a pause: setpoints are streamed at 20 Hz, but not all the time."""
 LEAST_MESSAGES = 4
+LEAST_MESSAGES_A_PAUSE = 10
+"""With more pauses than one in so many messages, they are commands and answers."""
 MAX_COMPONENTS = 64
 """Forged system ids make no more nodes than this."""
 
@@ -44,6 +46,9 @@ class _Count:
 
     @property
     def hz(self) -> float | None:
+        pauses = self.messages - 1 - self._gaps
+        if pauses * LEAST_MESSAGES_A_PAUSE > self.messages:
+            return None  # now and then, and no stream
         if self._sent_ns < LEAST_SPAN_NS or self.messages < LEAST_MESSAGES:
             return None
         return self._gaps * 1e9 / self._sent_ns

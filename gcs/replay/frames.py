@@ -71,8 +71,8 @@ def vehicle_frames(
         match record:
             case Channel(id=number, metadata=metadata) if ros1.PAYLOAD_LENGTH_KEY in metadata:
                 length = metadata[ros1.PAYLOAD_LENGTH_KEY]
-                if length.isdecimal() and int(length) <= 255:
-                    codecs[number] = ros1.codec(int(length))
+                if length.isdecimal() and len(length) <= 3:
+                    codecs[number] = ros1.codec(min(int(length), 255))
             case Message(channel_id=number, log_time_ns=time_ns, data=data):
                 if start_ns is None:
                     start_ns = time_ns

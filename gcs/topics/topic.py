@@ -21,6 +21,10 @@ Fields: TypeAlias = "dict[str, Value]"
 Decode: TypeAlias = Callable[[bytes], Fields]
 
 
+MAX_DEPTH = 20
+"""Of nested JSON."""
+
+
 class DecodeError(Exception):
     """The bytes are no message of their topic."""
 
@@ -94,7 +98,8 @@ def _decoder(name: str, schema: str, encoding: str, metadata: dict[str, str]) ->
     if encoding == "ros1" and schema == "mavlink/Garbage":
         return _garbage_fields
     length = metadata.get(ros1.PAYLOAD_LENGTH_KEY, "")
-    if encoding == "ros1" and schema.startswith("mavlink/") and length.isdecimal():
+    is_frame = encoding == "ros1" and schema.startswith("mavlink/")
+    if is_frame and length.isdecimal() and len(length) <= 3:
         codec = ros1.codec(min(int(length), 255))
 
         def decode(data: bytes) -> Fields:
@@ -112,9 +117,21 @@ def _decoder(name: str, schema: str, encoding: str, metadata: dict[str, str]) ->
 
 def _json_fields(data: bytes) -> Fields:
     try:
-        return _json.decode(data)
+        fields = _json.decode(data)
     except (msgspec.DecodeError, RecursionError) as error:
         raise DecodeError(f"no JSON object: {error}") from error
+    if _is_deeper(fields, MAX_DEPTH):
+        raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep")
+    return fields
+
+
+def _is_deeper(value: Value, most: int) -> bool:
+    """Whether it is nested deeper than so; no recorder of ours writes such a thing."""
+    if isinstance(value, dict):
+        return most == 0 or any(_is_deeper(each, most - 1) for each in value.values())
+    if isinstance(value, list):
+        return most == 0 or any(_is_deeper(each, most - 1) for each in value)
+    return False
 
 
 _json: msgspec.json.Decoder[Fields] = msgspec.json.Decoder(dict)

@@ -176,6 +176,20 @@ def test_a_rate_is_of_the_time_in_which_it_is_sent() -> None:
     assert [(flow.messages, flow.hz) for flow in edge.flows] == [(202, 20.0)]
 
 
+def test_what_comes_now_and_then_has_no_rate() -> None:
+    """Four messages half a second apart, every ten seconds."""
+    traffic = Traffic(recorded=False, where="link")
+    raw = position_frame(0).raw
+    (frame,) = split(raw)
+    assert isinstance(frame, Frame)
+    topic = live_topic(frame)
+    for start_s in range(0, 100, 10):
+        for number in range(4):
+            traffic.hear(Heard(topic, START_NS + start_s * 1000 * MS + number * 500 * MS, raw))
+    (edge,) = traffic.graph().edges
+    assert [(flow.messages, flow.hz) for flow in edge.flows] == [(40, None)]
+
+
 def test_text_tells_the_rest_as_one_line() -> None:
     lines = as_text(HOSTILE, 5)
     assert [line.split() for line in lines if "more" in line] == [["26", "more", "39.0", "Hz"]]

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import struct
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from gcs.exit_codes import ExitCode
-from gcs.record.reading import Reading
+from gcs.record.reading import BadRecordError, Reading
 from gcs.replay.frames import vehicle_frames
 from gcs.report import Direction, FrameItem
 from tests.unit.cli.command_line import gcs
@@ -61,6 +64,21 @@ def test_what_is_wrong_is_told(
 ) -> None:
     ended = gcs("log", "replay", record(tmp_path, a_flight()), *words)
     assert (ended.exit_code, said in ended.output) == (code, True), ended.output
+
+
+@given(data=st.data())
+def test_any_damage_is_told_or_passed_over(
+    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
+) -> None:
+    directory = tmp_path_factory.mktemp("damaged")
+    file = record(directory, a_flight())
+    whole = bytearray(file.read_bytes())
+    for _ in range(data.draw(st.integers(1, 5))):
+        whole[data.draw(st.integers(0, len(whole) - 1))] = data.draw(st.integers(0, 255))
+    file.write_bytes(whole)
+    with suppress(BadRecordError):
+        frames = vehicle_frames(Reading(file), BytesIO())
+        assert all(frames.read(number) for number in range(len(frames)))
 
 
 @pytest.mark.parametrize("data", [b"", b"text\n", bytes(8) + b"\xfe\x09", b"\x89MCAP0\r\n"])

@@ -124,6 +124,7 @@ def test_show_draws_what_is_there_without_colours(flight: Path) -> None:
         (("echo", "HEARTBEAT", "--filter", "zz < 1"), ExitCode.USAGE, "has no field 'zz'"),
         (("echo", "NOTHING"), ExitCode.BAD_FILE, "no NOTHING in it"),
         (("hz", "NOTHING"), ExitCode.BAD_FILE, "no NOTHING in it"),
+        (("hz", "HARTBEAT"), ExitCode.BAD_FILE, "did you mean 'HEARTBEAT'?"),
         (("show", "HEARTBEAT"), ExitCode.USAGE, "name a field of it"),
         (("show", "/gate/decision.word"), ExitCode.USAGE, "is no number"),
         (("echo", ".z"), ExitCode.USAGE, "names no topic"),
