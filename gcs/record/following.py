@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
+from io import BufferedReader
 from pathlib import Path
 
 from mcap.opcode import Opcode
@@ -23,6 +25,7 @@ class Following(Reading):
         super().__init__(path)
         with open(path, "rb") as file:
             begins = file.read(len(MAGIC))
+            self._identity = _identity(file)
         if begins != MAGIC[: len(begins)]:
             raise BadRecordError(path, "not an MCAP file (wrong first bytes)")
         self.condition.position = len(MAGIC)
@@ -31,6 +34,9 @@ class Following(Reading):
         """What was finished since the last call; `condition.closed` once the file is."""
         condition = self.condition
         with open(self.path, "rb") as file:
+            if _identity(file) != self._identity:
+                # Its writer has finished it, and put a compacted copy into its place.
+                condition.closed = True
             while not condition.closed:
                 file.seek(condition.position)
                 head = file.read(_RECORD.size)
@@ -51,3 +57,9 @@ class Following(Reading):
                     yield from self._inner(records or b"")
                 else:
                     yield from self._take(opcode, body)
+
+
+def _identity(file: BufferedReader) -> tuple[int, int]:
+    """Which file it is, whatever its name."""
+    told = os.fstat(file.fileno())
+    return told.st_dev, told.st_ino
