@@ -67,7 +67,7 @@ def graph(
         traffic = Traffic(recorded=found is not None, where=name)
     heard_any = False
     try:
-        for heard in where.heard(seconds or LISTEN_S):
+        for heard in where.heard(seconds or LISTEN_S, traffic.learn):
             if heard is not None:
                 heard_any = True
                 traffic.hear(heard)

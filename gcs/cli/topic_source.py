@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -88,15 +88,20 @@ class Where:
             raise ExitError(ExitCode.BAD_FILE, f"{LOGS}/: no record in it", "name one with --log")
         return max(found, key=lambda file: file.stat().st_mtime_ns)
 
-    def heard(self, seconds: float | None = None) -> Heards:
-        """Raises UsageError, and ExitError for a bad file, no station, a link that cannot open."""
+    def heard(
+        self, seconds: float | None = None, past: Callable[[Heard], None] | None = None
+    ) -> Heards:
+        """`past` is given what a running station recorded before.
+
+        Raises UsageError, and ExitError for a bad file, no station, a link that cannot open.
+        """
         if self.recorded:
             if self.links:
                 raise click.UsageError("a record has no link: leave out --link, or --log")
             return within(recorded(self.path), self.from_s, self.to_s)
         if self.from_s is not None or self.to_s is not None:
             raise click.UsageError("--from and --to are for a record: name it with --log")
-        return for_seconds(_live(self.links), seconds)
+        return for_seconds(_live(self.links, past), seconds)
 
 
 @contextmanager
@@ -159,14 +164,14 @@ def for_seconds(heards: Heards, seconds: float | None) -> Heards:
 # --------------------------------------------------------------------------------- live
 
 
-def _live(links: Sequence[str]) -> Heards:
+def _live(links: Sequence[str], past: Callable[[Heard], None] | None) -> Heards:
     from gcs.cli.running import station_for
 
     found = station_for(links or [DEFAULT_LINK], anywhere=not links)
-    return _of_station(found) if found is not None else _of_links(links or [DEFAULT_LINK])
+    return _of_station(found, past) if found is not None else _of_links(links or [DEFAULT_LINK])
 
 
-def _of_station(described: Description) -> Heards:
+def _of_station(described: Description, past: Callable[[Heard], None] | None) -> Heards:
     """What a running station records, from now on, at every rate that it is recorded at.
 
     A subscription over its socket is told at most ten times a second and MAVLink only; its record
@@ -185,6 +190,9 @@ def _of_station(described: Description) -> Heards:
                 fresh = [*topics.heard(following.new_records())]
             if joined:
                 yield from fresh
+            elif past is not None:
+                for heard in fresh:
+                    past(heard)
             joined = True
             yield None
             if not fresh:

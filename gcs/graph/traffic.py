@@ -13,6 +13,7 @@ from gcs.wire.dialect import MESSAGES_BY_NAME
 
 HUB = "hub"
 RECORDER = "recorder"
+INPUTS = "/session/input"
 LEAST_SPAN_NS = 2_000_000_000
 """What is sent for less time has no rate."""
 PAUSE_NS = 2_500_000_000
@@ -97,6 +98,18 @@ class Traffic:
             case _:
                 pass
 
+    def learn(self, heard: Heard) -> None:
+        """One message from before: who is there, and not what passed between them."""
+        if heard.topic.name != INPUTS:
+            return
+        kind, client, data = _session_input(heard)
+        self._introduce(kind, client, data)
+        command = data.get("command")
+        if kind == "OperatorGone":
+            self._operators.pop(client, None)
+        elif isinstance(command, dict) and command.get("type") == "pending":
+            self._operators.setdefault(client, _Operator()).keyboard = True
+
     def graph(self) -> Graph:
         nodes = [self._hub()]
         for client, operator in sorted(self._operators.items()):
@@ -144,24 +157,20 @@ class Traffic:
         return [each for each in autopilots if sysid in (0, each[0])]
 
     def _input(self, heard: Heard) -> None:
-        fields = _fields(heard)
-        kind, data = fields.get("kind"), fields.get("data")
-        if not isinstance(data, dict):
-            return
-        client = data.get("client", 1)
-        match kind, data:
-            case "Setup", {"name": str(name)}:
-                self._operator(1).name = name
-            case "OperatorJoined", {"name": str(name)} if isinstance(client, int):
-                self._operator(client).name = name
-            case "OperatorLine", {"command": dict() as command} if isinstance(client, int):
-                self._command(client, command, heard.time_ns)
-            case _:
-                pass
+        kind, client, data = _session_input(heard)
+        self._introduce(kind, client, data)
+        command = data.get("command")
+        if kind == "OperatorLine" and isinstance(command, dict):
+            self._command(client, command, heard.time_ns)
+
+    def _introduce(self, kind: Value, client: int, data: Fields) -> None:
+        """Who an operator is."""
+        if kind in ("Setup", "OperatorJoined"):
+            self._operators.setdefault(client, _Operator()).name = str(data.get("name", ""))
 
     def _command(self, client: int, command: Fields, time_ns: int) -> None:
         what = command.get("type")
-        operator = self._operator(client)
+        operator = self._operators.setdefault(client, _Operator())
         operator.keyboard = operator.keyboard or what == "pending"
         word = str(command.get("word") if what == "ask" else what)
         self._asked_last[word] = client
@@ -175,9 +184,6 @@ class Traffic:
             return
         text = f"{fields.get('outcome', '')} {fields.get('code', '')}".strip()
         self._count(HUB, f"operator {client}", text, heard.time_ns, stream=False)
-
-    def _operator(self, client: int) -> _Operator:
-        return self._operators.setdefault(client, _Operator())
 
     def _count(
         self, source: str, target: str, name: str, time_ns: int, *, stream: bool = True
@@ -213,6 +219,16 @@ def _fields(heard: Heard) -> Fields:
         return heard.fields()
     except DecodeError:
         return {}
+
+
+def _session_input(heard: Heard) -> tuple[Value, int, Fields]:
+    """What reached the session: its kind, the operator's number, and all of it."""
+    fields = _fields(heard)
+    data = fields.get("data")
+    if not isinstance(data, dict):
+        return "", 1, {}
+    client = data.get("client", 1)
+    return fields.get("kind"), client if isinstance(client, int) else 1, data
 
 
 def _self_description(heartbeat: Fields) -> str:

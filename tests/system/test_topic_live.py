@@ -43,7 +43,12 @@ def test_the_rate_is_the_configured_one_live_and_in_the_record(tmp_path: Path) -
         (state,) = objects("topic", "echo", "/vehicle/1/state.mode", "-n", "1", "-t", "10")
         assert isinstance(state["values"]["mode"], str)
         (graph,) = objects("graph", "-t", "3")
-        assert {node["title"] for node in graph["nodes"]} >= {"gate", "vehicle 1/1", "recorder"}
+        assert {node["title"] for node in graph["nodes"]} >= {
+            "operator 1",
+            "gate",
+            "vehicle 1/1",
+            "recorder",
+        }
         operator.leave()
         log = str(operator.log_path)
     (whole,) = objects("topic", "hz", "LOCAL_POSITION_NED", "--log", log, "--from", "1.5")

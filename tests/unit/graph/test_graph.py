@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
 from gcs.exit_codes import ExitCode
@@ -17,7 +18,7 @@ from gcs.graph.svg import as_svg
 from gcs.graph.text import as_dot, as_text
 from gcs.graph.traffic import Traffic
 from gcs.report import DecisionItem, Direction, FrameItem, InputItem, RecordItem
-from gcs.topics.topic import Heard, live_topic
+from gcs.topics.topic import Heard, live_topic, recorded_topic
 from gcs.wire.frame import Frame, split
 from tests.unit.cli.command_line import gcs
 from tests.unit.record.flights import MS, START_NS, frame_v1, frame_v2, position_frame, record
@@ -101,6 +102,27 @@ def test_what_passes_between_them_has_counts_and_rates(session: Path) -> None:
     assert count == 101
     assert hz == pytest.approx(12.5, rel=1e-3)
     assert flows(graph, "hub", "recorder")["MAVLink frames"][0] == 106
+
+
+def test_of_what_was_before_only_who_is_there_is_learnt() -> None:
+    traffic = Traffic(recorded=True, where="log")
+    topic = recorded_topic("/session/input", "session.Input", "json", {}, b"")
+    for item in (
+        InputItem.of("Setup", {"name": "flight"}),
+        InputItem.of("OperatorJoined", {"client": 2, "name": "gcs attach, pid 7"}),
+        InputItem.of("OperatorJoined", {"client": 3, "name": "gcs abort, pid 8"}),
+        InputItem.of("OperatorLine", {"client": 2, "command": {"type": "pending"}}),
+        asked(1, "arm"),
+        InputItem.of("OperatorGone", {"client": 3, "reason": "left"}),
+    ):
+        traffic.learn(Heard(topic, START_NS, msgspec.json.encode(item)))
+    graph = traffic.graph()
+    operators = [node for node in graph.nodes if node.kind is Kind.OPERATOR]
+    assert [(node.title, node.detail) for node in operators] == [
+        ("operator 1", "flight"),
+        ("keyboard", "gcs attach, pid 7"),
+    ]
+    assert graph.edges == []
 
 
 def test_a_link_that_is_listened_to_is_the_middle() -> None:
