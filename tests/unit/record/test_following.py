@@ -30,12 +30,12 @@ def test_each_look_gives_what_was_flushed_since_the_last_and_nothing_twice(tmp_p
             recorder.tick(now_ns)
             looks.append(messages([*following.new_records()]))
             assert messages([*following.new_records()]) == []
-    assert not following.condition.closed
+    closed_before = following.condition.closed
     assert len(looks) == pytest.approx(300 * 20 * MS / FLUSH_NS, abs=1)
     assert all(looks)
     recorder.close(now_ns)
     looks.append(messages([*following.new_records()]))
-    assert following.condition.closed
+    assert (closed_before, following.condition.closed) == (False, True)
     seen = [data for look in looks for data in look]
     assert seen == [each.data for each in messages_of(recorder.path)]
 
