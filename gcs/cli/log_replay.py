@@ -86,7 +86,10 @@ def replay(
         with _opened(links or (DEFAULT_TO,)) as outlets, _keys() as keyboard:
             player = Player(frames.times_ns, time.perf_counter_ns(), speed=speed, loop=loop)
             to = ", ".join(str(link.endpoint) for link in outlets)
-            click.echo(f"{file}: {len(frames)} frames, {player.length_s:.1f} s, to {to}")
+            click.echo(
+                f"{file}: {len(frames)} frames, {player.length_s:.1f} s, to {to}; "
+                f"{frames.left_out} of ground stations are left out"
+            )
             if keyboard.usable:
                 click.echo(KEYS_HELP)
             told = _Told(sys.stderr.isatty())

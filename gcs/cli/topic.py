@@ -225,6 +225,8 @@ def hz(
                 since.clear()
     if not found:
         raise nothing_heard(where, wanted)
+    if since and not where.recorded:
+        _print_rates(found, since, as_json)
     if where.recorded and kept is None:
         for name, times in sorted(found.items()):
             _print_rate(name, times.rate(), as_json, alone=len(found) == 1)

@@ -15,7 +15,8 @@ def as_text(graph: Graph, most: int) -> list[str]:
         lines += ["", _name(node)]
         for edge in sent:
             target = graph.node(edge.target).title
-            lines.append(f"  -> {target}: {edge.messages} messages")
+            plural = "" if edge.messages == 1 else "s"
+            lines.append(f"  -> {target}: {edge.messages} message{plural}")
             width = max(len(flow.name) for flow in edge.shown(most))
             lines += [f"       {flow.name:{width}}  {flow.amount:>9}" for flow in edge.shown(most)]
         if not sent:

@@ -60,7 +60,11 @@ def test_a_link_without_a_station_is_listened_to_and_left_alone() -> None:
     port = free_port()
     with vehicle_sim("--link", f"udpout://127.0.0.1:{port}"):
         link = ("--link", f"udpin://127.0.0.1:{port}")
-        (rows,) = objects("topic", "list", "HEARTBEAT", "ATTITUDE", *link, "-t", "2.5")
+        (one,) = objects("topic", "echo", "ATTITUDE", *link, "-n", "1")
+        assert one["topic"] == "/mavlink/1/1/ATTITUDE"
+        (short,) = objects("topic", "hz", "ATTITUDE", *link, "-t", "0.7")
+        assert short["window"] > 2, "the last look is printed, however short it was"
+        (rows,) = objects("topic", "list", "HEARTBEAT", "ATTITUDE", *link, "-t", "4")
         assert {row["topic"] for row in rows} == {
             "/mavlink/1/1/ATTITUDE",
             "/mavlink/1/1/HEARTBEAT",
