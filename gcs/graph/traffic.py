@@ -165,6 +165,9 @@ class Traffic:
 
     def _introduce(self, kind: Value, client: int, data: Fields) -> None:
         """Who an operator is."""
+        for inner in ("setup", "config"):  # where the name is lies deeper in some records
+            within = data.get(inner)
+            data = within if isinstance(within, dict) else data
         if kind in ("Setup", "OperatorJoined"):
             self._operators.setdefault(client, _Operator()).name = str(data.get("name", ""))
 

@@ -108,7 +108,6 @@ def test_of_what_was_before_only_who_is_there_is_learnt() -> None:
     traffic = Traffic(recorded=True, where="log")
     topic = recorded_topic("/session/input", "session.Input", "json", {}, b"")
     for item in (
-        InputItem.of("Setup", {"name": "flight"}),
         InputItem.of("OperatorJoined", {"client": 2, "name": "gcs attach, pid 7"}),
         InputItem.of("OperatorJoined", {"client": 3, "name": "gcs abort, pid 8"}),
         InputItem.of("OperatorLine", {"client": 2, "command": {"type": "pending"}}),
@@ -116,6 +115,8 @@ def test_of_what_was_before_only_who_is_there_is_learnt() -> None:
         InputItem.of("OperatorGone", {"client": 3, "reason": "left"}),
     ):
         traffic.learn(Heard(topic, START_NS, msgspec.json.encode(item)))
+    nested = {"setup": {"config": {"name": "flight"}}, "start_ns": START_NS}
+    traffic.learn(Heard(topic, START_NS, msgspec.json.encode(InputItem.of("Setup", nested))))
     graph = traffic.graph()
     operators = [node for node in graph.nodes if node.kind is Kind.OPERATOR]
     assert [(node.title, node.detail) for node in operators] == [
