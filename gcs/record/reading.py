@@ -107,7 +107,7 @@ class Reading:
                     yield from self._inner(_inflate_what_is_there(data[body:]))
                 break
             if opcode == Opcode.CHUNK:
-                records = inflate(data[body:end])
+                records = _inflate(data[body:end])
                 condition.damaged += records is None
                 yield from self._inner(records or b"")
             elif opcode == 0:
@@ -149,7 +149,7 @@ def _parse(opcode: int, body: bytes) -> Record | None:
     return reader(ReadDataStream(BytesIO(body))) if reader is not None else None
 
 
-def inflate(chunk: bytes) -> bytes | None:
+def _inflate(chunk: bytes) -> bytes | None:
     """The records of a whole chunk; None if they are not what was written."""
     if len(chunk) < _CHUNK.size:
         return None
