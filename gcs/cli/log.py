@@ -12,6 +12,7 @@ import click
 from gcs.cli.log_audit import audit
 from gcs.cli.log_export import export_log
 from gcs.cli.log_import import import_log
+from gcs.cli.log_replay import replay
 from gcs.cli.log_report import report
 from gcs.cli.record_files import RECORD, reading_progress, told
 from gcs.exit_codes import ExitCode
@@ -36,6 +37,7 @@ def log() -> None:
 
 log.add_command(audit)
 log.add_command(report)
+log.add_command(replay)
 log.add_command(import_log)
 log.add_command(export_log)
 

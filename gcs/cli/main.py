@@ -66,7 +66,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
                 "gcs.cli.mission_live:clear",
             ),
         ),
-        "log": Entry("gcs.cli.log:log", "Recorded flights: info, layout, recover."),
+        "topic": Entry("gcs.cli.topic:topic", "Messages live or recorded: list, echo, hz, plot."),
+        "graph": Entry("gcs.cli.graph:graph", "Who sends what to whom, with rates; SVG, DOT."),
+        "log": Entry("gcs.cli.log:log", "Recorded flights: info, layout, recover, replay."),
         "fsa": Entry("gcs.cli.fsa:fsa", "The gate's state machine, printed from its table."),
     },
 }
