@@ -8,9 +8,10 @@ everything is converted once, in the session.  Both unions are tagged by `type`;
 not decode is answered with a `Trouble` event.  What the record keeps too is a struct of
 `gcs/report.py`, or is made of one.
 
-Answers (`VerdictEvent`, `EndingEvent`, `ProgressEvent`, `OperationList`, `MessageEvent`) go to the
-operator who asked; all else goes to all.  `docs/json.md` is this module as a page; `SCHEMA` counts
-up when a field or a meaning that is there changes, not when something is added.
+Answers (`VerdictEvent`, `EndingEvent`, `ProgressEvent`, `OperationList`, `MessageEvent`, `Topic`,
+`TopicMessage`) go to the operator who asked; all else goes to all.  `docs/json.md` is this module
+as a page; `SCHEMA` counts up when a field or a meaning that is there changes, not when something
+is added.
 
 The words of requests and their arguments are one table (`gcs/operator/request_words.py`): typed
 lines and one-shot commands alike become `Ask`.
@@ -94,7 +95,15 @@ class ListOperations(msgspec.Struct, frozen=True, tag="list_operations", tag_fie
     id: int
 
 
-Command: TypeAlias = Ask | Pending | Leave | Join | Subscribe | ListOperations
+class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="type"):
+    """From now on tell me of everything that goes into the record, as the topics of its file.
+
+    First come the topics that are there and the latest of what is said only once (fence, static
+    frames, models, parameters).  A station that does not record answers with a `Trouble`.
+    """
+
+
+Command: TypeAlias = Ask | Pending | Leave | Join | Subscribe | ListOperations | WatchTopics
 
 
 class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):
@@ -194,6 +203,31 @@ class MessageEvent(msgspec.Struct, frozen=True, tag="message", tag_field="type")
     fields: dict[str, int | float | str | list[int | float | str] | None]
 
 
+class Topic(msgspec.Struct, frozen=True, tag="topic", tag_field="type"):
+    """A topic of the record, before its first message; for whoever has sent `watch_topics`.
+
+    The fields are those of a channel and of its schema in an MCAP file.
+    """
+
+    number: int
+    topic: str
+    message_encoding: str
+    schema_name: str
+    schema_encoding: str
+    schema: bytes
+    metadata: dict[str, str] = {}
+
+
+class TopicMessage(msgspec.Struct, frozen=True, tag="topic_message", tag_field="type", gc=False):
+    """One message of a topic, as it goes into the record.  Raw frames are dropped when the reader
+    is slow, the others are not."""
+
+    number: int  # of the topic
+    log_time_ns: int
+    data: bytes
+    latch: str = ""  # not empty: the last word on this, until another with the same latch comes
+
+
 class ProgressEvent(msgspec.Struct, frozen=True, tag="progress", tag_field="type"):
     """A transfer or a climb under way: `done` of `total` in `unit`."""
 
@@ -279,6 +313,8 @@ Event: TypeAlias = (
     | OperationList
     | ProgressEvent
     | MessageEvent
+    | Topic
+    | TopicMessage
     | StateEvent
     | LogEvent
     | Snapshot

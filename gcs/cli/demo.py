@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli.live_option import LIVE, open_beside
 from gcs.cli.options import LOG_DIR, TIMEOUT, with_options
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
@@ -28,9 +29,15 @@ if TYPE_CHECKING:
     show_default=True,
     help="Which autopilot the vehicle speaks like.",
 )
-@with_options(LOG_DIR, TIMEOUT)
+@with_options(LIVE, LOG_DIR, TIMEOUT)
 @click.pass_context
-def demo(ctx: click.Context, autopilot: str, log_dir: str, timeout: float) -> None:
+def demo(
+    ctx: click.Context,
+    autopilot: str,
+    live: tuple[str, int] | None,
+    log_dir: str,
+    timeout: float,
+) -> None:
     """Fly a whole flight in about a minute: hops, refusals, a picture, an abort, a mission."""
     from rich.console import Console
 
@@ -49,6 +56,7 @@ def demo(ctx: click.Context, autopilot: str, log_dir: str, timeout: float) -> No
     with Interrupts() as interrupts:
         station = StationClient.start(config)
         console = Console(highlight=False)
+        open_beside(station, live, lambda line: console.print(line, markup=False))
         ctx.exit(run_over(station, interrupts, console, mission_path, timeout))
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
+from gcs.cli.live_option import LIVE, open_beside
 from gcs.cli.options import (
     LINK,
     LOG_DIR,
@@ -30,6 +31,7 @@ Examples:
 \b
   gcs fly --sim
   gcs fly --link udpin://127.0.0.1:14550 --policy lab
+  gcs fly --sim --live
   printf 'arm\\ntakeoff 2\\ngoto 3 0 2\\nland\\n' | gcs fly --sim --plain
 
 With --plain, answers go to standard output and the log to standard error; `help` lists the words.
@@ -114,6 +116,7 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
 @click.option(
     "--keep", is_flag=True, help="The link lives on when this operator leaves; see gcs stations."
 )
+@with_options(LIVE)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
@@ -135,6 +138,7 @@ def fly(
     name: str,
     keep: bool,
     mission: str,
+    live: tuple[str, int] | None,
     plain: bool,
     as_json: bool,
     strict: bool,
@@ -167,11 +171,18 @@ def fly(
     mission_path = _mission(mission) if mission else ""
     if plain:
         level = 1 if verbose else 3 if quiet else 2
-        ctx.exit(_fly_plain(config, min_level=level, as_json=as_json, strict=strict))
-    ctx.exit(_fly_keyboard(config, timeout, mission_path))
+        ctx.exit(_fly_plain(config, live, min_level=level, as_json=as_json, strict=strict))
+    ctx.exit(_fly_keyboard(config, live, timeout, mission_path))
 
 
-def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: bool) -> int:
+def _fly_plain(
+    config: StationConfig,
+    live: tuple[str, int] | None,
+    *,
+    min_level: int,
+    as_json: bool,
+    strict: bool,
+) -> int:
     from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
@@ -186,6 +197,7 @@ def _fly_plain(config: StationConfig, *, min_level: int, as_json: bool, strict: 
     )
     with Interrupts() as interrupts:
         station = StationClient.start(config)
+        open_beside(station, live, to_stderr)
         return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
 
 
@@ -218,9 +230,16 @@ def needs_a_terminal() -> None:
         raise click.UsageError("the keyboard station needs a terminal; use --plain on a pipe")
 
 
-def _fly_keyboard(config: StationConfig, timeout_s: float | None, mission_path: str) -> int:
+def _fly_keyboard(
+    config: StationConfig,
+    live: tuple[str, int] | None,
+    timeout_s: float | None,
+    mission_path: str,
+) -> int:
     needs_a_terminal()
+    from gcs import ipc
     from gcs.exit_codes import ExitCode
+    from gcs.gate.effects import Level
     from gcs.operator.client import StationClient
     from gcs.operator.errors import Interrupted
     from gcs.operator.interrupts import Interrupts
@@ -234,6 +253,8 @@ def _fly_keyboard(config: StationConfig, timeout_s: float | None, mission_path: 
         except Interrupted:
             click.echo("gcs: interrupted", err=True)
             return ExitCode.INTERRUPTED
+        told = open_beside(station, live, lambda line: click.echo(line, err=True))
+        events += [ipc.LogEvent(0, Level.INFO, "live", line.strip()) for line in told]
     app = FlyApp(station, events, mission_path=mission_path, timeout_s=timeout_s)
     app.run()
     simulated = config.sim is not None

@@ -33,6 +33,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Fly": {
         "demo": Entry("gcs.cli.demo:demo", "A whole flight in a minute, on a simulated vehicle."),
         "fly": Entry("gcs.cli.fly:fly", "The keyboard ground station, or --plain lines."),
+        "live": Entry("gcs.cli.live:live", "The flight in a viewer such as Foxglove, as it flies."),
     },
     "One command, then leave": {
         "status": Entry("gcs.cli.oneshot:status", "What the vehicle reports."),

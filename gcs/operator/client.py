@@ -104,6 +104,11 @@ class StationClient:
     def pid(self) -> int:
         return self._process.pid
 
+    @property
+    def running(self) -> bool:
+        """Whether the process has not ended yet."""
+        return self._process.poll() is None
+
     def now_s(self) -> float:
         """The clock that time-outs of an operator's program are measured on."""
         return time.monotonic()

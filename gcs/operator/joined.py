@@ -127,6 +127,11 @@ class JoinedStation:
         self._socket.close()
         return self._end()
 
+    def close_at_once(self) -> None:
+        """End the connection without a word: for the station, this operator is lost."""
+        self._ended = True
+        self._socket.close()
+
     def _listen(self, on_event: Callable[[StationEvent], None]) -> None:
         while True:
             for event in self.poll(3600.0).events:

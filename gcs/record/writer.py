@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 import struct
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,6 +72,9 @@ class RecordResumed:
 
 RecordNews: TypeAlias = RecordLost | RecordResumed
 
+Watch: TypeAlias = Callable[[Channel, bytes, int, str], None]
+"""(channel, message, log_time in ns, latch): is told of every message; see `Out` for `latch`."""
+
 
 @dataclass(frozen=True, slots=True)
 class Seal:
@@ -117,6 +121,8 @@ class Recorder:
         self._derived = Derived()
         self._logs: dict[str, Log] = {}
         self._frame_logs: dict[bytes, tuple[Log, ros1.Encode]] = {}
+        self._channels: dict[str, Channel] = {}
+        self._watch: Watch | None = None
         self._latched: dict[tuple[str, str], Out] = {}
         self._kept: dict[str, AttachmentItem | MetadataItem] = {}
         self._unsealed: list[bytes] = []
@@ -193,6 +199,32 @@ class Recorder:
     def bytes_written(self) -> int:
         """Of all parts."""
         return self._bytes_before + (self._file.written if self._file is not None else 0)
+
+    # ---------------------------------------------------------------------------- watching
+
+    @property
+    def channels(self) -> list[Channel]:
+        """All that messages were written to so far."""
+        return list(self._channels.values())
+
+    @property
+    def last_ns(self) -> int:
+        """log_time of the latest message."""
+        return self._last_ns
+
+    @property
+    def latched(self) -> list[Out]:
+        """The last word on everything that is said only once, as the next part begins with."""
+        return list(self._latched.values())
+
+    def watch(self, watch: Watch | None) -> None:
+        """Tell `watch` of every message from now on, whether or not it reaches the disk.
+
+        Without a watch a frame costs what it did before: its channel is looked up anew when that
+        changes.
+        """
+        self._watch = watch
+        self._frame_logs.clear()
 
     # ------------------------------------------------------------------------------ input
 
@@ -278,7 +310,7 @@ class Recorder:
     def _write_other(self, item: RecordItem, now_ns: int) -> None:
         match item:
             case GarbageItem(link, raw, reason):
-                log = self._log(ros1.garbage_channel(link))
+                log = self._watched_log(ros1.garbage_channel(link))
                 self._log_message(log, ros1.encode_garbage(reason, raw), now_ns)
             case AttachmentItem(name):
                 self._keep_once(f"attachment {name}", item, now_ns)
@@ -289,9 +321,9 @@ class Recorder:
 
     def _new_frame_log(self, key: bytes, raw: bytes) -> tuple[Log, ros1.Encode]:
         if len(self._frame_logs) >= MAX_FRAME_CHANNELS:
-            return self._log(ros1.crowd_channel()), ros1.codec(0).encode
+            return self._watched_log(ros1.crowd_channel()), ros1.codec(0).encode
         msgid = ros1.msgid_of(raw)
-        log = self._log(ros1.frame_channel(*ros1.source_of(raw), msgid))
+        log = self._watched_log(ros1.frame_channel(*ros1.source_of(raw), msgid))
         known = self._frame_logs[key] = log, ros1.codec(ros1.full_length(msgid)).encode
         return known
 
@@ -299,13 +331,28 @@ class Recorder:
         log = self._logs.get(channel.topic)
         if log is None:
             log = self._logs[channel.topic] = self._backend.channel(channel)
+            self._channels[channel.topic] = channel
         return log
+
+    def _watched_log(self, channel: Channel) -> Log:
+        """The channel's log; with a watch, one that tells it too."""
+        log, watch = self._log(channel), self._watch
+        if watch is None:
+            return log
+
+        def log_and_tell(message: bytes, log_time_ns: int) -> None:
+            log(message, log_time_ns)
+            watch(channel, message, log_time_ns, "")
+
+        return log_and_tell
 
     def _emit(self, outs: list[Out], now_ns: int) -> None:
         for out in outs:
             if out.latch:
                 self._latched[out.channel.topic, out.latch] = out
             self._log_message(self._log(out.channel), out.message, now_ns)
+            if self._watch is not None:
+                self._watch(out.channel, out.message, self._last_ns, out.latch)
 
     def _keep_once(self, key: str, item: AttachmentItem | MetadataItem, now_ns: int) -> None:
         """What is there already, word for word, is not written a second time."""

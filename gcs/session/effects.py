@@ -34,6 +34,12 @@ class Emit(msgspec.Struct, frozen=True, gc=False):
     client: int = EVERYONE
 
 
+class ShowTopics(msgspec.Struct, frozen=True, gc=False):
+    """Tell this operator's program, from now on, of every message that goes into the record."""
+
+    client: int
+
+
 class ReadFile(msgspec.Struct, frozen=True, gc=False):
     token: int
     path: str
@@ -52,4 +58,4 @@ class Finish(msgspec.Struct, frozen=True, gc=False):
     sentence: str
 
 
-Effect: TypeAlias = Transmit | Record | Emit | ReadFile | WriteFile | Finish
+Effect: TypeAlias = Transmit | Record | Emit | ShowTopics | ReadFile | WriteFile | Finish

@@ -17,7 +17,7 @@ from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC, Autopilot
 from gcs.session import teller
 from gcs.session.clients import FIRST, Clients
-from gcs.session.effects import Emit
+from gcs.session.effects import Emit, ShowTopics
 from gcs.session.missions import MISSION_WORDS, TRANSFER_WORDS
 from gcs.session.operations import Operations
 from gcs.session.requests import BadAskError, Requests, request_of
@@ -127,6 +127,8 @@ class Operators:
                 return [*self._subscriptions.subscribe(client, names, now_ns)]
             case ipc.ListOperations(number):
                 return [Emit(ipc.OperationList(number, self._operations.listed()), client)]
+            case ipc.WatchTopics():
+                return [ShowTopics(client)]
             case ipc.Join():
                 return [Emit(ipc.Trouble("this connection has joined already"), client)]
 

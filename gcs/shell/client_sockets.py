@@ -38,6 +38,8 @@ MAX_NOISE = 10
 """Lines that are no command; then the client is broken."""
 JOIN_WAIT_S = 2.0
 MAX_QUEUED_BYTES = 256 << 10
+MAX_QUEUED_TOPIC_BYTES = 4 << 20
+"""Of a client that watches the topics of the record: the schemas of a fleet's come at once."""
 UNREAD_S = 10.0
 """A client that has taken nothing for so long while something waited for it does not read."""
 SEND_BUFFER_BYTES = 64 << 10
@@ -59,6 +61,7 @@ class Connection:
         self.lines: deque[bytes] = deque()
         self.noise = 0
         self.ended = False
+        self.max_queued_bytes = MAX_QUEUED_BYTES
         self._rest = b""
         self._tokens, self._tokens_s = BURST_LINES, now_s
         self._queue: deque[bytes] = deque()
@@ -110,7 +113,7 @@ class Connection:
         self._queue.append(line)
         self._queued_bytes += len(line)
         self.flush(now_s)
-        return "it does not read" if self._queued_bytes > MAX_QUEUED_BYTES else ""
+        return "it does not read" if self._queued_bytes > self.max_queued_bytes else ""
 
     def flush(self, now_s: float) -> None:
         """Send what the socket takes now."""
@@ -290,6 +293,12 @@ class ClientSockets:
             if connection.put(line, self._now_s(), droppable=droppable):
                 connection.give_up()
             connection.closing = last
+
+    def allow_more(self, client: int) -> None:
+        """It watches topics: more may wait for it than for others."""
+        for connection in self._connections:
+            if connection.number == client:
+                connection.max_queued_bytes = MAX_QUEUED_TOPIC_BYTES
 
     def close(self) -> None:
         """Everything; what is queued goes as far as the sockets take it at once."""

@@ -23,6 +23,7 @@ from gcs.session.effects import (
     Finish,
     ReadFile,
     Record,
+    ShowTopics,
     Transmit,
     WriteFile,
 )
@@ -47,6 +48,7 @@ from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 from gcs.shell.sockets import Link
+from gcs.shell.topic_stream import TopicStream
 
 MAX_PLAN_BYTES = 16 << 20
 MAX_DATAGRAMS_A_TURN = 256
@@ -95,6 +97,7 @@ class Loop:
         self._sim = sim
         self._clients = clients
         self._on_snapshot = on_snapshot
+        self._topics = TopicStream(recording, self._tell)
         self._operator_open = True
         self._sim_open = sim is not None
         self._finish: Finish | None = None
@@ -182,6 +185,8 @@ class Loop:
         if self._clients is None:
             return
         for given in self._clients.turn(readable, writable):
+            if isinstance(given, OperatorGone):
+                self._topics.remove(given.client)
             self._feed(given)
             self._wake_if_due()
 
@@ -238,6 +243,8 @@ class Loop:
                 self._recording.write(item, now_ns)
             case Emit(event, client):
                 self._emit(event, client)
+            case ShowTopics(client):
+                self._show_topics(client)
             case ReadFile(token, path):
                 return _read(token, path)
             case WriteFile(token, path, data):
@@ -253,6 +260,14 @@ class Loop:
         last = isinstance(event, ipc.Bye)
         if isinstance(event, ipc.Snapshot):
             self._on_snapshot(event)
+        self._tell(line, client, droppable, last=last)
+
+    def _show_topics(self, client: int) -> None:
+        if self._clients is not None:
+            self._clients.allow_more(client)
+        self._topics.add(client)
+
+    def _tell(self, line: bytes, client: int, droppable: bool, *, last: bool = False) -> None:
         if client in (EVERYONE, FIRST):
             put: Callable[[bytes], None] = self._screen.offer if droppable else self._screen.put
             put(line)

@@ -21,6 +21,11 @@ class Recording:
         self._whole: bool | None = None
 
     @property
+    def recorder(self) -> Recorder | None:
+        """What writes, to be watched; None where nothing is recorded."""
+        return self._recorder
+
+    @property
     def path(self) -> str:
         """The file that is being written; empty where nothing is recorded."""
         return str(self._recorder.path) if self._recorder else ""

@@ -114,6 +114,8 @@ class Scene:
                 self.progress = None if event.done >= event.total > 0.0 else event
             case ipc.Operators() | ipc.Operation() | ipc.OperationList() | ipc.MessageEvent():
                 pass
+            case ipc.Topic() | ipc.TopicMessage():
+                pass
             case ipc.LogEvent() | ipc.Trouble() | ipc.Bye():
                 pass
 

@@ -52,6 +52,7 @@ def _table(struct: type[msgspec.Struct]) -> Iterator[str]:
 def _type(kind: object) -> str:
     """As JSON has it."""
     plain = {int: "integer", float: "number", str: "text", bool: "true or false"}
+    plain[bytes] = "text, base64"
     if kind in plain:
         return plain[kind]
     origin, inner = typing.get_origin(kind), typing.get_args(kind)

@@ -6,7 +6,7 @@ import pytest
 
 from gcs import ipc
 from gcs.config import StationConfig
-from gcs.session.effects import EVERYONE, Effect, Emit
+from gcs.session.effects import EVERYONE, Effect, Emit, ShowTopics
 from gcs.session.inputs import OperatorGone, OperatorJoined, OperatorNoise, SignalCame
 from tests.unit.session import told, wire
 from tests.unit.session.station import Script
@@ -246,6 +246,14 @@ class TestLeaving:
             else:
                 script.feed(end)
             assert len(told.finishes(script.told)) == 1
+
+
+def test_who_wants_to_watch_the_topics_is_shown_them_by_the_shell() -> None:
+    script = Script().hovering()
+    join(script)
+    for client in (1, SECOND):
+        shown = [e for e in script.say(ipc.WatchTopics(), client) if isinstance(e, ShowTopics)]
+        assert shown == [ShowTopics(client)]
 
 
 class TestOperations:

@@ -56,6 +56,7 @@ commands = st.one_of(
     asks,
     st.builds(ipc.Subscribe, st.lists(st.one_of(st.just("HEARTBEAT"), st.text()))),
     st.builds(ipc.ListOperations, st.integers()),
+    st.builds(ipc.WatchTopics),
     st.builds(ipc.Join, st.text()),
     st.builds(ipc.Pending, st.tuples(st.floats(), st.floats(), st.floats())),
 )
@@ -95,4 +96,11 @@ def test_one_who_looks_can_stop_the_vehicle_and_nothing_else(said: list[ipc.Comm
 
 def test_every_kind_of_command_is_tried() -> None:
     kinds = set(get_args(ipc.Command)) - {ipc.Leave}
-    assert kinds == {ipc.Ask, ipc.Subscribe, ipc.ListOperations, ipc.Join, ipc.Pending}
+    assert kinds == {
+        ipc.Ask,
+        ipc.Subscribe,
+        ipc.ListOperations,
+        ipc.Join,
+        ipc.Pending,
+        ipc.WatchTopics,
+    }

@@ -211,6 +211,7 @@ class Rig:
         links: int = 2,
         clients: ClientSockets | None = None,
         on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
+        recording: Recording | None = None,
     ) -> None:
         self.clock, self.core, self.recording = PaperClock(), PaperCore(), PaperRecording()
         self.links = [PaperLink() for _ in range(links)]
@@ -227,7 +228,7 @@ class Rig:
             self.links,
             LineSource(operator_fd),
             self.screen,
-            self.recording,
+            recording or self.recording,
             self.signals,
             PaperSim(sim_fd),
             clients,

@@ -277,6 +277,18 @@ def test_what_waits_for_a_client_that_does_not_read_is_bounded(bench: Bench) -> 
     assert bench.turns() == [OperatorGone(2, "its connection ended")]
 
 
+def test_more_may_wait_for_one_that_watches_topics_and_that_is_bounded_too(bench: Bench) -> None:
+    bench.joined()
+    bench.clients.allow_more(2)
+    (connection,) = bench.clients._connections
+    most = 0
+    for _ in range(9_000):
+        bench.tell(ipc.Trouble("x" * 1_000))
+        most = max(most, connection._queued_bytes)
+    assert client_sockets.MAX_QUEUED_BYTES < most <= client_sockets.MAX_QUEUED_TOPIC_BYTES
+    assert bench.turns() == [OperatorGone(2, "its connection ended")]
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no such sockets there")
 @pytest.mark.parametrize("end_it", [socket.socket.close, lambda end: end.shutdown(socket.SHUT_WR)])
 def test_one_that_goes_without_a_word_is_gone(

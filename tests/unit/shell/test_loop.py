@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from gcs import ipc
-from gcs.session.effects import Emit, Finish, ReadFile, Transmit, WriteFile
+from gcs.record.writer import Recorder
+from gcs.report import LogEvent
+from gcs.session.effects import Emit, Finish, ReadFile, Record, ShowTopics, Transmit, WriteFile
 from gcs.session.inputs import (
     Datagram,
     FileRead,
@@ -30,6 +32,7 @@ from gcs.session.inputs import (
 )
 from gcs.shell.client_sockets import ClientSockets, Connection
 from gcs.shell.loop import MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
+from gcs.shell.recording import Recording
 from tests.unit.shell.rig import DONE, EXIT_BUG, MS, START_NS, TICK_NS, Rig, recorded
 
 FIRST = Datagram(0, b"first")
@@ -371,6 +374,7 @@ class PaperClients(ClientSockets):
         self._near, self._far = socket.socketpair()
         self.brings: list[Input] = []
         self.told: list[tuple[str, int, bool, bool]] = []
+        self.may_have_more: list[int] = []
 
     def fileno(self) -> int:
         return self._near.fileno()
@@ -393,6 +397,9 @@ class PaperClients(ClientSockets):
 
     def tell(self, line: bytes, client: int, *, droppable: bool, last: bool) -> None:
         self.told.append((type(ipc.decode_event(line)).__name__, client, droppable, last))
+
+    def allow_more(self, client: int) -> None:
+        self.may_have_more.append(client)
 
     def close(self) -> None:
         self._near.close()
@@ -460,4 +467,26 @@ def test_every_snapshot_is_shown_to_whoever_describes_the_station(clients: Paper
     rig.core.answers[FIRST] = [Emit(snapshot), Emit(snapshot, 2)]
     rig.run(lambda: rig.links[0].bring(b"first"))
     assert seen == [snapshot, snapshot]
+    rig.close()
+
+
+def test_who_watches_topics_is_told_of_them_until_it_has_gone(
+    clients: PaperClients, tmp_path: Path
+) -> None:
+    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
+    line = LogEvent(START_NS, 2, "gate", "Complete")
+    watch = OperatorLine(2, ipc.WatchTopics())
+    rig = Rig(clients=clients, recording=Recording(recorder))
+    rig.core.answers[watch] = [ShowTopics(2)]
+    rig.core.answers[FIRST] = [Record(line)]
+    clients.brings = [watch]
+    rig.run(
+        lambda: None,
+        lambda: rig.links[0].bring(b"first"),
+        lambda: clients.brings.append(OperatorGone(2, "it has left")),
+        lambda: rig.links[0].bring(b"first"),
+    )
+    assert clients.may_have_more == [2]
+    assert clients.told == [("Topic", 2, False, False), ("TopicMessage", 2, False, False)]
+    assert recorder.close(START_NS)
     rig.close()

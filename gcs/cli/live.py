@@ -1,0 +1,122 @@
+"""`gcs live`: a station's flight in a viewer, while it is flown."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.live_option import ADDRESS, ADDRESS_HELP, DEFAULT_HOST
+from gcs.cli.options import LINK, LOG_DIR, POLICY, TIMEOUT, with_options
+
+if TYPE_CHECKING:
+    from gcs.config import StationConfig
+    from gcs.shell.stations import Description
+
+EPILOG = f"""\
+Examples:
+
+\b
+  gcs live                      of the station that runs, or of a new one
+  gcs live --sim
+  gcs live 127.0.0.1:9000
+  gcs demo --live
+
+HOST:PORT: {ADDRESS_HELP}
+
+In Foxglove: Open connection > Foxglove WebSocket, then import the layout that `gcs log layout`
+writes. A viewer looks, and may abort, hold, land and rtl; to fly it has to call take_control with
+the code that is printed here. Then a point or pose that is published in the 3D panel is a goal.
+"""
+
+
+@click.command(epilog=EPILOG)
+@click.argument("address", type=ADDRESS, default=DEFAULT_HOST, metavar="[HOST:PORT]")
+@with_options(LINK)
+@click.option("--sim", is_flag=True, help="Start a vehicle of our own, on a private port.")
+@with_options(POLICY, LOG_DIR, TIMEOUT)
+@click.pass_context
+def live(
+    ctx: click.Context,
+    address: tuple[str, int],
+    links: tuple[str, ...],
+    sim: bool,
+    policy: str,
+    log_dir: str,
+    timeout: float,
+) -> None:
+    """Serve the topics of a station to viewers over a WebSocket."""
+    import msgspec
+
+    from gcs.cli.options import station_config
+    from gcs.cli.running import station_for
+    from gcs.config import SimConfig
+    from gcs.live.program import check_installed
+
+    if sim and links:
+        raise click.UsageError("--sim starts a vehicle of its own: leave out --link")
+    check_installed()
+    found = None if sim else station_for(links, anywhere=not links)
+    if found is not None:
+        ctx.exit(_of_running(found, address))
+    config = station_config(links, policy, log_dir, name="live", timeout_s=timeout)
+    if sim:
+        config = msgspec.structs.replace(config, sim=SimConfig(), endpoints=[])
+    config = msgspec.structs.replace(config, operator=f"gcs live, pid {os.getpid()}")
+    ctx.exit(_of_new(config, address))
+
+
+def _of_running(found: Description, address: tuple[str, int]) -> int:
+    """Until that station ends, or a Ctrl-C, which it does not notice."""
+    from gcs.cli.live_option import lines_about
+    from gcs.cli.running import described_shortly
+    from gcs.exit_codes import ExitCode
+    from gcs.live.view import Address, open_view
+    from gcs.operator.interrupts import Interrupts
+
+    with Interrupts() as interrupts:
+        view = open_view(found, Address(*address))
+        click.echo(f"of the station of process {described_shortly(found)}")
+        click.echo("\n".join(lines_about(view.url, view.code, address[0])))
+        ended = view.run(interrupts)
+        view.close()
+        if ended is None:
+            return ExitCode.DONE
+    click.echo(ended.bye.sentence if ended.bye else "the station has ended", err=True)
+    return ExitCode.DONE
+
+
+def _of_new(config: StationConfig, address: tuple[str, int]) -> int:
+    """A station without a screen, until a Ctrl-C: its log goes to standard error."""
+    from gcs.cli.live_option import open_beside
+    from gcs.exit_codes import ExitCode
+    from gcs.operator import event_text
+    from gcs.operator.client import StationClient
+    from gcs.operator.dialogue import Dialogue
+    from gcs.operator.errors import Interrupted
+    from gcs.operator.interrupts import Interrupts
+
+    with Interrupts() as interrupts:
+        station = StationClient.start(config)
+        open_beside(station, address, click.echo)
+        dialogue = Dialogue(station, interrupts, lambda event, _: _print_log(event))
+        try:
+            dialogue.wait_until(lambda: False)
+        except Interrupted as interrupt:
+            ended = dialogue.leave(str(interrupt))
+    simulated = config.sim is not None
+    for line in event_text.bye_lines(ended.bye, simulated=simulated) if ended.bye else ():
+        click.echo(line, err=True)
+    return ended.bye.exit_code if ended.bye else ExitCode.BUG
+
+
+def _print_log(event: object) -> None:
+    from gcs import ipc
+    from gcs.gate.effects import Level
+    from gcs.operator import event_text
+
+    if isinstance(event, ipc.LogEvent) and event.level >= Level.INFO:
+        click.echo(event_text.log_line(event), err=True)
+    if isinstance(event, ipc.Trouble):
+        click.echo(event.text, err=True)

@@ -1,0 +1,272 @@
+"""Who may ask for what, over which connection, and what becomes of the answers."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gcs import ipc
+from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send
+from gcs.live.inputs import Called, Ended, Gone, Input, Published, Tick, Told
+from gcs.live.parameters import Parameters
+from gcs.live.services import SERVICES, Answer
+from gcs.live.viewers import (
+    BURST_CALLS,
+    CALL_WAIT_NS,
+    LOOKING,
+    MAX_BUCKETS,
+    MAX_TRUSTED,
+    MAX_WAITING,
+    NEEDS_CONTROL,
+    NOTICE_NS,
+    Viewers,
+)
+
+CODE = "abcd1234"
+SECOND_NS = 1_000_000_000
+REQUESTS = {
+    "takeoff": {"up_m": 2.0},
+    "goto": {"east_m": 1.0, "north_m": 2.0, "up_m": 3.0},
+    "step": {"direction": "up"},
+    "take_control": {"code": CODE},
+}
+HERE = ipc.Snapshot(
+    0, "HOVERING", "OURS", "NOMINAL", [], 0.0, "", True, 0.0, pos_enu=(0.0, 0.0, 3.0)
+)
+CLICK = b'{"header":{"frame_id":"map"},"point":{"x":4.0,"y":5.0,"z":0.0}}'
+
+
+class Script:
+    """Viewers on a clock of the test's own."""
+
+    def __init__(self) -> None:
+        self.now_ns = 100 * SECOND_NS
+        self.viewers = Viewers(CODE, self.now_ns)
+        self.parameters = Parameters()
+        self.calls = 0
+        self.feed(Told(LOOKING, HERE))
+
+    def feed(self, given: Input) -> list[Effect]:
+        return self.viewers.handle(given, self.parameters, self.now_ns)
+
+    def call(
+        self, viewer: int, service: str, watching: bool = True, **request: object
+    ) -> list[Effect]:
+        self.calls += 1
+        self.now_ns += SECOND_NS
+        payload = json.dumps(request or REQUESTS.get(service, {})).encode()
+        return self.feed(Called(viewer, self.calls, service, payload, watching))
+
+    def click(self, viewer: int, data: bytes = CLICK) -> list[Effect]:
+        self.now_ns += SECOND_NS
+        return self.feed(Published(viewer, "json", "geometry_msgs/PointStamped", data))
+
+    def trusted(self, viewer: int) -> Script:
+        """It has brought the code, and the station has said yes."""
+        join, send = self.call(viewer, "take_control")
+        assert join == Join(viewer)
+        assert send == Send(viewer, ipc.Ask(1, "station_take"))
+        self.feed(Told(viewer, ipc.VerdictEvent(1, "station_take", "accepted", operation=9)))
+        return self
+
+
+def answer(effects: list[Effect]) -> Answer:
+    (reply,) = effects
+    assert isinstance(reply, Reply)
+    return reply.answer
+
+
+# ------------------------------------------------------------------------- without the code
+
+
+@pytest.mark.parametrize("service", ["abort", "hold", "land", "rtl"])
+def test_who_looks_may_stop_over_the_connection_of_all_who_look(service: str) -> None:
+    script = Script()
+    assert script.call(7, service) == [Send(LOOKING, ipc.Ask(1, service))]
+    verdict = ipc.VerdictEvent(1, service, "accepted", operation=4)
+    assert script.feed(Told(LOOKING, verdict)) == [Reply(1, Answer(True, "accepted", "", 4))]
+
+
+@pytest.mark.parametrize("service", ["arm", "takeoff", "goto", "step", "resume"])
+def test_who_looks_moves_nothing(service: str) -> None:
+    told = answer(Script().call(7, service))
+    assert told == Answer(False, NEEDS_CONTROL, "OTHER_OPERATOR")
+
+
+def test_a_click_of_who_looks_is_answered_with_a_sentence_and_not_again_at_once() -> None:
+    script = Script()
+    assert script.click(7) == [Notice(NEEDS_CONTROL, warning=True)]
+    assert script.click(7) == []
+    script.now_ns += NOTICE_NS
+    assert script.click(8) == [Notice(NEEDS_CONTROL, warning=True)]
+
+
+@given(st.lists(st.tuples(st.integers(1, 3), st.sampled_from([*SERVICES]), st.text(max_size=9))))
+def test_without_the_code_only_stops_leave(calls: list[tuple[int, str, str]]) -> None:
+    script = Script()
+    for viewer, service, code in calls:
+        request = {"code": code} if service == "take_control" else {}
+        effects = script.call(viewer, service, **request) + script.click(viewer)
+        for effect in effects:
+            assert not isinstance(effect, Join)
+            if isinstance(effect, Send):
+                assert effect.viewer == LOOKING
+                assert isinstance(effect.command, ipc.Ask)
+                assert effect.command.word in {"abort", "hold", "land", "rtl"}
+    assert script.viewers.trusted == frozenset()
+
+
+# ---------------------------------------------------------------------------- with the code
+
+
+@pytest.mark.parametrize("code", ["", "abcd123", "abcd12345", "ABCD1234", "abcd1235", "\u00e4"])
+def test_another_code_is_refused(code: str) -> None:
+    told = answer(Script().call(7, "take_control", code=code))
+    assert (told.accepted, told.code) == (False, "OTHER_OPERATOR")
+    assert "code" in told.sentence
+
+
+def test_the_code_gives_a_connection_of_its_own_over_which_it_flies() -> None:
+    script = Script().trusted(7)
+    assert script.viewers.trusted == {7}
+    assert script.call(7, "arm") == [Send(7, ipc.Ask(2, "arm"))]
+    assert script.call(7, "abort") == [Send(7, ipc.Ask(3, "abort"))]
+    assert answer(script.call(8, "arm")).code == "OTHER_OPERATOR"
+
+
+def test_control_that_another_operator_took_is_taken_again_without_the_code() -> None:
+    script = Script().trusted(7)
+    assert script.call(7, "take_control", code="") == [Send(7, ipc.Ask(2, "station_take"))]
+
+
+def test_a_viewer_whose_end_nobody_would_notice_gets_no_control() -> None:
+    told = answer(Script().call(7, "take_control", watching=False, code=CODE))
+    assert not told.accepted
+    assert "subscribe" in told.sentence
+
+
+def test_so_many_viewers_are_trusted_and_no_more() -> None:
+    script = Script()
+    for viewer in range(1, MAX_TRUSTED + 1):
+        script.trusted(viewer)
+    assert not answer(script.call(99, "take_control", code=CODE)).accepted
+    script.feed(Gone(1))
+    assert script.call(99, "take_control", code=CODE)[0] == Join(99)
+
+
+def test_a_click_is_a_goal_at_the_height_that_the_vehicle_has() -> None:
+    script = Script().trusted(7)
+    ask = ipc.Ask(2, "goto", goal_enu=(4.0, 5.0, 3.0))
+    assert script.click(7) == [Send(7, ask)]
+    told = ipc.VerdictEvent(2, "goto", "refused", "OUTSIDE_FENCE", "goal is outside")
+    sentence = "goto 4 5 3: refused OUTSIDE_FENCE: goal is outside"
+    assert script.feed(Told(7, told)) == [Notice(sentence, warning=True)]
+
+
+def test_the_ending_of_a_clicked_goal_is_told() -> None:
+    script = Script().trusted(7)
+    script.click(7)
+    accepted = ipc.VerdictEvent(2, "goto", "accepted", operation=5)
+    assert script.feed(Told(7, accepted)) == [Notice("goto 4 5 3: accepted", warning=False)]
+    complete = ipc.EndingEvent(2, "goto", "complete")
+    assert script.feed(Told(7, complete)) == [Notice("goto 4 5 3: complete", warning=False)]
+    assert script.feed(Told(7, complete)) == []
+
+
+def test_the_parameter_s_height_is_that_of_a_click() -> None:
+    script = Script().trusted(7)
+    script.parameters = Parameters(goal_height_m=8.0)
+    assert script.click(7) == [Send(7, ipc.Ask(2, "goto", goal_enu=(4.0, 5.0, 8.0)))]
+
+
+def test_a_click_that_is_no_goal_is_told() -> None:
+    script = Script().trusted(7)
+    (notice,) = script.click(7, b"{}")
+    assert isinstance(notice, Notice)
+    assert "neither a point nor a pose" in notice.text
+
+
+def test_a_refusal_comes_with_its_numbers() -> None:
+    script = Script().trusted(7)
+    script.call(7, "goto")
+    told = ipc.VerdictEvent(
+        2, "goto", "refused", "OUTSIDE_FENCE", "it is outside", numbers={"distance_m": 3.0}
+    )
+    reply = Reply(2, Answer(False, "it is outside", "OUTSIDE_FENCE", 0, {"distance_m": 3.0}))
+    assert script.feed(Told(7, told)) == [reply]
+
+
+# ----------------------------------------------------------------------------- going, limits
+
+
+def test_when_a_trusted_viewer_goes_its_connection_ends_and_its_number_is_worth_nothing() -> None:
+    script = Script().trusted(7)
+    assert script.feed(Gone(7)) == [Close(7)]
+    assert script.viewers.trusted == frozenset()
+    assert answer(script.call(7, "arm")).code == "OTHER_OPERATOR"
+    assert script.feed(Gone(7)) == []
+    assert script.feed(Gone(8)) == []
+
+
+def test_when_the_station_ends_the_connection_waiting_calls_are_answered() -> None:
+    script = Script().trusted(7)
+    script.call(7, "arm")
+    told = answer(script.feed(Ended(7)))
+    assert (told.accepted, told.code) == (False, "OPERATOR_LOST")
+    assert script.viewers.trusted == frozenset()
+
+
+def test_a_call_that_the_station_does_not_answer_is_answered_in_time() -> None:
+    script = Script()
+    script.call(7, "land")
+    assert script.feed(Tick()) == []
+    script.now_ns += CALL_WAIT_NS
+    assert answer(script.feed(Tick())).code == "NO_ANSWER"
+    assert script.feed(Tick()) == []
+    assert script.feed(Told(LOOKING, ipc.VerdictEvent(1, "land", "accepted"))) == []
+
+
+def test_one_viewer_that_calls_too_often_does_not_keep_another_from_stopping() -> None:
+    script = Script()
+    sent = 0
+    for number in range(200):
+        effects = script.feed(Called(1, number, "hold", b"", True))
+        sent += isinstance(effects[0], Send)
+    assert sent <= BURST_CALLS
+    script.feed(Tick())
+    for number in range(1, sent + 1):
+        script.feed(Told(LOOKING, ipc.VerdictEvent(number, "hold", "accepted")))
+    (effect,) = script.feed(Called(2, 999, "abort", b"", True))
+    assert isinstance(effect, Send)
+
+
+def test_a_crowd_of_new_viewers_stays_under_what_the_station_takes_of_one_program() -> None:
+    """50 lines a second, 100 at once (`client_sockets`)."""
+    script = Script()
+    sent = 0
+    for tenth in range(100):  # ten seconds
+        script.now_ns += SECOND_NS // 10
+        for number in range(100):
+            (effect,) = script.feed(Called(1 + tenth * 100 + number, 1, "land", b"", True))
+            if isinstance(effect, Send):
+                sent += 1
+                script.feed(Told(LOOKING, ipc.VerdictEvent(sent, "land", "accepted")))
+    assert 100 <= sent <= 10 * 20 + 30
+    assert len(script.viewers._buckets) <= MAX_BUCKETS
+
+
+def test_so_many_calls_wait_and_no_more() -> None:
+    script = Script()
+    for viewer in range(MAX_WAITING):
+        assert isinstance(script.call(viewer + 1, "hold")[0], Send)
+    assert answer(script.call(50, "hold")).code == "BUSY"
+
+
+def test_an_unknown_service_and_a_bad_request_are_refused() -> None:
+    script = Script()
+    assert answer(script.call(7, "disarm")).code == "BAD_REQUEST"
+    script.trusted(7)
+    assert answer(script.call(7, "goto", east_m="far")).code == "BAD_REQUEST"
