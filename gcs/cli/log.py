@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.log_audit import audit
+from gcs.cli.log_compact import compact
 from gcs.cli.record_files import RECORD, reading_progress, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
@@ -31,6 +32,7 @@ def log() -> None:
 
 
 log.add_command(audit)
+log.add_command(compact)
 
 
 @log.command()

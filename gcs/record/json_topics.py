@@ -30,7 +30,8 @@ from gcs.report import (
 )
 
 STATE_HZ = 5.0
-FSA_PERIOD_NS = 1_000_000_000
+FSA_PERIOD_NS = 750_000_000
+"""Shorter than the time between two flushes, which are when a state is repeated."""
 
 _encode = msgspec.json.Encoder().encode
 

@@ -27,7 +27,7 @@ class Deriver(Protocol):
 
     def handle(self, item: RecordItem, now_ns: int) -> list[Out]: ...
     def tick(self, now_ns: int) -> list[Out]:
-        """What is due by the clock alone: a state is repeated once a second."""
+        """What is due by the clock alone: a state is repeated about once a second."""
         ...
 
     def close(self, now_ns: int) -> list[Out]:

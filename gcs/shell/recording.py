@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
-from gcs.record.writer import Recorder, RecordLost, RecordResumed
+from gcs.record.writer import Recorder, RecordLost, RecordResumed, RecordRotated
 from gcs.report import RecordItem
 from gcs.session.inputs import RecorderChanged, RecorderGrew
 
@@ -29,6 +30,11 @@ class Recording:
     def path(self) -> str:
         """The file that is being written; empty where nothing is recorded."""
         return str(self._recorder.path) if self._recorder else ""
+
+    @property
+    def parts(self) -> list[Path]:
+        """All files that were written, in order."""
+        return list(self._recorder.parts) if self._recorder else []
 
     @property
     def deadline_ns(self) -> int:
@@ -66,6 +72,8 @@ class Recording:
                     gap_s = (resumed_ns - since_ns) / 1e9
                     text = f"recording again in {path}; {gap_s:.1f} s are in no file"
                     yield RecorderChanged(True, str(path), text)
+                case RecordRotated(path):
+                    yield RecorderChanged(True, str(path), f"recording goes on in {path}")
         if self._recorder.bytes_written - self._told_bytes >= GREW_STEP_BYTES:
             self._told_bytes = self._recorder.bytes_written
             yield RecorderGrew(self._told_bytes)

@@ -19,7 +19,8 @@ from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import Policy
 from gcs.policy_file import PolicyFileError, load_policy
-from gcs.record.writer import Recorder, RecorderError
+from gcs.record.compact import compact_in_background
+from gcs.record.writer import Recorder, RecorderError, Rotation
 from gcs.session.effects import EVERYONE
 from gcs.session.session import Session
 from gcs.session.setup import Setup
@@ -110,6 +111,8 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
         if clients is not None:
             clients.tell(bye, EVERYONE, droppable=False, last=True)
     screen.put(bye)
+    if setup.compact:
+        compact_in_background(recording.parts)
     return exit_code
 
 
@@ -173,7 +176,8 @@ def _open_recording(setup: StationConfig, clock: Clock) -> Recording:
         return Recording(None)
     try:
         folder, stamp, now_ns = Path(setup.log_dir), clock.stamp(), clock.now_ns()
-        recorder = Recorder.open(folder, setup.name, stamp, now_ns, sealed=True)
+        rotation = Rotation(setup.rotate_bytes, round(setup.rotate_s * 1e9))
+        recorder = Recorder.open(folder, setup.name, stamp, now_ns, sealed=True, rotation=rotation)
     except RecorderError as error:
         hint = "choose a folder that can be written with --log-dir"
         raise CannotStartError(ExitCode.RECORDER, str(error), hint) from error

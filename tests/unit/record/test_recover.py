@@ -86,9 +86,9 @@ def test_of_a_chunk_that_breaks_off_the_messages_before_the_break_are_saved(
     assert before_count < saved.messages < count
 
 
-def test_a_kill_loses_at_most_the_time_between_two_flushes() -> None:
+def test_a_kill_loses_less_than_a_second() -> None:
     (_, count) = killed().flushed[-1]
-    assert (len(killed().frames) - count) * 2 * MS <= 500 * MS
+    assert (len(killed().frames) - count) * 2 * MS < 1000 * MS
 
 
 @pytest.mark.parametrize("compression", [MCAPCompression.Lz4, MCAPCompression.Zstd, None])
