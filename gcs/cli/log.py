@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.log_audit import audit
+from gcs.cli.log_check import check
 from gcs.cli.log_compact import compact
-from gcs.cli.record_files import RECORD, reading_progress, told
+from gcs.cli.log_cut import cut
+from gcs.cli.log_merge import merge
+from gcs.cli.record_files import NEW_RECORD, RECORD, reading_progress, told, writing
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -31,8 +34,8 @@ def log() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-log.add_command(audit)
-log.add_command(compact)
+for command in (audit, check, compact, cut, merge):
+    log.add_command(command)
 
 
 @log.command()
@@ -112,13 +115,7 @@ def layout(file: Path | None, output: Path | None) -> None:
 
 @log.command()
 @click.argument("file", type=RECORD)
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="The new file; it must not exist.",
-)
+@NEW_RECORD
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def recover(file: Path, output: Path, as_json: bool) -> None:
     """Make a whole file of one whose writer was killed.
@@ -132,17 +129,12 @@ def recover(file: Path, output: Path, as_json: bool) -> None:
 
     from gcs.record.recover import recover
 
-    with told(file), reading_progress(file, "recovering") as progress:
-        try:
-            saved = recover(file, output, progress)
-        except FileExistsError as error:
-            raise ExitError(
-                ExitCode.USAGE, f"{output}: exists already", "choose another name"
-            ) from error
-        except OSError as error:
-            if error.filename == str(file):
-                raise
-            raise _cannot_write(output, error) from error
+    with (
+        told(file),
+        reading_progress(file, "recovering") as progress,
+        writing(file, output),
+    ):
+        saved = recover(file, output, progress)
     condition = saved.condition
     if as_json:
         values = {
@@ -170,6 +162,7 @@ def _print(flight: FlightInfo) -> None:
     state = "complete" if flight.closed else "NOT CLOSED: its writer was killed or is still writing"
     click.echo(f"{flight.path}: {flight.size / 1e6:.2f} MB, {state}")
     if not flight.closed:
+        click.echo("  viewers refuse such a file: recover it first")
         click.echo(f"  hint: gcs log recover {flight.path} -o whole.mcap")
     if flight.damaged:
         click.echo(f"  {flight.damaged} damaged records were skipped")

@@ -15,15 +15,17 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from zlib import crc32
 
 from mcap.records import Attachment, Channel, Metadata, Schema
 
 from gcs.record.copying import Source, new_record
+from gcs.record.index_check import wrong_with_index
 from gcs.record.reading import BadRecordError, Condition, Message, Reading, Record
 
 SMALL_BYTES = 1_000_000
@@ -56,7 +58,8 @@ def compact(path: Path, progress: Callable[[Condition], None] | None = None) -> 
     before = path.stat()
     try:
         old = _rewrite(path, copy, progress)
-        if _digest_of(copy) != old:
+        new = _digest_of(copy)
+        if new != old or any(wrong_with_index(copy, new.counts)):
             raise NotCompactedError("the copy does not read back as the original")
         _to_disk(copy)
         shutil.copystat(path, copy)
@@ -80,11 +83,14 @@ class _Digest:
     messages: int = 0
     messages_crc: int = 0
     others_crc: int = 0
+    counts: Counter[int] = field(default_factory=Counter, compare=False)
+    """Messages by channel, which has another number in each file."""
 
     def add(self, record: Record, topics: dict[int, bytes]) -> None:
         match record:
             case Message():
                 self.messages += 1
+                self.counts[record.channel_id] += 1
                 head = b"%d %d %d " % record[1:4] + topics.get(record.channel_id, b"?")
                 self.messages_crc = crc32(record.data, crc32(head, self.messages_crc))
             case Channel(id=number, topic=topic):

@@ -98,14 +98,16 @@ def test_a_ctrl_c_leaves_the_file_and_nothing_else(flight: Path) -> None:
     assert list(flight.parent.iterdir()) == [flight]
 
 
+@pytest.mark.parametrize("at", [1000, -3000])
 def test_a_copy_that_reads_otherwise_does_not_take_the_place(
-    flight: Path, monkeypatch: pytest.MonkeyPatch
+    flight: Path, monkeypatch: pytest.MonkeyPatch, at: int
 ) -> None:
+    """A byte of a chunk, and one of the index."""
     to_disk = module._digest_of
 
     def damaged(copy: Path) -> module._Digest:
         data = bytearray(copy.read_bytes())
-        data[1000] ^= 0xFF
+        data[at] ^= 0xFF
         copy.write_bytes(data)
         return to_disk(copy)
 
