@@ -27,6 +27,7 @@ from gcs.session.setup import Setup
 from gcs.shell import sockets
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
+from gcs.shell.disk_watch import DiskWatch, free_in
 from gcs.shell.endpoints import EndpointError, parse_endpoint
 from gcs.shell.environment import environment
 from gcs.shell.local_socket import LocalSocket
@@ -181,7 +182,7 @@ def _open_recording(setup: StationConfig, clock: Clock) -> Recording:
     except RecorderError as error:
         hint = "choose a folder that can be written with --log-dir"
         raise CannotStartError(ExitCode.RECORDER, str(error), hint) from error
-    return Recording(recorder)
+    return Recording(recorder, DiskWatch(free_in(folder), now_ns))
 
 
 if __name__ == "__main__":

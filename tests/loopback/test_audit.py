@@ -40,6 +40,7 @@ def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
     flight.feed(inputs.OperatorLine(2, ipc.Ask(1, "abort")))
     flight.run(2.0)
     flight.feed(inputs.RecorderGrew(100_000))
+    flight.feed(inputs.DiskLow(100_000_000, 600.0, critical=False))
     flight.feed(inputs.OperatorNoise(2, "gibberish"))
     flight.feed(inputs.Datagram(0, b"GET / HTTP/1.1"))
     flight.feed(inputs.OperatorGone(2, "its connection ended"))
