@@ -73,7 +73,7 @@ class RecordedSession:
 
     def feed(self, given: Input) -> list[Effect]:
         """One input, a millisecond after the one before."""
-        self.now_ns = now_ns = self.recorder.next_ns(self.now_ns + 1_000_000)
+        self.now_ns = now_ns = self.recorder.input_ns(self.now_ns + 1_000_000)
         effects: list[Effect] = []
         try:
             effects = self.session.handle(given, now_ns)

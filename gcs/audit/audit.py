@@ -96,6 +96,7 @@ class _Audit:
         for altered in turns.altered:
             self._altered(altered)
         self._ending(turns)
+        result.first.sort(key=lambda difference: difference.log_time_ns)
         result.seconds = (self._end_ns - self._start_ns) / 1e9
         result.inputs, result.compared = dict(self._inputs), dict(self._compared)
         return result

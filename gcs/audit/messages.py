@@ -10,9 +10,9 @@ import msgspec
 from gcs.record import ros1
 from gcs.record.backend import Channel, Log
 from gcs.record.guarded_file import GuardedFile
+from gcs.record.topics import INPUT_TOPIC as INPUT_TOPIC
 from gcs.report import Direction
 
-INPUT_TOPIC = "/session/input"
 FRAME_TOPIC = "/mavlink/"
 GARBAGE_TOPIC = "/link/"
 

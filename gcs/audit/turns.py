@@ -1,7 +1,8 @@
 """A record cut into turns: one input, and all that was recorded of it and of what it led to.
 
 A turn begins with the input's own message: one on `/session/input`, or a frame or garbage that a
-link received.  Datagrams of several pieces are announced (`Pieces`).
+link received.  What is recorded of one input has log_times without a gap; before the next input
+there is one.  Reads of a stream that end within a frame are announced (`Pieces`).
 """
 
 from __future__ import annotations
@@ -64,7 +65,10 @@ class _Open:
     """The turn that is being read."""
 
     turn: Turn
+    link: int = -1
+    """Of a datagram or a read."""
     pieces: Pieces | None = None
+    """As they were announced."""
     raws: list[bytes] = field(default_factory=list)
 
     @property
@@ -83,6 +87,7 @@ class Turns:
         self._before: list[Stored] = []
         self._start: Start | None = None
         self._open: _Open | None = None
+        self._last_ns = 0
         self.altered: list[Altered] = []
         self.missing: Missing | None = None
         """Where the record has a hole; nothing is read after it."""
@@ -106,6 +111,7 @@ class Turns:
                     yield from self._close(cut=False)
                     self._open = self._new(message, kind, kept)
                 self._take(message, kept)
+                self._last_ns = message.log_time_ns
             if self.missing is not None:
                 break
         if self._start is None:
@@ -158,8 +164,15 @@ class Turns:
             return False
         if kept is not None:
             return True
-        wanted = self._open is not None and self._open.wants_more
-        return message.came_in and not wanted
+        return message.came_in and not self._continues(message)
+
+    def _continues(self, message: Stored) -> bool:
+        """Whether a frame or garbage is one more of the datagram that is being read."""
+        if self._open is None or self._open.link != _link(message):
+            return False
+        if self._open.pieces is not None:
+            return self._open.wants_more
+        return message.log_time_ns == self._last_ns + 1
 
     def _new(self, message: Stored, kind: str, kept: Kept | Unreadable | None) -> _Open:
         turn = Turn(message.log_time_ns, Unreadable("it breaks off"))
@@ -169,9 +182,9 @@ class Turns:
             turn.now_ns = next(m.log_time_ns for m in turn.messages if m.topic == INPUT_TOPIC)
         match kept:
             case None:
-                return self._datagram(turn, Pieces(_link(message), 1))
+                return self._datagram(turn, _link(message), None)
             case Pieces():
-                return self._datagram(turn, kept)
+                return self._datagram(turn, kept.link, kept)
             case Seal():
                 turn.given = RecorderTurn(kind)
                 self.closed |= turn.given is RecorderTurn.END
@@ -181,18 +194,18 @@ class Turns:
                 turn.given = kept
         return _Open(turn)
 
-    def _datagram(self, turn: Turn, pieces: Pieces) -> _Open:
+    def _datagram(self, turn: Turn, link: int, pieces: Pieces | None) -> _Open:
         assert self._start is not None
-        if not 0 <= pieces.link < len(self._start.setup.endpoints):
-            turn.given = Unreadable(f"there is no link {pieces.link}")
+        if not 0 <= link < len(self._start.setup.endpoints):
+            turn.given = Unreadable(f"there is no link {link}")
             return _Open(turn)
-        return _Open(turn, pieces)
+        return _Open(turn, link, pieces)
 
     def _take(self, message: Stored, kept: Kept | Unreadable | None) -> None:
         if self._open is None:
             self._before.append(message)
             return
-        if kept is None and message.came_in and self._open.wants_more:
+        if kept is None and message.came_in and self._open.link >= 0:
             self._open.raws.append(message.raw)
         self._open.turn.messages.append(message)
 
@@ -200,14 +213,14 @@ class Turns:
         """The turn that was open, whole."""
         if self._open is None:
             return
-        turn, pieces, raws = self._open.turn, self._open.pieces, self._open.raws
+        turn, link, raws = self._open.turn, self._open.link, self._open.raws
         if cut and self._open.wants_more:
             self.lost_input = True
             return
-        if pieces is not None:
-            before = self._rests.get(pieces.link, b"")
-            turn.given = datagram_of(pieces, raws, before)
-            self._rests[pieces.link] = pieces.rest
+        if link >= 0:
+            pieces = self._open.pieces or Pieces(link, len(raws))
+            turn.given = datagram_of(pieces, raws, self._rests.get(link, b""))
+            self._rests[link] = pieces.rest
         turn.cut = cut
         yield turn
 

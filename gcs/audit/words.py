@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
+from zlib import crc32
 
 import msgspec
 
@@ -188,7 +189,10 @@ def _parts(message: Stored) -> tuple[str, Fields]:
     try:
         tree = msgspec.json.decode(message.data)
     except msgspec.MsgspecError:
-        return message.topic, {"bytes": f"{len(message.data)}: {message.data[:60].hex(' ')}"}
+        return message.topic, {
+            "bytes": str(len(message.data)),
+            "checksum": f"{crc32(message.data):08x}",
+        }
     if not isinstance(tree, dict):
         return message.topic, {"value": _value(tree)}
     if message.topic == INPUT_TOPIC and isinstance(tree.get("data"), dict):

@@ -145,9 +145,9 @@ def _print_version(ctx: click.Context, _param: click.Parameter, asked: bool) -> 
 @click.group(
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-    epilog="Example: gcs demo\n\nExit codes: 0 done, 2 usage, 3 no link, 4 bad file, 5 refused by "
-    "the vehicle, 6 refused by the gate, 7 recorder, 8 accepted but not completed, 9 address in "
-    "use, 70 bug, 130 interrupted.",
+    epilog="Example: gcs demo\n\nExit codes: 0 done, 1 a check found something, 2 usage, 3 no "
+    "link, 4 bad file, 5 refused by the vehicle, 6 refused by the gate, 7 recorder, 8 accepted but "
+    "not completed, 9 address in use, 70 bug, 130 interrupted.",
 )
 @click.option(
     "--version",

@@ -16,7 +16,7 @@ from msgspec import inspect
 
 from gcs.frames import enu_from_ned
 from gcs.record.backend import Channel
-from gcs.record.topics import Grid, Out
+from gcs.record.topics import INPUT_TOPIC, Grid, Out
 from gcs.report import (
     DecisionItem,
     FsaItem,
@@ -149,7 +149,7 @@ class JsonTopics:
     def __init__(self) -> None:
         self._vehicles: dict[int, _Vehicle] = {}
         self._decision = JsonTopic("/gate/decision", "gate.Decision", DecisionItem)
-        self._input = JsonTopic("/session/input", "session.Input", InputItem)
+        self._input = JsonTopic(INPUT_TOPIC, "session.Input", InputItem)
 
     def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
         match item:

@@ -8,6 +8,9 @@ from typing import Protocol
 from gcs.record.backend import Channel
 from gcs.report import RecordItem
 
+INPUT_TOPIC = "/session/input"
+"""Where the inputs of a session are, all but the frames and bytes that links received."""
+
 
 @dataclass(frozen=True, slots=True)
 class Out:

@@ -22,7 +22,7 @@ from gcs.record import ros1
 from gcs.record.backend import Backend, Channel, Log, best_backend
 from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, NoFile, Opener, open_exclusive
-from gcs.record.topics import Out
+from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.report import (
     AttachmentItem,
     FrameItem,
@@ -324,6 +324,14 @@ class Recorder:
         self._seal("RecordEnd", now_ns)
         self._emit(self._derived.close(now_ns), now_ns)
 
+    def input_ns(self, now_ns: int) -> int:
+        """When the next input is to be handled: `now_ns`, or so much later that a nanosecond
+        remains free before the log_time of its first message.
+
+        What is recorded of one input has no such gap, so it shows where each input begins.
+        """
+        return max(now_ns, self._last_ns + 2)
+
     def next_ns(self, now_ns: int) -> int:
         """`now_ns`, or the first log_time that is free after what is recorded."""
         return max(now_ns, self._last_ns + 1)
@@ -355,6 +363,10 @@ class Recorder:
                 self._keep_once(f"attachment {name}", item, now_ns)
             case MetadataItem(name):
                 self._keep_once(f"metadata {name}", item, now_ns)
+            case InputItem():
+                # An audit takes the input for the first of what is recorded of it.
+                outs = self._derived.handle(item, now_ns)
+                self._emit(sorted(outs, key=lambda out: out.channel.topic != INPUT_TOPIC), now_ns)
             case _:
                 self._emit(self._derived.handle(item, now_ns), now_ns)
 

@@ -33,9 +33,9 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """The next `items` frames and garbage of `link` came as one datagram, or as one read of a
-    stream, of which `rest` is in no item yet.  Recorded as `Datagram`, before these, but for a
-    datagram of one item and no rest, which needs no word."""
+    """The next `items` frames and garbage of `link` came as one read of a stream, of which `rest`
+    is in no item yet.  Recorded as `Datagram`, before these; also for an empty datagram.  All else
+    needs no word: the items of one datagram have log_times without a gap."""
 
     link: int
     items: int
@@ -118,7 +118,7 @@ def attachment_name(path: str, data: bytes) -> str:
 
 def pieces(link: int, items: int, rest: bytes) -> Sequence[Effect]:
     """How a datagram was cut, where that does not show in what is recorded of it."""
-    if items == 1 and not rest:
+    if items and not rest:
         return ()
     return (Record(InputItem.of("Datagram", Pieces(link, items, rest))),)
 

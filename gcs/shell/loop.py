@@ -201,7 +201,7 @@ class Loop:
         """One input with all its effects; then whatever they lead back to."""
         if self._finish is not None:
             return
-        # The record tells when an input was handled by the log_time of its first message.
+        # The log_time of an input's first message tells when it was handled.
         now_ns = self._recording.time_ns(self._clock.now_ns())
         effects: Sequence[Effect] = ()
         answers: list[Input] = []

@@ -48,9 +48,8 @@ class Recording:
         return self._recorder.deadline_ns if self._recorder else 1 << 62
 
     def time_ns(self, now_ns: int) -> int:
-        """`now_ns`, or the first time after that of all that is recorded: what is recorded next
-        has it as its log_time, to the nanosecond."""
-        return self._recorder.next_ns(now_ns) if self._recorder else now_ns
+        """When an input that came by `now_ns` is to be handled; see `Recorder.input_ns`."""
+        return self._recorder.input_ns(now_ns) if self._recorder else now_ns
 
     def write(self, item: RecordItem, now_ns: int) -> None:
         if self._recorder:

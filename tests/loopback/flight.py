@@ -91,7 +91,7 @@ class Flight(Looks):
         config = StationConfig(endpoints=["test"], name="loopback")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
         self.session = Session(setup, START_NS)
-        self.recorder = self.new_recorder()
+        self.recorder = Flight.new_recorder()
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
         self.finish: effects.Finish | None = None
         self.files: dict[str, bytes] = {}
@@ -164,7 +164,7 @@ class Flight(Looks):
         """
         if self.finish is not None:
             return
-        now_ns = self.now_ns if self.recorder is None else self.recorder.next_ns(self.now_ns)
+        now_ns = self.now_ns if self.recorder is None else self.recorder.input_ns(self.now_ns)
         follows = self.session.handle(given, now_ns)
         self._record(follows, now_ns)
         answers = [answer for effect in follows for answer in self._carry_out(effect)]

@@ -11,6 +11,7 @@ import pytest
 from tests.system.flight_log import only_log
 from tests.system.programs import GCS, gcs, running
 from tests.system.station import simulated, tapped
+from tests.system.vehicle_program import free_port, vehicle_sim
 
 pytestmark = pytest.mark.system
 
@@ -39,6 +40,29 @@ def test_a_script_of_gcs_fly_is_reproduced(tmp_path: Path) -> None:
     told = audited(only_log(tmp_path))
     assert "files 1" in told
     assert "note:" not in told
+
+
+def test_one_shot_commands_are_reproduced(tmp_path: Path) -> None:
+    port = free_port()
+    link = ("--link", f"udpin://127.0.0.1:{port}", "--log-dir", str(tmp_path))
+    with vehicle_sim("--link", f"udpout://127.0.0.1:{port}"):
+        for words in (("arm",), ("takeoff", "2"), ("goto", "1", "0", "2"), ("land",)):
+            ended = gcs(*words, *link)
+            assert ended.returncode == 0, ended.stdout + ended.stderr
+    logs = sorted(tmp_path.glob("*.mcap"))
+    assert len(logs) == 4
+    ended = gcs("log", "audit", *map(str, logs))
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert ended.stdout.count("no difference: every decision") == 4
+
+
+def test_a_link_that_is_a_stream_is_reproduced(tmp_path: Path) -> None:
+    port = free_port()
+    with vehicle_sim("--link", f"tcpin://127.0.0.1:{port}"):
+        url = f"tcpout://127.0.0.1:{port}"
+        ended = gcs("fly", "--link", url, "--plain", "--log-dir", str(tmp_path), stdin=SCRIPT)
+    assert "land: complete" in ended.stdout, ended.stdout + ended.stderr
+    audited(only_log(tmp_path))
 
 
 def test_two_operators_are_reproduced(

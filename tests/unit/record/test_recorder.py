@@ -16,9 +16,11 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from gcs.record import ros1, writer
-from gcs.record.backend import FoxgloveBackend, McapBackend
+from gcs.record.backend import Channel, FoxgloveBackend, McapBackend
+from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
 from gcs.record.reading import Reading
+from gcs.record.topics import Out
 from gcs.record.writer import (
     Recorder,
     RecorderError,
@@ -37,6 +39,7 @@ from gcs.report import (
     MetadataItem,
     ParamItem,
     PoseItem,
+    RecordItem,
 )
 from tests.unit.record.flights import (
     MS,
@@ -554,3 +557,22 @@ def test_a_disk_that_is_full_at_the_rotation_is_told_as_a_loss(tmp_path: Path) -
     (resumed,) = recorder.tick(START_NS + 7 * SECOND)
     assert isinstance(resumed, RecordResumed)
     assert recorder.close(START_NS + 8 * SECOND) is False
+
+
+class DrawsFirst(Derived):
+    """Says something of each item before what the item itself becomes."""
+
+    def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
+        drawn = Channel("/drawn", "json", "", "", b"")
+        return [Out(drawn, b"{}"), *super().handle(item, now_ns)]
+
+
+def test_an_input_is_the_first_of_what_is_recorded_of_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So its log_time is the time at which it was handled."""
+    monkeypatch.setattr(writer, "Derived", DrawsFirst)
+    path = record(tmp_path, [InputItem.of("Wake", {}), LogEvent(START_NS, 2, "gate", "Complete")])
+    first, second, third, *_ = messages_of(path)
+    assert (first.topic, first.log_time_ns) == ("/session/input", START_NS)
+    assert [second.topic, third.topic] == ["/drawn", "/drawn"]

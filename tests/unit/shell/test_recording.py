@@ -149,11 +149,11 @@ def test_a_file_with_a_gap_is_not_whole(recording: Recording, disk: Disk) -> Non
     assert not recording.close(failed_ns + 6 * SECOND_NS)
 
 
-def test_what_is_recorded_next_has_the_time_that_is_asked_for(recording: Recording) -> None:
+def test_an_input_has_a_time_of_its_own(recording: Recording) -> None:
     recording.write(piece(1), START_NS)
     recording.write(InputItem.of("Wake", {}), START_NS)
     recording.write(InputItem.of("Wake", {}), START_NS)
-    assert recording.time_ns(START_NS) == START_NS + 2
+    assert recording.time_ns(START_NS) == START_NS + 3, "a nanosecond after the last remains free"
     assert recording.time_ns(START_NS + 9) == START_NS + 9
     assert Recording(None).time_ns(START_NS) == START_NS
 
