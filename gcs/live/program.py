@@ -10,7 +10,7 @@ import select
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from importlib.util import find_spec
 
 import msgspec
@@ -18,6 +18,7 @@ import msgspec
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.operator.joined import running_stations
+from gcs.shell.pipes import LineSource
 from gcs.shell.stations import Description
 
 COMMAND = (sys.executable, "-m", "gcs.live.program")
@@ -59,16 +60,18 @@ def opened_by(wanted: Wanted, station_runs: Callable[[], bool] = lambda: True) -
     )
     assert process.stdout is not None
     deadline_s = time.monotonic() + OPEN_WAIT_S
-    ready: Sequence[object] = ()
+    lines: list[bytes] = []
     with process.stdout as stdout:
-        while not ready and station_runs() and time.monotonic() < deadline_s:
-            ready, _, _ = select.select([stdout], [], [], LOOK_AGAIN_S)
-        line = stdout.readline() if ready else b""
+        source = LineSource(stdout.fileno())
+        while not (lines or source.ended) and station_runs() and time.monotonic() < deadline_s:
+            if select.select([source], [], [], LOOK_AGAIN_S)[0]:
+                lines += source.read()
+        source.close()
     process.returncode = 0  # it ends with the station, and nobody is to wait for it
-    if not line and not station_runs():
+    if not (lines or station_runs()):
         return None
     try:
-        opened = msgspec.json.decode(line, type=Opened)
+        opened = msgspec.json.decode(b"".join(lines), type=Opened)
     except msgspec.DecodeError:
         raise ExitError(ExitCode.BUG, "the live view did not start") from None
     if opened.error:

@@ -41,6 +41,8 @@ MESSAGE_BACKLOG = 512
 """Messages that wait for one viewer; then the oldest is dropped."""
 MAX_VIEWER_TOPICS = 16
 """Topics that one viewer may publish on."""
+MAX_DESCRIPTION_LETTERS = 128
+"""Of such a topic's encoding and schema name, which are kept."""
 CALL_WAIT_S = CALL_WAIT_NS / 1e9 + 1.0
 FIRST_NS = 2_000_000_000
 MAX_FIRST = 32
@@ -60,7 +62,7 @@ class LiveServer:
     def __init__(self, inbox: Inbox) -> None:
         self._inbox = inbox
         self._context = foxglove.Context()
-        self._callbacks = _Callbacks(inbox)
+        self._callbacks = Callbacks(inbox)
         self._channels: dict[int, foxglove.Channel] = {}
         self._topics: dict[str, int] = {}
         self._latched: dict[int, dict[str, tuple[bytes, int]]] = {}
@@ -148,7 +150,7 @@ class LiveServer:
         self._last_ns = max(self._last_ns, told.log_time_ns)
         if told.latch:
             self._latched[number][told.latch] = told.data, told.log_time_ns
-        elif number in self._first:
+        if number in self._first:
             self._keep_first(told)
         self._channels[number].base.log(told.data, told.log_time_ns)
 
@@ -157,7 +159,7 @@ class LiveServer:
         until_ns = self._first_until_ns.setdefault(told.number, told.log_time_ns + FIRST_NS)
         if told.log_time_ns >= until_ns or len(first) >= MAX_FIRST:
             del self._first[told.number]
-        else:
+        elif not told.latch:
             first.append((told.data, told.log_time_ns))
 
     def repeat(self) -> None:
@@ -202,7 +204,7 @@ def _schema(name: str, data: bytes) -> MessageSchema:
     )
 
 
-class _Callbacks(ServerListener):
+class Callbacks(ServerListener):
     """What the SDK calls, on its own threads."""
 
     def __init__(self, inbox: Inbox) -> None:
@@ -232,12 +234,13 @@ class _Callbacks(ServerListener):
         self._forget(client.id, self._subscriptions, lambda kept: kept.discard(channel.id))
 
     def on_client_advertise(self, client: Client, channel: ClientChannel) -> None:
-        if kind_of(channel.schema_name) not in KINDS:
+        described = f"{channel.encoding}\0{channel.schema_name}"
+        if len(described) > MAX_DESCRIPTION_LETTERS or kind_of(channel.schema_name) not in KINDS:
             return
         with self._lock:
             topics = self._topics.setdefault(client.id, {})
             if len(topics) < MAX_VIEWER_TOPICS:
-                topics[channel.id] = f"{channel.encoding}\0{channel.schema_name}"
+                topics[channel.id] = described
 
     def on_client_unadvertise(self, client: Client, client_channel_id: int) -> None:
         self._forget(client.id, self._topics, lambda kept: kept.pop(client_channel_id, None))

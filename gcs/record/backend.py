@@ -54,7 +54,7 @@ class Backend(Protocol):
 
 
 class FoxgloveBackend:
-    """The SDK's writer; `context` also feeds a live server from the same channels."""
+    """The SDK's writer."""
 
     def __init__(self) -> None:
         import foxglove
@@ -114,7 +114,7 @@ class FoxgloveBackend:
 
 
 class McapBackend:
-    """The pure-Python writer: the same file, three times slower, and no live server."""
+    """The pure-Python writer: the same file, three times slower."""
 
     def __init__(self) -> None:
         self._writer: Writer | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -62,7 +63,7 @@ def test_a_goal_that_is_clicked_inside_is_flown_and_one_outside_refused_with_the
     with watched(tmp_path) as (operator, looker, live):
         assert looker.call("take_control", code=live.code)["accepted"]
         assert looker.call("arm")["accepted"]
-        looker.until(lambda: bool(looker.of(STATE)[-1].json["armed"]), "armed")
+        looker.until(lambda: bool(looker.of(STATE)[-1].json.get("armed")), "armed")
         looker.subscribe(DECISIONS)
         assert looker.call("takeoff", up_m=3.0)["accepted"]
         looker.until(lambda: ("takeoff", "complete") in decided(looker), "the take-off", 40.0)
@@ -86,7 +87,7 @@ def test_a_goal_that_is_clicked_inside_is_flown_and_one_outside_refused_with_the
         assert (refused["outcome"], refused["code"]) == ("refused", "OUTSIDE_FENCE")
         looker.until(lambda: "refused OUTSIDE_FENCE" in looker.statuses[-1], "the sentence")
         assert refused["sentence"] in looker.statuses[-1]
-        assert state(looker) in ("HOVERING", "")
+        looker.until(lambda: state(looker) == "HOVERING", "HOVERING still")
         answer = looker.call("goto", east_m=900.0, north_m=0.0)
         assert not answer["accepted"]
         assert answer["code"] == "OUTSIDE_FENCE"
@@ -140,7 +141,13 @@ def test_when_the_viewer_in_control_goes_the_vehicle_holds_and_control_returns(
             assert flyer.call("goto", east_m=60.0, north_m=0.0)["accepted"]
         operator.until(lambda: operator.said("Current State: HOLDING"), "HOLDING")
         operator.fly("resume", "goto 0 0 2")
+        log_path = operator.log_path
         operator.leave()
+    inputs = [
+        r.data for r in Reading(log_path) if isinstance(r, Message) and b'"client":3' in r.data
+    ]
+    kinds = [json.loads(each)["kind"] for each in inputs if each.startswith(b'{"kind"')]
+    assert kinds == ["OperatorJoined", "OperatorLine", "OperatorLine", "OperatorGone"]
 
 
 def test_a_late_viewer_sees_what_was_said_only_once(tmp_path: Path) -> None:

@@ -108,9 +108,11 @@ def test_a_click_of_who_looks_is_answered_with_a_sentence_and_not_again_at_once(
 def test_without_the_code_only_stops_leave(calls: list[tuple[int, str, str]]) -> None:
     script = Script()
     for viewer, service, code in calls:
-        request = {"code": code} if service == "take_control" else {}
-        effects = script.call(viewer, service, **request) + script.click(viewer)
-        for effect in effects:
+        if service == "take_control":
+            effects = script.call(viewer, service, code=code)
+        else:
+            effects = script.call(viewer, service)
+        for effect in effects + script.click(viewer):
             assert not isinstance(effect, Join)
             if isinstance(effect, Send):
                 assert effect.viewer == LOOKING
