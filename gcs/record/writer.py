@@ -313,7 +313,13 @@ class Recorder:
     # --------------------------------------------------------------------------- recording
 
     def repeat(self, now_ns: int) -> None:
-        """Write what is due by the clock alone, behind a `RecordTick`: what the audit repeats."""
+        """Write what is due by the clock alone, behind a `RecordTick`: what the audit repeats.
+
+        Before anything is recorded there is nothing to repeat, and a session's record begins with
+        its set-up.
+        """
+        if not self._channels:
+            return
         now_ns = self.next_ns(now_ns)
         self._seal("RecordTick", now_ns)
         self._emit(self._derived.tick(now_ns), now_ns)

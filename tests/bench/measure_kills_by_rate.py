@@ -63,7 +63,7 @@ def lost_s(folder: Path, rate_hz: int, seconds: float, rerun: str) -> float:
         for message in messages_of(saved)
         if message.topic == "/mavlink/1/1/LOCAL_POSITION_NED"
     ]
-    (last,) = struct.unpack_from("<I", frames[-1], 10)
+    last = int(struct.unpack_from("<I", frames[-1], 10)[0])
     assert len(frames) == last + 1 - FIRST_NUMBER
     return (killed_ns - sent_ns[last + 1 - FIRST_NUMBER]) / 1e9
 

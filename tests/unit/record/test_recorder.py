@@ -576,3 +576,14 @@ def test_an_input_is_the_first_of_what_is_recorded_of_it(
     first, second, third, *_ = messages_of(path)
     assert (first.topic, first.log_time_ns) == ("/session/input", START_NS)
     assert [second.topic, third.topic] == ["/drawn", "/drawn"]
+
+
+def test_a_record_begins_with_its_first_input_however_late_that_comes(tmp_path: Path) -> None:
+    """A flush that was due before it had put a seal in front of the set-up: no audit then."""
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, sealed=True)
+    recorder.tick(START_NS + SECOND)
+    recorder.write(InputItem.of("Setup", {}), START_NS + 2 * SECOND)
+    recorder.tick(START_NS + 3 * SECOND)
+    recorder.close(START_NS + 4 * SECOND)
+    said = [json.loads(message.data)["kind"] for message in messages_of(recorder.path)]
+    assert said == ["Setup", "RecordTick", "RecordEnd"]
