@@ -35,6 +35,9 @@ class StationConfig(msgspec.Struct, frozen=True):
     keep: bool = False  # the station lives on when the operator who started it leaves
     command_line: str = ""  # what was typed, for the record
     record: bool = True  # False: nothing is written, as for a short look at the vehicle
+    rotate_bytes: int = 0  # a new file of the record from this size on; 0 = one file
+    rotate_s: float = 0.0  # and after so long, by the station's clock; 0 = one file
+    compact: bool = True  # files are rewritten in larger chunks once the station has ended
 
     @property
     def expected_sysid(self) -> int:

@@ -15,6 +15,7 @@ from gcs.audit.turns import Given, RecorderTurn, Unreadable
 from gcs.report import Direction
 from gcs.session.inputs import (
     Datagram,
+    DiskLow,
     FileRead,
     FileWritten,
     LinkEvent,
@@ -63,7 +64,7 @@ def kind_of_input(given: Given) -> str:
             return "files"
         case LinkEvent():
             return "links' news"
-        case RecorderChanged() | RecorderGrew() | RecorderTurn():
+        case RecorderChanged() | RecorderGrew() | DiskLow() | RecorderTurn():
             return "recorder's news"
         case SimLine() | SimGone():
             return "simulator's lines"
@@ -108,6 +109,8 @@ def told_input(given: Given) -> str:
             return f"the recorder: {text}"
         case RecorderGrew(size_bytes):
             return f"{size_bytes} bytes are recorded"
+        case DiskLow(free_bytes):
+            return f"{free_bytes} bytes are left on the disk"
         case FaultKept(report):
             return f"an exception: {report.splitlines()[-1] if report else ''}"
         case RecorderTurn.TICK:

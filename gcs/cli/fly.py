@@ -20,6 +20,7 @@ from gcs.cli.options import (
     Seed,
     with_options,
 )
+from gcs.cli.record_options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
 from gcs.operator.number_text import read_number
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
 @click.option(
     "--keep", is_flag=True, help="The link lives on when this operator leaves; see gcs stations."
 )
-@with_options(LIVE)
+@with_options(ROTATE_SIZE, ROTATE_AGE, COMPACT, LIVE)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
@@ -138,6 +139,9 @@ def fly(
     name: str,
     keep: bool,
     mission: str,
+    rotate_size: int,
+    rotate_age: float,
+    compact: bool,
     live: tuple[str, int] | None,
     plain: bool,
     as_json: bool,
@@ -166,6 +170,7 @@ def fly(
         config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
     operator = f"gcs fly, pid {os.getpid()}"
     config = msgspec.structs.replace(config, speedup=speedup, keep=keep, operator=operator)
+    config = with_files(config, rotate_size, rotate_age, compact)
     if plain and mission:
         raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
     mission_path = _mission(mission) if mission else ""

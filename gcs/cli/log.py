@@ -10,11 +10,15 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.log_audit import audit
+from gcs.cli.log_check import check
+from gcs.cli.log_compact import compact
+from gcs.cli.log_cut import cut
 from gcs.cli.log_export import export_log
 from gcs.cli.log_import import import_log
+from gcs.cli.log_merge import merge
 from gcs.cli.log_replay import replay
 from gcs.cli.log_report import report
-from gcs.cli.record_files import RECORD, reading_progress, told
+from gcs.cli.record_files import NEW_RECORD, RECORD, reading_progress, told, writing
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -35,11 +39,18 @@ def log() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-log.add_command(audit)
-log.add_command(report)
-log.add_command(replay)
-log.add_command(import_log)
-log.add_command(export_log)
+for command in (
+    audit,
+    check,
+    compact,
+    cut,
+    export_log,
+    import_log,
+    merge,
+    replay,
+    report,
+):
+    log.add_command(command)
 
 
 @log.command()
@@ -128,13 +139,7 @@ def layout(file: Path | None, output: Path | None, purpose: Purpose) -> None:
 
 @log.command()
 @click.argument("file", type=RECORD)
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="The new file; it must not exist.",
-)
+@NEW_RECORD
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def recover(file: Path, output: Path, as_json: bool) -> None:
     """Make a whole file of one whose writer was killed.
@@ -148,17 +153,12 @@ def recover(file: Path, output: Path, as_json: bool) -> None:
 
     from gcs.record.recover import recover
 
-    with told(file), reading_progress(file, "recovering") as progress:
-        try:
-            saved = recover(file, output, progress)
-        except FileExistsError as error:
-            raise ExitError(
-                ExitCode.USAGE, f"{output}: exists already", "choose another name"
-            ) from error
-        except OSError as error:
-            if error.filename == str(file):
-                raise
-            raise _cannot_write(output, error) from error
+    with (
+        told(file),
+        reading_progress(file, "recovering") as progress,
+        writing(file, output),
+    ):
+        saved = recover(file, output, progress)
     condition = saved.condition
     if as_json:
         values = {
@@ -186,9 +186,8 @@ def _print(flight: FlightInfo) -> None:
     state = "complete" if flight.closed else "NOT CLOSED: its writer was killed or is still writing"
     click.echo(f"{flight.path}: {flight.size / 1e6:.2f} MB, {state}")
     if not flight.closed:
-        click.echo(
-            f"  hint: gcs log recover {flight.path} -o whole.mcap (viewers refuse it as it is)"
-        )
+        click.echo("  viewers refuse such a file: recover it first")
+        click.echo(f"  hint: gcs log recover {flight.path} -o whole.mcap")
     if flight.damaged:
         click.echo(f"  {flight.damaged} damaged records were skipped")
     click.echo(f"{flight.messages} messages in {flight.seconds:.1f} s{_began(flight.start_ns)}")

@@ -19,6 +19,14 @@ if TYPE_CHECKING:
 RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
 """The type of an argument that names a record."""
 
+NEW_RECORD = click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="The new file; it must not exist.",
+)
+
 _PROGRESS_FROM_BYTES = 20_000_000
 """Smaller files are read in less than a second."""
 
@@ -47,3 +55,19 @@ def reading_progress(file: Path, label: str) -> Iterator[Callable[[Condition], N
         return
     with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
         yield lambda condition: bar.update(condition.position - bar.pos)
+
+
+@contextmanager
+def writing(source: Path, output: Path) -> Iterator[None]:
+    """What can be wrong with a file that is written from `source` becomes one sentence."""
+    try:
+        yield
+    except FileExistsError as error:
+        raise ExitError(
+            ExitCode.USAGE, f"{output}: exists already", "choose another name"
+        ) from error
+    except OSError as error:
+        if error.filename == str(source):
+            raise
+        text = f"{output}: cannot write: {error.strerror or error}"
+        raise ExitError(ExitCode.RECORDER, text) from error

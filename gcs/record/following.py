@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mcap.opcode import Opcode
 
-from gcs.record.reading import _RECORD, MAGIC, BadRecordError, Reading, Record, _inflate
+from gcs.record.reading import _RECORD, MAGIC, BadRecordError, Reading, Record, inflate
 
 MAX_LENGTH = 1 << 30
 """A record that says it is longer is no record, and would be waited for in vain."""
@@ -52,7 +52,7 @@ class Following(Reading):
                 if opcode in (Opcode.FOOTER, Opcode.DATA_END):
                     condition.closed = True
                 elif opcode == Opcode.CHUNK:
-                    records = _inflate(body)
+                    records = inflate(body)
                     condition.damaged += records is None
                     yield from self._inner(records or b"")
                 else:

@@ -115,7 +115,7 @@ class Reading:
             if opcode == Opcode.CHUNK and not self._chunks:
                 pass
             elif opcode == Opcode.CHUNK:
-                records = _inflate(data[body:end])
+                records = inflate(data[body:end])
                 condition.damaged += records is None
                 yield from self._inner(records or b"")
             elif opcode == 0:
@@ -170,7 +170,7 @@ def _parse(opcode: int, body: bytes) -> Record | None:
     return reader(ReadDataStream(BytesIO(body))) if reader is not None else None
 
 
-def _inflate(chunk: bytes) -> bytes | None:
+def inflate(chunk: bytes) -> bytes | None:
     """The records of a whole chunk; None if they are not what was written."""
     if len(chunk) < _CHUNK.size:
         return None

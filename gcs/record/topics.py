@@ -42,7 +42,7 @@ class Deriver:
         return []
 
     def tick(self, now_ns: int) -> list[Out]:
-        """What is due by the clock alone: a state is repeated once a second."""
+        """What is due by the clock alone: a state is repeated about once a second."""
         return []
 
     def close(self, now_ns: int) -> list[Out]:

@@ -32,7 +32,8 @@ from gcs.report import (
     RecordItem,
 )
 
-FLUSH_NS = 500_000_000
+FLUSH_NS = 800_000_000
+"""With a turn of the loop, a kill loses less than a second."""
 RETRY_NS = 5_000_000_000
 MAX_FRAME_CHANNELS = 4096
 """An MCAP numbers channels with 16 bits; forged system ids must not use them up."""
@@ -70,7 +71,14 @@ class RecordResumed:
     now_ns: int
 
 
-RecordNews: TypeAlias = RecordLost | RecordResumed
+@dataclass(frozen=True, slots=True)
+class RecordRotated:
+    """The file before was closed in order; recording goes on in `path`, without a gap."""
+
+    path: Path
+
+
+RecordNews: TypeAlias = RecordLost | RecordResumed | RecordRotated
 
 Watch: TypeAlias = Callable[[Channel, bytes, int, str], None]
 """(channel, message, log_time in ns, latch): is told of every message; see `Out` for `latch`."""
@@ -99,6 +107,22 @@ class PartBegan:
     """As in `Seal`: what earlier files should hold.  Fewer: the others are in no file."""
 
 
+@dataclass(frozen=True, slots=True)
+class Rotation:
+    """When a new file begins; 0 = never for this reason."""
+
+    size_bytes: int = 0
+    age_ns: int = 0
+
+    def due(self, size_bytes: int, age_ns: int) -> bool:
+        """Whether a file that is so large and so old is to be closed."""
+        too_large = 0 < self.size_bytes <= size_bytes
+        return too_large or 0 < self.age_ns <= age_ns
+
+
+NEVER = Rotation()
+
+
 class Recorder:
     """Items in, MCAP out.  Times are log_time: ns of the one clock, made strictly increasing."""
 
@@ -111,9 +135,11 @@ class Recorder:
         now_ns: int,
         *,
         sealed: bool = False,
+        rotation: Rotation = NEVER,
     ) -> None:
         """Call `Recorder.open` instead."""
         self._seals = sealed
+        self._rotation = rotation
         self._directory = directory
         self._stem = stem
         self._backend = backend
@@ -136,6 +162,8 @@ class Recorder:
         self._loss_told = False
         self._file: GuardedFile | None = None
         self._bytes_before = 0
+        self._began_ns = now_ns
+        self._lossless = True
         self.path = directory / f"{stem}.mcap"
         self.parts: list[Path] = []
         self._leftovers: list[Path] = []
@@ -151,6 +179,7 @@ class Recorder:
         backend: Backend | None = None,
         opener: Opener = open_exclusive,
         sealed: bool = False,
+        rotation: Rotation = NEVER,
     ) -> Recorder:
         """Start `<directory>/<started_text>_<name>.mcap`; `started_text` is YYYYMMDD-HHMMSS.
 
@@ -164,7 +193,9 @@ class Recorder:
             directory.mkdir(parents=True, exist_ok=True)
             for number in range(1, _SAME_SECOND_NAMES):
                 stem = base if number == 1 else f"{base}-{number}"
-                recorder = cls(directory, stem, backend, opener, now_ns, sealed=sealed)
+                recorder = cls(
+                    directory, stem, backend, opener, now_ns, sealed=sealed, rotation=rotation
+                )
                 try:
                     recorder._start(recorder.path, now_ns)
                 except FileExistsError:
@@ -198,7 +229,11 @@ class Recorder:
     @property
     def bytes_written(self) -> int:
         """Of all parts."""
-        return self._bytes_before + (self._file.written if self._file is not None else 0)
+        return self._bytes_before + self._file_bytes
+
+    @property
+    def _file_bytes(self) -> int:
+        return self._file.written if self._file is not None else 0
 
     # ---------------------------------------------------------------------------- watching
 
@@ -251,19 +286,23 @@ class Recorder:
             self._unsealed.append(message)
 
     def tick(self, now_ns: int) -> list[RecordNews]:
-        """Flush at 2 Hz, write what is due by the clock, begin a new part after a failure."""
+        """Flush when it is time, write what is due by the clock, begin a new part after a failure
+        or where the file has become too large or too old."""
         if not self.failed and now_ns >= self._flush_at_ns:
             self.repeat(now_ns)
             self._flush(now_ns)
-        return self._recover(now_ns) if self.failed else []
+        news: list[RecordNews] = []
+        if self._rotation.due(self._file_bytes, now_ns - self._began_ns) and not self.failed:
+            news += self._rotate(now_ns)
+        return news + (self._recover(now_ns) if self.failed else [])
 
     def close(self, now_ns: int) -> bool:
-        """Finish the file; whether all that was recorded reached the disk, in one part."""
+        """Finish the file; whether all that was recorded reached the disk."""
         if self._file is None:
             return False
         self.end(now_ns)
         self._finish()
-        return self._file.failure is None and len(self.parts) == 1
+        return self._file.failure is None and self._lossless
 
     def discard(self, now_ns: int) -> None:
         """Close, and leave no file: there was nothing to record."""
@@ -274,7 +313,13 @@ class Recorder:
     # --------------------------------------------------------------------------- recording
 
     def repeat(self, now_ns: int) -> None:
-        """Write what is due by the clock alone, behind a `RecordTick`: what the audit repeats."""
+        """Write what is due by the clock alone, behind a `RecordTick`: what the audit repeats.
+
+        Before anything is recorded there is nothing to repeat, and a session's record begins with
+        its set-up.
+        """
+        if not self._channels:
+            return
         now_ns = self.next_ns(now_ns)
         self._seal("RecordTick", now_ns)
         self._emit(self._derived.tick(now_ns), now_ns)
@@ -383,6 +428,7 @@ class Recorder:
 
     def _start(self, path: Path, now_ns: int) -> None:
         """Begin a part; what is said only once in a record is repeated in it.  Raises OSError."""
+        self._began_ns = now_ns
         self._file = GuardedFile(self._opener(path))
         self.path = path
         self.parts.append(path)
@@ -413,7 +459,21 @@ class Recorder:
         self._backend.close()
         self._file.close()
 
+    def _rotate(self, now_ns: int) -> list[RecordNews]:
+        """Close the file in order and begin the next; where that fails, the disk has failed."""
+        closed = self._file
+        self._drop_file()
+        if closed is None or closed.failure is not None:
+            return []
+        try:
+            self._start_next_part(now_ns)
+        except OSError:
+            return []
+        self._backend.flush()
+        return [] if self.failed else [RecordRotated(self.path)]
+
     def _recover(self, now_ns: int) -> list[RecordNews]:
+        self._lossless = False
         self._drop_unsealed()
         if not self._loss_told:
             self._loss_told = True
@@ -427,7 +487,7 @@ class Recorder:
 
     def _drop_file(self) -> str:
         if self._file is None:
-            return "not open"
+            return "the next file could not be begun"
         failure = self._file.failure
         self._finish()
         self._bytes_before += self._file.written

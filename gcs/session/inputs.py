@@ -104,6 +104,16 @@ class RecorderGrew:
 
 
 @dataclass(frozen=True, slots=True)
+class DiskLow:
+    """The disk of the record has little room left, or (`critical`) next to none."""
+
+    free_bytes: int
+    left_s: float | None
+    """Until it is full, at the present rate; None where that is unknown."""
+    critical: bool
+
+
+@dataclass(frozen=True, slots=True)
 class SimLine:
     """A line that our own vehicle's process printed."""
 
@@ -133,6 +143,7 @@ OtherInput: TypeAlias = (
     | FileWritten
     | RecorderChanged
     | RecorderGrew
+    | DiskLow
     | SimLine
     | SimGone
     | Wake

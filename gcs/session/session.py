@@ -28,6 +28,7 @@ from gcs.session.effects import Effect, Emit, Finish, Record
 from gcs.session.gate_port import condition
 from gcs.session.inputs import (
     Datagram,
+    DiskLow,
     FileRead,
     FileWritten,
     Input,
@@ -198,6 +199,8 @@ class Session:
             case RecorderGrew(size_bytes):
                 self._recorded_bytes = size_bytes
                 return []
+            case DiskLow():
+                return [_disk_low(given)]
             case SimLine(text):
                 return [sim_line(text, now_ns)]
             case SimGone(exit_code):
@@ -398,3 +401,10 @@ class Session:
             listening=self._vehicle.listening(now_ns),
             in_control=self._operators.in_control,
         )
+
+
+def _disk_low(news: DiskLow) -> Log:
+    """The warning, while there is still time to make room."""
+    left = "" if news.left_s is None else f", for {news.left_s / 60:.0f} min at this rate"
+    text = f"the disk of the record has {news.free_bytes / 1e6:.0f} MB left{left}"
+    return Log(Level.ERROR if news.critical else Level.WARNING, "recorder", text)

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
+from typing import TypeAlias
 
-from gcs.record.writer import Recorder, RecordLost, RecordResumed
+from gcs.record.writer import Recorder, RecordLost, RecordResumed, RecordRotated
 from gcs.report import RecordItem
-from gcs.session.inputs import RecorderChanged, RecorderGrew
+from gcs.session.inputs import DiskLow, RecorderChanged, RecorderGrew
+from gcs.shell.disk_watch import DiskWatch
 
 GREW_STEP_BYTES = 50_000
+
+RecorderNews: TypeAlias = RecorderChanged | RecorderGrew | DiskLow
+"""What the session is told of its record."""
 
 
 class Recording:
     """A recorder, or none: a command that only looks, such as `gcs status`, may go without."""
 
-    def __init__(self, recorder: Recorder | None) -> None:
+    def __init__(self, recorder: Recorder | None, disk: DiskWatch | None = None) -> None:
         self._recorder = recorder
+        self._disk = disk
         self._told_bytes = 0
         self._told_failed = False
         self._whole: bool | None = None
@@ -29,6 +36,11 @@ class Recording:
     def path(self) -> str:
         """The file that is being written; empty where nothing is recorded."""
         return str(self._recorder.path) if self._recorder else ""
+
+    @property
+    def parts(self) -> list[Path]:
+        """All files that were written, in order."""
+        return list(self._recorder.parts) if self._recorder else []
 
     @property
     def deadline_ns(self) -> int:
@@ -49,7 +61,7 @@ class Recording:
             self._told_failed = True
             yield RecorderChanged(False, self.path, "the recorder failed")
 
-    def upkeep(self, now_ns: int) -> Iterator[RecorderChanged | RecorderGrew]:
+    def upkeep(self, now_ns: int) -> Iterator[RecorderNews]:
         """Let the recorder flush or retry when that is due; what the session must know of it."""
         if self._recorder is None or now_ns < self._recorder.deadline_ns:
             return
@@ -65,9 +77,15 @@ class Recording:
                     gap_s = (resumed_ns - since_ns) / 1e9
                     text = f"recording again in {path}; {gap_s:.1f} s are in no file"
                     yield RecorderChanged(True, str(path), text)
+                case RecordRotated(path):
+                    yield RecorderChanged(True, str(path), f"recording goes on in {path}")
         if self._recorder.bytes_written - self._told_bytes >= GREW_STEP_BYTES:
             self._told_bytes = self._recorder.bytes_written
             yield RecorderGrew(self._told_bytes)
+        if self._disk is not None and not self._recorder.failed:
+            low = self._disk.look(self._recorder.bytes_written, now_ns)
+            if low is not None:
+                yield low
 
     def close(self, now_ns: int) -> bool:
         """Finish the file; whether every byte reached the disk.  Closing twice says the same."""

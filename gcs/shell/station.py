@@ -20,13 +20,15 @@ from gcs.exit_codes import ExitCode
 from gcs.gate.policy.policy import Policy
 from gcs.policy_digest import policy_digest
 from gcs.policy_file import PolicyFileError, load_policy
-from gcs.record.writer import Recorder, RecorderError
+from gcs.record.compact import compact_in_background
+from gcs.record.writer import Recorder, RecorderError, Rotation
 from gcs.session.effects import EVERYONE
 from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.shell import sockets
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
+from gcs.shell.disk_watch import DiskWatch, free_in
 from gcs.shell.endpoints import EndpointError, parse_endpoint
 from gcs.shell.environment import environment
 from gcs.shell.local_socket import LocalSocket
@@ -111,6 +113,8 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
         if clients is not None:
             clients.tell(bye, EVERYONE, droppable=False, last=True)
     screen.put(bye)
+    if setup.compact:
+        compact_in_background(recording.parts)
     return exit_code
 
 
@@ -182,11 +186,12 @@ def _open_recording(setup: StationConfig, clock: Clock) -> Recording:
         return Recording(None)
     try:
         folder, stamp, now_ns = Path(setup.log_dir), clock.stamp(), clock.now_ns()
-        recorder = Recorder.open(folder, setup.name, stamp, now_ns, sealed=True)
+        rotation = Rotation(setup.rotate_bytes, round(setup.rotate_s * 1e9))
+        recorder = Recorder.open(folder, setup.name, stamp, now_ns, sealed=True, rotation=rotation)
     except RecorderError as error:
         hint = "choose a folder that can be written with --log-dir"
         raise CannotStartError(ExitCode.RECORDER, str(error), hint) from error
-    return Recording(recorder)
+    return Recording(recorder, DiskWatch(free_in(folder), now_ns))
 
 
 if __name__ == "__main__":

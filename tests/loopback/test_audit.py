@@ -13,7 +13,7 @@ from gcs import ipc
 from gcs.audit.audit import AuditResult
 from gcs.audit.messages import INPUT_TOPIC, Attachments, Stored
 from gcs.audit.turns import Turns
-from gcs.record.writer import Recorder
+from gcs.record.writer import Recorder, Rotation
 from gcs.session import inputs
 from tests.audits import audited, kind_of, read, resealed, with_data
 from tests.loopback.flight import MISSIONS, Flight
@@ -41,6 +41,7 @@ def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
     flight.feed(inputs.OperatorLine(2, ipc.Ask(1, "abort")))
     flight.run(2.0)
     flight.feed(inputs.RecorderGrew(100_000))
+    flight.feed(inputs.DiskLow(100_000_000, 600.0, critical=False))
     flight.feed(inputs.OperatorNoise(2, "gibberish"))
     flight.feed(inputs.Datagram(0, b"GET / HTTP/1.1"))
     flight.feed(inputs.OperatorGone(2, "its connection ended"))
@@ -284,3 +285,32 @@ def test_a_file_that_is_no_session_s_is_a_clear_error(tmp_path: Path) -> None:
     bad = tmp_path / "bad.mcap"
     bad.write_bytes(b"#!/bin/sh\n")
     assert gcs_log_audit(bad).exit_code == 4
+
+
+# --------------------------------------------------------------------------------- rotation
+
+
+def test_a_record_of_several_files_is_audited_over_all_of_them(tmp_path: Path) -> None:
+    recorder = Recorder.open(
+        tmp_path,
+        "rotated",
+        "20260101-000000",
+        START_NS,
+        sealed=True,
+        rotation=Rotation(age_ns=4_000_000_000),
+    )
+    flight = Flight()
+    flight.recorder = recorder
+    flight.hovering(2.0)
+    flight.done(flight.goto(3.0, 0.0, 2.0))
+    flight.done(flight.goto(500.0, 0.0, 2.0))
+    flight.run(3.0)
+    assert recorder.close(flight.now_ns)
+    assert len(recorder.parts) >= 3
+    result = audited(*read(*recorder.parts))
+    assert (result.first, result.notes, result.good) == ([], [], True)
+    alone = gcs_log_audit(recorder.parts[1])
+    assert alone.exit_code == 4
+    assert "it is part 2 of 20260101-000000_rotated" in alone.output
+    hole = audited(*read(recorder.parts[0], *recorder.parts[2:]))
+    assert not hole.good

@@ -25,7 +25,8 @@ from gcs.report import (
 )
 
 STATE_HZ = 5.0
-FSA_PERIOD_NS = 1_000_000_000
+FSA_PERIOD_NS = 750_000_000
+"""Shorter than the time between two flushes, which are when a state is repeated."""
 DECIMALS = 3
 """Millimetres and thousandths of a degree: no autopilot reports better."""
 

@@ -172,7 +172,7 @@ def test_a_hovering_vehicle_does_not_repeat_its_trail(tmp_path: Path) -> None:
 # ----------------------------------------------------------------------------- state bars
 
 
-def test_the_state_is_recorded_on_change_every_second_and_at_close(tmp_path: Path) -> None:
+def test_the_state_is_recorded_on_change_with_each_flush_and_at_close(tmp_path: Path) -> None:
     silence: list[RecordItem] = [InputItem.of("tick", {})] * 125  # 2.5 s
     path = record(tmp_path, [fsa("HOVERING"), *silence, fsa("MOVING", 3), *silence[:3]])
     found = [
@@ -180,9 +180,9 @@ def test_the_state_is_recorded_on_change_every_second_and_at_close(tmp_path: Pat
         for message in messages_of(path)
         if message.topic == "/vehicle/1/fsa"
     ]
-    assert [state for _, state in found] == ["HOVERING"] * 3 + ["MOVING"] * 2
+    assert [state for _, state in found] == ["HOVERING"] * 4 + ["MOVING"] * 2
     times_s = [round(at_ns / SECOND, 1) for at_ns, _ in found]
-    assert times_s == [0.0, 1.0, 2.0, 2.5, 2.6]
+    assert times_s == [0.0, 0.8, 1.6, 2.4, 2.5, 2.6]
 
 
 def test_reminders_from_the_session_do_not_double_the_rate(tmp_path: Path) -> None:

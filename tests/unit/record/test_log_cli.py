@@ -70,6 +70,7 @@ def test_info_works_on_a_killed_file_and_says_what_to_do(killed_flight: Path) ->
     result = gcs_log("info", killed_flight)
     assert result.exit_code == 0
     assert "NOT CLOSED" in result.output
+    assert "viewers refuse such a file" in result.output
     assert f"hint: gcs log recover {killed_flight}" in result.output
     assert "OUTSIDE_FENCE" in result.output
 

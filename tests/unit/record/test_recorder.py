@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import logging
+import random
 from itertools import pairwise
 from pathlib import Path
 from zlib import crc32
@@ -20,7 +21,14 @@ from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
 from gcs.record.reading import Reading
 from gcs.record.topics import INPUT_TOPIC, Out
-from gcs.record.writer import Recorder, RecorderError, RecordLost, RecordResumed
+from gcs.record.writer import (
+    Recorder,
+    RecorderError,
+    RecordLost,
+    RecordResumed,
+    RecordRotated,
+    Rotation,
+)
 from gcs.report import (
     AttachmentItem,
     Direction,
@@ -140,13 +148,13 @@ def test_log_time_is_strictly_increasing_whatever_the_clock_does(
     assert all(later > earlier for earlier, later in pairwise(times))
 
 
-def test_flushes_are_due_twice_a_second_on_a_grid(tmp_path: Path) -> None:
+def test_flushes_are_due_on_a_grid(tmp_path: Path) -> None:
     recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
-    assert recorder.deadline_ns == START_NS + 500 * MS
-    recorder.tick(START_NS + 730 * MS)  # late: the next is not put off, and none is made up for
-    assert recorder.deadline_ns == START_NS + 1000 * MS
-    recorder.tick(START_NS + 2600 * MS)
-    assert recorder.deadline_ns == START_NS + 3000 * MS
+    assert recorder.deadline_ns == START_NS + 800 * MS
+    recorder.tick(START_NS + 930 * MS)  # late: the next is not put off, and none is made up for
+    assert recorder.deadline_ns == START_NS + 1600 * MS
+    recorder.tick(START_NS + 3300 * MS)
+    assert recorder.deadline_ns == START_NS + 4000 * MS
     recorder.close(START_NS + 3 * SECOND)
 
 
@@ -154,8 +162,8 @@ def test_what_was_flushed_is_in_the_file_without_closing_it(tmp_path: Path) -> N
     recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
     for number in range(10):
         recorder.write(position_frame(number), START_NS + number * 40 * MS)
-    recorder.tick(START_NS + 500 * MS)
-    recorder.write(position_frame(10), START_NS + 600 * MS)
+    recorder.tick(START_NS + 800 * MS)
+    recorder.write(position_frame(10), START_NS + 900 * MS)
     assert len(messages_of(recorder.path)) == 10
     recorder.close(START_NS + SECOND)
     assert len(messages_of(recorder.path)) == 11
@@ -258,11 +266,11 @@ def test_a_full_disk_is_told_at_once_and_a_second_part_begins_when_there_is_room
         if recorder.failed:
             failed_ns = now_ns
             assert news == [
-                RecordLost(recorder.path, failed_ns - 500 * MS, "No space left on device")
+                RecordLost(recorder.path, failed_ns - 800 * MS, "No space left on device")
             ]
     assert failed_ns
     saved = len(messages_of(recorder.path))
-    assert saved >= (failed_ns - 500 * MS - START_NS) // (10 * MS)
+    assert saved >= (failed_ns - 800 * MS - START_NS) // (10 * MS)
 
     recorder.write(position_frame(9000), now_ns)  # the link goes on and does not notice
     assert recorder.tick(now_ns + SECOND) == []
@@ -275,7 +283,7 @@ def test_a_full_disk_is_told_at_once_and_a_second_part_begins_when_there_is_room
     disk.free = 1_000_000
     now_ns = failed_ns + 10 * SECOND
     part2 = tmp_path / "20260101-000000_flight_part2.mcap"
-    assert recorder.tick(now_ns) == [RecordResumed(part2, failed_ns - 500 * MS, now_ns)]
+    assert recorder.tick(now_ns) == [RecordResumed(part2, failed_ns - 800 * MS, now_ns)]
     assert not recorder.failed
     recorder.write(position_frame(10_000), now_ns + MS)
     assert not recorder.close(now_ns + SECOND)  # something is missing, and close says so
@@ -491,6 +499,79 @@ def test_what_was_attached_word_for_word_is_not_attached_again(tmp_path: Path) -
         assert [each.data for each in make_reader(file).iter_attachments()] == [b"one", b"two"]
 
 
+# --------------------------------------------------------------------------------- rotation
+
+
+def test_a_file_that_has_its_size_is_closed_and_the_next_begins_without_a_gap(
+    tmp_path: Path,
+) -> None:
+    recorder = Recorder.open(
+        tmp_path, "f", "20260101-000000", START_NS, rotation=Rotation(size_bytes=20_000)
+    )
+    rng = random.Random(1)
+    items = [
+        FrameItem(0, Direction.RECEIVED, frame_v2(110, rng.randbytes(253) + b"\1", n & 0xFF))
+        for n in range(500)
+    ]
+    news = []
+    for number, item in enumerate(items):
+        now_ns = START_NS + number * 20 * MS
+        recorder.write(item, now_ns)
+        if now_ns >= recorder.deadline_ns:
+            news += recorder.tick(now_ns)
+    assert recorder.close(START_NS + 10 * SECOND)
+    names = [path.name for path in recorder.parts]
+    assert names[:3] == [f"20260101-000000_f{part}.mcap" for part in ("", "_part2", "_part3")]
+    assert news == [RecordRotated(path) for path in recorder.parts[1:]]
+    found = [message for path in recorder.parts for message in messages_of(path)]
+    assert [ros1.rebuild(message.data) for message in found] == [item.raw for item in items]
+    for path in recorder.parts[:-1]:
+        assert 20_000 <= path.stat().st_size < 50_000
+        with open(path, "rb") as file:
+            assert make_reader(file).get_summary() is not None
+
+
+def test_a_file_that_has_its_age_is_followed_by_one_with_all_that_was_said_once(
+    tmp_path: Path,
+) -> None:
+    recorder = Recorder.open(
+        tmp_path, "f", "20260101-000000", START_NS, rotation=Rotation(age_ns=10 * SECOND)
+    )
+    for item in a_flight():
+        recorder.write(item, START_NS)
+    for number in range(25):
+        recorder.tick(START_NS + number * SECOND)
+    assert recorder.close(START_NS + 25 * SECOND)
+    assert len(recorder.parts) == 3
+    for path in recorder.parts[1:]:
+        topics = {message.topic for message in messages_of(path)}
+        assert {"/tf_static", "/vehicle/1/model", "/geofence", "/vehicle/1/param"} <= topics
+        kinds = {type(entry).__name__ for entry in Reading(path)}
+        assert {"Attachment", "Metadata"} <= kinds
+
+
+def test_a_disk_that_is_full_at_the_rotation_is_told_as_a_loss(tmp_path: Path) -> None:
+    disk = Disk(free=1_000_000)
+    recorder = Recorder.open(
+        tmp_path,
+        "f",
+        "20260101-000000",
+        START_NS,
+        opener=disk.open,
+        rotation=Rotation(age_ns=SECOND),
+    )
+    recorder.write(position_frame(0), START_NS)
+    recorder.tick(START_NS + 800 * MS)
+    disk.free = 50
+    (lost,) = recorder.tick(START_NS + 1600 * MS)
+    assert isinstance(lost, RecordLost)
+    assert recorder.failed
+    disk.free = 1_000_000
+    (resumed,) = recorder.tick(START_NS + 7 * SECOND)
+    assert isinstance(resumed, RecordResumed)
+    assert recorder.close(START_NS + 8 * SECOND) is False
+
+
 class DrawsFirst(Derived):
     """Says something of each item before what the item itself becomes."""
 
@@ -508,3 +589,14 @@ def test_an_input_is_the_first_of_what_is_recorded_of_it(
     first, *others = messages_of(path)
     assert (first.topic, first.log_time_ns) == (INPUT_TOPIC, START_NS)
     assert [other.topic for other in others].count("/drawn") == 2
+
+
+def test_a_record_begins_with_its_first_input_however_late_that_comes(tmp_path: Path) -> None:
+    """A flush that was due before it had put a seal in front of the set-up: no audit then."""
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, sealed=True)
+    recorder.tick(START_NS + SECOND)
+    recorder.write(InputItem.of("Setup", {}), START_NS + 2 * SECOND)
+    recorder.tick(START_NS + 3 * SECOND)
+    recorder.close(START_NS + 4 * SECOND)
+    said = [json.loads(message.data)["kind"] for message in messages_of(recorder.path)]
+    assert said == ["Setup", "RecordTick", "RecordEnd"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -14,9 +15,11 @@ import pytest
 from foxglove.mcap import MCAPCompression, MCAPWriteOptions
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
 
 from gcs.record import ros1
+from gcs.record.check import check
 from gcs.record.reading import BadRecordError, Reading
 from gcs.record.recover import recover
 from gcs.record.writer import Recorder
@@ -86,9 +89,9 @@ def test_of_a_chunk_that_breaks_off_the_messages_before_the_break_are_saved(
     assert before_count < saved.messages < count
 
 
-def test_a_kill_loses_at_most_the_time_between_two_flushes() -> None:
+def test_a_kill_loses_less_than_a_second() -> None:
     (_, count) = killed().flushed[-1]
-    assert (len(killed().frames) - count) * 2 * MS <= 500 * MS
+    assert (len(killed().frames) - count) * 2 * MS < 1000 * MS
 
 
 @pytest.mark.parametrize("compression", [MCAPCompression.Lz4, MCAPCompression.Zstd, None])
@@ -205,3 +208,49 @@ def test_garbage_in_the_file_is_never_a_crash(offset: int, garbage: bytes) -> No
         reading = Reading(path)
         assert sum(1 for _ in reading) >= 0
         assert reading.condition.position == reading.condition.size
+
+
+def test_a_cut_at_every_kind_of_record_gives_back_all_before_it_and_a_good_file(
+    tmp_path: Path,
+) -> None:
+    """At the beginning, in the head and in the middle of each record that the recorder writes."""
+    data = record(tmp_path, a_flight() * 8, step_ns=50 * MS).read_bytes()
+    found = list(records_of(data))
+    chunk, footer = Opcode.CHUNK, Opcode.FOOTER
+    assert {opcode for _, opcode, _ in found} >= {
+        Opcode.HEADER,
+        chunk,
+        Opcode.MESSAGE_INDEX,
+        Opcode.ATTACHMENT,
+        Opcode.METADATA,
+        Opcode.DATA_END,
+        Opcode.SCHEMA,
+        Opcode.CHANNEL,
+        Opcode.STATISTICS,
+        Opcode.CHUNK_INDEX,
+        Opcode.ATTACHMENT_INDEX,
+        Opcode.METADATA_INDEX,
+        Opcode.SUMMARY_OFFSET,
+        footer,
+    }
+    for at, opcode, size in found:
+        whole = sum(1 for start, kind, length in found if kind == chunk and start + length <= at)
+        before = messages_of_prefix(tmp_path, data[:at])
+        for cut in {at, at + 1, at + 9, at + size // 2}:
+            (tmp_path / "cut.mcap").write_bytes(data[:cut])
+            saved = recover(tmp_path / "cut.mcap", tmp_path / "whole.mcap")
+            got = list(messages_of(tmp_path / "whole.mcap"))
+            assert got[: len(before)] == before, (opcode, cut)
+            assert (len(before) > 0) == (whole > 0)
+            assert not saved.condition.closed
+            assert check(tmp_path / "whole.mcap").good
+            (tmp_path / "whole.mcap").unlink()
+
+
+def records_of(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """Where each record begins, its kind, and its size with its head."""
+    at = 8
+    while at + 9 <= len(data) - 8:
+        opcode, length = struct.unpack_from("<BQ", data, at)
+        yield at, opcode, 9 + length
+        at += 9 + length

@@ -14,6 +14,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.report import AttachmentItem, LogEvent
 from gcs.session.effects import Record
 from gcs.session.inputs import (
+    DiskLow,
     FileRead,
     FileWritten,
     LinkEvent,
@@ -66,6 +67,7 @@ def as_json(item: Any) -> Any:
             {"client": 1, "command": {"type": "ask", "id": 1, "word": "takeoff", "up_m": 2.0}},
         ),
         (RecorderGrew(1_000), {"size_bytes": 1_000}),
+        (DiskLow(5, None, True), {"free_bytes": 5, "left_s": None, "critical": True}),
         (
             FileRead(1, "b/a.plan", b"12345"),
             {

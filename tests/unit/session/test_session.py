@@ -15,6 +15,7 @@ from gcs.gate.policy.zonespec import CircleSpec
 from gcs.session.effects import Effect, Record
 from gcs.session.inputs import (
     Datagram,
+    DiskLow,
     FileRead,
     LinkEvent,
     OperatorNoise,
@@ -324,6 +325,16 @@ def test_how_much_is_recorded_is_shown() -> None:
     script.feed(RecorderGrew(2_500_000))
     script.run(0.1)
     assert told.snapshots(script.told)[-1].recorded_mb == 2.5
+
+
+def test_a_disk_that_fills_up_is_told_with_what_is_left() -> None:
+    script = Script().met()
+    assert told.lines(script.feed(DiskLow(150_000_000, 1500.0, False))) == [
+        (told.WARNING, "the disk of the record has 150 MB left, for 25 min at this rate")
+    ]
+    assert told.lines(script.feed(DiskLow(19_000_000, None, True))) == [
+        (told.ERROR, "the disk of the record has 19 MB left")
+    ]
 
 
 # -------------------------------------------------------------------- a vehicle of our own

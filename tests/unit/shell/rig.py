@@ -13,13 +13,13 @@ from collections.abc import Callable, Iterator, Sequence
 
 from gcs import ipc
 from gcs.session.effects import Effect, Finish, Record
-from gcs.session.inputs import Input, RecorderChanged, RecorderGrew, Wake
+from gcs.session.inputs import Input, RecorderChanged, Wake
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.endpoints import Endpoint, Kind
 from gcs.shell.loop import Loop
 from gcs.shell.pipes import LineSink, LineSource
-from gcs.shell.recording import Recording
+from gcs.shell.recording import RecorderNews, Recording
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 from gcs.shell.sockets import Link
@@ -150,7 +150,7 @@ class PaperRecording(Recording):
         super().__init__(None)
         self.written: list[tuple[int, object]] = []
         self.news: list[RecorderChanged] = []
-        self.upkeep_news: list[RecorderChanged | RecorderGrew] = []
+        self.upkeep_news: list[RecorderNews] = []
         self.fails_at: list[object] = []
         self.due_ns = 1 << 62
 
@@ -167,7 +167,7 @@ class PaperRecording(Recording):
         news, self.news = self.news, []
         yield from news
 
-    def upkeep(self, now_ns: int) -> Iterator[RecorderChanged | RecorderGrew]:
+    def upkeep(self, now_ns: int) -> Iterator[RecorderNews]:
         news, self.upkeep_news = self.upkeep_news, []
         yield from news
 

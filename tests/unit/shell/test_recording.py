@@ -88,7 +88,7 @@ def test_a_full_disk_is_told_with_the_file_the_time_and_the_reason(
     (lost,) = recording.upkeep(recording.deadline_ns)
     assert isinstance(lost, RecorderChanged)
     assert (lost.recording, lost.path) == (False, path)
-    assert lost.text == f"not recorded since 0.5 s ago: {path}: No space left on device"
+    assert lost.text == f"not recorded since 0.8 s ago: {path}: No space left on device"
     assert list(recording.changes()) == []
 
 
@@ -111,7 +111,7 @@ def test_a_disk_that_has_room_again_is_told_with_the_gap(recording: Recording, d
     assert isinstance(back, RecorderChanged)
     assert back.recording
     assert back.path.endswith("_part2.mcap")
-    assert "5.5 s are in no file" in back.text
+    assert "5.8 s are in no file" in back.text
     assert recording.path == back.path
 
 

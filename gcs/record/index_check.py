@@ -1,0 +1,102 @@
+"""Does a record's index lead to all of its messages?  Viewers read nothing else."""
+
+from __future__ import annotations
+
+import mmap
+import struct
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.reader import make_reader
+from mcap.records import ChunkIndex
+from mcap.summary import Summary
+
+from gcs.record.reading import inflate
+
+_RECORD = struct.Struct("<BQ")
+_MESSAGE_HEAD = struct.Struct("<HIQ")
+_INDEX_HEAD = struct.Struct("<HI")
+_ENTRY = struct.Struct("<QQ")
+
+
+def wrong_with_index(path: Path, counted: Mapping[int, int]) -> Iterator[str]:
+    """What is wrong, in sentences; `counted` is how many messages each channel has.
+
+    Raises OSError.
+    """
+    with open(path, "rb") as file:
+        try:
+            summary = make_reader(file).get_summary()
+        except (McapError, struct.error, ValueError, KeyError, AssertionError) as error:
+            yield f"its summary cannot be read: {error or type(error).__name__}"
+            return
+        if summary is None or summary.statistics is None:
+            yield "it has no summary: a viewer must read all of it"
+            return
+        said = {k: n for k, n in summary.statistics.channel_message_counts.items() if n}
+        if said != dict(counted) or summary.statistics.message_count != sum(counted.values()):
+            total = summary.statistics.message_count
+            yield f"its summary counts {total} messages, there are {sum(counted.values())}"
+        yield from _wrong_with_channels(summary, counted)
+        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            indexed: Counter[int] = Counter()
+            for index in summary.chunk_indexes:
+                yield from _wrong_with_chunk(data, index, indexed)
+        if indexed != Counter(counted):
+            yield f"its index leads to {indexed.total()} of {sum(counted.values())} messages"
+
+
+def _wrong_with_channels(summary: Summary, counted: Mapping[int, int]) -> Iterator[str]:
+    missing = sorted(set(counted) - set(summary.channels))
+    if missing:
+        yield f"its summary lacks the channels {missing}"
+
+
+def _wrong_with_chunk(data: mmap.mmap, index: ChunkIndex, indexed: Counter[int]) -> Iterator[str]:
+    start = index.chunk_start_offset
+    body = _body(data, start, Opcode.CHUNK)
+    records = inflate(body) if body is not None else None
+    if records is None:
+        yield f"there is no chunk at byte {start}, where its index has one"
+        return
+    heads = dict(_message_heads(records))
+    found = 0
+    for channel_id, at in index.message_index_offsets.items():
+        entries = _body(data, at, Opcode.MESSAGE_INDEX)
+        if entries is None or len(entries) < _INDEX_HEAD.size:
+            yield f"there is no message index at byte {at}"
+            continue
+        number, length = _INDEX_HEAD.unpack_from(entries)
+        packed = entries[_INDEX_HEAD.size : _INDEX_HEAD.size + length]
+        if number != channel_id or len(packed) != length or length % _ENTRY.size:
+            yield f"the message index at byte {at} is not one of channel {channel_id}"
+            continue
+        for log_time_ns, offset in _ENTRY.iter_unpack(packed):
+            if heads.get(offset) == (channel_id, log_time_ns):
+                found += 1
+                indexed[channel_id] += 1
+    if found != len(heads):
+        yield f"the index of the chunk at byte {start} leads to {found} of {len(heads)} messages"
+
+
+def _body(data: mmap.mmap, at: int, opcode: Opcode) -> bytes | None:
+    """Of the record at `at`, if it is of this kind and whole."""
+    if at + _RECORD.size > len(data):
+        return None
+    kind, length = _RECORD.unpack_from(data, at)
+    end = at + _RECORD.size + length
+    return data[at + _RECORD.size : end] if kind == opcode and end <= len(data) else None
+
+
+def _message_heads(records: bytes) -> Iterator[tuple[int, tuple[int, int]]]:
+    """Where each message begins, and its channel and log_time."""
+    at = 0
+    while at + _RECORD.size <= len(records):
+        opcode, length = _RECORD.unpack_from(records, at)
+        if opcode == Opcode.MESSAGE and at + _RECORD.size + length <= len(records):
+            channel_id, _, log_time_ns = _MESSAGE_HEAD.unpack_from(records, at + _RECORD.size)
+            yield at, (channel_id, log_time_ns)
+        at += _RECORD.size + length
