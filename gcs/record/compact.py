@@ -14,12 +14,12 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryFile
 from zlib import crc32
 
 from mcap.records import Attachment, Channel, Metadata, Schema
@@ -134,8 +134,9 @@ def _to_disk(path: Path) -> None:
 
 def _remove_stale(copy: Path) -> None:
     """What a compaction left that was killed; one that is at work writes to it all the time."""
-    with suppress(OSError):
-        if time.time() - copy.stat().st_mtime > STALE_S:
+    with suppress(OSError), TemporaryFile(dir=copy.parent) as new:
+        # The disk's own clock, which may be another machine's.
+        if os.fstat(new.fileno()).st_mtime - copy.stat().st_mtime > STALE_S:
             copy.unlink()
 
 

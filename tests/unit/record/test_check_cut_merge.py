@@ -206,7 +206,7 @@ def test_a_cut_around_a_request(flight: Path, tmp_path: Path) -> None:
     at_ns = next(m.log_time_ns for m in messages_of(flight) if m.topic == "/gate/decision")
     assert gcs_log("cut", flight, "--around", "7", "--margin", "0.3", "-o", out).exit_code == 0
     times = [m.log_time_ns for m in messages_of(out)]
-    assert abs(times[-1] - at_ns - 300 * MS) <= 1
+    assert abs(times[-1] - at_ns - 300 * MS) < 10, "what comes at once is a nanosecond apart"
     decision = [m for m in messages_of(out) if m.topic == "/gate/decision"]
     assert [m.log_time_ns for m in decision] == [at_ns]
     unknown = gcs_log("cut", flight, "--around", "8", "-o", tmp_path / "no.mcap")
