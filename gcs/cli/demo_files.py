@@ -1,4 +1,4 @@
-"""What the demo writes beside its record, so that it can be looked at: the layout."""
+"""What the demo writes beside its record, so that it can be looked at: a layout and a report."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class Written:
 
 def write_beside(log_path: str) -> list[Written]:
     """The files that were written; one that cannot be is left out, as the record is what counts."""
-    layout = _write_layout(Path(log_path))
-    return [layout] if layout is not None else []
+    record = Path(log_path)
+    return [file for file in (_write_layout(record), _write_report(record)) if file is not None]
 
 
 def _write_layout(record: Path) -> Written | None:
@@ -32,3 +32,16 @@ def _write_layout(record: Path) -> Written | None:
     except (BadRecordError, OSError):
         return None
     return Written(path, "how a viewer should show it")
+
+
+def _write_report(record: Path) -> Written | None:
+    from gcs.flight_report.render import page
+    from gcs.flight_report.scan import scan
+    from gcs.record.reading import BadRecordError
+
+    path = record.with_suffix(".html")
+    try:
+        path.write_text(page(scan(record)), encoding="utf-8", errors="replace")
+    except (BadRecordError, OSError):
+        return None
+    return Written(path, "the flight on one page: open it in a browser")

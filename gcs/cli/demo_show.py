@@ -128,7 +128,7 @@ def show_what_to_do(console: Console, log_path: str, beside: Sequence[Written]) 
         console.print(
             Text.assemble("  ", (str(file.path), "bold"), f"  {file.purpose}"), soft_wrap=True
         )
-    if beside:
+    if any(file.path.suffix == ".json" for file in beside):
         steps = "Open the record in Foxglove or Lichtblick, then Layouts > Import from file."
         console.print(Text(f"  {steps}"), soft_wrap=True)
     for command, purpose in (

@@ -40,7 +40,9 @@ def told(file: Path) -> Iterator[None]:
         yield
     except BadRecordError as error:
         raise ExitError(
-            ExitCode.BAD_FILE, str(error), "gcs reads MCAP files, as it writes them into logs/"
+            ExitCode.BAD_FILE,
+            str(error),
+            "gcs reads MCAP files, as it writes them into logs/; see gcs log import",
         ) from error
     except OSError as error:
         raise ExitError(ExitCode.BAD_FILE, f"{file}: {error.strerror or error}") from error

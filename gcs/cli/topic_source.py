@@ -112,18 +112,22 @@ def told(path: Path) -> Iterator[None]:
     try:
         yield
     except BadRecordError as error:
-        hint = "MCAP files are read here; gcs log import makes one of another log"
+        hint = "MCAP, .tlog, .BIN and .ulg are read here"
         raise ExitError(ExitCode.BAD_FILE, str(error), hint) from error
     except OSError as error:
         raise ExitError(ExitCode.BAD_FILE, f"{path}: {error.strerror or error}") from error
 
 
 def records_of(path: Path) -> Iterator[Record]:
-    """Every record of the file, which may have been killed.  Raises ExitError."""
+    """Every record of the file, which may have been killed, or of a log of another format.
+
+    Raises ExitError.
+    """
+    from gcs.logfile.as_record import LogReading, is_other_log
     from gcs.record.reading import Reading
 
     with told(path):
-        records = iter(Reading(path))
+        records = iter(LogReading(path) if is_other_log(path) else Reading(path))
     while True:
         with told(path):
             record = next(records, None)

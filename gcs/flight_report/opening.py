@@ -6,10 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Protocol
 
-from gcs.record.reading import BadRecordError, Condition, Reading, Record
-
-IMPORTED_SUFFIXES = (".tlog", ".bin", ".log", ".ulg")
-"""Logs of other programs and of the autopilots, which are imported into MCAP topics first."""
+from gcs.record.reading import Condition, Reading, Record
 
 
 class FlightRecords(Protocol):
@@ -24,9 +21,8 @@ class FlightRecords(Protocol):
 def open_flight(path: Path) -> FlightRecords:
     """The records of a recorded flight.
 
-    Raises OSError, and BadRecordError for what cannot be read; iterating raises BadRecordError for
-    what is no MCAP.
+    Iterating raises BadRecordError for what cannot be read.  Raises OSError.
     """
-    if path.suffix.lower() in IMPORTED_SUFFIXES:
-        raise BadRecordError(path, f"a {path.suffix} log has to be imported into an MCAP first")
-    return Reading(path)
+    from gcs.logfile.as_record import LogReading, is_other_log
+
+    return LogReading(path) if is_other_log(path) else Reading(path)

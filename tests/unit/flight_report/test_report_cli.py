@@ -79,12 +79,12 @@ def test_a_broken_input_is_exit_4_and_a_sentence(tmp_path: Path, data: bytes) ->
     assert not path.with_suffix(".html").exists()
 
 
-def test_a_log_of_another_program_is_exit_4(tmp_path: Path) -> None:
+def test_what_is_no_log_of_another_program_is_exit_4(tmp_path: Path) -> None:
     path = tmp_path / "old.tlog"
     path.write_bytes(bytes(100))
     ended = gcs("log", "report", path)
     assert ended.exit_code == 4
-    assert "imported" in ended.output
+    assert "there is no MAVLink frame" in ended.output
 
 
 def test_the_record_is_never_overwritten(flight: Path) -> None:

@@ -39,6 +39,7 @@ from gcs.report import (
     StatusItem,
 )
 from gcs.wire.dialect import MESSAGES
+from tests.unit.logfile import tlogs
 from tests.unit.record.flights import MS, START_NS, a_flight, frame_v2, record
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
@@ -186,10 +187,16 @@ class TestPartialRecords:
             scan(path)
 
     @pytest.mark.parametrize("name", ["old.tlog", "old.BIN", "old.ulg"])
-    def test_logs_of_others_have_to_be_imported(self, tmp_path: Path, name: str) -> None:
+    def test_what_is_no_log_of_another_format_either(self, tmp_path: Path, name: str) -> None:
         (tmp_path / name).write_bytes(b"anything")
-        with pytest.raises(BadRecordError, match="import"):
+        with pytest.raises(BadRecordError, match=name):
             scan(tmp_path / name)
+
+    def test_a_log_of_another_format_is_read_as_a_record(self, tmp_path: Path) -> None:
+        path = tmp_path / "old.tlog"
+        path.write_bytes(b"".join(tlogs.stamped(frame) for frame in tlogs.flight(60)))
+        flight = scan(path)
+        assert (flight.name, set(flight.vehicles)) == ("old.tlog", {1})
 
 
 class TestRequests:

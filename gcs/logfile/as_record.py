@@ -1,0 +1,50 @@
+"""Reads a log of another format as if it were a record, for what reads records.
+
+The record is made in a temporary folder, by the same import as `gcs log import`, and is removed
+when it has been read.  It takes about as much room there as the log itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from gcs.logfile.batch_writer import BatchWriter
+from gcs.logfile.errors import BadLogError
+from gcs.logfile.imports.formats import importer_of
+from gcs.record.reading import BadRecordError, Condition, Reading, Record
+
+SUFFIXES = (".tlog", ".bin", ".ulg")
+
+
+class LogReading:
+    """`for record in LogReading(path)`: as `Reading`, of a .tlog, .BIN or .ulg.
+
+    Raises BadRecordError for what none of them is, and OSError.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.condition = Condition(path.stat().st_size)
+
+    def __iter__(self) -> Iterator[Record]:
+        with TemporaryDirectory(prefix="gcs-import-") as folder:
+            made = Path(folder) / "imported.mcap"
+            try:
+                run = importer_of(self.path)
+                with open(made, "xb") as file:
+                    writer = BatchWriter(file)
+                    run(self.path, writer, None)
+                    writer.finish()
+            except BadLogError as error:
+                hint = f" ({error.hint})" if error.hint else ""
+                raise BadRecordError(self.path, f"{error.reason}{hint}") from error
+            reading = Reading(made)
+            self.condition = reading.condition
+            yield from reading
+
+
+def is_other_log(path: Path) -> bool:
+    """By its name: not a record, but a log that can be read as one."""
+    return path.suffix.lower() in SUFFIXES
