@@ -1,8 +1,11 @@
-"""The stopping distance: d = v t_react + v^2 / (2 a_brake) + position error + margin.
+"""Where a vehicle comes to rest: d = v t_react + v^2 / (2 a_brake) + position error + margin.
 
 Horizontal and vertical are computed apart, because a multirotor brakes them apart.  The first two
 terms are the way that it travels, along its velocity; the last two are a distance to keep in every
 direction.
+
+Two sets of figures: the policy's braking, what a hold takes from the command on, and its approach,
+what a vehicle takes that slows down by itself for a goal it was sent.  `predicted_stop` chooses.
 """
 
 from __future__ import annotations
@@ -12,7 +15,7 @@ from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
 from gcs.frames import Vec3
-from gcs.gate.policy.policy import Approach, Braking, Overshoot
+from gcs.gate.policy.policy import Approach, Braking, Overshoot, Policy
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +45,13 @@ class Stops:
     braking: Braking
     approach: Approach
     overshoot: Overshoot
+
+
+def stops_of(policy: Policy, autopilot: str) -> Stops:
+    """The policy's figures for an autopilot."""
+    return Stops(
+        policy.braking_of(autopilot), policy.approach_of(autopilot), policy.overshoot_of(autopilot)
+    )
 
 
 def travel_m(speed_m_s: float, react_s: float, a_brake_m_s2: float) -> float:

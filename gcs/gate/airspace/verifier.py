@@ -19,14 +19,9 @@ from gcs.gate.airspace.clearance import NO_MARGINS, Margins
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
-from gcs.gate.airspace.prediction import (
-    BadStop,
-    bad_overshoot,
-    bad_stop,
-    stopping_numbers,
-)
+from gcs.gate.airspace.prediction import BadStop, bad_overshoot, bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
-from gcs.gate.airspace.stopping import Path, Stops, predicted_stop
+from gcs.gate.airspace.stopping import Path, Stops, predicted_stop, stops_of
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import TOLERANCE_M
 from gcs.gate.policy.policy import Policy
@@ -84,12 +79,7 @@ class Verifier:
     # ------------------------------------------------------------------------ questions
 
     def goal(
-        self,
-        goal_ned: Vec3,
-        yaw_rad: float | None,
-        pos_ned: Vec3,
-        v_ned: Vec3,
-        path: Path = None,
+        self, goal_ned: Vec3, yaw_rad: float | None, pos_ned: Vec3, v_ned: Vec3, path: Path = None
     ) -> Cleared | Refusal:
         """May the vehicle at `pos_ned`, moving at `v_ned`, fly straight to `goal_ned`?
 
@@ -297,12 +287,7 @@ class Verifier:
 
     @property
     def _stops(self) -> Stops:
-        policy, autopilot = self.policy, self.autopilot
-        return Stops(
-            policy.braking_of(autopilot),
-            policy.approach_of(autopilot),
-            policy.overshoot_of(autopilot),
-        )
+        return stops_of(self.policy, self.autopilot)
 
     @property
     def _mission_judge(self) -> FenceJudge:

@@ -11,7 +11,7 @@ import math
 import pytest
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.stopping import Leg, OwnPath, Path, Stops, predicted_stop, travel_m
+from gcs.gate.airspace.stopping import Leg, OwnPath, Path, Stops, predicted_stop, stops_of, travel_m
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Approach, Braking, Overshoot
 from tests.unit.gate.airspace import LAB, at
@@ -61,11 +61,7 @@ def test_a_recorded_vehicle_is_on_its_approach(
     autopilot: str, speed_m_s: float, to_go_m: float
 ) -> None:
     """The samples of the recorded steps whose approach ends farthest behind the goal."""
-    figures = Stops(
-        DEFAULT.braking_of(autopilot),
-        DEFAULT.approach_of(autopilot),
-        DEFAULT.overshoot_of(autopilot),
-    )
+    figures = stops_of(DEFAULT, autopilot)
     goal = at(100.0, 0.0, 10.0)
     pos, v = at(100.0 - to_go_m, 0.0, 10.0), at(speed_m_s, 0.0, 0.0)
     own_m = travel_m(speed_m_s, figures.approach.react_s, figures.approach.a_brake_h_m_s2)
