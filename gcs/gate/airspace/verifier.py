@@ -21,7 +21,7 @@ from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
 from gcs.gate.airspace.prediction import BadStop, bad_overshoot, bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
-from gcs.gate.airspace.stopping import Path, Stops, predicted_stop, stops_of
+from gcs.gate.airspace.stopping import Path, predicted_stop, stops_of
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import TOLERANCE_M
 from gcs.gate.policy.policy import Policy
@@ -92,6 +92,7 @@ class Verifier:
         if refusal is not None:
             return refusal
         judge, there = self._judge, place(goal_ned)
+        overshoot = self.policy.overshoot_of(self.autopilot)
         refusal = (
             self._limits(f"goal {there}", goal_ned)
             or beyond_reach(pos_ned, v_ned)
@@ -99,7 +100,7 @@ class Verifier:
             or judge.leg(
                 f"the leg to {there}", pos_ned, goal_ned, judge.margins, floor_applies=True
             )
-            or bad_overshoot(judge, f"goal {there}", pos_ned, goal_ned, self._stops.overshoot)
+            or bad_overshoot(judge, f"goal {there}", pos_ned, goal_ned, overshoot)
             or self._cannot_stop(pos_ned, v_ned, path, floor_applies=True)
         )
         return refusal or Cleared(
@@ -160,10 +161,7 @@ class Verifier:
     def predicted_stop(
         self, pos_ned: Vec3, v_ned: Vec3, path: Path = None, *, floor_applies: bool
     ) -> Breach | None:
-        """Would the vehicle come to rest outside, or is it outside already?
-
-        It rests where a hold that is told now would end; on a `path`, where it slows down by
-        itself.
+        """Would the vehicle on this `path` come to rest outside, or is it outside already?
 
         Where the floor does not apply, the stop is no lower than the ground: a landing ends there.
         """
@@ -286,10 +284,6 @@ class Verifier:
         return FenceJudge(zones, self.policy, self.policy.braking_of(self.autopilot))
 
     @property
-    def _stops(self) -> Stops:
-        return stops_of(self.policy, self.autopilot)
-
-    @property
     def _mission_judge(self) -> FenceJudge:
         """No station holds a mission beside its path: its margin has room for the wind too."""
         return replace(self._judge, least_h_m=WIND_DRIFT_S * self.policy.mission_wind_m_s)
@@ -322,7 +316,7 @@ class Verifier:
     def _bad_stop(
         self, pos_ned: Vec3, v_ned: Vec3, path: Path, *, floor_applies: bool
     ) -> BadStop | None:
-        stop_ned = predicted_stop(pos_ned, v_ned, path, self._stops)
+        stop_ned = predicted_stop(pos_ned, v_ned, path, stops_of(self.policy, self.autopilot))
         return bad_stop(
             self._judge, self.home_ned, pos_ned, v_ned, stop_ned, floor_applies=floor_applies
         )
