@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.gate import effects, inputs
-from gcs.gate.airspace.stopping import stop_point
+from gcs.gate.airspace.stopping import predicted_stop, stops_of
 from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
 from gcs.gate.condition import Condition
 from gcs.gate.machine.gate import Gate
@@ -87,11 +87,12 @@ class GatePort:
                 return [PlaceFence()]
 
     def predicted_stop(self, telemetry: Telemetry) -> list[Work]:
-        """Where the vehicle would come to rest if it were told to stop now; in flight only."""
+        """Where the gate predicts that the vehicle comes to rest; in flight only."""
         if telemetry.pos_ned is None or self.gate.state in NOT_FLYING:
             return []
-        braking = self.policy.braking_of(telemetry.autopilot.name)
-        stop_ned = stop_point(telemetry.pos_ned, telemetry.v_ned, braking)
+        stops = stops_of(self.policy, telemetry.autopilot.name)
+        path = self.gate.memory.path
+        stop_ned = predicted_stop(telemetry.pos_ned, telemetry.v_ned, path, stops)
         return [Record(StopItem(telemetry.sysid, telemetry.pos_ned, stop_ned))]
 
     # -------------------------------------------------------------------------- the fence

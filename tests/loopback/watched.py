@@ -91,8 +91,8 @@ class Witness:
                 self.tops.add(float32(top_ned))
             return self._note(v, answer, top_ned)
 
-        def heard_stop(v: Verifier, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Any:
-            breach = stop(v, pos_ned, v_ned, floor_applies=floor_applies)
+        def heard_stop(v: Verifier, pos_ned: Vec3, *rest: Any, floor_applies: bool) -> Any:
+            breach = stop(v, pos_ned, *rest, floor_applies=floor_applies)
             if isinstance(breach, Breach) and breach.brake_pos_ned is not None:
                 self.stops.add(float32(breach.brake_pos_ned))
                 self._note(v, Cleared(), breach.brake_pos_ned)

@@ -26,13 +26,19 @@ class BadStop:
 
 
 def bad_stop(
-    judge: FenceJudge, home_ned: Vec3 | None, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool
+    judge: FenceJudge,
+    home_ned: Vec3 | None,
+    pos_ned: Vec3,
+    v_ned: Vec3,
+    predicted_ned: Vec3,
+    *,
+    floor_applies: bool,
 ) -> BadStop | None:
     """The predicted stop, if it or the way to it breaks a limit of the fence; else None.
 
     Where the floor does not apply, the stop is no lower than the ground, at home's height.
     """
-    north_m, east_m, down_m = stopping.stop_point(pos_ned, v_ned, judge.braking)
+    north_m, east_m, down_m = predicted_ned
     if not floor_applies and home_ned is not None:
         down_m = min(down_m, max(pos_ned[2], home_ned[2]))
     stop_ned = (north_m, east_m, down_m)

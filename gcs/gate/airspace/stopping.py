@@ -1,16 +1,57 @@
-"""The stopping distance: d = v t_react + v^2 / (2 a_brake) + position error + margin.
+"""Where a vehicle comes to rest: d = v t_react + v^2 / (2 a_brake) + position error + margin.
 
 Horizontal and vertical are computed apart, because a multirotor brakes them apart.  The first two
 terms are the way that it travels, along its velocity; the last two are a distance to keep in every
 direction.
+
+Two sets of figures: the policy's braking, what a hold takes from the command on, and its approach,
+what a vehicle takes that slows down by itself for a goal it was sent.  `predicted_stop` chooses.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import TypeAlias, assert_never
 
 from gcs.frames import Vec3
-from gcs.gate.policy.policy import Braking, Overshoot
+from gcs.gate.policy.policy import Approach, Braking, Overshoot, Policy
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """The vehicle flies straight to a goal that was accepted from where it was then.
+
+    One that hovers is on the leg from where it hovers to the same place.
+    """
+
+    from_ned: Vec3
+    goal_ned: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class OwnPath:
+    """The vehicle flies a path of its own that was verified: a take-off, mission or return."""
+
+
+Path: TypeAlias = Leg | OwnPath | None
+"""What the vehicle flies; None: nothing that it would slow down for by itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stops:
+    """All that one autopilot's stops are predicted by."""
+
+    braking: Braking
+    approach: Approach
+    overshoot: Overshoot
+
+
+def stops_of(policy: Policy, autopilot: str) -> Stops:
+    """The policy's figures for an autopilot."""
+    return Stops(
+        policy.braking_of(autopilot), policy.approach_of(autopilot), policy.overshoot_of(autopilot)
+    )
 
 
 def travel_m(speed_m_s: float, react_s: float, a_brake_m_s2: float) -> float:
@@ -31,7 +72,7 @@ def distance_v_m(v_ned: Vec3, braking: Braking, margin_m: float) -> float:
     return travel + braking.position_error_v_m + margin_m
 
 
-def stop_point(pos_ned: Vec3, v_ned: Vec3, braking: Braking) -> Vec3:
+def stop_point(pos_ned: Vec3, v_ned: Vec3, braking: Braking | Approach) -> Vec3:
     """Where the vehicle would stop if it were told to now: its position plus the way it travels."""
     north, east, down = v_ned
     speed_h = math.hypot(north, east)
@@ -53,3 +94,51 @@ def overshoot_point(pos_ned: Vec3, goal_ned: Vec3, overshoot: Overshoot) -> Vec3
         goal_ned[1] + east * per_metre,
         goal_ned[2] + past_v,
     )
+
+
+def predicted_stop(pos_ned: Vec3, v_ned: Vec3, path: Path, stops: Stops) -> Vec3:
+    """Where the vehicle comes to rest: by its approach where it slows down for a goal of its own,
+    else by its braking.  On a leg, horizontal and vertical are decided apart."""
+    held_ned = stop_point(pos_ned, v_ned, stops.braking)
+    own_ned = stop_point(pos_ned, v_ned, stops.approach)
+    match path:
+        case None:
+            return held_ned
+        case OwnPath():
+            return own_ned
+        case Leg():
+            north, east, _ = own_ned if _along_leg(own_ned, v_ned, path, stops) else held_ned
+            down = (own_ned if _between_heights(own_ned, v_ned, path, stops) else held_ned)[2]
+            return (north, east, down)
+        case _:
+            assert_never(path)
+
+
+def _along_leg(stop_ned: Vec3, v_ned: Vec3, leg: Leg, stops: Stops) -> bool:
+    """Horizontally: is the stop on the leg or its overshoot, and the velocity along it?"""
+    approach, overshoot = stops.approach, stops.overshoot
+    leg_n, leg_e = leg.goal_ned[0] - leg.from_ned[0], leg.goal_ned[1] - leg.from_ned[1]
+    leg_m = math.hypot(leg_n, leg_e)
+    n, e = (leg_n / leg_m, leg_e / leg_m) if leg_m > 0.0 else (0.0, 0.0)
+    stop_n, stop_e = stop_ned[0] - leg.from_ned[0], stop_ned[1] - leg.from_ned[1]
+    along_m = stop_n * n + stop_e * e
+    beside_m = math.hypot(stop_n - along_m * n, stop_e - along_m * e)
+    ahead_m_s = max(0.0, v_ned[0] * n + v_ned[1] * e)
+    aside_m_s = math.hypot(v_ned[0] - ahead_m_s * n, v_ned[1] - ahead_m_s * e)
+    past_m = min(overshoot.share_h * leg_m, overshoot.most_h_m)
+    return (
+        beside_m <= approach.cross_track_m
+        and -approach.cross_track_m <= along_m <= leg_m + past_m + approach.cross_track_m
+        and aside_m_s <= approach.cross_track_m_s
+    )
+
+
+def _between_heights(stop_ned: Vec3, v_ned: Vec3, leg: Leg, stops: Stops) -> bool:
+    """Vertically: is the stop between the ends of the leg, or its overshoot, and the velocity
+    towards the goal?"""
+    approach = stops.approach
+    past_down = overshoot_point(leg.from_ned, leg.goal_ned, stops.overshoot)[2]
+    low, high = sorted((leg.from_ned[2], past_down))
+    within = low - approach.cross_track_m <= stop_ned[2] <= high + approach.cross_track_m
+    towards = (leg.goal_ned[2] - leg.from_ned[2]) * v_ned[2] > 0.0
+    return within and (towards or abs(v_ned[2]) <= approach.cross_track_m_s)

@@ -19,11 +19,12 @@ from gcs.gate.airspace.clearance import NO_MARGINS, Margins
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
-from gcs.gate.airspace.prediction import bad_overshoot, bad_stop, stopping_numbers
+from gcs.gate.airspace.prediction import BadStop, bad_overshoot, bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
+from gcs.gate.airspace.stopping import Path, predicted_stop, stops_of
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import TOLERANCE_M
-from gcs.gate.policy.policy import Overshoot, Policy
+from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import ZoneSpec
 from gcs.gate.refusal import Code, Refusal
 
@@ -78,9 +79,11 @@ class Verifier:
     # ------------------------------------------------------------------------ questions
 
     def goal(
-        self, goal_ned: Vec3, yaw_rad: float | None, pos_ned: Vec3, v_ned: Vec3
+        self, goal_ned: Vec3, yaw_rad: float | None, pos_ned: Vec3, v_ned: Vec3, path: Path = None
     ) -> Cleared | Refusal:
         """May the vehicle at `pos_ned`, moving at `v_ned`, fly straight to `goal_ned`?
+
+        `path` is the leg to that goal, where it is flown already.
 
         In this order: finite, altitude, distance, zones, leg, overshoot, stopping distance.
         """
@@ -89,6 +92,7 @@ class Verifier:
         if refusal is not None:
             return refusal
         judge, there = self._judge, place(goal_ned)
+        overshoot = self.policy.overshoot_of(self.autopilot)
         refusal = (
             self._limits(f"goal {there}", goal_ned)
             or beyond_reach(pos_ned, v_ned)
@@ -96,8 +100,8 @@ class Verifier:
             or judge.leg(
                 f"the leg to {there}", pos_ned, goal_ned, judge.margins, floor_applies=True
             )
-            or bad_overshoot(judge, f"goal {there}", pos_ned, goal_ned, self._overshoot)
-            or self._cannot_stop(pos_ned, v_ned, floor_applies=True)
+            or bad_overshoot(judge, f"goal {there}", pos_ned, goal_ned, overshoot)
+            or self._cannot_stop(pos_ned, v_ned, path, floor_applies=True)
         )
         return refusal or Cleared(
             (
@@ -122,7 +126,7 @@ class Verifier:
             self._limits(subject, pos_ned, allow=self._error(), floor_applies=floor_applies)
             or beyond_reach(pos_ned, v_ned)
             or judge.outside(subject, pos_ned, floor_applies=floor_applies)
-            or self._cannot_stop(pos_ned, v_ned, floor_applies=floor_applies)
+            or self._cannot_stop(pos_ned, v_ned, None, floor_applies=floor_applies)
         )
         return refusal or Cleared(
             (*self._nearest("hold", pos_ned, pos_ned), *stopping_numbers(judge, v_ned))
@@ -154,15 +158,17 @@ class Verifier:
         )
         return refusal or Cleared((*self._nearest("top", top_ned, top_ned), ("leg_m", up_m)))
 
-    def predicted_stop(self, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Breach | None:
-        """Would the vehicle stop outside if it were told to stop now, or is it outside already?
+    def predicted_stop(
+        self, pos_ned: Vec3, v_ned: Vec3, path: Path = None, *, floor_applies: bool
+    ) -> Breach | None:
+        """Would the vehicle on this `path` come to rest outside, or is it outside already?
 
         Where the floor does not apply, the stop is no lower than the ground: a landing ends there.
         """
         unusable = self._unusable(position=pos_ned, velocity=v_ned) or beyond_reach(pos_ned, v_ned)
         if unusable is not None:
             return Breach(unusable.zone, unusable.sentence, unusable.numbers, None)
-        bad = bad_stop(self._judge, self.home_ned, pos_ned, v_ned, floor_applies=floor_applies)
+        bad = self._bad_stop(pos_ned, v_ned, path, floor_applies=floor_applies)
         if bad is None:
             return None
         brake_pos_ned = self._brake_point(pos_ned, bad.stop_ned, floor_applies=floor_applies)
@@ -278,10 +284,6 @@ class Verifier:
         return FenceJudge(zones, self.policy, self.policy.braking_of(self.autopilot))
 
     @property
-    def _overshoot(self) -> Overshoot:
-        return self.policy.overshoot_of(self.autopilot)
-
-    @property
     def _mission_judge(self) -> FenceJudge:
         """No station holds a mission beside its path: its margin has room for the wind too."""
         return replace(self._judge, least_h_m=WIND_DRIFT_S * self.policy.mission_wind_m_s)
@@ -311,8 +313,18 @@ class Verifier:
         b = self.policy.braking_of(self.autopilot)
         return Margins(b.position_error_h_m, b.position_error_v_m)
 
-    def _cannot_stop(self, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
-        bad = bad_stop(self._judge, self.home_ned, pos_ned, v_ned, floor_applies=floor_applies)
+    def _bad_stop(
+        self, pos_ned: Vec3, v_ned: Vec3, path: Path, *, floor_applies: bool
+    ) -> BadStop | None:
+        stop_ned = predicted_stop(pos_ned, v_ned, path, stops_of(self.policy, self.autopilot))
+        return bad_stop(
+            self._judge, self.home_ned, pos_ned, v_ned, stop_ned, floor_applies=floor_applies
+        )
+
+    def _cannot_stop(
+        self, pos_ned: Vec3, v_ned: Vec3, path: Path, *, floor_applies: bool
+    ) -> Refusal | None:
+        bad = self._bad_stop(pos_ned, v_ned, path, floor_applies=floor_applies)
         if bad is None:
             return None
         return Refusal(Code.CANNOT_STOP, bad.sentence, bad.numbers, bad.measure.zone.name)

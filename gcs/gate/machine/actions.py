@@ -74,9 +74,9 @@ def _fly_to_top(turn: Turn) -> None:
 
 def _fly_to(turn: Turn, goal: Goal) -> None:
     memory = turn.memory
-    memory.goal = goal
-    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal.pos_ned) else None
     assert memory.pos_ned is not None
+    memory.goal = replace(goal, from_ned=memory.pos_ned)
+    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal.pos_ned) else None
     turn.set_deadline(_flight_s(turn, memory.pos_ned, goal.pos_ned))
 
 

@@ -218,7 +218,7 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
         yield Occurrence(Event.POSITION_JUMPED)
     if memory.verifier is not None and memory.control is not Control.NONE:
         breach = memory.verifier.predicted_stop(
-            seen.pos_ned, seen.v_ned, floor_applies=_floor_applies(turn)
+            seen.pos_ned, seen.v_ned, memory.path, floor_applies=_floor_applies(turn)
         )
         if breach is not None:
             why = Refusal(Code.FENCE_BREACH, breach.sentence, breach.numbers, breach.zone)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.stopping import Leg, OwnPath, Path
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
@@ -27,6 +28,9 @@ it reports so."""
 HOME_MOVED_M = 1.0
 """Home that moves further than this is another place; arming moves it by centimetres."""
 
+OWN_PATHS = frozenset({State.TAKING_OFF, State.FLYING_MISSION, State.RETURNING})
+"""States in which the vehicle flies a path of its own."""
+
 GATE = 0
 """The request id of commands that the gate sends without a request: its own holds, landings and
 returns."""
@@ -34,11 +38,15 @@ returns."""
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """A verified position with the numbers it was cleared on.  Only these are sent as setpoints."""
+    """A verified position with the numbers it was cleared on.  Only these are sent as setpoints.
+
+    `from_ned` is where the leg to it began; None for a position that was never flown to.
+    """
 
     pos_ned: Vec3
     yaw_rad: float | None
     evidence: tuple[tuple[str, float], ...]
+    from_ned: Vec3 | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +155,17 @@ class Memory:
     def flown_state(self) -> State:
         """The state; in STALE the state that a position too old interrupted, if there is one."""
         return self.back_to or self.state
+
+    @property
+    def path(self) -> Path:
+        """What the vehicle flies, or has flown and settles at; None where it is sent to no place.
+
+        A vehicle that hovers where it never flew to is on a leg without length.
+        """
+        if self.flown_state in OWN_PATHS:
+            return OwnPath()
+        goal = self.goal or self.hold
+        return None if goal is None else Leg(goal.from_ned or goal.pos_ned, goal.pos_ned)
 
     def position_age_ns(self, now_ns: int) -> int | None:
         """How long ago the last position arrived; None before the first one."""

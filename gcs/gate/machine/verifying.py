@@ -116,7 +116,7 @@ def refusal_of_what_is_flown(
             return Refusal(Code.BAD_MISSION, "the mission was not verified by this fence")
     elif memory.goal is not None:
         judged = verifier.goal(
-            memory.goal.pos_ned, memory.goal.yaw_rad, memory.pos_ned, memory.v_ned
+            memory.goal.pos_ned, memory.goal.yaw_rad, memory.pos_ned, memory.v_ned, memory.path
         )
     elif memory.hold is not None:
         judged = verifier.hold_point(memory.hold.pos_ned, STANDING, floor_applies=True)

@@ -58,6 +58,20 @@ class Braking(_Section, frozen=True):
     position_error_v_m: FromZero
 
 
+class Approach(_Section, frozen=True):
+    """How an autopilot is trusted to slow down for its own goal; see `stopping.py`.
+
+    It is on the leg to its goal while it would stop within `cross_track_m` of it and moves across
+    it, or back, no faster than `cross_track_m_s`.
+    """
+
+    react_s: Annotated[float, Meta(ge=0.0, le=10.0)]
+    a_brake_h_m_s2: Deceleration
+    a_brake_v_m_s2: Deceleration
+    cross_track_m: FromZero
+    cross_track_m_s: FromZero
+
+
 class Overshoot(_Section, frozen=True):
     """How far an autopilot flies past a goal that it is sent: a share of its leg, and at most so
     many metres; beside the goal and above or below it."""
@@ -111,7 +125,8 @@ class MissionRules(_Section, frozen=True):
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
-    `braking` and `overshoot` are by the autopilot's name; `severities` has every `Condition`.
+    `braking`, `approach` and `overshoot` are by the autopilot's name; `severities` has every
+    `Condition`.
     """
 
     name: Text
@@ -131,6 +146,7 @@ class Policy(_Section, frozen=True):
     allow_stop_outside: bool
     creep_m: FromZero
     braking: Mapping[str, Braking]
+    approach: Mapping[str, Approach]
     overshoot: Mapping[str, Overshoot]
 
     position_age_s: FromTwentieth
@@ -167,6 +183,20 @@ class Policy(_Section, frozen=True):
             a_brake_v_m_s2=min(b.a_brake_v_m_s2 for b in every),
             position_error_h_m=max(b.position_error_h_m for b in every),
             position_error_v_m=max(b.position_error_v_m for b in every),
+        )
+
+    def approach_of(self, autopilot: str) -> Approach:
+        """The autopilot's own; for one that is not listed, the worst of every entry."""
+        own = self.approach.get(autopilot)
+        if own is not None:
+            return own
+        every = tuple(self.approach.values())
+        return Approach(
+            react_s=max(a.react_s for a in every),
+            a_brake_h_m_s2=min(a.a_brake_h_m_s2 for a in every),
+            a_brake_v_m_s2=min(a.a_brake_v_m_s2 for a in every),
+            cross_track_m=min(a.cross_track_m for a in every),
+            cross_track_m_s=min(a.cross_track_m_s for a in every),
         )
 
     def overshoot_of(self, autopilot: str) -> Overshoot:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.stopping import Leg, OwnPath, Path
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Outcome, OutcomeKind, Transition
 from gcs.gate.inputs import HomeSeen, PositionSeen, Tick, VerifierChanged
@@ -109,7 +110,7 @@ def flies_what_clears(edge: Edge) -> Iterator[str]:
         return
     judged: object = None
     if flown is State.MOVING and after.goal is not None:
-        judged = verifier.goal(after.goal.pos_ned, None, pos_ned, v_ned)
+        judged = verifier.goal(after.goal.pos_ned, None, pos_ned, v_ned, _flown(after))
     elif after.hold is not None:
         judged = verifier.hold_point(after.hold.pos_ned, STANDING, floor_applies=True)
     if isinstance(judged, Refusal):
@@ -184,7 +185,9 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
     if before.flown_state is State.FLYING_MISSION and not given.reset:
         ground_down_m = before.ground_down_m
         floor &= ground_down_m is None or ground_down_m - given.pos_ned[2] > LIFT_OFF_M
-    breach = before.verifier.predicted_stop(given.pos_ned, given.v_ned, floor_applies=floor)
+    breach = before.verifier.predicted_stop(
+        given.pos_ned, given.v_ned, _flown(before), floor_applies=floor
+    )
     if breach is None:
         return
     if CommandKind.HOLD not in edge.commands:
@@ -193,6 +196,16 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
         yield f"a breach is predicted and {edge.after.state.name} goes on"
     if breach.brake_pos_ned is not None and not edge.setpoints and not given.reset:
         yield f"a breach is predicted in {before.state.name} and not braked"
+
+
+def _flown(memory: Memory) -> Path:
+    """What the vehicle flies and slows down for by itself."""
+    if memory.flown_state in (State.TAKING_OFF, State.FLYING_MISSION, State.RETURNING):
+        return OwnPath()
+    goal = memory.hold if memory.goal is None else memory.goal
+    if goal is None:
+        return None
+    return Leg(goal.pos_ned if goal.from_ned is None else goal.from_ned, goal.pos_ned)
 
 
 def moves_on_fresh_positions(edge: Edge) -> Iterator[str]:

@@ -44,10 +44,10 @@ class TestGoal:
         assert go(flying(), at(0, 0, 2), at(0, 0, -0.5)) is Code.LEG_LEAVES_FENCE
 
     def test_no_goal_is_flown_to_by_who_falls_through_the_floor(self) -> None:
-        """5 m/s down: 1.5 m of reaction and 25 / 6 m of braking, 5.67 m in all."""
+        """5 m/s down: 3.5 m of reaction and 25 / 6 m of braking, 7.67 m in all."""
         falling = (0.0, 0.0, 5.0)
-        assert go(flying(), at(0, 0, 3), at(0, 0, 5.5), falling) is Code.CANNOT_STOP
-        assert go(flying(), at(0, 0, 3), at(0, 0, 6.0), falling) is None
+        assert go(flying(), at(0, 0, 3), at(0, 0, 7.8), falling) is Code.CANNOT_STOP
+        assert go(flying(), at(0, 0, 3), at(0, 0, 7.9), falling) is None
 
 
 def test_the_circle_of_a_mission_is_above_the_floor() -> None:
@@ -60,7 +60,7 @@ def test_the_circle_of_a_mission_is_above_the_floor() -> None:
 
 
 class TestTheGroundEndsALanding:
-    """Falling at 6 m/s the vehicle would go 1.8 + 6 = 7.8 m; the ground is 4 m below it."""
+    """Falling at 6 m/s the vehicle would go 4.2 + 6 = 10.2 m; the ground is 4 m below it."""
 
     FALLING: Vec3 = (0.0, 0.0, 6.0)
 

@@ -87,12 +87,12 @@ class TestSlowPositions:
     def test_the_brake_leaves_with_the_sample_that_comes_late(self) -> None:
         script = in_state(State.HOVERING)
         goto = script.goto(100.0, 0.0, UP)
-        script.at(120.0, 0.0, UP, (12.0, 0.0, 0.0))
+        script.at(100.0, 0.0, UP, (12.0, 0.0, 0.0))
         script.reports_position = False
         script.wait(1.2)
         assert script.gate.state is State.STALE
         script.forget()
-        script.pos_ned = ned_from_enu((135.0, 0.0, UP))
+        script.pos_ned = ned_from_enu((120.0, 0.0, UP))
         script.position()
         assert script.commands() == [CommandKind.HOLD]
         assert len(list(script.setpoints())) == 1

@@ -11,6 +11,7 @@ import gcs.gate.policy
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.policy import (
+    Approach,
     Arrival,
     Braking,
     ControlTimes,
@@ -37,7 +38,8 @@ def error(text: str) -> TomlError:
     return caught.value
 
 
-KINDS = [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes, MissionRules, Overshoot]
+KINDS = [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes, MissionRules]
+KINDS += [Approach, Overshoot]
 PARTS = (DEFAULT.arrival, DEFAULT.speeds, DEFAULT.takeoff, DEFAULT.control, DEFAULT.mission)
 
 
@@ -67,6 +69,9 @@ def test_the_shipped_default_names_every_key_there_is() -> None:
     for autopilot, overshoot in DEFAULT.overshoot.items():
         for key in structs.fields(overshoot):
             assert ("overshoot", autopilot, key.name) in lines
+    for autopilot, approach in DEFAULT.approach.items():
+        for key in structs.fields(approach):
+            assert ("approach", autopilot, key.name) in lines
     for autopilot, braking in DEFAULT.braking.items():
         for key in structs.fields(braking):
             assert ("braking", autopilot, key.name) in lines

@@ -11,7 +11,7 @@ from gcs.gate.airspace.stopping import distance_h_m, distance_v_m
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.turn import Turn
 from gcs.gate.policy.parse import parse_policy
-from gcs.gate.policy.policy import Braking, Policy
+from gcs.gate.policy.policy import Approach, Braking, Policy
 from gcs.gate.policy.zonespec import CircleSpec, ZoneSpec
 from gcs.gate.states import State
 from gcs.toml import TomlError
@@ -133,6 +133,46 @@ class TestInUse:
             assert distance_v_m((0.0, 0.0, 1.0), b, 0.0) == pytest.approx(above_m)
         for beyond in (below, above):
             assert error(f"[braking.px4]\n{key} = {beyond}").key == f"braking.px4.{key}"
+
+
+@pytest.mark.parametrize(
+    ("key", "least", "most", "below", "above"),
+    [
+        ("react_s", 0.0, 10.0, -0.01, 10.5),
+        ("a_brake_h_m_s2", 0.1, 50.0, 0.09, 50.5),
+        ("a_brake_v_m_s2", 0.1, 50.0, 0.09, 50.5),
+        ("cross_track_m", 0.0, MOST, -0.01, MOST + 1),
+        ("cross_track_m_s", 0.0, MOST, -0.01, MOST + 1),
+    ],
+)
+def test_approach(key: str, least: float, most: float, below: float, above: float) -> None:
+    for limit in (least, most):
+        policy = parse_policy(f"[approach.px4]\n{key} = {limit}", "my.toml")
+        assert getattr(policy.approach_of("px4"), key) == limit
+    for beyond in (below, above):
+        assert error(f"[approach.px4]\n{key} = {beyond}").key == f"approach.px4.{key}"
+
+
+def test_another_autopilot_approaches_with_the_worst_of_each_number() -> None:
+    """Neither of the two is the worse one throughout; the worse cross-track limit is the less."""
+    policy = parse_policy(
+        """
+        [approach.px4]
+        react_s = 0.2
+        a_brake_h_m_s2 = 5.0
+        a_brake_v_m_s2 = 2.0
+        cross_track_m = 0.5
+        cross_track_m_s = 0.7
+        [approach.ardupilot]
+        react_s = 0.4
+        a_brake_h_m_s2 = 4.0
+        a_brake_v_m_s2 = 3.0
+        cross_track_m = 0.6
+        cross_track_m_s = 0.3
+        """,
+        "my.toml",
+    )
+    assert policy.approach_of("betaflight") == Approach(0.4, 4.0, 2.0, 0.5, 0.3)
 
 
 def test_another_autopilot_brakes_with_the_worst_of_each_number() -> None:
