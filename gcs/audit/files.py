@@ -12,7 +12,7 @@ from mcap.records import Attachment, Channel
 from gcs.audit.inputs import CannotReadError, kept_of
 from gcs.audit.messages import INPUT_TOPIC, Attachments, InputMessage, Stored, payload_length
 from gcs.record.reading import Condition, Message, Reading
-from gcs.record.writer import PartBegan
+from gcs.record.seals import PartBegan
 from gcs.session.recorded import Start
 
 Progress = Callable[[Path, Condition], None]

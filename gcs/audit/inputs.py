@@ -8,7 +8,7 @@ import msgspec
 
 from gcs.audit.messages import Attachments
 from gcs.gate.policy.parse import DEFAULT
-from gcs.record.writer import PartBegan, Seal
+from gcs.record.seals import PartBegan, Seal
 from gcs.session.inputs import Datagram, FileRead, Input, OtherInput
 from gcs.session.recorded import FaultKept, FileKept, Pieces, Start, attachment_name
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TypeAlias
 
-from gcs.record.writer import Recorder, RecordLost, RecordResumed, RecordRotated
+from gcs.record.news import RecordLost, RecordResumed, RecordRotated
+from gcs.record.writer import Recorder
 from gcs.report import RecordItem
 from gcs.session.inputs import DiskLow, RecorderChanged, RecorderGrew
 from gcs.shell.disk_watch import DiskWatch

@@ -74,7 +74,7 @@ def test_a_full_disk_in_mid_flight_ends_in_a_second_part(small_disk: Path) -> No
     assert [state.state for state in whole(second).states][-1] == "GROUNDED"
     topics = {topic.topic for topic in whole(second).topics}
     assert {"/tf_static", "/vehicle/1/model", "/geofence"} <= topics
-    assert whole(second).attachments == ["policy.toml"]
+    assert whole(second).attachments == ["policy.toml", "parameters.json", "fence.json"]
 
 
 def frames_of(broken: Path) -> list[Recorded]:

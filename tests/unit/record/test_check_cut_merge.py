@@ -16,7 +16,8 @@ from mcap.writer import Writer
 
 from gcs.record.check import check
 from gcs.record.reading import BadRecordError, Reading
-from gcs.record.writer import Recorder, Rotation
+from gcs.record.rotation import Rotation
+from gcs.record.writer import Recorder
 from gcs.report import ParamItem, PoseItem
 from tests.unit.cli.command_line import Ended, gcs
 from tests.unit.record.flights import (
