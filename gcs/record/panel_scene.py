@@ -85,6 +85,12 @@ def scene(
         "transforms": frames,
         "topics": drawn,
         "layers": {"grid": grid(extent)},
+        # Live, a click in the panel is a goal (gcs/live/clicked_goals.py).
+        "publish": {
+            "type": "point",
+            "poseTopic": "/move_base_simple/goal",
+            "pointTopic": "/clicked_point",
+        },
     }
 
 
