@@ -201,9 +201,10 @@ def resolves(known: dict[str, Any], value: str) -> bool:
 
 
 def paths_in(value: Any) -> set[str]:
-    """Every string in a layout that names a topic or a path into one."""
+    """Every string in a layout that names a topic to read or a path into one."""
     if isinstance(value, dict):
-        return {path for pair in value.items() for one in pair for path in paths_in(one)}
+        read = [(key, one) for key, one in value.items() if key != "publish"]  # the viewer's own
+        return {path for pair in read for one in pair for path in paths_in(one)}
     if isinstance(value, list):
         return {path for one in value for path in paths_in(one)}
     return {value} if isinstance(value, str) and re.match(r"/\w", value) else set()
