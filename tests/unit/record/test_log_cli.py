@@ -160,7 +160,8 @@ def test_a_file_that_is_not_there_is_a_usage_error(tmp_path: Path) -> None:
 def topics_in(value: Any) -> set[str]:
     """Every string in a layout that names a topic or a path into one."""
     if isinstance(value, dict):
-        return {t for k, v in value.items() for t in topics_in(v) | topics_in(k)}
+        read = [pair for pair in value.items() if pair[0] != "publish"]  # the viewer's own
+        return {t for k, v in read for t in topics_in(v) | topics_in(k)}
     if isinstance(value, list):
         return {t for v in value for t in topics_in(v)}
     if isinstance(value, str) and re.match(r"/\w", value):
