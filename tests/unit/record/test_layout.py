@@ -14,10 +14,9 @@ from gcs.record.extent import extent_of, survey
 from gcs.record.layout import PURPOSES, Purpose, any_flight, layout, layout_for
 from gcs.record.panel_scene import cell_size, zoom
 from gcs.report import FenceItem, FenceShape, GeodeticItem, RecordItem
+from tests.sample_files import elsewhere
 from tests.unit.record.flights import MS, record
 from tests.unit.record.viewer import pose
-
-EXAMPLE = Path(__file__).parents[4] / "shared" / "data" / "foxglove_layout_example.json"
 
 OURS = {
     "lichtblickPanelTitle",  # Lichtblick's name for foxglovePanelTitle
@@ -106,7 +105,7 @@ def test_every_panel_has_its_title_for_both_viewers(purpose: Purpose) -> None:
 
 @pytest.mark.parametrize("purpose", PURPOSES)
 def test_panels_have_no_keys_but_those_that_a_viewer_knows(purpose: Purpose) -> None:
-    example = json.loads(EXAMPLE.read_text())["configById"]
+    example = json.loads(elsewhere("foxglove_layout_example.json").read_text())["configById"]
     known: dict[str, set[str]] = {"Table": {"topicPath"}}
     for name, config in example.items():
         known.setdefault(name.split("!")[0], set()).update(_keys(config))
