@@ -29,7 +29,7 @@ demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated v
 quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (under a minute)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 $(FEWER)'
 
-test: $(TEST) $(TESTED) ## run every test (about 9 minutes on 2 cores)
+test: $(TEST) $(TESTED) ## run every test (about 15 minutes on 2 cores)
 	$(BIN)/python -m pytest -n $(WORKERS) $(SLOWER:%=--ignore=%)
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests
