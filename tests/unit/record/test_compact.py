@@ -19,6 +19,8 @@ from gcs.record.writer import Recorder
 from tests.unit.cli.command_line import gcs
 from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def flight(tmp_path: Path) -> Path:

@@ -210,6 +210,7 @@ def test_garbage_in_the_file_is_never_a_crash(offset: int, garbage: bytes) -> No
         assert reading.condition.position == reading.condition.size
 
 
+@pytest.mark.slow
 def test_a_cut_at_every_kind_of_record_gives_back_all_before_it_and_a_good_file(
     tmp_path: Path,
 ) -> None:

@@ -210,6 +210,7 @@ STREAMED: Final[dict[Personality, set[int]]] = {"px4": {77, 83, 85}, "ardupilot"
 """What PX4 denied came all the same, as a stream or as the ack itself."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
 def test_messages_are_to_be_had_as_from_the_real_one(personality: Personality) -> None:
     bench = on_the_ground(personality)
