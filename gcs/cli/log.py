@@ -14,6 +14,7 @@ from gcs.cli.log_check import check
 from gcs.cli.log_compact import compact
 from gcs.cli.log_cut import cut
 from gcs.cli.log_export import export_log
+from gcs.cli.log_files import cannot_write
 from gcs.cli.log_import import import_log
 from gcs.cli.log_merge import merge
 from gcs.cli.log_replay import replay
@@ -133,7 +134,7 @@ def layout(file: Path | None, output: Path | None, purpose: Purpose) -> None:
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise _cannot_write(output, error) from error
+        raise cannot_write(output, error) from error
     click.echo(f"{output}: import it in Foxglove (Layouts > Import from file)")
 
 
@@ -226,7 +227,3 @@ def _began(start_ns: int | None) -> str:
     except (OverflowError, ValueError, OSError):
         return ""
     return f", from {began:%Y-%m-%d %H:%M:%S} UTC"
-
-
-def _cannot_write(path: Path, error: OSError) -> ExitError:
-    return ExitError(ExitCode.RECORDER, f"{path}: cannot write: {error.strerror or error}")

@@ -10,14 +10,12 @@ from typing import BinaryIO
 
 import click
 
+from gcs.cli.record_files import PROGRESS_FROM_BYTES
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 SOURCE = click.Path(exists=True, dir_okay=False, path_type=Path)
 TARGET = click.Path(dir_okay=False, path_type=Path)
-
-_PROGRESS_FROM_BYTES = 20_000_000
-"""Smaller files are read in less than a second."""
 
 
 @contextmanager
@@ -73,7 +71,7 @@ def cannot_write(path: Path, error: OSError) -> ExitError:
 def progress(source: Path, label: str) -> Iterator[Callable[[int], None] | None]:
     """A bar on a terminal, for files that take over a second; it is told the bytes read so far."""
     size = source.stat().st_size
-    if size < _PROGRESS_FROM_BYTES or not sys.stderr.isatty():
+    if size < PROGRESS_FROM_BYTES or not sys.stderr.isatty():
         yield None
         return
     with click.progressbar(length=size, label=label, file=sys.stderr) as bar:

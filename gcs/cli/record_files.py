@@ -27,7 +27,7 @@ NEW_RECORD = click.option(
     help="The new file; it must not exist.",
 )
 
-_PROGRESS_FROM_BYTES = 20_000_000
+PROGRESS_FROM_BYTES = 20_000_000
 """Smaller files are read in less than a second."""
 
 
@@ -52,7 +52,7 @@ def told(file: Path) -> Iterator[None]:
 def reading_progress(file: Path, label: str) -> Iterator[Callable[[Condition], None] | None]:
     """A bar on a terminal, for files that take over a second."""
     size = file.stat().st_size
-    if size < _PROGRESS_FROM_BYTES or not sys.stderr.isatty():
+    if size < PROGRESS_FROM_BYTES or not sys.stderr.isatty():
         yield None
         return
     with click.progressbar(length=size, label=label, file=sys.stderr) as bar:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import click
 
 from gcs.cli.options import DEFAULT_LINK, UTF8, FiniteRange, Seconds
+from gcs.cli.record_files import told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -102,20 +102,6 @@ class Where:
         if self.from_s is not None or self.to_s is not None:
             raise click.UsageError("--from and --to are for a record: name it with --log")
         return for_seconds(_live(self.links, past), seconds)
-
-
-@contextmanager
-def told(path: Path) -> Iterator[None]:
-    """What can be wrong with a record becomes one sentence and exit 4."""
-    from gcs.record.reading import BadRecordError
-
-    try:
-        yield
-    except BadRecordError as error:
-        hint = "MCAP, .tlog, .BIN and .ulg are read here"
-        raise ExitError(ExitCode.BAD_FILE, str(error), hint) from error
-    except OSError as error:
-        raise ExitError(ExitCode.BAD_FILE, f"{path}: {error.strerror or error}") from error
 
 
 def records_of(path: Path) -> Iterator[Record]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mcap.opcode import Opcode
 
-from gcs.record.reading import _RECORD, MAGIC, BadRecordError, Reading, Record, inflate
+from gcs.record.reading import MAGIC, RECORD_HEAD, BadRecordError, Reading, Record, inflate
 
 MAX_LENGTH = 1 << 30
 """A record that says it is longer is no record, and would be waited for in vain."""
@@ -39,16 +39,16 @@ class Following(Reading):
                 condition.closed = True
             while not condition.closed:
                 file.seek(condition.position)
-                head = file.read(_RECORD.size)
-                if len(head) < _RECORD.size:
+                head = file.read(RECORD_HEAD.size)
+                if len(head) < RECORD_HEAD.size:
                     return
-                opcode, length = _RECORD.unpack(head)
+                opcode, length = RECORD_HEAD.unpack(head)
                 if opcode == 0 or length > MAX_LENGTH:
                     raise BadRecordError(self.path, "is damaged where it is written")
                 body = file.read(length)
                 if len(body) < length:
                     return
-                condition.position += _RECORD.size + length
+                condition.position += RECORD_HEAD.size + length
                 if opcode in (Opcode.FOOTER, Opcode.DATA_END):
                     condition.closed = True
                 elif opcode == Opcode.CHUNK:

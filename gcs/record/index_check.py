@@ -14,9 +14,8 @@ from mcap.reader import make_reader
 from mcap.records import ChunkIndex
 from mcap.summary import Summary
 
-from gcs.record.reading import inflate
+from gcs.record.reading import RECORD_HEAD, inflate
 
-_RECORD = struct.Struct("<BQ")
 _MESSAGE_HEAD = struct.Struct("<HIQ")
 _INDEX_HEAD = struct.Struct("<HI")
 _ENTRY = struct.Struct("<QQ")
@@ -84,19 +83,19 @@ def _wrong_with_chunk(data: mmap.mmap, index: ChunkIndex, indexed: Counter[int])
 
 def _body(data: mmap.mmap, at: int, opcode: Opcode) -> bytes | None:
     """Of the record at `at`, if it is of this kind and whole."""
-    if at + _RECORD.size > len(data):
+    if at + RECORD_HEAD.size > len(data):
         return None
-    kind, length = _RECORD.unpack_from(data, at)
-    end = at + _RECORD.size + length
-    return data[at + _RECORD.size : end] if kind == opcode and end <= len(data) else None
+    kind, length = RECORD_HEAD.unpack_from(data, at)
+    end = at + RECORD_HEAD.size + length
+    return data[at + RECORD_HEAD.size : end] if kind == opcode and end <= len(data) else None
 
 
 def _message_heads(records: bytes) -> Iterator[tuple[int, tuple[int, int]]]:
     """Where each message begins, and its channel and log_time."""
     at = 0
-    while at + _RECORD.size <= len(records):
-        opcode, length = _RECORD.unpack_from(records, at)
-        if opcode == Opcode.MESSAGE and at + _RECORD.size + length <= len(records):
-            channel_id, _, log_time_ns = _MESSAGE_HEAD.unpack_from(records, at + _RECORD.size)
+    while at + RECORD_HEAD.size <= len(records):
+        opcode, length = RECORD_HEAD.unpack_from(records, at)
+        if opcode == Opcode.MESSAGE and at + RECORD_HEAD.size + length <= len(records):
+            channel_id, _, log_time_ns = _MESSAGE_HEAD.unpack_from(records, at + RECORD_HEAD.size)
             yield at, (channel_id, log_time_ns)
-        at += _RECORD.size + length
+        at += RECORD_HEAD.size + length

@@ -23,7 +23,8 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Metadata, Schema
 
 MAGIC = b"\x89MCAP0\r\n"
-_RECORD = struct.Struct("<BQ")
+RECORD_HEAD = struct.Struct("<BQ")
+"""Opcode and length of what follows, before every record of an MCAP."""
 _MESSAGE = struct.Struct("<HIQQ")
 _CHUNK = struct.Struct("<QQQII")
 _PIECE_BYTES = 16 * 1024
@@ -100,9 +101,9 @@ class Reading:
         condition = self.condition
         start = len(MAGIC)
         kept_from = 0
-        while start + _RECORD.size <= condition.size:
-            opcode, length = _RECORD.unpack_from(data, start)
-            body = start + _RECORD.size
+        while start + RECORD_HEAD.size <= condition.size:
+            opcode, length = RECORD_HEAD.unpack_from(data, start)
+            body = start + RECORD_HEAD.size
             end = body + length
             if opcode == Opcode.FOOTER:
                 condition.closed = data[end : end + len(MAGIC)] == MAGIC
@@ -130,9 +131,9 @@ class Reading:
     def _inner(self, records: bytes) -> Iterator[Record]:
         """The records of a chunk, as far as they are whole."""
         start = 0
-        while start + _RECORD.size <= len(records):
-            opcode, length = _RECORD.unpack_from(records, start)
-            body = start + _RECORD.size
+        while start + RECORD_HEAD.size <= len(records):
+            opcode, length = RECORD_HEAD.unpack_from(records, start)
+            body = start + RECORD_HEAD.size
             start = body + length
             if start <= len(records):
                 yield from self._take(opcode, records[body:start])
