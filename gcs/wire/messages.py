@@ -58,6 +58,25 @@ class SysStatus(Message, frozen=True, gc=False):
     onboard_control_sensors_health_extended: int = 0  # MAV_SYS_STATUS_SENSOR_EXTENDED
 
 
+class ChangeOperatorControl(Message, frozen=True, gc=False):
+    """CHANGE_OPERATOR_CONTROL (5): 28 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.CHANGE_OPERATOR_CONTROL
+    target_system: int
+    control_request: int
+    version: int
+    passkey: str  # at most 25 bytes
+
+
+class SetMode(Message, frozen=True, gc=False):
+    """SET_MODE (11): 6 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.SET_MODE
+    custom_mode: int
+    target_system: int
+    base_mode: int  # MAV_MODE
+
+
 class ParamRequestRead(Message, frozen=True, gc=False):
     """PARAM_REQUEST_READ (20): 20 bytes."""
 
@@ -68,6 +87,14 @@ class ParamRequestRead(Message, frozen=True, gc=False):
     param_id: str  # at most 16 bytes
 
 
+class ParamRequestList(Message, frozen=True, gc=False):
+    """PARAM_REQUEST_LIST (21): 2 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_REQUEST_LIST
+    target_system: int
+    target_component: int
+
+
 class ParamValue(Message, frozen=True, gc=False):
     """PARAM_VALUE (22): 25 bytes."""
 
@@ -75,6 +102,17 @@ class ParamValue(Message, frozen=True, gc=False):
     param_value: float
     param_count: int
     param_index: int
+    param_id: str  # at most 16 bytes
+    param_type: int  # MAV_PARAM_TYPE
+
+
+class ParamSet(Message, frozen=True, gc=False):
+    """PARAM_SET (23): 23 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_SET
+    param_value: float
+    target_system: int
+    target_component: int
     param_id: str  # at most 16 bytes
     param_type: int  # MAV_PARAM_TYPE
 
@@ -142,6 +180,49 @@ class GlobalPositionInt(Message, frozen=True, gc=False):
     hdg: int  # cdeg
 
 
+class MissionRequestPartialList(Message, frozen=True, gc=False):
+    """MISSION_REQUEST_PARTIAL_LIST (37): 6 bytes, 7 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.MISSION_REQUEST_PARTIAL_LIST
+    start_index: int
+    end_index: int
+    target_system: int
+    target_component: int
+    mission_type: int = 0  # MAV_MISSION_TYPE
+
+
+class MissionWritePartialList(Message, frozen=True, gc=False):
+    """MISSION_WRITE_PARTIAL_LIST (38): 6 bytes, 7 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.MISSION_WRITE_PARTIAL_LIST
+    start_index: int
+    end_index: int
+    target_system: int
+    target_component: int
+    mission_type: int = 0  # MAV_MISSION_TYPE
+
+
+class MissionItem(Message, frozen=True, gc=False):
+    """MISSION_ITEM (39): 37 bytes, 38 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.MISSION_ITEM
+    param1: float
+    param2: float
+    param3: float
+    param4: float
+    x: float
+    y: float
+    z: float
+    seq: int
+    command: int  # MAV_CMD
+    target_system: int
+    target_component: int
+    frame: int  # MAV_FRAME
+    current: int
+    autocontinue: int
+    mission_type: int = 0  # MAV_MISSION_TYPE
+
+
 class MissionRequest(Message, frozen=True, gc=False):
     """MISSION_REQUEST (40): 4 bytes, 5 with extensions."""
 
@@ -150,6 +231,15 @@ class MissionRequest(Message, frozen=True, gc=False):
     target_system: int
     target_component: int
     mission_type: int = 0  # MAV_MISSION_TYPE
+
+
+class MissionSetCurrent(Message, frozen=True, gc=False):
+    """MISSION_SET_CURRENT (41): 4 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.MISSION_SET_CURRENT
+    seq: int
+    target_system: int
+    target_component: int
 
 
 class MissionCurrent(Message, frozen=True, gc=False):
@@ -212,6 +302,17 @@ class MissionAck(Message, frozen=True, gc=False):
     opaque_id: int = 0
 
 
+class SetGpsGlobalOrigin(Message, frozen=True, gc=False):
+    """SET_GPS_GLOBAL_ORIGIN (48): 13 bytes, 21 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.SET_GPS_GLOBAL_ORIGIN
+    latitude: int  # degE7
+    longitude: int  # degE7
+    altitude: int  # mm
+    target_system: int
+    time_usec: int = 0  # us
+
+
 class GpsGlobalOrigin(Message, frozen=True, gc=False):
     """GPS_GLOBAL_ORIGIN (49): 12 bytes, 20 with extensions."""
 
@@ -230,6 +331,81 @@ class MissionRequestInt(Message, frozen=True, gc=False):
     target_system: int
     target_component: int
     mission_type: int = 0  # MAV_MISSION_TYPE
+
+
+class RcChannels(Message, frozen=True, gc=False):
+    """RC_CHANNELS (65): 42 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.RC_CHANNELS
+    time_boot_ms: int  # ms
+    chan1_raw: int  # us
+    chan2_raw: int  # us
+    chan3_raw: int  # us
+    chan4_raw: int  # us
+    chan5_raw: int  # us
+    chan6_raw: int  # us
+    chan7_raw: int  # us
+    chan8_raw: int  # us
+    chan9_raw: int  # us
+    chan10_raw: int  # us
+    chan11_raw: int  # us
+    chan12_raw: int  # us
+    chan13_raw: int  # us
+    chan14_raw: int  # us
+    chan15_raw: int  # us
+    chan16_raw: int  # us
+    chan17_raw: int  # us
+    chan18_raw: int  # us
+    chancount: int
+    rssi: int
+
+
+class ManualControl(Message, frozen=True, gc=False):
+    """MANUAL_CONTROL (69): 11 bytes, 30 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.MANUAL_CONTROL
+    x: int
+    y: int
+    z: int
+    r: int
+    buttons: int
+    target: int
+    buttons2: int = 0
+    enabled_extensions: int = 0
+    s: int = 0
+    t: int = 0
+    aux1: int = 0
+    aux2: int = 0
+    aux3: int = 0
+    aux4: int = 0
+    aux5: int = 0
+    aux6: int = 0
+
+
+class RcChannelsOverride(Message, frozen=True, gc=False):
+    """RC_CHANNELS_OVERRIDE (70): 18 bytes, 38 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.RC_CHANNELS_OVERRIDE
+    chan1_raw: int  # us
+    chan2_raw: int  # us
+    chan3_raw: int  # us
+    chan4_raw: int  # us
+    chan5_raw: int  # us
+    chan6_raw: int  # us
+    chan7_raw: int  # us
+    chan8_raw: int  # us
+    target_system: int
+    target_component: int
+    chan9_raw: int = 0  # us
+    chan10_raw: int = 0  # us
+    chan11_raw: int = 0  # us
+    chan12_raw: int = 0  # us
+    chan13_raw: int = 0  # us
+    chan14_raw: int = 0  # us
+    chan15_raw: int = 0  # us
+    chan16_raw: int = 0  # us
+    chan17_raw: int = 0  # us
+    chan18_raw: int = 0  # us
 
 
 class MissionItemInt(Message, frozen=True, gc=False):
@@ -251,6 +427,18 @@ class MissionItemInt(Message, frozen=True, gc=False):
     current: int
     autocontinue: int
     mission_type: int = 0  # MAV_MISSION_TYPE
+
+
+class VfrHud(Message, frozen=True, gc=False):
+    """VFR_HUD (74): 20 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.VFR_HUD
+    airspeed: float  # m/s
+    groundspeed: float  # m/s
+    alt: float  # m
+    climb: float  # m/s
+    heading: int  # deg
+    throttle: int  # %
 
 
 class CommandInt(Message, frozen=True, gc=False):
@@ -301,6 +489,22 @@ class CommandAck(Message, frozen=True, gc=False):
     target_component: int = 0
 
 
+class SetAttitudeTarget(Message, frozen=True, gc=False):
+    """SET_ATTITUDE_TARGET (82): 39 bytes, 51 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.SET_ATTITUDE_TARGET
+    time_boot_ms: int  # ms
+    q: tuple[float, ...]  # 4 values
+    body_roll_rate: float  # rad/s
+    body_pitch_rate: float  # rad/s
+    body_yaw_rate: float  # rad/s
+    thrust: float
+    target_system: int
+    target_component: int
+    type_mask: int  # ATTITUDE_TARGET_TYPEMASK
+    thrust_body: tuple[float, ...] = (0.0,) * 3  # 3 values
+
+
 class SetPositionTargetLocalNed(Message, frozen=True, gc=False):
     """SET_POSITION_TARGET_LOCAL_NED (84): 53 bytes."""
 
@@ -323,6 +527,51 @@ class SetPositionTargetLocalNed(Message, frozen=True, gc=False):
     coordinate_frame: int  # MAV_FRAME
 
 
+class SetPositionTargetGlobalInt(Message, frozen=True, gc=False):
+    """SET_POSITION_TARGET_GLOBAL_INT (86): 53 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.SET_POSITION_TARGET_GLOBAL_INT
+    time_boot_ms: int  # ms
+    lat_int: int  # degE7
+    lon_int: int  # degE7
+    alt: float  # m
+    vx: float  # m/s
+    vy: float  # m/s
+    vz: float  # m/s
+    afx: float  # m/s/s
+    afy: float  # m/s/s
+    afz: float  # m/s/s
+    yaw: float  # rad
+    yaw_rate: float  # rad/s
+    type_mask: int  # POSITION_TARGET_TYPEMASK
+    target_system: int
+    target_component: int
+    coordinate_frame: int  # MAV_FRAME
+
+
+class RadioStatus(Message, frozen=True, gc=False):
+    """RADIO_STATUS (109): 9 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.RADIO_STATUS
+    rxerrors: int
+    fixed: int
+    rssi: int
+    remrssi: int
+    txbuf: int  # %
+    noise: int
+    remnoise: int
+
+
+class FileTransferProtocol(Message, frozen=True, gc=False):
+    """FILE_TRANSFER_PROTOCOL (110): 254 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.FILE_TRANSFER_PROTOCOL
+    target_network: int
+    target_system: int
+    target_component: int
+    payload: tuple[int, ...]  # 251 values
+
+
 class Timesync(Message, frozen=True, gc=False):
     """TIMESYNC (111): 16 bytes, 18 with extensions."""
 
@@ -331,6 +580,26 @@ class Timesync(Message, frozen=True, gc=False):
     ts1: int  # ns
     target_system: int = 0
     target_component: int = 0
+
+
+class BatteryStatus(Message, frozen=True, gc=False):
+    """BATTERY_STATUS (147): 36 bytes, 54 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.BATTERY_STATUS
+    current_consumed: int  # mAh
+    energy_consumed: int  # hJ
+    temperature: int  # cdegC
+    voltages: tuple[int, ...]  # 10 x mV
+    current_battery: int  # cA
+    id: int
+    battery_function: int  # MAV_BATTERY_FUNCTION
+    type: int  # MAV_BATTERY_TYPE
+    battery_remaining: int  # %
+    time_remaining: int = 0  # s
+    charge_state: int = 0  # MAV_BATTERY_CHARGE_STATE
+    voltages_ext: tuple[int, ...] = (0,) * 4  # 4 x mV
+    mode: int = 0  # MAV_BATTERY_MODE
+    fault_bitmask: int = 0  # MAV_BATTERY_FAULT
 
 
 class AutopilotVersion(Message, frozen=True, gc=False):
@@ -349,6 +618,45 @@ class AutopilotVersion(Message, frozen=True, gc=False):
     middleware_custom_version: tuple[int, ...]  # 8 values
     os_custom_version: tuple[int, ...]  # 8 values
     uid2: tuple[int, ...] = (0,) * 18  # 18 values
+
+
+class FencePoint(Message, frozen=True, gc=False):
+    """FENCE_POINT (160): 12 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.FENCE_POINT
+    lat: float  # deg
+    lng: float  # deg
+    target_system: int
+    target_component: int
+    idx: int
+    count: int
+
+
+class FenceStatus(Message, frozen=True, gc=False):
+    """FENCE_STATUS (162): 8 bytes, 9 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.FENCE_STATUS
+    breach_time: int  # ms
+    breach_count: int
+    breach_status: int
+    breach_type: int  # FENCE_BREACH
+    breach_mitigation: int = 0  # FENCE_MITIGATE
+
+
+class RallyPoint(Message, frozen=True, gc=False):
+    """RALLY_POINT (175): 19 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.RALLY_POINT
+    lat: int  # degE7
+    lng: int  # degE7
+    alt: int  # m
+    break_alt: int  # m
+    land_dir: int  # cdeg
+    target_system: int
+    target_component: int
+    idx: int
+    count: int
+    flags: int  # RALLY_FLAGS
 
 
 class CameraFeedback(Message, frozen=True, gc=False):
@@ -417,6 +725,24 @@ class HomePosition(Message, frozen=True, gc=False):
     time_usec: int = 0  # us
 
 
+class SetHomePosition(Message, frozen=True, gc=False):
+    """SET_HOME_POSITION (243): 53 bytes, 61 with extensions."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.SET_HOME_POSITION
+    latitude: int  # degE7
+    longitude: int  # degE7
+    altitude: int  # mm
+    x: float  # m
+    y: float  # m
+    z: float  # m
+    q: tuple[float, ...]  # 4 values
+    approach_x: float  # m
+    approach_y: float  # m
+    approach_z: float  # m
+    target_system: int
+    time_usec: int = 0  # us
+
+
 class ExtendedSysState(Message, frozen=True, gc=False):
     """EXTENDED_SYS_STATE (245): 2 bytes."""
 
@@ -435,6 +761,16 @@ class Statustext(Message, frozen=True, gc=False):
     chunk_seq: int = 0
 
 
+class SetupSigning(Message, frozen=True, gc=False):
+    """SETUP_SIGNING (256): 42 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.SETUP_SIGNING
+    initial_timestamp: int
+    target_system: int
+    target_component: int
+    secret_key: tuple[int, ...]  # 32 values
+
+
 class CameraImageCaptured(Message, frozen=True, gc=False):
     """CAMERA_IMAGE_CAPTURED (263): 255 bytes."""
 
@@ -450,6 +786,17 @@ class CameraImageCaptured(Message, frozen=True, gc=False):
     camera_id: int
     capture_result: int  # MAV_BOOL
     file_url: str  # at most 205 bytes
+
+
+class ParamExtSet(Message, frozen=True, gc=False):
+    """PARAM_EXT_SET (323): 147 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_EXT_SET
+    target_system: int
+    target_component: int
+    param_id: str  # at most 16 bytes
+    param_value: str  # at most 128 bytes
+    param_type: int  # MAV_PARAM_EXT_TYPE
 
 
 class ParamError(Message, frozen=True, gc=False):

@@ -45,13 +45,35 @@ MESSAGES = (
     "EKF_STATUS_REPORT",
     "TIMESYNC",
     "AUTOPILOT_VERSION",
+    # What other stations send, through the bridge.
+    "SETUP_SIGNING",
+    "SET_MODE",
+    "CHANGE_OPERATOR_CONTROL",
+    "PARAM_REQUEST_LIST",
+    "PARAM_SET",
+    "PARAM_EXT_SET",
+    "MISSION_REQUEST_PARTIAL_LIST",
+    "MISSION_WRITE_PARTIAL_LIST",
+    "MISSION_ITEM",
+    "MISSION_SET_CURRENT",
+    "SET_GPS_GLOBAL_ORIGIN",
+    "SET_HOME_POSITION",
+    "MANUAL_CONTROL",
+    "RC_CHANNELS_OVERRIDE",
+    "SET_ATTITUDE_TARGET",
+    "SET_POSITION_TARGET_GLOBAL_INT",
+    "FILE_TRANSFER_PROTOCOL",
+    "FENCE_POINT",
+    "RALLY_POINT",
+    "BATTERY_STATUS",
+    "RADIO_STATUS",
+    "FENCE_STATUS",
+    "VFR_HUD",
+    "RC_CHANNELS",
 )
 """Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
 
-IDS_ONLY = (
-    "POSITION_TARGET_LOCAL_NED",
-    "BATTERY_STATUS",
-)
+IDS_ONLY = ("POSITION_TARGET_LOCAL_NED",)
 """Messages that are requested for the record and not interpreted: each gets an id only."""
 
 DEFAULTS = {("HEARTBEAT", "mavlink_version"): 3}
@@ -119,6 +141,16 @@ COMMANDS = (
     "MISSION_START",
     "COMPONENT_ARM_DISARM",
     "RUN_PREARM_CHECKS",
+    "ARM_AUTHORIZATION_REQUEST",
+    "DO_SET_ACTUATOR",
+    "DO_MOTOR_TEST",
+    "DO_SET_SERVO",
+    "DO_SET_RELAY",
+    "DO_PARACHUTE",
+    "DO_FOLLOW",
+    "DO_RALLY_LAND",
+    "DO_GO_AROUND",
+    "OVERRIDE_GOTO",
     "GET_HOME_POSITION",
     "INJECT_FAILURE",
     "GET_MESSAGE_INTERVAL",
@@ -168,6 +200,11 @@ ENUMS = (
             "GLOBAL_RELATIVE_ALT_INT",
             "GLOBAL_TERRAIN_ALT",
             "GLOBAL_TERRAIN_ALT_INT",
+            "LOCAL_OFFSET_NED",
+            "BODY_NED",
+            "BODY_OFFSET_NED",
+            "BODY_FRD",
+            "LOCAL_FRD",
         ),
     ),
     EnumChoice(

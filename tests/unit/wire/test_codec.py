@@ -113,7 +113,7 @@ def test_not_a_number_travels() -> None:
 
 
 def test_a_message_without_a_class_is_not_decoded() -> None:
-    raw = FrameWriter(1, 1).write_payload(MsgId.BATTERY_STATUS, bytes(54))
+    raw = FrameWriter(1, 1).write_payload(MsgId.POSITION_TARGET_LOCAL_NED, bytes(51))
     assert decode(only(raw)) is None
 
 
