@@ -1,0 +1,92 @@
+"""What a client is told in MAVLink: acknowledgements and texts.
+
+COMMAND_ACK.result_param2 has the number of the reason code: its place in `gcs.gate.refusal.Code`,
+from 1 up (docs/bridge.md lists them).
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gcs.gate.effects import Level
+from gcs.gate.refusal import Code
+from gcs.protocol.effects import Address
+from gcs.wire.ids import Result, Severity
+from gcs.wire.messages import CommandAck, Statustext
+
+NUMBER_OF: Final = {code: number for number, code in enumerate(Code, start=1)}
+"""Reason code -> its number on the wire."""
+
+MAY_HELP_LATER: Final = frozenset(
+    {
+        Code.BUSY,
+        Code.STALE,
+        Code.NO_POSITION,
+        Code.CONTROL_PENDING,
+        Code.HOLDING,
+        Code.OTHER_OPERATOR,
+        Code.SEVERITY,
+        Code.RECORDER_DOWN,
+        Code.SUPERSEDED,
+        Code.NO_VEHICLE,
+        Code.NO_ORIGIN,
+    }
+)
+"""Reasons that pass: the same command may be accepted a little later."""
+
+UNSUPPORTED: Final = frozenset({Code.UNSUPPORTED, Code.UNSUPPORTED_VEHICLE})
+
+FAILED: Final = frozenset({Code.NO_ANSWER, Code.DEADLINE, Code.LINK_LOST})
+"""It was begun, and did not work."""
+
+TEXT_LETTERS: Final = 50
+"""STATUSTEXT.text; a longer text is sent in pieces with the same id (MAVLink 2)."""
+
+SEVERITIES: Final = {
+    Level.DEBUG: Severity.DEBUG,
+    Level.INFO: Severity.INFO,
+    Level.WARNING: Severity.WARNING,
+    Level.ERROR: Severity.ERROR,
+    Level.FATAL: Severity.CRITICAL,
+}
+
+
+def result_of(code: Code) -> Result:
+    """MAV_RESULT of a refusal."""
+    if code in MAY_HELP_LATER:
+        return Result.TEMPORARILY_REJECTED
+    if code in UNSUPPORTED:
+        return Result.UNSUPPORTED
+    return Result.FAILED if code in FAILED else Result.DENIED
+
+
+def acknowledgement(
+    command: int, result: int, to: Address, code: Code | None = None, progress: int = 0
+) -> CommandAck:
+    """COMMAND_ACK for whoever sent the command; `code` says why where it is refused."""
+    return CommandAck(
+        command=command,
+        result=result,
+        progress=progress,
+        result_param2=NUMBER_OF[code] if code else 0,
+        target_system=to.sysid,
+        target_component=to.compid,
+    )
+
+
+def texts(level: Level, text: str, text_id: int) -> list[Statustext]:
+    """STATUSTEXT, in pieces where it is long; `text_id` 1 to 65535 joins them.
+
+    Letters outside ASCII are replaced: a piece is cut at a byte.
+    """
+    plain = text.encode("ascii", "replace").decode("ascii")
+    severity = int(SEVERITIES[level])
+    if len(plain) <= TEXT_LETTERS:
+        return [Statustext(severity=severity, text=plain)]
+    pieces = [plain[at : at + TEXT_LETTERS] for at in range(0, len(plain), TEXT_LETTERS)]
+    if len(pieces[-1]) == TEXT_LETTERS:
+        pieces.append("")  # a full piece says that another one follows
+    return [
+        Statustext(severity=severity, text=piece, id=text_id, chunk_seq=number)
+        for number, piece in enumerate(pieces)
+    ]

@@ -1,0 +1,240 @@
+"""What one client has asked for and what it was answered: from a MAVLink command to its COMMAND_ACK.
+
+A command is acknowledged once: with a refusal's reason; at the verdict where the gate alone decides
+(a go-to); else with what the vehicle itself answered.  The same command again, sent because no
+answer came, is not asked a second time: it gets IN_PROGRESS, or the answer that it had.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import msgspec
+
+from gcs import ipc
+from gcs.bridge.answers import acknowledgement, result_of, texts
+from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
+from gcs.gate.effects import Level
+from gcs.gate.refusal import Code, Refusal
+from gcs.protocol.effects import Address
+from gcs.wire.codec import encode
+from gcs.wire.ids import Result
+from gcs.wire.messages import CommandInt, CommandLong, Message
+
+AGAIN_NS: Final = 2_000_000_000
+"""The same command within this time after its answer is a repetition of it, not a new one."""
+SAME_TEXT_NS: Final = 5_000_000_000
+"""The same text is sent again to a client only after so long."""
+MOST_TOLD: Final = 20
+MOST_TEXTS: Final = 50
+"""In `SAME_TEXT_NS`; a client that is refused more often than that reads the acknowledgements."""
+DECIDED_BY_GATE: Final = frozenset({"goto", "stream_begin", "stream_end", "resume", "control"})
+"""Words that no single command to the vehicle stands for: they are answered with the verdict."""
+
+
+@dataclass(frozen=True, slots=True)
+class From:
+    """Who sent a message on which link, and which component it was for."""
+
+    link: int
+    source: Address
+    addressed: Address
+
+
+@dataclass(slots=True)
+class _Pending:
+    """A command, or another message that asks, whose answer is not given yet."""
+
+    asked_by: From
+    command: int
+    """MAV_CMD; 0 for what is not acknowledged."""
+    key: bytes
+    rest: tuple[ipc.Ask, ...]
+    """What is to be asked after it."""
+    name: str
+    operation: int = 0
+    answered: int | None = None
+    """MAV_RESULT that the client was told."""
+    vehicle_result: int | None = None
+
+
+@dataclass(slots=True)
+class _Told:
+    key: bytes
+    result: int
+    code: Code | None
+    until_ns: int
+
+
+@dataclass(slots=True)
+class Dialogue:
+    """One client's requests; `client` is its number among the operators."""
+
+    client: int
+    _next_id: int = 1
+    _next_text: int = 1
+    _pending: dict[int, _Pending] = field(default_factory=dict)
+    _told: list[_Told] = field(default_factory=list)
+    _texts: dict[str, int] = field(default_factory=dict)
+
+    # ----------------------------------------------------------------------------- asking
+
+    def ask(
+        self, asked_by: From, message: Message, asks: Sequence[ipc.Ask], now_ns: int
+    ) -> list[BridgeEffect]:
+        """Ask for `asks`, one after the other, because of a client's message."""
+        key, command = _key(message), _command(message)
+        repeated = self._repeated(asked_by, key, command, now_ns)
+        if repeated is not None:
+            return repeated
+        pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word)
+        return [Says(self.client, self._open(pending, asks[0]))]
+
+    def refuse(
+        self, asked_by: From, message: Message | None, name: str, refusal: Refusal, now_ns: int
+    ) -> list[BridgeEffect]:
+        """What never reaches the gate: unsupported, denied by the table or by a guard.
+
+        `name` is the message's or command's; a message that cannot be decoded is None.
+        """
+        key, command = _key(message), _command(message)
+        repeated = self._repeated(asked_by, key, command, now_ns)
+        if repeated is not None:
+            return repeated
+        pending = _Pending(asked_by, command, key, (), name)
+        return [Refuses(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
+
+    def _open(self, pending: _Pending, ask: ipc.Ask) -> ipc.Ask:
+        number = self._next_id
+        self._next_id += 1
+        self._pending[number] = pending
+        return msgspec.structs.replace(ask, id=number)
+
+    def _repeated(
+        self, asked_by: From, key: bytes, command: int, now_ns: int
+    ) -> list[BridgeEffect] | None:
+        """The answer to a repetition; None where this is something new."""
+        if not command:
+            return None
+        for pending in self._pending.values():
+            if pending.key == key and pending.asked_by == asked_by:
+                result = Result.IN_PROGRESS if pending.answered is None else pending.answered
+                return [self._acknowledge(asked_by, command, result)]
+        for told in self._told:
+            if told.key == key and told.until_ns > now_ns:
+                return [self._acknowledge(asked_by, command, told.result, told.code)]
+        return None
+
+    # ---------------------------------------------------------------------------- answers
+
+    def told(self, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
+        """What the station tells this client as an operator, in MAVLink's words."""
+        match event:
+            case ipc.VerdictEvent():
+                return self._verdict(event, now_ns)
+            case ipc.EndingEvent():
+                return self._ending(event, now_ns)
+            case _:
+                return []
+
+    def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
+        """The vehicle answered a command that the gate sent for a request of this client."""
+        for pending in self._pending.values():
+            if pending.operation == operation and operation:
+                pending.vehicle_result = result
+                if result == Result.ACCEPTED:
+                    return self._answer(pending, Result.ACCEPTED, None, now_ns)
+        return []
+
+    def _verdict(self, event: ipc.VerdictEvent, now_ns: int) -> list[BridgeEffect]:
+        pending = self._pending.get(event.id)
+        if pending is None:
+            return []
+        if event.outcome == "accepted":
+            pending.operation = event.operation
+            if event.word in DECIDED_BY_GATE and not pending.rest:
+                return self._answer(pending, Result.ACCEPTED, None, now_ns)
+            return []
+        del self._pending[event.id]
+        code = _code(event.code)
+        text = f"{pending.name}: {event.outcome} {event.code}: {event.sentence}"
+        return [
+            *self._answer(pending, result_of(code), code, now_ns),
+            *self.text(pending.asked_by, Level.WARNING, text, now_ns),
+        ]
+
+    def _ending(self, event: ipc.EndingEvent, now_ns: int) -> list[BridgeEffect]:
+        pending = self._pending.pop(event.id, None)
+        if pending is None:
+            return []
+        if event.ended == "complete":
+            if pending.rest:
+                following = _Pending(
+                    pending.asked_by, pending.command, pending.key, pending.rest[1:], pending.name
+                )
+                return [Says(self.client, self._open(following, pending.rest[0]))]
+            return self._answer(pending, Result.ACCEPTED, None, now_ns)
+        code = _code(event.code)
+        refused = pending.vehicle_result not in (None, Result.ACCEPTED)
+        result = pending.vehicle_result if refused else result_of(code)
+        assert result is not None
+        text = f"{pending.name}: {event.ended} {event.code}: {event.sentence}"
+        return [
+            *self._answer(pending, result, code, now_ns),
+            *self.text(pending.asked_by, Level.WARNING, text, now_ns),
+        ]
+
+    def _answer(
+        self, pending: _Pending, result: int, code: Code | None, now_ns: int
+    ) -> list[BridgeEffect]:
+        """COMMAND_ACK, once."""
+        if pending.answered is not None or not pending.command:
+            return []
+        pending.answered = result
+        told = _Told(pending.key, result, code, now_ns + AGAIN_NS)
+        self._told = [*self._told[-MOST_TOLD:], told]
+        return [self._acknowledge(pending.asked_by, pending.command, result, code)]
+
+    @staticmethod
+    def _acknowledge(to: From, command: int, result: int, code: Code | None = None) -> Answers:
+        return Answers(
+            to.link, to.addressed, acknowledgement(command, result, to.source, code)
+        )
+
+    def text(self, to: From, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
+        """STATUSTEXT for this client; the same words not more often than every few seconds."""
+        if self._texts.get(text, now_ns) > now_ns:
+            return []
+        self._texts = {said: until for said, until in self._texts.items() if until > now_ns}
+        if len(self._texts) >= MOST_TEXTS:
+            return []
+        self._texts[text] = now_ns + SAME_TEXT_NS
+        self._next_text = self._next_text % 0xFFFF + 1
+        return [
+            Answers(to.link, to.addressed, message)
+            for message in texts(level, text, self._next_text)
+        ]
+
+
+def _command(message: Message | None) -> int:
+    """MAV_CMD; 0 for a message that is not acknowledged."""
+    return message.command if isinstance(message, CommandLong | CommandInt) else 0
+
+
+def _key(message: Message | None) -> bytes:
+    """What makes a command the same as another one: all but the number of its repetition.
+
+    As bytes, because NaN is a value of its own on the wire and equals nothing here.
+    """
+    if message is None:
+        return b""
+    if isinstance(message, CommandLong):
+        message = msgspec.structs.replace(message, confirmation=0)
+    return encode(message)
+
+
+def _code(text: str) -> Code:
+    """What is not among the gate's codes (BAD_REQUEST) cannot be flown."""
+    return Code(text) if text in Code.__members__ else Code.UNSUPPORTED

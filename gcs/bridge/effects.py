@@ -1,0 +1,90 @@
+"""What the bridge answers, as a closed union of frozen values; the session puts it into practice."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from gcs import ipc
+from gcs.gate.effects import Level
+from gcs.gate.refusal import Refusal
+from gcs.protocol.effects import Address
+from gcs.wire.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """A client has sent its first good frame: it is an operator from now on."""
+
+    client: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """A client is gone, or has been silent for too long."""
+
+    client: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Says:
+    """What a client asks for, in an operator's words."""
+
+    client: int
+    command: ipc.Command
+
+
+@dataclass(frozen=True, slots=True)
+class Refuses:
+    """What a client asks for is refused before the gate sees it; `ask` names it."""
+
+    client: int
+    ask: ipc.Ask
+    refusal: Refusal
+
+
+@dataclass(frozen=True, slots=True)
+class ToVehicle:
+    """A frame of a client that goes to the vehicle as it is."""
+
+    raw: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class AsksVehicle:
+    """A message that the bridge sends to the vehicle in a client's name (`source`)."""
+
+    source: Address
+    message: Message
+
+
+@dataclass(frozen=True, slots=True)
+class ToLink:
+    """A frame that goes to a client's link as it is."""
+
+    link: int
+    raw: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """A message for a client, in the name of the component that it addressed."""
+
+    link: int
+    source: Address
+    message: Message
+
+
+@dataclass(frozen=True, slots=True)
+class Notes:
+    """A line for the log."""
+
+    level: Level
+    text: str
+
+
+BridgeEffect: TypeAlias = (
+    Joined | Lost | Says | Refuses | ToVehicle | AsksVehicle | ToLink | Answers | Notes
+)
