@@ -22,6 +22,8 @@ class StationConfig(msgspec.Struct, frozen=True):
     """Everything that a station needs to know.  Times in seconds, paths as typed by the user."""
 
     endpoints: list[str] = []  # empty with `sim`: a private free port
+    clients: list[str] = []  # ports where MAVLink clients reach the vehicle through the gate
+    bridge: bool = False  # `gcs bridge`: the operator who started it only looks
     sim: SimConfig | None = None
     policy_path: str = ""  # empty = the built-in default
     log_dir: str = "logs"

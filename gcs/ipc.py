@@ -284,6 +284,57 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     in_control: OperatorInfo | None = None  # of the station; None = nobody
 
 
+class BridgeLink(msgspec.Struct, frozen=True):
+    """One link on which vehicles are, as a bridge counts it."""
+
+    link: int
+    name: str  # its endpoint
+    rx_hz: float = 0.0  # frames a second, received
+    tx_hz: float = 0.0  # sent
+    lost_pct: float = 0.0  # of the vehicle's frames on this link, by their sequence numbers
+
+
+class BridgeClient(msgspec.Struct, frozen=True):
+    """One MAVLink client of a bridge: one peer on one client port."""
+
+    client: int  # its number among the operators, from 1000 up
+    link: int
+    name: str  # "udp 127.0.0.1:14551"
+    ids: list[str] = []  # "255/190": who it has said that it is; empty before its first frame
+    rx_hz: float = 0.0  # frames a second that it sends
+    tx_hz: float = 0.0  # that it is sent
+    refused: int = 0  # its frames that did not go to the vehicle, since it came
+    dropped: int = 0  # its datagrams over the rate limit, which nobody looked at
+    signed: str = ""  # empty: not signed; else what is known of its signatures
+    in_control: bool = False
+    silent_s: float = 0.0  # since its last frame
+
+
+class BridgeStatus(msgspec.Struct, frozen=True, tag="bridge", tag_field="type"):
+    """Who is connected to the bridge, and what goes through it; at most two a second, dropped when
+    the reader is slow."""
+
+    time_ns: int
+    links: list[BridgeLink]
+    clients: list[BridgeClient]
+
+
+class BridgeDecision(msgspec.Struct, frozen=True, tag="bridge_decision", tag_field="type"):
+    """What the bridge decided of one thing that a MAVLink client sent.
+
+    For refusals, and for what was accepted of motion and of configuration; what is only forwarded
+    is not told one by one.
+    """
+
+    time_ns: int
+    client: int
+    name: str  # of the client
+    what: str  # "DO_REPOSITION", "PARAM_SET FENCE_ENABLE"
+    outcome: str  # accepted | refused | superseded
+    code: str = ""
+    sentence: str = ""
+
+
 class Trouble(msgspec.Struct, frozen=True, tag="trouble", tag_field="type"):
     """Something the operator must know that is not the flight: a bad line, a port in use, …
 
@@ -319,6 +370,8 @@ Event: TypeAlias = (
     | StateEvent
     | LogEvent
     | Snapshot
+    | BridgeStatus
+    | BridgeDecision
     | Trouble
     | Bye
 )

@@ -62,6 +62,36 @@ class OperatorGone:
 
 
 @dataclass(frozen=True, slots=True)
+class ClientCame:
+    """A MAVLink client is there, on a link of its own until it has gone.
+
+    The number of the link is free, and from the number of the vehicles' links up.  `name` is where
+    it is ("udp 127.0.0.1:14551"); `stream`: its `Datagram`s are pieces of one byte stream.
+    """
+
+    link: int
+    name: str
+    stream: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ClientGone:
+    """The client of that link has gone: it was silent, closed its connection, or made room."""
+
+    link: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ClientFlooded:
+    """The client of that link sends more than it may: so many datagrams of it were dropped unread
+    since it was last told, at most once a second."""
+
+    link: int
+    dropped: int
+
+
+@dataclass(frozen=True, slots=True)
 class SignalCame:
     """The station's process was signalled to go (SIGTERM), or its terminal closed (SIGHUP)."""
 
@@ -138,6 +168,9 @@ OtherInput: TypeAlias = (
     | OperatorLine
     | OperatorNoise
     | OperatorGone
+    | ClientCame
+    | ClientGone
+    | ClientFlooded
     | SignalCame
     | FileRead
     | FileWritten

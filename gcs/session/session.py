@@ -27,6 +27,9 @@ from gcs.session.clients import FIRST, LEAVING_NS
 from gcs.session.effects import Effect, Emit, Finish, Record
 from gcs.session.gate_port import condition
 from gcs.session.inputs import (
+    ClientCame,
+    ClientFlooded,
+    ClientGone,
     Datagram,
     DiskLow,
     FileRead,
@@ -192,6 +195,13 @@ class Session:
                 return self._operators.signalled(name)
             case LinkEvent(_, text, trouble):
                 return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
+            case ClientCame(link, name):
+                return [Log(Level.INFO, NODE, f"client {name} came, on link {link}")]
+            case ClientGone(link, reason):
+                return [Log(Level.INFO, NODE, f"the client on link {link} has gone: {reason}")]
+            case ClientFlooded(link, dropped):
+                text = f"the client on link {link} sends too much: {dropped} datagrams dropped"
+                return [Log(Level.WARNING, NODE, text)]
             case FileRead() | FileWritten():
                 return self._vehicle.file(given, now_ns)
             case RecorderChanged():

@@ -25,3 +25,5 @@ class Setup:
     environment: str = ""
     """Python, machine and libraries that the station runs with: another one may count otherwise
     in the last digit."""
+    client_ports: tuple[str, ...] = ()
+    """Where MAVLink clients reach the vehicle through this station, a line each."""

@@ -256,7 +256,7 @@ class Loop:
     def _emit(self, event: ipc.Event, client: int) -> None:
         """One line, to whom it is for; what comes again anyway may be dropped on the way."""
         line = ipc.encode(event)
-        droppable = isinstance(event, ipc.Snapshot | ipc.MessageEvent)
+        droppable = isinstance(event, ipc.Snapshot | ipc.MessageEvent | ipc.BridgeStatus)
         last = isinstance(event, ipc.Bye)
         if isinstance(event, ipc.Snapshot):
             self._on_snapshot(event)

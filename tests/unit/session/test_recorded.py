@@ -14,6 +14,9 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.report import AttachmentItem, LogEvent
 from gcs.session.effects import Record
 from gcs.session.inputs import (
+    ClientCame,
+    ClientFlooded,
+    ClientGone,
     DiskLow,
     FileRead,
     FileWritten,
@@ -54,6 +57,12 @@ def as_json(item: Any) -> Any:
             OperatorJoined(3, "a test"),
             {"client": 3, "name": "a test", "hold_on_leave": True},
         ),
+        (
+            ClientCame(2, "udp 127.0.0.1:14551", False),
+            {"link": 2, "name": "udp 127.0.0.1:14551", "stream": False},
+        ),
+        (ClientGone(2, "silent for 10 s"), {"link": 2, "reason": "silent for 10 s"}),
+        (ClientFlooded(2, 900), {"link": 2, "dropped": 900}),
         (LinkEvent(1, "lost", True), {"link": 1, "text": "lost", "trouble": True}),
         (SimGone(3), {"exit_code": 3}),
         (SimLine("INFO sim: x"), {"text": "INFO sim: x"}),

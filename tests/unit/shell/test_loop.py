@@ -421,6 +421,7 @@ def test_an_event_goes_to_whom_it_is_for(clients: PaperClients) -> None:
         Emit(ipc.Trouble("for the first"), 1),
         Emit(ipc.Trouble("for another"), 2),
         Emit(snapshot),
+        Emit(ipc.BridgeStatus(0, [], [])),
         Emit(ipc.Bye(0, "", "", goes_on=True), 2),
     ]
     rig.run(lambda: rig.links[0].bring(b"first"))
@@ -429,6 +430,7 @@ def test_an_event_goes_to_whom_it_is_for(clients: PaperClients) -> None:
         ("Trouble", 0, False, False),
         ("Trouble", 2, False, False),
         ("Snapshot", 0, True, False),
+        ("BridgeStatus", 0, True, False),
         ("Bye", 2, False, True),
     ]
     rig.close()
