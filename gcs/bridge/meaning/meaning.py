@@ -1,0 +1,89 @@
+"""What a client's message can mean, and what must be known of the vehicle to tell it.
+
+Positions are metres in the vehicle's local NED frame (MAV_FRAME_LOCAL_NED), angles are radians
+clockwise from north, speeds are metres per second.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from gcs import ipc
+from gcs.frames import Vec3
+from gcs.gate.airspace.projection import Origin
+from gcs.gate.refusal import Refusal
+from gcs.gate.states import State
+from gcs.protocol.autopilot import Autopilot
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """The vehicle as it was last reported, and what the gate does with it.
+
+    `state` and the fields after it have defaults with which less is allowed, not more.
+    """
+
+    autopilot: Autopilot
+    origin: Origin | None
+    home_ned: Vec3 | None
+    home_amsl_m: float | None
+    pos_ned: Vec3 | None
+    v_ned: Vec3
+    yaw_rad: float | None
+    on_ground: bool
+    armed: bool
+    mode_name: str
+    goal_ned: Vec3 | None
+    """What the gate flies to or holds now; None where it sends no position."""
+    takeoff_up_m: float
+    """The vehicle's own default height of a take-off, above the take-off point."""
+    state: State = State.NO_VEHICLE
+    """Of the gate's machine."""
+    mission_paused: bool = False
+    """A mission of this vehicle was stopped by a hold, and nothing else was flown since."""
+    max_speed_m_s: float = 0.0
+    """A client may set speeds up to this; 0: none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One sample of a setpoint stream: what is to be flown now.  None = not given.
+
+    An axis of a triple that the client left out is NaN.
+    """
+
+    pos_ned: Vec3 | None = None
+    v_ned: Vec3 | None = None
+    a_ned: Vec3 | None = None
+    yaw_rad: float | None = None
+    yaw_rate_rad_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """Requests, the second when the first is complete; their ids are filled in by the bridge.
+
+    No request: what is asked for is so already, and is answered as done.
+    """
+
+    asks: tuple[ipc.Ask, ...]
+    note: str = ""
+    """What will not be flown as the message says, for the client to read; empty: nothing."""
+    if_repeated: Sample | None = None
+    """The same message as a sample, where its sender turns out to be streaming: `pace.Pace`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Forward:
+    """Moves the vehicle nowhere, as it is now: goes to it unchanged."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reject:
+    """Cannot be put in words that the gate can judge; the client is told, and it is recorded."""
+
+    refusal: Refusal
+
+
+Meaning: TypeAlias = Words | Sample | Forward | Reject
