@@ -103,7 +103,17 @@ class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="ty
     """
 
 
-Command: TypeAlias = Ask | Pending | Leave | Join | Subscribe | ListOperations | WatchTopics
+class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_defaults=True):
+    """One sample of a setpoint stream; a sample has no answer."""
+
+    pos_enu: Maybe3 | None = None
+    v_enu: Maybe3 | None = None
+    a_enu: Maybe3 | None = None
+    yaw_deg: float | None = None
+    yaw_rate_deg_s: float | None = None
+
+
+Command: TypeAlias = Ask | Stream | Pending | Leave | Join | Subscribe | ListOperations | WatchTopics
 
 
 class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):

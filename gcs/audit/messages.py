@@ -35,8 +35,8 @@ class Stored(NamedTuple):
 
     @property
     def came_in(self) -> bool:
-        """Bytes that a link received: an input, or a part of one."""
-        return self.is_garbage or (self.is_frame and self.data[1] == Direction.RECEIVED)
+        """Bytes that a link received, whether or not they were refused: an input, or a part of one."""
+        return self.is_garbage or (self.is_frame and self.data[1] != Direction.SENT)
 
     @property
     def link(self) -> int:

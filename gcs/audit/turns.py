@@ -18,7 +18,7 @@ from gcs.audit.inputs import CannotReadError, Kept, datagram_of, kept_of
 from gcs.audit.messages import INPUT_TOPIC, Attachments, InputMessage, Stored
 from gcs.audit.seals import Altered, Missing, SealCheck
 from gcs.record.seals import PartBegan, Seal
-from gcs.session.inputs import Input
+from gcs.session.inputs import ClientCame, Input
 from gcs.session.recorded import FaultKept, Pieces, Start
 
 
@@ -217,6 +217,8 @@ class Turns:
         if cut and self._open.wants_more:
             self.lost_input = True
             return
+        if isinstance(turn.given, ClientCame):
+            self._rests.pop(turn.given.link, None)  # another one had this number before
         if link >= 0:
             pieces = self._open.pieces or Pieces(link, len(raws))
             turn.given = datagram_of(pieces, raws, self._rests.get(link, b""))

@@ -8,7 +8,7 @@ answer came, is not asked a second time: it gets IN_PROGRESS, or the answer that
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import msgspec
@@ -30,8 +30,11 @@ SAME_TEXT_NS: Final = 5_000_000_000
 MOST_TOLD: Final = 20
 MOST_TEXTS: Final = 50
 """In `SAME_TEXT_NS`; a client that is refused more often than that reads the acknowledgements."""
-DECIDED_BY_GATE: Final = frozenset({"goto", "stream_begin", "stream_end", "resume", "control"})
-"""Words that no single command to the vehicle stands for: they are answered with the verdict."""
+DECIDED_BY_GATE: Final = frozenset({"goto", "stream_begin", "stream_end"})
+"""Words that no command to the vehicle stands for: they are answered with the verdict."""
+SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
+"""Words that are answered when the vehicle shows it, within a second or two, because what a client
+sends next (a take-off, a go-to) is refused before.  All else is answered as the vehicle answers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +57,8 @@ class _Pending:
     rest: tuple[ipc.Ask, ...]
     """What is to be asked after it."""
     name: str
+    """For texts."""
+    word: str
     operation: int = 0
     answered: int | None = None
     """MAV_RESULT that the client was told."""
@@ -84,12 +89,15 @@ class Dialogue:
     def ask(
         self, asked_by: From, message: Message, asks: Sequence[ipc.Ask], now_ns: int
     ) -> list[BridgeEffect]:
-        """Ask for `asks`, one after the other, because of a client's message."""
+        """Ask for `asks`, one after the other, because of a client's message; none: it is so already."""
         key, command = _key(message), _command(message)
         repeated = self._repeated(asked_by, key, command, now_ns)
         if repeated is not None:
             return repeated
-        pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word)
+        if not asks:
+            done = [self._acknowledge(asked_by, command, Result.ACCEPTED)]
+            return [*done] if command else []
+        pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
         return [Says(self.client, self._open(pending, asks[0]))]
 
     def refuse(
@@ -103,7 +111,7 @@ class Dialogue:
         repeated = self._repeated(asked_by, key, command, now_ns)
         if repeated is not None:
             return repeated
-        pending = _Pending(asked_by, command, key, (), name)
+        pending = _Pending(asked_by, command, key, (), name, "")
         return [Refuses(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
 
     def _open(self, pending: _Pending, ask: ipc.Ask) -> ipc.Ask:
@@ -144,7 +152,7 @@ class Dialogue:
         for pending in self._pending.values():
             if pending.operation == operation and operation:
                 pending.vehicle_result = result
-                if result == Result.ACCEPTED:
+                if result == Result.ACCEPTED and pending.word not in SEEN_SOON:
                     return self._answer(pending, Result.ACCEPTED, None, now_ns)
         return []
 
@@ -171,10 +179,9 @@ class Dialogue:
             return []
         if event.ended == "complete":
             if pending.rest:
-                following = _Pending(
-                    pending.asked_by, pending.command, pending.key, pending.rest[1:], pending.name
-                )
-                return [Says(self.client, self._open(following, pending.rest[0]))]
+                ask, rest = pending.rest[0], pending.rest[1:]
+                following = replace(pending, rest=rest, word=ask.word, vehicle_result=None)
+                return [Says(self.client, self._open(following, ask))]
             return self._answer(pending, Result.ACCEPTED, None, now_ns)
         code = _code(event.code)
         refused = pending.vehicle_result not in (None, Result.ACCEPTED)

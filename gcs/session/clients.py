@@ -45,9 +45,11 @@ class Client:
 class Clients:
     """The operators that are there.  Their numbers are never given a second time."""
 
-    def __init__(self, first_name: str) -> None:
+    def __init__(self, first_name: str, first_looks: bool = False) -> None:
+        """`first_looks`: whoever started the station does not begin in control of it (a bridge)."""
         self._there = {FIRST: Client(FIRST, first_name)}
-        self._in_control = FIRST
+        self._by_default = NOBODY if first_looks else FIRST
+        self._in_control = self._by_default
         self._leaving: dict[int, int] = {}
         """Operators that are still to be told good-bye, and until when they wait for the hold."""
 
@@ -110,7 +112,7 @@ class Clients:
         self._leaving.pop(gone.number, None)
         work: list[Work] = [Log(Level.DEBUG, NODE, f"{gone.label} left")]
         if gone.number == self._in_control:
-            work += self._give(FIRST if FIRST in self._there else NOBODY)
+            work += self._give(self._by_default if FIRST in self._there else NOBODY)
         else:
             work.append(self._told())
         return work

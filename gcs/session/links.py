@@ -1,12 +1,14 @@
 """The station's end of every link: bytes that come in become frames, messages become frames.
 
-A link is a connection over which vehicles are reached: a UDP or TCP endpoint or a serial line.
+A link is a connection over which vehicles are reached, or a MAVLink client: a UDP or TCP peer or a
+serial line.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
+from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem
 from gcs.session.effects import Effect, Record, Transmit
 from gcs.wire.codec import FrameWriter
@@ -33,6 +35,8 @@ class Links:
         self._writers = [FrameWriter(sysid, compid) for _ in range(count)]
         self._splitters = {link: StreamSplitter() for link in streams}
         self._waiting = set(waiting)
+        self._named: dict[tuple[int, int, int], FrameWriter] = {}
+        """Who writes in the name of a component: by link, system and component."""
 
     def split(self, link: int, data: bytes) -> list[Item]:
         """Frames and garbage in `data`.
@@ -51,12 +55,36 @@ class Links:
         """A frame came in on `link`: from now on frames are sent there."""
         self._waiting.discard(link)
 
+    def open(self, link: int, stream: bool) -> None:
+        """A client's link is there; its number may have been another one's before."""
+        self._splitters.pop(link, None)
+        if stream:
+            self._splitters[link] = StreamSplitter()
+
+    def close(self, link: int) -> None:
+        """A client's link is gone."""
+        self._splitters.pop(link, None)
+        for key in [key for key in self._named if key[0] == link]:
+            del self._named[key]
+
+    def pass_on(self, link: int, raw: bytes) -> list[Effect]:
+        """A frame of somebody else on a link, unchanged, and its record."""
+        return [Transmit(link, raw), Record(FrameItem(link, Direction.SENT, raw))]
+
+    def send_as(self, source: Address, link: int, message: Message) -> list[Effect]:
+        """One frame on one link in the name of a component (`source`), and its record."""
+        key = (link, source.sysid, source.compid)
+        writer = self._named.get(key)
+        if writer is None:
+            writer = self._named[key] = FrameWriter(source.sysid, source.compid)
+        return self.pass_on(link, writer.write(message))
+
     def send(self, link: int, message: Message) -> list[Effect]:
         """One frame on one link, and its record; nothing where no peer is known."""
         if link in self._waiting:
             return []
         raw = self._writers[link].write(message)
-        return [Transmit(link, raw), Record(FrameItem(link, Direction.SENT, raw))]
+        return self.pass_on(link, raw)
 
     def heartbeat(self) -> list[Effect]:
         """HEARTBEAT of a ground station, on every link."""

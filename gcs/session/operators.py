@@ -50,7 +50,7 @@ class Operators:
 
     def __init__(self, setup: Setup, times: Times) -> None:
         self._keep = setup.config.keep
-        self._clients = Clients(setup.config.operator)
+        self._clients = Clients(setup.config.operator, first_looks=setup.config.bridge)
         self._requests = Requests()
         self._operations = Operations()
         self._subscriptions = Subscriptions(times)
@@ -122,6 +122,8 @@ class Operators:
         match command:
             case ipc.Ask():
                 return self._ask(client, command, autopilot, no_vehicle)
+            case ipc.Stream():
+                return []
             case ipc.Pending(goal_enu, _):
                 if client != self._clients.in_control:
                     return []  # who only looks cannot send it
@@ -186,6 +188,10 @@ class Operators:
         if operation.asked.word in TRANSFER_WORDS:
             return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
         return [AskGate(request_id, Abort())]
+
+    def refuse(self, client: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
+        """What is refused before it is a request: it has a number, a verdict and a record too."""
+        return self._refuse(self._requests.open(ask, client), ask, refusal)
 
     @staticmethod
     def _refuse(request_id: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:

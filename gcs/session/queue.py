@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias, cast, get_args
 
-from gcs.session.effects import Effect
+from gcs.bridge.bridge import FIRST_NUMBER
+from gcs.session.effects import Effect, Emit
 from gcs.session.work import GateAnswered, ToGate, Work
 
 EFFECT_TYPES: Final = frozenset(get_args(Effect))
@@ -31,14 +32,19 @@ class WorkQueue:
         self._effects: list[Work] = []
 
     def run(self, work: Sequence[Work], now_ns: int) -> None:
-        """Do all of it, and all that it leads to."""
+        """Do all of it, and all that it leads to.
+
+        What a MAVLink client is told is work, too: the bridge puts it in MAVLink's words.
+        """
         agenda = list(reversed(work))  # the next item last
         step, effects, postponed = self._step, self._effects, self._postponed
         gate_answers = False
         while agenda:
             item = agenda.pop()
             kind = type(item)
-            if kind in EFFECT_TYPES:
+            if isinstance(item, Emit) and item.client >= FIRST_NUMBER:
+                agenda += reversed(step(item, now_ns))
+            elif kind in EFFECT_TYPES:
                 effects.append(item)
             elif kind is GateAnswered:
                 gate_answers = False

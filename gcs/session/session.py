@@ -10,6 +10,17 @@ from __future__ import annotations
 from typing import assert_never
 
 from gcs import ipc
+from gcs.bridge.effects import (
+    Answers,
+    AsksVehicle,
+    Joined,
+    Lost,
+    Notes,
+    Refuses,
+    Says,
+    ToLink,
+    ToVehicle,
+)
 from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate import inputs as gate_inputs
@@ -23,8 +34,9 @@ from gcs.report import (
     GarbageItem,
 )
 from gcs.session import teller
+from gcs.session.bridge_port import BridgePort
 from gcs.session.clients import FIRST, LEAVING_NS
-from gcs.session.effects import Effect, Emit, Finish, Record
+from gcs.session.effects import Effect, Emit, Finish, Record, Transmit
 from gcs.session.gate_port import condition
 from gcs.session.inputs import (
     ClientCame,
@@ -95,6 +107,8 @@ class Session:
         self._links = Links(config.sysid, config.compid, count, streams, waiting)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._operators = Operators(setup, self._times)
+        self._bridge = BridgePort(config, self._times, self._vehicle)
+        self._first_client_link = count
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
@@ -142,6 +156,7 @@ class Session:
             self._datagram(given, now_ns)
         else:
             queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
+        queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
         queue.run(self._end_if_due(now_ns), now_ns)
         self._unfinished = None
         return queue.take()
@@ -183,10 +198,7 @@ class Session:
             case OperatorJoined():
                 return self._welcome(given, now_ns)
             case OperatorLine(client, command):
-                telemetry = self._vehicle.telemetry
-                autopilot = telemetry.autopilot if telemetry else None
-                no_vehicle = self._vehicle.refusal(now_ns)
-                return self._operators.line(client, command, autopilot, no_vehicle, now_ns)
+                return self._line(client, command, now_ns)
             case OperatorNoise(client, text):
                 return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
             case OperatorGone(client, reason):
@@ -195,13 +207,14 @@ class Session:
                 return self._operators.signalled(name)
             case LinkEvent(_, text, trouble):
                 return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
-            case ClientCame(link, name):
-                return [Log(Level.INFO, NODE, f"client {name} came, on link {link}")]
+            case ClientCame(link, name, stream):
+                self._links.open(link, stream)
+                return [*self._bridge.bridge.came(link, name)]
             case ClientGone(link, reason):
-                return [Log(Level.INFO, NODE, f"the client on link {link} has gone: {reason}")]
+                self._links.close(link)
+                return [*self._bridge.bridge.gone(link, reason)]
             case ClientFlooded(link, dropped):
-                text = f"the client on link {link} sends too much: {dropped} datagrams dropped"
-                return [Log(Level.WARNING, NODE, text)]
+                return [*self._bridge.bridge.flooded(link, dropped)]
             case FileRead() | FileWritten():
                 return self._vehicle.file(given, now_ns)
             case RecorderChanged():
@@ -221,7 +234,8 @@ class Session:
         """Hand one item of work to the part that it is for."""
         match item:
             case ToGate(given):
-                return self._vehicle.ask_gate(given, now_ns)
+                answered = self._bridge.before_gate(given, now_ns)
+                return [*answered, *self._vehicle.ask_gate(given, now_ns)]
             case Send(message):
                 telemetry = self._vehicle.telemetry
                 return [] if telemetry is None else [*self._links.send(telemetry.link, message)]
@@ -240,7 +254,8 @@ class Session:
             ):
                 return self._vehicle.carry_out(item, now_ns)
             case Log():
-                return [*teller.log(item, now_ns)]
+                told = teller.log(item, now_ns)
+                return [*told, *self._bridge.logged(item, now_ns)]
             case AskGate():
                 return self._operators.asked_of_gate(item)
             case AskMission(request_id, ask):
@@ -257,8 +272,54 @@ class Session:
                 return self._every_second(now_ns)
             case SnapshotDue():
                 return [Emit(self._snapshot(now_ns)), *self._vehicle.predicted_stop()]
+            case Joined() | Lost() | Says() | Refuses() | Notes() | Emit():
+                return self._of_client(item, now_ns)
+            case ToVehicle() | AsksVehicle() | ToLink() | Answers():
+                return [*self._pass_on(item)]
             case _:
                 raise AssertionError(f"the queue keeps {item} for itself")
+
+    def _line(self, client: int, command: ipc.Command, now_ns: int) -> list[Work]:
+        """What an operator says, or a MAVLink client in an operator's words."""
+        telemetry = self._vehicle.telemetry
+        autopilot = telemetry.autopilot if telemetry else None
+        no_vehicle = self._vehicle.refusal(now_ns)
+        return self._operators.line(client, command, autopilot, no_vehicle, now_ns)
+
+    # ---------------------------------------------------------------------- the bridge
+
+    def _of_client(
+        self, item: Joined | Lost | Says | Refuses | Notes | Emit, now_ns: int
+    ) -> list[Work]:
+        """What a MAVLink client does as an operator, and what it is told as one."""
+        match item:
+            case Joined(client, name):
+                return self._operators.join(client, name, hold_on_leave=True)
+            case Lost(client, reason):
+                return self._operators.lost(client, reason)
+            case Says(client, command):
+                return self._line(client, command, now_ns)
+            case Refuses(client, ask, refusal):
+                return self._operators.refuse(client, ask, refusal)
+            case Notes(level, text):
+                return [Log(level, NODE, text)]
+            case Emit(event, client):
+                return [*self._bridge.bridge.told(client, event, now_ns)]
+
+    def _pass_on(self, item: ToVehicle | AsksVehicle | ToLink | Answers) -> list[Effect]:
+        """Frames between clients and the vehicle."""
+        telemetry = self._vehicle.telemetry
+        match item:
+            case ToLink(link, raw):
+                return self._links.pass_on(link, raw)
+            case Answers(link, source, message):
+                return self._links.send_as(source, link, message)
+            case ToVehicle(raw) if telemetry is not None:
+                return self._links.pass_on(telemetry.link, raw)
+            case AsksVehicle(source, message) if telemetry is not None:
+                return self._links.send_as(source, telemetry.link, message)
+            case _:
+                return []
 
     # ------------------------------------------------------------------------------- frames
 
@@ -270,9 +331,19 @@ class Session:
         for item in items:
             if isinstance(item, Garbage):
                 run([Record(GarbageItem(link, item.raw, item.reason.value))], now_ns)
+            elif link >= self._first_client_link:
+                run(self._client_frame(link, item, now_ns), now_ns)
             else:
                 received = Record(FrameItem(link, Direction.RECEIVED, item.raw))
-                run([received, *self._frame(link, item, now_ns)], now_ns)
+                to_clients = self._bridge.bridge.from_vehicle(item, now_ns)
+                passed = [Transmit(to, item.raw) for to in to_clients]
+                run([received, *passed, *self._frame(link, item, now_ns)], now_ns)
+
+    def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        """A good frame of a MAVLink client: judged first, because the record says how."""
+        judged = self._bridge.from_client(link, frame, now_ns)
+        direction = Direction.REFUSED if judged.refused else Direction.RECEIVED
+        return [Record(FrameItem(link, direction, frame.raw)), *judged.effects]
 
     def _frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         self._links.peer_known(link)
@@ -291,6 +362,7 @@ class Session:
     def _every_second(self, now_ns: int) -> list[Work]:
         """Heartbeat, what is missing, and the slow half of the record."""
         work: list[Work] = [*self._links.heartbeat(), *self._vehicle.remind()]
+        work += self._bridge.bridge.second(now_ns)
         if self._vehicle.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)
         if now_ns - self._other_station_ns > self._times.real_ns(OTHER_STATION_NS):

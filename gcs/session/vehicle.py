@@ -6,7 +6,7 @@ All that is per vehicle is here and in the parts that this composes; what is per
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Final, get_args
 
 from gcs import ipc
@@ -115,6 +115,11 @@ class Vehicle:
     def fence_shapes(self) -> list[FenceShape]:
         """The fence as the verifier stands on it; empty before it is placed."""
         return self._port.fence_shapes
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Those of its parameters that are known."""
+        return self._parameters
 
     @property
     def losses(self) -> SequenceTracker:

@@ -11,6 +11,7 @@ from typing import Final, TypeAlias
 import msgspec
 
 from gcs import ipc
+from gcs.bridge.effects import BridgeEffect
 from gcs.frames import Vec3
 from gcs.gate import effects as gate_effects
 from gcs.gate import inputs as gate_inputs
@@ -120,6 +121,7 @@ Work: TypeAlias = (
     | PlaceFence
     | CheckStart
     | Send
+    | BridgeEffect
 )
 """`Send` is a message that moves nothing, for the vehicle; motion leaves as the gate's
 `SendSetpoint` and `SendCommand`, with a permit."""

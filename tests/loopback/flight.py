@@ -58,6 +58,9 @@ def lab_policy() -> Policy:
 POLICIES = {"lab": lab_policy(), "default": DEFAULT}
 
 
+CONFIG = StationConfig(endpoints=["test"], name="loopback")
+
+
 class Flight(Looks):
     """One session, one vehicle, one link, one clock."""
 
@@ -76,6 +79,7 @@ class Flight(Looks):
         firmware: Firmware | None = None,
         boot: Boot = "quick",
         offboard: Offboard = "smooth",
+        config: StationConfig = CONFIG,
     ) -> None:
         """`up` is the weather towards the vehicle, `down` towards the ground station."""
         super().__init__()
@@ -90,7 +94,6 @@ class Flight(Looks):
         profile = profile_of(personality, parameters.firmware)
         server = VehicleServer(self.vehicle, profile, parameters, 1)
         self.world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)
-        config = StationConfig(endpoints=["test"], name="loopback")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
         self.session = Session(setup, START_NS)
         self.recorder = Flight.new_recorder()
@@ -192,6 +195,8 @@ class Flight(Looks):
     def _carry_out(self, effect: effects.Effect) -> list[inputs.Input]:
         """Do it; what the session is to hear of it."""
         match effect:
+            case effects.Transmit(link, data) if link > 0:
+                self.to_client(link, data)
             case effects.Transmit(_, data):
                 self.sent.append(Sent(self.now_ns, data))
                 self.up.send(data, self.now_ns)
@@ -211,6 +216,10 @@ class Flight(Looks):
             case effects.Finish():
                 self.finish = effect
         return []
+
+    def to_client(self, link: int, data: bytes) -> None:
+        """A MAVLink client of a bridge is sent something."""
+        raise AssertionError(f"this station has no link {link}")
 
     # --------------------------------------------------------------------------- operator
 

@@ -1,0 +1,92 @@
+"""The bridge of one station, and what it is to know of the vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from gcs import ipc
+from gcs.bridge.bridge import Bridge, Judged
+from gcs.bridge.effects import BridgeEffect
+from gcs.bridge.meaning.meaning import Seen
+from gcs.config import StationConfig
+from gcs.gate.effects import Level
+from gcs.gate.inputs import CommandEnded, Input
+from gcs.gate.machine.gate import Gate
+from gcs.protocol.effects import Address
+from gcs.session import teller
+from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
+from gcs.session.vehicle import Vehicle
+from gcs.session.work import Log
+from gcs.wire.frame import Frame
+
+SILENT_NS = 10_000_000_000
+"""A MAVLink client that says nothing for so long is lost; heartbeats come every second."""
+
+
+class BridgePort:
+    """Between the session and its MAVLink clients."""
+
+    def __init__(self, config: StationConfig, times: Times, vehicle: Vehicle) -> None:
+        self.bridge = Bridge(Address(config.sysid, config.compid), times.real_ns(SILENT_NS))
+        self._vehicle = vehicle
+        self._told_in_control = 0
+
+    def from_client(self, link: int, frame: Frame, now_ns: int) -> Judged:
+        """A good frame on a client's link."""
+        return self.bridge.from_client(link, frame, self._address, self._seen, now_ns)
+
+    def _seen(self) -> Seen | None:
+        telemetry = self._vehicle.telemetry
+        if telemetry is None:
+            return None
+        return seen_of(telemetry, self._vehicle.gate, self._vehicle.parameters)
+
+    def before_gate(self, given: Input, now_ns: int) -> list[BridgeEffect]:
+        """The vehicle's own answer to a command is what the client is answered, too."""
+        if isinstance(given, CommandEnded) and given.result is not None:
+            return self.bridge.command_answered(given.request_id, given.result, now_ns)
+        return []
+
+    def logged(self, line: Log, now_ns: int) -> list[BridgeEffect]:
+        """What the gate warns of, the clients read too."""
+        if line.node != teller.NODE or line.level < Level.WARNING or self._address is None:
+            return []
+        return self.bridge.warn(line.level, line.text, self._address, now_ns)
+
+    def control(self, in_control: ipc.OperatorInfo | None, now_ns: int) -> list[BridgeEffect]:
+        """Tell the clients where another one is in control than before."""
+        number = in_control.client if in_control else 0
+        if number == self._told_in_control or self._address is None:
+            return []
+        self._told_in_control = number
+        name = in_control.name if in_control else ""
+        return self.bridge.control_changed(number, name, self._address, now_ns)
+
+    @property
+    def _address(self) -> Address | None:
+        telemetry = self._vehicle.telemetry
+        return None if telemetry is None else Address(telemetry.sysid, telemetry.compid)
+
+
+TAKEOFF_UP_M = 2.5
+"""PX4's MIS_TAKEOFF_ALT where it is not known."""
+
+
+def seen_of(telemetry: Telemetry, gate: Gate, parameters: Mapping[str, float]) -> Seen:
+    """What a client's words are judged by."""
+    return Seen(
+        autopilot=telemetry.autopilot,
+        origin=telemetry.origin,
+        home_ned=telemetry.home_ned,
+        home_amsl_m=telemetry.home[2] if telemetry.home else None,
+        pos_ned=telemetry.pos_ned,
+        v_ned=telemetry.v_ned,
+        yaw_rad=telemetry.yaw_rad,
+        on_ground=gate.memory.on_ground,
+        armed=bool(telemetry.armed),
+        mode_name=telemetry.mode_name,
+        goal_ned=gate.active_goal_ned,
+        takeoff_up_m=parameters.get("MIS_TAKEOFF_ALT", TAKEOFF_UP_M),
+        state=gate.state,
+    )

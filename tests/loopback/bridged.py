@@ -1,0 +1,170 @@
+"""A bridge with MAVLink clients before it and the whole vehicle behind it, on a virtual clock.
+
+The clients' bytes are made and read by pymavlink, so that a client here is a stranger to both.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from pymavlink.dialects.v20 import all as dialect
+
+from gcs.config import StationConfig
+from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.policy import Policy
+from gcs.report import DecisionItem
+from gcs.session import inputs
+from gcs.wire.frame import Frame, split
+from tests.loopback.air import CLEAR, Weather
+from tests.loopback.flight import Flight, Personality
+
+VEHICLE = (1, 1)
+STATION = (255, 191)
+BRIDGE = StationConfig(
+    endpoints=["test"], name="loopback", bridge=True, clients=["test"], compid=STATION[1]
+)
+COMMAND_PARAMS = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """A message that a client was sent."""
+
+    time_ns: int
+    message: Any  # pymavlink's
+
+
+class Client:
+    """One MAVLink client, on a link of its own."""
+
+    def __init__(self, flight: BridgedFlight, link: int, sysid: int, compid: int) -> None:
+        self.flight = flight
+        self.link = link
+        self.mav = dialect.MAVLink(None, srcSystem=sysid, srcComponent=compid)
+        self.mav.robust_parsing = True
+        self.heard: list[Heard] = []
+
+    # --------------------------------------------------------------------------- sending
+
+    def send(self, message: Any) -> None:
+        """A message of pymavlink."""
+        self.send_raw(message.pack(self.mav))
+
+    def send_raw(self, data: bytes) -> None:
+        self.flight.feed(inputs.Datagram(self.link, data))
+
+    def beat(self) -> None:
+        """HEARTBEAT of a ground station."""
+        self.send(dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
+
+    def command(self, command: int, *params: float, target: tuple[int, int] = VEHICLE) -> None:
+        """COMMAND_LONG."""
+        filled = params + (0.0,) * (COMMAND_PARAMS - len(params))
+        self.send(dialect.MAVLink_command_long_message(*target, command, 0, *filled))
+
+    def ask(self, command: int, *params: float, within_s: float = 5.0) -> int:
+        """COMMAND_LONG, and the MAV_RESULT that it is answered with, but for IN_PROGRESS."""
+        before = len(self.heard)
+        self.command(command, *params)
+        found: list[int] = []
+
+        def answered() -> bool:
+            found[:] = [
+                heard.message.result
+                for heard in self.heard[before:]
+                if heard.message.get_type() == "COMMAND_ACK"
+                and heard.message.command == command
+                and heard.message.result != dialect.MAV_RESULT_IN_PROGRESS
+            ]
+            return bool(found)
+
+        self.flight.until(answered, within_s)
+        return found[0]
+
+    def fly_to(self, lat_deg: float, lon_deg: float, alt_amsl_m: float) -> None:
+        """DO_REPOSITION, as MAVSDK and QGroundControl send it."""
+        self.send(
+            dialect.MAVLink_command_int_message(
+                *VEHICLE,
+                dialect.MAV_FRAME_GLOBAL,
+                dialect.MAV_CMD_DO_REPOSITION,
+                0,
+                0,
+                -1.0,
+                1.0,
+                0.0,
+                math.nan,
+                round(lat_deg * 1e7),
+                round(lon_deg * 1e7),
+                alt_amsl_m,
+            )
+        )
+
+    # --------------------------------------------------------------------------- hearing
+
+    def hear(self, data: bytes) -> None:
+        """What the bridge sends to this client."""
+        for message in self.mav.parse_buffer(data) or []:
+            self.heard.append(Heard(self.flight.now_ns, message))
+
+    def messages(self, name: str) -> list[Any]:
+        """Everything of one kind that was heard."""
+        return [one.message for one in self.heard if one.message.get_type() == name]
+
+    def acks(self, command: int) -> list[Any]:
+        return [ack for ack in self.messages("COMMAND_ACK") if ack.command == command]
+
+    def texts(self) -> str:
+        """All that STATUSTEXT said, pieces joined."""
+        return "".join(
+            text.text + ("" if text.id and len(text.text) == 50 else "\n")
+            for text in self.messages("STATUSTEXT")
+        )
+
+
+class BridgedFlight(Flight):
+    """A flight of clients; nobody at the station's own keyboard has control."""
+
+    def __init__(
+        self,
+        personality: Personality = "px4",
+        *,
+        seed: int = 1,
+        policy: Policy = DEFAULT,
+        up: Weather = CLEAR,
+        down: Weather = CLEAR,
+        config: StationConfig = BRIDGE,
+    ) -> None:
+        self.clients: dict[int, Client] = {}
+        super().__init__(personality, seed=seed, policy=policy, up=up, down=down, config=config)
+
+    def join(self, sysid: int = 245, compid: int = 190) -> Client:
+        """A client connects and says that it is there."""
+        link = 1 + len(self.clients)
+        client = self.clients[link] = Client(self, link, sysid, compid)
+        self.feed(inputs.ClientCame(link, f"udp 127.0.0.1:{40000 + link}", stream=False))
+        client.beat()
+        return client
+
+    def to_client(self, link: int, data: bytes) -> None:
+        self.clients[link].hear(data)
+
+    def beating(self, seconds: float) -> None:
+        """Let time pass, while every client sends its heartbeat once a second."""
+        until_ns = self.now_ns + round(seconds * 1e9)
+        while self.now_ns < until_ns:
+            for client in self.clients.values():
+                client.beat()
+            self.run(min(1.0, (until_ns - self.now_ns) / 1e9))
+
+    def to_vehicle(self, name: str = "") -> list[Frame]:
+        """The frames that left for the vehicle, of one kind or of all."""
+        frames = [item for sent in self.sent for item in split(sent.data) if isinstance(item, Frame)]
+        return [frame for frame in frames if not name or frame.name == name]
+
+    def decisions(self, outcome: str = "") -> list[DecisionItem]:
+        """Every verdict and ending on the record, with one outcome or with any."""
+        items = [item for _, item in self.records if isinstance(item, DecisionItem)]
+        return [item for item in items if not outcome or item.outcome == outcome]

@@ -1,0 +1,144 @@
+"""MAVLink clients fly a vehicle through the gate, and what they must not do does not reach it."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from pymavlink.dialects.v20 import all as dialect
+
+from gcs.gate.states import Control, State
+from tests.loopback.bridged import STATION, BridgedFlight, Client
+from tests.loopback.flight import PERSONALITIES, Personality
+
+ACCEPTED, REJECTED, DENIED = 0, 1, 2
+ARM, TAKE_OFF, LAND, RETURN = 400, 22, 21, 20
+
+pytestmark = pytest.mark.parametrize("personality", PERSONALITIES)
+
+
+def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
+    """A client has armed the vehicle and taken off."""
+    flight = BridgedFlight(personality)
+    client = flight.join()
+    flight.connected()
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    assert client.ask(TAKE_OFF, 0, 0, 0, math.nan, math.nan, math.nan, math.nan) == ACCEPTED
+    flight.until(lambda: flight.session.gate.control is Control.OURS)
+    return flight, client
+
+
+def test_a_client_sees_the_vehicle_as_it_is(personality: Personality) -> None:
+    """Every byte of the vehicle reaches the client, and the station's own talk does not."""
+    flight = BridgedFlight(personality)
+    client = flight.join()
+    flight.connected()
+    names = {one.message.get_type() for one in client.heard}
+    assert {"HEARTBEAT", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT"} <= names
+    assert {(one.message.get_srcSystem(), one.message.get_srcComponent()) for one in client.heard} == {
+        (1, 1)
+    }
+    assert not client.messages("COMMAND_ACK"), "answers to the station are the station's"
+
+
+def test_a_client_flies_a_square_and_lands(personality: Personality) -> None:
+    flight, client = flying(personality)
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    assert telemetry.home is not None
+    lat, lon, alt = telemetry.home
+    client.fly_to(lat + 10 / 111_319.5, lon, alt + 6)
+    flight.until(lambda: flight.is_in(State.MOVING), 1)
+    assert [ack.result for ack in client.acks(192)] == [ACCEPTED]
+    flight.until(lambda: flight.is_in(State.HOVERING))
+    assert flight.truth_enu()[1] == pytest.approx(10, abs=0.7)
+    assert client.ask(LAND) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.GROUNDED) and not flight.vehicle.armed, 60)
+
+
+def test_a_goal_outside_the_fence_is_refused_with_its_reason(personality: Personality) -> None:
+    flight, client = flying(personality)
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    assert telemetry.home is not None
+    lat, lon, alt = telemetry.home
+    client.fly_to(lat + 200 / 111_319.5, lon, alt + 6)
+    flight.run(0.5)
+    (ack,) = client.acks(192)
+    assert ack.result == DENIED, client.texts()
+    assert (ack.target_system, ack.target_component) == (245, 190)
+    assert "OUTSIDE_FENCE" in client.texts()
+    assert flight.state is State.HOVERING
+    assert [one.code for one in flight.decisions("refused")] == ["OUTSIDE_FENCE"]
+
+
+def test_what_feeds_the_estimator_never_reaches_the_vehicle(personality: Personality) -> None:
+    flight, client = flying(personality)
+    sent_before = len(flight.to_vehicle("GPS_INPUT"))
+    client.send(
+        dialect.MAVLink_gps_input_message(
+            0, 0, 0, 0, 0, 3, 473977420, 85455940, 500.0, 1, 1, 0, 0, 0, 1, 1, 1, 10
+        )
+    )
+    flight.run(0.2)
+    assert len(flight.to_vehicle("GPS_INPUT")) == sent_before == 0
+    assert "GPS_INPUT" in client.texts()
+    assert flight.decisions("refused")[-1].word == "gps_input"
+
+
+def test_only_the_station_speaks_of_motion_to_the_vehicle(personality: Personality) -> None:
+    flight, client = flying(personality)
+    client.command(LAND)
+    flight.run(1)
+    for name in ("COMMAND_LONG", "COMMAND_INT", "SET_POSITION_TARGET_LOCAL_NED"):
+        for frame in flight.to_vehicle(name):
+            assert (frame.sysid, frame.compid) == STATION
+
+
+def test_a_harmless_question_goes_through_and_its_answer_comes_back(personality: Personality) -> None:
+    flight = BridgedFlight(personality)
+    first, second = flight.join(), flight.join(255, 190)
+    flight.connected()
+    assert first.ask(512, 148) == ACCEPTED  # REQUEST_MESSAGE AUTOPILOT_VERSION
+    assert first.messages("AUTOPILOT_VERSION")
+    assert not second.acks(512), "an answer goes to whom it is for"
+
+
+def test_the_second_client_looks_and_may_stop(personality: Personality) -> None:
+    flight, first = flying(personality)
+    second = flight.join(255, 190)
+    assert second.ask(TAKE_OFF, 0, 0, 0, 0, 0, 0, 5) == REJECTED
+    assert "OTHER_OPERATOR" in second.texts()
+    assert second.ask(LAND) == ACCEPTED
+    assert flight.is_in(State.LANDING)
+    assert not first.acks(999)
+
+
+def test_a_client_that_goes_silent_in_control_is_held_for(personality: Personality) -> None:
+    flight, _ = flying(personality)
+    flight.run(12)
+    assert flight.is_in(State.HOLDING)
+
+
+def test_the_same_command_again_is_answered_and_not_done_twice(personality: Personality) -> None:
+    flight, client = flying(personality)
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    assert telemetry.home is not None
+    lat, lon, alt = telemetry.home
+    for _ in range(3):
+        client.fly_to(lat + 10 / 111_319.5, lon, alt + 6)
+        flight.run(0.3)
+    assert [ack.result for ack in client.acks(192)] == [ACCEPTED] * 3
+    assert len([one for one in flight.decisions() if one.word == "goto"]) == 1
+
+
+def test_who_plays_the_vehicle_is_not_believed(personality: Personality) -> None:
+    flight, client = flying(personality)
+    position = flight.session.telemetry.pos_ned if flight.session.telemetry else None
+    liar = flight.join(1, 1)
+    liar.send(dialect.MAVLink_local_position_ned_message(10**9, 500, 0, -5, 0, 0, 0))
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    assert telemetry.pos_ned == position
+    assert client.link != liar.link
