@@ -1,0 +1,270 @@
+"""Every message and every command of the dialect has one kind, and the right one."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+import pytest
+
+from gcs.bridge.classes import Kind, Row, command_row, explain, explanation, message_row
+from gcs.bridge.classes.row import Group, table_of
+from gcs.bridge.classes.tables import COMMAND_ROWS, MESSAGE_ROWS
+from gcs.wire import dialect
+
+MESSAGES = {message.msgid: message.name for message in dialect.MESSAGES.values()}
+COMMANDS = {
+    entry.value: entry.name.removeprefix("MAV_CMD_") for entry in dialect.ENUMS["MAV_CMD"].entries
+}
+
+
+def differences(names: Mapping[int, str], rows: Mapping[int, Row]) -> list[str]:
+    """What has no row, what has one and is not there, what has another name."""
+    return [
+        *(
+            f"{names[number]} ({number}) has no row"
+            for number in sorted(names.keys() - rows.keys())
+        ),
+        *(
+            f"{rows[number].name} ({number}) is not in the dialect"
+            for number in rows.keys() - names.keys()
+        ),
+        *(
+            f"{number} is {names[number]}, not {rows[number].name}"
+            for number in names.keys() & rows.keys()
+            if names[number] != rows[number].name
+        ),
+    ]
+
+
+def kinds(names: Iterable[str], rows: Mapping[int, Row]) -> dict[str, Kind]:
+    by_name = {row.name: row.kind for row in rows.values()}
+    return {name: by_name[name] for name in names}
+
+
+class TestTheTableIsTotal:
+    def test_every_message_has_a_row_and_nothing_else_has(self) -> None:
+        assert differences(MESSAGES, MESSAGE_ROWS) == []
+
+    def test_every_command_has_a_row_and_nothing_else_has(self) -> None:
+        assert differences(COMMANDS, COMMAND_ROWS) == []
+
+    def test_the_supplement_is_part_of_it(self) -> None:
+        assert {8, 299, 336, 361, 371, 372, 380} <= MESSAGE_ROWS.keys()  # of supplement.py
+
+    def test_an_entry_that_the_dialect_gains_is_seen(self) -> None:
+        assert differences(MESSAGES | {54321: "NEW"}, MESSAGE_ROWS) == ["NEW (54321) has no row"]
+        assert differences(COMMANDS | {54321: "NEW"}, COMMAND_ROWS) == ["NEW (54321) has no row"]
+
+    def test_an_entry_that_the_dialect_loses_or_renames_is_seen(self) -> None:
+        fewer = {number: name for number, name in MESSAGES.items() if number != 33}
+        assert differences(fewer, MESSAGE_ROWS) == [
+            "GLOBAL_POSITION_INT (33) is not in the dialect"
+        ]
+        assert differences(MESSAGES | {33: "NEW"}, MESSAGE_ROWS) == [
+            "33 is NEW, not GLOBAL_POSITION_INT"
+        ]
+
+    def test_nothing_can_have_two_kinds(self) -> None:
+        twice = (Group(Kind.HARMLESS, "", {4: "PING"}), Group(Kind.DENIED, "", {4: "PING"}))
+        with pytest.raises(ValueError, match="PING has a row already"):
+            table_of(twice)
+
+    def test_every_row_says_why_in_one_sentence(self) -> None:
+        for row in (*MESSAGE_ROWS.values(), *COMMAND_ROWS.values()):
+            assert row.why.endswith("."), row
+            assert row.why[0].isupper(), row
+            assert ". " not in row.why, row
+
+    def test_what_the_dialect_lacks_is_denied(self) -> None:
+        unknown = (message_row(54321), command_row(54321), message_row(-1), command_row(-1))
+        assert {row.kind for row in unknown} == {Kind.DENIED}
+        assert message_row(54321).name == command_row(54321).name == "UNKNOWN_54321"
+
+    def test_how_many_are_of_which_kind(self) -> None:
+        """A change of any row shows here, so that it is meant."""
+        assert Counter(row.kind for row in MESSAGE_ROWS.values()) == {
+            Kind.DENIED: 302,
+            Kind.HARMLESS: 43,
+            Kind.CONFIGURATION: 14,
+            Kind.MOTION: 7,
+            Kind.LOCAL: 6,
+            Kind.CARRIER: 2,
+        }
+        assert Counter(row.kind for row in COMMAND_ROWS.values()) == {
+            Kind.DENIED: 121,
+            Kind.HARMLESS: 57,
+            Kind.MOTION: 23,
+            Kind.CONFIGURATION: 17,
+        }
+
+
+class TestTheDesignsRules:
+    """DESIGN.md, section 4, "Bridge mode"."""
+
+    FEEDS_THE_ESTIMATOR = (
+        "GPS_INPUT",
+        "GPS_INJECT_DATA",
+        "ODOMETRY",
+        "ATT_POS_MOCAP",
+        *(name for name in MESSAGES.values() if name.startswith(("HIL_", "VISION_"))),
+    )
+    TRAFFIC = ("ADSB_VEHICLE", "COLLISION", "UTM_GLOBAL_POSITION", "AIS_VESSEL")
+    OTHERS = (
+        "SERIAL_CONTROL",
+        "TUNNEL",
+        "SET_ACTUATOR_CONTROL_TARGET",
+        "FOLLOW_TARGET",
+        "LANDING_TARGET",
+        "PARAM_MAP_RC",
+    )
+
+    @pytest.mark.parametrize("name", [*FEEDS_THE_ESTIMATOR, *TRAFFIC, *OTHERS])
+    def test_denied_by_default(self, name: str) -> None:
+        assert kinds([name], MESSAGE_ROWS) == {name: Kind.DENIED}
+
+    @pytest.mark.parametrize(
+        "name",
+        [
+            "DO_MOTOR_TEST",
+            "ACTUATOR_TEST",
+            "DO_SET_ACTUATOR",
+            "DO_SET_SERVO",
+            "DO_REPEAT_SERVO",
+            "DO_SET_RELAY",
+            "DO_REPEAT_RELAY",
+            "CONFIGURE_ACTUATOR",
+            "DO_AUX_FUNCTION",
+        ],
+    )
+    def test_actuators_are_denied(self, name: str) -> None:
+        assert kinds([name], COMMAND_ROWS) == {name: Kind.DENIED}
+
+    @pytest.mark.parametrize(
+        "name",
+        [
+            "PARAM_SET",
+            "PARAM_EXT_SET",
+            "MISSION_COUNT",
+            "MISSION_ITEM",
+            "MISSION_ITEM_INT",
+            "MISSION_CLEAR_ALL",
+            "FENCE_POINT",
+            "RALLY_POINT",
+            "SET_HOME_POSITION",
+            "SETUP_SIGNING",
+            "FILE_TRANSFER_PROTOCOL",
+            "SET_GPS_GLOBAL_ORIGIN",
+            "GPS_RTCM_DATA",
+        ],
+    )
+    def test_configuration_is_by_policy(self, name: str) -> None:
+        """The last two are refused by default, and the policy has a key for each."""
+        assert kinds([name], MESSAGE_ROWS) == {name: Kind.CONFIGURATION}
+
+    @pytest.mark.parametrize(
+        "name",
+        [
+            "DO_SET_HOME",
+            "DO_FENCE_ENABLE",
+            "DO_FLIGHTTERMINATION",
+            "PREFLIGHT_REBOOT_SHUTDOWN",
+            "PREFLIGHT_CALIBRATION",
+            "PREFLIGHT_STORAGE",
+            "INJECT_FAILURE",
+            "DO_SET_GLOBAL_ORIGIN",
+        ],
+    )
+    def test_commands_that_configure_are_by_policy(self, name: str) -> None:
+        assert kinds([name], COMMAND_ROWS) == {name: Kind.CONFIGURATION}
+
+    def test_whatever_flies_at_once_is_motion(self) -> None:
+        """The issue's list, item 3."""
+        messages = [name for name in MESSAGES.values() if name.startswith("SET_POSITION_TARGET")]
+        messages += ["SET_ATTITUDE_TARGET", "MANUAL_CONTROL", "RC_CHANNELS_OVERRIDE"]
+        messages += ["MISSION_SET_CURRENT", "SET_MODE"]
+        commands = ["DO_REPOSITION", "NAV_TAKEOFF", "DO_ORBIT", "MISSION_START", "NAV_LAND"]
+        commands += ["DO_SET_MISSION_CURRENT", "DO_CHANGE_SPEED", "DO_CHANGE_ALTITUDE"]
+        commands += ["DO_SET_MODE", "COMPONENT_ARM_DISARM", "NAV_RETURN_TO_LAUNCH"]
+        found = kinds(messages, MESSAGE_ROWS) | kinds(commands, COMMAND_ROWS)
+        assert set(found.values()) == {Kind.MOTION}, found
+
+    def test_what_carries_a_command_now_is_a_carrier_and_what_carries_one_for_later_is_not(
+        self,
+    ) -> None:
+        carriers = [row.name for row in MESSAGE_ROWS.values() if row.kind is Kind.CARRIER]
+        assert carriers == ["COMMAND_INT", "COMMAND_LONG"]
+        assert message_row(223).kind is message_row(224).kind is Kind.DENIED  # _STAMPED
+
+    def test_no_report_of_a_vehicle_is_taken_from_a_client(self) -> None:
+        """ArduPilot flies to other vehicles' positions in FOLLOW; all believe reports."""
+        reports = ["ATTITUDE", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "SYS_STATUS"]
+        reports += ["GPS_RAW_INT", "HOME_POSITION", "BATTERY_STATUS", "PARAM_VALUE", "COMMAND_ACK"]
+        assert set(kinds(reports, MESSAGE_ROWS).values()) == {Kind.DENIED}
+
+    def test_a_clients_heartbeat_stays_at_the_gate(self) -> None:
+        assert message_row(0).kind is Kind.LOCAL
+
+
+class TestTargets:
+    """A message that names a target is for the vehicle; the dialect says which do."""
+
+    def test_nothing_harmless_or_local_is_a_setpoint(self) -> None:
+        setpoints = ("SET_POSITION", "SET_ATTITUDE", "SET_ACTUATOR", "HIL_", "MANUAL_SETPOINT")
+        for row in MESSAGE_ROWS.values():
+            if row.name.startswith(setpoints):
+                assert row.kind in (Kind.MOTION, Kind.DENIED), row
+
+
+class TestExplain:
+    @pytest.mark.parametrize(
+        "name", ["DO_REPOSITION", "MAV_CMD_DO_REPOSITION", "mav_cmd_do_reposition", " 192 "]
+    )
+    def test_a_command_by_any_of_its_names(self, name: str) -> None:
+        assert explain(name) == command_row(192)
+
+    def test_a_message_by_its_name_or_a_number_that_no_command_has(self) -> None:
+        assert explain("param_set") == message_row(23) == explain("PARAM_SET")
+        assert explain("110") == message_row(110)
+
+    def test_a_number_of_both_is_the_command(self) -> None:
+        assert explain("22").name == "NAV_TAKEOFF"  # and PARAM_VALUE
+
+    def test_close_names_for_a_wrong_one(self) -> None:
+        with pytest.raises(KeyError, match="close to it: DO_REPOSITION") as caught:
+            explain("DO_REPOSITON")
+        assert "denied" in str(caught.value)
+
+    def test_a_messages_name_is_none_of_a_command(self) -> None:
+        with pytest.raises(KeyError):
+            explain("MAV_CMD_PARAM_SET")
+
+    @pytest.mark.parametrize("name", ["", "999999", "-1", "²"])
+    def test_what_nothing_is_called(self, name: str) -> None:
+        with pytest.raises(KeyError):
+            explain(name)
+
+    def test_the_text_says_what_it_is_what_is_done_and_why(self) -> None:
+        assert explanation("do_reposition").splitlines() == [
+            "MAV_CMD_DO_REPOSITION, command 192: motion",
+            "  from a client: a request of the client, which the gate decides as it does every"
+            " operator's",
+            "  why: It flies to a position or a height.",
+        ]
+        assert explanation("GPS_INPUT").startswith("GPS_INPUT, message 232: denied\n")
+
+
+@pytest.mark.slow
+def test_the_table_loads_neither_pymavlink_nor_the_dialect() -> None:
+    """A station starts often, and `--explain` answers at once."""
+    code = (
+        "import sys, gcs.bridge.classes\n"
+        "heavy = {'pymavlink', 'gcs.wire', 'difflib', 'msgspec'} & sys.modules.keys()\n"
+        "print(*sorted(heavy))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", code], capture_output=True, text=True, check=False
+    )
+    assert (done.stdout, done.stderr) == ("\n", "")
