@@ -113,7 +113,9 @@ class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_d
     yaw_rate_deg_s: float | None = None
 
 
-Command: TypeAlias = Ask | Stream | Pending | Leave | Join | Subscribe | ListOperations | WatchTopics
+Command: TypeAlias = (
+    Ask | Stream | Pending | Leave | Join | Subscribe | ListOperations | WatchTopics
+)
 
 
 class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):

@@ -84,6 +84,8 @@ class Turns:
         self._attachments = attachments
         self._seals = SealCheck()
         self._rests: dict[int, bytes] = {}
+        self._clients: set[int] = set()
+        """Links of MAVLink clients."""
         self._before: list[Stored] = []
         self._start: Start | None = None
         self._open: _Open | None = None
@@ -196,7 +198,7 @@ class Turns:
 
     def _datagram(self, turn: Turn, link: int, pieces: Pieces | None) -> _Open:
         assert self._start is not None
-        if not 0 <= link < len(self._start.setup.endpoints):
+        if link not in self._clients and not 0 <= link < len(self._start.setup.endpoints):
             turn.given = Unreadable(f"there is no link {link}")
             return _Open(turn)
         return _Open(turn, link, pieces)
@@ -218,6 +220,7 @@ class Turns:
             self.lost_input = True
             return
         if isinstance(turn.given, ClientCame):
+            self._clients.add(turn.given.link)
             self._rests.pop(turn.given.link, None)  # another one had this number before
         if link >= 0:
             pieces = self._open.pieces or Pieces(link, len(raws))

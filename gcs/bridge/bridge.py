@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from gcs import ipc
-from gcs.bridge.classes.classify import command_row, message_row
-from gcs.bridge.classes.row import Kind, Row
+from gcs.bridge.classes import Kind, Row, command_row, message_row
 from gcs.bridge.client import Client
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
@@ -230,9 +229,7 @@ class Bridge:
         refusal: Refusal,
         now_ns: int,
     ) -> Judged:
-        return Judged(
-            True, client.dialogue.refuse(asked_by, message, row.name, refusal, now_ns)
-        )
+        return Judged(True, client.dialogue.refuse(asked_by, message, row.name, refusal, now_ns))
 
     def _once(self, client: Client, reason: str) -> list[BridgeEffect]:
         """A frame that nobody can be answered about: told once for each client and reason."""
@@ -274,9 +271,7 @@ class Bridge:
         who = f"in control: {name}" if number else "nobody is in control"
         return self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
 
-    def _to_all(
-        self, vehicle: Address, level: Level, text: str, now_ns: int
-    ) -> list[BridgeEffect]:
+    def _to_all(self, vehicle: Address, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
         effects: list[BridgeEffect] = []
         for client in self._by_number.values():
             to = From(client.link, Address(0, 0), vehicle)

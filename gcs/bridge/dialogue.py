@@ -206,9 +206,7 @@ class Dialogue:
 
     @staticmethod
     def _acknowledge(to: From, command: int, result: int, code: Code | None = None) -> Answers:
-        return Answers(
-            to.link, to.addressed, acknowledgement(command, result, to.source, code)
-        )
+        return Answers(to.link, to.addressed, acknowledgement(command, result, to.source, code))
 
     def text(self, to: From, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
         """STATUSTEXT for this client; the same words not more often than every few seconds."""

@@ -12,6 +12,7 @@ from gcs.config import StationConfig
 from gcs.gate.effects import Level
 from gcs.gate.inputs import CommandEnded, Input
 from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.turn import REFUSED_LINE
 from gcs.protocol.effects import Address
 from gcs.session import teller
 from gcs.session.telemetry import Telemetry
@@ -49,8 +50,10 @@ class BridgePort:
         return []
 
     def logged(self, line: Log, now_ns: int) -> list[BridgeEffect]:
-        """What the gate warns of, the clients read too."""
+        """What the gate warns of, the clients read too; of a refusal only the one who asked."""
         if line.node != teller.NODE or line.level < Level.WARNING or self._address is None:
+            return []
+        if line.text.startswith(REFUSED_LINE):
             return []
         return self.bridge.warn(line.level, line.text, self._address, now_ns)
 

@@ -161,7 +161,9 @@ class BridgedFlight(Flight):
 
     def to_vehicle(self, name: str = "") -> list[Frame]:
         """The frames that left for the vehicle, of one kind or of all."""
-        frames = [item for sent in self.sent for item in split(sent.data) if isinstance(item, Frame)]
+        frames = [
+            item for sent in self.sent for item in split(sent.data) if isinstance(item, Frame)
+        ]
         return [frame for frame in frames if not name or frame.name == name]
 
     def decisions(self, outcome: str = "") -> list[DecisionItem]:

@@ -24,7 +24,9 @@ def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
     flight.connected()
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
     assert client.ask(TAKE_OFF, 0, 0, 0, math.nan, math.nan, math.nan, math.nan) == ACCEPTED
-    flight.until(lambda: flight.session.gate.control is Control.OURS)
+    flight.until(
+        lambda: flight.is_in(State.HOVERING) and flight.session.gate.control is Control.OURS
+    )
     return flight, client
 
 
@@ -35,9 +37,9 @@ def test_a_client_sees_the_vehicle_as_it_is(personality: Personality) -> None:
     flight.connected()
     names = {one.message.get_type() for one in client.heard}
     assert {"HEARTBEAT", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT"} <= names
-    assert {(one.message.get_srcSystem(), one.message.get_srcComponent()) for one in client.heard} == {
-        (1, 1)
-    }
+    assert {
+        (one.message.get_srcSystem(), one.message.get_srcComponent()) for one in client.heard
+    } == {(1, 1)}
     assert not client.messages("COMMAND_ACK"), "answers to the station are the station's"
 
 
@@ -95,7 +97,9 @@ def test_only_the_station_speaks_of_motion_to_the_vehicle(personality: Personali
             assert (frame.sysid, frame.compid) == STATION
 
 
-def test_a_harmless_question_goes_through_and_its_answer_comes_back(personality: Personality) -> None:
+def test_a_harmless_question_goes_through_and_its_answer_comes_back(
+    personality: Personality,
+) -> None:
     flight = BridgedFlight(personality)
     first, second = flight.join(), flight.join(255, 190)
     flight.connected()

@@ -68,6 +68,9 @@ MODE_OF: Final[Mapping[CommandKind, FlightMode]] = MappingProxyType(
 """The mode in which the heartbeat shows that a command took effect."""
 
 
+REFUSED_LINE: Final = "Refused "
+"""How the line of a refusal begins."""
+
 SAID: Final = frozenset({Code.SUPERSEDED, Code.OPERATOR, Code.OPERATOR_LOST, Code.FENCE_BREACH})
 """Reasons for an end that are said where they come up."""
 
@@ -135,7 +138,7 @@ class Turn:
             )
         )
         if ruling is Ruling.REFUSED and refusal is not None:
-            self.say(Level.WARNING, f"Refused ({refusal.code}): {refusal.sentence}")
+            self.say(Level.WARNING, f"{REFUSED_LINE}({refusal.code}): {refusal.sentence}")
 
     def refuse(self, code: Code) -> None:
         """Refuse the present request: for the reason `why` where there is one, else with the
