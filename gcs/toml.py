@@ -222,6 +222,8 @@ def _explain_array(value: object, element: object, at: KeyPath) -> _Wrong | None
     if not isinstance(value, list) or (tables and not all(isinstance(v, dict) for v in value)):
         if tables:
             return _Wrong(at, "is a list of tables", f"write each as [[{dotted(at)}]]")
+        if isinstance(inspect.type_info(element), inspect.StrType):
+            return _Wrong(at, f"{shown(value)} is not a list of texts", f'such as ["{value}"]')
         return _Wrong(at, f"{shown(value)} is not a list of pairs", f"such as {_PAIRS}")
     found = (_explain(entry, element, (*at, number)) for number, entry in enumerate(value))
     return _first(found) or _Wrong(at, f"has {len(value)} entries, which is too few")
@@ -242,6 +244,10 @@ def _explain_single(value: object, kind: object) -> tuple[str, str]:
             return _explain_number(value, least, most)
         case inspect.BoolType():
             return f"{shown(value)} is neither true nor false", ""
+        case inspect.IntType(ge=least, le=most):
+            if isinstance(value, float) and math.isfinite(value):
+                return f"{value:g} is not a whole number", f"between {least} and {most}"
+            return _explain_number(value, least, most)
         case _:
             return f"{shown(value)} is not a text", "write it in quotes"
 

@@ -54,6 +54,7 @@ class MsgId(IntEnum):
     RADIO_STATUS = 109
     FILE_TRANSFER_PROTOCOL = 110
     TIMESYNC = 111
+    GPS_INJECT_DATA = 123
     BATTERY_STATUS = 147
     AUTOPILOT_VERSION = 148
     FENCE_POINT = 160
@@ -62,13 +63,16 @@ class MsgId(IntEnum):
     CAMERA_FEEDBACK = 180
     EKF_STATUS_REPORT = 193
     ESTIMATOR_STATUS = 230
+    GPS_RTCM_DATA = 233
     HOME_POSITION = 242
     SET_HOME_POSITION = 243
     EXTENDED_SYS_STATE = 245
     STATUSTEXT = 253
     SETUP_SIGNING = 256
     CAMERA_IMAGE_CAPTURED = 263
+    PARAM_EXT_REQUEST_READ = 320
     PARAM_EXT_SET = 323
+    PARAM_EXT_ACK = 324
     PARAM_ERROR = 345
     EVENT = 410
     CURRENT_EVENT_SEQUENCE = 411
@@ -394,6 +398,65 @@ class ParamType(IntEnum):
     INT64 = 8
     REAL32 = 9
     REAL64 = 10
+
+
+class ParamFault(IntEnum):
+    """MAV_PARAM_ERROR: PARAM_ERROR.error."""
+
+    NO_ERROR = 0
+    DOES_NOT_EXIST = 1
+    VALUE_OUT_OF_RANGE = 2
+    PERMISSION_DENIED = 3
+    COMPONENT_NOT_FOUND = 4
+    READ_ONLY = 5
+
+
+class ParamExtResult(IntEnum):
+    """PARAM_ACK: PARAM_EXT_ACK.param_result."""
+
+    ACCEPTED = 0
+    VALUE_UNSUPPORTED = 1
+    FAILED = 2
+    IN_PROGRESS = 3
+
+
+class FtpOpcode(IntEnum):
+    """MAV_FTP_OPCODE: byte 3 of FILE_TRANSFER_PROTOCOL.payload."""
+
+    NONE = 0
+    TERMINATESESSION = 1
+    RESETSESSION = 2
+    LISTDIRECTORY = 3
+    OPENFILERO = 4
+    READFILE = 5
+    CREATEFILE = 6
+    WRITEFILE = 7
+    REMOVEFILE = 8
+    CREATEDIRECTORY = 9
+    REMOVEDIRECTORY = 10
+    OPENFILEWO = 11
+    TRUNCATEFILE = 12
+    RENAME = 13
+    CALCFILECRC = 14
+    BURSTREADFILE = 15
+    ACK = 128
+    NAK = 129
+
+
+class FtpError(IntEnum):
+    """MAV_FTP_ERR: first byte of data of an FTP negative answer."""
+
+    NONE = 0
+    FAIL = 1
+    FAILERRNO = 2
+    INVALIDDATASIZE = 3
+    INVALIDSESSION = 4
+    NOSESSIONSAVAILABLE = 5
+    EOF = 6
+    UNKNOWNCOMMAND = 7
+    FILEEXISTS = 8
+    FILEPROTECTED = 9
+    FILENOTFOUND = 10
 
 
 class Component(IntEnum):

@@ -582,6 +582,16 @@ class Timesync(Message, frozen=True, gc=False):
     target_component: int = 0
 
 
+class GpsInjectData(Message, frozen=True, gc=False):
+    """GPS_INJECT_DATA (123): 113 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.GPS_INJECT_DATA
+    target_system: int
+    target_component: int
+    len: int  # bytes
+    data: tuple[int, ...]  # 110 values
+
+
 class BatteryStatus(Message, frozen=True, gc=False):
     """BATTERY_STATUS (147): 36 bytes, 54 with extensions."""
 
@@ -708,6 +718,15 @@ class EstimatorStatus(Message, frozen=True, gc=False):
     flags: int  # ESTIMATOR_STATUS_FLAGS
 
 
+class GpsRtcmData(Message, frozen=True, gc=False):
+    """GPS_RTCM_DATA (233): 182 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.GPS_RTCM_DATA
+    flags: int
+    len: int  # bytes
+    data: tuple[int, ...]  # 180 values
+
+
 class HomePosition(Message, frozen=True, gc=False):
     """HOME_POSITION (242): 52 bytes, 60 with extensions."""
 
@@ -788,6 +807,16 @@ class CameraImageCaptured(Message, frozen=True, gc=False):
     file_url: str  # at most 205 bytes
 
 
+class ParamExtRequestRead(Message, frozen=True, gc=False):
+    """PARAM_EXT_REQUEST_READ (320): 20 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_EXT_REQUEST_READ
+    param_index: int
+    target_system: int
+    target_component: int
+    param_id: str  # at most 16 bytes
+
+
 class ParamExtSet(Message, frozen=True, gc=False):
     """PARAM_EXT_SET (323): 147 bytes."""
 
@@ -797,6 +826,16 @@ class ParamExtSet(Message, frozen=True, gc=False):
     param_id: str  # at most 16 bytes
     param_value: str  # at most 128 bytes
     param_type: int  # MAV_PARAM_EXT_TYPE
+
+
+class ParamExtAck(Message, frozen=True, gc=False):
+    """PARAM_EXT_ACK (324): 146 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_EXT_ACK
+    param_id: str  # at most 16 bytes
+    param_value: str  # at most 128 bytes
+    param_type: int  # MAV_PARAM_EXT_TYPE
+    param_result: int  # PARAM_ACK
 
 
 class ParamError(Message, frozen=True, gc=False):

@@ -70,6 +70,10 @@ MESSAGES = (
     "FENCE_STATUS",
     "VFR_HUD",
     "RC_CHANNELS",
+    "GPS_INJECT_DATA",
+    "GPS_RTCM_DATA",
+    "PARAM_EXT_REQUEST_READ",
+    "PARAM_EXT_ACK",
 )
 """Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
 
@@ -245,6 +249,17 @@ ENUMS = (
     ),
     EnumChoice("Severity", "MAV_SEVERITY", "MAV_SEVERITY_", "STATUSTEXT.severity"),
     EnumChoice("ParamType", "MAV_PARAM_TYPE", "MAV_PARAM_TYPE_", "PARAM_VALUE.param_type"),
+    EnumChoice("ParamFault", "MAV_PARAM_ERROR", "MAV_PARAM_ERROR_", "PARAM_ERROR.error"),
+    EnumChoice("ParamExtResult", "PARAM_ACK", "PARAM_ACK_", "PARAM_EXT_ACK.param_result"),
+    EnumChoice(
+        "FtpOpcode",
+        "MAV_FTP_OPCODE",
+        "MAV_FTP_OPCODE_",
+        "byte 3 of FILE_TRANSFER_PROTOCOL.payload",
+    ),
+    EnumChoice(
+        "FtpError", "MAV_FTP_ERR", "MAV_FTP_ERR_", "first byte of data of an FTP negative answer"
+    ),
     EnumChoice("Component", "MAV_COMPONENT", "MAV_COMP_ID_", "component ids", ("AUTOPILOT1",)),
     EnumChoice(
         "TypeMask",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final, NamedTuple, TypeAlias
@@ -10,17 +11,32 @@ from msgspec import Struct
 
 from gcs import toml
 from gcs.gate.condition import Severity
-from gcs.gate.policy.policy import Policy
+from gcs.gate.policy.policy import BridgeRules, Policy
 from gcs.gate.policy.zonespec import KINDS, Text, ZoneSpec, room_fault, zone_fault
 from gcs.toml_lines import KeyPath
 
 Table: TypeAlias = dict[str, object]
 
+_PARAMETER = re.compile(r"[A-Z0-9_*]{1,16}")
 _BOUNDS = ("floor_up_m", "ceiling_up_m")
 FENCE_FILE_HINT = "the path of a plan, from the folder of this file"
 
 FenceFile: TypeAlias = Callable[[str], tuple[ZoneSpec, ...]]
 """The zones of the fence file of that name, as the policy writes it."""
+
+
+class NameFault(NamedTuple):
+    """What is wrong with a name in one of the lists of `[bridge]`: the list's key, which entry
+    from 0, what, and what to do."""
+
+    key: str
+    entry: int
+    what: str
+    hint: str = ""
+
+
+CheckNames: TypeAlias = Callable[[BridgeRules], NameFault | None]
+"""Whether the names in `[bridge]` are those of messages, commands and modes."""
 
 
 class _FileSpec(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="file"):
@@ -38,22 +54,34 @@ class _Written(NamedTuple):
     file: str = ""
 
 
-def parse_policy(text: str, file: str, fence_file: FenceFile | None = None) -> Policy:
-    """`file` is what errors call it; `fence_file` reads the plan files that the fence names.
+def parse_policy(
+    text: str,
+    file: str,
+    fence_file: FenceFile | None = None,
+    check_names: CheckNames | None = None,
+) -> Policy:
+    """`file` is what errors call it; `fence_file` reads the plan files that the fence names,
+    `check_names` knows the dialect, which this package does not.
 
     Raises TomlError for unknown keys, wrong types, impossible values, contradictions, and for a
     fence file where there is no `fence_file`; lets through what `fence_file` raises.
     """
-    return _build(toml.read(text, file), _DEFAULTS, fence_file)
+    return _build(toml.read(text, file), _DEFAULTS, fence_file, check_names)
 
 
-def _build(doc: toml.Document, defaults: Table, fence_file: FenceFile | None) -> Policy:
+def _build(
+    doc: toml.Document,
+    defaults: Table,
+    fence_file: FenceFile | None,
+    check_names: CheckNames | None,
+) -> Policy:
     table = _overlay(doc, defaults, doc.data)
     table["arrival"] = _without_none(table["arrival"], "speed_m_s")
     table["severities"] = _severities(doc, table["severities"])
     zones = _read_fence(doc, table["fence"], fence_file)
     policy = doc.convert(Policy, {**table, "fence": [written.zone for written in zones]})
     _check_limits(doc, policy)
+    _check_bridge(doc, policy.bridge, check_names)
     _check_slack(doc, policy)
     _check_zones(doc, policy, zones)
     return policy
@@ -156,6 +184,25 @@ def _check_limits(doc: toml.Document, p: Policy) -> None:
         raise doc.error(("control", "timeout_s"), what)
 
 
+def _check_bridge(doc: toml.Document, rules: BridgeRules, check_names: CheckNames | None) -> None:
+    for key in ("parameters_allowed", "parameters_guarded"):
+        for number, name in enumerate(getattr(rules, key)):
+            if not _PARAMETER.fullmatch(name):
+                hint = "up to 16 capital letters, digits and _; * stands for any letters"
+                raise doc.error(("bridge", key, number), f'"{name}" names no parameter', hint)
+    for number, name in enumerate(rules.extra_harmless):
+        if name in rules.extra_denied:
+            what = f'"{name}" is in extra_denied, too'
+            raise doc.error(("bridge", "extra_harmless", number), what)
+    for number, name in enumerate(rules.parameters_allowed):
+        if name in rules.parameters_guarded:
+            what = f'"{name}" is in parameters_guarded, too'
+            raise doc.error(("bridge", "parameters_allowed", number), what)
+    fault = None if check_names is None else check_names(rules)
+    if fault is not None:
+        raise doc.error(("bridge", fault.key, fault.entry), fault.what, fault.hint)
+
+
 def _check_slack(doc: toml.Document, p: Policy) -> None:
     """A slack beyond the margin lets the vehicle out of the fence before the gate brakes."""
     if p.allow_stop_outside:
@@ -202,5 +249,5 @@ _FILE = Path(__file__).with_name("default.toml")
 _DOCUMENT = toml.read(_FILE.read_text(encoding="utf-8"), str(_FILE))
 _DEFAULTS: Final = _DOCUMENT.data
 
-DEFAULT: Final = _build(_DOCUMENT, _DEFAULTS, None)
+DEFAULT: Final = _build(_DOCUMENT, _DEFAULTS, None, None)
 """The policy of `default.toml`, which is also that of an empty file."""

@@ -122,6 +122,36 @@ class MissionRules(_Section, frozen=True):
     blocked_return: Literal["refuse", "refuse_exclusions", "warn"]
 
 
+class BridgeRules(_Section, frozen=True):
+    """What MAVLink clients of `gcs bridge` may change on the vehicle, and what they may cost.
+
+    "refuse" refuses it, "forward" lets it through unchanged, "on_ground" does so while the vehicle
+    is disarmed on the ground.  Everything is recorded, whatever is said here.  In names of
+    parameters `*` stands for any letters.
+    """
+
+    parameters: Literal["guard", "refuse", "forward"]
+    parameters_allowed: tuple[Text, ...]
+    parameters_guarded: tuple[Text, ...]
+    fence: Literal["refuse", "forward"]
+    rally: Literal["refuse", "forward"]
+    home: Literal["refuse", "on_ground", "forward"]
+    origin: Literal["refuse", "on_ground", "forward"]
+    calibration: Literal["refuse", "on_ground"]
+    reboot: Literal["refuse", "on_ground"]
+    signing: Literal["refuse", "forward"]
+    termination: Literal["refuse", "forward"]
+    rtcm: Literal["refuse", "forward"]
+    ftp_writes: Literal["refuse", "forward"]
+    on_board: Literal["verify", "refuse"]
+    manual_modes: tuple[Text, ...]
+    extra_denied: tuple[Text, ...]
+    extra_harmless: tuple[Text, ...]
+    client_rate_hz: FromOne
+    client_gone_s: FromOne
+    max_clients: Annotated[int, Meta(ge=1, le=64)]
+
+
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
@@ -167,6 +197,7 @@ class Policy(_Section, frozen=True):
     severities: Mapping[Condition, Severity]
     rtl_blocked: Literal["hold", "land", "forward"]
     mission: MissionRules
+    bridge: BridgeRules
     retarget: Literal["refuse", "replace"]
     allow_force_disarm: bool
     arm_requires_recording: bool

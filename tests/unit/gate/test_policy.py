@@ -14,6 +14,7 @@ from gcs.gate.policy.policy import (
     Approach,
     Arrival,
     Braking,
+    BridgeRules,
     ControlTimes,
     MissionRules,
     Overshoot,
@@ -39,8 +40,15 @@ def error(text: str) -> TomlError:
 
 
 KINDS = [Policy, Arrival, Braking, Speeds, TakeOffLimits, ControlTimes, MissionRules]
-KINDS += [Approach, Overshoot]
-PARTS = (DEFAULT.arrival, DEFAULT.speeds, DEFAULT.takeoff, DEFAULT.control, DEFAULT.mission)
+KINDS += [Approach, Overshoot, BridgeRules]
+PARTS = (
+    DEFAULT.arrival,
+    DEFAULT.speeds,
+    DEFAULT.takeoff,
+    DEFAULT.control,
+    DEFAULT.mission,
+    DEFAULT.bridge,
+)
 
 
 def test_the_shipped_default_is_the_default() -> None:

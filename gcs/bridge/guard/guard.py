@@ -1,0 +1,181 @@
+"""The guard of one vehicle's set-up: what a client may change of it, by the policy's `[bridge]`.
+
+Given is only what the bridge's tables class as configuration; what has no row here is refused.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gcs.bridge.guard.commands import NAMES, ROWS, STORAGE_KEEPS
+from gcs.bridge.guard.files import judge_file
+from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
+from gcs.bridge.guard.parameters import Changed, ParameterGuard
+from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
+from gcs.gate.policy.policy import BridgeRules
+from gcs.gate.refusal import Code, Refusal
+from gcs.protocol.autopilot import PX4, ParamEncoding
+from gcs.wire.ids import Cmd, MissionResult, MissionType
+from gcs.wire.messages import (
+    CommandInt,
+    CommandLong,
+    FencePoint,
+    FileTransferProtocol,
+    GpsInjectData,
+    GpsRtcmData,
+    Message,
+    MissionAck,
+    MissionClearAll,
+    MissionCount,
+    MissionWritePartialList,
+    ParamExtSet,
+    ParamSet,
+    ParamValue,
+    RallyPoint,
+    SetGpsGlobalOrigin,
+    SetHomePosition,
+    SetupSigning,
+)
+
+_PLANS: Final = {
+    MissionType.FENCE: (("fence", "the vehicle's own fence"),),
+    MissionType.RALLY: (("rally", "the vehicle's rally points"),),
+    MissionType.ALL: (
+        ("fence", "the vehicle's own fence"),
+        ("rally", "the vehicle's rally points"),
+    ),
+}
+"""Keys of the policy that a transfer of that type stands under."""
+
+
+class Guard:
+    """Judges what would change the vehicle's set-up; has no clock."""
+
+    def __init__(self, rules: BridgeRules, autopilot_name: str) -> None:
+        encoding = PX4.param_encoding if autopilot_name == PX4.name else ParamEncoding.CAST
+        self._rules = rules
+        self._parameters = ParameterGuard(rules, autopilot_name, encoding)
+
+    def judge(self, message: Message, seen: GuardSeen) -> Judgement:
+        """Whether `message` of a client may go to the vehicle."""
+        rules = self._rules
+        match message:
+            case ParamSet():
+                return self._parameters.judge(message, seen)
+            case ParamExtSet():
+                return self._parameters.judge_extended(message, seen)
+            case FileTransferProtocol():
+                return judge_file(message, rules, seen)
+            case CommandLong() | CommandInt():
+                return self._command(message, seen)
+            case SetHomePosition():
+                return _by(rules.home, "home", "moving home", seen)
+            case SetGpsGlobalOrigin():
+                what = "moving the origin of the local frame"
+                return _by(rules.origin, "origin", what, seen)
+            case SetupSigning():
+                what = "giving the vehicle another key"
+                return _by(rules.signing, "signing", what, seen)
+            case FencePoint():
+                return _by(rules.fence, "fence", "changing the vehicle's own fence", seen)
+            case RallyPoint():
+                return _by(rules.rally, "rally", "changing the vehicle's rally points", seen)
+            case GpsRtcmData() | GpsInjectData():
+                judged = _by(rules.rtcm, "rtcm", "corrections for the GPS receiver", seen)
+                return Allowed() if isinstance(judged, Allowed) else judged
+            case MissionCount() | MissionClearAll() | MissionWritePartialList():
+                return self._plan(message, seen)
+            case _:
+                sentence = f"{type(message).__name__} has no rule here"
+                return Refused(Refusal(Code.UNSUPPORTED, sentence))
+
+    def why_parameter_refused(self, name: str) -> str | None:
+        """Why a client may not write the parameter, a sentence; None where it may."""
+        return self._parameters.why_refused(name)
+
+    def heard(self, message: ParamValue) -> Changed | None:
+        """PARAM_VALUE of the vehicle's autopilot: the news in it, for the log."""
+        return self._parameters.heard(message)
+
+    def _command(self, message: CommandLong | CommandInt, seen: GuardSeen) -> Judgement:
+        row = ROWS.get(message.command)
+        if row is None:
+            name = NAMES.get(message.command, f"command {message.command}")
+            return Refused(Refusal(Code.UNSUPPORTED, f"{name} has no rule here"))
+        rules = self._rules
+        match row.key:
+            case None:
+                return Refused(Refusal(Code.POLICY, f"{row.what} is never allowed to a client"))
+            case "parameters":
+                return self._storage(message, row.what, seen)
+            case "home":
+                choice: str = rules.home
+            case "origin":
+                choice = rules.origin
+            case "fence":
+                choice = rules.fence
+            case "calibration":
+                choice = rules.calibration
+            case "reboot":
+                choice = rules.reboot
+            case "termination":
+                choice = rules.termination
+        return _by(choice, row.key, row.what, seen)
+
+    def _storage(self, message: CommandLong | CommandInt, what: str, seen: GuardSeen) -> Judgement:
+        """PREFLIGHT_STORAGE."""
+        if message.command == Cmd.PREFLIGHT_STORAGE and message.param1 in STORAGE_KEEPS:
+            return Allowed()
+        if self._rules.parameters != "forward":
+            return Refused(Refusal(Code.POLICY, f"{what} is not allowed ({PARAMETERS_KEY})"))
+        return _by("on_ground", "parameters", what, seen)
+
+    def _plan(
+        self, message: MissionCount | MissionClearAll | MissionWritePartialList, seen: GuardSeen
+    ) -> Judgement:
+        """Fences and rally points; a mission itself is not the guard's."""
+        keys = _PLANS.get(MissionType(message.mission_type)) if _known(message) else ()
+        if keys is None:
+            return Allowed()
+        if not keys:
+            sentence = f"plans of type {message.mission_type} are not known here"
+            return _plan_refused(message, seen, Refusal(Code.UNSUPPORTED, sentence))
+        for key, whose in keys:
+            choice = self._rules.fence if key == "fence" else self._rules.rally
+            judged = _by(choice, key, f"changing {whose}", seen)
+            if isinstance(judged, Refused):
+                return _plan_refused(message, seen, judged.refusal)
+        return Allowed(f"changing {' and '.join(whose for _, whose in keys)} is forwarded")
+
+
+def _known(message: MissionCount | MissionClearAll | MissionWritePartialList) -> bool:
+    return message.mission_type in frozenset(int(kind) for kind in MissionType)
+
+
+def _plan_refused(
+    message: MissionCount | MissionClearAll | MissionWritePartialList,
+    seen: GuardSeen,
+    refusal: Refusal,
+) -> Refused:
+    answer = MissionAck(
+        target_system=seen.client.sysid,
+        target_component=seen.client.compid,
+        type=MissionResult.DENIED,
+        mission_type=message.mission_type,
+    )
+    return Refused(refusal, (answer,))
+
+
+def _by(choice: str, key: str, what: str, seen: GuardSeen) -> Judgement:
+    """As the policy's `choice` for `key` has it."""
+    match choice:
+        case "forward":
+            return Allowed(f"{what} is forwarded")
+        case "on_ground" if seen.stands_disarmed:
+            return Allowed(f"{what} is forwarded")
+        case "on_ground":
+            sentence = f"{what} is allowed while the vehicle is disarmed on the ground only"
+            return Refused(Refusal(Code.IN_AIR, f"{sentence} (policy: bridge.{key})"))
+        case _:
+            sentence = f"{what} is not allowed (policy: bridge.{key})"
+            return Refused(Refusal(Code.POLICY, sentence))

@@ -1,0 +1,171 @@
+"""Writing parameters: which a client may write, and what it is told of those that it may not.
+
+A refused write is answered as the protocol has it: with the value that the parameter still has.
+Only the vehicle knows it, so the vehicle is asked for it in the write's place, and its answer goes
+to every client.  PARAM_ERROR, which newer clients understand, says at once that it was refused.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from gcs.bridge.guard.safety_parameters import NAME, group_of, pattern_of
+from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
+from gcs.gate.effects import Level
+from gcs.gate.policy.policy import BridgeRules
+from gcs.gate.refusal import Code, Refusal
+from gcs.protocol.autopilot import ParamEncoding
+from gcs.protocol.parameters import BY_NAME, decode_value
+from gcs.wire.ids import ParamExtResult, ParamFault, ParamType
+from gcs.wire.messages import (
+    Message,
+    ParamError,
+    ParamExtAck,
+    ParamExtRequestRead,
+    ParamExtSet,
+    ParamRequestRead,
+    ParamSet,
+    ParamValue,
+)
+
+HASH_CHECK: Final = "_HASH_CHECK"
+"""Written to a PX4 to say that its parameters are known already; it is no parameter."""
+KEY: Final = "policy: bridge.parameters"
+MOST_KEPT: Final = 4096
+"""Values that are kept at most; an autopilot has 900 to 1,400."""
+_TYPES: Final = frozenset(int(kind) for kind in ParamType)
+_LONGEST: Final = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Changed:
+    """What the log says of a parameter whose value has changed."""
+
+    level: Level
+    text: str
+
+
+class ParameterGuard:
+    """Judges writes, and follows what becomes of those that it let through."""
+
+    def __init__(self, rules: BridgeRules, autopilot: str, encoding: ParamEncoding) -> None:
+        self._rules = rules
+        self._autopilot = autopilot
+        self._encoding = encoding
+        self._allowed = pattern_of(rules.parameters_allowed)
+        self._guarded = pattern_of(rules.parameters_guarded)
+        self._values: dict[str, float] = {}
+        self._written_by: dict[str, str] = {}
+
+    def judge(self, message: ParamSet, seen: GuardSeen) -> Judgement:
+        """PARAM_SET."""
+        name = message.param_id
+        value = self._decoded(message.param_value, message.param_type)
+        finite = math.isfinite(value)
+        numbers = (("value", float(value)),) if finite else ()
+        why = self.why_refused(name)
+        if why is None and not finite:
+            refusal = Refusal(Code.NON_FINITE, f"{name}: the value is not a finite number")
+        elif why is None:
+            if len(self._written_by) < MOST_KEPT:
+                self._written_by[name.upper()] = f"{seen.client.sysid}/{seen.client.compid}"
+            return Allowed("" if name == HASH_CHECK else self._told(name, value))
+        else:
+            refusal = Refusal(Code.POLICY, f"{why} ({KEY})", numbers)
+        told = ParamError(
+            param_index=BY_NAME,
+            target_system=seen.client.sysid,
+            target_component=seen.client.compid,
+            param_id=_sendable(name),
+            error=ParamFault.PERMISSION_DENIED if why else ParamFault.VALUE_OUT_OF_RANGE,
+        )
+        ask: tuple[Message, ...] = ()
+        if NAME.fullmatch(name):
+            ask = (
+                ParamRequestRead(
+                    param_index=BY_NAME,
+                    target_system=message.target_system or seen.vehicle.sysid,
+                    target_component=message.target_component or seen.vehicle.compid,
+                    param_id=name,
+                ),
+            )
+        return Refused(refusal, (told,), ask)
+
+    def judge_extended(self, message: ParamExtSet, seen: GuardSeen) -> Judgement:
+        """PARAM_EXT_SET: of a camera, a gimbal, a program on board."""
+        name = message.param_id
+        why = self.why_refused(name)
+        if why is None:
+            return Allowed(f"{name} = {message.param_value} is forwarded")
+        told = ParamExtAck(
+            param_id=_sendable(name),
+            param_value="",
+            param_type=message.param_type,
+            param_result=ParamExtResult.FAILED,
+        )
+        ask: tuple[Message, ...] = ()
+        if NAME.fullmatch(name):
+            ask = (
+                ParamExtRequestRead(
+                    param_index=BY_NAME,
+                    target_system=message.target_system or seen.vehicle.sysid,
+                    target_component=message.target_component,
+                    param_id=name,
+                ),
+            )
+        return Refused(Refusal(Code.POLICY, f"{why} ({KEY})"), (told,), ask)
+
+    def why_refused(self, name: str) -> str | None:
+        """A sentence; None where the parameter may be written."""
+        if name == HASH_CHECK:
+            return None
+        shown = _sendable(name)
+        if not NAME.fullmatch(name):
+            return f"{shown!r} is no name of a parameter"
+        if self._rules.parameters == "forward" or self._allowed.fullmatch(name):
+            return None
+        if self._rules.parameters == "refuse":
+            return f"{shown} is not written: no parameter is"
+        if self._guarded.fullmatch(name):
+            return f"{shown} is guarded: the policy names it in parameters_guarded"
+        group = group_of(self._autopilot, name)
+        return None if group is None else f"{shown} is guarded: {group.why}"
+
+    def heard(self, message: ParamValue) -> Changed | None:
+        """PARAM_VALUE of the vehicle: what is to be told of it."""
+        name = message.param_id
+        if not NAME.fullmatch(name) or name == HASH_CHECK:
+            return None
+        value = self._decoded(message.param_value, message.param_type)
+        known = self._values.get(name)
+        if known is None and len(self._values) >= MOST_KEPT:
+            return None
+        self._values[name] = value
+        writer = self._written_by.pop(name.upper(), None)
+        if known is None or known == value or math.isnan(value):
+            return None
+        change = f"{name} was {known:g} and is {value:g} now"
+        if writer is not None:
+            return Changed(Level.INFO, f"{change}: written by {writer}")
+        group = group_of(self._autopilot, name)
+        if group is None or not group.set_by_people:
+            return None
+        return Changed(Level.WARNING, f"{change}, and no client of this bridge wrote it")
+
+    def _told(self, name: str, value: float) -> str:
+        known = next((v for k, v in self._values.items() if k.upper() == name.upper()), None)
+        before = "not known" if known is None else f"{known:g}"
+        return f"{name} = {value:g} is forwarded; it is {before} now"
+
+    def _decoded(self, wire: float, type_: int) -> float:
+        if type_ not in _TYPES:
+            return wire
+        return float(decode_value(wire, ParamType(type_), self._encoding))
+
+
+def _sendable(name: str) -> str:
+    """What fits into a message and into a sentence of what a client called a parameter."""
+    return re.sub(r"[^ -~]", "?", name)[:_LONGEST]

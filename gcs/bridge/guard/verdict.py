@@ -1,0 +1,51 @@
+"""What the guard is told beside a message, and what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from gcs.gate.refusal import Refusal
+from gcs.protocol.effects import Address
+from gcs.wire.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class GuardSeen:
+    """Who sent a message, and how the vehicle is."""
+
+    client: Address
+    vehicle: Address
+    """The autopilot's."""
+    armed: bool | None
+    on_ground: bool
+
+    @property
+    def stands_disarmed(self) -> bool:
+        """Known to be disarmed, and on the ground."""
+        return self.armed is False and self.on_ground
+
+
+@dataclass(frozen=True, slots=True)
+class Allowed:
+    """It goes to the vehicle unchanged; `note` is what the log says of it, empty for nothing."""
+
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """It does not.
+
+    `answers` go to the client in the name of the component that it addressed.  A command's
+    COMMAND_ACK and the STATUSTEXT with the reason are not among them: the bridge makes those of
+    every refusal.  `ask_vehicle` goes to the vehicle in the place of what was refused, so that the
+    vehicle itself tells the client what it has.
+    """
+
+    refusal: Refusal
+    answers: tuple[Message, ...] = ()
+    ask_vehicle: tuple[Message, ...] = ()
+
+
+Judgement: TypeAlias = Allowed | Refused

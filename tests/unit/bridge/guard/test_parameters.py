@@ -1,0 +1,242 @@
+"""PARAM_SET and PARAM_EXT_SET: what safety stands on is not written by a client."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from gcs.bridge.guard.guard import Guard
+from gcs.bridge.guard.safety_parameters import group_of
+from gcs.gate.effects import Level
+from gcs.gate.refusal import Code
+from gcs.protocol.parameter_names import names_of
+from gcs.session import settings
+from gcs.session.jobs import facts
+from gcs.wire.ids import ParamExtResult, ParamFault
+from gcs.wire.messages import (
+    Message,
+    ParamError,
+    ParamExtAck,
+    ParamExtRequestRead,
+    ParamRequestRead,
+    ParamSet,
+    ParamValue,
+)
+from tests.unit.bridge.guard.wire import FLYING, PARKED, allowed, guard, refused, sent
+
+INT32, REAL32 = 6, 9
+
+
+def bytewise(value: int) -> float:
+    """An integer in the float of PARAM_SET, as PX4 has it."""
+    number: float = struct.unpack("<f", struct.pack("<i", value))[0]
+    return number
+
+
+def param_set(name: bytes, value: float = 0.0, kind: int = REAL32) -> ParamSet:
+    message = sent("param_set", 1, 1, name, value, kind)
+    assert isinstance(message, ParamSet)
+    return message
+
+
+def told(own: Guard, name: str, value: float, kind: int = REAL32) -> object:
+    return own.heard(ParamValue(value, 874, 65535, name, kind))
+
+
+def test_switching_the_fence_of_a_px4_off_is_refused_with_the_number_and_the_policys_key() -> None:
+    found = refused(guard().judge(param_set(b"GF_ACTION", bytewise(0), INT32), PARKED))
+    assert found.refusal.code is Code.POLICY
+    assert "GF_ACTION is guarded: it is of the vehicle's own fence" in found.refusal.sentence
+    assert "bridge.parameters" in found.refusal.sentence
+    assert found.refusal.numbers == (("value", 0.0),)
+
+
+def test_an_integer_of_a_px4_is_read_out_of_the_bytes_of_the_float() -> None:
+    found = refused(guard().judge(param_set(b"NAV_DLL_ACT", bytewise(7), INT32), PARKED))
+    assert found.refusal.numbers == (("value", 7.0),)
+
+
+def test_an_integer_of_an_arducopter_is_the_floats_value() -> None:
+    own = guard(autopilot="ardupilot")
+    found = refused(own.judge(param_set(b"FENCE_ENABLE", 1.0, INT32), PARKED))
+    assert found.refusal.numbers == (("value", 1.0),)
+
+
+def test_the_vehicle_is_asked_in_the_writes_place_so_that_the_client_hears_the_old_value() -> None:
+    found = refused(guard().judge(param_set(b"GF_ACTION", 0.0, INT32), FLYING))
+    assert found.ask_vehicle == (ParamRequestRead(-1, 1, 1, "GF_ACTION"),)
+    assert found.answers == (ParamError(-1, 245, 190, "GF_ACTION", ParamFault.PERMISSION_DENIED),)
+
+
+def test_a_broadcast_is_asked_of_the_autopilot() -> None:
+    found = refused(guard().judge(sent("param_set", 0, 0, b"GF_ACTION", 0.0, INT32), FLYING))
+    assert found.ask_vehicle == (ParamRequestRead(-1, 1, 1, "GF_ACTION"),)
+
+
+@pytest.mark.parametrize("component", [0, 1, 100, 190])
+def test_an_autopilot_takes_a_write_to_a_component_that_nobody_knows(component: int) -> None:
+    """ArduPilot processes what it cannot forward (MAVLink_routing, from memory)."""
+    refused(guard().judge(sent("param_set", 1, component, b"GF_ACTION", 0.0, INT32), FLYING))
+
+
+@pytest.mark.parametrize("name", [b"gf_action", b"Gf_Action", b"GF_ACTION\0junk"])
+def test_case_and_what_stands_behind_a_nul_do_not_matter(name: bytes) -> None:
+    refused(guard().judge(param_set(name), PARKED))
+
+
+def test_a_name_of_16_letters_has_no_nul() -> None:
+    """MC_AT_SYSID_AMP has 15 and COM_ARM_AUTH_REQ 16 (recorded list of PX4 1.14.3)."""
+    found = refused(guard().judge(param_set(b"COM_ARM_AUTH_REQ"), PARKED))
+    assert found.ask_vehicle == (ParamRequestRead(-1, 1, 1, "COM_ARM_AUTH_REQ"),)
+
+
+@pytest.mark.parametrize("name", [b"", b"\xff\xfe\xff", b"GF ACTION", b" GF_ACTION", b"GF-ACTION"])
+def test_what_cannot_be_a_name_is_refused_and_not_asked_for(name: bytes) -> None:
+    found = refused(guard().judge(param_set(name), PARKED))
+    assert "no name of a parameter" in found.refusal.sentence
+    assert found.ask_vehicle == ()
+
+
+def test_a_parameter_that_nothing_stands_on_is_forwarded_and_told() -> None:
+    own = guard()
+    assert told(own, "SDLOG_MODE", bytewise(0), INT32) is None
+    note = allowed(own.judge(param_set(b"SDLOG_MODE", bytewise(1), INT32), FLYING)).note
+    assert note == "SDLOG_MODE = 1 is forwarded; it is 0 now"
+    change = own.heard(ParamValue(bytewise(1), 874, 65535, "SDLOG_MODE", INT32))
+    assert change is not None
+    assert change.text == "SDLOG_MODE was 0 and is 1 now: written by 245/190"
+    assert change.level is Level.INFO
+
+
+def test_a_value_that_is_not_known_is_told_so() -> None:
+    note = allowed(guard().judge(param_set(b"SDLOG_MODE", 1.0), FLYING)).note
+    assert note == "SDLOG_MODE = 1 is forwarded; it is not known now"
+
+
+def test_a_fence_that_is_switched_off_past_the_bridge_is_told_as_a_warning() -> None:
+    own = guard()
+    assert own.heard(ParamValue(bytewise(2), 874, 10, "GF_ACTION", INT32)) is None
+    assert own.heard(ParamValue(bytewise(2), 874, 10, "GF_ACTION", INT32)) is None
+    change = own.heard(ParamValue(bytewise(0), 874, 10, "GF_ACTION", INT32))
+    assert change is not None
+    assert change.level is Level.WARNING
+    assert change.text == "GF_ACTION was 2 and is 0 now, and no client of this bridge wrote it"
+
+
+@pytest.mark.parametrize("name", ["SDLOG_UTC_OFFSET", "CAL_MAG0_XOFF"])
+def test_what_the_vehicle_changes_by_itself_is_no_news(name: str) -> None:
+    own = guard()
+    assert told(own, name, 1.0) is None
+    assert told(own, name, 2.0) is None
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), float("-inf")])
+def test_no_number_is_no_value(value: float) -> None:
+    found = refused(guard().judge(param_set(b"SDLOG_MODE", value, REAL32), PARKED))
+    assert found.refusal.code is Code.NON_FINITE
+    (answer,) = found.answers
+    assert isinstance(answer, ParamError)
+    assert answer.error == ParamFault.VALUE_OUT_OF_RANGE
+
+
+def test_an_integer_whose_bytes_are_no_number_as_a_float_is_a_value() -> None:
+    allowed(guard().judge(param_set(b"SDLOG_MODE", bytewise(-1), INT32), PARKED))
+
+
+def test_qgroundcontrol_may_say_that_it_has_the_parameters_of_a_px4() -> None:
+    for rules in ("", 'parameters = "refuse"'):
+        assert allowed(guard(rules).judge(param_set(b"_HASH_CHECK", 1.5), PARKED)).note == ""
+
+
+def test_the_policy_may_allow_a_guarded_one_by_name_or_by_pattern() -> None:
+    own = guard('parameters_allowed = ["MPC_YAW_MODE", "GF_*"]')
+    allowed(own.judge(param_set(b"MPC_YAW_MODE"), PARKED))
+    allowed(own.judge(param_set(b"GF_ACTION"), PARKED))
+    refused(own.judge(param_set(b"MPC_YAW_MODEX"), PARKED))
+    refused(own.judge(param_set(b"NAV_DLL_ACT"), PARKED))
+
+
+def test_the_policy_may_guard_more() -> None:
+    found = refused(
+        guard('parameters_guarded = ["SDLOG_*"]').judge(param_set(b"SDLOG_MODE"), FLYING)
+    )
+    assert "parameters_guarded" in found.refusal.sentence
+
+
+def test_the_policy_may_refuse_all_or_forward_all() -> None:
+    refused(guard('parameters = "refuse"').judge(param_set(b"SDLOG_MODE"), PARKED))
+    allowed(guard('parameters = "forward"').judge(param_set(b"GF_ACTION"), PARKED))
+    own = guard('parameters = "refuse"\nparameters_allowed = ["SDLOG_MODE"]')
+    allowed(own.judge(param_set(b"SDLOG_MODE"), PARKED))
+
+
+def test_an_autopilot_of_an_unknown_kind_has_the_guarded_names_of_both() -> None:
+    own = guard(autopilot="of an unknown kind")
+    refused(own.judge(param_set(b"GF_ACTION"), PARKED))
+    refused(own.judge(param_set(b"FENCE_ENABLE"), PARKED))
+
+
+def test_extended_parameters_are_guarded_by_name_too() -> None:
+    def ext_set(name: bytes) -> Message:
+        return sent("param_ext_set", 1, 100, name, b"0", 11)
+
+    assert allowed(guard().judge(ext_set(b"CAM_MODE"), PARKED)).note == "CAM_MODE = 0 is forwarded"
+    found = refused(guard().judge(ext_set(b"GF_ACTION"), PARKED))
+    assert found.answers == (ParamExtAck("GF_ACTION", "", 11, ParamExtResult.FAILED),)
+    assert found.ask_vehicle == (ParamExtRequestRead(-1, 1, 100, "GF_ACTION"),)
+
+
+# ---------------------------------------------------------------------------- the tables
+
+
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_every_parameter_that_the_station_stands_on_is_guarded_by_every_name(
+    autopilot: str,
+) -> None:
+    wanted = {table[autopilot] for table in settings.READ_FIRST if autopilot in table}
+    wanted |= {failsafe.name for failsafe in settings.FAILSAFES[autopilot]}
+    wanted |= {quantity.parameter for quantity in facts.QUANTITIES[autopilot]}
+    for newest in wanted:
+        for name in names_of(newest):
+            assert group_of(autopilot, name.name) is not None, name.name
+
+
+# Names of the recorded lists (px4_1_14_params.json, arducopter_4_7_params.json), and of ArduCopter
+# 4.5 where 4.7 has another one.
+GUARDED = {
+    "px4": (
+        "GF_ACTION GF_MAX_HOR_DIST GF_MAX_VER_DIST GF_SOURCE COM_OBL_RC_ACT COM_OF_LOSS_T"
+        " NAV_DLL_ACT NAV_RCL_ACT COM_LOW_BAT_ACT COM_DL_LOSS_T COM_RC_LOSS_T BAT_LOW_THR"
+        " BAT_CRIT_THR BAT_EMERGEN_THR BAT1_N_CELLS CBRK_FLIGHTTERM CBRK_SUPPLY_CHK RTL_RETURN_ALT"
+        " RTL_TYPE RTL_CONE_ANG COM_ARM_WO_GPS COM_ARM_AUTH_REQ MPC_XY_VEL_MAX MPC_ACC_HOR"
+        " MPC_Z_VEL_MAX_UP MAV_SYS_ID EKF2_GPS_CTRL EKF2_HGT_REF SYS_FAILURE_EN SYS_AUTOSTART"
+        " PWM_MAIN_FUNC1 RC_MAP_KILL_SW CAL_GYRO0_XOFF SIM_GPS_USED NAV_ACC_RAD MIS_TAKEOFF_ALT"
+        " FD_FAIL_P COM_DISARM_LAND MC_PITCH_P COM_FLTMODE1 COM_POS_FS_EPH"
+    ),
+    "ardupilot": (
+        "FENCE_ENABLE FENCE_ACTION FENCE_RADIUS FENCE_ALT_MAX FENCE_MARGIN FENCE_TYPE"
+        " FS_GCS_ENABLE FS_GCS_TIMEOUT FS_THR_ENABLE FS_EKF_ACTION FS_OPTIONS BATT_FS_LOW_ACT"
+        " BATT_FS_CRT_ACT BATT_LOW_VOLT BATT_CAPACITY ARMING_SKIPCHK ARMING_CHECK RTL_ALT_M RTL_ALT"
+        " SYSID_MYGCS MAV_GCS_SYSID MAV_SYSID SYSID_THISMAV BRD_SAFETY_DEFLT BRD_SAFETYENABLE"
+        " WPNAV_SPEED WP_SPD WP_RADIUS_M LOIT_SPEED_MS PSC_NE_VEL_P PSC_ACCZ_P EK3_ENABLE"
+        " AHRS_EKF_TYPE SERVO1_FUNCTION SIM_GPS1_ENABLE SIM_WIND_SPD DISARM_DELAY GUID_TIMEOUT"
+        " AVOID_ENABLE RALLY_INCL_HOME MOT_SPIN_ARM FLTMODE1 RC7_OPTION SERIAL1_PROTOCOL"
+        " ATC_RAT_RLL_P SCR_ENABLE MAV1_OPTIONS"
+    ),
+}
+FREE = {
+    "px4": "SDLOG_MODE SDLOG_UTC_OFFSET MNT_MODE_IN PD_GRIPPER_EN CAM_EXPOSURE_S TRIG_MODE",
+    "ardupilot": (
+        "LOG_BITMASK LOG_DISARMED NTF_LED_BRIGHT CAM1_TYPE MNT1_TYPE SR0_EXTRA1 MAV1_EXTRA1"
+        " OSD_TYPE STAT_RESET CAM_EXPOSURE_S"
+    ),
+}
+
+
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_what_is_guarded_and_what_is_free(autopilot: str) -> None:
+    for name in GUARDED[autopilot].split():
+        assert group_of(autopilot, name) is not None, name
+    for name in FREE[autopilot].split():
+        assert group_of(autopilot, name) is None, name

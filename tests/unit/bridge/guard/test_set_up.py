@@ -1,0 +1,205 @@
+"""Commands and messages that change a vehicle's set-up, by the policy's `[bridge]`."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gcs.bridge.guard.commands import ROWS
+from gcs.bridge.guard.guard import Guard
+from gcs.bridge.guard.verdict import Allowed, GuardSeen, Refused
+from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.refusal import Code
+from gcs.protocol.effects import Address
+from gcs.wire.codec import decode, encode
+from gcs.wire.frame import Frame
+from gcs.wire.ids import MissionResult
+from gcs.wire.messages import CLASSES, Message, MissionAck
+from tests.unit.bridge.guard.wire import (
+    CLIENT,
+    FLYING,
+    PARKED,
+    VEHICLE,
+    allowed,
+    command,
+    guard,
+    refused,
+    sent,
+)
+
+UNKNOWN = GuardSeen(CLIENT, VEHICLE, armed=None, on_ground=True)
+STARTED = GuardSeen(CLIENT, VEHICLE, armed=True, on_ground=True)
+
+SET_HOME = sent("set_home_position", 1, 473977420, 85455940, 488000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
+SET_ORIGIN = sent("set_gps_global_origin", 1, 473977420, 85455940, 488000)
+SETUP_SIGNING = sent("setup_signing", 1, 1, [7] * 32, 1)
+FENCE_POINT = sent("fence_point", 1, 1, 0, 4, 47.0, 8.0)
+RALLY_POINT = sent("rally_point", 1, 1, 0, 1, 473977420, 85455940, 20, 0, 0, 0)
+RTCM = sent("gps_rtcm_data", 0, 3, [1] * 180)
+INJECT = sent("gps_inject_data", 1, 1, 3, [1] * 110)
+
+
+def count(plan: int) -> Message:
+    return sent("mission_count", 1, 1, 4, plan)
+
+
+def clear(plan: int) -> Message:
+    return sent("mission_clear_all", 1, 1, plan)
+
+
+# MAV_CMD's numbers are those of https://mavlink.io/en/messages/common.html.
+DO_SET_HOME, TERMINATION, FENCE_ENABLE = 179, 185, 207
+CALIBRATION, STORAGE, REBOOT, INJECT_FAILURE = 241, 245, 246, 420
+
+BY_POLICY = [
+    ("home", command(DO_SET_HOME)),
+    ("home", SET_HOME),
+    ("origin", SET_ORIGIN),
+    ("origin", command(611)),
+    ("signing", SETUP_SIGNING),
+    ("termination", command(TERMINATION, 1.0)),
+    ("termination", command(TERMINATION, 0.0)),
+    ("fence", command(FENCE_ENABLE, 0.0)),
+    ("fence", command(FENCE_ENABLE, 1.0)),
+    ("fence", FENCE_POINT),
+    ("fence", count(1)),
+    ("fence", clear(1)),
+    ("rally", RALLY_POINT),
+    ("rally", count(2)),
+    ("rally", clear(2)),
+    ("rtcm", RTCM),
+    ("rtcm", INJECT),
+]
+
+
+@pytest.mark.parametrize(("key", "message"), BY_POLICY)
+def test_the_default_refuses_it_in_the_air_and_on_the_ground(key: str, message: Message) -> None:
+    for seen in (FLYING, PARKED):
+        found = refused(guard().judge(message, seen))
+        assert found.refusal.code is Code.POLICY
+        assert f"bridge.{key}" in found.refusal.sentence
+
+
+@pytest.mark.parametrize(("key", "message"), BY_POLICY)
+def test_the_policy_may_forward_it(key: str, message: Message) -> None:
+    note = allowed(guard(f'{key} = "forward"').judge(message, FLYING)).note
+    assert note or key == "rtcm", "five corrections a second are no news"
+
+
+ON_GROUND = [
+    ("home", command(DO_SET_HOME)),
+    ("origin", SET_ORIGIN),
+    ("calibration", command(CALIBRATION, 1.0)),
+    ("calibration", command(42424)),
+    ("reboot", command(REBOOT, 1.0)),
+]
+
+
+@pytest.mark.parametrize(("key", "message"), ON_GROUND)
+def test_on_ground_is_disarmed_and_on_the_ground(key: str, message: Message) -> None:
+    own = guard(f'{key} = "on_ground"')
+    allowed(own.judge(message, PARKED))
+    for seen in (FLYING, STARTED, UNKNOWN, GuardSeen(CLIENT, VEHICLE, False, on_ground=False)):
+        found = refused(own.judge(message, seen))
+        assert found.refusal.code is Code.IN_AIR
+
+
+def test_the_default_calibrates_on_the_ground_and_never_reboots() -> None:
+    allowed(guard().judge(command(CALIBRATION, 1.0), PARKED))
+    refused(guard().judge(command(REBOOT, 1.0), PARKED))
+
+
+@pytest.mark.parametrize("param1", [0.0, 1.0])
+def test_saving_and_loading_parameters_changes_none(param1: float) -> None:
+    allowed(guard().judge(command(STORAGE, param1), FLYING))
+
+
+@pytest.mark.parametrize("param1", [2.0, 3.0, 4.0, 1.5, float("nan")])
+def test_setting_parameters_back_is_writing_all_of_them(param1: float) -> None:
+    refused(guard().judge(command(STORAGE, param1), PARKED))
+    own = guard('parameters = "forward"')
+    allowed(own.judge(command(STORAGE, param1), PARKED))
+    refused(own.judge(command(STORAGE, param1), FLYING))
+
+
+LENIENT = "\n".join(
+    f'{key} = "forward"'
+    for key in ("parameters", "fence", "rally", "home", "origin", "signing", "termination", "rtcm")
+)
+
+
+@pytest.mark.parametrize("number", [180, INJECT_FAILURE, 243, 42650, 32000, 5300, 42007, 2520])
+def test_some_commands_no_policy_allows(number: int) -> None:
+    found = refused(guard(LENIENT).judge(command(number), PARKED))
+    assert found.refusal.code is Code.POLICY
+
+
+def test_a_command_that_has_no_row_is_refused() -> None:
+    assert refused(guard(LENIENT).judge(command(16), PARKED)).refusal.code is Code.UNSUPPORTED
+    assert refused(guard(LENIENT).judge(command(64999), PARKED)).refusal.code is Code.UNSUPPORTED
+
+
+def test_a_message_that_has_no_row_is_refused() -> None:
+    heartbeat = sent("heartbeat", 6, 8, 0, 0, 4)
+    assert refused(guard(LENIENT).judge(heartbeat, PARKED)).refusal.code is Code.UNSUPPORTED
+
+
+@pytest.mark.parametrize("message", [count(1), clear(1), count(2), clear(255)])
+def test_a_plan_that_is_refused_is_answered_with_a_mission_ack_of_its_type(
+    message: Message,
+) -> None:
+    (answer,) = refused(guard().judge(message, PARKED)).answers
+    assert isinstance(answer, MissionAck)
+    assert (answer.target_system, answer.target_component) == (245, 190)
+    assert answer.type == MissionResult.DENIED
+    assert answer.mission_type == message.mission_type  # type: ignore[attr-defined]
+
+
+def test_clearing_everything_needs_both() -> None:
+    refused(guard('fence = "forward"').judge(clear(255), PARKED))
+    refused(guard('rally = "forward"').judge(clear(255), PARKED))
+    allowed(guard('fence = "forward"\nrally = "forward"').judge(clear(255), PARKED))
+
+
+def test_a_plan_of_an_unknown_type_is_refused() -> None:
+    refused(guard(LENIENT).judge(count(9), PARKED))
+
+
+def test_a_mission_is_not_the_guards() -> None:
+    allowed(guard().judge(count(0), PARKED))
+
+
+# ----------------------------------------------------------------------------- never raises
+
+GUARDS = [Guard(DEFAULT.bridge, name) for name in ("px4", "ardupilot", "")]
+GUARDS += [guard(LENIENT + '\nftp_writes = "forward"', name) for name in ("px4", "ardupilot")]
+
+
+@given(
+    own=st.sampled_from(GUARDS),
+    msgid=st.sampled_from(sorted(CLASSES)),
+    payload=st.binary(min_size=1, max_size=255),
+    armed=st.sampled_from([None, False, True]),
+    on_ground=st.booleans(),
+)
+def test_whatever_comes_is_judged_and_every_answer_can_be_sent(
+    own: Guard, msgid: int, payload: bytes, armed: bool | None, on_ground: bool
+) -> None:
+    message = decode(Frame(b"", 0, CLIENT.sysid, CLIENT.compid, msgid, payload, b"", True))
+    assert message is not None
+    seen = GuardSeen(Address(payload[0], 190), VEHICLE, armed, on_ground)
+    judgement = own.judge(message, seen)
+    match judgement:
+        case Refused(refusal, answers, ask_vehicle):
+            assert refusal.sentence
+            for each in (*answers, *ask_vehicle):
+                encode(each)
+        case Allowed():
+            pass
+
+
+@given(number=st.sampled_from(sorted(ROWS)), param1=st.floats(width=32))
+def test_every_row_is_judged(number: int, param1: float) -> None:
+    for own in GUARDS:
+        assert own.judge(command(number, param1), FLYING)
