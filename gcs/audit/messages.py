@@ -35,7 +35,7 @@ class Stored(NamedTuple):
 
     @property
     def came_in(self) -> bool:
-        """Bytes that a link received, whether or not they were refused: an input, or a part of one."""
+        """Bytes that a link received, refused or not: an input, or a part of one."""
         return self.is_garbage or (self.is_frame and self.data[1] != Direction.SENT)
 
     @property

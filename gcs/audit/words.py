@@ -14,6 +14,9 @@ from gcs.audit.messages import INPUT_TOPIC, Stored
 from gcs.audit.turns import Given, RecorderTurn, Unreadable
 from gcs.report import Direction
 from gcs.session.inputs import (
+    ClientCame,
+    ClientFlooded,
+    ClientGone,
     Datagram,
     DiskLow,
     FileRead,
@@ -60,6 +63,8 @@ def kind_of_input(given: Given) -> str:
             return "operators' lines"
         case OperatorJoined() | OperatorGone():
             return "operators that came and went"
+        case ClientCame() | ClientGone() | ClientFlooded():
+            return "MAVLink clients that came and went"
         case FileRead() | FileWritten():
             return "files"
         case LinkEvent():
@@ -92,6 +97,12 @@ def told_input(given: Given) -> str:
             return f"operator {client} ({name}) joined"
         case OperatorGone(client, reason):
             return f"operator {client} went: {reason}"
+        case ClientCame(link, name):
+            return f"client {name} came on link {link}"
+        case ClientGone(link, reason):
+            return f"the client on link {link} went: {reason}"
+        case ClientFlooded(link, dropped):
+            return f"the client on link {link} flooded: {dropped} datagrams dropped"
         case FileRead(_, path, data):
             size = "not read" if data is None else f"{len(data)} bytes read"
             return f"{path}: {size}"

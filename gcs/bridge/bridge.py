@@ -1,64 +1,41 @@
-"""The bridge: what comes from MAVLink clients is judged, what is for them is sent on.
+"""The bridge: all MAVLink clients of one station, before its one vehicle.
 
-The composition: who is there (`client.py`), where frames go (`routing.py`), what each is
-(`classes/`), what it asks for (`meaning/`), plans (`plans/`) and settings (`guard/`), and what is
-answered (`dialogue.py`).  Frames of the vehicle's side are not decoded here.
+Who is there (`client.py`), where frames go (`routing.py`), what is done with each (`judge.py`), and
+what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded here.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 from gcs import ipc
-from gcs.bridge.classes import Kind, Row, command_row, message_row
+from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client
 from gcs.bridge.dialogue import From
-from gcs.bridge.effects import (
-    BridgeEffect,
-    Joined,
-    Lost,
-    Notes,
-    Says,
-    ToLink,
-    ToVehicle,
-)
-from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.effects import BridgeEffect, Joined, Lost, Notes, ToLink
+from gcs.bridge.judge import Judge, Judged, Look, Received, of_plan
 from gcs.bridge.routing import Routes, target_of
-from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.effects import Level
-from gcs.gate.refusal import Code, Refusal
+from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
-from gcs.wire.codec import decode
+from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MsgId
-from gcs.wire.messages import CommandInt, CommandLong, Message
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
-
-Look: TypeAlias = Callable[[], Seen | None]
-"""How the vehicle is at this moment; None before one is heard."""
-
-
-@dataclass(frozen=True, slots=True)
-class Judged:
-    """`refused`: the frame goes nowhere, and is recorded as refused."""
-
-    refused: bool
-    effects: list[BridgeEffect]
 
 
 class Bridge:
     """All MAVLink clients of one station, and its vehicle, whose system id is `vehicle.sysid`."""
 
-    def __init__(self, own: Address, silent_ns: int) -> None:
-        """`own` is what the station calls itself; a client that is silent for `silent_ns` is lost."""
+    def __init__(self, own: Address, rules: BridgeRules, silent_ns: int, timing: Timing) -> None:
+        """`own` is what the station calls itself; a client that is silent for `silent_ns` is lost;
+        `timing` is of the plans that clients send."""
         self._own = own
+        self._judge = Judge(rules)
         self._silent_ns = silent_ns
+        self._timing = timing
         self._routes = Routes()
         self._by_link: dict[int, Client] = {}
         self._by_number: dict[int, Client] = {}
@@ -71,7 +48,7 @@ class Bridge:
     def came(self, link: int, name: str) -> list[BridgeEffect]:
         """A peer is there; it is a client with its first good frame."""
         self._routes.open(link)
-        self._by_link[link] = Client(link, 0, name)
+        self._by_link[link] = Client(link, name, self._timing)
         return [Notes(Level.INFO, f"{name} has connected, on link {link}")]
 
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:
@@ -110,9 +87,8 @@ class Bridge:
         return [Lost(client.number, reason)]
 
     def _meet(self, client: Client, frame: Frame) -> list[BridgeEffect]:
-        client.number, self._next_number = self._next_number, self._next_number + 1
-        client.__post_init__()  # what it asked for before it was lost is over
-        client.joined = True
+        client.begin(self._next_number)
+        self._next_number += 1
         self._by_number[client.number] = client
         return [Joined(client.number, f"MAVLink {frame.sysid}/{frame.compid}, {client.name}")]
 
@@ -129,7 +105,7 @@ class Bridge:
             client.refused += 1
             return Judged(True, self._once(client, reason))
         client.heard_ns = now_ns
-        effects = [] if client.joined else self._meet(client, frame)
+        effects: list[BridgeEffect] = [] if client.joined else self._meet(client, frame)
         self._routes.heard(link, frame.sysid, frame.compid)
         sysid, compid = target_of(frame)
         at_vehicle = vehicle is not None and sysid in (0, vehicle.sysid)
@@ -139,7 +115,10 @@ class Bridge:
         if not at_vehicle and (vehicle is not None or sysid):
             judged = self._elsewhere(client, asked_by, frame, sysid)
         else:
-            judged = self._judge(client, asked_by, frame, look, now_ns)
+            judged = self._judge.judge(Received(client, asked_by, frame, look, now_ns))
+            if frame.msgid == MsgId.HEARTBEAT:
+                others = self._routes.between_clients(frame, link)
+                effects += [ToLink(other, frame.raw) for other in others]
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
 
@@ -163,73 +142,20 @@ class Bridge:
             return Judged(False, [])
         return Judged(True, self._once(client, f"there is no system {sysid} here"))
 
-    def _judge(
-        self, client: Client, asked_by: From, frame: Frame, look: Look, now_ns: int
-    ) -> Judged:
-        """A frame for the vehicle, or for everybody."""
-        row, message = message_row(frame.msgid), None
-        if row.kind is not Kind.HARMLESS:
-            message = decode(frame)
-            if isinstance(message, CommandLong | CommandInt):
-                row = command_row(message.command)
-        match row.kind:
-            case Kind.HARMLESS:
-                return Judged(False, [ToVehicle(frame.raw)])
-            case Kind.LOCAL:
-                return self._local(frame, asked_by.link)
-            case Kind.DENIED | Kind.CARRIER:
-                refusal = Refusal(Code.POLICY, f"{row.name}: {row.why}")
-                return self._refuse(client, asked_by, message, row, refusal, now_ns)
-            case Kind.MOTION:
-                return self._motion(client, asked_by, frame, message, row, look(), now_ns)
-            case Kind.CONFIGURATION:
-                refusal = Refusal(Code.POLICY, f"{row.name}: {row.why}")
-                return self._refuse(client, asked_by, message, row, refusal, now_ns)
+    @property
+    def deadline_ns(self) -> int | None:
+        """When `wake` is due."""
+        times = [client.plans.deadline_ns for client in self._by_number.values()]
+        return min((time for time in times if time is not None), default=None)
 
-    def _local(self, frame: Frame, link: int) -> Judged:
-        """What stays on this side: a heartbeat is for the other clients too."""
-        if frame.msgid != MsgId.HEARTBEAT:
-            return Judged(False, [])
-        others = self._routes.between_clients(frame, link)
-        return Judged(False, [ToLink(other, frame.raw) for other in others])
-
-    def _motion(
-        self,
-        client: Client,
-        asked_by: From,
-        frame: Frame,
-        message: Message | None,
-        row: Row,
-        seen: Seen | None,
-        now_ns: int,
-    ) -> Judged:
-        """What would move the vehicle becomes a request to the gate."""
-        if seen is None or message is None:
-            what = "no vehicle is heard" if seen is None else f"{row.name} cannot be judged"
-            code = Code.NO_VEHICLE if seen is None else Code.UNSUPPORTED
-            return self._refuse(client, asked_by, message, row, Refusal(code, what), now_ns)
-        dialogue = client.dialogue
-        match meaning_of(message, seen):
-            case Words(asks, note, _):
-                told = dialogue.text(asked_by, Level.INFO, note, now_ns) if note else []
-                return Judged(False, [*told, *dialogue.ask(asked_by, message, asks, now_ns)])
-            case Sample() as sample:
-                return Judged(False, [Says(client.number, _stream(sample))])
-            case Forward():
-                return Judged(False, [ToVehicle(frame.raw)])
-            case Reject(refusal):
-                return self._refuse(client, asked_by, message, row, refusal, now_ns)
-
-    def _refuse(
-        self,
-        client: Client,
-        asked_by: From,
-        message: Message | None,
-        row: Row,
-        refusal: Refusal,
-        now_ns: int,
-    ) -> Judged:
-        return Judged(True, client.dialogue.refuse(asked_by, message, row.name, refusal, now_ns))
+    def wake(self, now_ns: int) -> list[BridgeEffect]:
+        """`deadline_ns` has passed."""
+        done: list[BridgeEffect] = []
+        for client in self._by_number.values():
+            due_ns = client.plans.deadline_ns
+            if due_ns is not None and due_ns <= now_ns:
+                done += of_plan(client, client.plans.wake(now_ns))
+        return done
 
     def _once(self, client: Client, reason: str) -> list[BridgeEffect]:
         """A frame that nobody can be answered about: told once for each client and reason."""
@@ -250,7 +176,18 @@ class Bridge:
     def told(self, number: int, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
         """What the station tells a client as an operator."""
         client = self._by_number.get(number)
-        return [] if client is None else client.dialogue.told(event, now_ns)
+        if client is None:
+            return []
+        match event:
+            case ipc.VerdictEvent(id=ask_id) if ask_id == client.plan_ask:
+                if event.outcome != "accepted":
+                    client.plan_ask = 0
+                return of_plan(client, client.plans.decided(event, now_ns))
+            case ipc.EndingEvent(id=ask_id) if ask_id == client.plan_ask:
+                client.plan_ask = 0
+                return of_plan(client, client.plans.ended(event, now_ns))
+            case _:
+                return client.dialogue.told(event, now_ns)
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent; `operation` is the request's."""
@@ -300,26 +237,3 @@ class Bridge:
             )
             for client in self._by_link.values()
         ]
-
-
-def _stream(sample: Sample) -> ipc.Stream:
-    """A sample in the operator's frame."""
-    return ipc.Stream(
-        pos_enu=_enu(sample.pos_ned),
-        v_enu=_enu(sample.v_ned),
-        a_enu=_enu(sample.a_ned),
-        yaw_deg=_degrees(sample.yaw_rad),
-        yaw_rate_deg_s=_degrees(sample.yaw_rate_rad_s),
-    )
-
-
-def _enu(triple_ned: Vec3 | None) -> ipc.Maybe3 | None:
-    """East, north, up; an axis that was left out (NaN) is None."""
-    if triple_ned is None:
-        return None
-    east, north, up = (None if math.isnan(x) else x for x in enu_from_ned(triple_ned))
-    return (east, north, up)
-
-
-def _degrees(angle_rad: float | None) -> float | None:
-    return None if angle_rad is None else math.degrees(angle_rad)

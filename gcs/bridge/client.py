@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from gcs.bridge.dialogue import Dialogue
+from gcs.bridge.meaning.pace import Pace
+from gcs.bridge.plans.server import PlanServer
+from gcs.protocol.transfer import Timing
 
 SPAN_NS = 2_000_000_000
 """Rates are of the last whole span of this length."""
@@ -26,20 +29,29 @@ class Rate:
             self._count, self._since_ns = 0, now_ns
 
 
-@dataclass(slots=True)
 class Client:
-    """`link` is the link that it is reached on, `number` its number among the operators."""
+    """One peer; an operator with a number of its own from its first good frame on."""
 
-    link: int
-    number: int
-    name: str
-    dialogue: Dialogue = field(init=False)
-    joined: bool = False
-    heard_ns: int = 0
-    received: Rate = field(default_factory=Rate)
-    sent: Rate = field(default_factory=Rate)
-    refused: int = 0
-    dropped: int = 0
+    def __init__(self, link: int, name: str, timing: Timing) -> None:
+        """`name` is where it is; `timing` is of the plans that it sends."""
+        self.link = link
+        self.name = name
+        self._timing = timing
+        self.joined = False
+        self.heard_ns = 0
+        self.received = Rate()
+        self.sent = Rate()
+        self.refused = 0
+        self.dropped = 0
+        self.begin(0)
+        self.joined = False
 
-    def __post_init__(self) -> None:
-        self.dialogue = Dialogue(self.number)
+    def begin(self, number: int) -> None:
+        """It is an operator, with this number; what it asked for as another one is over."""
+        self.number = number
+        self.joined = True
+        self.dialogue = Dialogue(number)
+        self.plans = PlanServer(self._timing)
+        self.pace = Pace()
+        self.plan_ask = 0
+        """The number of the plan request that is not over; 0: none."""

@@ -1,4 +1,4 @@
-"""What one client has asked for and what it was answered: from a MAVLink command to its COMMAND_ACK.
+"""What one client has asked for and what it was answered: from a command to its COMMAND_ACK.
 
 A command is acknowledged once: with a refusal's reason; at the verdict where the gate alone decides
 (a go-to); else with what the vehicle itself answered.  The same command again, sent because no
@@ -89,7 +89,7 @@ class Dialogue:
     def ask(
         self, asked_by: From, message: Message, asks: Sequence[ipc.Ask], now_ns: int
     ) -> list[BridgeEffect]:
-        """Ask for `asks`, one after the other, because of a client's message; none: it is so already."""
+        """Ask for `asks`, one after the other, because of a message; none: it is so already."""
         key, command = _key(message), _command(message)
         repeated = self._repeated(asked_by, key, command, now_ns)
         if repeated is not None:
@@ -114,9 +114,14 @@ class Dialogue:
         pending = _Pending(asked_by, command, key, (), name, "")
         return [Refuses(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
 
-    def _open(self, pending: _Pending, ask: ipc.Ask) -> ipc.Ask:
+    def number(self) -> int:
+        """The next number of a request of this client."""
         number = self._next_id
         self._next_id += 1
+        return number
+
+    def _open(self, pending: _Pending, ask: ipc.Ask) -> ipc.Ask:
+        number = self.number()
         self._pending[number] = pending
         return msgspec.structs.replace(ask, id=number)
 

@@ -1,4 +1,4 @@
-"""What the bridge answers, as a closed union of frozen values; the session puts it into practice."""
+"""What the bridge answers, as a closed union of frozen values, which the session carries out."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs import ipc
+from gcs.bridge.client_plan import ClientPlan
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Refusal
 from gcs.protocol.effects import Address
+from gcs.wire.ids import MissionType
 from gcs.wire.messages import Message
 
 
@@ -43,6 +45,25 @@ class Refuses:
     client: int
     ask: ipc.Ask
     refusal: Refusal
+
+
+@dataclass(frozen=True, slots=True)
+class AsksPlan:
+    """A client asks for `plan` on board, or (None) for the plan of that kind to be taken off."""
+
+    client: int
+    ask: ipc.Ask
+    kind: MissionType
+    plan: ClientPlan | None
+
+
+@dataclass(frozen=True, slots=True)
+class StopsPlan:
+    """A client does not want what it asked for with `AsksPlan` as `ask_id` any more."""
+
+    client: int
+    ask_id: int
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,5 +107,15 @@ class Notes:
 
 
 BridgeEffect: TypeAlias = (
-    Joined | Lost | Says | Refuses | ToVehicle | AsksVehicle | ToLink | Answers | Notes
+    Joined
+    | Lost
+    | Says
+    | Refuses
+    | AsksPlan
+    | StopsPlan
+    | ToVehicle
+    | AsksVehicle
+    | ToLink
+    | Answers
+    | Notes
 )

@@ -13,23 +13,26 @@ from gcs.gate.effects import Level
 from gcs.gate.inputs import CommandEnded, Input
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.turn import REFUSED_LINE
+from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
 from gcs.session import teller
+from gcs.session.missions import timing_of
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import Log
 from gcs.wire.frame import Frame
 
-SILENT_NS = 10_000_000_000
-"""A MAVLink client that says nothing for so long is lost; heartbeats come every second."""
-
 
 class BridgePort:
     """Between the session and its MAVLink clients."""
 
-    def __init__(self, config: StationConfig, times: Times, vehicle: Vehicle) -> None:
-        self.bridge = Bridge(Address(config.sysid, config.compid), times.real_ns(SILENT_NS))
+    def __init__(
+        self, config: StationConfig, rules: BridgeRules, times: Times, vehicle: Vehicle
+    ) -> None:
+        own = Address(config.sysid, config.compid)
+        silent_ns = times.real_ns(round(rules.client_gone_s * 1e9))
+        self.bridge = Bridge(own, rules, silent_ns, timing_of(times))
         self._vehicle = vehicle
         self._told_in_control = 0
 

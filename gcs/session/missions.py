@@ -7,6 +7,7 @@ Everything that moves still goes through the gate.
 from __future__ import annotations
 
 from gcs import ipc
+from gcs.bridge.client_plan import ClientPlan
 from gcs.gate.inputs import Input, MissionLoaded, MissionSeen, OperatorLost, Requested
 from gcs.gate.machine.events import Event, event_of
 from gcs.gate.policy.policy import Policy
@@ -25,7 +26,7 @@ from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, ToGate, Work
-from gcs.wire.ids import MissionState
+from gcs.wire.ids import MissionState, MissionType
 from gcs.wire.messages import MissionCurrent, MissionItemReached
 
 TRANSFER_WORDS = frozenset({"mission_upload", "mission_download", "mission_clear"})
@@ -37,17 +38,22 @@ STOPS = frozenset(
 """After these no mission begins that was asked for before them."""
 
 
+def timing_of(times: Times) -> Timing:
+    """The specification's waits, on the session's clock."""
+    return Timing(
+        times.real_ns(SPEC_TIMING.wait_ns),
+        times.real_ns(SPEC_TIMING.item_wait_ns),
+        silence_ns=times.real_ns(SPEC_TIMING.silence_ns),
+    )
+
+
 class Missions:
     """Takes the mission requests of one vehicle, and tells the gate how its mission goes."""
 
     def __init__(self, own: Address, times: Times) -> None:
         self._own = own
         self._times = times
-        self._timing = Timing(
-            times.real_ns(SPEC_TIMING.wait_ns),
-            times.real_ns(SPEC_TIMING.item_wait_ns),
-            silence_ns=times.real_ns(SPEC_TIMING.silence_ns),
-        )
+        self._timing = timing_of(times)
         self._job: Job | None = None
         self._on_board: OnBoard | None = None
         self._left = False
@@ -71,8 +77,13 @@ class Missions:
         state: State,
         policy: Policy,
         now_ns: int,
+        plan: ClientPlan | None = None,
+        kind: MissionType = MissionType.MISSION,
     ) -> list[Work]:
-        """A transfer (`TRANSFER_WORDS`), or the start of the mission in whatever word."""
+        """A transfer (`TRANSFER_WORDS`), or the start of the mission in whatever word.
+
+        `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about.
+        """
         refusal = self._cannot_begin(ask, state)
         if refusal is None and telemetry is None:
             refusal = Refusal(Code.NO_VEHICLE, "no vehicle is heard")
@@ -82,6 +93,9 @@ class Missions:
         asked = Asked(request_id, ask.id, ask.word, self._own, self._timing, self._times)
         job: Job
         match ask.word:
+            case "mission_upload" if plan is not None:
+                what = "plans of clients cannot be brought on board yet"
+                return [*refused(request_id, ask.word, Refusal(Code.UNSUPPORTED, what))]
             case "mission_upload":
                 job = Upload(asked, ask.path)
             case "mission_download":

@@ -8,6 +8,7 @@ returns work for the rest of the session.
 from __future__ import annotations
 
 from gcs import ipc
+from gcs.bridge.effects import AsksPlan, StopsPlan
 from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
@@ -188,6 +189,21 @@ class Operators:
         if operation.asked.word in TRANSFER_WORDS:
             return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
         return [AskGate(request_id, Abort())]
+
+    def ask_plan(self, asked: AsksPlan, no_vehicle: Refusal | None) -> list[Work]:
+        """A MAVLink client brings a plan, or asks for one to be taken off."""
+        client, ask = asked.client, asked.ask
+        request_id = self._requests.open(ask, client)
+        refusal = self._clients.refusal(client, ask) or no_vehicle
+        if refusal is not None:
+            return self._refuse(request_id, ask, refusal)
+        given = self._clients.give_where_free(client, ask)
+        return [*given, AskMission(request_id, ask, asked.plan, asked.kind)]
+
+    def stop_plan(self, stopped: StopsPlan) -> list[Work]:
+        """The client does not want it any more."""
+        request_id = self._requests.number_of(stopped.client, stopped.ask_id)
+        return [] if request_id is None else [StopTransfer(request_id)]
 
     def refuse(self, client: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
         """What is refused before it is a request: it has a number, a verdict and a record too."""

@@ -107,6 +107,13 @@ class Requests:
     def get(self, request_id: int) -> Asked:
         return self._asked[request_id]
 
+    def number_of(self, client: int, ask_id: int) -> int | None:
+        """The request that a client made as its own number `ask_id`, if it is not over."""
+        for request_id, asked in self._asked.items():
+            if asked.client == client and asked.ask.id == ask_id:
+                return request_id
+        return None
+
     def close(self, request_id: int) -> Asked:
         """The request is over: refused, superseded, or ended."""
         return self._asked.pop(request_id)

@@ -12,12 +12,14 @@ from typing import assert_never
 from gcs import ipc
 from gcs.bridge.effects import (
     Answers,
+    AsksPlan,
     AsksVehicle,
     Joined,
     Lost,
     Notes,
     Refuses,
     Says,
+    StopsPlan,
     ToLink,
     ToVehicle,
 )
@@ -107,7 +109,7 @@ class Session:
         self._links = Links(config.sysid, config.compid, count, streams, waiting)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._operators = Operators(setup, self._times)
-        self._bridge = BridgePort(config, self._times, self._vehicle)
+        self._bridge = BridgePort(config, setup.policy.bridge, self._times, self._vehicle)
         self._first_client_link = count
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
@@ -125,9 +127,8 @@ class Session:
     @property
     def deadline_ns(self) -> int:
         """When `Wake` is due; no side effects."""
-        vehicle_ns = self._vehicle.deadline_ns
-        tick_ns = self._ticks.next_ns
-        return tick_ns if vehicle_ns is None else min(tick_ns, vehicle_ns)
+        waits = (self._ticks.next_ns, self._vehicle.deadline_ns, self._bridge.bridge.deadline_ns)
+        return min(time_ns for time_ns in waits if time_ns is not None)
 
     @property
     def gate(self) -> Gate:
@@ -194,7 +195,8 @@ class Session:
         """What an input means first; `_step` does the rest."""
         match given:
             case Wake():
-                return self._vehicle.wake(now_ns) + self._ticks.wake(now_ns)
+                of_clients = self._bridge.bridge.wake(now_ns)
+                return [*of_clients, *self._vehicle.wake(now_ns), *self._ticks.wake(now_ns)]
             case OperatorJoined():
                 return self._welcome(given, now_ns)
             case OperatorLine(client, command):
@@ -258,8 +260,8 @@ class Session:
                 return [*told, *self._bridge.logged(item, now_ns)]
             case AskGate():
                 return self._operators.asked_of_gate(item)
-            case AskMission(request_id, ask):
-                return self._vehicle.ask_mission(request_id, ask, now_ns)
+            case AskMission():
+                return self._vehicle.ask_mission(item, now_ns)
             case StopTransfer(request_id):
                 return self._vehicle.stop_transfer(request_id)
             case Decide():
@@ -272,7 +274,9 @@ class Session:
                 return self._every_second(now_ns)
             case SnapshotDue():
                 return [Emit(self._snapshot(now_ns)), *self._vehicle.predicted_stop()]
-            case Joined() | Lost() | Says() | Refuses() | Notes() | Emit():
+            case (
+                Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()
+            ):
                 return self._of_client(item, now_ns)
             case ToVehicle() | AsksVehicle() | ToLink() | Answers():
                 return [*self._pass_on(item)]
@@ -289,7 +293,9 @@ class Session:
     # ---------------------------------------------------------------------- the bridge
 
     def _of_client(
-        self, item: Joined | Lost | Says | Refuses | Notes | Emit, now_ns: int
+        self,
+        item: Joined | Lost | Says | Refuses | AsksPlan | StopsPlan | Notes | Emit,
+        now_ns: int,
     ) -> list[Work]:
         """What a MAVLink client does as an operator, and what it is told as one."""
         match item:
@@ -301,6 +307,10 @@ class Session:
                 return self._line(client, command, now_ns)
             case Refuses(client, ask, refusal):
                 return self._operators.refuse(client, ask, refusal)
+            case AsksPlan():
+                return self._operators.ask_plan(item, self._vehicle.refusal(now_ns))
+            case StopsPlan():
+                return self._operators.stop_plan(item)
             case Notes(level, text):
                 return [Log(level, NODE, text)]
             case Emit(event, client):

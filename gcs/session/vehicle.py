@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Final, get_args
 
-from gcs import ipc
 from gcs.config import StationConfig
 from gcs.gate import effects, inputs
 from gcs.gate.condition import Condition
@@ -44,7 +43,7 @@ from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.updates import updates
 from gcs.session.words import Words, logged
-from gcs.session.work import CheckStart, Log, PlaceFence, ToGate, Work
+from gcs.session.work import AskMission, CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
@@ -326,10 +325,19 @@ class Vehicle:
         several = self._config.sim is None and self._roster.listening(now_ns)
         return several or (self.telemetry is not None and not self.telemetry.return_told)
 
-    def ask_mission(self, request_id: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
+    def ask_mission(self, asked: AskMission, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""
         state, policy = self.gate.state, self._port.policy
-        return self._missions.ask(request_id, ask, self.telemetry, state, policy, now_ns)
+        return self._missions.ask(
+            asked.request_id,
+            asked.ask,
+            self.telemetry,
+            state,
+            policy,
+            now_ns,
+            asked.plan,
+            asked.kind,
+        )
 
     def file(self, news: FileRead | FileWritten, now_ns: int) -> list[Work]:
         if self.telemetry is None:

@@ -11,6 +11,7 @@ from typing import Final, TypeAlias
 import msgspec
 
 from gcs import ipc
+from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.effects import BridgeEffect
 from gcs.frames import Vec3
 from gcs.gate import effects as gate_effects
@@ -20,6 +21,7 @@ from gcs.gate.refusal import Refusal
 from gcs.gate.requests import Request
 from gcs.protocol.effects import Send
 from gcs.session.effects import Effect
+from gcs.wire.ids import MissionType
 
 
 class ToGate(msgspec.Struct, frozen=True, gc=False):
@@ -68,10 +70,15 @@ class Tell(msgspec.Struct, frozen=True, gc=False):
 
 
 class AskMission(msgspec.Struct, frozen=True, gc=False):
-    """The request that was opened as `request_id`, about missions: for the vehicle's jobs."""
+    """The request that was opened as `request_id`, about missions: for the vehicle's jobs.
+
+    `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about.
+    """
 
     request_id: int
     ask: ipc.Ask
+    plan: ClientPlan | None = None
+    kind: MissionType = MissionType.MISSION
 
 
 class StopTransfer(msgspec.Struct, frozen=True, gc=False):

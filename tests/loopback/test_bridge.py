@@ -23,7 +23,8 @@ def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
     client = flight.join()
     flight.connected()
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
-    assert client.ask(TAKE_OFF, 0, 0, 0, math.nan, math.nan, math.nan, math.nan) == ACCEPTED
+    up_m = math.nan if personality == "px4" else 5.0  # NaN: as high as MIS_TAKEOFF_ALT says
+    assert client.ask(TAKE_OFF, 0, 0, 0, math.nan, math.nan, math.nan, up_m) == ACCEPTED
     flight.until(
         lambda: flight.is_in(State.HOVERING) and flight.session.gate.control is Control.OURS
     )

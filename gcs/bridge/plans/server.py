@@ -19,12 +19,12 @@ from typing import Final, TypeAlias
 
 from gcs import ipc
 from gcs.bridge.answers import texts
+from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers
 from gcs.bridge.plans.collecting import Collecting, ItemMessage, acknowledgement, question
 from gcs.bridge.plans.effects import (
     Clear,
-    ClientPlan,
     Pass,
     PlanEffect,
     Refused,

@@ -81,7 +81,13 @@ class FakeStation:
                 return [self._log(f"Keyboard: {goal_enu}")]
             case ipc.Ask():
                 return self._asked(command, now_s)
-            case ipc.Join() | ipc.Subscribe() | ipc.ListOperations() | ipc.WatchTopics():
+            case (
+                ipc.Join()
+                | ipc.Subscribe()
+                | ipc.ListOperations()
+                | ipc.WatchTopics()
+                | ipc.Stream()
+            ):
                 return []
 
     def tick(self, now_s: float) -> list[ipc.Event]:

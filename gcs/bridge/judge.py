@@ -1,0 +1,243 @@
+"""What is done with one frame of a client that is for the vehicle, or for everybody.
+
+By the kind of its message or command (`classes/`): forwarded, asked of the gate in an operator's
+words (`meaning/`), judged by the guard of the vehicle's set-up (`guard/`) or refused.  What is said
+of plans goes to the client's plan server (`plans/`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+from gcs import ipc
+from gcs.bridge.classes import Kind, Row, command_row, explain, message_row
+from gcs.bridge.client import Client
+from gcs.bridge.client_plan import ClientPlan
+from gcs.bridge.dialogue import From
+from gcs.bridge.effects import (
+    Answers,
+    AsksPlan,
+    AsksVehicle,
+    BridgeEffect,
+    Notes,
+    Says,
+    StopsPlan,
+    ToVehicle,
+)
+from gcs.bridge.guard import verdict as guard_verdict
+from gcs.bridge.guard.guard import Guard
+from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
+from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
+from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.plans import effects as plan_effects
+from gcs.bridge.plans.effects import PlanEffect
+from gcs.bridge.plans.server import PLAN_MESSAGES
+from gcs.frames import Vec3, enu_from_ned
+from gcs.gate.effects import Level
+from gcs.gate.policy.policy import BridgeRules
+from gcs.gate.refusal import Code, Refusal
+from gcs.wire.codec import decode
+from gcs.wire.frame import Frame
+from gcs.wire.ids import MissionType
+from gcs.wire.messages import (
+    CommandInt,
+    CommandLong,
+    Message,
+    MissionClearAll,
+    MissionCount,
+    MissionItem,
+    MissionItemInt,
+    MissionSetCurrent,
+)
+
+PLAN_IDS: Final = frozenset(cls.MSG_ID for cls in PLAN_MESSAGES)
+GUIDED_CURRENT: Final = frozenset({2, 3})
+"""MISSION_ITEM.current of an item that ArduPilot flies to at once, or whose height it takes."""
+
+Look: TypeAlias = Callable[[], Seen | None]
+"""How the vehicle is at this moment; None before one is heard."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """`refused`: the frame goes nowhere, and is recorded as refused."""
+
+    refused: bool
+    effects: Sequence[BridgeEffect]
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """One frame of a client, and who it is from and for."""
+
+    client: Client
+    by: From
+    frame: Frame
+    look: Look
+    now_ns: int
+
+
+class Judge:
+    """Of everything that clients send to the one vehicle; it has no memory of its own."""
+
+    def __init__(self, rules: BridgeRules) -> None:
+        self._rules = rules
+        self._guard: Guard | None = None
+        self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
+        self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
+        """What the policy says of messages and commands by name."""
+
+    def judge(self, given: Received) -> Judged:
+        """What is done with it."""
+        frame = given.frame
+        row, message = message_row(frame.msgid), None
+        if row.kind is not Kind.HARMLESS or frame.msgid in PLAN_IDS:
+            message = decode(frame)
+            if isinstance(message, CommandLong | CommandInt):
+                row = command_row(message.command)
+        kind = self._kinds.get(row.name, row.kind)
+        if message is not None and kind is not Kind.DENIED and _is_of_plan(message):
+            return self._plan(given, message, row)
+        match kind:
+            case Kind.HARMLESS:
+                return Judged(False, [ToVehicle(frame.raw)])
+            case Kind.LOCAL:
+                return Judged(False, [])
+            case Kind.DENIED | Kind.CARRIER:
+                refusal = Refusal(Code.POLICY, f"{row.name}: {row.why}")
+                return _refuse(given, message, row, refusal)
+            case Kind.MOTION:
+                return self._motion(given, message, row)
+            case Kind.CONFIGURATION:
+                return self._configuration(given, message, row)
+
+    # ------------------------------------------------------------------------------ motion
+
+    @staticmethod
+    def _motion(given: Received, message: Message | None, row: Row) -> Judged:
+        """What would move the vehicle becomes a request to the gate."""
+        client, seen, now_ns = given.client, given.look(), given.now_ns
+        if seen is None:
+            return _refuse(given, message, row, Refusal(Code.NO_VEHICLE, "no vehicle is heard"))
+        if message is None:
+            return _refuse(given, message, row, Refusal(Code.UNSUPPORTED, f"{row.name}: {row.why}"))
+        meaning = client.pace.settle(meaning_of(message, seen), now_ns)
+        match meaning:
+            case Words(asks, note):
+                told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
+                asked = client.dialogue.ask(given.by, message, asks, now_ns)
+                return Judged(False, [*told, *asked])
+            case Sample():
+                return Judged(False, [Says(client.number, _stream(meaning))])
+            case Forward():
+                return Judged(False, [ToVehicle(given.frame.raw)])
+            case Reject(refusal):
+                return _refuse(given, message, row, refusal)
+
+    # ------------------------------------------------------------------------------ set-up
+
+    def _configuration(self, given: Received, message: Message | None, row: Row) -> Judged:
+        """What would change the vehicle's set-up."""
+        seen = given.look()
+        if seen is None or message is None:
+            return _refuse(given, message, row, Refusal(Code.POLICY, f"{row.name}: {row.why}"))
+        judged = self._guarded(message, given.by, seen)
+        match judged:
+            case Allowed(note):
+                notes = [Notes(Level.INFO, f"{given.client.name}: {note}")] if note else []
+                return Judged(False, [*notes, ToVehicle(given.frame.raw)])
+            case guard_verdict.Refused(refusal, answers, ask_vehicle):
+                by = given.by
+                refused = _refuse(given, message, row, refusal)
+                to_client = [Answers(by.link, by.addressed, each) for each in answers]
+                to_vehicle = [AsksVehicle(by.source, each) for each in ask_vehicle]
+                return Judged(True, [*refused.effects, *to_client, *to_vehicle])
+
+    def _guarded(self, message: Message, by: From, seen: Seen) -> Judgement:
+        if self._guard is None:
+            self._guard = Guard(self._rules, seen.autopilot.name)
+        at = GuardSeen(by.source, by.addressed, seen.armed, seen.on_ground)
+        return self._guard.judge(message, at)
+
+    # ------------------------------------------------------------------------------- plans
+
+    def _plan(self, given: Received, message: Message, row: Row) -> Judged:
+        """What a client says about missions, fences and rally points."""
+        seen, client = given.look(), given.client
+        if seen is not None and isinstance(message, MissionCount | MissionClearAll):
+            judged = self._guarded(message, given.by, seen)
+            if isinstance(judged, guard_verdict.Refused):
+                return self._configuration(given, message, row)
+        effects = client.plans.handle(message, given.by, given.now_ns)
+        refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
+        return Judged(refused, of_plan(client, effects, given, message))
+
+
+def of_plan(
+    client: Client,
+    effects: Sequence[PlanEffect],
+    given: Received | None = None,
+    message: Message | None = None,
+) -> list[BridgeEffect]:
+    """What a client's plan server wants; `given` is what it was given, if it was a frame."""
+    done: list[BridgeEffect] = []
+    for effect in effects:
+        match effect:
+            case Answers():
+                done.append(effect)
+            case plan_effects.Upload(plan):
+                done.append(_ask_plan(client, "mission_upload", plan.source, plan.kind, plan))
+            case plan_effects.Clear(kind):
+                done.append(_ask_plan(client, "mission_clear", "", kind, None))
+            case plan_effects.Withdraw(reason):
+                done.append(StopsPlan(client.number, client.plan_ask, reason))
+            case plan_effects.Pass() if given is not None:
+                done.append(ToVehicle(given.frame.raw))
+            case plan_effects.Refused(name, refusal) if given is not None:
+                done += client.dialogue.refuse(given.by, message, name, refusal, given.now_ns)
+    return done
+
+
+def _ask_plan(
+    client: Client, word: str, source: str, kind: MissionType, plan: ClientPlan | None
+) -> AsksPlan:
+    client.plan_ask = client.dialogue.number()
+    return AsksPlan(client.number, ipc.Ask(client.plan_ask, word, path=source), kind, plan)
+
+
+def _is_of_plan(message: Message) -> bool:
+    """An item that is to be flown to at once is no part of a plan, and neither is a jump to one."""
+    if isinstance(message, MissionItem | MissionItemInt) and message.current in GUIDED_CURRENT:
+        return False
+    return isinstance(message, PLAN_MESSAGES) and not isinstance(message, MissionSetCurrent)
+
+
+def _refuse(given: Received, message: Message | None, row: Row, refusal: Refusal) -> Judged:
+    dialogue = given.client.dialogue
+    return Judged(True, dialogue.refuse(given.by, message, row.name, refusal, given.now_ns))
+
+
+def _stream(sample: Sample) -> ipc.Stream:
+    """A sample in the operator's frame."""
+    return ipc.Stream(
+        pos_enu=_enu(sample.pos_ned),
+        v_enu=_enu(sample.v_ned),
+        a_enu=_enu(sample.a_ned),
+        yaw_deg=_degrees(sample.yaw_rad),
+        yaw_rate_deg_s=_degrees(sample.yaw_rate_rad_s),
+    )
+
+
+def _enu(triple_ned: Vec3 | None) -> ipc.Maybe3 | None:
+    """East, north, up; an axis that was left out (NaN) is None."""
+    if triple_ned is None:
+        return None
+    east, north, up = (None if math.isnan(x) else x for x in enu_from_ned(triple_ned))
+    return (east, north, up)
+
+
+def _degrees(angle_rad: float | None) -> float | None:
+    return None if angle_rad is None else math.degrees(angle_rad)
