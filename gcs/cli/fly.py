@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
-from click.core import ParameterSource
 
 from gcs.cli.live_option import LIVE, open_beside
 from gcs.cli.options import (
@@ -14,14 +13,12 @@ from gcs.cli.options import (
     POLICY,
     UTF8,
     VEHICLE,
-    FiniteRange,
     RecordName,
     Seconds,
-    Seed,
     with_options,
 )
 from gcs.cli.record_options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
-from gcs.operator.number_text import read_number
+from gcs.cli.sim_options import CLIENT, SIM_OPTIONS, refuse_options_of_the_sim
 
 if TYPE_CHECKING:
     from gcs.config import StationConfig
@@ -33,6 +30,7 @@ Examples:
   gcs fly --sim
   gcs fly --link udpin://127.0.0.1:14550 --policy lab
   gcs fly --sim --live
+  gcs fly --sim --client udpout://127.0.0.1:14550
   printf 'arm\\ntakeoff 2\\ngoto 3 0 2\\nland\\n' | gcs fly --sim --plain
 
 With --plain, answers go to standard output and the log to standard error; `help` lists the words.
@@ -49,49 +47,9 @@ understood is passed over and makes it 2.
 PLAIN_TIMEOUT_S = 10.0
 
 
-def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
-    """LAT,LON,ALT, looked at before anything is started."""
-    if not text:
-        return text
-    try:
-        lat_deg, lon_deg, alt_m = (read_number(part) for part in text.split(","))
-    except ValueError:
-        raise click.BadParameter(f"{text!r} is not as in 47.397742,8.545594,488") from None
-    if not (abs(lat_deg) < 90.0 and abs(lon_deg) <= 180.0 and -500.0 <= alt_m <= 9000.0):
-        raise click.BadParameter(
-            f"{text!r} is not on Earth: latitude within 90, longitude within 180 degrees, "
-            "height from -500 to 9000 m"
-        )
-    return text
-
-
 @click.command(epilog=EPILOG)
 @with_options(LINK, VEHICLE)
-@click.option("--sim", is_flag=True, help="Start a vehicle of our own, on a private port.")
-@click.option(
-    "--autopilot",
-    type=click.Choice(["px4", "ardupilot"]),
-    default="px4",
-    show_default=True,
-    help="Which autopilot the --sim vehicle speaks like.",
-)
-@click.option(
-    "--home",
-    default="",
-    callback=_place,
-    metavar="LAT,LON,ALT",
-    help="Where the --sim vehicle stands: degrees, degrees, metres above mean sea level.",
-)
-@click.option(
-    "--seed", type=Seed(), default=1, show_default=True, help="Seed of the --sim vehicle."
-)
-@click.option(
-    "--speedup",
-    type=FiniteRange(min=0, max=200, min_open=True),
-    default=1.0,
-    show_default=True,
-    help="Times real time, for the --sim vehicle and the ground station.",
-)
+@with_options(*SIM_OPTIONS, CLIENT)
 @with_options(POLICY, LOG_DIR)
 @click.option(
     "--timeout",
@@ -133,6 +91,7 @@ def fly(
     home: str,
     seed: int,
     speedup: float,
+    clients: tuple[str, ...],
     policy: str,
     log_dir: str,
     timeout: float | None,
@@ -154,6 +113,7 @@ def fly(
 
     import msgspec
 
+    from gcs.cli.bridge_places import refuse_shared_places
     from gcs.cli.options import station_config
     from gcs.config import SimConfig
 
@@ -162,7 +122,7 @@ def fly(
     if sim and vehicle is not None:
         raise click.UsageError("--sim starts a vehicle of its own: leave out --vehicle")
     if not sim:
-        _refuse_options_of_the_sim(ctx)
+        refuse_options_of_the_sim(ctx)
     connect_s = timeout or PLAIN_TIMEOUT_S
     config = station_config(links, policy, log_dir, name=name, timeout_s=connect_s, vehicle=vehicle)
     if sim:
@@ -170,6 +130,9 @@ def fly(
         config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
     operator = f"gcs fly, pid {os.getpid()}"
     config = msgspec.structs.replace(config, speedup=speedup, keep=keep, operator=operator)
+    if clients:
+        refuse_shared_places(config.endpoints, clients)
+        config = msgspec.structs.replace(config, clients=list(clients))
     config = with_files(config, rotate_size, rotate_age, compact)
     if plain and mission:
         raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
@@ -216,13 +179,6 @@ def _mission(file: str) -> str:
 
     read_plan(file, None)
     return str(resources.find(file))
-
-
-def _refuse_options_of_the_sim(ctx: click.Context) -> None:
-    """They say what our own vehicle is to be; another one is as it is."""
-    for name in ("autopilot", "home", "seed", "speedup"):
-        if ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f"--{name} is for the vehicle of --sim: add --sim, or leave it")
 
 
 def needs_a_terminal() -> None:

@@ -33,6 +33,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Fly": {
         "demo": Entry("gcs.cli.demo:demo", "A whole flight in a minute, on a simulated vehicle."),
         "fly": Entry("gcs.cli.fly:fly", "The keyboard ground station, or --plain lines."),
+        "bridge": Entry("gcs.cli.bridge:bridge", "MAVLink clients fly it through the gate."),
         "live": Entry("gcs.cli.live:live", "The flight in a viewer such as Foxglove, as it flies."),
     },
     "One command, then leave": {

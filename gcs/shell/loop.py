@@ -41,6 +41,7 @@ from gcs.session.inputs import (
     SimLine,
     Wake,
 )
+from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.pipes import LineSink, LineSource
@@ -84,9 +85,11 @@ class Loop:
         sim: SimProcess | None,
         clients: ClientSockets | None = None,
         on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
+        client_ports: ClientPorts | None = None,
     ) -> None:
         """`operator` and `screen` are the pipes of the operator who started the station, `clients`
-        everybody else.  `on_snapshot` is called with each one, and must not wait."""
+        everybody else, `client_ports` where others speak MAVLink with the vehicle through it.
+        `on_snapshot` is called with each one, and must not wait."""
         self._core = core
         self._clock = clock
         self._links = links
@@ -97,6 +100,7 @@ class Loop:
         self._sim = sim
         self._clients = clients
         self._on_snapshot = on_snapshot
+        self._client_ports = client_ports
         self._topics = TopicStream(recording, self._tell)
         self._operator_open = True
         self._sim_open = sim is not None
@@ -118,6 +122,7 @@ class Loop:
         if self._screen in writable:
             self._screen.flush()
         self._read_links(readable)
+        self._read_client_ports(readable, writable)
         if self._signals in readable:
             for name in self._signals.read():
                 self._feed(SignalCame(name))
@@ -146,6 +151,10 @@ class Loop:
             sinks += self._clients.sinks
         deadlines = [self._core.deadline_ns, self._recording.deadline_ns]
         deadlines += [link.deadline_ns for link in self._links if link.deadline_ns is not None]
+        if self._client_ports is not None:
+            sources += self._client_ports.sources(self._clock.now_ns())
+            sinks += self._client_ports.sinks
+            deadlines.append(self._client_ports.deadline_ns)
         wait_s = self._clock.seconds_until(min(deadlines))
         if self._clients is not None and self._clients.busy:
             wait_s = 0.0
@@ -167,6 +176,14 @@ class Loop:
                 continue
             for text in link.poke(self._clock.now_ns()):
                 self._feed(LinkEvent(number, text))
+
+    def _read_client_ports(self, readable: list[Source], writable: list[Source]) -> None:
+        """Whatever they send, and however much of it: the grid's deadline is met in between."""
+        if self._client_ports is None:
+            return
+        for given in self._client_ports.turn(readable, writable, self._clock.now_ns()):
+            self._feed(given)
+            self._wake_if_due()
 
     def _read_operator(self) -> None:
         for line in self._operator.read():
@@ -238,7 +255,7 @@ class Loop:
         """Do it; the answer, where it has one."""
         match effect:
             case Transmit(link, data):
-                self._links[link].send(data)
+                self._transmit(link, data)
             case Record(item):
                 self._recording.write(item, now_ns)
             case Emit(event, client):
@@ -252,6 +269,12 @@ class Loop:
             case Finish():
                 self._finish = effect
         return None
+
+    def _transmit(self, link: int, data: bytes) -> None:
+        if link < len(self._links):
+            self._links[link].send(data)
+        elif self._client_ports is not None:
+            self._client_ports.send(link, data)
 
     def _emit(self, event: ipc.Event, client: int) -> None:
         """One line, to whom it is for; what comes again anyway may be dropped on the way."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import socket
 import sys
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -27,6 +27,7 @@ from gcs.session.effects import EVERYONE
 from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.shell import sockets
+from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.disk_watch import DiskWatch, free_in
@@ -72,6 +73,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
     clock = Clock(setup.speedup)
     with ExitStack() as opened:
         links = _open_links(setup, opened)
+        client_ports = _open_client_ports(setup, links, opened)
         recording = _open_recording(setup, clock)
         opened.callback(lambda: recording.close(clock.now_ns()))
         sim = None
@@ -90,6 +92,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
                 streams=frozenset(n for n, link in enumerate(links) if link.stream),
                 waiting=frozenset(n for n, link in enumerate(links) if link.endpoint.listens),
                 environment=environment(),
+                client_ports=client_ports.describe() if client_ports else (),
             ),
             clock.now_ns(),
         )
@@ -105,6 +108,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
             sim,
             clients,
             local.describe if local else lambda _: None,
+            client_ports,
         ).run()
         if session.nothing_heard:
             recording.discard(clock.now_ns())
@@ -131,26 +135,45 @@ def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
     urls = setup.endpoints or ["udpin://127.0.0.1:0"]
     links = []
     for url in urls:
-        try:
+        with _opening(
+            url, "another ground station may be running; choose another port with --link"
+        ):
             link = sockets.open_link(parse_endpoint(url))
-        except EndpointError as error:
-            raise CannotStartError(ExitCode.USAGE, str(error), error.hint) from error
-        except sockets.AddressInUse as error:
-            hint = "another ground station may be running; choose another port with --link"
-            raise CannotStartError(ExitCode.ADDRESS_IN_USE, str(error), hint) from error
-        except sockets.SerialUnavailable as error:
-            raise CannotStartError(ExitCode.USAGE, f"{url}: {error}", error.hint) from error
-        except socket.gaierror as error:
-            hint = "is the name of the host spelled right?"
-            raise CannotStartError(ExitCode.USAGE, f"{url}: {error.strerror}", hint) from error
-        except OSError as error:
-            hint = "is the address one of this machine's?"
-            raise CannotStartError(
-                ExitCode.USAGE, f"{url}: {error.strerror or error}", hint
-            ) from error
         opened.callback(link.close)
         links.append(link)
     return links
+
+
+def _open_client_ports(
+    setup: StationConfig, links: Sequence[sockets.Link], opened: ExitStack
+) -> ClientPorts | None:
+    if not setup.clients:
+        return None
+    ports = ClientPorts(len(links))
+    opened.callback(ports.close)
+    for url in setup.clients:
+        with _opening(url, "another program has that port; choose another one with --client"):
+            ports.open(parse_endpoint(url))
+    return ports
+
+
+@contextmanager
+def _opening(url: str, hint_in_use: str) -> Iterator[None]:
+    """What keeps an endpoint from being opened, as the user is told it."""
+    try:
+        yield
+    except EndpointError as error:
+        raise CannotStartError(ExitCode.USAGE, str(error), error.hint) from error
+    except sockets.AddressInUse as error:
+        raise CannotStartError(ExitCode.ADDRESS_IN_USE, str(error), hint_in_use) from error
+    except sockets.SerialUnavailable as error:
+        raise CannotStartError(ExitCode.USAGE, f"{url}: {error}", error.hint) from error
+    except socket.gaierror as error:
+        hint = "is the name of the host spelled right?"
+        raise CannotStartError(ExitCode.USAGE, f"{url}: {error.strerror}", hint) from error
+    except OSError as error:
+        hint = "is the address one of this machine's?"
+        raise CannotStartError(ExitCode.USAGE, f"{url}: {error.strerror or error}", hint) from error
 
 
 def _open_local_socket(

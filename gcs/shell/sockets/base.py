@@ -46,6 +46,8 @@ class Link(ABC):
 
     stream = False
     """Whether what `drain` gives are pieces of one byte stream, not whole datagrams."""
+    read_bytes = MAX_READ
+    """The most that one of these pieces has."""
 
     def __init__(self, endpoint: Endpoint) -> None:
         self.endpoint = endpoint

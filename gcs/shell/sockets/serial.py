@@ -8,7 +8,7 @@ import sys
 from typing import Protocol
 
 from gcs.shell.endpoints import Endpoint
-from gcs.shell.sockets.base import MAX_READ, Link
+from gcs.shell.sockets.base import Link
 
 
 class SerialUnavailable(OSError):  # noqa: N818 - it names the condition
@@ -41,6 +41,8 @@ class SerialLine(Link):
         self._fd = self._port_open.fileno()
         os.set_blocking(self._fd, False)
         self._lost = False
+        self._unsent = b""
+        """The end of what the line took only a part of."""
 
     def fileno(self) -> int:
         return -1 if self._lost else self._fd
@@ -49,7 +51,7 @@ class SerialLine(Link):
         pieces: list[bytes] = []
         for _ in range(limit):
             try:
-                piece = os.read(self._fd, MAX_READ)
+                piece = os.read(self._fd, self.read_bytes)
             except BlockingIOError:
                 break
             except OSError as error:
@@ -61,12 +63,24 @@ class SerialLine(Link):
         return pieces
 
     def send(self, data: bytes) -> None:
-        try:
-            whole = os.write(self._fd, data) == len(data)
-        except OSError:
-            whole = False
-        if not whole:
+        """What the line has no room for is dropped whole: half a frame would spoil the next."""
+        if self._unsent:
+            self._unsent = self._write(self._unsent)
+        if self._unsent:
             self.counters.dropped += 1
+            return
+        rest = self._write(data)
+        if rest == data:
+            self.counters.dropped += 1
+        else:
+            self._unsent = rest
+
+    def _write(self, data: bytes) -> bytes:
+        """What is left of it."""
+        try:
+            return data[os.write(self._fd, data) :]
+        except OSError:
+            return data
 
     def _lose(self, why: str) -> None:
         self._lost = True

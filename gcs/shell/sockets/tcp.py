@@ -20,7 +20,7 @@ if os.name == "nt":
     _UNDER_WAY.add(errno.EINVAL)  # what Windows says to a second look at a connection being made
 
 
-class _Stream:
+class Stream:
     """One connected socket, with what it could not take yet."""
 
     def __init__(self, connected: socket.socket) -> None:
@@ -29,12 +29,13 @@ class _Stream:
         self.socket = connected
         self._queued = b""
 
-    def read(self, limit: int) -> tuple[list[bytes], bool]:
-        """Pieces that came, and whether the other side is still there."""
+    def read(self, limit: int, size: int = MAX_READ) -> tuple[list[bytes], bool]:
+        """At most `limit` pieces of at most `size` bytes that came, and whether the other side is
+        still there."""
         pieces: list[bytes] = []
         for _ in range(limit):
             try:
-                piece = self.socket.recv(MAX_READ)
+                piece = self.socket.recv(size)
             except BlockingIOError:
                 return pieces, True
             except OSError:
@@ -74,7 +75,7 @@ class _Tcp(Link):
 
     def __init__(self, endpoint: Endpoint) -> None:
         super().__init__(endpoint)
-        self._stream: _Stream | None = None
+        self._stream: Stream | None = None
         self._deadline_ns: int | None = 0
 
     @property
@@ -92,7 +93,7 @@ class _Tcp(Link):
     def _read(self, limit: int) -> list[bytes]:
         if self._stream is None:
             return []
-        pieces, alive = self._stream.read(limit)
+        pieces, alive = self._stream.read(limit, self.read_bytes)
         if not alive:
             self._lose()
         return pieces
@@ -135,6 +136,10 @@ class TcpOut(_Tcp):
         if self._stream is not None and self._stream.queued:
             self._deadline_ns = 0
 
+    def disconnect(self) -> None:
+        """End the connection, if there is one; another is made as after a loss."""
+        self._lose()
+
     def _connect(self, now_ns: int) -> None:
         if self._trying is None:
             self._trying = socket.socket(self._family, socket.SOCK_STREAM)
@@ -142,7 +147,7 @@ class TcpOut(_Tcp):
             self._give_up_ns = now_ns + MAX_CONNECTING_NS
         code = self._trying.connect_ex((self._address, self.endpoint.port))
         if code in (0, errno.EISCONN):
-            self._stream, self._trying = _Stream(self._trying), None
+            self._stream, self._trying = Stream(self._trying), None
             self._deadline_ns = None
             self._news.append(f"{self.endpoint}: connected")
         elif code in _UNDER_WAY and now_ns < self._give_up_ns:
@@ -206,7 +211,7 @@ class TcpIn(_Tcp):
             return
         if self._stream is not None:
             self._stream.socket.close()
-        self._stream = _Stream(newer)
+        self._stream = Stream(newer)
         self._news.append(f"{self.endpoint}: {peer[0]}:{peer[1]} connected")
 
     def close(self) -> None:

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from gcs import ipc
 from gcs.session.effects import Effect, Finish, Record
 from gcs.session.inputs import Input, RecorderChanged, Wake
+from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.endpoints import Endpoint, Kind
@@ -212,6 +213,7 @@ class Rig:
         clients: ClientSockets | None = None,
         on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
         recording: Recording | None = None,
+        client_ports: ClientPorts | None = None,
     ) -> None:
         self.clock, self.core, self.recording = PaperClock(), PaperCore(), PaperRecording()
         self.links = [PaperLink() for _ in range(links)]
@@ -233,6 +235,7 @@ class Rig:
             PaperSim(sim_fd),
             clients,
             on_snapshot,
+            client_ports,
         )
 
     def run(self, *steps: Step) -> Finish:

@@ -15,6 +15,7 @@ from gcs.record.writer import Recorder
 from gcs.report import LogEvent
 from gcs.session.effects import Emit, Finish, ReadFile, Record, ShowTopics, Transmit, WriteFile
 from gcs.session.inputs import (
+    ClientCame,
     Datagram,
     FileRead,
     FileWritten,
@@ -30,7 +31,9 @@ from gcs.session.inputs import (
     SimLine,
     Wake,
 )
+from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets, Connection
+from gcs.shell.client_table import Arrival
 from gcs.shell.loop import MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
 from gcs.shell.recording import Recording
 from tests.unit.shell.rig import DONE, EXIT_BUG, MS, START_NS, TICK_NS, Rig, recorded
@@ -494,4 +497,60 @@ def test_who_watches_topics_is_told_of_them_until_it_has_gone(
     assert set(clients.told) == {("Topic", 2, False, False), ("TopicMessage", 2, False, False)}
     assert topics == kinds.count("TopicMessage"), "one message of each: the line, and what is first"
     assert recorder.close(START_NS)
+    rig.close()
+
+
+class PaperPorts(ClientPorts):
+    """Client ports without sockets: what they bring, and what they are told to send."""
+
+    def __init__(self) -> None:
+        super().__init__(2)
+        self.brings: list[Arrival] = []
+        self.sent: list[tuple[int, bytes]] = []
+        self.due_ns = 1 << 62
+
+    @property
+    def deadline_ns(self) -> int:
+        return self.due_ns
+
+    def turn(
+        self, readable: Sequence[object], writable: Sequence[object], now_ns: int
+    ) -> list[Arrival]:
+        brings, self.brings = self.brings, []
+        return brings
+
+    def send(self, link: int, data: bytes) -> None:
+        self.sent.append((link, data))
+
+
+def test_what_clients_send_is_handed_on_and_what_is_for_them_goes_to_their_ports() -> None:
+    ports = PaperPorts()
+    rig = Rig(links=2, client_ports=ports)
+    came = [ClientCame(2, "udp 127.0.0.1:5", False), Datagram(2, b"theirs")]
+    ports.brings = [*came]
+    rig.core.answers[came[1]] = [Transmit(0, b"for the vehicle"), Transmit(2, b"for the client")]
+    rig.run(lambda: None)
+    assert rig.core.inputs[:2] == came
+    assert rig.links[0].sent == [b"for the vehicle"]
+    assert ports.sent == [(2, b"for the client")]
+    rig.close()
+
+
+def test_between_two_datagrams_of_clients_the_deadline_is_met() -> None:
+    ports = PaperPorts()
+    rig = Rig(client_ports=ports)
+    came = [Datagram(2, b"%d" % number) for number in range(3)]
+    rig.core.does[came[0]] = lambda: rig.advance(60)
+    ports.brings = [*came]
+    rig.run(lambda: None)
+    assert rig.core.inputs[:4] == [came[0], Wake(), came[1], came[2]]
+    rig.close()
+
+
+def test_the_loop_waits_no_longer_than_the_client_ports_say() -> None:
+    ports = PaperPorts()
+    ports.due_ns = START_NS + 7 * MS
+    rig = Rig(client_ports=ports)
+    rig.run(lambda: None)
+    assert rig.clock.waits_s[0] == pytest.approx(0.007)
     rig.close()

@@ -1,0 +1,189 @@
+"""`gcs bridge`: MAVLink clients fly the vehicle through the gate."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.options import LOG_DIR, POLICY, UTF8, RecordName, Seconds, with_options
+from gcs.cli.record_options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
+from gcs.cli.sim_options import CLIENT, SIM_OPTIONS, refuse_options_of_the_sim
+
+if TYPE_CHECKING:
+    from gcs.config import StationConfig
+    from gcs.operator.client import StationEnded
+
+EPILOG = """\
+Examples:
+
+\b
+  gcs bridge --vehicle udpin://127.0.0.1:14540 --client udpout://127.0.0.1:14550
+  gcs bridge --vehicle serial:///dev/ttyUSB0:57600 --client tcpin://127.0.0.1:5760 --policy lab
+  gcs bridge --sim --client udpin://127.0.0.1:14551
+
+A client speaks MAVLink with the bridge as if that were the vehicle. What moves the vehicle is
+verified by the gate, whoever sends it; what changes its settings is decided by [bridge] of the
+policy; the rest is forwarded unchanged. The first client that asks for motion is in control.
+
+On a terminal it shows a page, on a pipe it prints lines: decisions to standard output, the log to
+standard error. Ctrl-C ends it: where the gate flies the vehicle, it holds first. `gcs attach` opens
+a keyboard station on it.
+"""
+
+OWN_COMPID = 191
+"""MAV_COMP_ID_ONBOARD_COMPUTER: 255/190 is QGroundControl and 255/230 MAVProxy."""
+
+
+@click.command(epilog=EPILOG)
+@click.option(
+    "--vehicle",
+    "vehicles",
+    multiple=True,
+    type=UTF8,
+    metavar="URL",
+    help="Where the vehicle is: udpin:// udpout:// tcpin:// tcpout:// serial://. May be given more "
+    "than once.",
+)
+@with_options(CLIENT, POLICY, LOG_DIR)
+@click.option(
+    "--name",
+    type=RecordName(),
+    default="bridge",
+    show_default=True,
+    help="Goes into the log's file name.",
+)
+@click.option(
+    "--target",
+    type=click.IntRange(1, 255),
+    metavar="SYSID",
+    help="Which vehicle, by its MAVLink system id, where several are heard.",
+)
+@click.option(
+    "--sysid",
+    type=click.IntRange(1, 255),
+    default=255,
+    show_default=True,
+    help="The bridge's own MAVLink system id.",
+)
+@click.option(
+    "--compid",
+    type=click.IntRange(1, 255),
+    default=OWN_COMPID,
+    show_default=True,
+    help="Its component id.",
+)
+@with_options(*SIM_OPTIONS)
+@click.option(
+    "--timeout",
+    type=Seconds(),
+    metavar="S",
+    help="Exit 3 when no vehicle is heard for so many seconds.  [default: wait]",
+)
+@with_options(ROTATE_SIZE, ROTATE_AGE, COMPACT)
+@click.option("--plain", is_flag=True, help="Lines on a terminal, too.")
+@click.option("--json", "as_json", is_flag=True, help="Print the events as JSON, a line each.")
+@click.option("--verbose", "-v", is_flag=True, help="Debug lines too.")
+@click.option("--quiet", "-q", is_flag=True, help="Of the log only warnings and errors.")
+@click.pass_context
+def bridge(
+    ctx: click.Context,
+    vehicles: tuple[str, ...],
+    clients: tuple[str, ...],
+    policy: str,
+    log_dir: str,
+    name: str,
+    target: int | None,
+    sysid: int,
+    compid: int,
+    sim: bool,
+    autopilot: str,
+    home: str,
+    seed: int,
+    speedup: float,
+    timeout: float | None,
+    rotate_size: int,
+    rotate_age: float,
+    compact: bool,
+    plain: bool,
+    as_json: bool,
+    verbose: bool,
+    quiet: bool,
+) -> None:
+    """MAVLink clients fly the vehicle, and the gate is in between."""
+    import os
+
+    import msgspec
+
+    from gcs.cli.bridge_places import refuse_shared_places
+    from gcs.cli.options import station_config
+    from gcs.config import SimConfig
+
+    if sim and vehicles:
+        raise click.UsageError("--sim starts a vehicle of its own: leave out --vehicle")
+    if not sim:
+        refuse_options_of_the_sim(ctx)
+        if not vehicles:
+            hint = "such as --vehicle udpin://127.0.0.1:14540, or --sim for one of our own"
+            raise click.UsageError(f"where is the vehicle? {hint}")
+    if not clients:
+        hint = "such as --client udpin://127.0.0.1:14551 or --client udpout://127.0.0.1:14550"
+        raise click.UsageError(f"where do clients reach it? {hint}")
+    refuse_shared_places(vehicles, clients, vehicle_option="--vehicle")
+    config = station_config(
+        vehicles, policy, log_dir, name=name, timeout_s=timeout or 10.0, vehicle=target
+    )
+    if sim:
+        simulated = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
+        config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
+    config = msgspec.structs.replace(
+        config,
+        clients=list(clients),
+        bridge=True,
+        sysid=sysid,
+        compid=compid,
+        speedup=speedup,
+        operator=f"gcs bridge, pid {os.getpid()}",
+    )
+    config = with_files(config, rotate_size, rotate_age, compact)
+    level = 1 if verbose else 3 if quiet else 2
+    ctx.exit(_run(config, timeout, page=not (plain or as_json), as_json=as_json, min_level=level))
+
+
+def _run(
+    config: StationConfig, timeout_s: float | None, *, page: bool, as_json: bool, min_level: int
+) -> int:
+    """Until a signal; returns the exit code."""
+    import sys
+
+    from gcs.cli.bridge_lines import BridgeLines
+    from gcs.cli.bridge_watch import watch
+    from gcs.cli.plain import to_stderr, to_stdout
+    from gcs.operator.client import StationClient
+    from gcs.operator.interrupts import Interrupts
+
+    simulated = config.sim is not None
+    with Interrupts() as interrupts:
+        station = StationClient.start(config)
+        if page and sys.stdout.isatty():
+            from gcs.cli.bridge_page import BridgePage
+
+            with BridgePage(config.clients, min_level) as drawn:
+                ended = watch(station, interrupts, drawn, timeout_s)
+        else:
+            lines = BridgeLines(to_stdout, to_stderr, min_level=min_level, as_json=as_json)
+            ended = watch(station, interrupts, lines, timeout_s)
+    return _told_end(ended, simulated=simulated)
+
+
+def _told_end(ended: StationEnded, *, simulated: bool) -> int:
+    """Where the vehicle is, and where the record; the exit code."""
+    from gcs.exit_codes import ExitCode
+    from gcs.operator import event_text
+
+    if ended.bye is None:
+        click.echo(f"gcs: the link ended without a good-bye\n{ended.stderr_tail}", err=True)
+        return ExitCode.BUG
+    for line in event_text.bye_lines(ended.bye, simulated=simulated):
+        click.echo(line, err=True)
+    return ended.bye.exit_code

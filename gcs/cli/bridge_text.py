@@ -1,0 +1,93 @@
+"""What goes through a bridge and who is in control, in words; without a terminal."""
+
+from __future__ import annotations
+
+import time
+
+from gcs import ipc
+from gcs.operator import event_text
+
+Row = tuple[str, ...]
+
+LINKS_HEAD: Row = ("vehicle link", "in/s", "out/s", "lost")
+CLIENTS_HEAD: Row = ("client", "where", "calls itself", "in/s", "out/s", "refused", "dropped", "")
+LONG_SILENCE_S = 3.0
+
+
+def vehicle_line(seen: ipc.Snapshot | None) -> str:
+    """`1/1 px4 quadrotor, OFFBOARD, armed, HOVERING (OURS), severity NOMINAL, ...`."""
+    if seen is None or not seen.vehicle:
+        others = f"; heard: {', '.join(seen.vehicles)}" if seen and seen.vehicles else ""
+        return f"no vehicle heard yet{others}"
+    return f"{seen.vehicle}, {event_text.state_line(seen, 1).removeprefix('state: ')}"
+
+
+def conditions_line(seen: ipc.Snapshot | None) -> str:
+    """What is wrong with it; empty where nothing is."""
+    return "" if seen is None else ", ".join(seen.conditions)
+
+
+def control_line(seen: ipc.Snapshot | None) -> str:
+    """Who of the clients and operators may ask for everything."""
+    info = seen.in_control if seen else None
+    return f"{info.client} ({info.name})" if info else "nobody: the first who asks for motion"
+
+
+def link_rows(status: ipc.BridgeStatus | None) -> list[Row]:
+    """One a link on which vehicles are, the head first."""
+    links = status.links if status else []
+    return [
+        LINKS_HEAD,
+        *(
+            (each.name, f"{each.rx_hz:.0f}", f"{each.tx_hz:.0f}", f"{each.lost_pct:.1f} %")
+            for each in links
+        ),
+    ]
+
+
+def client_rows(status: ipc.BridgeStatus | None) -> list[Row]:
+    """One a client, the head first."""
+    clients = status.clients if status else []
+    return [CLIENTS_HEAD, *(_client_row(each) for each in clients)]
+
+
+def _client_row(each: ipc.BridgeClient) -> Row:
+    notes = ["IN CONTROL"] if each.in_control else []
+    if each.silent_s >= LONG_SILENCE_S:
+        notes.append(f"silent for {each.silent_s:.0f} s")
+    if each.signed:
+        notes.append(each.signed)
+    return (
+        str(each.client or "-"),
+        each.name,
+        " ".join(each.ids) or "-",
+        f"{each.rx_hz:.0f}",
+        f"{each.tx_hz:.0f}",
+        str(each.refused),
+        str(each.dropped),
+        ", ".join(notes),
+    )
+
+
+def status_line(status: ipc.BridgeStatus, seen: ipc.Snapshot | None) -> str:
+    """One line for all: `bridge: 1 link 212/s in, 4/s out, 0.0 % lost; 2 clients ...`."""
+    rx_hz, tx_hz = sum(x.rx_hz for x in status.links), sum(x.tx_hz for x in status.links)
+    lost_pct = max((each.lost_pct for each in status.links), default=0.0)
+    count = len(status.clients)
+    refused = sum(each.refused for each in status.clients)
+    return (
+        f"bridge: {rx_hz:.0f}/s in, {tx_hz:.0f}/s out, {lost_pct:.1f} % lost; "
+        f"{count} client{'' if count == 1 else 's'}, {refused} refused; "
+        f"in control: {control_line(seen)}"
+    )
+
+
+def decision_line(decision: ipc.BridgeDecision) -> str:
+    """`1000 (udp 127.0.0.1:14551) DO_REPOSITION: refused OUTSIDE_FENCE: the goal is ...`."""
+    label = f"{decision.client} ({decision.name}) {decision.what}"
+    return event_text.answer_line(label, decision.outcome, decision.code, decision.sentence)
+
+
+def clock_text(time_ns: int) -> str:
+    """Hours, minutes and seconds of the local day."""
+    return time.strftime("%H:%M:%S", time.localtime(time_ns / 1e9))

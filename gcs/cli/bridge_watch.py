@@ -1,0 +1,43 @@
+"""The operator's program of `gcs bridge`: it looks on until it is told to end."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from gcs import ipc
+from gcs.operator.client import StationEnded
+from gcs.operator.dialogue import Connection, Dialogue, InterruptSource
+from gcs.operator.errors import Interrupted
+
+DRAW_S = 0.5
+
+
+class Display(Protocol):
+    """Where it is shown: lines on a pipe, or a page on a terminal."""
+
+    def event(self, event: ipc.Event) -> None: ...
+    def draw(self) -> None:
+        """At least twice a second."""
+        ...
+
+
+def watch(
+    connection: Connection, interrupts: InterruptSource, display: Display, timeout_s: float | None
+) -> StationEnded:
+    """Until a signal; the station has then left in good order.
+
+    Raises ExitError if the station ends by itself, or if no vehicle is heard for `timeout_s`.
+    """
+    dialogue = Dialogue(connection, interrupts, lambda event, _: display.event(event))
+    try:
+        if timeout_s is not None:
+            try:
+                dialogue.wait_until_heard(timeout_s)
+            except Exception:
+                dialogue.leave("no vehicle was heard")
+                raise
+        while True:
+            dialogue.poll(DRAW_S)
+            display.draw()
+    except Interrupted as interrupt:
+        return dialogue.leave(str(interrupt))

@@ -1,0 +1,179 @@
+"""Which MAVLink clients are there, on which link number, and how much of each is handed on.
+
+No sockets: `client_ports.py` has those.  A client is one peer on one client port.  It has a link
+number of its own, the lowest that is free; the number is given again after it has gone.
+
+What one client may cost the others is bounded here: at most `max_clients` are there, each may send
+`rate_hz` messages a second with a second's worth at once, and a turn hands on `MAX_A_TURN` inputs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
+
+from gcs.session.inputs import ClientCame, ClientFlooded, ClientGone, Datagram, LinkEvent
+
+LAST_LINK = 254
+MAX_A_TURN = 256
+"""Inputs that one turn of the loop hands on; the rest waits in the sockets."""
+MAX_CLIENT_DATAGRAM = 4096
+"""Bytes; a longer one is dropped.  Clients send a frame a datagram, routers a few."""
+BYTES_A_MESSAGE = 64
+"""A datagram counts as one message for each piece of this size: an attitude command has 51 bytes, a
+mission item 50, a heartbeat 21."""
+EVICTABLE_NS = 3_000_000_000
+"""A client that was heard within this time does not have to make room for another: whoever makes
+up senders by the thousand must not drive out those who fly."""
+FLOOD_TOLD_NS = 1_000_000_000
+
+MAGICS = (0xFD, 0xFE)
+
+Arrival: TypeAlias = ClientCame | Datagram | ClientGone | ClientFlooded | LinkEvent
+
+
+@dataclass(frozen=True, slots=True)
+class ClientLimits:
+    """How many clients, how fast, and how long a silent one is kept."""
+
+    max_clients: int = 32
+    rate_hz: float = 500.0
+    """Messages a second of one client; see `BYTES_A_MESSAGE`."""
+    silent_s: float = 15.0
+    """A peer of a UDP port that has sent nothing for so long has gone: it cannot say so itself."""
+
+
+class Peer(Protocol):
+    """The way out to one client."""
+
+    name: str
+    stream: bool
+    expires: bool
+    """Whether silence means that it has gone."""
+    stays: bool
+    """It was named by the user: it makes no room for another."""
+
+    def send(self, data: bytes) -> str:
+        """Off at once, queued or dropped.  Not empty: why the client has gone."""
+        ...
+
+    def forget(self) -> None:
+        """It has gone."""
+        ...
+
+
+@dataclass(slots=True)
+class _Client:
+    peer: Peer
+    heard_ns: int
+    tokens: float
+    tokens_ns: int
+    dropped: int = 0
+    told_ns: int = 0
+
+
+class ClientTable:
+    """The clients that are there; `take` gives what the session is to be told of them."""
+
+    def __init__(self, first_link: int, limits: ClientLimits) -> None:
+        self._first = first_link
+        self._limits = limits
+        self._room = min(limits.max_clients, LAST_LINK - first_link + 1)
+        self._clients: dict[int, _Client] = {}
+        self._arrivals: list[Arrival] = []
+        self._refused_told_ns = 0
+
+    def __contains__(self, link: int) -> bool:
+        return link in self._clients
+
+    @property
+    def full_turn(self) -> bool:
+        """This turn has handed on enough."""
+        return len(self._arrivals) >= MAX_A_TURN
+
+    def take(self) -> list[Arrival]:
+        """What came since the last call, in order."""
+        taken, self._arrivals = self._arrivals, []
+        return taken
+
+    def news(self, text: str) -> None:
+        """Of a port, not of a client."""
+        self._arrivals.append(LinkEvent(self._first, text))
+
+    # ----------------------------------------------------------------------- come and go
+
+    def come(self, peer: Peer, now_ns: int) -> int | None:
+        """Its link number; None where there is no room for it."""
+        if len(self._clients) >= self._room and not self._make_room(peer, now_ns):
+            return None
+        link = next(n for n in range(self._first, LAST_LINK + 1) if n not in self._clients)
+        self._clients[link] = _Client(peer, now_ns, self._limits.rate_hz, now_ns)
+        self._arrivals.append(ClientCame(link, peer.name, peer.stream))
+        return link
+
+    def _make_room(self, peer: Peer, now_ns: int) -> bool:
+        """The one that was silent longest goes, if it was silent for a while."""
+        passing = [link for link, client in self._clients.items() if not client.peer.stays]
+        link = min(passing, key=lambda each: self._clients[each].heard_ns, default=None)
+        if link is not None and now_ns - self._clients[link].heard_ns >= EVICTABLE_NS:
+            self.gone(link, f"made room for {peer.name}")
+            return True
+        if now_ns - self._refused_told_ns >= FLOOD_TOLD_NS:
+            self._refused_told_ns = now_ns
+            text = f"no room for client {peer.name}: {self._room} are there, none of them silent"
+            self._arrivals.append(LinkEvent(self._first, text, trouble=True))
+        return False
+
+    def gone(self, link: int, reason: str) -> None:
+        """Its number is free from now on."""
+        client = self._clients.pop(link)
+        client.peer.forget()
+        self._arrivals.append(ClientGone(link, reason))
+
+    # ---------------------------------------------------------------------------- traffic
+
+    def may_read(self, link: int, now_ns: int) -> bool:
+        """Whether a stream is to be read on; what is not read slows its sender down."""
+        return not self.full_turn and self._refill(self._clients[link], now_ns) > 0.0
+
+    def heard(self, link: int, data: bytes, now_ns: int) -> None:
+        """It sent this: handed on, or dropped where it sends too much."""
+        client = self._clients[link]
+        if client.peer.stream or (data and data[0] in MAGICS):
+            client.heard_ns = now_ns
+        if self._refill(client, now_ns) > 0.0 and len(data) <= MAX_CLIENT_DATAGRAM:
+            client.tokens -= 1 + len(data) // BYTES_A_MESSAGE
+            self._arrivals.append(Datagram(link, data))
+        else:
+            client.dropped += 1
+
+    def _refill(self, client: _Client, now_ns: int) -> float:
+        rate_hz = self._limits.rate_hz
+        more = (now_ns - client.tokens_ns) * rate_hz / 1e9
+        client.tokens, client.tokens_ns = min(rate_hz, client.tokens + more), now_ns
+        return client.tokens
+
+    def send(self, link: int, data: bytes) -> None:
+        """To that client; nothing where it has just gone."""
+        client = self._clients.get(link)
+        if client is not None and (why := client.peer.send(data)):
+            self.gone(link, why)
+
+    # ------------------------------------------------------------------------------- time
+
+    def sweep(self, now_ns: int) -> None:
+        """Those that were silent for too long, and what was dropped."""
+        silent_ns = round(self._limits.silent_s * 1e9)
+        for link, client in list(self._clients.items()):
+            if client.dropped and now_ns - client.told_ns >= FLOOD_TOLD_NS:
+                self._arrivals.append(ClientFlooded(link, client.dropped))
+                client.dropped, client.told_ns = 0, now_ns
+            if client.peer.expires and now_ns - client.heard_ns >= silent_ns:
+                self.gone(link, f"silent for {self._limits.silent_s:g} s")
+
+    def close(self) -> None:
+        """All of them, without a word."""
+        clients = list(self._clients.values())
+        self._clients.clear()
+        for client in clients:
+            client.peer.forget()

@@ -1,0 +1,273 @@
+"""`gcs bridge`: what it takes, what it prints, what its page shows."""
+
+from __future__ import annotations
+
+import io
+import json
+
+import pytest
+from rich.console import Console
+
+from gcs import ipc
+from gcs.cli import bridge_text, main
+from gcs.cli.bridge_lines import STATUS_EVERY_NS, BridgeLines
+from gcs.cli.bridge_page import BridgePage
+from gcs.cli.bridge_watch import watch
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
+from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
+
+VEHICLE = ("--vehicle", "udpin://127.0.0.1:14540")
+CLIENT = ("--client", "udpout://127.0.0.1:14550")
+
+HELLO = ipc.Hello("1", "logs/a.mcap", ["udp 127.0.0.1:14540"], "lab")
+LINK = ipc.BridgeLink(0, "udp 127.0.0.1:14540", 212.4, 4.0, 0.05)
+ONE = ipc.BridgeClient(1000, 1, "udp 127.0.0.1:5001", ["255/190"], 1.0, 212.0, in_control=True)
+TWO = ipc.BridgeClient(1001, 2, "tcp 127.0.0.1:5002", [], 0.0, 212.0, 3, 40, silent_s=4.2)
+STATUS = ipc.BridgeStatus(0, [LINK], [ONE, TWO])
+REFUSED = ipc.BridgeDecision(
+    0, 1000, "udp 127.0.0.1:5001", "DO_REPOSITION", "refused", "OUTSIDE_FENCE", "350 m outside"
+)
+
+
+def snapshot(vehicle: str = "1/1 px4 quadrotor") -> ipc.Snapshot:
+    return ipc.Snapshot(
+        0,
+        "HOVERING",
+        "OURS",
+        "CAUTION",
+        ["battery_low"],
+        0.0,
+        "logs/a.mcap",
+        True,
+        1.25,
+        vehicle=vehicle,
+        mode="OFFBOARD",
+        armed=True,
+        in_control=ipc.OperatorInfo(1000, "MAVLink 255/190"),
+    )
+
+
+# ------------------------------------------------------------------------- the command line
+
+
+@pytest.mark.parametrize(
+    ("args", "told"),
+    [
+        (CLIENT, "where is the vehicle? such as --vehicle udpin://127.0.0.1:14540, or --sim"),
+        (VEHICLE, "where do clients reach it? such as --client udpin://127.0.0.1:14551"),
+        (("--sim", *VEHICLE, *CLIENT), "--sim starts a vehicle of its own: leave out --vehicle"),
+        ((*VEHICLE, "--client", "udq://x:1"), "--client udq://x:1: no known kind of endpoint"),
+        (("--vehicle", "udpin://x", *CLIENT), "--vehicle udpin://x: expected HOST:PORT"),
+        ((*VEHICLE, *VEHICLE, *CLIENT), "--vehicle udpin://127.0.0.1:14540 is given twice"),
+        ((*VEHICLE, *CLIENT, *CLIENT), "--client udpout://127.0.0.1:14550 is given twice"),
+        (
+            (*VEHICLE, "--client", "udpout://localhost:14540"),
+            "--vehicle udpin://127.0.0.1:14540 and --client udpout://localhost:14540 are the same "
+            "place: frames would go round in a loop",
+        ),
+        ((*VEHICLE, "--client", "udp:0.0.0.0:14540"), "are the same place"),
+        (
+            ("--vehicle", "/dev/ttyUSB0", "--client", "serial:///dev/ttyUSB0:9600"),
+            "are the same place",
+        ),
+        ((*VEHICLE, *CLIENT, "--speedup", "2"), "--speedup is for the vehicle of --sim"),
+        ((*VEHICLE, *CLIENT, "--compid", "0"), "--compid"),
+    ],
+)
+def test_usage_errors(args: tuple[str, ...], told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main.run(["bridge", *args]) == ExitCode.USAGE
+    said = " ".join(capsys.readouterr().err.split())
+    assert told in said
+
+
+def test_the_same_port_by_udp_and_by_tcp_are_two_places() -> None:
+    from gcs.cli.bridge_places import refuse_shared_places
+
+    refuse_shared_places(
+        ["udpin://127.0.0.1:14550"],
+        ["tcpin://127.0.0.1:14550", "udpin://127.0.0.1:0", "udpin://127.0.0.1:0"],
+    )
+    refuse_shared_places(["udpin://127.0.0.1:14550"], ["udpout://10.0.0.7:14550"])
+
+
+def test_fly_refuses_a_client_at_its_own_link(capsys: pytest.CaptureFixture[str]) -> None:
+    args = ["fly", "--plain", "--client", "udpin://127.0.0.1:14550"]
+    assert main.run(args) == ExitCode.USAGE
+    assert "are the same place" in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> None:
+    args = ["bridge", *VEHICLE, *CLIENT, "--policy", "nowhere.toml"]
+    assert main.run(args) == ExitCode.BAD_FILE
+    assert "nowhere.toml: no such policy file" in capsys.readouterr().err
+
+
+# ------------------------------------------------------------------------------------ words
+
+
+def test_the_vehicle_in_a_line() -> None:
+    assert bridge_text.vehicle_line(snapshot()).startswith(
+        "1/1 px4 quadrotor, HOVERING, control OURS, severity CAUTION, at E - N - U - m, "
+        "mode OFFBOARD, armed, "
+    )
+    assert bridge_text.vehicle_line(None) == "no vehicle heard yet"
+    assert bridge_text.conditions_line(snapshot()) == "battery_low"
+
+
+def test_links_and_clients_in_rows() -> None:
+    assert bridge_text.link_rows(STATUS)[1:] == [("udp 127.0.0.1:14540", "212", "4", "0.1 %")]
+    assert bridge_text.client_rows(STATUS)[1:] == [
+        ("1000", "udp 127.0.0.1:5001", "255/190", "1", "212", "0", "0", "IN CONTROL"),
+        ("1001", "tcp 127.0.0.1:5002", "-", "0", "212", "3", "40", "silent for 4 s"),
+    ]
+    assert len(bridge_text.client_rows(None)) == 1
+
+
+# ------------------------------------------------------------------------------------ lines
+
+
+class Printed:
+    def __init__(self, *, as_json: bool = False) -> None:
+        self.out: list[str] = []
+        self.err: list[str] = []
+        self.lines = BridgeLines(self.out.append, self.err.append, min_level=2, as_json=as_json)
+
+    def __call__(self, *events: ipc.Event) -> Printed:
+        for event in events:
+            self.lines.event(event)
+        self.lines.draw()
+        return self
+
+
+def test_a_refusal_is_a_line_with_its_reason() -> None:
+    assert Printed()(REFUSED).out == [
+        "1000 (udp 127.0.0.1:5001) DO_REPOSITION: refused OUTSIDE_FENCE: 350 m outside"
+    ]
+
+
+def test_the_status_comes_every_ten_seconds_and_when_clients_change() -> None:
+    printed = Printed()(snapshot(), STATUS)
+    line = (
+        "bridge: 212/s in, 4/s out, 0.1 % lost; 2 clients, 3 refused; "
+        "in control: 1000 (MAVLink 255/190)"
+    )
+    assert printed.out[1:] == [line]
+    printed(ipc.BridgeStatus(STATUS_EVERY_NS - 1, [LINK], [ONE, TWO]))
+    assert len(printed.out) == 2
+    printed(ipc.BridgeStatus(STATUS_EVERY_NS, [LINK], [ONE, TWO]))
+    assert printed.out[2:] == [line]
+    printed(ipc.BridgeStatus(STATUS_EVERY_NS + 1, [LINK], [ONE]))
+    assert "1 client, 0 refused" in printed.out[3]
+
+
+def test_the_log_goes_to_standard_error_from_its_level_up() -> None:
+    printed = Printed()(HELLO, ipc.LogEvent(0, 1, "link", "detail"), ipc.LogEvent(0, 3, "x", "y"))
+    assert printed.err == [
+        "vehicle: udp 127.0.0.1:14540",
+        "policy: lab; log: logs/a.mcap",
+        "WARN  x: y",
+    ]
+    assert printed.out == []
+
+
+def test_json_is_every_event_as_it_came() -> None:
+    printed = Printed(as_json=True)(HELLO, STATUS, REFUSED)
+    assert [json.loads(line)["type"] for line in printed.out] == [
+        "hello",
+        "bridge",
+        "bridge_decision",
+    ]
+    assert [ipc.decode_event(line.encode()) for line in printed.out] == [HELLO, STATUS, REFUSED]
+
+
+# ------------------------------------------------------------------------------------- page
+
+
+def drawn(*events: ipc.Event, height: int = 40) -> str:
+    page = BridgePage(["udpin://127.0.0.1:14551"], 2)
+    page.__exit__(None, None, None)
+    for event in events:
+        if not isinstance(event, ipc.Hello):
+            page.event(event)
+    out = io.StringIO()
+    Console(file=out, width=150).print(page.page(height))
+    return out.getvalue()
+
+
+def test_the_page_shows_vehicle_control_links_clients_and_decisions() -> None:
+    text = drawn(snapshot(), STATUS, REFUSED)
+    assert "1/1 px4 quadrotor, HOVERING" in text
+    assert "in control: 1000 (MAVLink 255/190)" in text
+    assert "wrong: battery_low" in text
+    assert "212.4" not in text
+    for row in (*bridge_text.link_rows(STATUS), *bridge_text.client_rows(STATUS)):
+        assert all(word in text for word in row)
+    assert "DO_REPOSITION: refused OUTSIDE_FENCE: 350 m outside" in text
+    assert "log: logs/a.mcap, 1.2 MB" in text
+
+
+def test_an_empty_page_says_where_clients_may_come() -> None:
+    text = drawn()
+    assert "no vehicle heard yet" in text
+    assert "nobody yet, at udpin://127.0.0.1:14551" in text
+
+
+def test_a_low_terminal_shows_as_many_clients_as_fit() -> None:
+    crowd = [ipc.BridgeClient(1000 + n, n, f"udp 127.0.0.1:{6000 + n}") for n in range(32)]
+    events = [REFUSED] * 20
+    text = drawn(snapshot(), ipc.BridgeStatus(0, [LINK], crowd), *events, height=24)
+    assert len(text.splitlines()) <= 24
+    assert "and 28 more" in text
+
+
+# ---------------------------------------------------------------------------------- watching
+
+
+class Told:
+    def __init__(self) -> None:
+        self.events: list[ipc.Event] = []
+        self.draws = 0
+
+    def event(self, event: ipc.Event) -> None:
+        self.events.append(event)
+
+    def draw(self) -> None:
+        self.draws += 1
+
+
+class InterruptAfter(NoInterrupts):
+    """A Ctrl-C once the display was drawn five times."""
+
+    def __init__(self, told: Told) -> None:
+        self._told = told
+
+    @property
+    def name(self) -> str:
+        return "SIGTERM" if self._told.draws == 5 else ""
+
+    def forget(self) -> None:
+        self._told.draws += 1
+
+
+def test_a_signal_ends_it_in_good_order() -> None:
+    told, connection = Told(), FakeConnection(FakeStation("airborne"))
+    ended = watch(connection, InterruptAfter(told), told, None)
+    assert ended.bye is not None
+    assert ended.bye.exit_code == 0
+    assert connection.sent == [ipc.Leave("SIGTERM")]
+    assert isinstance(told.events[0], ipc.Hello)
+
+
+def test_a_port_in_use_is_the_exit_code_of_the_station() -> None:
+    with pytest.raises(ExitError) as caught:
+        watch(FakeConnection(FakeStation("port in use")), NoInterrupts(), Told(), None)
+    assert caught.value.exit_code == ExitCode.ADDRESS_IN_USE
+
+
+def test_with_a_time_out_no_vehicle_is_an_exit_code() -> None:
+    connection = FakeConnection(FakeStation("silent"))
+    with pytest.raises(ExitError) as caught:
+        watch(connection, NoInterrupts(), Told(), 3.0)
+    assert caught.value.exit_code == ExitCode.NO_VEHICLE
+    assert connection.sent == [ipc.Leave("no vehicle was heard")]
