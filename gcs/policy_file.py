@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from gcs import toml
-from gcs.gate.policy.parse import parse_policy
-from gcs.gate.policy.policy import Policy
+from gcs.gate.policy.parse import NameFault, parse_policy
+from gcs.gate.policy.policy import BridgeRules, Policy
 from gcs.gate.policy.zonespec import ZoneSpec
 from gcs.plan.errors import PlanError
 from gcs.plan.reader import read
@@ -41,9 +41,17 @@ def load_policy(
 
     try:
         text = toml.decode(read_bytes(path), str(path))
-        return parse_policy(text, str(path), fence_file), text
+        return parse_policy(text, str(path), fence_file, _check_names), text
     except (toml.TomlError, PlanError) as error:
         raise PolicyFileError(str(error), error.hint) from error
     except OSError as error:
         hint = "--policy takes `default`, `lab` or the path of a TOML file"
         raise PolicyFileError(f"{error.filename}: {error.strerror}", hint) from error
+
+
+def _check_names(rules: BridgeRules) -> NameFault | None:
+    if not (rules.extra_denied or rules.extra_harmless or rules.manual_modes):
+        return None
+    from gcs.bridge.guard.names import check_names  # the dialect takes 0.1 s to load
+
+    return check_names(rules)

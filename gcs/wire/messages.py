@@ -582,16 +582,6 @@ class Timesync(Message, frozen=True, gc=False):
     target_component: int = 0
 
 
-class GpsInjectData(Message, frozen=True, gc=False):
-    """GPS_INJECT_DATA (123): 113 bytes."""
-
-    MSG_ID: ClassVar[MsgId] = MsgId.GPS_INJECT_DATA
-    target_system: int
-    target_component: int
-    len: int  # bytes
-    data: tuple[int, ...]  # 110 values
-
-
 class BatteryStatus(Message, frozen=True, gc=False):
     """BATTERY_STATUS (147): 36 bytes, 54 with extensions."""
 

@@ -49,6 +49,42 @@ def test_a_shipped_policy_comes_with_its_text() -> None:
     assert 'name = "default"' in text
 
 
+@pytest.mark.parametrize(
+    ("text", "what", "hint"),
+    [
+        ('extra_denied = ["DO_DIGICAM"]', "bridge.extra_denied[1]: 'DO_DIGICAM' is no message", ""),
+        ('extra_denied = ["HEARTBEAT"]', '"HEARTBEAT" is between a client and the gate', ""),
+        ('extra_denied = ["COMMAND_LONG"]', '"COMMAND_LONG" carries commands', "command's name"),
+        ('extra_denied = ["181"]', '"181" is no name', "did you mean DO_SET_RELAY?"),
+        ('extra_harmless = ["DO_REPOSITION"]', "moves the vehicle: the gate decides", ""),
+        ('extra_harmless = ["PARAM_SET"]', "has a key of its own", ""),
+        ('extra_harmless = ["REQUEST_MESSAGE"]', "is harmless already", "leave it out"),
+        ('manual_modes = ["POSCTRL"]', "is no mode of an autopilot", "did you mean POSCTL?"),
+    ],
+)
+def test_a_name_in_the_bridges_section_that_cannot_be_meant(
+    policy: Path, text: str, what: str, hint: str
+) -> None:
+    policy.write_text(f"[bridge]\n{text}\n")
+    found = error(policy)
+    assert str(found).startswith(f"{policy}:2: bridge.")
+    assert what in str(found)
+    assert hint in found.hint
+
+
+def test_names_in_the_bridges_section_that_can(policy: Path) -> None:
+    policy.write_text(
+        """
+        [bridge]
+        extra_denied = ["DO_SET_RELAY", "MAV_CMD_DO_REPOSITION", "PARAM_SET"]
+        extra_harmless = ["DO_PARACHUTE", "TUNNEL"]
+        manual_modes = ["POSCTL", "loiter"]
+        """
+    )
+    read, _ = load_policy(str(policy))
+    assert read.bridge.manual_modes == ("POSCTL", "loiter")
+
+
 def test_the_zones_of_a_fence_file_beside_the_policy_take_its_place(policy: Path) -> None:
     (policy.parent / "yard.plan").write_bytes(fence((80.0, True), (5.0, False)))
     read, text = load_policy(str(policy))

@@ -29,7 +29,6 @@ class CommandRow:
 _ROWS: Final = (
     CommandRow("DO_SET_HOME", "home", "moving home"),
     CommandRow("DO_SET_GLOBAL_ORIGIN", "origin", "moving the origin of the local frame"),
-    CommandRow("EXTERNAL_POSITION_ESTIMATE", "origin", "telling the vehicle where it is"),
     CommandRow("DO_FENCE_ENABLE", "fence", "switching the vehicle's own fence"),
     CommandRow("PREFLIGHT_CALIBRATION", "calibration", "calibrating"),
     CommandRow("PREFLIGHT_SET_SENSOR_OFFSETS", "calibration", "setting the offsets of sensors"),
@@ -43,18 +42,8 @@ _ROWS: Final = (
     CommandRow("PREFLIGHT_REBOOT_SHUTDOWN", "reboot", "rebooting or shutting down"),
     CommandRow("DO_FLIGHTTERMINATION", "termination", "ending the flight by stopping the motors"),
     CommandRow("PREFLIGHT_STORAGE", "parameters", "setting parameters back to defaults"),
-    CommandRow("DO_SET_PARAMETER", None, "writing a parameter by its number"),
     CommandRow("INJECT_FAILURE", None, "making something fail"),
     CommandRow("PREFLIGHT_UAVCAN", None, "configuring what is on the CAN bus"),
-    CommandRow("DO_SET_SYS_CMP_ID", None, "giving the vehicle another number"),
-    CommandRow("AIRFRAME_CONFIGURATION", None, "changing the airframe"),
-    CommandRow("CONFIGURE_ACTUATOR", None, "configuring actuators"),
-    CommandRow("FLASH_BOOTLOADER", None, "writing the boot loader"),
-    CommandRow("SET_EKF_SOURCE_SET", None, "choosing what the position is found by"),
-    CommandRow("DO_SET_SAFETY_SWITCH_STATE", None, "moving the safety switch"),
-    CommandRow("CAN_FORWARD", None, "opening the CAN bus"),
-    CommandRow("START_RX_PAIR", None, "pairing another remote control"),
-    CommandRow("STORAGE_FORMAT", None, "formatting a card"),
 )
 
 _NUMBERS: Final = {
@@ -63,8 +52,6 @@ _NUMBERS: Final = {
 
 ROWS: Final[Mapping[int, CommandRow]] = MappingProxyType({_NUMBERS[r.name]: r for r in _ROWS})
 """By MAV_CMD."""
-
-NAMES: Final[Mapping[int, str]] = MappingProxyType({n: name for name, n in _NUMBERS.items()})
 
 STORAGE_KEEPS: Final = frozenset({0, 1})
 """param1 of PREFLIGHT_STORAGE that changes no value: read from storage, write to it; 2 to 4 set

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.guard.commands import NAMES, ROWS, STORAGE_KEEPS
+from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS
 from gcs.bridge.guard.files import judge_file
 from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
 from gcs.bridge.guard.parameters import Changed, ParameterGuard
@@ -15,13 +15,12 @@ from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import PX4, ParamEncoding
-from gcs.wire.ids import Cmd, MissionResult, MissionType
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
     FencePoint,
     FileTransferProtocol,
-    GpsInjectData,
     GpsRtcmData,
     Message,
     MissionAck,
@@ -80,7 +79,7 @@ class Guard:
                 return _by(rules.fence, "fence", "changing the vehicle's own fence", seen)
             case RallyPoint():
                 return _by(rules.rally, "rally", "changing the vehicle's rally points", seen)
-            case GpsRtcmData() | GpsInjectData():
+            case GpsRtcmData():
                 judged = _by(rules.rtcm, "rtcm", "corrections for the GPS receiver", seen)
                 return Allowed() if isinstance(judged, Allowed) else judged
             case MissionCount() | MissionClearAll() | MissionWritePartialList():
@@ -100,8 +99,8 @@ class Guard:
     def _command(self, message: CommandLong | CommandInt, seen: GuardSeen) -> Judgement:
         row = ROWS.get(message.command)
         if row is None:
-            name = NAMES.get(message.command, f"command {message.command}")
-            return Refused(Refusal(Code.UNSUPPORTED, f"{name} has no rule here"))
+            sentence = f"command {message.command} has no rule here"
+            return Refused(Refusal(Code.UNSUPPORTED, sentence))
         rules = self._rules
         match row.key:
             case None:
@@ -124,7 +123,7 @@ class Guard:
 
     def _storage(self, message: CommandLong | CommandInt, what: str, seen: GuardSeen) -> Judgement:
         """PREFLIGHT_STORAGE."""
-        if message.command == Cmd.PREFLIGHT_STORAGE and message.param1 in STORAGE_KEEPS:
+        if message.param1 in STORAGE_KEEPS:
             return Allowed()
         if self._rules.parameters != "forward":
             return Refused(Refusal(Code.POLICY, f"{what} is not allowed ({PARAMETERS_KEY})"))

@@ -1,0 +1,19 @@
+"""What the guard does with a parameter, in words: `gcs bridge --explain NAME`."""
+
+from __future__ import annotations
+
+from gcs.bridge.guard.safety_parameters import BY_AUTOPILOT, NAME, group_of
+
+
+def parameter_explanation(name: str) -> str | None:
+    """Some lines for a person; None where no guarded parameter is called so."""
+    name = name.strip().upper()
+    if not NAME.fullmatch(name):
+        return None
+    groups = {autopilot: group_of(autopilot, name) for autopilot in BY_AUTOPILOT}
+    whys = [f"  {who}: {group.why}" for who, group in groups.items() if group is not None]
+    if not whys:
+        return None
+    head = f"{name}, a parameter that safety stands on"
+    rule = "  from a client: not written, unless `parameters_allowed` of [bridge] names it"
+    return "\n".join((head, rule, *whys))
