@@ -76,7 +76,7 @@ def _case(dice: random.Random, corners: tuple[Point, ...], seed: str) -> tuple[s
         case "point":
             cleared = judge.point("it", ned[0], floor_applies=True) is None
         case "leg":
-            cleared = judge.leg("it", *ned, judge.margins, floor_applies=True) is None
+            cleared = judge.leg("it", ned[0], ned[1], judge.margins, floor_applies=True) is None
         case "hull":
             cleared = judge.hull("it", ned[:1], ned[1:], floor_applies=True) is None
         case _:
