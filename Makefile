@@ -48,7 +48,7 @@ clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVS
 	$(BIN)/python -m pytest tests/clients -v
 
 soak: $(TEST) ## the properties on new random examples, and what `test` has a share of as a whole
-	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios -n $(WORKERS)
+	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios tests/soak -n $(WORKERS)
 
 mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? ARGS="vehicle --share 1/20" another part
 	$(BIN)/python -m tests.mutants $(ARGS)

@@ -22,6 +22,7 @@ from gcs.toml_lines import KeyPath, find_lines
 
 T = TypeVar("T")
 
+TOML_HINT = "each key once, as KEY = VALUE, under its [table]; see https://toml.io"
 _PAIR, _PAIRS = "[-5, 5]", "[[0, 0], [5, 0], [5, 5]]"
 
 
@@ -103,10 +104,10 @@ def read(text: str, file: str) -> Document:
         found = re.search(r"\(at line (\d+)", str(error))
         line = int(found[1]) if found else len(text.splitlines())
         what = re.sub(r"\s*\(at .*\)$", "", str(error))
-        raise TomlError(file, line, "", f"not TOML: {what}") from None
+        raise TomlError(file, line, "", f"not TOML: {what}", TOML_HINT) from None
     except (ValueError, RecursionError) as error:
         # A number of thousands of digits, or arrays that are nested thousands deep.
-        raise TomlError(file, 0, "", f"not TOML that can be read: {error}") from None
+        raise TomlError(file, 0, "", f"not TOML that can be read: {error}", TOML_HINT) from None
 
 
 def dotted(at: KeyPath) -> str:

@@ -197,10 +197,33 @@ def polygon_fault(corners: tuple[Point, ...]) -> str | None:
         c = edges[(i + 1) % n][1]
         if min(point_segment_distance(c, a, b), point_segment_distance(a, b, c)) <= TOLERANCE_M:
             return f"the edges at corner {(i + 1) % n + 1} lie on each other"
-        for j in range(i + 2, n - (i == 0)):
-            if segment_distance(a, b, *edges[j]) <= TOLERANCE_M:
-                return f"edge {i + 1} and edge {j + 1} meet: the polygon intersects itself"
+    for i, j in _edges_side_by_side(edges):
+        if segment_distance(*edges[i], *edges[j]) <= TOLERANCE_M:
+            return f"edge {i + 1} and edge {j + 1} meet: the polygon intersects itself"
     return None
+
+
+def _edges_side_by_side(edges: tuple[tuple[Point, Point], ...]) -> list[tuple[int, int]]:
+    """The pairs of edges, not neighbours, whose boxes meet or almost do, in order.
+
+    Sorted by their west ends, so that a polygon of a thousand corners is not looked at a million
+    times.
+    """
+    boxes = [(min(e[0], f[0]), max(e[0], f[0]), min(e[1], f[1]), max(e[1], f[1])) for e, f in edges]
+    last = len(edges) - 1
+    order = sorted(range(len(edges)), key=boxes.__getitem__)
+    found = []
+    for place, i in enumerate(order):
+        _, east, south, north = boxes[i]
+        for j in order[place + 1 :]:
+            other = boxes[j]
+            if other[0] > east + TOLERANCE_M:
+                break
+            if other[2] > north + TOLERANCE_M or other[3] < south - TOLERANCE_M:
+                continue
+            if 1 < abs(i - j) < last:
+                found.append((min(i, j), max(i, j)))
+    return sorted(found)
 
 
 def _edges(corners: tuple[Point, ...]) -> tuple[tuple[Point, Point], ...]:

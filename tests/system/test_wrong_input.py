@@ -99,6 +99,39 @@ def test_a_policy_with_an_unknown_key(tmp_path: Path) -> None:
     assert "hint: did you mean radius_m?" in told
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (b"margin_h_m = nan", ":1: margin_h_m: nan is not finite"),
+        (b"margin_h_m = 1e308", ":1: margin_h_m: 1e+308 is impossible"),
+        (b"margin_h_m = 200", ":1: margin_h_m: the margin of 200 m leaves nothing"),
+        (b"margin_h_m = 2\nmargin_h_m = 3", ":2: not TOML: Cannot overwrite a value"),
+        (b"\x7fELF\x00\xff", ": is no text"),
+        (
+            b"[[fence]]\nname = 'a'\nkind = 'polygon'\nframe = 'geographic'\n"
+            b"corners = [[47.39, 8.54], [47.40, 8.55], [47.40, 8.54], [47.39, 8.55]]",
+            ":5: fence[1].corners: edge 1 and edge 3 meet: the polygon intersects itself",
+        ),
+        (
+            b"[[fence]]\nname = 'a'\ninclusion = false\nradius_m = 9",
+            ":1: fence: has no inclusion zone",
+        ),
+        (
+            b"[[fence]]\nname = 'a'\nradius_m = 9\ncentre = [20, 0]",
+            ":4: fence[1].centre: home is outside this zone",
+        ),
+    ],
+    ids=["nan", "huge", "margin", "twice", "binary", "crossing", "exclusion alone", "home"],
+)
+def test_a_bad_policy_starts_nothing(text: bytes, told: str, tmp_path: Path) -> None:
+    policy = tmp_path / "mine.toml"
+    policy.write_bytes(text)
+    code, output = refused("fly", "--sim", "--plain", "--policy", str(policy))
+    assert code == 4
+    assert f"{policy}{told}" in output
+    assert "hint: " in output
+
+
 def test_a_fence_file_with_exclusion_zones_only(tmp_path: Path) -> None:
     circle = '{"center": [47.398, 8.546], "radius": 5}'
     zone = f'{{"version": 1, "inclusion": false, "circle": {circle}}}'

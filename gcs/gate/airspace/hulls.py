@@ -30,18 +30,18 @@ def ground_track_between(
 ) -> tuple[Point, ...]:
     """The ground track of that part of the hull that is above `low` and below `high`; () if none.
 
-    The corners of that part are points between the two heights, and places where a line between
-    two points passes one of them.
+    The corners of that part are points between the two heights or at one of them, and places where
+    a line between two points passes one of them.
     """
-    found = [en for en, up_m in points if low_up_m < up_m < high_up_m]
+    lowest, highest = min(up for _, up in points), max(up for _, up in points)
+    if highest <= low_up_m or lowest >= high_up_m:
+        return ()
+    found = [en for en, up_m in points if low_up_m <= up_m <= high_up_m]
     for (a, a_up_m), (b, b_up_m) in combinations(points, 2):
         for level in (low_up_m, high_up_m):
             if (a_up_m - level) * (b_up_m - level) < 0.0:
                 t = (level - a_up_m) / (b_up_m - a_up_m)
                 found.append((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
-    lowest, highest = min(up for _, up in points), max(up for _, up in points)
-    if highest <= low_up_m or lowest >= high_up_m:
-        return ()
     return _convex_hull(found)
 
 

@@ -102,7 +102,7 @@ class FenceJudge:
             measures = self._hull_measures(zone, starts_ned, ends_ned, floor_applies, margins)
             for measure in measures:
                 margin_m = margins.of(measure.face)
-                need_m = min(self._need(measure.face, margin_m), measure.start_m - TOLERANCE_M)
+                need_m = self._no_nearer(measure.face, margin_m, measure.start_m)
                 inside = measure.start_m >= self._outermost(measure.face)
                 if not (inside and measure.least_m >= need_m):
                     return zone_refusal(subject, measure, margin_m, leg=True)
@@ -174,6 +174,12 @@ class FenceJudge:
     def _outermost(self, face: Face) -> float:
         return self._need(face, self.stop_limit(face).outermost_m)
 
+    def _no_nearer(self, face: Face, margin_m: float, start_m: float) -> float:
+        """The clearance that a motion keeps that starts with `start_m`: the margin, or as near as
+        it starts; and no less than any start must have."""
+        start_m = max(start_m - TOLERANCE_M, self._outermost(face))
+        return min(self._need(face, margin_m), start_m)
+
     def _point_measures(
         self, zone: Zone, here: Motion, floor_applies: bool, margins: Margins
     ) -> Iterator[Measure]:
@@ -211,7 +217,7 @@ class FenceJudge:
             if not start_m >= TOLERANCE_M:
                 yield Measure(zone, Face.BODY, start_m, start_m)
                 return
-            beside_m = min(self._need(Face.BODY, margins.v_m), start_m - TOLERANCE_M)
+            beside_m = self._no_nearer(Face.BODY, margins.v_m, start_m)
             low, high = zone.floor_up_m - beside_m, zone.ceiling_up_m + beside_m
             track = ground_track_between(points, low, high)
             if track:
@@ -232,7 +238,7 @@ class FenceJudge:
     ) -> Refusal | None:
         for measure in inclusion_measures(zone, motion, floor_applies=floor_applies):
             margin_m = margins.of(measure.face)
-            need_m = min(self._need(measure.face, margin_m), measure.start_m - TOLERANCE_M)
+            need_m = self._no_nearer(measure.face, margin_m, measure.start_m)
             inside = measure.start_m >= self._outermost(measure.face)
             if not (inside and measure.least_m >= need_m):
                 return zone_refusal(subject, measure, margin_m, leg=True)
@@ -246,9 +252,9 @@ class FenceJudge:
             return zone_refusal(
                 subject, Measure(zone, Face.BODY, start_m, start_m), margins.h_m, leg=True
             )
-        near_m = start_m - TOLERANCE_M
-        beside_m = leg_body_clearance(zone, motion, min(self._need(Face.BODY, margins.v_m), near_m))
-        if beside_m is None or beside_m >= min(self._need(Face.BODY, margins.h_m), near_m):
+        stacked_m = self._no_nearer(Face.BODY, margins.v_m, start_m)
+        beside_m = leg_body_clearance(zone, motion, stacked_m)
+        if beside_m is None or beside_m >= self._no_nearer(Face.BODY, margins.h_m, start_m):
             return None
         return zone_refusal(
             subject, Measure(zone, Face.BODY, start_m, beside_m), margins.h_m, leg=True

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from gcs.frames import Vec3
 
 SPHERE_RADIUS_M = 6_371_000.0
+FLAT_TO_DEG = 85.0
 METRES_PER_DEGREE = 0.011131884502145034 * 1.0e7
 
 
@@ -50,6 +51,14 @@ class Projection:
         if self.autopilot == "ardupilot":
             return _flat_inverse(self.origin, north_m, east_m)
         return _azimuthal_inverse(self.origin, north_m, east_m)
+
+    def holds_at(self, lat_deg: float) -> bool:
+        """Is the vehicle's own map true there?
+
+        ArduPilot's is flat and ends at the meridian opposite its origin, which is near at a pole.
+        Up to FLAT_TO_DEG that meridian is more than 1500 km away.
+        """
+        return self.autopilot != "ardupilot" or abs(lat_deg) <= FLAT_TO_DEG
 
     def ned_from_geodetic(self, lat_deg: float, lon_deg: float, alt_amsl_m: float) -> Vec3:
         north_m, east_m = self.north_east(lat_deg, lon_deg)

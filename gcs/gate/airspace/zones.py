@@ -15,7 +15,14 @@ from dataclasses import dataclass
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.projection import Projection
 from gcs.gate.geometry import Circle, Point, Polygon, Shape, polygon_fault
-from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec, ZoneSpec
+from gcs.gate.policy.zonespec import (
+    BoxSpec,
+    CircleSpec,
+    PolygonSpec,
+    ZoneSpec,
+    geographic_points,
+    open_ring,
+)
 from gcs.gate.refusal import Code, Refusal
 
 
@@ -60,6 +67,14 @@ def _place(spec: ZoneSpec, home_ned: Vec3 | None, projection: Projection | None)
     if projection is None and spec.frame == "geographic":
         return _unplaced(spec, "the vehicle's origin (GPS_GLOBAL_ORIGIN) is not known yet")
 
+    if projection is not None and spec.frame == "geographic":
+        far = next((p for p in geographic_points(spec) if not projection.holds_at(p[0])), None)
+        if far is not None:
+            what = (
+                f"fence zone '{spec.name}': the vehicle's own map does not hold at {far[0]:g} deg"
+            )
+            return Refusal(Code.POLICY, f"{what} of latitude", zone=spec.name)
+
     home_en, home_up_m = _east_north_up(home_ned or (0.0, 0.0, 0.0))
 
     def local(p: Point) -> Point:
@@ -78,8 +93,8 @@ def _place(spec: ZoneSpec, home_ned: Vec3 | None, projection: Projection | None)
             corners = ((west, south), (east, south), (east, north), (west, north))
             placed = Polygon(tuple(local(c) for c in corners))
         case PolygonSpec(corners):
-            closed = len(corners) > 3 and corners[0] == corners[-1]
-            here = tuple(local(c) for c in (corners[:-1] if closed else corners))
+            corners = open_ring(corners)
+            here = tuple(local(c) for c in corners)
             fault = polygon_fault(here)
             if fault is not None:
                 return Refusal(Code.POLICY, f"fence zone '{spec.name}': {fault}", zone=spec.name)

@@ -12,13 +12,14 @@ from msgspec import Struct
 from gcs import toml
 from gcs.gate.condition import Severity
 from gcs.gate.policy.policy import BridgeRules, Policy
-from gcs.gate.policy.zonespec import KINDS, Text, ZoneSpec, room_fault, zone_fault
+from gcs.gate.policy.zonespec import KINDS, Text, ZoneSpec, home_fault, room_fault, zone_fault
 from gcs.toml_lines import KeyPath
 
 Table: TypeAlias = dict[str, object]
 
 _PARAMETER = re.compile(r"[A-Z0-9_*]{1,16}")
 _BOUNDS = ("floor_up_m", "ceiling_up_m")
+NAME_HINT = "a refusal names its zone: give each a name of its own"
 FENCE_FILE_HINT = "the path of a plan, from the folder of this file"
 
 FenceFile: TypeAlias = Callable[[str], tuple[ZoneSpec, ...]]
@@ -137,7 +138,7 @@ def _read_fence(doc: toml.Document, value: object, fence_file: FenceFile | None)
             names.append(zone.name)
     for number, name in enumerate(names):
         if names.count(name) > 1:
-            raise doc.error(("fence", number, "name"), f'two zones are called "{name}"')
+            raise doc.error(("fence", number, "name"), f'two zones are called "{name}"', NAME_HINT)
     return zones
 
 
@@ -147,9 +148,14 @@ def _read_file(
     if fence_file is None:
         raise doc.error(at, "a fence file cannot be read here")
     try:
-        return [_Written(at, zone, path) for zone in fence_file(path)]
+        zones = fence_file(path)
     except OSError as error:
         raise doc.error(at, f"{error.filename}: {error.strerror}", FENCE_FILE_HINT) from error
+    for zone in zones:
+        if fault := zone_fault(zone):
+            what = f"zone '{zone.name}' of {path}: {fault.key}: {fault.what}"
+            raise doc.error(at, what, fault.hint)
+    return [_Written(at, zone, path) for zone in zones]
 
 
 def _read_zone(doc: toml.Document, table: Table, at: KeyPath) -> ZoneSpec:
@@ -225,7 +231,7 @@ def _check_slack(doc: toml.Document, p: Policy) -> None:
 
 def _check_zones(doc: toml.Document, p: Policy, zones: list[_Written]) -> None:
     for at, zone, file in zones:
-        fault = room_fault(zone, p.margin_h_m, p.margin_v_m)
+        fault = room_fault(zone, p.margin_h_m, p.margin_v_m) or home_fault(zone)
         if fault is None:
             continue
         if not doc.has(("fence",)):
@@ -233,8 +239,9 @@ def _check_zones(doc: toml.Document, p: Policy, zones: list[_Written]) -> None:
             hint = f"the default fence has {fault.key} = {getattr(zone, fault.key):g}"
             raise doc.error((key,), fault.what, hint)
         if file:
-            raise doc.error(at, f"zone '{zone.name}' of {file}: {fault.key}: {fault.what}")
-        raise doc.error((*at, fault.key), fault.what)
+            what = f"zone '{zone.name}' of {file}: {fault.key}: {fault.what}"
+            raise doc.error(at, what, fault.hint)
+        raise doc.error((*at, fault.key), fault.what, fault.hint)
     if not any(written.zone.inclusion for written in zones):
         files = sorted({written.file for written in zones if written.file})
         hint = "the gate must know where the vehicle may be"

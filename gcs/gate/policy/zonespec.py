@@ -5,13 +5,21 @@ The fields are the keys of a `[[fence]]` table of a policy; `kind` says which of
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, Final, Literal, NamedTuple, TypeAlias
 
 from msgspec import Meta, Struct
 
-from gcs.gate.geometry import Point, polygon_fault
+from gcs.gate.geometry import REACH_M, Circle, Point, Polygon, polygon_fault
+from gcs.gate.policy.room import has_room
+
+EARTH_M: Final = 6_371_000.0
+HOME_EN: Final = (0.0, 0.0)
+HOME_HINT: Final = 'home is [0, 0] in frame = "home", the default: the vehicle takes off there'
+ROOM_HINT: Final = "a larger zone, or a smaller margin_h_m"
+CORNERS_HINT: Final = "corners in order round the zone, each once"
 
 Frame: TypeAlias = Literal["home", "local", "geographic"]
 """What a zone's numbers count from.
@@ -98,13 +106,57 @@ def _shape_fault(zone: ZoneSpec) -> Fault | None:
                     what = f"[{low:g}, {high:g}] is empty"
                     return Fault(key, what, "write the smaller number first")
             return None
-        case PolygonSpec(corners) if zone.frame == "geographic":
-            if len(set(corners)) < 3:
-                return Fault("corners", "a polygon needs at least 3 corners")
-            return _degrees_fault("corners", zone.frame, corners)
         case PolygonSpec(corners):
-            fault = polygon_fault(corners)
-            return None if fault is None else Fault("corners", fault)
+            fault = _degrees_fault("corners", zone.frame, corners)
+            if fault is None:
+                what = polygon_fault(plane_corners(zone))
+                fault = None if what is None else Fault("corners", what, CORNERS_HINT)
+            return fault
+
+
+def plane_corners(zone: PolygonSpec) -> tuple[Point, ...]:
+    """Its corners as (east, north) metres, without a last one that only closes the ring.
+
+    Geographic ones about the first, seen from straight above it: whether edges meet, and how much
+    room there is between them, is the same wherever the vehicle's own origin is, but for a few
+    parts in a thousand.  A corner that is not within 1000 km of the first is infinitely far.
+    """
+    corners = open_ring(zone.corners)
+    if zone.frame != "geographic" or not corners:
+        return corners
+    lat0_deg, lon0_deg = corners[0]
+    return tuple(_seen_from_above(*corner, lat0_deg, lon0_deg) for corner in corners)
+
+
+def geographic_points(zone: ZoneSpec) -> tuple[Point, ...]:
+    """The (latitude, longitude) that a geographic zone is made of; a box has none."""
+    match zone:
+        case CircleSpec():
+            return (zone.centre,)
+        case PolygonSpec():
+            return zone.corners
+        case BoxSpec():
+            return ()
+
+
+def open_ring(corners: tuple[Point, ...]) -> tuple[Point, ...]:
+    """Without a last corner that only closes the ring, as GeoJSON and others write it."""
+    closed = len(corners) > 3 and corners[0] == corners[-1]
+    return corners[:-1] if closed else corners
+
+
+def _seen_from_above(
+    lat_deg: float, lon_deg: float, lat0_deg: float, lon0_deg: float
+) -> tuple[float, float]:
+    """East and north of the second place: the orthographic projection of a sphere."""
+    lat, lat0 = math.radians(lat_deg), math.radians(lat0_deg)
+    dlon = math.radians(lon_deg - lon0_deg)
+    north = math.cos(lat0) * math.sin(lat) - math.sin(lat0) * math.cos(lat) * math.cos(dlon)
+    east = math.cos(lat) * math.sin(dlon)
+    up = math.sin(lat0) * math.sin(lat) + math.cos(lat0) * math.cos(lat) * math.cos(dlon)
+    if math.atan2(math.hypot(north, east), up) * EARTH_M > REACH_M:
+        return (math.inf, math.inf)
+    return (east * EARTH_M, north * EARTH_M)
 
 
 def _degrees_fault(key: str, frame: Frame, points: tuple[Point, ...]) -> Fault | None:
@@ -122,15 +174,41 @@ def room_fault(zone: ZoneSpec, margin_h_m: float, margin_v_m: float) -> Fault | 
     nothing = f"the margin of {margin_h_m:g} m leaves nothing of this zone"
     match zone:
         case CircleSpec(radius_m) if radius_m <= margin_h_m:
-            return Fault("radius_m", nothing)
+            return Fault("radius_m", nothing, ROOM_HINT)
         case BoxSpec(east_m, north_m):
             for key, (low, high) in (("east_m", east_m), ("north_m", north_m)):
                 if high - low <= 2.0 * margin_h_m:
-                    return Fault(key, nothing)
+                    return Fault(key, nothing, ROOM_HINT)
+        case PolygonSpec() if not has_room(Polygon(plane_corners(zone)), margin_h_m):
+            return Fault("corners", nothing, ROOM_HINT)
         case _:
             pass
     floor_up_m, ceiling_up_m = zone.floor_up_m, zone.ceiling_up_m
     if floor_up_m is None or ceiling_up_m is None or ceiling_up_m - floor_up_m > 2.0 * margin_v_m:
         return None
     what = f"the margin of {margin_v_m:g} m leaves nothing below this ceiling"
-    return Fault("ceiling_up_m", what)
+    return Fault("ceiling_up_m", what, "a higher ceiling, or a smaller margin_v_m")
+
+
+def home_fault(zone: ZoneSpec) -> Fault | None:
+    """Where home, from which the zone counts, is not where the vehicle may be; None if it is.
+
+    A floor is no fault, as the vehicle climbs through it, and an exclusion zone is not looked at:
+    `check_start` tells of one that the vehicle stands in.
+    """
+    if zone.frame != "home" or not zone.inclusion:
+        return None
+    if zone.ceiling_up_m is not None and zone.ceiling_up_m < 0.0:
+        return Fault("ceiling_up_m", "home is above this ceiling", HOME_HINT)
+    match zone:
+        case CircleSpec(radius_m, centre):
+            outside = {"centre": Circle(centre, radius_m).clearance(HOME_EN) < 0.0}
+        case BoxSpec(east_m, north_m):
+            outside = {
+                "east_m": not east_m[0] <= 0.0 <= east_m[1],
+                "north_m": not north_m[0] <= 0.0 <= north_m[1],
+            }
+        case PolygonSpec():
+            outside = {"corners": Polygon(plane_corners(zone)).clearance(HOME_EN) < 0.0}
+    key = next((key for key, is_outside in outside.items() if is_outside), None)
+    return None if key is None else Fault(key, "home is outside this zone", HOME_HINT)

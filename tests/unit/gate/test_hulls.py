@@ -84,6 +84,13 @@ def test_only_the_part_between_the_heights_counts() -> None:
     assert part.bounds == pytest.approx((4.0, 0.0, 6.0, 6.0))
 
 
+@pytest.mark.parametrize("level", [4.0, 6.0])
+def test_a_point_at_one_of_the_heights_bounds_the_part_between_them(level: float) -> None:
+    """The line goes all the way to that point: without it, it would end where it begins."""
+    points = [((0.0, 0.0), 5.0), ((30.0, 0.0), level)]
+    assert ground_track_between(points, 4.0, 6.0) == ((0.0, 0.0), (30.0, 0.0))
+
+
 @pytest.mark.parametrize("seed", range(300))
 def test_a_ring_is_as_far_off_as_shapely_says(seed: int) -> None:
     dice = random.Random(seed)

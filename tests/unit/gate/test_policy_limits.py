@@ -267,7 +267,7 @@ class TestRoom:
         self, key: str, width_m: float, room: bool
     ) -> None:
         other = "north_m" if key == "east_m" else "east_m"
-        text = f'[[fence]]\nname = "a"\nkind = "box"\n{key} = [1, {1 + width_m}]\n{other} = [0, 9]'
+        text = f'[[fence]]\nname = "a"\nkind = "box"\n{key} = [-1, {width_m - 1}]\n{other} = [0, 9]'
         if room:
             assert parse_policy(text, "my.toml").fence[0].name == "a"
         else:
