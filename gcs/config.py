@@ -26,6 +26,8 @@ class StationConfig(msgspec.Struct, frozen=True):
     bridge: bool = False  # `gcs bridge`: the operator who started it only looks
     sim: SimConfig | None = None
     policy_path: str = ""  # empty = the built-in default
+    vehicle_key_path: str = ""  # file with the MAVLink 2 signing key of the vehicle's links
+    client_key_path: str = ""  # and of the clients' links; empty = not signed
     log_dir: str = "logs"
     name: str = "flight"  # <YYYYMMDD-HHMMSS>_<name>.mcap
     sysid: int = 255

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from gcs.audit import words
 from gcs.audit.compare import Pair, Scope, differing
+from gcs.audit.keys import forged
 from gcs.audit.messages import Attachments, Stored
 from gcs.audit.replay import Replay
 from gcs.audit.seals import Altered, Missing
@@ -116,14 +117,22 @@ class _Audit:
                 f"recorded with {result.environment or 'an unknown Python'}, audited with "
                 f"{result.audited_in}: the last digit of a number may differ"
             )
-        self._scope = scope_of(setup.environment, result.audited_in, same_version=same)
+        self._scope = replace(
+            scope_of(setup.environment, result.audited_in, same_version=same),
+            signed=bool(setup.config.vehicle_key_path or setup.config.client_key_path),
+        )
+        if self._scope.signed:
+            result.notes.append(
+                "its frames were signed with a key that is in no record: their signatures are not "
+                "compared, and that those that came in were right is taken from the record"
+            )
         if not self._scope.log:
             result.notes.append("log lines are not compared: foxglove-sdk is only on one side")
         return Replay(start)
 
     def _turn(self, turn: Turn, replay: Replay) -> None:
         given, recorded = turn.given, turn.messages
-        reproduced = replay.turn(given, turn.now_ns)
+        reproduced = replay.turn(given, turn.now_ns, forged(recorded) if self._scope.signed else ())
         self._inputs[words.kind_of_input(given)] += 1
         self._end_ns = turn.now_ns
         if isinstance(given, RecorderTurn):

@@ -9,6 +9,7 @@ from difflib import SequenceMatcher
 from itertools import zip_longest
 from typing import TypeAlias
 
+from gcs.audit.keys import without_signature
 from gcs.audit.messages import FRAME_TOPIC, GARBAGE_TOPIC, INPUT_TOPIC, Stored
 
 LOG_TOPIC = "/log"
@@ -25,16 +26,20 @@ Pair: TypeAlias = tuple[Stored | None, Stored | None]
 @dataclass(frozen=True, slots=True)
 class Scope:
     """What is compared.  Without `pictures` only what happened, and without `log` no log lines:
-    these are in the format of foxglove-sdk, which is not installed everywhere."""
+    these are in the format of foxglove-sdk, which is not installed everywhere.  `signed`: frames
+    that were sent are signed, with a key that nobody has here."""
 
     pictures: bool = True
     log: bool = True
+    signed: bool = False
 
     @property
     def all(self) -> bool:
         return self.pictures and self.log
 
     def of(self, messages: Sequence[Stored]) -> list[Stored]:
+        if self.signed:
+            messages = [without_signature(m) for m in messages]
         if self.all:
             return list(messages)
         return [m for m in messages if self._has(m.topic)]

@@ -44,6 +44,11 @@ class Stored(NamedTuple):
         return int(self.topic.split("/")[2]) if self.is_garbage else self.data[0]
 
     @property
+    def why(self) -> str:
+        """Why garbage is no frame, or a frame was refused as it came in."""
+        return ros1.decode_garbage(self.data)[0]
+
+    @property
     def raw(self) -> bytes:
         """The frame or garbage as it was on the wire."""
         if self.is_garbage:

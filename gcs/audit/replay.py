@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from gcs.audit.inputs import CannotReadError, input_of_fault
+from gcs.audit.keys import RecordedKey, keys_of
 from gcs.audit.messages import Attachments, Stored, Tape
 from gcs.audit.turns import Given, RecorderTurn, Unreadable
 from gcs.record.writer import Recorder
@@ -30,7 +31,9 @@ class Replay:
     def __init__(self, start: Start) -> None:
         self._tape = Tape()
         self._recorder = Recorder.without_file(self._tape, start.start_ns)
-        self._session = Session(start.setup, start.start_ns)
+        self._key = RecordedKey()
+        keys = keys_of(start.setup.config, self._key)
+        self._session = Session(start.setup, start.start_ns, keys)
         self._asked: list[tuple[type, int, str]] = []
         self._finished = False
         self.surprises: list[Surprise] = []
@@ -39,9 +42,13 @@ class Replay:
     def attachments(self) -> Attachments:
         return self._tape.attachments
 
-    def turn(self, given: Given, now_ns: int) -> Sequence[Stored]:
-        """All messages that are recorded of `given` and of what it leads to."""
+    def turn(self, given: Given, now_ns: int, forged: Collection[bytes] = ()) -> Sequence[Stored]:
+        """All messages that are recorded of `given` and of what it leads to.
+
+        `forged`: those frames in it that were recorded as signed with another key.
+        """
         self.surprises = []
+        self._key.forged = forged
         match given:
             case RecorderTurn.TICK:
                 self._recorder.repeat(now_ns)

@@ -33,6 +33,7 @@ from gcs.report import (
     MetadataItem,
     RecordItem,
 )
+from gcs.wire.blanking import SETUP_SIGNING, blanked, without_key
 
 FLUSH_NS = 800_000_000
 """With a turn of the loop, a kill loses less than a second."""
@@ -300,7 +301,8 @@ class Recorder:
         match item:
             case GarbageItem(link, raw, reason):
                 log = self._watched_log(ros1.garbage_channel(link))
-                self._log_message(log, ros1.encode_garbage(reason, raw), now_ns)
+                message = ros1.encode_garbage(reason, blanked(raw, mend=False))
+                self._log_message(log, message, now_ns)
             case AttachmentItem(name):
                 self._keep_once(f"attachment {name}", item, now_ns)
             case MetadataItem(name):
@@ -317,7 +319,10 @@ class Recorder:
             return self._watched_log(ros1.crowd_channel()), ros1.codec(0).encode
         msgid = ros1.msgid_of(raw)
         log = self._watched_log(ros1.frame_channel(*ros1.source_of(raw), msgid))
-        known = self._frame_logs[key] = log, ros1.codec(ros1.full_length(msgid)).encode
+        encode = ros1.codec(ros1.full_length(msgid)).encode
+        if msgid == SETUP_SIGNING:
+            encode = _without_key(encode)
+        known = self._frame_logs[key] = log, encode
         return known
 
     def _log(self, channel: Channel) -> Log:
@@ -476,3 +481,8 @@ def _removed(path: Path) -> bool:
     except OSError:
         return False
     return True
+
+
+def _without_key(encode: ros1.Encode) -> ros1.Encode:
+    """For SETUP_SIGNING: the record has all of the frame but the key."""
+    return lambda raw, link, direction: encode(without_key(raw), link, direction)

@@ -11,10 +11,12 @@ from collections.abc import Iterable
 from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem
 from gcs.session.effects import Effect, Record, Transmit
+from gcs.session.signatures import NO_KEYS, Signatures
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Item, StreamSplitter, split
 from gcs.wire.ids import MavAutopilot, MavState, MavType
 from gcs.wire.messages import Heartbeat, Message
+from gcs.wire.signing import UnsignableError
 
 MAVLINK_VERSION = 3
 
@@ -29,9 +31,12 @@ class Links:
         count: int,
         streams: Iterable[int] = (),
         waiting: Iterable[int] = (),
+        signatures: Signatures | None = None,
     ) -> None:
         """`streams`: links that carry a byte stream (TCP, serial), not datagrams.
-        `waiting`: links whose peer is not known before it has sent something."""
+        `waiting`: links whose peer is not known before it has sent something.
+        `signatures`: what frames that leave are signed with, if any are."""
+        self._signatures = signatures or Signatures(NO_KEYS, sysid, compid, count)
         self._writers = [FrameWriter(sysid, compid) for _ in range(count)]
         self._splitters = {link: StreamSplitter() for link in streams}
         self._waiting = set(waiting)
@@ -67,26 +72,36 @@ class Links:
         for key in [key for key in self._named if key[0] == link]:
             del self._named[key]
 
-    def pass_on(self, link: int, raw: bytes) -> list[Effect]:
-        """A frame of somebody else on a link, unchanged, and its record."""
-        return [Transmit(link, raw), Record(FrameItem(link, Direction.SENT, raw))]
+    def pass_on(self, link: int, raw: bytes, now_ns: int) -> list[Effect]:
+        """A frame on a link, and its record: signed where the link has a key, else unchanged."""
+        return [
+            effect
+            for sent in self.unrecorded(link, raw, now_ns)
+            for effect in (sent, Record(FrameItem(link, Direction.SENT, sent.data)))
+        ]
 
-    def send_as(self, source: Address, link: int, message: Message) -> list[Effect]:
+    def unrecorded(self, link: int, raw: bytes, now_ns: int) -> list[Transmit]:
+        """The same without its record; nothing where it cannot be signed."""
+        try:
+            return [Transmit(link, self._signatures.outgoing(link, raw, now_ns))]
+        except UnsignableError:
+            return []
+
+    def send_as(self, source: Address, link: int, message: Message, now_ns: int) -> list[Effect]:
         """One frame on one link in the name of a component (`source`), and its record."""
         key = (link, source.sysid, source.compid)
         writer = self._named.get(key)
         if writer is None:
             writer = self._named[key] = FrameWriter(source.sysid, source.compid)
-        return self.pass_on(link, writer.write(message))
+        return self.pass_on(link, writer.write(message), now_ns)
 
-    def send(self, link: int, message: Message) -> list[Effect]:
+    def send(self, link: int, message: Message, now_ns: int) -> list[Effect]:
         """One frame on one link, and its record; nothing where no peer is known."""
         if link in self._waiting:
             return []
-        raw = self._writers[link].write(message)
-        return self.pass_on(link, raw)
+        return self.pass_on(link, self._writers[link].write(message), now_ns)
 
-    def heartbeat(self) -> list[Effect]:
+    def heartbeat(self, now_ns: int) -> list[Effect]:
         """HEARTBEAT of a ground station, on every link."""
         beat = Heartbeat(
             custom_mode=0,
@@ -96,4 +111,5 @@ class Links:
             system_status=MavState.ACTIVE,
             mavlink_version=MAVLINK_VERSION,
         )
-        return [effect for link in range(len(self._writers)) for effect in self.send(link, beat)]
+        links = range(len(self._writers))
+        return [effect for link in links for effect in self.send(link, beat, now_ns)]

@@ -18,10 +18,11 @@ from gcs.gate.effects import Level
 from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem, StatusItem
 from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Record
-from gcs.session.inputs import FileRead, Input, OtherInput
+from gcs.session.inputs import Datagram, FileRead, Input, OtherInput
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import Log, Work
+from gcs.wire.blanking import blanked
 from gcs.wire.messages import AutopilotVersion
 
 STAGES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
@@ -125,12 +126,15 @@ def pieces(link: int, items: int, rest: bytes) -> Sequence[Effect]:
     """How a datagram was cut, where that does not show in what is recorded of it."""
     if items and not rest:
         return ()
-    return (Record(InputItem.of("Datagram", Pieces(link, items, rest))),)
+    # `rest` may be the beginning of a SETUP_SIGNING, whose key is in no record.
+    return (Record(InputItem.of("Datagram", Pieces(link, items, blanked(rest, mend=True)))),)
 
 
 def fault(given: Input, report: str, handled: bool, at_ns: int) -> Record:
     """See `FaultKept`.  Raises nothing: an input that has no JSON is left out."""
     kind = type(given).__name__
+    if isinstance(given, Datagram):
+        given = Datagram(given.link, blanked(given.data, mend=False))
     try:
         as_json = msgspec.json.encode(given)
     except (TypeError, ValueError):

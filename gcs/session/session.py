@@ -38,7 +38,7 @@ from gcs.report import (
 from gcs.session import teller
 from gcs.session.bridge_port import BridgePort
 from gcs.session.clients import FIRST, LEAVING_NS
-from gcs.session.effects import Effect, Emit, Finish, Record, Transmit
+from gcs.session.effects import Effect, Emit, Finish, Record
 from gcs.session.gate_port import condition
 from gcs.session.inputs import (
     ClientCame,
@@ -68,6 +68,7 @@ from gcs.session.queue import WorkQueue
 from gcs.session.recorded import fault, hello, introduction, pieces, recorded, sim_line
 from gcs.session.screen import snapshot
 from gcs.session.setup import Setup
+from gcs.session.signatures import NO_KEYS, Keys, Signatures
 from gcs.session.telemetry import Telemetry
 from gcs.session.ticks import Ticks
 from gcs.session.times import Times
@@ -87,7 +88,9 @@ from gcs.session.work import (
     ToGate,
     Work,
 )
+from gcs.wire.blanking import without_key
 from gcs.wire.frame import Frame, Garbage
+from gcs.wire.signing import Reason
 
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
@@ -99,14 +102,22 @@ MAX_FAULTS = 10
 class Session:
     """Any number of operators and links, one vehicle; from the first byte to `Finish`."""
 
-    def __init__(self, setup: Setup, now_ns: int) -> None:
+    def __init__(self, setup: Setup, now_ns: int, keys: Keys = NO_KEYS) -> None:
+        """`keys` are no part of the set-up, which is recorded."""
         config = setup.config
         self._setup = setup
         self._start_ns = now_ns
         self._times = Times(config.speedup)
         self._ticks = Ticks(now_ns, self._times)
         count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
-        self._links = Links(config.sysid, config.compid, count, streams, waiting)
+        self._signatures = Signatures(
+            keys,
+            config.sysid,
+            config.compid,
+            count,
+            unsigned_taken=setup.policy.signing.unsigned == "warn",
+        )
+        self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._operators = Operators(setup, self._times)
         self._bridge = BridgePort(config, setup.policy.bridge, self._times, self._vehicle)
@@ -214,6 +225,7 @@ class Session:
                 return [*self._bridge.bridge.came(link, name)]
             case ClientGone(link, reason):
                 self._links.close(link)
+                self._signatures.forget(link)
                 return [*self._bridge.bridge.gone(link, reason)]
             case ClientFlooded(link, dropped):
                 return [*self._bridge.bridge.flooded(link, dropped)]
@@ -240,7 +252,9 @@ class Session:
                 return [*answered, *self._vehicle.ask_gate(given, now_ns)]
             case Send(message):
                 telemetry = self._vehicle.telemetry
-                return [] if telemetry is None else [*self._links.send(telemetry.link, message)]
+                if telemetry is None:
+                    return []
+                return [*self._links.send(telemetry.link, message, now_ns)]
             case gate_effects.Outcome():
                 return self._operators.outcome(item, self._vehicle.sysid, now_ns)
             case (
@@ -279,7 +293,7 @@ class Session:
             ):
                 return self._of_client(item, now_ns)
             case ToVehicle() | AsksVehicle() | ToLink() | Answers():
-                return [*self._pass_on(item)]
+                return [*self._pass_on(item, now_ns)]
             case _:
                 raise AssertionError(f"the queue keeps {item} for itself")
 
@@ -316,18 +330,20 @@ class Session:
             case Emit(event, client):
                 return [*self._bridge.bridge.told(client, event, now_ns)]
 
-    def _pass_on(self, item: ToVehicle | AsksVehicle | ToLink | Answers) -> list[Effect]:
+    def _pass_on(
+        self, item: ToVehicle | AsksVehicle | ToLink | Answers, now_ns: int
+    ) -> list[Effect]:
         """Frames between clients and the vehicle."""
         telemetry = self._vehicle.telemetry
         match item:
             case ToLink(link, raw):
-                return self._links.pass_on(link, raw)
+                return self._links.pass_on(link, raw, now_ns)
             case Answers(link, source, message):
-                return self._links.send_as(source, link, message)
+                return self._links.send_as(source, link, message, now_ns)
             case ToVehicle(raw) if telemetry is not None:
-                return self._links.pass_on(telemetry.link, raw)
+                return self._links.pass_on(telemetry.link, raw, now_ns)
             case AsksVehicle(source, message) if telemetry is not None:
-                return self._links.send_as(source, telemetry.link, message)
+                return self._links.send_as(source, telemetry.link, message, now_ns)
             case _:
                 return []
 
@@ -341,12 +357,22 @@ class Session:
         for item in items:
             if isinstance(item, Garbage):
                 run([Record(GarbageItem(link, item.raw, item.reason.value))], now_ns)
+            elif reason := self._signatures.refused(link, item, now_ns):
+                # Not as a frame: nobody shall take it for the sender's, in a viewer neither.
+                run([Record(GarbageItem(link, without_key(item.raw), reason.value))], now_ns)
+                if reason is Reason.TOO_OLD:
+                    # It has the key.  What we send moves its clock on, which may be behind.
+                    self._links.peer_known(link)
             elif link >= self._first_client_link:
                 run(self._client_frame(link, item, now_ns), now_ns)
             else:
                 received = Record(FrameItem(link, Direction.RECEIVED, item.raw))
                 to_clients = self._bridge.bridge.from_vehicle(item, now_ns)
-                passed = [Transmit(to, item.raw) for to in to_clients]
+                passed = [
+                    sent
+                    for to in to_clients
+                    for sent in self._links.unrecorded(to, item.raw, now_ns)
+                ]
                 run([received, *passed, *self._frame(link, item, now_ns)], now_ns)
 
     def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
@@ -371,8 +397,9 @@ class Session:
 
     def _every_second(self, now_ns: int) -> list[Work]:
         """Heartbeat, what is missing, and the slow half of the record."""
-        work: list[Work] = [*self._links.heartbeat(), *self._vehicle.remind()]
+        work: list[Work] = [*self._links.heartbeat(now_ns), *self._vehicle.remind()]
         work += self._bridge.bridge.second(now_ns)
+        work += self._signatures.second(now_ns)
         if self._vehicle.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)
         if now_ns - self._other_station_ns > self._times.real_ns(OTHER_STATION_NS):
@@ -393,6 +420,9 @@ class Session:
         if heard and wanted:
             text = f"vehicle {wanted} was not heard for {waited_s:.0f} s, but {', '.join(heard)}"
             hint = "choose one of them with --vehicle"
+        what, why = self._signatures.why_no_vehicle()
+        if what:
+            text, hint = f"no vehicle is known after {waited_s:.0f} s ({where}): {what}", why
         return [Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)), Log(Level.WARNING, NODE, text)]
 
     # -------------------------------------------------------------------------- operator

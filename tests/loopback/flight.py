@@ -12,6 +12,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import ClassVar, Literal
 
+import msgspec
+
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.frames import Vec3
@@ -23,7 +25,9 @@ from gcs.resources import policy_path
 from gcs.session import effects, inputs
 from gcs.session.session import Session
 from gcs.session.setup import Setup
+from gcs.session.signatures import Keys
 from gcs.wire.frame import Frame, split
+from gcs.wire.signing import SecretKey
 from tests.loopback import eyes
 from tests.loopback.air import CLEAR, Air, Weather
 from tests.loopback.looks import START_NS, Looks, Sent
@@ -36,7 +40,7 @@ from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram as Inbound
-from vehicle_sim.simulation.world import LinkSpec, Transmit, World
+from vehicle_sim.simulation.world import LinkSpec, SigningKey, Transmit, World
 from vehicle_sim.simulation.world import Wake as WorldWake
 
 Personality = Literal["px4", "ardupilot"]
@@ -80,8 +84,11 @@ class Flight(Looks):
         boot: Boot = "quick",
         offboard: Offboard = "smooth",
         config: StationConfig = CONFIG,
+        vehicle_key: bytes | None = None,
+        station_key: bytes | None = None,
     ) -> None:
-        """`up` is the weather towards the vehicle, `down` towards the ground station."""
+        """`up` is the weather towards the vehicle, `down` towards the ground station; the keys are
+        what either side signs with."""
         super().__init__()
         self.personality = personality
         self.policy = policy
@@ -93,9 +100,16 @@ class Flight(Looks):
         )
         profile = profile_of(personality, parameters.firmware)
         server = VehicleServer(self.vehicle, profile, parameters, 1)
-        self.world = World([server], [LinkSpec((PEER,))], Fraction(1), START_NS)
+        signing = None if vehicle_key is None else SigningKey(vehicle_key)
+        links = [LinkSpec((PEER,))]
+        self.world = World(
+            [server], links, Fraction(1), START_NS, signing=signing, unix_start_ns=START_NS
+        )
+        if station_key is not None:
+            config = msgspec.structs.replace(config, vehicle_key_path="vehicle.key")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
-        self.session = Session(setup, START_NS)
+        keys = Keys(vehicle=None if station_key is None else SecretKey(station_key))
+        self.session = Session(setup, START_NS, keys)
         self.recorder = Flight.new_recorder()
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
         self.finish: effects.Finish | None = None

@@ -152,6 +152,12 @@ class BridgeRules(_Section, frozen=True):
     max_clients: Annotated[int, Meta(ge=1, le=64)]
 
 
+class SigningRules(_Section, frozen=True):
+    """`unsigned` is about frames without a signature on a link that has a key."""
+
+    unsigned: Literal["refuse", "warn"]
+
+
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
@@ -198,6 +204,7 @@ class Policy(_Section, frozen=True):
     rtl_blocked: Literal["hold", "land", "forward"]
     mission: MissionRules
     bridge: BridgeRules
+    signing: SigningRules
     retarget: Literal["refuse", "replace"]
     allow_force_disarm: bool
     arm_requires_recording: bool

@@ -12,6 +12,7 @@ from tests.unit.session import told, wire
 from tests.unit.session.wire import Sender
 
 REACHED = MissionItemReached(seq=7)
+NOW_NS = 1_700_000_000_000_000_000
 
 
 def raws(items: list[Item]) -> list[bytes]:
@@ -27,13 +28,13 @@ def is_garbage(items: list[Item]) -> bool:
 
 def test_every_link_numbers_its_own_frames_from_nought_and_round_after_255() -> None:
     links = Links(255, 190, count=2)
-    numbers = [wire.sent(links.send(0, REACHED))[0].get_seq() for _ in range(258)]
+    numbers = [wire.sent(links.send(0, REACHED, NOW_NS))[0].get_seq() for _ in range(258)]
     assert numbers == [*range(256), 0, 1]
-    assert wire.sent(links.send(1, REACHED))[0].get_seq() == 0
+    assert wire.sent(links.send(1, REACHED, NOW_NS))[0].get_seq() == 0
 
 
 def test_a_frame_leaves_in_the_station_s_name_and_is_recorded_as_it_left() -> None:
-    transmit, record = Links(200, 191, count=3).send(2, REACHED)
+    transmit, record = Links(200, 191, count=3).send(2, REACHED, NOW_NS)
     assert isinstance(transmit, Transmit)
     assert isinstance(record, Record)
     message = wire.read(transmit.data)
@@ -43,16 +44,16 @@ def test_a_frame_leaves_in_the_station_s_name_and_is_recorded_as_it_left() -> No
 
 def test_a_link_whose_peer_is_not_known_sends_and_records_nothing_and_keeps_its_count() -> None:
     links = Links(255, 190, count=2, waiting=[1])
-    assert links.send(1, REACHED) == []
+    assert links.send(1, REACHED, NOW_NS) == []
     links.peer_known(0)
-    assert links.send(1, REACHED) == []
+    assert links.send(1, REACHED, NOW_NS) == []
     links.peer_known(1)
-    assert wire.sent(links.send(1, REACHED))[0].get_seq() == 0
+    assert wire.sent(links.send(1, REACHED, NOW_NS))[0].get_seq() == 0
 
 
 def test_the_heartbeat_is_a_ground_station_s_and_leaves_on_every_link_with_a_peer() -> None:
     links = Links(255, 190, count=3, waiting=[1])
-    effects = links.heartbeat()
+    effects = links.heartbeat(NOW_NS)
     assert [e.link for e in effects if isinstance(e, Transmit)] == [0, 2]
     for beat in wire.sent(effects):
         assert beat.type == 6  # MAV_TYPE_GCS
