@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from gcs import ipc
 from gcs.bridge.bridge import Bridge, Judged
@@ -16,6 +16,8 @@ from gcs.gate.machine.turn import REFUSED_LINE
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
 from gcs.session import teller
+from gcs.session.effects import Emit
+from gcs.session.links import Counts
 from gcs.session.missions import timing_of
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
@@ -28,12 +30,21 @@ class BridgePort:
     """Between the session and its MAVLink clients."""
 
     def __init__(
-        self, config: StationConfig, rules: BridgeRules, times: Times, vehicle: Vehicle
+        self,
+        config: StationConfig,
+        endpoints: Sequence[str],
+        rules: BridgeRules,
+        times: Times,
+        vehicle: Vehicle,
     ) -> None:
         own = Address(config.sysid, config.compid)
         silent_ns = times.real_ns(round(rules.client_gone_s * 1e9))
         self.bridge = Bridge(own, rules, silent_ns, timing_of(times))
         self._vehicle = vehicle
+        self._endpoints = endpoints
+        self._shown = config.bridge or bool(config.clients)
+        self._before: list[tuple[int, int]] = [(0, 0)] * len(endpoints)
+        self._before_ns = 0
         self._told_in_control = 0
 
     def from_client(self, link: int, frame: Frame, now_ns: int) -> Judged:
@@ -51,6 +62,37 @@ class BridgePort:
         if isinstance(given, CommandEnded) and given.result is not None:
             return self.bridge.command_answered(given.request_id, given.result, now_ns)
         return []
+
+    def second(
+        self, now_ns: int, counts: Sequence[Counts], lost_pct: float
+    ) -> list[BridgeEffect | Emit]:
+        """Once a second: who is lost, and how it stands for whoever watches the bridge."""
+        done: list[BridgeEffect | Emit] = [*self.bridge.second(now_ns)]
+        if self._shown:
+            links = self._links(now_ns, counts, lost_pct)
+            done.append(Emit(ipc.BridgeStatus(now_ns, links, self.bridge.status(now_ns))))
+        return done
+
+    def _links(
+        self, now_ns: int, counts: Sequence[Counts], lost_pct: float
+    ) -> list[ipc.BridgeLink]:
+        """The links that vehicles are on, with their rates since the last time."""
+        span_s = (now_ns - self._before_ns) / 1e9
+        rows = [
+            ipc.BridgeLink(
+                number,
+                name,
+                (count.received - before[0]) / span_s if self._before_ns else 0.0,
+                (count.sent - before[1]) / span_s if self._before_ns else 0.0,
+                lost_pct,
+            )
+            for number, (name, count, before) in enumerate(
+                zip(self._endpoints, counts, self._before, strict=True)
+            )
+        ]
+        self._before = [(count.received, count.sent) for count in counts]
+        self._before_ns = now_ns
+        return rows
 
     def logged(self, line: Log, now_ns: int) -> list[BridgeEffect]:
         """What the gate warns of, the clients read too; of a refusal only the one who asked."""

@@ -7,6 +7,7 @@ serial line.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem
@@ -19,6 +20,14 @@ from gcs.wire.messages import Heartbeat, Message
 from gcs.wire.signing import UnsignableError
 
 MAVLINK_VERSION = 3
+
+
+@dataclass(slots=True)
+class Counts:
+    """Frames (and runs of garbage) that came in on a link, and frames that left."""
+
+    received: int = 0
+    sent: int = 0
 
 
 class Links:
@@ -40,6 +49,8 @@ class Links:
         self._writers = [FrameWriter(sysid, compid) for _ in range(count)]
         self._splitters = {link: StreamSplitter() for link in streams}
         self._waiting = set(waiting)
+        self.counts = [Counts() for _ in range(count)]
+        """Of the links that vehicles are on, since the start."""
         self._named: dict[tuple[int, int, int], FrameWriter] = {}
         """Who writes in the name of a component: by link, system and component."""
 
@@ -49,7 +60,10 @@ class Links:
         A datagram is whole; a read of a stream goes on where the last one ended.
         """
         splitter = self._splitters.get(link)
-        return split(data) if splitter is None else splitter.feed(data)
+        items = split(data) if splitter is None else splitter.feed(data)
+        if link < len(self.counts):
+            self.counts[link].received += len(items)
+        return items
 
     def rest(self, link: int) -> bytes:
         """Bytes of a stream that are in no item yet; always empty for a link of datagrams."""
@@ -83,9 +97,12 @@ class Links:
     def unrecorded(self, link: int, raw: bytes, now_ns: int) -> list[Transmit]:
         """The same without its record; nothing where it cannot be signed."""
         try:
-            return [Transmit(link, self._signatures.outgoing(link, raw, now_ns))]
+            sent = Transmit(link, self._signatures.outgoing(link, raw, now_ns))
         except UnsignableError:
             return []
+        if link < len(self.counts):
+            self.counts[link].sent += 1
+        return [sent]
 
     def send_as(self, source: Address, link: int, message: Message, now_ns: int) -> list[Effect]:
         """One frame on one link in the name of a component (`source`), and its record."""

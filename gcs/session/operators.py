@@ -8,6 +8,7 @@ returns work for the rest of the session.
 from __future__ import annotations
 
 from gcs import ipc
+from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.bridge.effects import AsksPlan, StopsPlan
 from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
@@ -225,12 +226,16 @@ class Operators:
     def verdict(self, told: Decide, sysid: int, now_ns: int) -> list[Work]:
         """To the operator who asked; an accepted request is an operation, which all are told."""
         request_id, requests = told.request_id, self._requests
-        if told.ruling is not Ruling.ACCEPTED:
-            return [*teller.verdict(told, requests.close(request_id), sysid)]
         asked = requests.get(request_id)
         name = self._clients.name(asked.client)
+        work: list[Work] = [*teller.verdict(told, asked, sysid)]
+        if asked.client >= FIRST_NUMBER:
+            work.append(teller.bridge_decision(told, asked, name, now_ns))
+        if told.ruling is not Ruling.ACCEPTED:
+            requests.close(request_id)
+            return work
         begun = self._operations.begin(request_id, asked.ask, asked.client, name, now_ns)
-        return [*teller.verdict(told, asked, sysid), Emit(begun)]
+        return [*work, Emit(begun)]
 
     def outcome(self, told: Outcome, sysid: int, now_ns: int) -> list[Work]:
         """The same, of how it ended."""

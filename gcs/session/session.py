@@ -66,7 +66,7 @@ from gcs.session.links import Links
 from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
 from gcs.session.recorded import fault, hello, introduction, pieces, recorded, sim_line
-from gcs.session.screen import snapshot
+from gcs.session.screen import lost_pct, snapshot
 from gcs.session.setup import Setup
 from gcs.session.signatures import NO_KEYS, Keys, Signatures
 from gcs.session.telemetry import Telemetry
@@ -120,7 +120,9 @@ class Session:
         self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._operators = Operators(setup, self._times)
-        self._bridge = BridgePort(config, setup.policy.bridge, self._times, self._vehicle)
+        self._bridge = BridgePort(
+            config, setup.endpoints, setup.policy.bridge, self._times, self._vehicle
+        )
         self._first_client_link = count
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
@@ -398,7 +400,7 @@ class Session:
     def _every_second(self, now_ns: int) -> list[Work]:
         """Heartbeat, what is missing, and the slow half of the record."""
         work: list[Work] = [*self._links.heartbeat(now_ns), *self._vehicle.remind()]
-        work += self._bridge.bridge.second(now_ns)
+        work += self._bridge.second(now_ns, self._links.counts, lost_pct(self._vehicle.losses))
         work += self._signatures.second(now_ns)
         if self._vehicle.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)

@@ -78,6 +78,22 @@ def verdict(told: Decide, asked: Asked, sysid: int) -> list[Effect]:
     return [Emit(event, asked.client), Record(item)]
 
 
+def bridge_decision(told: Decide, asked: Asked, name: str, now_ns: int) -> Emit:
+    """The verdict on what a MAVLink client asked for, for whoever watches the bridge."""
+    refusal = told.refusal
+    return Emit(
+        ipc.BridgeDecision(
+            time_ns=now_ns,
+            client=asked.client,
+            name=name,
+            what=asked.word,
+            outcome=told.ruling.value,
+            code=refusal.code.value if refusal else "",
+            sentence=refusal.sentence if refusal else "",
+        )
+    )
+
+
 def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
     """How an accepted request ended."""
     item = DecisionItem(
