@@ -40,6 +40,8 @@ class Seen:
     """The vehicle's own default height of a take-off, above the take-off point."""
     state: State = State.NO_VEHICLE
     """Of the gate's machine."""
+    goal_yaw_rad: float | None = None
+    """The heading that was asked for with `goal_ned`."""
     mission_paused: bool = False
     """A mission of this vehicle was stopped by a hold, and nothing else was flown since."""
     max_speed_m_s: float = 0.0

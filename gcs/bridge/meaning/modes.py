@@ -1,0 +1,112 @@
+"""Requests for a flight mode: DO_SET_MODE, SET_MODE, and commands that stand for a mode."""
+
+from __future__ import annotations
+
+from gcs import ipc
+from gcs.bridge.meaning.command import Command
+from gcs.bridge.meaning.meaning import Meaning, Seen, Words
+from gcs.bridge.meaning.says import DONE, NOT_FLOWN_BY_US, ask, mode, unsupported
+from gcs.gate.states import FlightMode, State
+from gcs.protocol.autopilot import Autopilot, Mode, mode_of
+from gcs.wire.ids import ModeFlag
+from gcs.wire.messages import SetMode
+
+FLIES_ITSELF = frozenset({State.FLYING_MISSION, State.RETURNING, State.LANDING})
+"""States in which the vehicle flies by a mode of its own that the gate allowed."""
+
+
+def do_set_mode(command: Command, seen: Seen) -> Meaning:
+    """px4: main mode in p2, sub mode in p3; ardupilot: the mode's number in p2."""
+    flags, main, sub = (command.whole(value) for value in (command.p1, command.p2, command.p3))
+    if flags is None or main is None or not 0 <= main <= 0xFFFFFF:
+        return unsupported("DO_SET_MODE without the number of a mode")
+    if seen.autopilot.mode_in_two_parts:
+        # An autopilot without such a part ignores it; px4 itself cuts both to eight bits.
+        return _by_number(flags, (main & 0xFF) << 16 | ((sub or 0) & 0xFF) << 24, seen)
+    return _by_number(flags, main, seen)
+
+
+def set_mode(message: SetMode, seen: Seen) -> Meaning:
+    """The old message: custom_mode as HEARTBEAT has it."""
+    return _by_number(message.base_mode, message.custom_mode, seen)
+
+
+def _by_number(flags: int, custom_mode: int, seen: Seen) -> Meaning:
+    if not flags & ModeFlag.CUSTOM_MODE_ENABLED:
+        return unsupported(
+            f"base mode {flags} names no mode of {seen.autopilot.name}; "
+            "set MAV_MODE_FLAG_CUSTOM_MODE_ENABLED and the custom mode"
+        )
+    wanted = mode_of(seen.autopilot, ModeFlag.CUSTOM_MODE_ENABLED, custom_mode)
+    if wanted not in seen.autopilot.modes:
+        return unsupported(f"{seen.autopilot.name} has no mode {custom_mode:#x} that is known here")
+    return for_mode(wanted, seen)
+
+
+def for_mode(wanted: Mode, seen: Seen) -> Meaning:
+    """What a client that asks for this mode wants the vehicle to do."""
+    match wanted.meaning:
+        case FlightMode.HOLD:
+            return hold(seen, wanted.name)
+        case FlightMode.GUIDED:
+            return guided(wanted, seen)
+        case FlightMode.TAKEOFF:
+            return Words((ipc.Ask(0, "takeoff", up_m=seen.takeoff_up_m),))
+        case FlightMode.MISSION | FlightMode.RETURN | FlightMode.LAND:
+            return _flown_by_itself(wanted, seen)
+        case FlightMode.OTHER:
+            return mode(wanted.name)
+
+
+def hold(seen: Seen, asked_for: str = "") -> Words:
+    """Stop: never refused, from no client, in no state (invariant 10)."""
+    sent = _sent(seen.autopilot, FlightMode.HOLD)
+    if asked_for in ("", sent):
+        return ask("hold")
+    return ask("hold", f"{asked_for}: held in {sent} instead, as {asked_for} obeys the sticks")
+
+
+def guided(wanted: Mode, seen: Seen) -> Words:
+    """OFFBOARD or GUIDED: let a station fly it.  The gate hovers until it is told where to.
+
+    A mode that the vehicle flies by itself is stopped first.  On the ground it is a mode like any
+    other: the gate lets it be set where nothing moves by it.
+    """
+    if seen.on_ground:
+        return mode(wanted.name)
+    if seen.state in NOT_FLOWN_BY_US:
+        return ask("resume")
+    if seen.state in FLIES_ITSELF:
+        return Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume")))
+    if seen.mode_name == wanted.name:
+        return DONE
+    return ask("control")
+
+
+_WORD_OF = {
+    FlightMode.MISSION: "mission_start",
+    FlightMode.RETURN: "rtl",
+    FlightMode.LAND: "land",
+}
+
+
+def _flown_by_itself(wanted: Mode, seen: Seen) -> Words:
+    """By its name where it is not the mode that the gate sends: the gate says which one that is."""
+    if wanted.name != _sent(seen.autopilot, wanted.meaning):
+        return mode(wanted.name)
+    if wanted.meaning is FlightMode.MISSION and seen.state is State.FLYING_MISSION:
+        return DONE
+    return ask(_WORD_OF[wanted.meaning])
+
+
+def _sent(autopilot: Autopilot, meaning: FlightMode) -> str:
+    return autopilot.mode_of_meaning.get(meaning, "")
+
+
+def meaning_named(seen: Seen, meaning: FlightMode) -> Meaning:
+    """The mode of this meaning that the gate sends."""
+    name = _sent(seen.autopilot, meaning)
+    for known in seen.autopilot.modes:
+        if known.name == name or (not name and known.meaning is meaning):
+            return for_mode(known, seen)
+    return unsupported(f"{seen.autopilot.name} has no such mode")

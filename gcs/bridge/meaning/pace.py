@@ -1,0 +1,52 @@
+"""Does a client send its targets once, or does it stream them?
+
+One message alone does not tell.  ArduPilot flies on to a position that came once (DroneKit,
+MAVProxy, scripts); MAVSDK and MAVROS send the same message 20 times a second.  The rule, for
+positions that are sent to an ArduPilot:
+
+- a position that is flown to or held already asks for nothing, however often it is sent;
+- another one is a sample of a stream if it follows a target of the same client within
+  `WITHIN_NS`, and a go-to otherwise.
+
+So a position that does not change is a go-to, which is flown to its end; one that moves is a
+stream, which counts only as long as it goes on.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gcs.bridge.meaning.meaning import Meaning, Sample, Words
+
+WITHIN_NS: Final = 500_000_000
+"""A stream is no slower than 2 Hz: what PX4 needs for OFFBOARD."""
+UNDECIDED_NS: Final = 150_000_000
+"""A go-to waits for the gate's next tick: until then `Seen` does not tell what became of it."""
+
+
+class Pace:
+    """One client's."""
+
+    __slots__ = ("_asked", "_asked_ns", "_last_ns")
+
+    def __init__(self) -> None:
+        self._last_ns: int | None = None
+        self._asked: Words | None = None
+        self._asked_ns = 0
+
+    def settle(self, meaning: Meaning, now_ns: int) -> Meaning:
+        """The meaning with the doubt removed: `Words.if_repeated` is done with."""
+        if isinstance(meaning, Sample):
+            self._last_ns = now_ns
+            return meaning
+        if not isinstance(meaning, Words) or meaning.if_repeated is None:
+            return meaning
+        follows = self._last_ns is not None and now_ns - self._last_ns <= WITHIN_NS
+        self._last_ns = now_ns
+        once = Words(meaning.asks, meaning.note)
+        if not follows or not once.asks:
+            self._asked, self._asked_ns = once, now_ns
+            return once
+        if once == self._asked and now_ns - self._asked_ns <= UNDECIDED_NS:
+            return Words(())
+        return meaning.if_repeated

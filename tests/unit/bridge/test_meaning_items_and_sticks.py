@@ -1,0 +1,124 @@
+"""Single mission items, sticks and attitudes of clients."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+from pymavlink.dialects.v20 import all as mavlink
+
+from gcs.bridge.meaning.translate import meaning_of
+from gcs.gate.states import State
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
+from gcs.wire.messages import Message
+from tests.unit.bridge.vehicles import NAN, flying, goal, refusal, sent, words
+
+BOTH = pytest.mark.parametrize("autopilot", [PX4, ARDUPILOT], ids=lambda a: a.name)
+
+
+def item(current: int, frame: int = 3, lat: float = 47.398742, alt: float = 5.0) -> Message:
+    """DroneKit's `simple_goto` and MAVProxy's `guided`: NAV_WAYPOINT, `current` 2."""
+    return sent(
+        mavlink.MAVLink_mission_item_message(
+            1, 1, 0, frame, 16, current, 0, 0, 0, 0, 0, lat, 8.545594, alt
+        )
+    )
+
+
+def test_ardupilots_guided_item_is_a_go_to() -> None:
+    """0.001 degrees north, 5 m above home, which is 12 m above the origin.  A float32 latitude is
+    good to 0.4 m."""
+    assert goal(meaning_of(item(2), flying(ARDUPILOT))) == pytest.approx((0, 111.3, 17.0), abs=0.5)
+    exact = mavlink.MAVLink_mission_item_int_message(
+        1, 1, 0, 6, 16, 2, 0, 0, 0, 0, 0, 473987420, 85455940, 5.0
+    )
+    there = goal(meaning_of(sent(exact), flying(ARDUPILOT)))
+    assert there == pytest.approx((0.0, 111.3188, 17.0), abs=0.01)
+
+
+def test_a_guided_item_does_not_leave_a_hold() -> None:
+    """mode_auto.cpp: "only process guided waypoint if we are in guided mode"."""
+    held = flying(ARDUPILOT, state=State.HOLDING)
+    assert words(meaning_of(item(2), held)) == ["goto"]
+
+
+def test_ardupilots_item_for_another_height() -> None:
+    assert goal(meaning_of(item(3, alt=8.0), flying(ARDUPILOT))) == (2.0, 1.0, 20.0)
+    on_its_way = flying(ARDUPILOT, state=State.MOVING, goal_ned=(30.0, 40.0, -22.0))
+    assert goal(meaning_of(item(3, alt=8.0), on_its_way)) == (40.0, 30.0, 20.0)
+
+
+def test_items_that_are_no_go_to() -> None:
+    assert refusal(meaning_of(item(2), flying(PX4))).startswith("UNSUPPORTED")
+    assert refusal(meaning_of(item(2, frame=10), flying(ARDUPILOT))).startswith("UNSUPPORTED")
+    assert refusal(meaning_of(item(0), flying(ARDUPILOT))).startswith("BAD_MISSION")
+    assert refusal(meaning_of(item(2, lat=NAN), flying(ARDUPILOT))).startswith("NON_FINITE")
+    assert refusal(meaning_of(item(2, alt=NAN), flying(ARDUPILOT))).startswith("NON_FINITE")
+    land = mavlink.MAVLink_mission_item_message(1, 1, 0, 3, 21, 2, 0, 0, 0, 0, 0, 47.3, 8.5, 5.0)
+    assert refusal(meaning_of(sent(land), flying(ARDUPILOT))).startswith("UNSUPPORTED")
+
+
+def sticks(x: int = 0, y: int = 0, z: int = 500, r: int = 0, buttons: int = 0) -> Message:
+    return sent(mavlink.MAVLink_manual_control_message(1, x, y, z, r, buttons))
+
+
+@BOTH
+def test_sticks_in_the_middle_ask_for_nothing(autopilot: Autopilot) -> None:
+    """And are not forwarded: an autopilot that has seen sticks acts on their loss."""
+    assert words(meaning_of(sticks(), flying(autopilot))) == []
+    missing = 0x7FFF
+    assert words(meaning_of(sticks(missing, missing, missing, missing), flying(autopilot))) == []
+
+
+@BOTH
+@pytest.mark.parametrize(
+    "moved", [{"x": 1}, {"y": -1000}, {"z": 0}, {"z": 501}, {"r": 300}, {"buttons": 1}], ids=str
+)
+def test_sticks_that_ask_for_something(autopilot: Autopilot, moved: Mapping[str, int]) -> None:
+    text = refusal(meaning_of(sticks(**moved), flying(autopilot)))
+    assert text.startswith("UNSUPPORTED")
+    assert "cannot be verified" in text
+
+
+def channels(*raw: int, **later: Any) -> Message:
+    first = list(raw) + [65535] * (8 - len(raw))
+    return sent(mavlink.MAVLink_rc_channels_override_message(1, 1, *first, **later))
+
+
+@BOTH
+def test_channels_released_or_left_alone_ask_for_nothing(autopilot: Autopilot) -> None:
+    for message in (
+        channels(),
+        channels(0, 0, 0, 0, 0, 0, 0, 0),
+        channels(0, chan9_raw=65534, chan10_raw=65535),
+    ):
+        assert words(meaning_of(message, flying(autopilot))) == []
+
+
+@BOTH
+def test_channels_that_are_set(autopilot: Autopilot) -> None:
+    """1500 is no neutral value: on ArduPilot it holds the throttle of a pilot away."""
+    for message in (
+        channels(1500, 1500, 1500, 1500),
+        channels(65535, 65535, 1100),
+        channels(65534),
+        channels(0, chan9_raw=1800),
+        channels(0, chan18_raw=1000),
+    ):
+        assert refusal(meaning_of(message, flying(autopilot))).startswith("UNSUPPORTED")
+
+
+@BOTH
+@pytest.mark.parametrize("mask", [0, 0b111, 0b10000000, 0b11000111])
+def test_attitudes_are_refused_in_every_mask(autopilot: Autopilot, mask: int) -> None:
+    level = [1.0, 0.0, 0.0, 0.0]
+    message = mavlink.MAVLink_set_attitude_target_message(0, 1, 1, mask, level, 0, 0, 0, 0.5)
+    text = refusal(meaning_of(sent(message), flying(autopilot)))
+    assert text.startswith("UNSUPPORTED")
+    assert "cannot be verified" in text
+
+
+def test_what_moves_nothing_has_no_meaning() -> None:
+    heartbeat = mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
+    assert refusal(meaning_of(sent(heartbeat), flying(PX4))).startswith("UNSUPPORTED")

@@ -1,0 +1,179 @@
+"""Requests for a flight mode, by the numbers that pymavlink's tables and PX4's header give them."""
+
+from __future__ import annotations
+
+import pytest
+from pymavlink import mavutil
+from pymavlink.dialects.v20 import all as mavlink
+
+from gcs.bridge.meaning.meaning import Words
+from gcs.bridge.meaning.translate import meaning_of
+from gcs.gate.states import State
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
+from gcs.wire.messages import Message
+from tests.unit.bridge.vehicles import command_long, flying, refusal, sent, standing, words
+
+CUSTOM = 1
+COPTER = {name: number for number, name in mavutil.mode_mapping_acm.items()}
+
+
+def px4(name: str) -> Message:
+    """As pymavlink's `set_mode_px4`: base mode, main mode, sub mode."""
+    base, main, sub = mavutil.px4_map[name]
+    return command_long(176, float(base), float(main), float(sub))
+
+
+def copter(name: str) -> Message:
+    """As pymavlink's `set_mode_apm` for a vehicle that takes DO_SET_MODE."""
+    return command_long(176, CUSTOM, float(COPTER[name]))
+
+
+def set_mode(base: int, custom: int) -> Message:
+    return sent(mavlink.MAVLink_set_mode_message(1, base, custom))
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("LOITER", ["hold"]),
+        ("MISSION", ["mission_start"]),
+        ("RTL", ["rtl"]),
+        ("LAND", ["land"]),
+        ("TAKEOFF", ["takeoff"]),
+        ("MANUAL", ["mode"]),
+        ("POSCTL", ["mode"]),
+        ("FOLLOWME", ["mode"]),
+    ],
+)
+def test_px4s_modes(name: str, asked: list[str]) -> None:
+    assert words(meaning_of(px4(name), flying(PX4))) == asked
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("BRAKE", ["hold"]),
+        ("LOITER", ["hold"]),
+        ("AUTO", ["mission_start"]),
+        ("RTL", ["rtl"]),
+        ("LAND", ["land"]),
+        ("STABILIZE", ["mode"]),
+        ("SMART_RTL", ["mode"]),
+        ("CIRCLE", ["mode"]),
+    ],
+)
+def test_ardupilots_modes(name: str, asked: list[str]) -> None:
+    assert words(meaning_of(copter(name), flying(ARDUPILOT))) == asked
+
+
+def test_the_old_message_says_the_same() -> None:
+    main, sub = mavutil.px4_map["RTL"][1:]
+    assert words(meaning_of(set_mode(CUSTOM, main << 16 | sub << 24), flying(PX4))) == ["rtl"]
+    assert words(meaning_of(set_mode(CUSTOM, COPTER["LAND"]), flying(ARDUPILOT))) == ["land"]
+
+
+def test_a_hold_that_obeys_the_sticks_is_held_otherwise_and_told() -> None:
+    meaning = meaning_of(copter("LOITER"), flying(ARDUPILOT))
+    assert isinstance(meaning, Words)
+    assert "BRAKE" in meaning.note
+    brake = meaning_of(copter("BRAKE"), flying(ARDUPILOT))
+    assert isinstance(brake, Words)
+    assert not brake.note
+
+
+def test_px4s_take_off_mode_climbs_to_its_own_height() -> None:
+    meaning = meaning_of(px4("TAKEOFF"), standing(PX4, armed=True))
+    assert isinstance(meaning, Words)
+    assert meaning.asks[0].up_m == 2.5
+
+
+GUIDED = pytest.mark.parametrize(
+    ("autopilot", "guided"),
+    [(PX4, px4("OFFBOARD")), (ARDUPILOT, copter("GUIDED"))],
+    ids=["px4", "ardupilot"],
+)
+
+
+@GUIDED
+@pytest.mark.parametrize(
+    ("state", "mode_name", "asked"),
+    [
+        (State.HOLDING, "", ["resume"]),
+        (State.EXTERNAL, "", ["resume"]),
+        (State.FLYING_MISSION, "", ["hold", "resume"]),
+        (State.RETURNING, "", ["hold", "resume"]),
+        (State.LANDING, "", ["hold", "resume"]),
+        (State.HOVERING, "", ["control"]),
+        (State.HOVERING, "guided", []),
+        (State.MOVING, "guided", []),
+        (State.TAKING_OFF, "guided", []),
+        (State.TAKING_OFF, "", ["control"]),
+    ],
+)
+def test_guided_gets_to_where_the_gate_hovers(
+    state: State, mode_name: str, asked: list[str], autopilot: Autopilot, guided: Message
+) -> None:
+    """On ArduPilot the way from a hold to a go-to: GUIDED, then the target."""
+    seen = flying(autopilot, state=state)
+    seen = seen if mode_name else flying(autopilot, state=state, mode_name="")
+    assert words(meaning_of(guided, seen)) == asked
+
+
+@GUIDED
+def test_guided_on_the_ground_is_a_mode_that_the_gate_decides_about(
+    autopilot: Autopilot, guided: Message
+) -> None:
+    """ArduPilot's clients set it before they arm."""
+    meaning = meaning_of(guided, standing(autopilot))
+    assert words(meaning) == ["mode"]
+    assert isinstance(meaning, Words)
+    assert meaning.asks[0].mode == ("OFFBOARD" if autopilot is PX4 else "GUIDED")
+
+
+def test_nav_guided_enable_is_the_same() -> None:
+    held = flying(PX4, state=State.HOLDING)
+    assert words(meaning_of(command_long(92, 1.0), held)) == ["resume"]
+    assert refusal(meaning_of(command_long(92, 2.0), held)).startswith("UNSUPPORTED")
+
+
+def test_a_mission_that_is_flown_need_not_start() -> None:
+    flown = flying(PX4, state=State.FLYING_MISSION, mode_name="AUTO.MISSION")
+    assert words(meaning_of(px4("MISSION"), flown)) == []
+
+
+def test_modes_that_do_not_exist() -> None:
+    assert refusal(meaning_of(command_long(176, CUSTOM, 99.0), flying(ARDUPILOT)))
+    assert refusal(meaning_of(command_long(176, CUSTOM, 4.0, 99.0), flying(PX4)))
+    # Commander.cpp takes main mode 4 without a sub mode for the mission; nobody names it so.
+    assert refusal(meaning_of(command_long(176, CUSTOM, 4.0, 0.0), flying(PX4)))
+
+
+@pytest.mark.parametrize("autopilot", [PX4, ARDUPILOT], ids=lambda a: a.name)
+@pytest.mark.parametrize(
+    "flags",
+    [
+        mavlink.MAV_MODE_AUTO_ARMED,  # PX4 would fly its mission
+        mavlink.MAV_MODE_FLAG_SAFETY_ARMED,  # ArduPilot: the safety switch
+        0,
+    ],
+)
+def test_base_modes_alone_are_refused(autopilot: Autopilot, flags: int) -> None:
+    assert refusal(meaning_of(set_mode(flags, 0), flying(autopilot))).startswith("UNSUPPORTED")
+    assert refusal(meaning_of(command_long(176, float(flags)), flying(autopilot)))
+
+
+@pytest.mark.parametrize(
+    ("number", "asked"), [(5, ["rtl"]), (6, ["mission_start"]), (7, ["land"]), (8, ["takeoff"])]
+)
+def test_standard_modes(number: int, asked: list[str]) -> None:
+    assert words(meaning_of(command_long(262, float(number)), flying(PX4))) == asked
+
+
+@pytest.mark.parametrize("number", [0, 1, 2, 3, 4, 9, -1])
+def test_standard_modes_that_need_sticks(number: int) -> None:
+    meaning = meaning_of(command_long(262, float(number)), flying(PX4))
+    assert refusal(meaning).startswith("UNSUPPORTED")
+
+
+def test_ardupilot_has_no_mode_for_a_take_off() -> None:
+    assert refusal(meaning_of(command_long(262, 8.0), standing(ARDUPILOT)))
