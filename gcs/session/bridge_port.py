@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from gcs import ipc
-from gcs.bridge.bridge import Bridge, Judged
+from gcs.bridge.bridge import Bridge
 from gcs.bridge.effects import BridgeEffect
+from gcs.bridge.judge import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
 from gcs.gate.effects import Level
