@@ -105,7 +105,7 @@ def test_an_exception_that_does_not_happen_again_is_a_difference(beats: FrameWri
         for m in close(session, tape)
     ]
     difference = audited(resealed(messages), tape.attachments).first[0]
-    assert difference.recorded == "IndexError: list index out of range"
+    assert difference.recorded == "KeyError: 7"
     assert difference.reproduced == "no exception"
 
 

@@ -102,7 +102,7 @@ def test_what_its_reader_doubts_is_remarked_with_its_item() -> None:
 def test_an_item_is_on_the_wire_what_it_is_in_the_plan() -> None:
     item = prepared(BOX).sent[2]
     message = message_of(item)
-    (seen,) = wire.sent(Links(255, 190, count=1).send(0, message))
+    (seen,) = wire.sent(Links(255, 190, count=1).send(0, message, 0))
     assert seen.get_type() == "MISSION_ITEM_INT"
     assert (seen.seq, seen.command, seen.frame) == (2, 16, 6)
     assert (seen.x, seen.y, seen.z) == (473978420, 85457940, 12.0)

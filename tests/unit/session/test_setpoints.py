@@ -23,7 +23,7 @@ def on_the_wire(
 ) -> wire.Message:
     permit = issue(pos_ned, yaw_rad, now_ns, "a test")
     message = setpoint(vehicle(), permit, START_NS, now_ns)
-    (sent,) = wire.sent(Links(255, 190, count=1).send(0, message))
+    (sent,) = wire.sent(Links(255, 190, count=1).send(0, message, now_ns))
     return sent
 
 

@@ -10,6 +10,7 @@ from typing import Any, get_args
 import msgspec
 import pytest
 
+from gcs.bridge.effects import BridgeEffect
 from gcs.gate import effects as gate_effects
 from gcs.protocol.effects import Send
 from gcs.session import effects, inputs, work
@@ -42,6 +43,7 @@ def test_every_effect_is_in_the_union_and_the_queue_knows_it_for_one() -> None:
 
 def test_work_is_effects_of_shell_and_gate_messages_and_what_is_defined_for_it() -> None:
     others = set(get_args(effects.Effect)) | set(get_args(gate_effects.Effect)) | {Send}
+    others |= set(get_args(BridgeEffect))
     assert set(get_args(work.Work)) == others | defined_in(work)
 
 
