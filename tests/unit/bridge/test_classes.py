@@ -13,6 +13,7 @@ from gcs.bridge.classes import Kind, Row, command_row, explain, explanation, mes
 from gcs.bridge.classes.row import Group, table_of
 from gcs.bridge.classes.tables import COMMAND_ROWS, MESSAGE_ROWS
 from gcs.wire import dialect
+from tests.unit.bridge import client_traffic
 
 MESSAGES = {message.msgid: message.name for message in dialect.MESSAGES.values()}
 COMMANDS = {
@@ -216,6 +217,46 @@ class TestTargets:
         for row in MESSAGE_ROWS.values():
             if row.name.startswith(setpoints):
                 assert row.kind in (Kind.MOTION, Kind.DENIED), row
+
+
+class TestWhatRealClientsSend:
+    """client_traffic.py is what they were seen to send; only what is dangerous is lost."""
+
+    DENIED_MESSAGES = frozenset({"FOLLOW_TARGET"})
+    DENIED_COMMANDS = frozenset(
+        {"DO_SET_ACTUATOR", "DO_SET_RELAY", "DO_SET_SERVO", "DO_VTOL_TRANSITION"}
+    )
+
+    @pytest.mark.parametrize("client", sorted(client_traffic.MESSAGES))
+    def test_no_message_is_denied_but_the_ones_that_move_it_past_the_gate(
+        self, client: str
+    ) -> None:
+        found = kinds(
+            client_traffic.MESSAGES[client] - {"COMMAND_INT", "COMMAND_LONG"}, MESSAGE_ROWS
+        )
+        denied = {name for name, kind in found.items() if kind is Kind.DENIED}
+        assert denied == self.DENIED_MESSAGES & client_traffic.MESSAGES[client]
+
+    @pytest.mark.parametrize("client", sorted(client_traffic.COMMANDS))
+    def test_no_command_is_denied_but_actuators(self, client: str) -> None:
+        found = kinds(client_traffic.COMMANDS[client], COMMAND_ROWS)
+        denied = {name for name, kind in found.items() if kind is Kind.DENIED}
+        assert denied == self.DENIED_COMMANDS & client_traffic.COMMANDS[client]
+
+    def test_what_they_ask_when_they_connect_goes_through_as_it_is(self) -> None:
+        messages = ["PARAM_REQUEST_LIST", "PARAM_REQUEST_READ", "MISSION_REQUEST_LIST"]
+        messages += [
+            "MISSION_REQUEST_INT",
+            "MISSION_ACK",
+            "REQUEST_DATA_STREAM",
+            "PING",
+            "TIMESYNC",
+        ]
+        messages += ["LOG_REQUEST_LIST", "LOG_REQUEST_DATA", "LOG_REQUEST_END"]
+        commands = ["REQUEST_MESSAGE", "SET_MESSAGE_INTERVAL", "GET_HOME_POSITION"]
+        commands += ["IMAGE_START_CAPTURE", "SET_CAMERA_MODE", "REQUEST_AUTOPILOT_CAPABILITIES"]
+        found = kinds(messages, MESSAGE_ROWS) | kinds(commands, COMMAND_ROWS)
+        assert set(found.values()) == {Kind.HARMLESS}, found
 
 
 class TestExplain:
