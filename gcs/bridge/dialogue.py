@@ -24,10 +24,12 @@ from gcs.wire.ids import Result
 from gcs.wire.messages import CommandInt, CommandLong, Message
 
 AGAIN_NS: Final = 2_000_000_000
-"""The same command within this time after its answer is a repetition of it, not a new one."""
+"""The command that was accepted last, sent again within this time, is a repetition of it, not a new
+one.  Anything else that was asked in between, a refusal, or a stop is never answered from memory:
+the vehicle may be flown otherwise by now."""
+STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
 SAME_TEXT_NS: Final = 5_000_000_000
 """The same text is sent again to a client only after so long."""
-MOST_TOLD: Final = 20
 MOST_TEXTS: Final = 50
 """In `SAME_TEXT_NS`; a client that is refused more often than that reads the acknowledgements."""
 DECIDED_BY_GATE: Final = frozenset({"goto", "stream_begin", "stream_end"})
@@ -68,8 +70,6 @@ class _Pending:
 @dataclass(slots=True)
 class _Told:
     key: bytes
-    result: int
-    code: Code | None
     until_ns: int
 
 
@@ -81,7 +81,10 @@ class Dialogue:
     _next_id: int = 1
     _next_text: int = 1
     _pending: dict[int, _Pending] = field(default_factory=dict)
-    _told: list[_Told] = field(default_factory=list)
+    _last_key: bytes = b""
+    """The message that was asked for last."""
+    _told: _Told | None = None
+    """Its answer, if it was accepted."""
     _texts: dict[str, int] = field(default_factory=dict)
 
     # ----------------------------------------------------------------------------- asking
@@ -91,9 +94,12 @@ class Dialogue:
     ) -> list[BridgeEffect]:
         """Ask for `asks`, one after the other, because of a message; none: it is so already."""
         key, command = _key(message), _command(message)
+        if asks and asks[0].word in STOPS:
+            self._told = None
         repeated = self._repeated(asked_by, key, command, now_ns)
         if repeated is not None:
             return repeated
+        self._last_key, self._told = key, None
         if not asks:
             done = [self._acknowledge(asked_by, command, Result.ACCEPTED)]
             return [*done] if command else []
@@ -135,9 +141,9 @@ class Dialogue:
             if pending.key == key and pending.asked_by == asked_by:
                 result = Result.IN_PROGRESS if pending.answered is None else pending.answered
                 return [self._acknowledge(asked_by, command, result)]
-        for told in self._told:
-            if told.key == key and told.until_ns > now_ns:
-                return [self._acknowledge(asked_by, command, told.result, told.code)]
+        told = self._told
+        if told is not None and told.key == key and told.until_ns > now_ns:
+            return [self._acknowledge(asked_by, command, Result.ACCEPTED)]
         return None
 
     # ---------------------------------------------------------------------------- answers
@@ -205,8 +211,8 @@ class Dialogue:
         if pending.answered is not None or not pending.command:
             return []
         pending.answered = result
-        told = _Told(pending.key, result, code, now_ns + AGAIN_NS)
-        self._told = [*self._told[-MOST_TOLD:], told]
+        if result == Result.ACCEPTED and pending.key == self._last_key:
+            self._told = _Told(pending.key, now_ns + AGAIN_NS)
         return [self._acknowledge(pending.asked_by, pending.command, result, code)]
 
     @staticmethod

@@ -91,12 +91,20 @@ _WORD_OF = {
 
 
 def _flown_by_itself(wanted: Mode, seen: Seen) -> Words:
-    """By its name where it is not the mode that the gate sends: the gate says which one that is."""
+    """By its name where it is not the mode that the gate sends: the gate says which one that is.
+
+    A mission may be started, or gone on with, from a hold: its client has no word for `resume`.
+    """
     if wanted.name != _sent(seen.autopilot, wanted.meaning):
         return mode(wanted.name)
-    if wanted.meaning is FlightMode.MISSION and seen.state is State.FLYING_MISSION:
+    word = ask(_WORD_OF[wanted.meaning])
+    if wanted.meaning is not FlightMode.MISSION:
+        return word
+    if seen.state is State.FLYING_MISSION:
         return DONE
-    return ask(_WORD_OF[wanted.meaning])
+    if seen.state in NOT_FLOWN_BY_US and not seen.on_ground:
+        return Words((ipc.Ask(0, "resume"), *word.asks))
+    return word
 
 
 def _sent(autopilot: Autopilot, meaning: FlightMode) -> str:

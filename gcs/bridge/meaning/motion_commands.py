@@ -26,9 +26,13 @@ OWN_SPEED: Final = "flown at the vehicle's own speed"
 
 
 def arm_or_disarm(command: Command, seen: Seen) -> Meaning:
-    """`arm` never skips the vehicle's checks; a forced disarm is the gate's to decide."""
+    """`arm` never skips the vehicle's checks; a forced disarm is the gate's to decide.
+
+    ArduCopter 4.7 and older PX4 take other numbers than 21196 for force, too; MAVSDK fills p2 with
+    NaN, which is none.
+    """
     if command.p1 == 1.0:
-        forced = command.p2 != 0.0
+        forced = command.p2 != 0.0 and math.isfinite(command.p2)
         return ask("arm", "the vehicle's own checks are not skipped" if forced else "")
     if command.p1 == 0.0:
         return Words((ipc.Ask(0, "disarm", force=command.p2 == FORCE),))

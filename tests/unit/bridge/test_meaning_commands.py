@@ -63,6 +63,18 @@ def test_forced_arming_is_arming_with_its_checks_and_says_so(autopilot: Autopilo
 
 
 @BOTH
+def test_mavsdk_fills_what_it_does_not_use_with_nan(autopilot: Autopilot) -> None:
+    """Seen of MAVSDK 4.1.0: arm is 1, NaN, NaN, NaN, NaN, NaN, NaN, and not forced."""
+    nans = (NAN,) * 6
+    assert meaning_of(command_long(400, 1.0, *nans), standing(autopilot)) == meaning_of(
+        command_long(400, 1.0), standing(autopilot)
+    )
+    disarm = meaning_of(command_long(400, 0.0, *nans), flying(autopilot))
+    assert isinstance(disarm, Words)
+    assert not disarm.asks[0].force
+
+
+@BOTH
 def test_disarming_by_force_is_asked_of_the_gate_as_such(autopilot: Autopilot) -> None:
     gentle = meaning_of(command_long(400, 0.0), flying(autopilot))
     forced = meaning_of(command_long(400, 0.0, 21196.0), flying(autopilot))
@@ -188,7 +200,7 @@ def test_going_on(autopilot: Autopilot) -> None:
     held = flying(autopilot, state=State.HOLDING)
     assert words(meaning_of(go_on, held)) == ["resume"]
     in_a_mission = flying(autopilot, state=State.HOLDING, mission_paused=True)
-    assert words(meaning_of(go_on, in_a_mission)) == ["mission_start"]
+    assert words(meaning_of(go_on, in_a_mission)) == ["resume", "mission_start"]
     assert refusal(meaning_of(command_long(193, 0.5), held)).startswith("UNSUPPORTED")
 
 

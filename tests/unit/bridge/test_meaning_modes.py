@@ -141,6 +141,16 @@ def test_a_mission_that_is_flown_need_not_start() -> None:
     assert words(meaning_of(px4("MISSION"), flown)) == []
 
 
+@pytest.mark.parametrize("state", [State.HOLDING, State.EXTERNAL], ids=lambda s: s.name)
+def test_a_mission_goes_on_after_a_hold(state: State) -> None:
+    """MAVSDK pauses with the hold mode and starts again with the mission mode, or MISSION_START."""
+    px4_held = flying(PX4, state=state, mode_name="AUTO.LOITER")
+    assert words(meaning_of(px4("MISSION"), px4_held)) == ["resume", "mission_start"]
+    copter_held = flying(ARDUPILOT, state=state, mode_name="BRAKE")
+    assert words(meaning_of(copter("AUTO"), copter_held)) == ["resume", "mission_start"]
+    assert words(meaning_of(command_long(300), copter_held)) == ["resume", "mission_start"]
+
+
 def test_modes_that_do_not_exist() -> None:
     assert refusal(meaning_of(command_long(176, CUSTOM, 99.0), flying(ARDUPILOT)))
     assert refusal(meaning_of(command_long(176, CUSTOM, 4.0, 99.0), flying(PX4)))

@@ -1,0 +1,79 @@
+"""A command that is sent again: a repetition whose answer was lost, or a new wish?"""
+
+from __future__ import annotations
+
+from gcs import ipc
+from gcs.bridge.dialogue import Dialogue, From
+from gcs.bridge.effects import Answers, Says
+from gcs.protocol.effects import Address
+from gcs.wire.ids import Cmd, Result
+from gcs.wire.messages import CommandAck, CommandLong
+
+MS = 1_000_000
+CLIENT = From(1, Address(255, 190), Address(1, 1))
+
+
+class Client:
+    """One client; every request that it makes is accepted and completes at once."""
+
+    def __init__(self) -> None:
+        self.dialogue, self.now_ns, self.operation = Dialogue(1000), 0, 0
+
+    def sends(self, command: int, word: str, outcome: str = "complete", after_ms: int = 500) -> str:
+        """What came of it: asked, or answered from memory."""
+        self.now_ns += after_ms * MS
+        message = CommandLong(0, 0, 0, 0, 0, 0, 0, command, 1, 1, 0)
+        effects = self.dialogue.ask(CLIENT, message, (ipc.Ask(0, word),), self.now_ns)
+        (effect,) = effects
+        if isinstance(effect, Answers):
+            assert isinstance(effect.message, CommandAck)
+            return f"answered {Result(effect.message.result).name}"
+        assert isinstance(effect, Says)
+        assert isinstance(effect.command, ipc.Ask)
+        number = effect.command.id
+        self.operation += 1
+        if outcome == "refused":
+            refused = ipc.VerdictEvent(number, word, "refused", "BUSY", operation=self.operation)
+            self.dialogue.told(refused, self.now_ns)
+            return "asked"
+        accepted = ipc.VerdictEvent(number, word, "accepted", operation=self.operation)
+        self.dialogue.told(accepted, self.now_ns)
+        if outcome == "complete":
+            self.dialogue.told(ipc.EndingEvent(number, word, "complete"), self.now_ns)
+        return "asked"
+
+
+def test_a_repetition_is_answered_and_not_asked_twice() -> None:
+    client = Client()
+    assert client.sends(Cmd.NAV_TAKEOFF, "takeoff", outcome="under way") == "asked"
+    assert client.sends(Cmd.NAV_TAKEOFF, "takeoff") == "answered IN_PROGRESS"
+    client = Client()
+    assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "asked"
+    assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "answered ACCEPTED"
+    assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm", after_ms=2500) == "asked"
+
+
+def test_a_stop_is_never_answered_from_memory() -> None:
+    """Somebody else may have let it fly on meanwhile (invariant 10)."""
+    client = Client()
+    for command, word in (
+        (Cmd.DO_PAUSE_CONTINUE, "hold"),
+        (Cmd.NAV_LAND, "land"),
+        (Cmd.NAV_RETURN_TO_LAUNCH, "rtl"),
+    ):
+        assert client.sends(command, word) == "asked"
+        assert client.sends(command, word) == "asked"
+
+
+def test_what_came_between_makes_it_a_new_wish() -> None:
+    client = Client()
+    assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "asked"
+    assert client.sends(Cmd.DO_SET_MODE, "control") == "asked"
+    assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "asked"
+
+
+def test_a_refusal_is_decided_anew() -> None:
+    """BUSY a second ago says nothing of now."""
+    client = Client()
+    assert client.sends(Cmd.DO_REPOSITION, "goto", outcome="refused") == "asked"
+    assert client.sends(Cmd.DO_REPOSITION, "goto") == "asked"
