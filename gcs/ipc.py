@@ -286,6 +286,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     home_enu: Vec3 | None = None
     gps: str = ""  # "3D fix, 10 satellites"
     estimator: str = ""  # "ok", or what is wrong with the vehicle's position
+    failsafes: list[str] = []  # its own, one a case: "low battery: land"
     battery_pct: float | None = None
     battery_v: float | None = None
     heartbeat_age_s: float | None = None

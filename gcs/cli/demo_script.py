@@ -24,13 +24,28 @@ POLICY: Final = "demo"
 MISSION: Final = "yard.toml"
 FAILSAFES_ON: Final[Mapping[str, Mapping[str, float]]] = MappingProxyType(
     {
-        "px4": MappingProxyType({"NAV_DLL_ACT": 2.0}),
+        "px4": MappingProxyType(
+            {
+                "NAV_DLL_ACT": 2.0,
+                "GF_MAX_HOR_DIST": 37.0,
+                "GF_MAX_VER_DIST": 12.0,
+                "RTL_RETURN_ALT": 10.0,
+            }
+        ),
         "ardupilot": MappingProxyType(
-            {"FS_GCS_ENABLE": 1.0, "FENCE_ENABLE": 1.0, "BATT_FS_LOW_ACT": 2.0}
+            {
+                "FS_GCS_ENABLE": 1.0,
+                "BATT_FS_LOW_ACT": 2.0,
+                "FENCE_ENABLE": 1.0,
+                "FENCE_RADIUS": 37.0,
+                "FENCE_ALT_MAX": 12.0,
+                "RTL_ALT": 1000.0,
+            }
         ),
     }
 )
-"""What the vehicle has switched off as delivered, and the station would warn of all the time."""
+"""What the vehicle has switched off as delivered, or wider than the demo's fence: the station would
+warn of it all the time."""
 
 LOOK_S: Final = 1.6
 """How long the flight stands still after a refusal and an abort, for those who watch it later."""

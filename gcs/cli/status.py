@@ -67,6 +67,7 @@ def rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str]]:
         ("home", f"{signed_enu(seen.home_enu)} m"),
         ("gps", f"{seen.gps or '-'}, estimator {seen.estimator or '-'}"),
         ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
+        ("failsafes", "\n".join(seen.failsafes) or "-"),
         ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),
         ("log", seen.log_path or "not recorded"),

@@ -60,6 +60,7 @@ def snapshot(
         home_enu=enu_from_ned(telemetry.home_ned) if telemetry.home_ned else None,
         gps=telemetry.health.gps.words,
         estimator=telemetry.health.estimator.words,
+        failsafes=list(telemetry.failsafes),
         battery_pct=telemetry.battery_pct,
         battery_v=telemetry.battery_v,
         heartbeat_age_s=(now_ns - telemetry.heartbeat_ns) / 1e9,

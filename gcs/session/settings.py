@@ -14,6 +14,7 @@ from gcs.protocol.effects import Address, Heard, Send, Wake
 from gcs.protocol.parameter_names import names_of
 from gcs.protocol.parameters import decode_value
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
+from gcs.session.failsafes import CASES, Limits, findings, parameters_of
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.wire.ids import ParamType
@@ -28,32 +29,6 @@ READ_AGAIN_NS = 1_000_000_000
 LONGEST_READ_AGAIN_NS = 8_000_000_000
 """The wait doubles up to this."""
 
-
-@dataclass(frozen=True, slots=True)
-class Failsafe:
-    """A parameter of the vehicle that says what it does without us; below `weak_below`: nothing."""
-
-    name: str
-    about: str
-    weak_below: float
-
-
-FAILSAFES: dict[str, tuple[Failsafe, ...]] = {
-    # PX4 parameter reference: 0 = disabled for the first three.
-    "px4": (
-        Failsafe("NAV_DLL_ACT", "ground-station loss", 1.0),
-        Failsafe("GF_ACTION", "geofence breach", 1.0),
-        Failsafe("COM_LOW_BAT_ACT", "low battery", 1.0),
-        Failsafe("COM_OF_LOSS_T", "offboard loss, seconds", 0.0),
-        Failsafe("COM_OBL_RC_ACT", "offboard loss, action", 0.0),
-    ),
-    # ArduCopter parameter list: 0 = disabled for each of these.
-    "ardupilot": (
-        Failsafe("FS_GCS_ENABLE", "ground-station loss", 1.0),
-        Failsafe("FENCE_ENABLE", "geofence breach", 1.0),
-        Failsafe("BATT_FS_LOW_ACT", "low battery", 1.0),
-    ),
-}
 
 RETURN_HEIGHT: Final = {"px4": "RTL_RETURN_ALT", "ardupilot": "RTL_ALT_M"}
 """Metres above home, by its newest name."""
@@ -96,9 +71,11 @@ class ClimbEndKnown:
 
 @dataclass(frozen=True, slots=True)
 class FailsafesKnown:
-    """Every failsafe was asked for: those that are off or not known, in words."""
+    """Every failsafe was asked for: what the vehicle does in each case, in words, and which of
+    these are off, weaker than the policy, or not known."""
 
     weak: tuple[str, ...]
+    all: tuple[str, ...] = ()
 
 
 Found: TypeAlias = (
@@ -109,8 +86,9 @@ Found: TypeAlias = (
 class Settings:
     """Reads them once for each time that a vehicle appears, and follows what changes later."""
 
-    def __init__(self, own: Address, times: Times) -> None:
+    def __init__(self, own: Address, times: Times, limits: Limits) -> None:
         self._own = own
+        self._limits = limits
         self._times = times
         self._reader: SettingsReader | None = None
         self._scales: dict[str, tuple[str, float]] = {}
@@ -129,7 +107,7 @@ class Settings:
         """Begin to read all of them."""
         who = _whose(telemetry)
         wanted = [table[who] for table in READ_FIRST if who in table]
-        wanted += [failsafe.name for failsafe in FAILSAFES.get(who, ())]
+        wanted += [name for name in parameters_of(who) if name not in wanted]
         names = [(newest, name) for newest in wanted for name in names_of(newest)]
         self._scales = {name.name: (newest, name.scale) for newest, name in names}
         self._values, self._told = {}, None
@@ -214,20 +192,15 @@ class Settings:
 
     def _summary(self, telemetry: Telemetry) -> list[Found]:
         """What is weak, where that is news."""
-        told, self._told = self._told, FailsafesKnown(self._weak(_whose(telemetry)))
+        told, self._told = self._told, self._failsafes(_whose(telemetry))
         return [] if self._told == told else [self._told]
 
-    def _weak(self, who: str) -> tuple[str, ...]:
-        if who not in FAILSAFES:
-            return ("not known: which parameters they have is not known here",)
-        weak = []
-        for failsafe in FAILSAFES[who]:
-            value = self._values.get(failsafe.name)
-            if value is None:
-                weak.append(f"{failsafe.about}: {failsafe.name} could not be read")
-            elif value < failsafe.weak_below:
-                weak.append(f"{failsafe.about}: off ({failsafe.name} = {value:g})")
-        return tuple(weak)
+    def _failsafes(self, who: str) -> FailsafesKnown:
+        if who not in CASES:
+            return FailsafesKnown(("not known: which parameters they have is not known here",))
+        found = findings(who, self._values, self._limits)
+        weak = tuple(each.words for each in found if each.weak)
+        return FailsafesKnown(weak, tuple(each.words for each in found))
 
 
 def _whose(telemetry: Telemetry) -> str:

@@ -68,6 +68,8 @@ class Telemetry:
     home_ned: Vec3 | None = None
     return_up_m: float | None = None
     return_told: bool = False  # its return height is known, or it says that it has none
+    failsafes: tuple[str, ...] = ()
+    """What it does by itself in each case, in words, once its settings were read."""
     accuracy_told: AccuracySeen | None = None
     acceptance_m: float | None = None  # how near a waypoint it takes it as reached itself
 

@@ -28,6 +28,7 @@ from gcs.session.delay import Delay
 from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
 from gcs.session.events import EVENT_MESSAGES, Events
+from gcs.session.failsafes import limits_of
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
@@ -74,7 +75,7 @@ class Vehicle:
         self._port = GatePort(times.policy(policy), now_ns)
         self._commands = Commands(own, times)
         self._discovery = Discovery(times)
-        self._settings = Settings(own, times)
+        self._settings = Settings(own, times, limits_of(policy, own.sysid))
         self._missions = Missions(own, times)
         self._words = Words(times)
         self._events = Events(own, self._words, times)
@@ -246,11 +247,12 @@ class Vehicle:
                     work += _accuracy(telemetry)
                 case settings.ClimbEndKnown(within_m):
                     work.append(ToGate(inputs.ClimbEndSeen(within_m)))
-                case settings.FailsafesKnown(weak):
-                    text = "the vehicle's own failsafes: " + ("; ".join(weak) or "all on")
+                case settings.FailsafesKnown(weak, every):
+                    telemetry.failsafes = every
+                    head = "the vehicle's own failsafes: "
+                    text = head + ("; ".join(weak) or "all on")
                     work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
-                    if not weak:
-                        work.append(Log(Level.INFO, NODE, text))
+                    work.append(Log(Level.INFO, NODE, head + "; ".join(every or weak)))
         return work
 
     def _ask_for_missing(self, telemetry: Telemetry, now_ns: int) -> list[Work]:

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from gcs.gate.policy.parse import DEFAULT
 from gcs.protocol.autopilot import ARDUPILOT, GENERIC, PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
+from gcs.session.failsafes import limits_of
 from gcs.session.settings import (
     AcceptanceKnown,
     ClimbEndKnown,
@@ -23,10 +25,15 @@ from gcs.wire.messages import ParamError, ParamRequestRead, ParamValue
 from tests.unit.session.vehicles import SECOND_NS, vehicle
 
 INT32, REAL32 = 6, 9
+LIMITS = limits_of(DEFAULT, own_sysid=255)
 
 PX4_ON: dict[str, float | None] = {
     "NAV_DLL_ACT": 2,
+    "COM_DL_LOSS_T": 10,
+    "NAV_RCL_ACT": 2,
     "GF_ACTION": 2,
+    "GF_MAX_HOR_DIST": 150.0,
+    "GF_MAX_VER_DIST": 50.0,
     "COM_LOW_BAT_ACT": 2,
     "COM_OF_LOSS_T": 1.0,
     "COM_OBL_RC_ACT": 0,
@@ -34,18 +41,32 @@ PX4_ON: dict[str, float | None] = {
     "NAV_ACC_RAD": 2.0,
     "NAV_MC_ALT_RAD": 1.5,
 }
-ARDUPILOT_ON: dict[str, float | None] = {
+_COPTER: dict[str, float | None] = {
     "FS_GCS_ENABLE": 1,
+    "FS_GCS_TIMEOUT": 5.0,
+    "FS_THR_ENABLE": 1,
+    "FS_EKF_ACTION": 1,
+    "GUID_TIMEOUT": 3.0,
     "FENCE_ENABLE": 1,
+    "FENCE_ACTION": 1,
+    "FENCE_TYPE": 7,
+    "FENCE_RADIUS": 150.0,
+    "FENCE_ALT_MAX": 50.0,
     "BATT_FS_LOW_ACT": 2,
+    "BATT_LOW_VOLT": 10.5,
+    "BATT_LOW_MAH": 0.0,
+}
+ARDUPILOT_ON: dict[str, float | None] = {
+    **_COPTER,
+    "SYSID_MYGCS": 255,
     "RTL_ALT": 1500,
     "WPNAV_RADIUS": 200,
 }
 """With the names of 4.5, whose heights and radii are centimetres."""
 ARDUPILOT_4_7: dict[str, float | None] = {
-    "FS_GCS_ENABLE": 1,
-    "FENCE_ENABLE": 1,
-    "BATT_FS_LOW_ACT": 2,
+    **_COPTER,
+    "MAV_GCS_SYSID": 255,
+    "MAV_GCS_SYSID_HI": 0,
     "RTL_ALT_M": 15.0,
     "WP_RADIUS_M": 2.0,
 }
@@ -76,7 +97,7 @@ class Script:
     found: list[Found] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.settings = Settings(Address(255, 190), Times())
+        self.settings = Settings(Address(255, 190), Times(), LIMITS)
         self.telemetry = vehicle(self.autopilot)
 
     def start(self) -> None:

@@ -15,7 +15,8 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.protocol.effects import Send
-from gcs.session.settings import FAILSAFES, READ_FIRST
+from gcs.session.failsafes import parameters_of
+from gcs.session.settings import READ_FIRST
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import Log, PlaceFence, ToGate, Work
@@ -137,9 +138,8 @@ def test_a_vehicle_that_is_met_is_asked_for_its_origin_its_home_and_its_version(
         if isinstance(item, Send) and hasattr(item.message, "param_id")
     ]
     assert names[0] == "RTL_RETURN_ALT"  # a return waits for it
-    assert sorted(names) == sorted(
-        [table["px4"] for table in READ_FIRST] + [each.name for each in FAILSAFES["px4"]]
-    )
+    assert len(names) == len(set(names)), "each is asked for once"
+    assert set(names) == {table["px4"] for table in READ_FIRST} | {*parameters_of("px4")}
 
 
 def test_several_vehicles_are_named_and_none_is_meant() -> None:
@@ -386,11 +386,14 @@ def settings(script: Script, **params: float) -> list[Work]:
     """The vehicle answers what it is asked about its failsafes; px4's integers are bytes."""
     work = script.hear(wire.heartbeat())
     answered: list[Work] = []
-    for name in ("NAV_DLL_ACT", "GF_ACTION", "COM_LOW_BAT_ACT"):
+    for name in ("NAV_DLL_ACT", "NAV_RCL_ACT", "GF_ACTION", "COM_LOW_BAT_ACT"):
         answered += script.hear(wire.int_param(name, int(params.get(name, 2))))
     answered += script.hear(wire.float_param("NAV_ACC_RAD", 2.0))
     answered += script.hear(wire.float_param("COM_OF_LOSS_T", 1.0))
     answered += script.hear(wire.int_param("COM_OBL_RC_ACT", 0))
+    answered += script.hear(wire.int_param("COM_DL_LOSS_T", 10))
+    answered += script.hear(wire.float_param("GF_MAX_HOR_DIST", 150.0))
+    answered += script.hear(wire.float_param("GF_MAX_VER_DIST", 50.0))
     if "RTL_RETURN_ALT" in params:
         answered += script.hear(wire.float_param("RTL_RETURN_ALT", params["RTL_RETURN_ALT"]))
     else:
@@ -410,7 +413,14 @@ def test_the_gate_is_told_the_return_height_and_that_nothing_is_weak() -> None:
     work = settings(script, RTL_RETURN_ALT=45.0)
     assert inputs.ReturnHeightSeen(45.0) in gate_inputs(work)
     assert weak(work) == [False]
-    assert (Level.INFO, "the vehicle's own failsafes: all on") in log(work)
+    assert (
+        Level.INFO,
+        "the vehicle's own failsafes: ground-station loss: return after 10 s; stick loss: return; "
+        "offboard loss: position mode after 1 s; low battery: land when critical; "
+        "geofence breach: hold; geofence: radius 150 m, height 50 m; return: at 45 m",
+    ) in log(work)
+    assert script.vehicle.telemetry is not None
+    assert "low battery: land when critical" in script.vehicle.telemetry.failsafes
     assert script.vehicle.telemetry is not None
     assert script.vehicle.telemetry.return_up_m == 45.0
 

@@ -11,7 +11,7 @@ from gcs.bridge.guard.safety_parameters import group_of
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code
 from gcs.protocol.parameter_names import names_of
-from gcs.session import settings
+from gcs.session import failsafes, settings
 from gcs.session.jobs import facts
 from gcs.wire.ids import ParamExtResult, ParamFault
 from gcs.wire.messages import (
@@ -195,7 +195,7 @@ def test_every_parameter_that_the_station_stands_on_is_guarded_by_every_name(
     autopilot: str,
 ) -> None:
     wanted = {table[autopilot] for table in settings.READ_FIRST if autopilot in table}
-    wanted |= {failsafe.name for failsafe in settings.FAILSAFES[autopilot]}
+    wanted |= {*failsafes.parameters_of(autopilot)}
     wanted |= {quantity.parameter for quantity in facts.QUANTITIES[autopilot]}
     for newest in wanted:
         for name in names_of(newest):
