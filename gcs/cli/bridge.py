@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import LOG_DIR, POLICY, UTF8, RecordName, Seconds, with_options
+from gcs.cli.options import (
+    CLIENT_KEY,
+    LOG_DIR,
+    POLICY,
+    SIGN_KEY,
+    UTF8,
+    RecordName,
+    Seconds,
+    with_options,
+)
 from gcs.cli.record_options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
 from gcs.cli.sim_options import CLIENT, SIM_OPTIONS, refuse_options_of_the_sim
 
@@ -45,7 +54,7 @@ OWN_COMPID = 191
     help="Where the vehicle is: udpin:// udpout:// tcpin:// tcpout:// serial://. May be given more "
     "than once.",
 )
-@with_options(CLIENT, POLICY, LOG_DIR)
+@with_options(CLIENT, SIGN_KEY, CLIENT_KEY, POLICY, LOG_DIR)
 @click.option(
     "--name",
     type=RecordName(),
@@ -90,6 +99,8 @@ def bridge(
     ctx: click.Context,
     vehicles: tuple[str, ...],
     clients: tuple[str, ...],
+    sign_key: str,
+    client_key: str,
     policy: str,
     log_dir: str,
     name: str,
@@ -130,8 +141,17 @@ def bridge(
         hint = "such as --client udpin://127.0.0.1:14551 or --client udpout://127.0.0.1:14550"
         raise click.UsageError(f"where do clients reach it? {hint}")
     refuse_shared_places(vehicles, clients, vehicle_option="--vehicle")
+    if sim and sign_key:
+        raise click.UsageError("--sim starts a vehicle without a key: leave out --sign-key")
     config = station_config(
-        vehicles, policy, log_dir, name=name, timeout_s=timeout or 10.0, vehicle=target
+        vehicles,
+        policy,
+        log_dir,
+        name=name,
+        timeout_s=timeout or 10.0,
+        vehicle=target,
+        sign_key=sign_key,
+        client_key=client_key,
     )
     if sim:
         simulated = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)

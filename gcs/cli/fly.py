@@ -8,9 +8,11 @@ import click
 
 from gcs.cli.live_option import LIVE, open_beside
 from gcs.cli.options import (
+    CLIENT_KEY,
     LINK,
     LOG_DIR,
     POLICY,
+    SIGN_KEY,
     UTF8,
     VEHICLE,
     RecordName,
@@ -50,7 +52,7 @@ PLAIN_TIMEOUT_S = 10.0
 @click.command(epilog=EPILOG)
 @with_options(LINK, VEHICLE)
 @with_options(*SIM_OPTIONS, CLIENT)
-@with_options(POLICY, LOG_DIR)
+@with_options(CLIENT_KEY, POLICY, SIGN_KEY, LOG_DIR)
 @click.option(
     "--timeout",
     type=Seconds(),
@@ -92,7 +94,9 @@ def fly(
     seed: int,
     speedup: float,
     clients: tuple[str, ...],
+    client_key: str,
     policy: str,
+    sign_key: str,
     log_dir: str,
     timeout: float | None,
     name: str,
@@ -121,10 +125,21 @@ def fly(
         raise click.UsageError("--sim starts a vehicle of its own: leave out --link")
     if sim and vehicle is not None:
         raise click.UsageError("--sim starts a vehicle of its own: leave out --vehicle")
+    if sim and sign_key:
+        raise click.UsageError("--sim starts a vehicle without a key: leave out --sign-key")
     if not sim:
         refuse_options_of_the_sim(ctx)
     connect_s = timeout or PLAIN_TIMEOUT_S
-    config = station_config(links, policy, log_dir, name=name, timeout_s=connect_s, vehicle=vehicle)
+    config = station_config(
+        links,
+        policy,
+        log_dir,
+        name=name,
+        timeout_s=connect_s,
+        vehicle=vehicle,
+        sign_key=sign_key,
+        client_key=client_key,
+    )
     if sim:
         simulated = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
         config = msgspec.structs.replace(config, sim=simulated, endpoints=[])

@@ -67,6 +67,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
                 "gcs.cli.mission_live:clear",
             ),
         ),
+        "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),
         "topic": Entry("gcs.cli.topic:topic", "Messages live or recorded: list, echo, hz, plot."),
         "graph": Entry("gcs.cli.graph:graph", "Who sends what to whom, with rates; SVG, DOT."),
         "log": Entry("gcs.cli.log:log", "Recorded flights: info, layout, recover, replay."),

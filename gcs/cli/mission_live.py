@@ -11,6 +11,7 @@ from gcs.cli.options import (
     LINK,
     LOG_DIR,
     POLICY,
+    SIGN_KEY,
     TAKE,
     TIMEOUT,
     UTF8,
@@ -38,7 +39,7 @@ WAIT = click.Option(
     metavar="S",
     help="Seconds to wait for the effect.",
 )
-LINK_OPTIONS = (LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
+LINK_OPTIONS = (LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
 
 
 @click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
@@ -49,6 +50,7 @@ def upload(
     links: tuple[str, ...],
     vehicle: int | None,
     policy: str,
+    sign_key: str,
     log_dir: str,
     timeout: float,
     wait: float,
@@ -59,7 +61,7 @@ def upload(
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)),)
-    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
+    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
@@ -79,6 +81,7 @@ def download(
     links: tuple[str, ...],
     vehicle: int | None,
     policy: str,
+    sign_key: str,
     log_dir: str,
     timeout: float,
     wait: float,
@@ -96,7 +99,7 @@ def download(
     to = file or output or "mission.plan"
     _check_output(to, force)
     requests = (Ask(0, "mission_download", path=to),)
-    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
+    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -107,6 +110,7 @@ def fly(
     links: tuple[str, ...],
     vehicle: int | None,
     policy: str,
+    sign_key: str,
     log_dir: str,
     timeout: float,
     wait: float,
@@ -117,7 +121,7 @@ def fly(
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
-    _run(requests, links, vehicle, policy, log_dir, timeout, wait, as_json, take)
+    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
 
 
 @click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
@@ -126,6 +130,7 @@ def clear(
     links: tuple[str, ...],
     vehicle: int | None,
     policy: str,
+    sign_key: str,
     log_dir: str,
     timeout: float,
     wait: float,
@@ -135,7 +140,18 @@ def clear(
     """Remove the mission on board."""
     from gcs.ipc import Ask
 
-    _run((Ask(0, "mission_clear"),), links, vehicle, policy, log_dir, timeout, wait, as_json, take)
+    _run(
+        (Ask(0, "mission_clear"),),
+        links,
+        vehicle,
+        policy,
+        sign_key,
+        log_dir,
+        timeout,
+        wait,
+        as_json,
+        take,
+    )
 
 
 def _check_output(output: str, force: bool) -> None:
@@ -173,6 +189,7 @@ def _run(
     links: tuple[str, ...],
     vehicle: int | None,
     policy: str,
+    sign_key: str,
     log_dir: str,
     timeout: float,
     wait: float,
@@ -185,7 +202,13 @@ def _run(
     for request in requests:
         UTF8.convert(request.path, None, None)
     setup = station_config(
-        links, policy, log_dir, name="mission", timeout_s=timeout, vehicle=vehicle
+        links,
+        policy,
+        log_dir,
+        name="mission",
+        timeout_s=timeout,
+        vehicle=vehicle,
+        sign_key=sign_key,
     )
     what = label(requests[0])
     how = oneshot_session.OneShotConfig(timeout, wait, as_json, what, take=take, wanted=asked_for())

@@ -11,6 +11,7 @@ from gcs.cli.options import (
     LINK,
     LOG_DIR,
     POLICY,
+    SIGN_KEY,
     TAKE,
     TIMEOUT,
     UTF8,
@@ -42,6 +43,7 @@ def _command(name: str) -> click.Command:
         links: tuple[str, ...],
         vehicle: int | None,
         policy: str,
+        sign_key: str,
         log_dir: str,
         timeout: float,
         wait: float,
@@ -58,7 +60,13 @@ def _command(name: str) -> click.Command:
         from gcs.cli import oneshot_session
 
         setup = station_config(
-            links, policy, log_dir, name=name, timeout_s=timeout, vehicle=vehicle
+            links,
+            policy,
+            log_dir,
+            name=name,
+            timeout_s=timeout,
+            vehicle=vehicle,
+            sign_key=sign_key,
         )
         stops = all(request.word in request_words.STOPS for request in action.requests)
         placed = name not in ("abort", "hold")
@@ -78,7 +86,8 @@ def _command(name: str) -> click.Command:
         click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
-    options: list[click.Parameter] = [LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, WAIT, AS_JSON]
+    options: list[click.Parameter] = [LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT]
+    options.append(AS_JSON)
     if name not in request_words.STOPS:
         options.append(TAKE)
     return click.Command(
@@ -111,6 +120,7 @@ def _status(
     links: tuple[str, ...],
     vehicle: int | None,
     policy: str,
+    sign_key: str,
     log_dir: str,
     timeout: float,
     as_json: bool,
@@ -119,7 +129,14 @@ def _status(
     from gcs.cli.status import report
 
     setup = station_config(
-        links, policy, log_dir, name="status", timeout_s=timeout, vehicle=vehicle, record=False
+        links,
+        policy,
+        log_dir,
+        name="status",
+        timeout_s=timeout,
+        vehicle=vehicle,
+        record=False,
+        sign_key=sign_key,
     )
     how = oneshot_session.OneShotConfig(
         timeout,
@@ -137,7 +154,7 @@ def _status(
 status = click.Command(
     "status",
     callback=_status,
-    params=[LINK, VEHICLE, POLICY, LOG_DIR, TIMEOUT, AS_JSON],
+    params=[LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, AS_JSON],
     help="What the vehicle reports: state, mode, position, battery, link.",
     epilog=f"Example: gcs status --json\n\n{EXITS}",
 )

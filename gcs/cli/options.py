@@ -133,6 +133,21 @@ TAKE = click.Option(
     is_flag=True,
     help="Where another operator is in control of the running station, take it over; it is told.",
 )
+SIGN_KEY = click.Option(
+    ["--sign-key"],
+    type=UTF8,
+    default="",
+    metavar="FILE",
+    help="The vehicle's signing key: all that leaves is signed with it, and what comes in unsigned "
+    "is refused. See gcs key.",
+)
+CLIENT_KEY = click.Option(
+    ["--client-key"],
+    type=UTF8,
+    default="",
+    metavar="FILE",
+    help="The signing key of MAVLink clients: what they send unsigned is refused.",
+)
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
 
 
@@ -192,6 +207,8 @@ def station_config(
     timeout_s: float,
     vehicle: int | None = None,
     record: bool = True,
+    sign_key: str = "",
+    client_key: str = "",
 ) -> StationConfig:
     """For a station that flies a vehicle which somebody else has started."""
     return StationConfig(
@@ -202,5 +219,7 @@ def station_config(
         connect_timeout_s=timeout_s,
         target_sysid=vehicle or 0,
         record=record,
+        vehicle_key_path=sign_key,
+        client_key_path=client_key,
         operator=f"gcs {name}, pid {os.getpid()}",
     )

@@ -26,6 +26,7 @@ def connect(
     *,
     sim: bool = False,
     policy: str | None = None,
+    sign_key: str | None = None,
     take_control: bool = False,
     keep: bool | None = None,
     autopilot: str | None = None,
@@ -46,6 +47,8 @@ def connect(
 
     A running station that has another `policy`, `log_dir`, `speedup` or `keep` than asked for is
     not joined: StationDiffers says which.  What is None is taken as the station has it.
+
+    `sign_key`: the file with the vehicle's MAVLink 2 signing key, for a station of its own.
 
     Waits `timeout_s` for a vehicle to be heard.  Raises CannotConnect.
     """
@@ -70,6 +73,7 @@ def connect(
         endpoints=[] if sim else links or [DEFAULT_LINK],
         sim=vehicle,
         policy_path=_policy_file(policy or "default"),
+        vehicle_key_path=sign_key or "",
         log_dir=log_dir or "logs",
         name=name,
         speedup=times,

@@ -95,6 +95,10 @@ from gcs.wire.signing import Reason
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
 
+SIGNED_OTHERWISE_S = 2.0
+"""How long frames may come that are not rightly signed, before that is told as the reason why no
+vehicle is known."""
+
 NODE = "link"
 MAX_FAULTS = 10
 
@@ -411,7 +415,12 @@ class Session:
 
     def _no_vehicle_yet(self, now_ns: int) -> list[Work]:
         waited_s = self._times.real_s(now_ns - self._start_ns)
-        if self._told_no_vehicle or waited_s < self._setup.config.connect_timeout_s:
+        patience_s = self._setup.config.connect_timeout_s
+        what, why = self._signatures.why_no_vehicle()
+        if what:
+            # It is there, and waiting does not help: told before an operator has given up.
+            patience_s = min(patience_s, SIGNED_OTHERWISE_S)
+        if self._told_no_vehicle or waited_s < patience_s:
             return []
         self._told_no_vehicle = True
         where = ", ".join(self._setup.endpoints)
@@ -422,7 +431,6 @@ class Session:
         if heard and wanted:
             text = f"vehicle {wanted} was not heard for {waited_s:.0f} s, but {', '.join(heard)}"
             hint = "choose one of them with --vehicle"
-        what, why = self._signatures.why_no_vehicle()
         if what:
             text, hint = f"no vehicle is known after {waited_s:.0f} s ({where}): {what}", why
         return [Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)), Log(Level.WARNING, NODE, text)]

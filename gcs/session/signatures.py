@@ -148,10 +148,13 @@ class Signatures:
         return lines
 
     def why_no_vehicle(self) -> tuple[str, str]:
-        """What a vehicle that is not heard does instead, and a hint; empty where nothing came."""
+        """What a vehicle that is not heard does instead, and a hint; empty where nothing came.
+
+        One whose clock is behind is brought on by what we send, and will be heard.
+        """
         counts: Counter[Reason] = Counter()
         for (link, reason), refused in self._refused.items():
-            if link < self._vehicle_links:
+            if link < self._vehicle_links and reason in (Reason.UNSIGNED, Reason.WRONG_KEY):
                 counts[reason] += refused.count
         for reason, count in counts.most_common(1):
             return f"{count} frames came, but {_WHAT[reason]}", _HINTS.get(reason, "")

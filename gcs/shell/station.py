@@ -26,6 +26,7 @@ from gcs.record.writer import Recorder, RecorderError
 from gcs.session.effects import EVERYONE
 from gcs.session.session import Session
 from gcs.session.setup import Setup
+from gcs.session.signatures import Keys
 from gcs.shell import sockets
 from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
@@ -33,6 +34,7 @@ from gcs.shell.clock import Clock
 from gcs.shell.disk_watch import DiskWatch, free_in
 from gcs.shell.endpoints import EndpointError, parse_endpoint
 from gcs.shell.environment import environment
+from gcs.shell.key_files import KeyFileError, read_key
 from gcs.shell.local_socket import LocalSocket
 from gcs.shell.loop import Loop
 from gcs.shell.pipes import LineSink, LineSource
@@ -70,6 +72,7 @@ def main(argument: str) -> int:
 
 def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
     policy, policy_text = _read_policy(setup.policy_path)
+    keys = _read_keys(setup)
     clock = Clock(setup.speedup)
     with ExitStack() as opened:
         links = _open_links(setup, opened)
@@ -95,6 +98,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
                 client_ports=client_ports.describe() if client_ports else (),
             ),
             clock.now_ns(),
+            keys,
         )
         operator = LineSource(sys.stdin.fileno())
         finish = Loop(
@@ -129,6 +133,17 @@ def _read_policy(path: str) -> tuple[Policy, str]:
         return load_policy(path or "default")
     except PolicyFileError as error:
         raise CannotStartError(ExitCode.BAD_FILE, str(error), error.hint) from error
+
+
+def _read_keys(setup: StationConfig) -> Keys:
+    try:
+        vehicle, client = (
+            read_key(path) if path else None
+            for path in (setup.vehicle_key_path, setup.client_key_path)
+        )
+    except KeyFileError as error:
+        raise CannotStartError(ExitCode.BAD_FILE, str(error), error.hint) from error
+    return Keys(vehicle, client)
 
 
 def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
