@@ -6,6 +6,7 @@ what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from gcs import ipc
@@ -166,12 +167,15 @@ class Bridge:
 
     # --------------------------------------------------------------------- for clients
 
-    def from_vehicle(self, frame: Frame, now_ns: int) -> list[int]:
-        """The client links that a frame of the vehicle's side is sent on to, as it is."""
-        links = self._routes.to_clients(frame)
-        for link in links:
-            self._by_link[link].sent.count(1, now_ns)
-        return links
+    def from_vehicle(
+        self, frames: Sequence[Frame], now_ns: int
+    ) -> Iterable[tuple[int, Sequence[bytes]]]:
+        """What goes to which client link of frames that came together from the vehicle's side, as
+        they are and in their order."""
+        shares = self._routes.shares(frames)
+        for link, raws in shares:
+            self._by_link[link].sent.count(len(raws), now_ns)
+        return shares
 
     def told(self, number: int, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
         """What the station tells a client as an operator."""

@@ -8,6 +8,7 @@ other: a system of the vehicle's side that is heard on a client's link is a loop
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from gcs.wire.dialect import MESSAGES, MessageDef
@@ -87,6 +88,19 @@ class Routes:
             for link in sorted(self._of_system.get(sysid, ()))
             if compid == 0 or (sysid, compid) in self._of_link[link]
         ]
+
+    def shares(self, frames: Sequence[Frame]) -> Iterable[tuple[int, Sequence[bytes]]]:
+        """The same of frames that came together: client links, and what goes to each, in order."""
+        if not self._of_link:
+            return ()
+        if all(frame.msgid not in TARGETS for frame in frames):
+            everything = [frame.raw for frame in frames]
+            return [(link, everything) for link in self._of_link] if frames else ()
+        shares: dict[int, list[bytes]] = {}
+        for frame in frames:
+            for link in self.to_clients(frame):
+                shares.setdefault(link, []).append(frame.raw)
+        return shares.items()
 
     def between_clients(self, frame: Frame, came_from: int) -> list[int]:
         """The other client links that a client's frame goes to."""

@@ -49,6 +49,17 @@ class SequenceTracker:
         step = (seq - count.last_seq) & 0xFF
         return count.last_number + (step if step < REORDERED else step - 256)
 
+    def in_turn(self, sender: tuple[int, int], seq: int) -> int | None:
+        """Count a frame that is the next one of its sender, and give its number as `number` does;
+        None, and nothing is counted, where it is any other."""
+        count = self.senders.get(sender)
+        if count is None or count.resume or seq != (count.last_seq + 1) & 0xFF:
+            return None
+        count.received += 1
+        count.last_seq = seq
+        count.last_number += 1
+        return count.last_number
+
     def late(self, sysid: int, compid: int, seq: int) -> bool:
         """Whether `seq` was sent before a frame that has come, unless the sender began anew."""
         count = self.senders.get((sysid, compid))

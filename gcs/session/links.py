@@ -6,7 +6,7 @@ serial line.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from gcs.protocol.effects import Address
@@ -20,6 +20,26 @@ from gcs.wire.messages import Heartbeat, Message
 from gcs.wire.signing import UnsignableError
 
 MAVLINK_VERSION = 3
+
+
+MAX_DATAGRAM = 1400
+"""Bytes of frames that leave as one datagram: fits an Ethernet frame, and a client's buffer
+(MAVSDK's has 2,048 bytes)."""
+
+
+def datagrams(raws: Sequence[bytes]) -> list[bytes]:
+    """Frames put together, as few datagrams as may be; none is cut."""
+    together = raws[0] if len(raws) == 1 else b"".join(raws)
+    if len(together) <= MAX_DATAGRAM:
+        return [together] if together else []
+    made: list[bytes] = []
+    begun = b""
+    for raw in raws:
+        if begun and len(begun) + len(raw) > MAX_DATAGRAM:
+            made.append(begun)
+            begun = b""
+        begun += raw
+    return [*made, begun]
 
 
 @dataclass(slots=True)
@@ -103,6 +123,13 @@ class Links:
         if link < len(self.counts):
             self.counts[link].sent += 1
         return [sent]
+
+    def together(self, link: int, raws: Sequence[bytes], now_ns: int) -> list[Transmit]:
+        """Frames that came together, unrecorded: on a client's link they leave together, too."""
+        if self._signatures.signed(link):
+            signed = [sent for raw in raws for sent in self.unrecorded(link, raw, now_ns)]
+            raws = [sent.data for sent in signed]
+        return [Transmit(link, data) for data in datagrams(raws)]
 
     def send_as(self, source: Address, link: int, message: Message, now_ns: int) -> list[Effect]:
         """One frame on one link in the name of a component (`source`), and its record."""

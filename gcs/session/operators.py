@@ -7,6 +7,8 @@ returns work for the rest of the session.
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 from gcs import ipc
 from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.bridge.effects import AsksPlan, StopsPlan
@@ -249,6 +251,11 @@ class Operators:
     def missing_messages(self, telemetry: Telemetry, now_ns: int) -> list[CommandLong]:
         """Commands that ask the vehicle for what somebody subscribed to and does not hear."""
         return [*self._subscriptions.missing(telemetry, now_ns)]
+
+    @property
+    def subscribed(self) -> Container[int]:
+        """Ids of the messages that somebody has subscribed to."""
+        return self._subscriptions.subscribed
 
     def heard(self, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of the vehicle, for those who subscribed to such messages."""

@@ -37,17 +37,17 @@ class Presence:
 
     def number(self, frame: Frame, now_ns: int) -> int:
         """The frame's place among all of its sender; it is counted."""
-        self._notice_restart(frame, now_ns)
-        number = self.losses.number(frame.sysid, frame.compid, frame.seq)
-        self.losses.seen(frame.sysid, frame.compid, frame.seq)
-        return number
-
-    def _notice_restart(self, frame: Frame, now_ns: int) -> None:
         sender = (frame.sysid, frame.compid)
         heard_ns, self._heard_ns[sender] = self._heard_ns.get(sender, now_ns), now_ns
+        number = self.losses.in_turn(sender, frame.seq)
+        if number is not None:
+            return number
         silent = now_ns - heard_ns > self._restart_silence_ns
         if silent and self.losses.late(*sender, frame.seq):
             self.losses.restart(*sender)
+        number = self.losses.number(*sender, frame.seq)
+        self.losses.seen(*sender, frame.seq)
+        return number
 
     def overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:
         """A state that is older than one of the same kind that has come: void."""

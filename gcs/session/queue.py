@@ -42,7 +42,7 @@ class WorkQueue:
         while agenda:
             item = agenda.pop()
             kind = type(item)
-            if isinstance(item, Emit) and item.client >= FIRST_NUMBER:
+            if kind is Emit and cast("Emit", item).client >= FIRST_NUMBER:
                 agenda += reversed(step(item, now_ns))
             elif kind in EFFECT_TYPES:
                 effects.append(item)
@@ -55,6 +55,10 @@ class WorkQueue:
             else:
                 gate_answers |= kind is ToGate
                 agenda += reversed(step(item, now_ns))
+
+    def put(self, effect: Effect) -> None:
+        """An effect that leads to nothing, between two calls of `run`."""
+        self._effects.append(effect)
 
     def take(self) -> list[Effect]:
         """The effects so far, in the order in which the shell is to perform them."""

@@ -7,6 +7,7 @@ what the gate decides becomes commands and setpoints; and all of it becomes the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import assert_never
 
 from gcs import ipc
@@ -89,7 +90,7 @@ from gcs.session.work import (
     Work,
 )
 from gcs.wire.blanking import without_key
-from gcs.wire.frame import Frame, Garbage
+from gcs.wire.frame import Frame, Garbage, Item
 from gcs.wire.signing import Reason
 
 OTHER_STATION_NS = 5_000_000_000
@@ -101,6 +102,8 @@ vehicle is known."""
 
 NODE = "link"
 MAX_FAULTS = 10
+
+_RECEIVED = Direction.RECEIVED  # looking it up costs more than what it is used for
 
 
 class Session:
@@ -128,6 +131,9 @@ class Session:
             config, setup.endpoints, setup.policy.bridge, self._times, self._vehicle
         )
         self._first_client_link = count
+        self._own = config.sysid, config.compid
+        self._deadline_ns: int | None = None
+        """As it was last looked up; None once something may have changed it."""
         self._queue = WorkQueue(self._step)
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
@@ -144,6 +150,11 @@ class Session:
     @property
     def deadline_ns(self) -> int:
         """When `Wake` is due; no side effects."""
+        if self._deadline_ns is None:
+            self._deadline_ns = self._next_deadline_ns()
+        return self._deadline_ns
+
+    def _next_deadline_ns(self) -> int:
         waits = (self._ticks.next_ns, self._vehicle.deadline_ns, self._bridge.bridge.deadline_ns)
         return min(time_ns for time_ns in waits if time_ns is not None)
 
@@ -171,12 +182,14 @@ class Session:
             begin = [*introduction(self._setup, self._start_ns), *self._vehicle.remind()]
             queue.run(begin, now_ns)
         if isinstance(given, Datagram):
-            self._datagram(given, now_ns)
+            if not self._datagram(given, now_ns):
+                self._unfinished = None
+                return queue.take()
         else:
             queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
         queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
         queue.run(self._end_if_due(now_ns), now_ns)
-        self._unfinished = None
+        self._unfinished = self._deadline_ns = None
         return queue.take()
 
     def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
@@ -187,6 +200,7 @@ class Session:
         operator who has joined loses the connection instead: nobody's words end the station.
         """
         self._queue.drop()
+        self._deadline_ns = None
         handled, self._unfinished = self._unfinished is None, None
         visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
         self._faults += not visitor
@@ -355,31 +369,68 @@ class Session:
 
     # ------------------------------------------------------------------------------- frames
 
-    def _datagram(self, given: Datagram, now_ns: int) -> None:
-        """Frame by frame: what one leads to is done before the next is looked at."""
+    def _datagram(self, given: Datagram, now_ns: int) -> bool:
+        """Frame by frame: what one leads to is done before the next is looked at.
+
+        False: nothing was in it but what only passes through, so nothing else has changed."""
         link, run = given.link, self._queue.run
         items = self._links.split(link, given.data)
-        run(pieces(link, len(items), self._links.rest(link)), now_ns)
+        announced = pieces(link, len(items), self._links.rest(link))
+        if announced:
+            run(announced, now_ns)
+        taken = self._taken(link, items, now_ns)
+        if link < self._first_client_link:
+            return self._from_vehicles(link, taken, now_ns)
+        for item in taken:
+            if isinstance(item, GarbageItem):
+                run([Record(item)], now_ns)
+            else:
+                run(self._client_frame(link, item, now_ns), now_ns)
+        return True
+
+    def _taken(self, link: int, items: Sequence[Item], now_ns: int) -> list[Frame | GarbageItem]:
+        """The frames that are taken, and the rest as the record has it."""
+        signed = self._signatures.signed(link)
+        taken: list[Frame | GarbageItem] = []
         for item in items:
             if isinstance(item, Garbage):
-                run([Record(GarbageItem(link, item.raw, item.reason.value))], now_ns)
-            elif reason := self._signatures.refused(link, item, now_ns):
+                taken.append(GarbageItem(link, item.raw, item.reason.value))
+            elif (signed or item.signature) and (
+                reason := self._signatures.refused(link, item, now_ns)
+            ):
                 # Not as a frame: nobody shall take it for the sender's, in a viewer neither.
-                run([Record(GarbageItem(link, without_key(item.raw), reason.value))], now_ns)
+                taken.append(GarbageItem(link, without_key(item.raw), reason.value))
                 if reason is Reason.TOO_OLD:
                     # It has the key.  What we send moves its clock on, which may be behind.
                     self._links.peer_known(link)
-            elif link >= self._first_client_link:
-                run(self._client_frame(link, item, now_ns), now_ns)
             else:
-                received = Record(FrameItem(link, Direction.RECEIVED, item.raw))
-                to_clients = self._bridge.bridge.from_vehicle(item, now_ns)
-                passed = [
-                    sent
-                    for to in to_clients
-                    for sent in self._links.unrecorded(to, item.raw, now_ns)
-                ]
-                run([received, *passed, *self._frame(link, item, now_ns)], now_ns)
+                taken.append(item)
+        return taken
+
+    def _from_vehicles(self, link: int, taken: Sequence[Frame | GarbageItem], now_ns: int) -> bool:
+        """What came on a vehicle's link: its frames are first of all sent on to the clients,
+        together as they came.  Nearly all of them are only recorded and counted, which is no work
+        for the queue."""
+        put, subscribed = self._queue.put, self._operators.subscribed
+        frames = [item for item in taken if type(item) is Frame]
+        for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
+            for sent in self._links.together(to, raws, now_ns):
+                put(sent)
+        if frames:
+            self._links.peer_known(link)
+        worked = False
+        for item in taken:
+            if isinstance(item, GarbageItem):
+                put(Record(item))
+                continue
+            put(Record(FrameItem(link, _RECEIVED, item.raw)))
+            work = self._vehicle_frame(link, item, now_ns)
+            if item.msgid in subscribed and item.sysid == self._vehicle.sysid:
+                work += self._operators.heard(item, now_ns)
+            if work:
+                worked = True
+                self._queue.run(work, now_ns)
+        return worked
 
     def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of a MAVLink client: judged first, because the record says how."""
@@ -387,17 +438,13 @@ class Session:
         direction = Direction.REFUSED if judged.refused else Direction.RECEIVED
         return [Record(FrameItem(link, direction, frame.raw)), *judged.effects]
 
-    def _frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
-        self._links.peer_known(link)
-        own = (self._setup.config.sysid, self._setup.config.compid)
-        if (frame.sysid, frame.compid) == own:
+    def _vehicle_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        sysid, compid = self._own
+        if frame.compid == compid and frame.sysid == sysid:
             self._other_station_ns = now_ns
-            text = f"another station on link {link} calls itself {frame.sysid}/{frame.compid}"
+            text = f"another station on link {link} calls itself {sysid}/{compid}"
             return [condition(Condition.OTHER_STATION, True, text)]
-        work = self._vehicle.frame(link, frame, now_ns)
-        if frame.sysid == self._vehicle.sysid:
-            work += self._operators.heard(frame, now_ns)
-        return work
+        return self._vehicle.frame(link, frame, now_ns)
 
     # ------------------------------------------------------------------------------ time
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from gcs import ipc
 from gcs.session.discovery import message_interval
@@ -57,6 +57,11 @@ class Subscriptions:
             if clients and now_ns - max(heard_ns, asked_ns) > self._patience_ns:
                 self._asked_ns[msgid] = now_ns
                 yield message_interval(telemetry, msgid, ASKED_HZ)
+
+    @property
+    def subscribed(self) -> Container[int]:
+        """Ids of the messages that somebody has, or had, subscribed to."""
+        return self._told_ns
 
     def forget(self, client: int) -> None:
         """It has left."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from gcs.gate import inputs
 from gcs.gate.airspace.projection import Origin, Projection
@@ -32,6 +32,28 @@ BATTERY_PCT = (
     (Condition.BATTERY_CRITICAL, 7.0),
 )
 """PX4's BAT_LOW_THR and BAT_CRIT_THR, for a vehicle that tells only a percentage."""
+
+UPDATE_MESSAGES: Final = frozenset(
+    {
+        m.Heartbeat,
+        m.ExtendedSysState,
+        m.LocalPositionNed,
+        m.Attitude,
+        m.GlobalPositionInt,
+        m.GpsGlobalOrigin,
+        m.HomePosition,
+        m.SysStatus,
+        m.GpsRawInt,
+        m.EstimatorStatus,
+        m.EkfStatusReport,
+        m.Timesync,
+        m.CameraImageCaptured,
+        m.CameraFeedback,
+        m.MissionCurrent,
+        m.MissionItemReached,
+    }
+)
+"""What `updates` has a case for."""
 
 Update: TypeAlias = ToGate | Record | PlaceFence
 

@@ -34,7 +34,7 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
 from gcs.session.position_health import GPS_SILENT_NS
-from gcs.session.presence import Presence
+from gcs.session.presence import STATE_MESSAGES, Presence
 from gcs.session.reasons import Reasons
 from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
@@ -42,7 +42,7 @@ from gcs.session.setpoints import setpoint
 from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
-from gcs.session.updates import updates
+from gcs.session.updates import UPDATE_MESSAGES, updates
 from gcs.session.words import Words, logged
 from gcs.session.work import AskMission, CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
@@ -61,6 +61,21 @@ PARAMETER_MESSAGES: Final = frozenset({m.ParamValue, m.ParamError})
 MISSION_MESSAGES: Final = frozenset(
     {m.MissionCurrent, m.MissionItemReached, *get_args(PlanMessage)}
 )
+
+INTERPRETED: Final = frozenset(
+    kind.MSG_ID
+    for kind in (
+        *UPDATE_MESSAGES,
+        *PARAMETER_MESSAGES,
+        *MISSION_MESSAGES,
+        *EVENT_MESSAGES,
+        *STATE_MESSAGES,
+        m.CommandAck,
+        m.Statustext,
+        m.AutopilotVersion,
+    )
+)
+"""Ids of the messages that `Vehicle` does something with; the others are only counted."""
 
 
 class Vehicle:
@@ -136,9 +151,12 @@ class Vehicle:
     # ------------------------------------------------------------------------------- frames
 
     def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
-        """A good frame of anybody on `link`; what is not our vehicle's changes nothing."""
+        """A good frame of anybody on `link`; what is not our vehicle's changes nothing.
+
+        Most frames only pass through: they are counted, and not decoded.
+        """
         work: list[Work] = []
-        message = decode(frame)
+        message = decode(frame) if frame.msgid in INTERPRETED else None
         if isinstance(message, m.Heartbeat):
             work += self._discover(link, frame, message, now_ns)
         telemetry = self.telemetry
@@ -146,16 +164,23 @@ class Vehicle:
             return work
         number = self._presence.number(frame, now_ns)
         telemetry.count_frame(now_ns)
-        if frame.compid == telemetry.compid:
+        told_now = telemetry.heard_ns == now_ns == telemetry.link_ns
+        if frame.compid == telemetry.compid and not told_now:
             self._presence.choose_link(telemetry, link, now_ns)
             if self._presence.alive(telemetry, now_ns):
                 work.append(ToGate(inputs.MessageSeen()))
         if message is not None and not self._presence.overtaken(frame, message, number):
-            heard = Heard(frame.sysid, frame.compid, message)
-            before = telemetry.armed, telemetry.mode_name, telemetry.landed
-            work += self._heard(telemetry, heard, now_ns)
-            if before != (telemetry.armed, telemetry.mode_name, telemetry.landed):
-                work.append(Record(recorded.status(telemetry, lost_pct(self.losses))))
+            work += self._interpreted(telemetry, frame, message, now_ns)
+        return work
+
+    def _interpreted(
+        self, telemetry: Telemetry, frame: Frame, message: m.Message, now_ns: int
+    ) -> list[Work]:
+        before = telemetry.armed, telemetry.mode_name, telemetry.landed
+        heard = Heard(frame.sysid, frame.compid, message)
+        work = self._heard(telemetry, heard, now_ns)
+        if before != (telemetry.armed, telemetry.mode_name, telemetry.landed):
+            work.append(Record(recorded.status(telemetry, lost_pct(self.losses))))
         return work
 
     def _heard(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:

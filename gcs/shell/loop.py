@@ -229,6 +229,9 @@ class Loop:
             report = traceback.format_exc()
         for effect in effects:
             try:
+                if type(effect) is Record:  # nearly all of them
+                    self._recording.write(effect.item, now_ns)
+                    continue
                 answer = self._perform(effect, now_ns)
             except Exception:  # noqa: BLE001 - the same; and the effects after it still count
                 report = report or traceback.format_exc()

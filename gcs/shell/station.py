@@ -30,6 +30,7 @@ from gcs.session.signatures import Keys
 from gcs.shell import sockets
 from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
+from gcs.shell.client_table import ClientLimits
 from gcs.shell.clock import Clock
 from gcs.shell.disk_watch import DiskWatch, free_in
 from gcs.shell.endpoints import EndpointError, parse_endpoint
@@ -76,7 +77,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
     clock = Clock(setup.speedup)
     with ExitStack() as opened:
         links = _open_links(setup, opened)
-        client_ports = _open_client_ports(setup, links, opened)
+        client_ports = _open_client_ports(setup, policy, links, opened)
         recording = _open_recording(setup, clock)
         opened.callback(lambda: recording.close(clock.now_ns()))
         sim = None
@@ -160,11 +161,13 @@ def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
 
 
 def _open_client_ports(
-    setup: StationConfig, links: Sequence[sockets.Link], opened: ExitStack
+    setup: StationConfig, policy: Policy, links: Sequence[sockets.Link], opened: ExitStack
 ) -> ClientPorts | None:
     if not setup.clients:
         return None
-    ports = ClientPorts(len(links))
+    rules = policy.bridge
+    limits = ClientLimits(rules.max_clients, rules.client_rate_hz, rules.client_gone_s)
+    ports = ClientPorts(len(links), limits)
     opened.callback(ports.close)
     for url in setup.clients:
         with _opening(url, "another program has that port; choose another one with --client"):
