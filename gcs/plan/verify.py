@@ -67,22 +67,28 @@ class Verification:
     @property
     def refusal(self) -> Refusal | None:
         """The first reason not to fly it, which names its item; None where all is cleared."""
+        return next(self._reasons(), None)
+
+    @property
+    def refusals(self) -> tuple[Refusal, ...]:
+        """Every reason not to fly it, the first one of `refusal` before the others."""
+        return tuple(self._reasons())
+
+    def _reasons(self) -> Iterator[Refusal]:
         for problem in self.path.problems:
-            return Refusal(_CODES.get(problem.kind, Code.BAD_MISSION), problem.sentence)
+            yield Refusal(_CODES.get(problem.kind, Code.BAD_MISSION), problem.sentence)
         for verdict in self.verdicts:
             if verdict.refusal is not None:
                 sentence = f"item {verdict.item + 1}: {verdict.refusal.sentence}"
-                return replace(verdict.refusal, sentence=sentence)
-        if self.bad_landings:
-            return self.bad_landings[0]
+                yield replace(verdict.refusal, sentence=sentence)
+        yield from self.bad_landings
         for blocked in self.blocked_returns:
             if blocked.refuses:
                 sentence = (
                     f"item {blocked.item + 1}: a failsafe return from here cannot be stopped: "
                     f"{blocked.refusal.sentence} (the policy's mission.blocked_return)"
                 )
-                return replace(blocked.refusal, sentence=sentence)
-        return None
+                yield replace(blocked.refusal, sentence=sentence)
 
     @property
     def evidence(self) -> tuple[tuple[str, float], ...]:

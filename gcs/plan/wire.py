@@ -142,9 +142,7 @@ def from_wire(items: Sequence[WireItem], autopilot: AutopilotName, name: str = "
 
     Raises PlanError for items out of order or without meaning.
     """
-    for position, item in enumerate(items):
-        if item.seq != position:
-            raise PlanError(name, f"seq {item.seq}", "seq", f"{item.seq}", str(position))
+    _check_order(items, name)
     home: Geodetic | None = None
     shift = 0
     if autopilot == "ardupilot" and items:
@@ -157,6 +155,18 @@ def from_wire(items: Sequence[WireItem], autopilot: AutopilotName, name: str = "
             what = f"jumps to seq {read.params[0] + shift - 1:g}, which is no item that is flown"
             raise PlanError(name, read.where, "DO_JUMP", what)
     return Plan(name, autopilot, home, plan_items, source=name)
+
+
+def items_from_wire(items: Sequence[WireItem], name: str) -> tuple[Item, ...]:
+    """A fence's or rally points' items, one by one.  Raises PlanError as `from_wire`."""
+    _check_order(items, name)
+    return tuple(_from_wire(name, item, item.seq + 1) for item in items)
+
+
+def _check_order(items: Sequence[WireItem], name: str) -> None:
+    for position, item in enumerate(items):
+        if item.seq != position:
+            raise PlanError(name, f"seq {item.seq}", "seq", f"{item.seq}", str(position))
 
 
 def _from_wire(name: str, item: WireItem, do_jump_id: int) -> Item:

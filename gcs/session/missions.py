@@ -17,9 +17,12 @@ from gcs.gate.states import State
 from gcs.protocol.effects import Address, Heard
 from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.session.inputs import FileRead, FileWritten
+from gcs.session.jobs.adopt import Adopt
 from gcs.session.jobs.clear import Clear
+from gcs.session.jobs.client_upload import ClientUpload
 from gcs.session.jobs.download import Download
 from gcs.session.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView, refused
+from gcs.session.jobs.relay import RelayPlan
 from gcs.session.jobs.start import Start
 from gcs.session.jobs.upload import Upload
 from gcs.session.plans import OnBoard
@@ -31,6 +34,7 @@ from gcs.wire.messages import MissionCurrent, MissionItemReached
 
 TRANSFER_WORDS = frozenset({"mission_upload", "mission_download", "mission_clear"})
 MISSION_WORDS = TRANSFER_WORDS | {"mission_start"}
+KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
 
 STOPS = frozenset(
     {Event.ABORT, Event.HOLD, Event.LAND, Event.RETURN, Event.DISARM, Event.FORCE_DISARM}
@@ -84,33 +88,45 @@ class Missions:
 
         `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about.
         """
-        refusal = self._cannot_begin(ask, state)
+        refusal = self._cannot_begin(ask, state, plan, kind)
         if refusal is None and telemetry is None:
             refusal = Refusal(Code.NO_VEHICLE, "no vehicle is heard")
         if refusal is not None:
             return [*refused(request_id, ask.word, refusal)]
         assert telemetry is not None
         asked = Asked(request_id, ask.id, ask.word, self._own, self._timing, self._times)
-        job: Job
-        match ask.word:
-            case "mission_upload" if plan is not None:
-                what = "plans of clients cannot be brought on board yet"
-                return [*refused(request_id, ask.word, Refusal(Code.UNSUPPORTED, what))]
-            case "mission_upload":
-                job = Upload(asked, ask.path)
-            case "mission_download":
-                job = Download(asked, ask.path)
-            case "mission_clear":
-                job = Clear(asked)
-            case _:
-                if self._on_board is None or state not in (State.HOVERING, State.GROUNDED):
-                    # What cannot be flown at all the gate refuses at once.
-                    return [AskGate(request_id, StartMission())]
-                job = Start(asked, self._on_board)
+        job = self._job_for(ask, asked, plan, kind, state)
+        if job is None:
+            return [AskGate(request_id, StartMission())]
         self._job = job
         return self._follow(job.start(VehicleView(telemetry, state, policy), now_ns))
 
-    def _cannot_begin(self, ask: ipc.Ask, state: State) -> Refusal | None:
+    def _job_for(
+        self,
+        ask: ipc.Ask,
+        asked: Asked,
+        plan: ClientPlan | None,
+        kind: MissionType,
+        state: State,
+    ) -> Job | None:
+        """None: what cannot be flown at all the gate refuses at once."""
+        match ask.word:
+            case "mission_upload" if plan is None:
+                return Upload(asked, ask.path)
+            case "mission_upload":
+                mission = kind is MissionType.MISSION
+                return ClientUpload(asked, plan) if mission else RelayPlan(asked, plan)
+            case "mission_download":
+                return Download(asked, ask.path)
+            case "mission_clear":
+                return Clear(asked, KINDS if kind is MissionType.ALL else (kind,))
+        if state not in (State.HOVERING, State.GROUNDED):
+            return None
+        return Adopt(asked) if self._on_board is None else Start(asked, self._on_board)
+
+    def _cannot_begin(
+        self, ask: ipc.Ask, state: State, plan: ClientPlan | None, kind: MissionType
+    ) -> Refusal | None:
         """What refuses any job before it begins."""
         if self._left:
             return Refusal(Code.OPERATOR_LOST, "the station is leaving")
@@ -118,9 +134,10 @@ class Missions:
             return Refusal(Code.NO_VEHICLE, "no vehicle is heard")
         if self._job is not None:
             return Refusal(Code.BUSY, f"{self._job.asked.word} is still under way")
-        if ask.word == "mission_upload" and not ask.path:
+        if ask.word == "mission_upload" and plan is None and not ask.path:
             return Refusal(Code.BAD_MISSION, "which file?")
-        if ask.word in ("mission_upload", "mission_clear"):
+        of_mission = kind in (MissionType.MISSION, MissionType.ALL)
+        if ask.word in ("mission_upload", "mission_clear") and of_mission:
             if state is State.STALE:
                 return Refusal(Code.STALE, "the vehicle's position is too old")
             if state is State.FLYING_MISSION:
@@ -169,7 +186,7 @@ class Missions:
 
     def overruled(self, given: Input) -> list[Work]:
         """Whatever stops the vehicle stops a mission start, too, that is still being prepared."""
-        if not isinstance(self._job, Start):
+        if not isinstance(self._job, Start | Adopt):
             return []
         match given:
             case Requested(request=request) if event_of(request) in STOPS:

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Refusal
+from gcs.plan import commands
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.errors import Level as PlanLevel
 from gcs.plan.errors import PlanError
 from gcs.plan.lint import lint
 from gcs.plan.model import Geodetic, Plan
 from gcs.plan.reader import read_in_steps
-from gcs.plan.wire import WireItem, to_wire
+from gcs.plan.wire import WireItem, from_wire, to_wire
 from gcs.plan.wire_fence import fence_to_wire, has_heights, rally_to_wire
 from gcs.session.paths import autopilot_name, on_earth
 from gcs.session.telemetry import Telemetry
@@ -61,10 +62,29 @@ def prepare(path: str, data: bytes, telemetry: Telemetry) -> Steps[Prepared | Re
     Raises PlanError for a file that is none, or none that can be flown; refuses where the
     vehicle's origin or home is not known.
     """
+    written = yield from read_in_steps(path, data, autopilot_name(telemetry))
+    yield
+    return (yield from prepare_plan(path, written, telemetry))
+
+
+def prepare_items(
+    path: str, items: tuple[WireItem, ...], telemetry: Telemetry
+) -> Steps[Prepared | Refusal]:
+    """The same for a mission that came over a link; `path` stands for a file in errors."""
+    yield
+    written = from_wire(items, autopilot_name(telemetry), path)
+    for item in written.items:
+        if KINDS.get(item.command) is Kind.FENCE:
+            what = "belongs to a fence or to rally points, which are plans of their own"
+            raise PlanError(path, item.where, commands.name(item.command), what)
+    yield
+    return (yield from prepare_plan(path, written, telemetry))
+
+
+def prepare_plan(path: str, written: Plan, telemetry: Telemetry) -> Steps[Prepared | Refusal]:
+    """Lint and place what was read; as `prepare`."""
     who = autopilot_name(telemetry)
     home = Geodetic(*telemetry.home) if telemetry.home else None
-    written = yield from read_in_steps(path, data, who)
-    yield
     if not written.items:
         hint = "`gcs mission clear` takes a mission off; a fence leaves with a mission only"
         raise PlanError(path, "", "mission", "has no items", hint=hint)

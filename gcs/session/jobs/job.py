@@ -120,7 +120,7 @@ class Job(ABC):
 
     def stop(self) -> list[JobWork]:
         """An operator stops it."""
-        return self.end(OutcomeKind.ABORTED, Code.OPERATOR, "stopped by an operator")
+        return self.end(OutcomeKind.ABORTED, Code.OPERATOR, STOPPED)
 
     def heard(self, heard: Heard, view: VehicleView, now_ns: int) -> list[JobWork]:
         if self._transfer is None:
@@ -200,6 +200,7 @@ class Job(ABC):
 
 
 LEFT = "the station left before it was done"
+STOPPED = "stopped by an operator"
 
 
 def refused(request_id: int, word: str, refusal: Refusal) -> tuple[Work, ...]:

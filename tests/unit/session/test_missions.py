@@ -199,10 +199,22 @@ def test_leaving_ends_the_job_under_way_once() -> None:
 # --------------------------------------------------------------------------------- the start
 
 
-@pytest.mark.parametrize("state", [State.GROUNDED, State.HOVERING, State.EXTERNAL])
-def test_without_a_mission_of_ours_on_board_a_start_is_the_gate_s_to_refuse(state: State) -> None:
+@pytest.mark.parametrize("state", [State.GROUNDED, State.HOVERING])
+def test_without_a_mission_of_ours_what_is_on_board_is_looked_up_before_a_start(
+    state: State,
+) -> None:
+    """There is none: that is the gate's to refuse."""
     script = Script()
     script.state = state
+    work = script.ask("mission_start")
+    assert isinstance(work[0], Send)
+    assert work[-1] == AskGate(1, StartMission())
+    assert not any(isinstance(item, ToGate) for item in work)
+
+
+def test_where_none_can_be_started_nothing_on_board_is_looked_up() -> None:
+    script = Script()
+    script.state = State.EXTERNAL
     assert script.ask("mission_start") == [AskGate(1, StartMission())]
 
 
@@ -230,8 +242,12 @@ def test_after_a_restart_of_the_vehicle_nothing_is_known_of_what_is_on_board() -
     script.upload(BOX)
     assert script.missions.forget() == [ToGate(MissionLoaded("", 0))]
     assert script.missions.forget() == []
-    assert script.ask("mission_start") == [AskGate(2, StartMission())]
     assert seen(script.hear(current(1))) == []
+    work = script.ask("mission_start")
+    assert [item.given for item in work if isinstance(item, ToGate)] == [
+        MissionLoaded("the mission on board", FOUR)
+    ]
+    assert work[-1] == AskGate(2, StartMission())
 
 
 # ---------------------------------------------------------------------------------- answers

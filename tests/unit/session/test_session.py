@@ -263,6 +263,7 @@ def test_what_the_vehicle_refuses_ends_as_refused_by_the_vehicle() -> None:
 def test_the_mission_mode_by_its_name_is_a_mission_start_and_needs_a_mission() -> None:
     script = Script().hovering()
     asked = script.ask("mode", mode="AUTO.MISSION")
+    script.hear(wire.mission_count(0))
     assert told.verdicts(script.told)[-1] == (asked, "refused", "NO_MISSION")
 
 

@@ -67,17 +67,21 @@ def mission() -> Mission:
     return made
 
 
-def start(mission: Mission) -> tuple[bool, str]:
-    """Whether what is on board is read back for a start, and the code of a refusal."""
+KNOWN, UNKNOWN = "PARAM_REQUEST_READ", "MISSION_REQUEST_LIST"
+"""What a start begins with: one that we brought is compared, any other one is read first."""
+
+
+def start(mission: Mission) -> tuple[str, str]:
+    """What is asked for first, and the code of a refusal."""
     mission.script.forget()
     mission.ask("mission_start")
-    read_back = mission.script.sent("MISSION_REQUEST_LIST") != []
-    return read_back, "".join(code for _, _, code in told.verdicts(mission.script.told))
+    first = mission.script.sent()[0].get_type()
+    return first, "".join(code for _, _, code in told.verdicts(mission.script.told))
 
 
 def test_an_uploaded_mission_is_shown_and_read_back_before_it_is_started(mission: Mission) -> None:
     assert told.snapshots(mission.script.told)[-1].mission_total == 4
-    assert start(mission) == (True, "")
+    assert start(mission) == (KNOWN, "")
     assert [ruling for _, ruling, _ in told.verdicts(mission.script.told)] == ["accepted"]
 
 
@@ -91,7 +95,7 @@ def test_after_the_vehicle_s_clock_went_back_no_mission_is_known_to_be_on_board(
     script.now_ns += 30 * MS_NS
     script.hear(wire.position(230, (0.0, 0.0, 0.0)))
     script.hear(wire.landed(wire.ON_GROUND))
-    assert start(mission) == (False, "NO_MISSION")
+    assert start(mission)[0] == UNKNOWN
 
 
 def test_after_the_vehicle_was_away_no_mission_is_known_to_be_on_board(mission: Mission) -> None:
@@ -100,4 +104,4 @@ def test_after_the_vehicle_was_away_no_mission_is_known_to_be_on_board(mission: 
     script.run(5.0)
     script.reporting = True
     script.run(1.0)
-    assert start(mission) == (False, "NO_MISSION")
+    assert start(mission) == (UNKNOWN, "NO_ORIGIN")

@@ -93,6 +93,11 @@ def ack(command: int, result: int = 0) -> Message:
     return mavlink.MAVLink_command_ack_message(command, result)
 
 
+def mission_count(items: int) -> Message:
+    """How many items of a mission are on board, for the ground station."""
+    return mavlink.MAVLink_mission_count_message(255, 190, items)
+
+
 def text(severity: int, words: str, id: int = 0, chunk_seq: int = 0) -> Message:
     return mavlink.MAVLink_statustext_message(severity, words.encode(), id, chunk_seq)
 

@@ -125,9 +125,9 @@ class Board:
             case MissionRequestInt(seq=seq, mission_type=kind):
                 item = self._list(kind)[seq]
                 return [msgspec.structs.replace(item, seq=seq, mission_type=kind, **self._to())]
-            case MissionClearAll():
-                self.items = []
-                return self._acked()
+            case MissionClearAll(mission_type=kind):
+                self._list(kind).clear()
+                return self._acked(kind)
             case _:
                 return []
 
@@ -202,6 +202,10 @@ class JobScript:
         (ask,) = self.of(WriteFile)
         news = FileWritten(ask.token, ask.path, error)
         self._take(self.job.file(news, self.view, self.now_ns))
+        return self
+
+    def stop(self) -> JobScript:
+        self._take(self.job.stop())
         return self
 
     def leave(self) -> JobScript:

@@ -6,7 +6,7 @@ from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code
 from gcs.session.inputs import FileWritten
 from gcs.session.jobs.clear import Clear
-from gcs.wire.ids import MissionResult
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import MissionClearAll
 from tests.unit.session.jobs.script import Board, JobScript, asked, brought, placed
 from tests.unit.session.plans import BOX
@@ -16,7 +16,7 @@ MISSION = 0
 
 
 def clear(board: Board) -> JobScript:
-    return JobScript(Clear(asked("mission_clear")), board)
+    return JobScript(Clear(asked("mission_clear"), (MissionType.MISSION,)), board)
 
 
 def board() -> Board:
