@@ -217,6 +217,8 @@ class Session:
                 return [] if telemetry is None else [*self._links.send(telemetry.link, message)]
             case gate_effects.Outcome():
                 return self._operators.outcome(item, self._vehicle.sysid, now_ns)
+            case gate_effects.StreamVerdict():
+                return self._operators.stream_verdict(item, self._vehicle.sysid)
             case (
                 gate_effects.SendSetpoint()
                 | gate_effects.SendCommand()
