@@ -8,10 +8,10 @@ everything is converted once, in the session.  Both unions are tagged by `type`;
 not decode is answered with a `Trouble` event.  What the record keeps too is a struct of
 `gcs/report.py`, or is made of one.
 
-Answers (`VerdictEvent`, `EndingEvent`, `ProgressEvent`, `OperationList`, `MessageEvent`, `Topic`,
-`TopicMessage`) go to the operator who asked; all else goes to all.  `docs/json.md` is this module
-as a page; `SCHEMA` counts up when a field or a meaning that is there changes, not when something
-is added.
+Answers (`VerdictEvent`, `StreamVerdictEvent`, `EndingEvent`, `ProgressEvent`, `OperationList`,
+`MessageEvent`, `Topic`, `TopicMessage`) go to the operator who asked; all else goes to all.
+`docs/json.md` is this module as a page; `SCHEMA` counts up when a field or a meaning that is there
+changes, not when something is added.
 
 The words of requests and their arguments are one table (`gcs/operator/request_words.py`): typed
 lines and one-shot commands alike become `Ask`.
@@ -39,7 +39,8 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     """One request.  `id` is the client's own number and comes back in every answer.
 
     `word` is one of: control arm disarm takeoff goto land rtl hold abort resume photo mode
-    fence mission_start mission_upload mission_download mission_clear station_take station_end.
+    fence mission_start mission_upload mission_download mission_clear stream_begin stream_end
+    station_take station_end.
     """
 
     id: int
@@ -52,6 +53,23 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     on: bool = True  # fence
     path: str = ""  # mission_upload: file to read; mission_download: where to write
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
+
+
+class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_defaults=True):
+    """One sample of a setpoint stream, of the operator in control: at least one of the first three.
+
+    The vehicle flies it until the next one comes, and no longer than the policy's dead-man's time;
+    it is sent on at most 20 times a second.  The first sample that clears begins the stream, where
+    `stream_begin` did not; `stream_end`, or any request that is accepted, ends it.  A sample has no
+    answer of its own: a `stream_verdict` tells when samples begin to be refused, and when they are
+    flown again.
+    """
+
+    pos_enu: Maybe3 | None = None  # metres east, north, up of the local origin
+    v_enu: Maybe3 | None = None  # metres per second
+    a_enu: Maybe3 | None = None  # metres per second squared
+    yaw_deg: float | None = None
+    yaw_rate_deg_s: float | None = None  # clockwise
 
 
 class Pending(msgspec.Struct, frozen=True, tag="pending", tag_field="type"):
@@ -101,16 +119,6 @@ class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="ty
     First come the topics that are there and the latest of what is said only once (fence, static
     frames, models, parameters).  A station that does not record answers with a `Trouble`.
     """
-
-
-class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_defaults=True):
-    """One sample of a setpoint stream; a sample has no answer."""
-
-    pos_enu: Maybe3 | None = None
-    v_enu: Maybe3 | None = None
-    a_enu: Maybe3 | None = None
-    yaw_deg: float | None = None
-    yaw_rate_deg_s: float | None = None
 
 
 Command: TypeAlias = (
@@ -166,6 +174,17 @@ class VerdictEvent(msgspec.Struct, frozen=True, tag="verdict", tag_field="type")
     numbers: dict[str, float | None] = {}
     goal_enu: Maybe3 | None = None
     operation: int = 0  # the station's own number of this request
+
+
+class StreamVerdictEvent(msgspec.Struct, frozen=True, tag="stream_verdict", tag_field="type"):
+    """The samples of this operator's stream are refused from now on, and the vehicle is held in its
+    place; or they are flown from now on.  Told where that changes."""
+
+    outcome: str  # accepted | refused
+    code: str = ""
+    sentence: str = ""
+    zone: str = ""
+    numbers: dict[str, float | None] = {}
 
 
 class EndingEvent(msgspec.Struct, frozen=True, tag="ending", tag_field="type"):
@@ -373,6 +392,7 @@ Event: TypeAlias = (
     | Operators
     | Fences
     | VerdictEvent
+    | StreamVerdictEvent
     | EndingEvent
     | Operation
     | OperationList

@@ -176,17 +176,18 @@ class FsaItem(msgspec.Struct, frozen=True):
 
 
 class DecisionItem(msgspec.Struct, frozen=True):
-    """A verdict on a request, or the ending of an accepted one.
+    """A verdict on a request, the ending of an accepted one, or a verdict on samples of a stream.
 
     `outcome` of a verdict: accepted, refused, superseded; of an ending: complete, aborted,
-    superseded, timed out, taken over.  `numbers` are what a verdict was decided on.
+    superseded, timed out, taken over.  `numbers` are what a verdict was decided on.  A stream's
+    samples have no request (0); their verdict, accepted or refused, is told where it changes.
     """
 
     vehicle: int
     request_id: int
     source: str
     word: str
-    phase: Literal["verdict", "ending"]
+    phase: Literal["verdict", "ending", "stream"]
     outcome: str
     code: str
     sentence: str

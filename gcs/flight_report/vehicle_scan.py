@@ -199,6 +199,8 @@ class VehicleScan:
             self.flight.said_left_out += 1
 
     def _decision(self, fact: Decision, t_s: float) -> None:
+        if fact.phase == "stream":
+            return
         request = self._open_requests.get(fact.request_id)
         if request is None or fact.phase == "verdict":
             request = Request(fact.request_id, t_s, fact.word, fact.source)

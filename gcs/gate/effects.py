@@ -37,7 +37,8 @@ class CommandKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SendSetpoint:
-    """Send SET_POSITION_TARGET_LOCAL_NED with the permit's position, and its yaw if it has one."""
+    """Send SET_POSITION_TARGET_LOCAL_NED with what the permit has: position, velocity,
+    acceleration, yaw, yaw rate."""
 
     permit: Permit
 
@@ -100,6 +101,16 @@ class Verdict:
     evidence: tuple[tuple[str, float], ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class StreamVerdict:
+    """The samples of the setpoint stream of `source` are refused from now on, and why; None: they
+    are flown from now on.  Not told of every sample, only where that changes."""
+
+    source: str
+    refusal: Refusal | None
+    evidence: tuple[tuple[str, float], ...] = ()
+
+
 class OutcomeKind(StrEnum):
     """How an accepted request ended.
 
@@ -158,6 +169,7 @@ Effect: TypeAlias = (
     | CancelCommand
     | SwitchedFence
     | Verdict
+    | StreamVerdict
     | Outcome
     | Transition
     | Say

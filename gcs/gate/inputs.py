@@ -28,6 +28,22 @@ class Requested:
 
 
 @dataclass(frozen=True, slots=True)
+class StreamSeen:
+    """One sample of a client's setpoint stream; `source` names the client.
+
+    Position, velocity (m/s) and acceleration (m/s^2) are local NED; None is what the sample does
+    not ask for, and at least one of the three is asked for.
+    """
+
+    source: str
+    pos_ned: Vec3 | None
+    v_ned: Vec3 | None
+    a_ned: Vec3 | None
+    yaw_rad: float | None
+    yaw_rate_rad_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class HeartbeatSeen:
     """HEARTBEAT of the vehicle.  `mode_name` is the autopilot's own name of the mode; `failsafe`
     says that a failsafe of the vehicle's own is active (MAV_STATE CRITICAL or EMERGENCY)."""
@@ -171,6 +187,7 @@ class Tick:
 
 Input: TypeAlias = (
     Requested
+    | StreamSeen
     | HeartbeatSeen
     | MessageSeen
     | LandedSeen

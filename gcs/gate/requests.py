@@ -83,6 +83,16 @@ class StartMission:
 
 
 @dataclass(frozen=True, slots=True)
+class BeginStream:
+    """Fly the setpoint stream of this client from now on: hold until its first sample clears."""
+
+
+@dataclass(frozen=True, slots=True)
+class EndStream:
+    """End the setpoint stream that is flown, and hover where the vehicle comes to rest."""
+
+
+@dataclass(frozen=True, slots=True)
 class SetMode:
     """Set a mode by the autopilot's own name.  It is treated as the request that means the same;
     `meaning` OTHER is refused.
@@ -116,6 +126,8 @@ Request: TypeAlias = (
     | Resume
     | TakePhoto
     | StartMission
+    | BeginStream
+    | EndStream
     | SetMode
     | SwitchFence
 )

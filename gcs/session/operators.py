@@ -14,7 +14,7 @@ from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.bridge.effects import AsksPlan, StopsPlan
 from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
-from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
+from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, StreamVerdict
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import Abort, SetMode
 from gcs.gate.states import FlightMode
@@ -26,6 +26,7 @@ from gcs.session.missions import MISSION_WORDS, TRANSFER_WORDS
 from gcs.session.operations import Operations
 from gcs.session.requests import BadAskError, Requests, request_of
 from gcs.session.setup import Setup
+from gcs.session.streams import BEGIN, Streams
 from gcs.session.subscriptions import Subscriptions
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
@@ -58,6 +59,7 @@ class Operators:
         self._requests = Requests()
         self._operations = Operations()
         self._subscriptions = Subscriptions(times)
+        self._streams = Streams()
 
     @property
     def in_control(self) -> ipc.OperatorInfo | None:
@@ -74,6 +76,7 @@ class Operators:
         """Its connection has ended.  The station lives as long as its first operator, unless it
         is to be kept."""
         self._subscriptions.forget(client)
+        self._streams.forget(client)
         if client == FIRST and not self._keep:
             return [EndSession(reason)]
         return self._clients.lost(client, reason)
@@ -127,7 +130,7 @@ class Operators:
             case ipc.Ask():
                 return self._ask(client, command, autopilot, no_vehicle)
             case ipc.Stream():
-                return []
+                return self._stream(client, command, no_vehicle, now_ns)
             case ipc.Pending(goal_enu, _):
                 if client != self._clients.in_control:
                     return []  # who only looks cannot send it
@@ -173,6 +176,18 @@ class Operators:
             # The mission mode by its name is a mission start, and is verified like one.
             return [*given, AskMission(request_id, ask)]
         return [*given, AskGate(request_id, request)]
+
+    def _stream(
+        self, client: int, sample: ipc.Stream, no_vehicle: Refusal | None, now_ns: int
+    ) -> list[Work]:
+        """One sample: for the gate, if this operator is in control or nobody is."""
+        refusal = self._clients.refusal(client, BEGIN)
+        if refusal is not None:
+            return self._streams.refuse(client, refusal, 0, now_ns)
+        given = self._clients.give_where_free(client, BEGIN)
+        if no_vehicle is not None:
+            return given + self._streams.refuse(client, no_vehicle, 0, now_ns)
+        return [*given, ToGate(self._streams.seen(client, sample))]
 
     def _ask_station(self, client: int, ask: ipc.Ask) -> list[Work]:
         """What is asked of the station, not of the vehicle, is done at once."""
@@ -244,6 +259,10 @@ class Operators:
         asked = self._requests.close(told.request_id)
         ended = self._operations.end(told, now_ns)
         return [*teller.outcome(told, asked, sysid), Emit(ended)]
+
+    def stream_verdict(self, told: StreamVerdict, sysid: int) -> list[Work]:
+        """What the gate makes of somebody's setpoint stream, where that changes."""
+        return self._streams.verdict(told, sysid)
 
     def tell(self, told: Tell) -> list[Work]:
         return [Emit(told.event, self._requests.get(told.request_id).client)]

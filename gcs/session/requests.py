@@ -26,7 +26,12 @@ class Asked:
     @property
     def source(self) -> str:
         """Who asks, for the gate and the record."""
-        return "operator" if self.client == 1 else f"operator {self.client}"
+        return source_of(self.client)
+
+
+def source_of(client: int) -> str:
+    """What the gate and the record call an operator."""
+    return "operator" if client == 1 else f"operator {client}"
 
 
 class BadAskError(ValueError):
@@ -67,6 +72,10 @@ def request_of(ask: ipc.Ask, autopilot: Autopilot | None) -> requests.Request:
             return requests.SwitchFence(ask.on)
         case "mission_start":
             return requests.StartMission()
+        case "stream_begin":
+            return requests.BeginStream()
+        case "stream_end":
+            return requests.EndStream()
         case "mode":
             mode = mode_named(autopilot, ask.mode) if autopilot else None
             if mode is None:

@@ -277,6 +277,8 @@ class Session:
                 return [*self._links.send(telemetry.link, message, now_ns)]
             case gate_effects.Outcome():
                 return self._operators.outcome(item, self._vehicle.sysid, now_ns)
+            case gate_effects.StreamVerdict():
+                return self._operators.stream_verdict(item, self._vehicle.sysid)
             case (
                 gate_effects.SendSetpoint()
                 | gate_effects.SendCommand()

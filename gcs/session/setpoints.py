@@ -3,52 +3,68 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
+from gcs.frames import Vec3
 from gcs.gate.permit import Permit
 from gcs.session.telemetry import Telemetry
 from gcs.wire.ids import MavFrame, TypeMask
 from gcs.wire.messages import SetPositionTargetLocalNed
 
-POSITION_ONLY = (
-    TypeMask.VX_IGNORE
-    | TypeMask.VY_IGNORE
-    | TypeMask.VZ_IGNORE
-    | TypeMask.AX_IGNORE
-    | TypeMask.AY_IGNORE
-    | TypeMask.AZ_IGNORE
-    | TypeMask.YAW_IGNORE
-    | TypeMask.YAW_RATE_IGNORE
-)
-"""3576: set bits mean "ignore"; heading is left to the autopilot."""
-POSITION_AND_YAW = POSITION_ONLY & ~TypeMask.YAW_IGNORE
-"""2552."""
+POSITION: Final = TypeMask.X_IGNORE | TypeMask.Y_IGNORE | TypeMask.Z_IGNORE
+VELOCITY: Final = TypeMask.VX_IGNORE | TypeMask.VY_IGNORE | TypeMask.VZ_IGNORE
+ACCELERATION: Final = TypeMask.AX_IGNORE | TypeMask.AY_IGNORE | TypeMask.AZ_IGNORE
+
+NOTHING: Final[Vec3] = (0.0, 0.0, 0.0)
+
+
+def type_mask(permit: Permit) -> int:
+    """Set bits mean "ignore".  Whole vectors only: ArduCopter ignores one of which it is to ignore
+    an axis.  A position alone is 3576, with a yaw 2552; a velocity alone is 3527."""
+    mask = 0
+    for given, ignore in (
+        (permit.pos_ned, POSITION),
+        (permit.v_ned, VELOCITY),
+        (permit.a_ned, ACCELERATION),
+        (permit.yaw_rad, TypeMask.YAW_IGNORE),
+        (permit.yaw_rate_rad_s, TypeMask.YAW_RATE_IGNORE),
+    ):
+        mask |= ignore if given is None else 0
+    return mask
 
 
 def setpoint(
     telemetry: Telemetry, permit: Permit, start_ns: int, now_ns: int
 ) -> SetPositionTargetLocalNed:
-    """SET_POSITION_TARGET_LOCAL_NED with the permit's position and, if it has one, yaw.
+    """SET_POSITION_TARGET_LOCAL_NED with what the permit has of position, velocity, acceleration,
+    yaw and yaw rate.
 
     `start_ns` is when the session began: `time_boot_ms` counts from there.  Raises
-    PermissionError for a permit of another moment or without a finite position.
+    PermissionError for a permit of another moment, with nothing to fly, or with a number that is
+    not finite.
     """
-    pos_ned, yaw_rad = permit.pos_ned, permit.yaw_rad
-    if pos_ned is None or permit.issued_ns != now_ns or not all(map(math.isfinite, pos_ned)):
-        raise PermissionError("a setpoint needs a permit of this very moment, with a position")
+    x, y, z = permit.pos_ned or NOTHING
+    vx, vy, vz = permit.v_ned or NOTHING
+    afx, afy, afz = permit.a_ned or NOTHING
+    yaw, yaw_rate = permit.yaw_rad or 0.0, permit.yaw_rate_rad_s or 0.0
+    moves = (permit.pos_ned, permit.v_ned, permit.a_ned) != (None, None, None)
+    numbers = (x, y, z, vx, vy, vz, afx, afy, afz, yaw, yaw_rate)
+    if not moves or permit.issued_ns != now_ns or not all(map(math.isfinite, numbers)):
+        raise PermissionError("a setpoint needs a permit of this very moment, with finite numbers")
     return SetPositionTargetLocalNed(
         time_boot_ms=(now_ns - start_ns) // 1_000_000 & 0xFFFFFFFF,
-        x=pos_ned[0],
-        y=pos_ned[1],
-        z=pos_ned[2],
-        vx=0.0,
-        vy=0.0,
-        vz=0.0,
-        afx=0.0,
-        afy=0.0,
-        afz=0.0,
-        yaw=0.0 if yaw_rad is None else yaw_rad,
-        yaw_rate=0.0,
-        type_mask=POSITION_ONLY if yaw_rad is None else POSITION_AND_YAW,
+        x=x,
+        y=y,
+        z=z,
+        vx=vx,
+        vy=vy,
+        vz=vz,
+        afx=afx,
+        afy=afy,
+        afz=afz,
+        yaw=yaw,
+        yaw_rate=yaw_rate,
+        type_mask=type_mask(permit),
         target_system=telemetry.sysid,
         target_component=telemetry.compid,
         coordinate_frame=MavFrame.LOCAL_NED,

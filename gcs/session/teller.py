@@ -94,6 +94,26 @@ def bridge_decision(told: Decide, asked: Asked, name: str, now_ns: int) -> Emit:
     )
 
 
+def stream_verdict(told: effects.StreamVerdict, client: int, sysid: int) -> list[Effect]:
+    """Samples of a stream are refused from now on, or flown."""
+    refusal = told.refusal
+    item = DecisionItem(
+        vehicle=sysid,
+        request_id=0,
+        source=told.source,
+        word="stream",
+        phase="stream",
+        outcome="refused" if refusal else "accepted",
+        code=refusal.code.value if refusal else "",
+        sentence=refusal.sentence if refusal else "",
+        zone=refusal.zone if refusal else "",
+        goal=None,
+        numbers=dict(told.evidence),
+    )
+    event = ipc.StreamVerdictEvent(item.outcome, item.code, item.sentence, item.zone, item.numbers)
+    return [Emit(event, client), Record(item)]
+
+
 def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
     """How an accepted request ended."""
     item = DecisionItem(

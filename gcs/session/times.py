@@ -30,14 +30,14 @@ class Times:
         return session_ns / 1e9 / self.speedup
 
     def policy(self, policy: Policy) -> Policy:
-        """`policy`, whose waits for heartbeats, answers, pictures and positions, and for a person,
-        are real time.
+        """`policy`, whose waits for heartbeats, answers, pictures, positions and samples of a
+        stream, and for a person, are real time.
 
         What the vehicle flies or does by itself meanwhile (a climb, a landing, a start of the
         estimator) takes as long on both clocks; its report comes in real time.  So such a wait is
         never shorter than the policy says, on either clock.
         """
-        times, faster = policy.control, self.speedup
+        times, stream, faster = policy.control, policy.stream, self.speedup
         no_less = max(1.0, faster)
         return structs.replace(
             policy,
@@ -49,6 +49,13 @@ class Times:
             land_timeout_s=policy.land_timeout_s * no_less,
             photo_timeout_s=policy.photo_timeout_s * no_less,
             takeoff=TakeOffLimits(policy.takeoff.max_up_m, policy.takeoff.timeout_s * no_less),
+            stream=structs.replace(
+                stream,
+                deadman_s=stream.deadman_s * no_less,
+                good_again_s=stream.good_again_s * no_less,
+                ends_after_s=stream.ends_after_s * no_less,
+                position_age_s=stream.position_age_s * no_less,
+            ),
             control=ControlTimes(
                 stream_s=times.stream_s * faster,
                 timeout_s=times.timeout_s * faster,

@@ -396,8 +396,9 @@ class Vehicle:
             case effects.SendSetpoint(permit):
                 assert self.telemetry is not None
                 message = setpoint(self.telemetry, permit, self._start_ns, now_ns)
-                assert permit.pos_ned is not None
                 self.telemetry.count_setpoint(now_ns)
+                if permit.pos_ned is None:
+                    return [Send(message)]  # a velocity: there is no place to draw
                 sent = SetpointItem(self.telemetry.sysid, permit.pos_ned, permit.yaw_rad)
                 return [Send(message), Record(sent)]
             case effects.SendCommand():
@@ -411,7 +412,7 @@ class Vehicle:
             case CheckStart():
                 self._port.check_start(effect)
                 return []
-            case effects.Outcome():
+            case effects.Outcome() | effects.StreamVerdict():
                 return [effect]
             case _:
                 return self._port.tell(effect, self.sysid)

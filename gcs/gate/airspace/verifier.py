@@ -21,7 +21,14 @@ from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
 from gcs.gate.airspace.prediction import BadStop, bad_overshoot, bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
-from gcs.gate.airspace.stopping import Path, predicted_stop, stops_of
+from gcs.gate.airspace.stopping import Path, predicted_stop, stop_point, stops_of
+from gcs.gate.airspace.stream_samples import (
+    TICK_S,
+    StreamSample,
+    beyond_rules,
+    places_of_rest,
+    velocities,
+)
 from gcs.gate.airspace.zones import Zone, build_zones
 from gcs.gate.geometry import TOLERANCE_M
 from gcs.gate.policy.policy import Policy
@@ -131,6 +138,62 @@ class Verifier:
         return refusal or Cleared(
             (*self._nearest("hold", pos_ned, pos_ned), *stopping_numbers(judge, v_ned))
         )
+
+    def stream_sample(
+        self, sample: StreamSample, pos_ned: Vec3, v_ned: Vec3, age_s: float
+    ) -> Cleared | Refusal:
+        """May a sample of a client's stream be flown, by a position that is `age_s` old?
+
+        Its position is judged as a goal is.  For a velocity or an acceleration the vehicle must be
+        able to stop inside by the margin after it has flown that, or gone on as it flies now, for
+        as long as the sample counts; see `stream_samples.py`.
+        """
+        refusal = self._unusable(position=pos_ned, velocity=v_ned, **sample.numbers)
+        refusal = (
+            refusal or beyond_rules(sample, self.policy.stream) or beyond_reach(pos_ned, v_ned)
+        )
+        if refusal is not None:
+            return refusal
+        evidence: tuple[tuple[str, float], ...] = ()
+        if sample.pos_ned is not None:
+            goal = self.goal(sample.pos_ned, sample.yaw_rad, pos_ned, v_ned)
+            if isinstance(goal, Refusal):
+                return goal
+            evidence = goal.evidence
+            if sample.v_ned is None:
+                return goal
+        return self._stream_velocity(sample, pos_ned, v_ned, age_s) or Cleared(
+            (*evidence, *stopping_numbers(self._judge, sample.v_ned or v_ned), ("age_s", age_s))
+        )
+
+    def _stream_velocity(
+        self, sample: StreamSample, pos_ned: Vec3, v_ned: Vec3, age_s: float
+    ) -> Refusal | None:
+        """Refuses velocities and accelerations that the vehicle could not stop from inside."""
+        braking = self.policy.braking_of(self.autopilot)
+        counts_s = self.policy.stream.deadman_s + TICK_S + age_s
+        flown = velocities(sample, v_ned, counts_s, braking)
+        # With a position too, the vehicle may come to rest as far beyond that as beyond its own.
+        begins = (pos_ned,) if sample.pos_ned is None else (pos_ned, sample.pos_ned)
+        rest = [p for begin in begins for p in places_of_rest(begin, flown, counts_s, braking)]
+        judge, keep, error = self._judge, self._judge.margins, self._error()
+        margins = Margins(keep.h_m + error.h_m, keep.v_m + error.v_m)
+        fastest_m_s = max(math.hypot(*v) for v in flown)
+        subject = f"the way to a stop from {metres(fastest_m_s)} m/s"
+        beyond = (self._limits(subject, place, allow=error) for place in rest)
+        refusal = next(filter(None, beyond), None) or judge.hull(
+            subject, (pos_ned,), rest, floor_applies=True, margins=margins
+        )
+        return None if refusal is None else replace(refusal, code=Code.CANNOT_STOP)
+
+    def rest_point(self, pos_ned: Vec3, v_ned: Vec3, age_s: float) -> Vec3 | None:
+        """Where to hold a vehicle that flies: where it would come to rest, if it may hover there,
+        else as far on the way there as it may; None where no place clears."""
+        if self._unusable(position=pos_ned, velocity=v_ned) or beyond_reach(pos_ned, v_ned):
+            return None
+        n, e, d = (x + v * age_s for x, v in zip(pos_ned, v_ned, strict=True))
+        stop_ned = stop_point((n, e, d), v_ned, self.policy.braking_of(self.autopilot))
+        return self._brake_point(pos_ned, stop_ned, floor_applies=True)
 
     def takeoff(self, up_m: float, pos_ned: Vec3) -> Cleared | Refusal:
         """May the vehicle climb straight up to `up_m` metres above where it stands?

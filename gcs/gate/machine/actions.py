@@ -14,7 +14,7 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, Level, OutcomeKind, Ruling, SwitchedFence
-from gcs.gate.machine import commanding, holding, verifying
+from gcs.gate.machine import commanding, holding, streaming, verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import Goal, Task
 from gcs.gate.machine.progress import within_arrival
@@ -254,6 +254,12 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.DROP_DEADLINE: _drop_deadline,
         Action.NOTE_LIFT_OFF: _note_lift_off,
         Action.NOTE_FORCE_REQUEST: _note_force_request,
+        Action.BEGIN_STREAM: streaming.begin,
+        Action.FLY_SAMPLE: streaming.fly,
+        Action.NOTE_SAMPLE: streaming.note,
+        Action.NOTE_GOOD_SAMPLE: streaming.note_good,
+        Action.HOLD_IN_PLACE: streaming.hold_in_place,
+        Action.END_STREAM: streaming.end,
     }
 )
 """A test asserts that every `Action` is here."""

@@ -12,7 +12,9 @@ from typing import Final, assert_never
 from gcs.gate.requests import (
     Abort,
     Arm,
+    BeginStream,
     Disarm,
+    EndStream,
     GoTo,
     Hold,
     Land,
@@ -45,11 +47,14 @@ class Event(StrEnum):
     ABORT = "abort"
     PHOTO = "photo"
     MISSION = "mission"
+    STREAM_BEGIN = "stream begin"
+    STREAM_END = "stream end"
     OTHER_MODE = "other mode"
     FENCE = "fence switch"
 
     GOAL_CLEARED = "goal cleared"
     GOAL_REFUSED = "goal refused"
+    STREAM_SAMPLE = "stream sample"
 
     VEHICLE_HEARD = "heard"
     VEHICLE_LOST = "lost"
@@ -112,6 +117,8 @@ REQUESTS: Final = frozenset(
         Event.ABORT,
         Event.PHOTO,
         Event.MISSION,
+        Event.STREAM_BEGIN,
+        Event.STREAM_END,
         Event.OTHER_MODE,
         Event.FENCE,
     }
@@ -178,6 +185,10 @@ def event_of(request: Request) -> Event:
             return Event.PHOTO
         case StartMission():
             return Event.MISSION
+        case BeginStream():
+            return Event.STREAM_BEGIN
+        case EndStream():
+            return Event.STREAM_END
         case SetMode(meaning=meaning):
             return ASKED[meaning]
         case SwitchFence():

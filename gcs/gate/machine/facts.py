@@ -30,6 +30,7 @@ from gcs.gate.inputs import (
     PositionSeen,
     Requested,
     ReturnHeightSeen,
+    StreamSeen,
     Tick,
     VerifierChanged,
 )
@@ -78,6 +79,8 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             if isinstance(given.request, GoTo):
                 turn.say(Level.INFO, f"Requested Position: {place(given.request.goal_ned)}")
             yield Occurrence(event_of(given.request))
+        case StreamSeen():
+            yield Occurrence(Event.STREAM_SAMPLE)
         case HeartbeatSeen():
             yield from _heartbeat(turn, given)
         case MessageSeen():

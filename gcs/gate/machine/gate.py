@@ -25,7 +25,7 @@ from gcs.gate.effects import (
     SendSetpoint,
     Transition,
 )
-from gcs.gate.inputs import ConditionChanged, Input, OperatorLost, Requested, Tick
+from gcs.gate.inputs import ConditionChanged, Input, OperatorLost, Requested, StreamSeen, Tick
 from gcs.gate.machine.actions import ACTIONS
 from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.events import Event
@@ -34,7 +34,7 @@ from gcs.gate.machine.guards import GUARDS
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.rules import BACK, STAY, Branch, Next, Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
-from gcs.gate.machine.turn import CommandDraft, Draft, SetpointDraft, Turn
+from gcs.gate.machine.turn import CommandDraft, Draft, SampleDraft, SetpointDraft, Turn
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import Control, FlightMode, LandedState, State
 
@@ -117,6 +117,8 @@ class Gate:
     def active_goal_ned(self) -> Vec3 | None:
         """The goal that the vehicle flies to, else the one that it hovers at; None without one."""
         memory = self._turn.memory
+        if memory.flown_state is State.STREAMING and memory.flown is not None:
+            return memory.flown.sample.pos_ned
         flown = memory.goal or memory.hold
         return None if flown is None else flown.pos_ned
 
@@ -172,10 +174,12 @@ class Gate:
         Raises ImpossibleError where the table has a bug; every input is legal at any time.
         """
         turn = self._turn = Turn(self._turn.policy, self._turn.memory, now_ns)
-        if isinstance(given, Requested | OperatorLost | Tick):
+        if isinstance(given, Requested | StreamSeen | OperatorLost | Tick):
             self._check_ages()
         if isinstance(given, Requested):
             turn.requested = given
+        elif isinstance(given, StreamSeen):
+            turn.streamed = given
         severity = turn.severity if isinstance(given, ConditionChanged) else None
         for event, why, breach in events_from(turn, given):
             turn.why, turn.breach = why, breach
@@ -291,6 +295,11 @@ class Gate:
             Streams.HOLD_GOAL: memory.hold,
             Streams.ACTIVE_GOAL: memory.goal,
         }.get(streams)
+        if streams is Streams.SAMPLE:
+            goal = memory.hold
+            if memory.state is State.STREAMING and memory.flown is not None:
+                turn.out.append(SampleDraft(memory.flown.sample, memory.state.name))
+                return
         if goal is not None:
             turn.out.append(SetpointDraft(goal, memory.state.name))
 
@@ -301,6 +310,19 @@ class Gate:
             goal = draft.goal
             assert all(map(math.isfinite, goal.pos_ned))
             return SendSetpoint(permit.issue(goal.pos_ned, goal.yaw_rad, now_ns, draft.reason))
+        if isinstance(draft, SampleDraft):
+            asked = draft.sample
+            return SendSetpoint(
+                permit.issue(
+                    asked.pos_ned,
+                    asked.yaw_rad,
+                    now_ns,
+                    draft.reason,
+                    v_ned=asked.v_ned,
+                    a_ned=asked.a_ned,
+                    yaw_rate_rad_s=asked.yaw_rate_rad_s,
+                )
+            )
         if isinstance(draft, CommandDraft):
             moves = draft.kind in MOTION
             return SendCommand(

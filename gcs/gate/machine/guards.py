@@ -12,7 +12,7 @@ from typing import Final
 
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind
-from gcs.gate.machine import progress, verifying
+from gcs.gate.machine import progress, streaming, verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.rules import Guard
@@ -65,12 +65,11 @@ def _task_ends_held(turn: Turn) -> bool:
 
 
 def _retarget_allowed(turn: Turn) -> bool:
-    task, requested = turn.memory.task, turn.requested
+    task = turn.memory.task
     return (
         turn.policy.retarget == "replace"
         and task is not None
-        and requested is not None
-        and task.requested.source == requested.source
+        and task.requested.source == turn.source
     )
 
 
@@ -180,6 +179,13 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.MODE_GUIDED: _mode(FlightMode.GUIDED),
         Guard.MODE_RETURN: _mode(FlightMode.RETURN),
         Guard.MODE_LAND: _mode(FlightMode.LAND),
+        Guard.OWN_STREAM: streaming.own_stream,
+        Guard.INTERRUPTED_STREAM: streaming.interrupted_stream,
+        Guard.SAMPLE_CLEARS: lambda turn: verifying.given_sample(turn) is None,
+        Guard.SAMPLES_GOOD_AGAIN: streaming.samples_good_again,
+        Guard.FLOWN_SAMPLE_CLEARS_NO_MORE: streaming.clears_no_more,
+        Guard.STREAM_SILENT: streaming.silent,
+        Guard.STREAM_OVER: streaming.over,
     }
 )
 """A test asserts that every `Guard` is here."""

@@ -12,11 +12,13 @@ from dataclasses import dataclass
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.stopping import Leg, OwnPath, Path
+from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
 from gcs.gate.inputs import Requested
 from gcs.gate.machine.events import Event
+from gcs.gate.refusal import Code
 from gcs.gate.states import Control, FlightMode, LandedState, State
 
 SECOND_NS = 1_000_000_000
@@ -63,6 +65,18 @@ class Task:
     waiting: CommandKind | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class FlownSample:
+    """The sample of a client's stream that is flown, with the numbers it was cleared on.
+
+    `from_ned` is where the vehicle was when it came: there the leg to its position begins.
+    """
+
+    sample: StreamSample
+    from_ned: Vec3
+    evidence: tuple[tuple[str, float], ...]
+
+
 @dataclass
 class Memory:
     """Mutable, and owned by one gate.  The values of all fields are immutable, so a shallow copy
@@ -107,6 +121,16 @@ class Memory:
     hold: Goal | None = None  # where the vehicle hovers
     goal: Goal | None = None  # where the vehicle flies to
     within_since_ns: int | None = None  # inside the arrival radius of `goal` since then
+
+    # a client's setpoint stream
+    streamer: str = ""  # whose it is; it means nothing but in STREAMING
+    flown: FlownSample | None = None  # None: the vehicle is held at `hold` in its place
+    sample_ns: int = 0  # when the sample that is flown came
+    streamed_ns: int = 0  # when the last sample came, good or not
+    stream_refused: bool = False  # and the client was told
+    good_since_ns: int | None = None  # refused before, its samples would be good since then
+    refused_elsewhere: tuple[tuple[str, Code], ...] = ()  # by source, told once; see `Turn.refuse`
+    refused_elsewhere_ns: int = 0  # when the last sample was refused where no stream is flown
 
     # commanded
     outstanding: tuple[tuple[int, CommandKind], ...] = ()  # (request id, kind), not answered yet
@@ -160,10 +184,15 @@ class Memory:
     def path(self) -> Path:
         """What the vehicle flies, or has flown and settles at; None where it is sent to no place.
 
-        A vehicle that hovers where it never flew to is on a leg without length.
+        A client's velocities lead to no place.  A vehicle that hovers where it never flew to is on
+        a leg without length.
         """
         if self.flown_state in OWN_PATHS:
             return OwnPath()
+        if self.flown_state is State.STREAMING and self.flown is not None:
+            to_ned = self.flown.sample.pos_ned
+            own = to_ned is not None and self.flown.sample.v_ned is None
+            return Leg(self.flown.from_ned, to_ned) if to_ned is not None and own else None
         goal = self.goal or self.hold
         return None if goal is None else Leg(goal.from_ned or goal.pos_ned, goal.pos_ned)
 

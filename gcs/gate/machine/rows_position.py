@@ -82,6 +82,10 @@ leave_stale: Final[Cell] = (
     Branch(to=EXTERNAL),
 )
 start_grace: Final = Branch(do=(Action.START_GRACE,), to=STALE)
+# A client's sample cannot be verified without a position: the hold in its place is what goes on.
+hold_in_place_and_start_grace: Final = Branch(
+    do=(Action.HOLD_IN_PLACE, Action.START_GRACE), to=STALE
+)
 stop_stream_if_grace_over_and_hold_awaited: Final = Branch(
     when=(Guard.IN_GRACE, Guard.GRACE_OVER, Guard.HOLD_AWAITED, Guard.TASK_ENDS_HELD),
     do=(Action.STOP_STREAM,),
@@ -139,7 +143,8 @@ POSITION_ROWS: Final[Mapping[Event, Row]] = {
         during(GROUNDED, then=to_stale),
         during(TAKING_OFF, HOVERING, then=start_grace),
         during(VERIFYING, then=cannot_happen),
-        during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=start_grace),
+        during(MOVING, TAKING_PICTURE, FLYING_MISSION, then=start_grace),
+        during(STREAMING, then=hold_in_place_and_start_grace),
         during(RETURNING, LANDING, then=unchanged),
         during(HOLDING, then=start_grace),
         during(EXTERNAL, then=to_stale),

@@ -49,6 +49,13 @@ wait_for_tick: Final = Branch(needs=(Check.SEVERITY,), reply=Reply.PENDING)
 replace_goal_if_policy_allows: Final = Branch(
     when=(Guard.RETARGET_ALLOWED,), needs=(Check.SEVERITY,), reply=Reply.PENDING
 )
+end_own_stream_and_wait_for_tick: Final = Branch(
+    when=(Guard.OWN_STREAM,),
+    needs=(Check.SEVERITY,),
+    reply=Reply.PENDING,
+    do=(Action.END_STREAM,),
+    to=HOVERING,
+)
 take_control: Final = Branch(
     needs=(Check.SEVERITY, Check.POSITION),
     reply=Reply.ACCEPTED,
@@ -105,7 +112,8 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(HOVERING, then=(refuse_while_taking_control, wait_for_tick)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, then=(replace_goal_if_policy_allows, refuse(Code.BUSY))),
-        during(STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.BUSY)),
+        during(STREAMING, then=(end_own_stream_and_wait_for_tick, refuse(Code.BUSY))),
+        during(TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.BUSY)),
         during(RETURNING, LANDING, then=busy_or_not_ours),
         during(HOLDING, then=resume_first),
         during(EXTERNAL, then=refuse(Code.NOT_IN_CONTROL)),

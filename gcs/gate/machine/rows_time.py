@@ -46,6 +46,7 @@ from gcs.gate.refusal import Code
 
 TOO_HIGH: Final = End(OutcomeKind.ABORTED, Code.TOO_HIGH)
 TOO_CLOSE: Final = End(OutcomeKind.ABORTED, Code.TOO_CLOSE)
+STREAM_OVER: Final = End(OutcomeKind.TIMED_OUT, judged=True)
 
 # ------------------------------------------------------------------------------------ tick
 
@@ -69,6 +70,13 @@ climb: Final[Cell] = (
         to=HOLDING,
     ),
     Branch(when=(Guard.CLIMBS_TOO_HIGH,), ends=TOO_HIGH, do=(Action.HOLD,), to=HOLDING),
+    unchanged,
+)
+
+stream: Final[Cell] = (
+    Branch(when=(Guard.STREAM_OVER,), ends=STREAM_OVER, do=(Action.HOLD_IN_PLACE,), to=HOVERING),
+    Branch(when=(Guard.STREAM_SILENT,), do=(Action.HOLD_IN_PLACE,)),
+    Branch(when=(Guard.FLOWN_SAMPLE_CLEARS_NO_MORE,), do=(Action.HOLD_IN_PLACE,)),
     unchanged,
 )
 
@@ -104,7 +112,8 @@ TIME_ROWS: Final[Mapping[Event, Row]] = {
         during(HOVERING, then=(verify_if_goal_pending, unchanged)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, then=(verify_if_goal_pending, complete_if_arrived, unchanged)),
-        during(STREAMING, TAKING_PICTURE, FLYING_MISSION, then=unchanged),
+        during(STREAMING, then=stream),
+        during(TAKING_PICTURE, FLYING_MISSION, then=unchanged),
         during(RETURNING, LANDING, HOLDING, EXTERNAL, then=unchanged),
     ),
     Event.DEADLINE: row(

@@ -73,6 +73,13 @@ class Guard(StrEnum):
     GRACE_OVER = "the grace is over"
     RETURNS_TO_STATE = "it was interrupted in flight"
     PHOTO_TAKEN = "the picture was taken"
+    OWN_STREAM = "it is the stream of this client"
+    INTERRUPTED_STREAM = "it interrupted the stream of this client"
+    SAMPLE_CLEARS = "the sample clears"
+    SAMPLES_GOOD_AGAIN = "the samples are good, and have been long enough"
+    FLOWN_SAMPLE_CLEARS_NO_MORE = "the sample that is flown clears no more"
+    STREAM_SILENT = "no sample came for the dead-man's time"
+    STREAM_OVER = "no sample came for too long"
 
 
 class Check(StrEnum):
@@ -130,6 +137,12 @@ class Action(StrEnum):
     DROP_DEADLINE = "let it take as long as it takes"
     NOTE_LIFT_OFF = "note the lift-off"
     NOTE_FORCE_REQUEST = "note the first asking"
+    BEGIN_STREAM = "the stream begins"
+    FLY_SAMPLE = "fly the sample"
+    NOTE_SAMPLE = "note that it came"
+    NOTE_GOOD_SAMPLE = "note that it is good again"
+    HOLD_IN_PLACE = "hold in place of the stream"
+    END_STREAM = "end the stream and hold in place"
 
 
 class Reply(Enum):

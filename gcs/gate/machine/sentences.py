@@ -15,7 +15,7 @@ from gcs.gate.machine.events import Event, event_of
 from gcs.gate.machine.memory import Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import Disarm, GoTo, Request, SetMode, SwitchFence
+from gcs.gate.requests import BeginStream, Disarm, GoTo, Request, SetMode, SwitchFence
 from gcs.gate.states import FlightMode, State
 
 REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
@@ -33,6 +33,8 @@ REFUSED: Final[Mapping[Code, str]] = MappingProxyType(
         Code.POLICY: "the policy does not allow it",
         Code.UNSUPPORTED: "this station does not send it",
         Code.RTL_BLOCKED: "the way home is not clear: land instead",
+        Code.CANNOT_STOP: "the vehicle could not stop inside the fence",
+        Code.OTHER_OPERATOR: "another client's stream is flown",
     }
 )
 """Why a request is refused in this state."""
@@ -100,7 +102,7 @@ def refusal_of(code: Code, request: Request, memory: Memory, policy: Policy) -> 
 def _what_is_under_way(request: Request, memory: Memory, policy: Policy) -> str:
     flown = memory.goal or memory.hold
     goal = "" if flown is None else f", goal {place(flown.pos_ned)}"
-    replace = isinstance(request, GoTo) and memory.state is State.MOVING
+    replace = isinstance(request, GoTo | BeginStream) and memory.state is State.MOVING
     key = f' (policy: retarget = "{policy.retarget}")' if replace else ""
     return f": {memory.state.name}{goal}{key}"
 
@@ -141,6 +143,8 @@ _DONE: Final[Mapping[Event, str]] = MappingProxyType(
         Event.LAND: "the vehicle stands on the ground",
         Event.RETURN: "the vehicle stands on the ground",
         Event.ABORT: "the vehicle stands on the ground, disarmed",
+        Event.STREAM_BEGIN: "its stream is flown already",
+        Event.STREAM_END: "no stream is flown any more",
     }
 )
 

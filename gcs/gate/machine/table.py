@@ -4,8 +4,6 @@ The machine runs from this table and from nothing else, and `gcs fsa` prints it.
 written in the files `rows_*.py`, by subject, and are put together here.
 
 VERIFYING ends within the tick that enters it, so only the verifier's answer can happen there.
-No event leads to STREAMING yet: its samples come from a client's stream, which reaches this gate
-only through the bridge, and the bridge is not built.  Its cells are written all the same.
 """
 
 from __future__ import annotations
@@ -25,6 +23,7 @@ from gcs.gate.machine.rows_modes import MODE_ROWS
 from gcs.gate.machine.rows_position import POSITION_ROWS
 from gcs.gate.machine.rows_requests_to_fly import REQUEST_TO_FLY_ROWS
 from gcs.gate.machine.rows_requests_to_stop import REQUEST_TO_STOP_ROWS
+from gcs.gate.machine.rows_streams import STREAM_ROWS
 from gcs.gate.machine.rows_time import TIME_ROWS
 from gcs.gate.machine.rules import Cell
 from gcs.gate.states import State
@@ -35,6 +34,7 @@ ROWS: Final[Mapping[Event, Row]] = MappingProxyType(
     {
         **REQUEST_TO_FLY_ROWS,
         **REQUEST_TO_STOP_ROWS,
+        **STREAM_ROWS,
         **ANSWER_ROWS,
         **POSITION_ROWS,
         **FLIGHT_ROWS,
@@ -57,11 +57,12 @@ TABLE: Final[Table] = MappingProxyType(
 
 
 class Streams(StrEnum):
-    """Which goal a state sends as a setpoint at every tick, as long as we have or take control."""
+    """What a state sends as a setpoint at every tick, as long as we have or take control."""
 
     NOTHING = "nothing"
     HOLD_GOAL = "the hold goal"
     ACTIVE_GOAL = "the active goal"
+    SAMPLE = "the client's sample, or the hold goal in its place"
     AS_BEFORE = "as before, for the grace"
 
 
@@ -74,7 +75,7 @@ STREAMS: Final[Mapping[State, Streams]] = MappingProxyType(
         State.HOVERING: Streams.HOLD_GOAL,
         State.VERIFYING: Streams.HOLD_GOAL,
         State.MOVING: Streams.ACTIVE_GOAL,
-        State.STREAMING: Streams.ACTIVE_GOAL,
+        State.STREAMING: Streams.SAMPLE,
         State.TAKING_PICTURE: Streams.HOLD_GOAL,
         State.FLYING_MISSION: Streams.NOTHING,
         State.RETURNING: Streams.NOTHING,

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
+from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Breach
 from gcs.gate.condition import Severity
 from gcs.gate.effects import (
@@ -22,16 +23,18 @@ from gcs.gate.effects import (
     OutcomeKind,
     Ruling,
     Say,
+    StreamVerdict,
     Verdict,
 )
-from gcs.gate.inputs import Requested
+from gcs.gate.inputs import Requested, StreamSeen
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import GATE, SECOND_NS, Goal, Memory, Task
 from gcs.gate.machine.rules import End, Reply
 from gcs.gate.machine.sentences import ENDED, done_at_once, not_shown, refusal_of
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.states import Control, FlightMode
+from gcs.gate.requests import BeginStream
+from gcs.gate.states import Control, FlightMode, State
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,14 @@ class SetpointDraft:
     """A setpoint to a verified goal, still without its permit."""
 
     goal: Goal
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class SampleDraft:
+    """A client's verified sample as a setpoint, still without its permit."""
+
+    sample: StreamSample
     reason: str
 
 
@@ -54,7 +65,7 @@ class CommandDraft:
     mode_name: str = ""
 
 
-Draft: TypeAlias = Effect | SetpointDraft | CommandDraft
+Draft: TypeAlias = Effect | SetpointDraft | SampleDraft | CommandDraft
 
 MODE_OF: Final[Mapping[CommandKind, FlightMode]] = MappingProxyType(
     {
@@ -79,7 +90,8 @@ class Turn:
     """The working state of one `Gate.handle` call.
 
     `out` is what leaves the gate, in order; `raised` are events that an action causes and that
-    are handled next; `requested` is the request that came in, if one did.  `why` is the reason
+    are handled next; `requested` and `streamed` are the request or the sample of a stream that came
+    in, if one did.  `why` is the reason
     for the present event, or of the verifier's last refusal; `evidence` the numbers of its last
     clearance; `breach` the predicted breach that is the present event.
     """
@@ -91,6 +103,7 @@ class Turn:
         self.out: list[Draft] = []
         self.raised: list[Event] = []
         self.requested: Requested | None = None
+        self.streamed: StreamSeen | None = None
         self.breach: Breach | None = None
         self.why: Refusal | None = None
         self.evidence: tuple[tuple[str, float], ...] = ()
@@ -141,11 +154,51 @@ class Turn:
             self.say(Level.WARNING, f"{REFUSED_LINE}({refusal.code}): {refusal.sentence}")
 
     def refuse(self, code: Code) -> None:
-        """Refuse the present request: for the reason `why` where there is one, else with the
-        sentence for `code`."""
+        """Refuse the present request or sample: for the reason `why` where there is one, else with
+        the sentence for `code`."""
+        if self.streamed is not None:
+            judged = self.why or refusal_of(code, BeginStream(), self.memory, self.policy)
+            self._refuse_sample(judged)
+            return
         assert self.requested is not None
         refusal = self.why or refusal_of(code, self.requested.request, self.memory, self.policy)
         self.verdict(self.requested, Ruling.REFUSED, refusal)
+
+    # ------------------------------------------------------------------------------ streams
+
+    @property
+    def source(self) -> str:
+        """Who asks, or whose sample it is."""
+        given = self.requested or self.streamed
+        return "" if given is None else given.source
+
+    def _refuse_sample(self, refusal: Refusal) -> None:
+        """Tell the client once: when samples of its stream begin to be refused; where it flies no
+        stream, for each reason once as long as samples come."""
+        assert self.streamed is not None
+        memory, source = self.memory, self.streamed.source
+        if memory.state is State.STREAMING and source == memory.streamer:
+            self.refuse_stream(refusal)
+            return
+        silent_ns = self.now_ns - memory.refused_elsewhere_ns
+        if silent_ns > round(self.policy.stream.ends_after_s * SECOND_NS):
+            memory.refused_elsewhere = ()
+        memory.refused_elsewhere_ns = self.now_ns
+        if (source, refusal.code) not in memory.refused_elsewhere:
+            memory.refused_elsewhere = (*memory.refused_elsewhere, (source, refusal.code))
+            self._tell_refused(source, refusal)
+
+    def refuse_stream(self, refusal: Refusal) -> None:
+        """The stream that is flown is refused from now on; told where that is news."""
+        memory = self.memory
+        memory.good_since_ns = None
+        if not memory.stream_refused:
+            memory.stream_refused = True
+            self._tell_refused(memory.streamer, refusal)
+
+    def _tell_refused(self, source: str, refusal: Refusal) -> None:
+        self.out.append(StreamVerdict(source, refusal, refusal.numbers))
+        self.say(Level.WARNING, f"Stream refused ({refusal.code}): {refusal.sentence}")
 
     # ------------------------------------------------------------------ tasks and outcomes
 

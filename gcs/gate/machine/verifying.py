@@ -8,13 +8,16 @@ reason where it refuses; the verdict then carries them.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Cleared, Verifier
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle
-from gcs.gate.machine.memory import HOME_MOVED_M, Memory
+from gcs.gate.inputs import StreamSeen
+from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS, Memory
 from gcs.gate.machine.sentences import no_fresh_position
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
@@ -76,6 +79,54 @@ def goal(turn: Turn, request: GoTo) -> Refusal | None:
         turn,
         memory.verifier.goal(request.goal_ned, request.yaw_rad, memory.pos_ned, memory.v_ned),
     )
+
+
+AGES: Final = 4
+"""A sample is judged by the next of so many ages up to the oldest that a position may have."""
+
+
+def sample_of(seen: StreamSeen) -> StreamSample:
+    return StreamSample(seen.pos_ned, seen.v_ned, seen.a_ned, seen.yaw_rad, seen.yaw_rate_rad_s)
+
+
+def given_sample(turn: Turn) -> Refusal | None:
+    """May the sample of a stream that came be flown?"""
+    assert turn.streamed is not None
+    return _sample(turn, sample_of(turn.streamed))
+
+
+def flown_sample(turn: Turn) -> Refusal | None:
+    """May the sample that is flown be flown on?"""
+    assert turn.memory.flown is not None
+    return _sample(turn, turn.memory.flown.sample)
+
+
+def _sample(turn: Turn, sample: StreamSample) -> Refusal | None:
+    memory, age_s = turn.memory, _position_age_s(turn)
+    if memory.verifier is None:
+        return _keep(turn, home_or_fence_unknown())
+    if age_s is None or turn.stale or memory.pos_ned is None or memory.v_ned is None:
+        return _keep(turn, no_fresh_position(memory))
+    judged = memory.verifier.stream_sample(sample, memory.pos_ned, memory.v_ned, age_s)
+    return _keep(turn, judged)
+
+
+def rest_point(turn: Turn) -> Vec3 | None:
+    """Where to hold the vehicle that a stream flew; None where no place clears."""
+    memory, age_s = turn.memory, _position_age_s(turn)
+    if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
+        return None
+    at_most_s = turn.policy.position_age_s if age_s is None else age_s
+    return memory.verifier.rest_point(memory.pos_ned, memory.v_ned, at_most_s)
+
+
+def _position_age_s(turn: Turn) -> float | None:
+    """How old the position is at most; None where it is older than a sample is judged by."""
+    age_ns, oldest_s = turn.memory.position_age_ns(turn.now_ns), turn.policy.stream.position_age_s
+    if age_ns is None:
+        return None
+    ages_s = (oldest_s * step / AGES for step in range(1, AGES + 1))
+    return next((age_s for age_s in ages_s if age_ns <= round(age_s * SECOND_NS)), None)
 
 
 def return_path(turn: Turn) -> Refusal | None:

@@ -83,6 +83,7 @@ def _build(
     policy = doc.convert(Policy, {**table, "fence": [written.zone for written in zones]})
     _check_limits(doc, policy)
     _check_bridge(doc, policy.bridge, check_names)
+    _check_stream(doc, policy)
     _check_slack(doc, policy)
     _check_zones(doc, policy, zones)
     return policy
@@ -207,6 +208,16 @@ def _check_bridge(doc: toml.Document, rules: BridgeRules, check_names: CheckName
     fault = None if check_names is None else check_names(rules)
     if fault is not None:
         raise doc.error(("bridge", fault.key, fault.entry), fault.what, fault.hint)
+
+
+def _check_stream(doc: toml.Document, p: Policy) -> None:
+    """A sample counts no longer than the stream, and no position is older than the policy's."""
+    if p.stream.ends_after_s < p.stream.deadman_s:
+        what = f"{p.stream.ends_after_s:g} is less than deadman_s of {p.stream.deadman_s:g}"
+        raise doc.error(("stream", "ends_after_s"), what)
+    if doc.has(("stream", "position_age_s")) and p.stream.position_age_s > p.position_age_s:
+        what = f"{p.stream.position_age_s:g} is more than position_age_s of {p.position_age_s:g}"
+        raise doc.error(("stream", "position_age_s"), what)
 
 
 def _check_slack(doc: toml.Document, p: Policy) -> None:

@@ -158,6 +158,25 @@ class SigningRules(_Section, frozen=True):
     unsigned: Literal["refuse", "warn"]
 
 
+class StreamRules(_Section, frozen=True):
+    """What a client's setpoint stream may ask for, and how long one sample of it counts.
+
+    A position older than `position_age_s` is none to judge a sample by.  Refused samples are flown
+    again once they were good for `good_again_s`; a stream without a sample for `ends_after_s` is
+    over.
+    """
+
+    deadman_s: FromTenth
+    good_again_s: FromZero
+    ends_after_s: FromTenth
+    position_age_s: FromTenth
+    max_speed_h_m_s: FromZero
+    max_speed_up_m_s: FromZero
+    max_speed_down_m_s: FromZero
+    max_a_m_s2: FromZero
+    max_yaw_rate_deg_s: FromZero
+
+
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
@@ -205,6 +224,7 @@ class Policy(_Section, frozen=True):
     mission: MissionRules
     bridge: BridgeRules
     signing: SigningRules
+    stream: StreamRules
     retarget: Literal["refuse", "replace"]
     allow_force_disarm: bool
     arm_requires_recording: bool

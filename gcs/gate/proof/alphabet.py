@@ -13,6 +13,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
+from gcs.frames import Vec3
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
 from gcs.gate.inputs import (
@@ -29,6 +30,7 @@ from gcs.gate.inputs import (
     PhotoSeen,
     PositionSeen,
     Requested,
+    StreamSeen,
     Tick,
     VerifierChanged,
 )
@@ -45,15 +47,19 @@ from gcs.gate.proof.world import (
     LOW,
     NOWHERE,
     OUTSIDE,
+    RUSH,
     SPOT,
     STILL,
+    STROLL,
     TOP,
     World,
 )
 from gcs.gate.requests import (
     Abort,
     Arm,
+    BeginStream,
     Disarm,
+    EndStream,
     GoTo,
     Hold,
     Land,
@@ -106,6 +112,8 @@ REQUESTS: Final[Mapping[str, Request]] = MappingProxyType(
         "abort": Abort(),
         "photo": TakePhoto(),
         "mission": StartMission(),
+        "stream begin": BeginStream(),
+        "stream end": EndStream(),
         "other mode": SetMode("POSCTL", FlightMode.OTHER),
         "fence on": SwitchFence(on=True),
     }
@@ -218,6 +226,28 @@ def _picture(*, new: bool, ok: bool) -> Letter:
     return letter
 
 
+def _sample(source: str, pos_ned: Vec3 | None = None, v_ned: Vec3 | None = None) -> Letter:
+    """A sample of a stream; of another source, while there is something it can collide with."""
+
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+        collides = memory.flown_state is State.STREAMING or memory.task is not None
+        if source == OWNER or collides:
+            yield 1, StreamSeen(source, pos_ned, v_ned, None, None, None)
+
+    return letter
+
+
+def _samples_stay_good(world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    """Until those of a stream that was refused were good for long enough, with fresh positions."""
+    if memory.flown_state is not State.STREAMING or memory.good_since_ns is None:
+        return
+    rules = world.policy.stream
+    passes_ns = max(1, memory.good_since_ns + round(rules.good_again_s * SECOND_NS) - now_ns)
+    for part_ns in (1, passes_ns):
+        yield part_ns, PositionSeen(SPOT, STILL, 0)
+        yield 0, StreamSeen(memory.streamer, None, STROLL, None, None, None)
+
+
 def _home_moves(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
     if memory.home_ned is not None:
         yield 1, HomeSeen(OUTSIDE)
@@ -310,6 +340,24 @@ def _overdue_ns(world: World, memory: Memory) -> int | None:
     return None if memory.asked_mode is None else memory.asked_until_ns
 
 
+def _sample_old_ns(world: World, memory: Memory) -> int | None:
+    if memory.state is not State.STREAMING or memory.flown is None:
+        return None
+    return memory.sample_ns + round(world.policy.stream.deadman_s * SECOND_NS)
+
+
+def _stream_over_ns(world: World, memory: Memory) -> int | None:
+    if memory.state is not State.STREAMING:
+        return None
+    return memory.streamed_ns + round(world.policy.stream.ends_after_s * SECOND_NS)
+
+
+def _position_old_ns(world: World, memory: Memory) -> int | None:
+    if memory.state is not State.STREAMING or memory.pos_ns is None:
+        return None
+    return memory.pos_ns + round(world.policy.stream.position_age_s * SECOND_NS) + 1
+
+
 def _deadline_ns(world: World, memory: Memory) -> int | None:
     return None if memory.task is None else memory.task.deadline_ns
 
@@ -338,6 +386,11 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "ask: mission with none on board": _mission_without_one,
         "ask: mission without a fence": _mission_without_fence,
         "ask: force disarm too late": _force_disarm_too_late,
+        "sample: velocity": _sample(OWNER, v_ned=STROLL),
+        "sample: position": _sample(OWNER, GOAL),
+        "sample: too fast": _sample(OWNER, v_ned=RUSH),
+        "another's sample": _sample(OTHER, v_ned=STROLL),
+        "samples stay good": _samples_stay_good,
         "answer: accepted": _answer(0),
         "answer: refused": _answer(2),
         "answer: none": _answer(None),
@@ -363,6 +416,9 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "operator leaves": _input(OperatorLost("explorer", for_good=False)),
         "wait: position too old": _until(_stale_ns, told=False),
         "wait: landed too old": _until(_landed_old_ns, landed=False),
+        "wait: sample too old": _until(_sample_old_ns),
+        "wait: stream over": _until(_stream_over_ns),
+        "wait: position too old for a sample": _until(_position_old_ns, told=False),
         "wait: grace": _until(lambda _, memory: memory.grace_until_ns, told=False),
         "wait: deadline": _until(_deadline_ns),
         "wait: mode overdue": _until(_overdue_ns),

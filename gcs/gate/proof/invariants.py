@@ -2,7 +2,7 @@
 
 They are written from the design, not from the table, and look at nothing the table says; a table
 that was edited wrongly is found here.  The numbers are the design's; 0 is for what the design
-says beside its numbered invariants.  8 is for setpoints of others, which the gate does not take.
+says beside its numbered invariants.
 """
 
 from __future__ import annotations
@@ -11,7 +11,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from gcs.gate.effects import Outcome, SendCommand, SendSetpoint, Transition, Verdict
+from gcs.gate.effects import (
+    Outcome,
+    SendCommand,
+    SendSetpoint,
+    StreamVerdict,
+    Transition,
+    Verdict,
+)
 from gcs.gate.inputs import (
     CommandEnded,
     ConditionChanged,
@@ -19,12 +26,18 @@ from gcs.gate.inputs import (
     OperatorLost,
     PositionSeen,
     Requested,
+    StreamSeen,
     Tick,
     VerifierChanged,
 )
 from gcs.gate.machine.memory import Memory
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof import invariants_command, invariants_motion, invariants_request
+from gcs.gate.proof import (
+    invariants_command,
+    invariants_motion,
+    invariants_request,
+    invariants_stream,
+)
 from gcs.gate.proof.edge import Edge, Objection
 
 
@@ -55,6 +68,10 @@ STEP_CHECKS: Final = (
     StepCheck(6, invariants_motion.brakes_for_a_breach, (PositionSeen,)),
     StepCheck(7, invariants_request.accepts_what_is_known_to_be_safe, (Requested,)),
     StepCheck(7, invariants_request.hears_an_operator_that_is_there, (Requested,)),
+    StepCheck(8, invariants_stream.sends_samples_that_clear, (SendSetpoint,)),
+    StepCheck(8, invariants_stream.takes_samples_of_one_client, (StreamSeen,)),
+    StepCheck(1, invariants_stream.lets_no_refused_sample_go_on, (StreamVerdict,)),
+    StepCheck(1, invariants_stream.keeps_what_it_flies),
     StepCheck(7, invariants_motion.moves_on_fresh_positions, (Transition, Outcome, Tick)),
     StepCheck(0, invariants_motion.does_what_severity_demands, (ConditionChanged, PositionSeen)),
     StepCheck(7, invariants_command.arms_on_a_fresh_position, (SendCommand,)),

@@ -14,6 +14,7 @@ from gcs.gate.inputs import HomeSeen, PositionSeen, Tick, VerifierChanged
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge, severity_of
+from gcs.gate.proof.invariants_stream import is_sample
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo, TakeOff
 from gcs.gate.states import Control, FlightMode, LandedState, State
@@ -61,12 +62,14 @@ def is_sound(_policy: Policy, after: Memory) -> Iterator[str]:
     idle = (State.NO_VEHICLE, State.GROUNDED, State.EXTERNAL)
     if state in idle and control is not Control.NONE:
         yield f"control is {control.name} in {state.name}"
-    if state in (State.MOVING, State.HOVERING) and control is Control.NONE:
+    if state in (State.MOVING, State.HOVERING, State.STREAMING) and control is Control.NONE:
         yield f"{state.name} without control"
     if state is State.HOVERING and control is Control.OURS and after.task is not None:
         yield "HOVERING under control, and a request has no outcome"
     if state is State.MOVING and (after.goal is None or after.task is None):
         yield "MOVING without a goal and its request"
+    if state is State.STREAMING and (after.flown is None) == (after.hold is None):
+        yield "STREAMING with neither a sample nor a hold in its place, or with both"
 
 
 def stands_still_at_severity(policy: Policy, after: Memory) -> Iterator[str]:
@@ -89,6 +92,8 @@ def streams_what_was_verified(edge: Edge) -> Iterator[str]:
             yield f"a setpoint leaves in {edge.after.state.name}"
         if edge.after.control is Control.NONE:
             yield "a setpoint leaves without control"
+        if is_sample(edge, sent):
+            continue
         if pos_ned is None or not all(map(math.isfinite, pos_ned)):
             yield "a setpoint that is no number leaves"
         elif pos_ned not in known:
@@ -202,6 +207,11 @@ def _flown(memory: Memory) -> Path:
     """What the vehicle flies and slows down for by itself."""
     if memory.flown_state in (State.TAKING_OFF, State.FLYING_MISSION, State.RETURNING):
         return OwnPath()
+    if memory.flown_state is State.STREAMING and memory.flown is not None:
+        asked = memory.flown.sample
+        if asked.pos_ned is None or asked.v_ned is not None:
+            return None
+        return Leg(memory.flown.from_ned, asked.pos_ned)
     goal = memory.hold if memory.goal is None else memory.goal
     if goal is None:
         return None

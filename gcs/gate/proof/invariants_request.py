@@ -14,6 +14,7 @@ from gcs.gate.refusal import Code
 from gcs.gate.requests import (
     Abort,
     Arm,
+    BeginStream,
     Disarm,
     GoTo,
     Hold,
@@ -27,9 +28,15 @@ from gcs.gate.requests import (
 )
 from gcs.gate.states import Control, State
 
-FLIES: Final = (GoTo, TakeControl, Resume, TakeOff, StartMission)
+FLIES: Final = (GoTo, TakeControl, Resume, TakeOff, StartMission, BeginStream)
 MOVES: Final = (*FLIES, Arm, TakePhoto)
-LEFT_BY_RESUME: Final = (State.HOVERING, State.MOVING, State.TAKING_OFF, State.FLYING_MISSION)
+LEFT_BY_RESUME: Final = (
+    State.HOVERING,
+    State.MOVING,
+    State.STREAMING,
+    State.TAKING_OFF,
+    State.FLYING_MISSION,
+)
 
 
 def answers_once(edge: Edge) -> Iterator[str]:
@@ -70,7 +77,8 @@ def keeps_nothing_refused(edge: Edge) -> Iterator[str]:
 
 
 def takes_goals_where_it_hovers(edge: Edge) -> Iterator[str]:
-    """4: a goal is taken in HOVERING; in MOVING by policy, from the owner of the one flown."""
+    """4: a goal is taken in HOVERING; in MOVING by policy, from the owner of the one flown; in
+    STREAMING from the client whose stream it ends."""
     if not isinstance(edge.request, GoTo):
         return
     if not edge.accepted and edge.after.pending != edge.given:
@@ -79,7 +87,10 @@ def takes_goals_where_it_hovers(edge: Edge) -> Iterator[str]:
     assert isinstance(edge.given, Requested)
     owner = None if task is None else task.requested.source
     replaces = edge.policy.retarget == "replace" and edge.given.source == owner
-    if state is not State.HOVERING and not (state is State.MOVING and replaces):
+    if state is State.STREAMING:
+        if edge.given.source != edge.before.streamer:
+            yield f"a goal of {edge.given.source} is taken in the stream of another"
+    elif state is not State.HOVERING and not (state is State.MOVING and replaces):
         yield f"a goal is taken in {state.name} from {edge.given.source}, flown for {owner}"
 
 

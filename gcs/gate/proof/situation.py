@@ -128,6 +128,28 @@ def clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         state in LATE_GUIDED and now_ns < memory.guided_until_ns,
         state in (State.GROUNDED, State.STALE) and now_ns < memory.takeoff_until_ns,
         force_ns is not None and now_ns - force_ns <= FORCE_WINDOW_NS,
+        _stream_clocks(policy, memory, now_ns) if state is State.STREAMING else None,
+    )
+
+
+def _stream_clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    rules, since_ns = policy.stream, memory.good_since_ns
+    age_ns = memory.position_age_ns(now_ns)
+    return (
+        memory.flown is not None and now_ns - memory.sample_ns >= rules.deadman_s * SECOND_NS,
+        age_ns is None or age_ns > rules.position_age_s * SECOND_NS,
+        since_ns is not None and now_ns - since_ns >= rules.good_again_s * SECOND_NS,
+    )
+
+
+def _stream(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    if memory.flown_state is not State.STREAMING:
+        return None
+    flown = memory.flown
+    return (
+        None if flown is None else flown.sample.pos_ned is not None,
+        memory.stream_refused,
+        memory.good_since_ns is not None,
     )
 
 
@@ -139,6 +161,7 @@ PARTS: Final[tuple[Part, ...]] = (
     _position,
     _requests,
     _commands,
+    _stream,
     clocks,
 )
 """Apart, as each looks at a few fields only: the explorer asks anew for those that may differ."""

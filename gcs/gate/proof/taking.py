@@ -81,6 +81,8 @@ def take(letter: Letter, world: World, table: Table, memory: Memory, now_ns: int
 def _rename(before: Memory, after: Memory) -> None:
     """Give the requests in `after` the ids and sources that they always have between letters:
     then a new request's id is new, and memories that differ in names alone are equal."""
+    if not same(before, after, "streamer"):
+        after.streamer = OWNER
     task = None if same(before, after, "task") else after.task
     pending = None if same(before, after, "pending") else after.pending
     if (task is None or _named(task.requested, TASK_ID)) and (

@@ -31,6 +31,8 @@ TOP: Final[Vec3] = (0.0, 0.0, -10.0)
 LOW: Final[Vec3] = (0.0, 0.0, -9.25)
 ABOVE: Final[Vec3] = (0.0, 0.0, -14.0)
 OUTSIDE: Final[Vec3] = (50.0, 0.0, -5.0)
+STROLL: Final[Vec3] = (1.0, 0.0, 0.0)
+RUSH: Final[Vec3] = (50.0, 0.0, 0.0)
 NOWHERE: Final[Vec3] = (float("nan"), 0.0, -5.0)
 
 CONDITIONS: Final[Mapping[Condition, Severity]] = MappingProxyType(

@@ -24,6 +24,7 @@ from gcs.gate.inputs import (
     PositionSeen,
     Requested,
     ReturnHeightSeen,
+    StreamSeen,
     Tick,
     VerifierChanged,
 )
@@ -32,6 +33,7 @@ from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.rules import Branch, Reply
 from gcs.gate.machine.table import TABLE, Table
+from gcs.gate.permit import Permit
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.alphabet import ALPHABET, TICK_NS
 from gcs.gate.proof.edge import Edge
@@ -42,6 +44,7 @@ from gcs.gate.states import FlightMode, LandedState, State
 
 HOME = (0.0, 0.0, 0.0)
 RADIUS_M, CEILING_M = 20.0, 30.0
+MARGIN_M = 2.0
 
 
 @dataclass
@@ -58,6 +61,7 @@ class Run:
     goals: dict[int, Vec3] = field(default_factory=dict)
     asked: set[int] = field(default_factory=set)
     places: set[Vec3] = field(default_factory=set)
+    streamed: dict[StreamSeen, int] = field(default_factory=dict)
     last_id: int = 0
 
     def __post_init__(self) -> None:
@@ -107,6 +111,8 @@ class Run:
             self.asked.add(told.request_id)
         if isinstance(told, PositionSeen):
             self.places.add(told.pos_ned)
+        if isinstance(told, StreamSeen):
+            self.streamed[told] = self.now_ns
         for effect in effects:
             match effect:
                 case Verdict(request_id, _, request, ruling):
@@ -118,20 +124,39 @@ class Run:
                 case Outcome(request_id):
                     self.endings[request_id] += 1
                 case SendSetpoint(permit):
-                    self.on_the_wire(permit.pos_ned, permit.reason)
+                    self.on_the_wire(permit)
                 case SwitchedFence():
                     self.feed(VerifierChanged(self.verifier))
                 case _:
                     pass
 
-    def on_the_wire(self, pos_ned: Vec3 | None, reason: str) -> None:
+    def on_the_wire(self, permit: Permit) -> None:
+        pos_ned, hold = permit.pos_ned, self.gate.memory.hold
+        if hold is None and permit.reason == State.STREAMING.name:
+            self.as_it_came(permit)
+            return
+        assert (permit.v_ned, permit.a_ned, permit.yaw_rate_rad_s) == (None, None, None)
         assert pos_ned is not None
         north_m, east_m, down_m = pos_ned
         assert math.hypot(north_m, east_m) <= RADIUS_M
         assert 0.0 <= -down_m <= CEILING_M
-        if reason.startswith("brake"):
+        if permit.reason.startswith("brake"):
+            self.places.add(pos_ned)
+        if hold is not None and pos_ned == hold.pos_ned and hold.evidence[0][0] == "rest_m":
+            inside = math.hypot(north_m, east_m) <= RADIUS_M - MARGIN_M
+            assert inside or pos_ned in self.places
             self.places.add(pos_ned)
         assert pos_ned in self.places | set(self.goals.values())
+
+    def as_it_came(self, permit: Permit) -> None:
+        """A sample of a stream: one that came less than the dead-man's time ago."""
+        sent = (permit.pos_ned, permit.v_ned, permit.a_ned, permit.yaw_rad, permit.yaw_rate_rad_s)
+        came = [
+            at_ns
+            for s, at_ns in self.streamed.items()
+            if (s.pos_ned, s.v_ned, s.a_ned, s.yaw_rad, s.yaw_rate_rad_s) == sent
+        ]
+        assert self.now_ns - max(came) < SECOND_NS // 2
 
     def closed(self) -> None:
         """Three minutes later nothing is open that could have ended."""
@@ -152,8 +177,23 @@ samples = st.builds(
     st.just(0),
     st.booleans(),
 )
+asked = st.none() | st.tuples(numbers, numbers, numbers)
+slow = st.tuples(st.floats(-3, 3), st.floats(-3, 3), st.floats(-1, 1))
+stream_samples = st.builds(
+    StreamSeen,
+    st.just("test"),
+    asked,
+    asked | slow,
+    asked,
+    st.none() | numbers,
+    st.none() | numbers,
+) | st.builds(StreamSeen, st.just("test"), st.none(), slow, st.none(), st.none(), st.none())
 steps = st.lists(
-    st.sampled_from(sorted(ALPHABET)) | goals | samples | st.integers(0, 2 * SECOND_NS),
+    st.sampled_from(sorted(ALPHABET))
+    | goals
+    | samples
+    | stream_samples
+    | st.integers(0, 2 * SECOND_NS),
     max_size=80,
 )
 
@@ -172,7 +212,7 @@ def test_L17_any_interleaving_from_nothing(autopilot: str, word: list[str]) -> N
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(steps=steps)
 def test_L17_any_interleaving_with_any_numbers_from_hovering(
-    retarget: str, steps: list[str | GoTo | PositionSeen | int]
+    retarget: str, steps: list[str | GoTo | PositionSeen | StreamSeen | int]
 ) -> None:
     run = Run(structs.replace(YARD, retarget=retarget)).hover()
     for step in steps:
@@ -181,7 +221,7 @@ def test_L17_any_interleaving_with_any_numbers_from_hovering(
                 run.letter(step)
             case GoTo():
                 run.ask(step)
-            case PositionSeen():
+            case PositionSeen() | StreamSeen():
                 run.feed(step)
             case passes_ns:
                 run.feed(Tick(0), passes_ns)

@@ -20,11 +20,12 @@ FLOWN_TO = Goal((7.0, 8.0, -UP), None, ())
 STREAMED = {
     State.HOVERING: HELD,
     State.MOVING: FLOWN_TO,
-    State.STREAMING: FLOWN_TO,
+    State.STREAMING: HELD,
     State.TAKING_PICTURE: HELD,
     State.HOLDING: HELD,
 }
-"""All others send none; STALE goes on as before for its grace."""
+"""All others send none; STALE goes on as before for its grace.  STREAMING holds in place of the
+stream as long as no sample is flown."""
 
 
 def sent(script: Script) -> list[tuple[float, float, float] | None]:

@@ -56,11 +56,11 @@ def test_an_input_that_raised_is_recorded_whole_with_what_came_of_it(session: Se
     """Nothing else is recorded of it, since what was under way is dropped."""
     session.handle(inputs.LinkEvent(0, "open"), 1)
     bad = inputs.Datagram(7, FrameWriter(1, 1).write(HEARTBEAT))  # there is no link 7 to ask it on
-    with pytest.raises(IndexError):
+    with pytest.raises(KeyError):
         session.handle(bad, 2)
-    kept = fault_kept(session.fault(bad, "IndexError: no", 2))
+    kept = fault_kept(session.fault(bad, "KeyError: 7", 2))
     assert (kept.report, kept.handled, kept.kind, kept.at_ns) == (
-        "IndexError: no",
+        "KeyError: 7",
         False,
         "Datagram",
         2,

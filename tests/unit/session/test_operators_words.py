@@ -31,6 +31,7 @@ WORDS = (
         "fence",
     ],
     *["mission_start", "mission_upload", "mission_download", "mission_clear", "station_end"],
+    *["stream_begin", "stream_end"],
 )
 STOPS = {(176, 4.0, 3.0), (176, 4.0, 5.0), (176, 4.0, 6.0)}
 """DO_SET_MODE to px4's AUTO.LOITER, AUTO.RTL and AUTO.LAND."""
@@ -58,6 +59,12 @@ commands = st.one_of(
     st.builds(ipc.ListOperations, st.integers()),
     st.builds(ipc.WatchTopics),
     st.builds(ipc.Join, st.text()),
+    st.builds(
+        ipc.Stream,
+        *[st.one_of(st.none(), st.tuples(numbers, numbers, numbers))] * 3,
+        yaw_deg=numbers,
+        yaw_rate_deg_s=numbers,
+    ),
     st.builds(ipc.Pending, st.tuples(st.floats(), st.floats(), st.floats())),
 )
 
@@ -85,6 +92,7 @@ def test_one_who_looks_can_stop_the_vehicle_and_nothing_else(said: list[ipc.Comm
     for message in script.sent("COMMAND_LONG"):
         stop = (message.command, message.param2, message.param3) in STOPS
         assert stop or message.command in {LAND, DISARM, *OWN}, message
+    assert script.sent("SET_POSITION_TARGET_LOCAL_NED") == []
     assert told.files(script.told) == []
     asked = sum(isinstance(command, ipc.Ask) for command in said)
     assert len(told.verdicts(script.told)) <= asked
@@ -98,6 +106,7 @@ def test_every_kind_of_command_is_tried() -> None:
     kinds = set(get_args(ipc.Command)) - {ipc.Leave}
     assert kinds == {
         ipc.Ask,
+        ipc.Stream,
         ipc.Subscribe,
         ipc.ListOperations,
         ipc.Join,

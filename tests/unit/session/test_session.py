@@ -106,7 +106,8 @@ def test_a_frame_with_a_wrong_checksum_moves_nothing() -> None:
 
 
 def test_how_a_datagram_was_cut_is_recorded_only_where_it_does_not_show() -> None:
-    script = Script(streams=frozenset({1})).met()
+    two = ("udpin://127.0.0.1:14540", "tcpout://127.0.0.1:5760")
+    script = Script(endpoints=two, streams=frozenset({1})).met()
     script.forget()
     first, second = script.sender.frame(wire.heartbeat()), script.sender.frame(wire.heartbeat())
     script.feed(Datagram(0, first))

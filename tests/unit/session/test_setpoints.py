@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from gcs.gate.permit import issue
+from gcs.gate.permit import Permit, issue
 from gcs.session.links import Links
 from gcs.session.setpoints import setpoint
 from tests.unit.session import wire
@@ -21,9 +21,12 @@ IGNORE_ALL_BUT_POSITION_AND_YAW = 2552
 def on_the_wire(
     pos_ned: tuple[float, float, float], yaw_rad: float | None, now_ns: int
 ) -> wire.Message:
-    permit = issue(pos_ned, yaw_rad, now_ns, "a test")
-    message = setpoint(vehicle(), permit, START_NS, now_ns)
-    (sent,) = wire.sent(Links(255, 190, count=1).send(0, message, now_ns))
+    return sent_of(issue(pos_ned, yaw_rad, now_ns, "a test"))
+
+
+def sent_of(permit: Permit) -> wire.Message:
+    message = setpoint(vehicle(), permit, START_NS, permit.issued_ns)
+    (sent,) = wire.sent(Links(255, 190, count=1).send(0, message, permit.issued_ns))
     return sent
 
 
@@ -47,6 +50,48 @@ def test_a_heading_is_sent_with_its_bit_cleared() -> None:
 def test_a_heading_of_north_is_a_heading() -> None:
     sent = on_the_wire((0.0, 0.0, -1.0), 0.0, START_NS)
     assert sent.type_mask == IGNORE_ALL_BUT_POSITION_AND_YAW
+
+
+@pytest.mark.parametrize(
+    ("asked", "mask"),
+    [
+        ({"v_ned": (1.0, 2.0, -3.0)}, 3527),
+        ({"v_ned": (1.0, 2.0, -3.0), "yaw_rate_rad_s": 0.0}, 1479),
+        ({"v_ned": (1.0, 2.0, -3.0), "a_ned": (0.0, 0.0, 0.0)}, 3079),
+        ({"a_ned": (0.0, 0.0, 0.5)}, 3135),
+    ],
+)
+def test_a_sample_of_a_stream_ignores_what_it_does_not_ask_for(
+    asked: dict[str, tuple[float, float, float]], mask: int
+) -> None:
+    """POSITION_TARGET_TYPEMASK: 1 to 4 position, 8 to 32 velocity, 64 to 256 acceleration, 1024
+    yaw, 2048 yaw rate; 512 (accelerations are forces) is never set."""
+    permit = issue(None, None, START_NS, "a test", **asked)  # type: ignore[arg-type]
+    (sent,) = wire.sent(
+        Links(255, 190, count=1).send(0, setpoint(vehicle(), permit, START_NS, START_NS), START_NS)
+    )
+    assert sent.type_mask == mask
+    assert (sent.vx, sent.vy, sent.vz) == asked.get("v_ned", (0.0, 0.0, 0.0))
+    assert (sent.afx, sent.afy, sent.afz) == asked.get("a_ned", (0.0, 0.0, 0.0))
+    assert (sent.x, sent.y, sent.z, sent.yaw, sent.yaw_rate) == (0.0,) * 5
+
+
+def test_a_position_with_a_velocity_and_a_yaw_rate() -> None:
+    permit = issue(
+        (1.0, 2.0, -3.0), None, START_NS, "a test", v_ned=(0.5, 0.0, 0.0), yaw_rate_rad_s=0.25
+    )
+    (sent,) = wire.sent(
+        Links(255, 190, count=1).send(0, setpoint(vehicle(), permit, START_NS, START_NS), START_NS)
+    )
+    assert sent.type_mask == 64 + 128 + 256 + 1024
+    assert (sent.x, sent.vx, sent.yaw_rate) == (1.0, 0.5, 0.25)
+
+
+@pytest.mark.parametrize("name", ["v_ned", "a_ned"])
+def test_a_velocity_that_is_no_number_never_leaves(name: str) -> None:
+    permit = issue(None, None, START_NS, "a test", **{name: (0.0, math.nan, 0.0)})  # type: ignore[arg-type]
+    with pytest.raises(PermissionError):
+        setpoint(vehicle(), permit, START_NS, START_NS)
 
 
 def test_its_clock_counts_milliseconds_of_the_session_in_32_bits() -> None:

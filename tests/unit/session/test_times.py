@@ -37,6 +37,9 @@ def test_waits_for_the_other_side_do_not_shrink_and_flights_do_not_grow() -> Non
     assert fast.arm_timeout_s == 10.0 * DEFAULT.arm_timeout_s
     assert fast.land_timeout_s == 10.0 * DEFAULT.land_timeout_s
     assert fast.takeoff.timeout_s == 10.0 * DEFAULT.takeoff.timeout_s
+    assert fast.stream == structs.replace(
+        DEFAULT.stream, deadman_s=5.0, good_again_s=5.0, ends_after_s=50.0, position_age_s=5.0
+    )
     same = structs.replace(
         fast,
         heartbeat_age_s=DEFAULT.heartbeat_age_s,
@@ -48,6 +51,7 @@ def test_waits_for_the_other_side_do_not_shrink_and_flights_do_not_grow() -> Non
         takeoff=DEFAULT.takeoff,
         photo_timeout_s=DEFAULT.photo_timeout_s,
         control=DEFAULT.control,
+        stream=DEFAULT.stream,
     )
     assert same == DEFAULT
 
