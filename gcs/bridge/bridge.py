@@ -15,6 +15,7 @@ from gcs.bridge.client import Client
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import BridgeEffect, Joined, Lost, Notes, ToLink
 from gcs.bridge.judge import Judge, Judged, Look, Received, of_plan
+from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
@@ -30,11 +31,14 @@ FIRST_NUMBER: Final = 1000
 class Bridge:
     """All MAVLink clients of one station, and its vehicle, whose system id is `vehicle.sysid`."""
 
-    def __init__(self, own: Address, rules: BridgeRules, silent_ns: int, timing: Timing) -> None:
-        """`own` is what the station calls itself; a client that is silent for `silent_ns` is lost;
-        `timing` is of the plans that clients send."""
+    def __init__(
+        self, own: Address, rules: BridgeRules, needed_hz: Rates, silent_ns: int, timing: Timing
+    ) -> None:
+        """`own` is what the station calls itself; `needed_hz` is how often the gate needs which
+        message; a client that is silent for `silent_ns` is lost; `timing` is of the plans that
+        clients send."""
         self._own = own
-        self._judge = Judge(rules)
+        self._judge = Judge(rules, needed_hz)
         self._silent_ns = silent_ns
         self._timing = timing
         self._routes = Routes()

@@ -82,6 +82,13 @@ class AsksVehicle:
 
 
 @dataclass(frozen=True, slots=True)
+class AsksForStreams:
+    """The gate's own streams are to be asked for once more: a client may have made them slower."""
+
+    msgids: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class ToLink:
     """A frame that goes to a client's link as it is."""
 
@@ -115,6 +122,7 @@ BridgeEffect: TypeAlias = (
     | StopsPlan
     | ToVehicle
     | AsksVehicle
+    | AsksForStreams
     | ToLink
     | Answers
     | Notes

@@ -19,6 +19,7 @@ from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
     Answers,
+    AsksForStreams,
     AsksPlan,
     AsksVehicle,
     BridgeEffect,
@@ -32,6 +33,7 @@ from gcs.bridge.guard.guard import Guard
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
 from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
 from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans import effects as plan_effects
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.server import PLAN_MESSAGES
@@ -51,9 +53,11 @@ from gcs.wire.messages import (
     MissionItem,
     MissionItemInt,
     MissionSetCurrent,
+    RequestDataStream,
 )
 
-PLAN_IDS: Final = frozenset(cls.MSG_ID for cls in PLAN_MESSAGES)
+DECODED_IDS: Final = frozenset(cls.MSG_ID for cls in (*PLAN_MESSAGES, RequestDataStream))
+"""Messages that are looked into although they may be harmless."""
 GUIDED_CURRENT: Final = frozenset({2, 3})
 """MISSION_ITEM.current of an item that ArduPilot flies to at once, or whose height it takes."""
 
@@ -83,8 +87,10 @@ class Received:
 class Judge:
     """Of everything that clients send to the one vehicle; it has no memory of its own."""
 
-    def __init__(self, rules: BridgeRules) -> None:
+    def __init__(self, rules: BridgeRules, needed_hz: Rates) -> None:
+        """`needed_hz`: how often the gate needs which message."""
         self._rules = rules
+        self._needed_hz = needed_hz
         self._guard: Guard | None = None
         self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
         self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
@@ -94,7 +100,7 @@ class Judge:
         """What is done with it."""
         frame = given.frame
         row, message = message_row(frame.msgid), None
-        if row.kind is not Kind.HARMLESS or frame.msgid in PLAN_IDS:
+        if row.kind is not Kind.HARMLESS or frame.msgid in DECODED_IDS:
             message = decode(frame)
             if isinstance(message, CommandLong | CommandInt):
                 row = command_row(message.command)
@@ -103,7 +109,7 @@ class Judge:
             return self._plan(given, message, row)
         match kind:
             case Kind.HARMLESS:
-                return Judged(False, [ToVehicle(frame.raw)])
+                return Judged(False, self._forward(given, message))
             case Kind.LOCAL:
                 return Judged(False, [])
             case Kind.DENIED | Kind.CARRIER:
@@ -113,6 +119,17 @@ class Judge:
                 return self._motion(given, message, row)
             case Kind.CONFIGURATION:
                 return self._configuration(given, message, row)
+
+    def _forward(self, given: Received, message: Message | None) -> list[BridgeEffect]:
+        """What is harmless, but for the rates that the gate needs."""
+        if isinstance(message, CommandLong | CommandInt):
+            instead = not_slower(message, self._needed_hz)
+            if instead is not None:
+                return [AsksVehicle(given.by.source, instead)]
+        elif isinstance(message, RequestDataStream):
+            again = asked_anew(message, self._needed_hz)
+            return [ToVehicle(given.frame.raw), AsksForStreams(tuple(again))]
+        return [ToVehicle(given.frame.raw)]
 
     # ------------------------------------------------------------------------------ motion
 

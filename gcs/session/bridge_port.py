@@ -17,6 +17,7 @@ from gcs.gate.machine.turn import REFUSED_LINE
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
 from gcs.session import teller
+from gcs.session.discovery import needed_hz
 from gcs.session.effects import Emit
 from gcs.session.links import Counts
 from gcs.session.missions import timing_of
@@ -40,7 +41,7 @@ class BridgePort:
     ) -> None:
         own = Address(config.sysid, config.compid)
         silent_ns = times.real_ns(round(rules.client_gone_s * 1e9))
-        self.bridge = Bridge(own, rules, silent_ns, timing_of(times))
+        self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing_of(times))
         self._vehicle = vehicle
         self._endpoints = endpoints
         self._shown = config.bridge or bool(config.clients)

@@ -7,7 +7,7 @@ or NO_ORIGIN, with its reason.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
@@ -31,6 +31,12 @@ WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
 FASTEST_HZ = 200.0
 """Of real seconds; a sped-up vehicle is asked for its positions that much more often."""
 
+
+def needed_hz(times: Times) -> dict[int, float]:
+    """How often the station needs which message, on the vehicle's clock."""
+    return {msgid: min(hz * times.speedup, FASTEST_HZ) for msgid, hz in WANTED_HZ}
+
+
 ASK_AGAIN_NS = 2_000_000_000
 """Wait between two requests for what did not come."""
 
@@ -39,7 +45,7 @@ class Discovery:
     """All that is not there is asked for when a vehicle appears; then only what did not come."""
 
     def __init__(self, times: Times) -> None:
-        self._speedup = times.speedup
+        self._needed_hz = needed_hz(times)
         self._ask_again_ns = times.real_ns(ASK_AGAIN_NS)
         self._asked_ns = 0
 
@@ -59,11 +65,16 @@ class Discovery:
             yield _request(telemetry, MsgId.HOME_POSITION)
         if first:
             yield _request(telemetry, MsgId.AUTOPILOT_VERSION)
-        for msgid, rate_hz in WANTED_HZ:
+        for msgid, rate_hz in self._needed_hz.items():
             silent = now_ns - telemetry.landed_ns > self._ask_again_ns
-            unknown = silent and msgid is MsgId.EXTENDED_SYS_STATE
+            unknown = silent and msgid == MsgId.EXTENDED_SYS_STATE
             if first or telemetry.pos_ned is None or unknown:
-                yield message_interval(telemetry, msgid, min(rate_hz * self._speedup, FASTEST_HZ))
+                yield message_interval(telemetry, msgid, rate_hz)
+
+    def again(self, telemetry: Telemetry, msgids: Iterable[int]) -> Iterator[CommandLong]:
+        """Commands that ask for these streams once more."""
+        for msgid in msgids:
+            yield message_interval(telemetry, msgid, self._needed_hz[msgid])
 
 
 def _request(telemetry: Telemetry, msgid: MsgId) -> CommandLong:

@@ -13,6 +13,7 @@ from typing import assert_never
 from gcs import ipc
 from gcs.bridge.effects import (
     Answers,
+    AsksForStreams,
     AsksPlan,
     AsksVehicle,
     Joined,
@@ -314,6 +315,8 @@ class Session:
                 Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()
             ):
                 return self._of_client(item, now_ns)
+            case AsksForStreams(msgids):
+                return self._vehicle.ask_for_streams(msgids, now_ns)
             case ToVehicle() | AsksVehicle() | ToLink() | Answers():
                 return [*self._pass_on(item, now_ns)]
             case _:

@@ -320,6 +320,12 @@ class Vehicle:
         """Harmless commands of the station's own, such as for a stream."""
         return [work for each in commands for work in self._commands.send_own(each, now_ns)]
 
+    def ask_for_streams(self, msgids: Iterable[int], now_ns: int) -> list[Work]:
+        """Ask once more for streams that the gate needs."""
+        if self.telemetry is None:
+            return []
+        return self.send_own(self._discovery.again(self.telemetry, msgids), now_ns)
+
     def remind(self) -> list[Work]:
         """The gate's state once more, for the record; before a vehicle is heard, of the one that
         is expected, where its number is known."""

@@ -360,6 +360,17 @@ class RcChannels(Message, frozen=True, gc=False):
     rssi: int
 
 
+class RequestDataStream(Message, frozen=True, gc=False):
+    """REQUEST_DATA_STREAM (66): 6 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.REQUEST_DATA_STREAM
+    req_message_rate: int  # Hz
+    target_system: int
+    target_component: int
+    req_stream_id: int  # MAV_DATA_STREAM
+    start_stop: int
+
+
 class ManualControl(Message, frozen=True, gc=False):
     """MANUAL_CONTROL (69): 11 bytes, 30 with extensions."""
 

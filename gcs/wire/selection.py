@@ -47,6 +47,7 @@ MESSAGES = (
     "AUTOPILOT_VERSION",
     # What other stations send, through the bridge.
     "SETUP_SIGNING",
+    "REQUEST_DATA_STREAM",
     "SET_MODE",
     "CHANGE_OPERATOR_CONTROL",
     "PARAM_REQUEST_LIST",

@@ -147,3 +147,14 @@ def test_who_plays_the_vehicle_is_not_believed(personality: Personality) -> None
     assert telemetry is not None
     assert telemetry.pos_ned == position
     assert client.link != liar.link
+
+
+def test_no_client_makes_the_gates_own_streams_slower(personality: Personality) -> None:
+    """MAVProxy asks an ArduPilot for all streams at 4 Hz, another client for no positions."""
+    flight, client = flying(personality)
+    client.send(dialect.MAVLink_request_data_stream_message(1, 1, 0, 4, 1))
+    assert client.ask(511, 32, -1) == ACCEPTED  # SET_MESSAGE_INTERVAL LOCAL_POSITION_NED
+    flight.run(1)
+    before = len(client.messages("LOCAL_POSITION_NED"))
+    flight.run(4)
+    assert len(client.messages("LOCAL_POSITION_NED")) - before >= 29 * 4
