@@ -1,0 +1,232 @@
+"""A program on MAVSDK 4 flies through the bridge, and then tries to leave the fence.
+
+    python bridge_mavsdk.py udpout://127.0.0.1:14551 px4 fly offboard escape land
+
+The words after the autopilot are what it does, in order; one line is printed for each thing done.
+Nothing here knows that a bridge is between it and the vehicle.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable
+
+from mavsdk.plugins import geofence as fences
+from mavsdk.plugins import mission_raw as raw
+from mavsdk.plugins.action import Action
+from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
+from mavsdk.plugins.param import Param
+from mavsdk.plugins.telemetry import FlightMode, Telemetry
+from mavsdk_station import EARTH_M_PER_DEG, Station, ask_for_streams, ned_m, refusal, until
+
+UP_M = 5.0
+GLOBAL_RELATIVE_ALT_INT = 6
+
+
+class Peer:
+    def __init__(self, station: Station, autopilot: str) -> None:
+        self.system = station.system
+        self.autopilot = autopilot
+        self.telemetry = Telemetry(station.system)
+        self.action = Action(station.system)
+        self.home_m = (0.0, 0.0, 0.0)
+        """North, east, down of home in the local frame: not zero where the estimate wandered."""
+
+    def done(self, what: str, call: Callable[..., object], *args: object) -> None:
+        result = refusal(call, *args)
+        assert result == "SUCCESS", f"{what}: {result}"
+        print(f"{what}: accepted", flush=True)
+
+    def refused(self, what: str, call: Callable[..., object], *args: object) -> None:
+        result = refusal(call, *args)
+        assert result != "SUCCESS", what
+        print(f"{what}: refused {result}", flush=True)
+
+    def here(self) -> tuple[float, float, float]:
+        """North, east, up of home."""
+        home, now = self.telemetry.home(), self.telemetry.position()
+        east_m_per_deg = EARTH_M_PER_DEG * math.cos(math.radians(home.latitude_deg))
+        return (
+            (now.latitude_deg - home.latitude_deg) * EARTH_M_PER_DEG,
+            (now.longitude_deg - home.longitude_deg) * east_m_per_deg,
+            now.relative_altitude_m,
+        )
+
+    def come_to(self, north_m: float, east_m: float, up_m: float) -> None:
+        until(
+            lambda: math.dist(self.here(), (north_m, east_m, up_m)) < 1.2,
+            f"at {north_m} {east_m} {up_m}",
+            40.0,
+        )
+        time.sleep(1.5)
+
+    def place(self, north_m: float, east_m: float) -> tuple[float, float]:
+        home = self.telemetry.home()
+        east_m_per_deg = EARTH_M_PER_DEG * math.cos(math.radians(home.latitude_deg))
+        return (
+            home.latitude_deg + north_m / EARTH_M_PER_DEG,
+            home.longitude_deg + east_m / east_m_per_deg,
+        )
+
+    def goto(self, north_m: float, east_m: float, up_m: float) -> None:
+        sea_m = self.telemetry.home().absolute_altitude_m
+        self.action.goto_location(*self.place(north_m, east_m), sea_m + up_m, math.nan)
+
+    # --------------------------------------------------------------------------- flying
+
+    def fly(self) -> None:
+        if self.autopilot == "ardupilot":
+            ask_for_streams(self.telemetry)
+        until(self.telemetry.health_all_ok, "health all ok", 40.0)
+        print("healthy", flush=True)
+        until(lambda: math.isfinite(self.telemetry.home().latitude_deg), "home")
+        everything = Param(self.system).get_all_params()
+        print("all parameters", len(everything.float_params) >= 30, flush=True)
+        plan = self.mission((15, 0), (15, -15), (0, -15), last=21)
+        self.done("upload", raw.MissionRaw(self.system).upload_mission, plan)
+        back = raw.MissionRaw(self.system).download_mission()
+        print("mission", [each.command for each in back] == [each.command for each in plan])
+        self.done("take-off height", self.action.set_takeoff_altitude, UP_M)
+        self.done("arm", self.action.arm)
+        self.done("take-off", self.action.takeoff)
+        until(lambda: self.here()[2] > UP_M - 1.0, "up", 30.0)
+        if self.autopilot == "px4":
+            until(lambda: self.telemetry.flight_mode() is FlightMode.HOLD, "taken off")
+        time.sleep(3.0)
+        print("took off", flush=True)
+        self.done("goto", self.goto, 12.0, 0.0, UP_M)
+        self.come_to(12.0, 0.0, UP_M)
+        self.done("hold", self.action.hold)
+        until(lambda: self.telemetry.flight_mode() is FlightMode.HOLD, "holds")
+        self.done("goto", self.goto, 0.0, 0.0, UP_M)
+        self.come_to(0.0, 0.0, UP_M)
+        progress: list[int] = []
+        missions = raw.MissionRaw(self.system)
+        missions.subscribe_mission_progress(lambda now, _: progress.append(now.current))
+        self.done("start of the mission", missions.start_mission)
+        until(lambda: progress and progress[-1] >= 2, "second item", 60.0)
+        print("flies the mission", flush=True)
+        self.done("hold", self.action.hold)
+        self.done("return", self.action.return_to_launch)
+        until(lambda: self.telemetry.flight_mode() is FlightMode.RETURN_TO_LAUNCH, "returns", 20.0)
+        print("returns", flush=True)
+        self.done("hold", self.action.hold)
+
+    def mission(self, *places: tuple[float, float], last: int) -> list[raw.MissionItem]:
+        """Take-off, waypoints north and east of home, and a last item: 20 return, 21 land."""
+
+        def step(seq: int, command: int, north_m: float, east_m: float, up_m: float):
+            lat, lon = self.place(north_m, east_m)
+            return raw.MissionItem(
+                seq=seq,
+                frame=GLOBAL_RELATIVE_ALT_INT if command != 20 else 2,
+                command=command,
+                current=int(seq == 0),
+                autocontinue=1,
+                param2=1.0 if command == 16 else 0.0,
+                param4=math.nan if command != 20 else 0.0,
+                x=round(lat * 1e7) if command != 20 else 0,
+                y=round(lon * 1e7) if command != 20 else 0,
+                z=up_m,
+            )
+
+        rows = [(22, 0.0, 0.0, UP_M), *((16, *at, UP_M) for at in places)]
+        rows.append((last, *(places[-1] if last == 21 else (0.0, 0.0)), 0.0))
+        if self.autopilot == "ardupilot":  # item 0 is home
+            rows.insert(0, (16, 0.0, 0.0, 0.0))
+        return [step(seq, *row) for seq, row in enumerate(rows)]
+
+    def offboard(self) -> None:
+        control = Offboard(self.system)
+        north_m, east_m, down_m = ned_m(self.telemetry)
+        control.set_position_ned(PositionNedYaw(north_m + 6.0, east_m, down_m, 0.0))
+        self.done("offboard", control.start)
+        until(lambda: abs(ned_m(self.telemetry)[0] - north_m - 6.0) < 1.2, "6 m north", 30.0)
+        print("offboard position", flush=True)
+        control.set_velocity_ned(VelocityNedYaw(-2.0, 0.0, 0.0, 0.0))
+        until(lambda: self.telemetry.velocity_ned().north_m_s < -1.5, "2 m/s southward")
+        print("offboard velocity", flush=True)
+        control.set_velocity_body(VelocityBodyYawspeed(0.0, 0.0, 0.0, 30.0))
+        until(lambda: abs(self.telemetry.velocity_ned().north_m_s) < 0.4, "stopped")
+        print("offboard body velocity", flush=True)
+        self.done("offboard ended", control.stop)
+        time.sleep(2.0)
+
+    def land(self) -> None:
+        self.done("land", self.action.land)
+        until(lambda: not self.telemetry.armed(), "landed and disarmed", 60.0)
+        print("landed and disarmed", flush=True)
+
+    # ------------------------------------------------------------------------- escaping
+
+    def escape(self) -> None:
+        self.refused("goto outside the yard", self.goto, 200.0, 0.0, UP_M)
+        self.refused("goto into the mast", self.goto, 0.0, 20.0, UP_M)
+        self.refused("goto above the ceiling", self.goto, 0.0, 0.0, 80.0)
+        self.refused("orbit over the mast", self.orbit)
+        missions = raw.MissionRaw(self.system)
+        cuts = self.mission((20, 10), (-5, 40), last=21)
+        self.refused("mission leg that cuts the mast", missions.upload_mission, cuts)
+        returns = self.mission((30, 0), (30, 45), (0, 45), last=20)
+        self.refused("mission that returns through the mast", missions.upload_mission, returns)
+        self.refused("fence of 500 m", self.larger_fence)
+        self.settings()
+        self.refused("motors off in the air", self.action.kill)
+        self.refused("termination", self.action.terminate)
+        self.refused("reboot", self.action.reboot)
+        self.streams()
+
+    def settings(self) -> None:
+        name = {"px4": "GF_ACTION", "ardupilot": "FENCE_ENABLE"}[self.autopilot]
+        param = Param(self.system)
+        before = param.get_param_int(name)
+        said = refusal(param.set_param_int, name, 0)
+        assert param.get_param_int(name) == before
+        print(f"parameter {name}: kept {said}", flush=True)
+
+    def orbit(self) -> None:
+        from mavsdk.plugins.action import OrbitYawBehavior
+
+        sea_m = self.telemetry.home().absolute_altitude_m
+        ahead = OrbitYawBehavior.HOLD_FRONT_TO_CIRCLE_CENTER
+        self.action.do_orbit(20.0, 3.0, ahead, *self.place(0.0, 0.0), sea_m + UP_M)
+
+    def larger_fence(self) -> None:
+        home = self.telemetry.home()
+        centre = fences.Point(home.latitude_deg, home.longitude_deg)
+        circle = fences.Circle(centre, 500.0, fences.FenceType.INCLUSION)
+        fences.Geofence(self.system).upload_geofence(fences.GeofenceData([], [circle]))
+
+    def streams(self) -> None:
+        control = Offboard(self.system)
+        _, _, down_m = ned_m(self.telemetry)
+        control.set_position_ned(PositionNedYaw(200.0, 0.0, down_m, 0.0))
+        print("offboard outside:", refusal(control.start), flush=True)
+        self.farthest("offboard position outside", 6.0)
+        control.set_velocity_ned(VelocityNedYaw(-10.0, 0.0, 0.0, 0.0))
+        if refusal(control.is_active) == "SUCCESS":
+            print("offboard again:", refusal(control.start), flush=True)
+        self.farthest("velocity at the fence", 25.0)
+        refusal(control.stop)
+        self.done("hold", self.action.hold)
+        time.sleep(4.0)
+
+    def farthest(self, what: str, seconds: float) -> None:
+        end_s, far_m = time.monotonic() + seconds, 0.0
+        while time.monotonic() < end_s:
+            far_m = max(far_m, *(abs(x) for x in self.here()[:2]))
+            time.sleep(0.05)
+        print(f"{what}: came {far_m:.0f} m", flush=True)
+
+
+def main(url: str, autopilot: str, *words: str) -> None:
+    with Station(url) as station:
+        peer = Peer(station, autopilot)
+        for word in words:
+            getattr(peer, word)()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,382 @@
+"""A script on pymavlink flies through the bridge, and then tries to leave the fence.
+
+    python bridge_pymavlink.py udpout:127.0.0.1:14551 px4 fly escape land
+
+The words after the autopilot are what it does, in order; one line is printed for each thing done.
+Nothing here knows that a bridge is between it and the vehicle.  It runs on pymavlink alone.
+"""
+
+import math
+import os
+import sys
+import time
+
+os.environ["MAVLINK20"] = "1"
+from pymavlink import mavextra, mavutil
+
+M = mavutil.mavlink
+REL = M.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+UP_M = 5.0
+POSITION, VELOCITY = 0b110111111000, 0b110111000111
+"""SET_POSITION_TARGET type masks."""
+
+
+class Peer:
+    def __init__(self, url, autopilot, source_system=250):
+        self.autopilot = autopilot
+        self.link = mavutil.mavlink_connection(url, source_system=source_system)
+        self.beaten_s = 0.0
+        self.texts = []
+        self.home = None
+
+    # ------------------------------------------------------------------------- talking
+
+    def beat(self):
+        if time.monotonic() - self.beaten_s > 0.9:
+            self.beaten_s = time.monotonic()
+            self.link.mav.heartbeat_send(M.MAV_TYPE_GCS, M.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+
+    def receive(self, seconds):
+        self.beat()
+        message = self.link.recv_match(blocking=True, timeout=seconds)
+        if message is not None and message.get_type() == "STATUSTEXT":
+            self.texts.append(message.text)
+        return message
+
+    def wait(self, kinds, holds=lambda message: True, seconds=30.0, needed=True):
+        """The first message of these kinds for which it holds; None if not `needed`."""
+        kinds = [kinds] if isinstance(kinds, str) else kinds
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            message = self.receive(0.1)
+            if message is not None and message.get_type() in kinds and holds(message):
+                return message
+        assert not needed, f"no such {kinds} within {seconds} s; texts {self.texts[-6:]}"
+        return None
+
+    def latest(self, kind):
+        while (message := self.link.recv_match()) is not None:
+            if message.get_type() == "STATUSTEXT":
+                self.texts.append(message.text)
+        return self.link.messages[kind]
+
+    def rest(self, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.receive(0.05)
+
+    def _final(self, command, send):
+        """The final acknowledgement; sent again each second, as MAVSDK and QGroundControl do."""
+        for turn in range(4):
+            send(turn)
+            end = time.monotonic() + 1.5
+            while time.monotonic() < end:
+                ack = self.wait(
+                    "COMMAND_ACK", lambda m: m.command == command, end - time.monotonic(), False
+                )
+                if ack is None:
+                    break
+                if ack.result != M.MAV_RESULT_IN_PROGRESS:
+                    return ack
+                end = time.monotonic() + 30.0
+        raise AssertionError(f"no acknowledgement of {command}; texts {self.texts[-6:]}")
+
+    def long(self, command, *params):
+        words = [*params, *[0.0] * (7 - len(params))]
+        return self._final(
+            command, lambda turn: self.link.mav.command_long_send(1, 1, command, turn, *words)
+        )
+
+    def at(self, command, north_m, east_m, up_m, params=(0.0, 0.0, 0.0, 0.0), frame=REL):
+        lat, lon = self.place(north_m, east_m)
+        return self._final(
+            command,
+            lambda _: self.link.mav.command_int_send(
+                *(1, 1, frame, command, 0, 0, *params, round(lat * 1e7), round(lon * 1e7), up_m)
+            ),
+        )
+
+    def done(self, what, ack):
+        assert ack.result == M.MAV_RESULT_ACCEPTED, (what, ack.to_dict(), self.texts[-6:])
+        print(f"{what}: accepted", flush=True)
+
+    def refused(self, what, ack):
+        assert ack.result != M.MAV_RESULT_ACCEPTED, (what, ack.to_dict())
+        result = M.enums["MAV_RESULT"][ack.result].name.removeprefix("MAV_RESULT_")
+        print(f"{what}: refused {result} {ack.result_param2} {self.last_text()}", flush=True)
+
+    def last_text(self):
+        self.rest(0.3)
+        return repr(self.texts[-1] if self.texts else "")
+
+    # --------------------------------------------------------------------------- places
+
+    def place(self, north_m, east_m):
+        lat, lon = self.home
+        return mavextra.gps_offset(lat, lon, east_m, north_m)
+
+    def here(self):
+        """North, east, up of home."""
+        fix = self.latest("GLOBAL_POSITION_INT")
+        lat, lon = self.home
+        east_m = (fix.lon * 1e-7 - lon) * 111_319.49 * math.cos(math.radians(lat))
+        return (fix.lat * 1e-7 - lat) * 111_319.49, east_m, fix.relative_alt * 1e-3
+
+    def come_to(self, north_m, east_m, up_m, seconds=40.0, within_m=1.2):
+        end = time.monotonic() + seconds
+        while math.dist(self.here(), (north_m, east_m, up_m)) > within_m:
+            assert time.monotonic() < end, (self.here(), self.texts[-6:])
+            self.rest(0.1)
+
+    # --------------------------------------------------------------------------- flying
+
+    def connect(self):
+        end = time.monotonic() + 15.0
+        while self.link.recv_match(type="HEARTBEAT") is None or self.link.target_system != 1:
+            assert time.monotonic() < end, "no vehicle"
+            self.beat()
+            time.sleep(0.05)
+        if self.autopilot == "ardupilot":
+            self.link.mav.request_data_stream_send(1, 1, M.MAV_DATA_STREAM_ALL, 10, 1)
+        fix = self.wait("GLOBAL_POSITION_INT", lambda m: m.lat != 0)
+        self.long(M.MAV_CMD_REQUEST_MESSAGE, M.MAVLINK_MSG_ID_HOME_POSITION)
+        home = self.wait("HOME_POSITION")
+        self.home = home.latitude * 1e-7, home.longitude * 1e-7
+        self.sea_m = home.altitude * 1e-3
+        assert abs(fix.lat - home.latitude) < 1000
+        print("connected", flush=True)
+
+    def parameters(self):
+        self.link.mav.param_request_list_send(1, 1)
+        names = set()
+        first = self.wait("PARAM_VALUE", lambda m: m.param_index != 65535)
+        names.add(first.param_id)
+        while len(names) < first.param_count:
+            names.add(self.wait("PARAM_VALUE", seconds=5.0).param_id)
+        print(f"all parameters: {len(names) == first.param_count}", flush=True)
+
+    def upload(self, items, mission_type=0):
+        """Items as (command, frame, params, north_m, east_m, up_m); the type of MISSION_ACK."""
+        self.link.mav.mission_count_send(1, 1, len(items), mission_type)
+        end = time.monotonic() + 60.0
+        while time.monotonic() < end:
+            message = self.wait(
+                ["MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"],
+                lambda m: m.mission_type == mission_type and m.target_system == 250,
+            )
+            if message.get_type() == "MISSION_ACK":
+                return message.type
+            command, frame, params, north_m, east_m, up_m = items[message.seq]
+            lat, lon = self.place(north_m, east_m) if north_m is not None else (0.0, 0.0)
+            self.link.mav.mission_item_int_send(
+                *(1, 1, message.seq, frame, command, int(message.seq == 0), 1, *params),
+                *(round(lat * 1e7), round(lon * 1e7), up_m, mission_type),
+            )
+        raise AssertionError("the upload does not end")
+
+    def download(self):
+        self.link.mav.mission_request_list_send(1, 1)
+        count = self.wait("MISSION_COUNT", lambda m: m.mission_type == 0).count
+        commands = []
+        for seq in range(count):
+            self.link.mav.mission_request_int_send(1, 1, seq)
+            item = self.wait("MISSION_ITEM_INT", lambda m, seq=seq: m.seq == seq)
+            commands.append(item.command)
+        self.link.mav.mission_ack_send(1, 1, 0)
+        return commands
+
+    def mission(self, *places, last=None, between=()):
+        """Take-off, these waypoints (north, east, up, acceptance radius), and `last`."""
+        nav = [(16, 3, (0, radius, 0, math.nan), *at) for *at, radius in places]
+        items = [(22, 3, (0, 0, 0, math.nan), 0, 0, UP_M), *nav, *between]
+        if last is not None:
+            items.append((last, 3 if last == 21 else 2, (0, 0, 0, 0), None, None, 0))
+        if self.autopilot == "ardupilot":  # item 0 is home
+            items.insert(0, (16, 0, (0, 0, 0, 0), 0, 0, self.sea_m))
+        return items
+
+    def mode(self, name):
+        base, main, sub = (
+            self.link.mode_mapping()[name]
+            if self.autopilot == "px4"
+            else (
+                M.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED,
+                self.link.mode_mapping()[name],
+                0,
+            )
+        )
+        return self.long(M.MAV_CMD_DO_SET_MODE, base | 1, main, sub)
+
+    def in_mode(self, *names, seconds=20.0):
+        self.wait("HEARTBEAT", lambda m: self.link.flightmode in names, seconds)
+
+    def arm(self):
+        if self.autopilot == "ardupilot":
+            self.done("mode GUIDED", self.mode("GUIDED"))
+        self.done("arm", self.long(M.MAV_CMD_COMPONENT_ARM_DISARM, 1.0))
+
+    def take_off(self):
+        up_m = self.sea_m + UP_M if self.autopilot == "px4" else UP_M
+        nan = math.nan
+        self.done("take-off", self.long(M.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, nan, nan, nan, up_m))
+        low_m = 1.0 if self.autopilot == "px4" else 0.4
+        self.wait("GLOBAL_POSITION_INT", lambda m: m.relative_alt * 1e-3 > UP_M - low_m)
+        self.rest(3.0)
+        print("took off", flush=True)
+
+    def goto(self, north_m, east_m, up_m):
+        flags = M.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE
+        params = (-1.0, float(flags), 0.0, math.nan)
+        return self.at(M.MAV_CMD_DO_REPOSITION, north_m, east_m, up_m, params)
+
+    def go(self, north_m, east_m, up_m):
+        self.done(f"goto {north_m} {east_m} {up_m}", self.goto(north_m, east_m, up_m))
+        self.come_to(north_m, east_m, up_m)
+        self.rest(1.5)
+
+    def fly(self):
+        self.connect()
+        self.parameters()
+        items = self.mission((15, 0, UP_M, 1), (15, -15, UP_M, 1), (0, -15, UP_M, 1), last=21)
+        assert self.upload(items) == 0, self.texts[-6:]
+        commands = self.download()
+        assert commands == [item[0] for item in items], commands
+        print(f"mission of {len(items)} items up and down", flush=True)
+        self.arm()
+        self.take_off()
+        self.go(12, 0, UP_M)
+        self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
+        self.go(0, 0, UP_M)
+        self.done("start of the mission", self.long(M.MAV_CMD_MISSION_START))
+        self.wait("MISSION_ITEM_REACHED", lambda m: m.seq >= 2, seconds=60.0)
+        print("mission item 2 reached", flush=True)
+        self.done("return", self.long(M.MAV_CMD_NAV_RETURN_TO_LAUNCH))
+        self.in_mode("RTL")
+        print("returns", flush=True)
+        self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
+
+    def hold_mode(self):
+        return (1 | 128, 4, 3) if self.autopilot == "px4" else (1 | 128, 5, 0)  # LOITER
+
+    def land(self):
+        self.done("land", self.long(M.MAV_CMD_NAV_LAND, 0, 0, 0, math.nan, 0, 0, 0))
+        self.wait(
+            "HEARTBEAT",
+            lambda m: m.get_srcComponent() == 1 and not m.base_mode & M.MAV_MODE_FLAG_SAFETY_ARMED,
+            seconds=60.0,
+        )
+        print("landed and disarmed", flush=True)
+
+    # ------------------------------------------------------------------------- escaping
+
+    def stream(self, seconds, mask, position=(0, 0, 0), velocity=(0, 0, 0)):
+        """A setpoint at 20 Hz, as an offboard program sends it."""
+        end, turn = time.monotonic() + seconds, 0
+        farthest_m = 0.0
+        while time.monotonic() < end:
+            self.link.mav.set_position_target_local_ned_send(
+                *(0, 1, 1, M.MAV_FRAME_LOCAL_NED, mask, *position, *velocity, 0, 0, 0, 0, 0)
+            )
+            if turn == 30 and self.autopilot == "px4":
+                self.link.set_mode("OFFBOARD")
+            turn += 1
+            self.rest(0.05)
+            farthest_m = max(farthest_m, *(abs(x) for x in self.here()[:2]))
+        return farthest_m
+
+    def escape(self):
+        self.refused("goto outside the yard", self.goto(200, 0, UP_M))
+        self.refused("goto into the mast", self.goto(0, 20, UP_M))
+        self.refused("goto through the mast", self.goto(0, 45, UP_M))
+        self.refused("goto above the ceiling", self.goto(0, 0, 80))
+        self.escape_by_missions()
+        self.escape_by_settings()
+        self.escape_by_false_reports()
+        self.escape_by_streams()
+
+    def escape_by_streams(self):
+        far_m = self.stream(6.0, POSITION, position=(200, 0, -UP_M))
+        print(f"offboard position outside: came {far_m:.0f} m", flush=True)
+        self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
+        self.rest(2.0)
+        far_m = self.stream(25.0, VELOCITY, velocity=(-10, 0, 0))
+        print(f"velocity at the fence: came {far_m:.0f} m {self.last_text()}", flush=True)
+        self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
+        self.rest(4.0)
+
+    def escape_by_missions(self):
+        around = ((30, 0, UP_M, 1), (30, 45, UP_M, 1), (0, 45, UP_M, 1))
+        plans = {
+            "mission leg that cuts the mast": self.mission(
+                (20, 10, UP_M, 1), (-5, 40, UP_M, 1), last=21
+            ),
+            "mission with a loiter ring over the mast": self.mission(
+                (0, -5, UP_M, 1), last=21, between=((18, 3, (2, 0, 22, 0), 0, 0, UP_M),)
+            ),
+            "mission that jumps through the mast": self.mission(
+                *((-30, 20, UP_M, 1), (-30, 40, UP_M, 1), (30, 40, UP_M, 1), (30, 20, UP_M, 1)),
+                between=((177, 2, (1 + (self.autopilot == "ardupilot"), 1, 0, 0), None, None, 0),),
+            ),
+            "mission that returns through the mast": self.mission(*around, last=20),
+            "mission outside the yard": self.mission((200, 0, UP_M, 1), last=21),
+        }
+        if self.autopilot == "px4":  # ArduPilot does not cut corners by it
+            plans["mission that cuts a corner by its acceptance radius"] = self.mission(
+                (-30, 0, UP_M, 1), (-30, 40, UP_M, 60), (30, 40, UP_M, 1), last=21
+            )
+        for what, items in plans.items():
+            self.denied(what, self.upload(items))
+        rally = [(5100, 3, (0, 0, 0, 0), 0, 45, 10.0)]
+        self.denied("rally point behind the mast", self.upload(rally, 2))
+        fence = [(5003, 3, (500, 0, 0, 0), 0, 0, 0.0)]
+        self.denied("fence of 500 m", self.upload(fence, 1))
+
+    def denied(self, what, result):
+        assert result != M.MAV_MISSION_ACCEPTED, what
+        name = M.enums["MAV_MISSION_RESULT"][result].name.removeprefix("MAV_MISSION_")
+        print(f"{what}: refused {name} {self.last_text()}", flush=True)
+
+    def escape_by_settings(self):
+        name = {"px4": "GF_ACTION", "ardupilot": "FENCE_ENABLE"}[self.autopilot]
+        self.link.mav.param_request_read_send(1, 1, name.encode(), -1)
+        before = self.wait("PARAM_VALUE", lambda m: m.param_id == name)
+        self.link.mav.param_set_send(1, 1, name.encode(), 0.0, before.param_type)
+        after = self.wait("PARAM_VALUE", lambda m: m.param_id == name)
+        assert after.param_value == before.param_value or math.isnan(before.param_value), after
+        print(f"parameter {name}: kept {self.last_text()}", flush=True)
+        force = 21196.0
+        long = self.long
+        self.refused("motors off in the air", long(M.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, force))
+        self.refused("fence off", long(M.MAV_CMD_DO_FENCE_ENABLE, 0.0))
+        self.refused("termination", long(M.MAV_CMD_DO_FLIGHTTERMINATION, 1.0))
+        self.refused("reboot", long(M.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0))
+        self.refused("motor test", long(M.MAV_CMD_DO_MOTOR_TEST, 1.0, 0.0, 50.0, 2.0))
+        self.refused("home elsewhere", self.at(M.MAV_CMD_DO_SET_HOME, 500, 0, 0.0))
+
+    def escape_by_false_reports(self):
+        here = self.here()
+        lat, lon = self.place(here[0] - 40, here[1])
+        for _ in range(40):
+            lat_e7, lon_e7 = round(lat * 1e7), round(lon * 1e7)
+            self.link.mav.gps_input_send(
+                *(0, 0, 0, 0, 0, 3, lat_e7, lon_e7, self.sea_m + UP_M, 0.7, 0.7),
+                *(0, 0, 0, 0.3, 0.5, 0.5, 14),
+            )
+            self.link.mav.hil_gps_send(
+                0, 3, lat_e7, lon_e7, round((self.sea_m + UP_M) * 1e3), 70, 70, 0, 0, 0, 0, 0, 14
+            )
+            self.link.mav.vision_position_estimate_send(0, -40, 0, -UP_M, 0, 0, 0)
+            self.rest(0.05)
+        moved_m = math.dist(self.here(), here)
+        assert moved_m < 2.0, moved_m
+        print(f"false GPS and vision: moved {moved_m:.0f} m {self.last_text()}", flush=True)
+
+
+def main(url, autopilot, *words):
+    peer = Peer(url, autopilot)
+    for word in words:
+        getattr(peer, word)()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
