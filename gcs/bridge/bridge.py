@@ -7,6 +7,7 @@ what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Final
 
 from gcs import ipc
@@ -15,6 +16,7 @@ from gcs.bridge.client import Client
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import BridgeEffect, Joined, Lost, Notes, ToLink
 from gcs.bridge.judge import Judge, Judged, Look, Received, of_plan
+from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
@@ -120,12 +122,23 @@ class Bridge:
         if not at_vehicle and (vehicle is not None or sysid):
             judged = self._elsewhere(client, asked_by, frame, sysid)
         else:
-            judged = self._judge.judge(Received(client, asked_by, frame, look, now_ns))
+            received = Received(client, asked_by, frame, self._look(look, client), now_ns)
+            judged = self._judge.judge(received)
             if frame.msgid == MsgId.HEARTBEAT:
                 others = self._routes.between_clients(frame, link)
                 effects += [ToLink(other, frame.raw) for other in others]
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
+
+    def _look(self, look: Look, client: Client) -> Look:
+        """The same, with what is this client's."""
+
+        def seen() -> Seen | None:
+            found = look()
+            in_control = self._in_control in (0, client.number)
+            return None if found is None else replace(found, in_control=in_control)
+
+        return seen
 
     def _why_not_from(self, frame: Frame, vehicle: Address | None) -> str:
         """Why no frame of this sender may come from a client; empty where it may.

@@ -107,6 +107,8 @@ class Judge:
         kind = self._kinds.get(row.name, row.kind)
         if message is not None and kind is not Kind.DENIED and _is_of_plan(message):
             return self._plan(given, message, row)
+        if kind is Kind.CONFIGURATION and _is_flown_to_at_once(message):
+            return self._motion(given, message, row)
         match kind:
             case Kind.HARMLESS:
                 return Judged(False, self._forward(given, message))
@@ -227,9 +229,14 @@ def _ask_plan(
 
 def _is_of_plan(message: Message) -> bool:
     """An item that is to be flown to at once is no part of a plan, and neither is a jump to one."""
-    if isinstance(message, MissionItem | MissionItemInt) and message.current in GUIDED_CURRENT:
+    if _is_flown_to_at_once(message):
         return False
     return isinstance(message, PLAN_MESSAGES) and not isinstance(message, MissionSetCurrent)
+
+
+def _is_flown_to_at_once(message: Message | None) -> bool:
+    """ArduPilot's go-to, or change of height, as a mission item."""
+    return isinstance(message, MissionItem | MissionItemInt) and message.current in GUIDED_CURRENT
 
 
 def _refuse(given: Received, message: Message | None, row: Row, refusal: Refusal) -> Judged:

@@ -40,6 +40,8 @@ class Seen:
     """The vehicle's own default height of a take-off, above the take-off point."""
     state: State = State.NO_VEHICLE
     """Of the gate's machine."""
+    in_control: bool = False
+    """The client who asks is in control of the station, or nobody is."""
     goal_yaw_rad: float | None = None
     """The heading that was asked for with `goal_ned`."""
     mission_paused: bool = False

@@ -69,14 +69,15 @@ def hold(seen: Seen, asked_for: str = "") -> Words:
 def guided(wanted: Mode, seen: Seen) -> Words:
     """OFFBOARD or GUIDED: let a station fly it.  The gate hovers until it is told where to.
 
-    A mode that the vehicle flies by itself is stopped first.  On the ground it is a mode like any
-    other: the gate lets it be set where nothing moves by it.
+    A mode that the vehicle flies by itself is stopped first, by a client who may go on from there:
+    `hold` alone is heard from everybody.  On the ground it is a mode like any other: the gate lets
+    it be set where nothing moves by it.
     """
     if seen.on_ground:
         return mode(wanted.name)
     if seen.state in NOT_FLOWN_BY_US:
         return ask("resume")
-    if seen.state in FLIES_ITSELF:
+    if seen.state in FLIES_ITSELF and seen.in_control:
         return Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume")))
     if seen.mode_name == wanted.name:
         return DONE

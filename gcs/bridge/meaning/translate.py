@@ -7,17 +7,84 @@ judges it as any operator's.  `target_system` and `target_component` are the bri
 
 from __future__ import annotations
 
-from gcs.bridge.meaning import mission_commands
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
 from gcs.bridge.meaning.command import command_of
 from gcs.bridge.meaning.commands import meaning_of_command
 from gcs.bridge.meaning.guided_items import guided_item
 from gcs.bridge.meaning.meaning import Meaning, Seen
+from gcs.bridge.meaning.mission_commands import mission_set_current
 from gcs.bridge.meaning.modes import set_mode
 from gcs.bridge.meaning.says import refuse, unsupported
 from gcs.bridge.meaning.sticks import attitude_target, manual_control, rc_override
 from gcs.bridge.meaning.targets import global_target, local_target
 from gcs.gate.refusal import Code
 from gcs.wire import messages as m
+
+M = TypeVar("M", bound=m.Message)
+
+
+@dataclass(frozen=True, slots=True)
+class MessageRow:
+    """What one message means, and the same in words for `docs/bridge.md`."""
+
+    name: str
+    translate: Callable[[m.Message, Seen], Meaning]
+    says: str
+
+
+def _row(of: type[M], translate: Callable[[M, Seen], Meaning], says: str) -> tuple[int, MessageRow]:
+    def checked(message: m.Message, seen: Seen) -> Meaning:
+        assert isinstance(message, of)
+        return translate(message, seen)
+
+    return of.MSG_ID, MessageRow(of.MSG_ID.name, checked, says)
+
+
+def _command(message: m.CommandLong | m.CommandInt, seen: Seen) -> Meaning:
+    return meaning_of_command(command_of(message), seen)
+
+
+_COMMAND: Final = "its command decides"
+_ITEM: Final = (
+    "ArduPilot: `current` 2 is a goto, 3 a goto to another height. PX4: refused; "
+    "with `current` 0 or 1 it is part of a plan"
+)
+
+MESSAGES: Final[Mapping[int, MessageRow]] = dict(
+    (
+        _row(m.CommandLong, _command, _COMMAND),
+        _row(m.CommandInt, _command, _COMMAND),
+        _row(m.SetMode, set_mode, "by the mode: see the table of modes"),
+        _row(
+            m.SetPositionTargetLocalNed,
+            local_target,
+            "a sample of a stream, or a goto: see setpoints",
+        ),
+        _row(
+            m.SetPositionTargetGlobalInt,
+            global_target,
+            "a sample of a stream, or a goto: see setpoints",
+        ),
+        _row(m.MissionItem, guided_item, _ITEM),
+        _row(m.MissionItemInt, guided_item, _ITEM),
+        _row(m.MissionSetCurrent, mission_set_current, "as DO_SET_MISSION_CURRENT"),
+        _row(
+            m.ManualControl,
+            manual_control,
+            "refused; sticks in the middle without a button ask for nothing. Never forwarded",
+        ),
+        _row(
+            m.RcChannelsOverride,
+            rc_override,
+            "refused; channels that are released or left alone ask for nothing. Never forwarded",
+        ),
+        _row(m.SetAttitudeTarget, attitude_target, "refused in every mask"),
+    )
+)
+"""By message id."""
 
 
 def meaning_of(message: m.Message, seen: Seen) -> Meaning:
@@ -26,24 +93,7 @@ def meaning_of(message: m.Message, seen: Seen) -> Meaning:
         return refuse(
             Code.UNSUPPORTED_VEHICLE, "this station flies multirotors with PX4 or ArduPilot only"
         )
-    match message:
-        case m.CommandLong() | m.CommandInt():
-            return meaning_of_command(command_of(message), seen)
-        case m.SetMode():
-            return set_mode(message, seen)
-        case m.SetPositionTargetLocalNed():
-            return local_target(message, seen)
-        case m.SetPositionTargetGlobalInt():
-            return global_target(message, seen)
-        case m.MissionItem() | m.MissionItemInt():
-            return guided_item(message, seen)
-        case m.MissionSetCurrent():
-            return mission_commands.mission_set_current(message, seen)
-        case m.ManualControl():
-            return manual_control(message, seen)
-        case m.RcChannelsOverride():
-            return rc_override(message, seen)
-        case m.SetAttitudeTarget():
-            return attitude_target(message, seen)
-        case _:
-            return unsupported(f"{type(message).__name__} has no meaning that moves a vehicle")
+    row = MESSAGES.get(message.MSG_ID)
+    if row is None:
+        return unsupported(f"{message.MSG_ID.name} has no meaning that moves a vehicle")
+    return row.translate(message, seen)

@@ -120,6 +120,16 @@ def test_guided_gets_to_where_the_gate_hovers(
 
 
 @GUIDED
+@pytest.mark.parametrize("state", [State.FLYING_MISSION, State.RETURNING, State.LANDING])
+def test_guided_stops_nothing_for_a_client_who_is_not_in_control(
+    state: State, autopilot: Autopilot, guided: Message
+) -> None:
+    """`hold` is heard from everybody; to go on from there it would be refused."""
+    seen = flying(autopilot, state=state, mode_name="", in_control=False)
+    assert words(meaning_of(guided, seen)) == ["control"]
+
+
+@GUIDED
 def test_guided_on_the_ground_is_a_mode_that_the_gate_decides_about(
     autopilot: Autopilot, guided: Message
 ) -> None:

@@ -59,6 +59,7 @@ seen = st.builds(
     goal_ned=st.none() | vectors,
     takeoff_up_m=st.floats(0.0, 100.0),
     state=st.sampled_from(State),
+    in_control=st.booleans(),
     goal_yaw_rad=st.none() | st.floats(-math.pi, math.pi),
     mission_paused=st.booleans(),
     max_speed_m_s=st.floats(0.0, 20.0),

@@ -37,6 +37,7 @@ def flying(autopilot: Autopilot, **changed: Any) -> Seen:
         goal_ned=(1.0, 2.0, -22.0),
         takeoff_up_m=2.5,
         state=State.HOVERING,
+        in_control=True,
         max_speed_m_s=5.0,
     )
     return replace(seen, **changed)

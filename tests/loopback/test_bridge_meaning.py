@@ -1,0 +1,200 @@
+"""What MAVSDK, DroneKit, MAVProxy, QGroundControl and scripts send to move a vehicle, flown through
+the gate.
+
+The sequences are those that were seen of MAVSDK 4.1.0, MAVProxy 1.8.75 and pymavlink 2.4.50, or as
+a client's source has them (from memory: QGroundControl).
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from pymavlink.dialects.v20 import all as dialect
+
+from gcs.gate.states import Control, State
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.flight import PERSONALITIES, Personality
+
+ACCEPTED = 0
+ARM, TAKE_OFF, SET_MODE, REPOSITION, PAUSE = 400, 22, 176, 192, 193
+METRES_PER_DEGREE = 111_319.5
+NAN = math.nan
+
+both = pytest.mark.parametrize("personality", PERSONALITIES)
+
+
+def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
+    """Armed and taken off by a client, hovering at home."""
+    flight = BridgedFlight(personality)
+    client = flight.join()
+    flight.connected()
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    up_m = NAN if personality == "px4" else 5.0
+    assert client.ask(TAKE_OFF, 0, 0, 0, NAN, NAN, NAN, up_m) == ACCEPTED
+    flight.until(
+        lambda: flight.is_in(State.HOVERING) and flight.session.gate.control is Control.OURS
+    )
+    return flight, client
+
+
+def north_of_home(flight: BridgedFlight, metres: float) -> tuple[float, float, float]:
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    assert telemetry.home is not None
+    lat, lon, alt = telemetry.home
+    return (lat + metres / METRES_PER_DEGREE, lon, alt)
+
+
+def arrives(flight: BridgedFlight, north_m: float) -> None:
+    flight.until(lambda: flight.is_in(State.MOVING), 3)
+    flight.until(lambda: flight.is_in(State.HOVERING), 30)
+    assert flight.truth_enu()[1] == pytest.approx(north_m, abs=1.0)
+
+
+@both
+def test_a_client_that_holds_flies_on_with_its_next_goal(personality: Personality) -> None:
+    """MAVSDK's `hold`, then `goto_location`: on ArduPilot it asks for GUIDED first."""
+    flight, client = flying(personality)
+    hold = (129.0, 4.0, 3.0) if personality == "px4" else (129.0, 17.0, 0.0)
+    assert client.ask(SET_MODE, *hold) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING))
+    if personality == "ardupilot":
+        assert client.ask(SET_MODE, 129.0, 4.0) == ACCEPTED
+    lat, lon, alt = north_of_home(flight, 10)
+    client.fly_to(lat, lon, alt + 5)
+    arrives(flight, 10)
+    assert [ack.result for ack in client.acks(REPOSITION)] == [ACCEPTED]
+
+
+@both
+def test_guided_takes_it_out_of_a_hold(personality: Personality) -> None:
+    flight, client = flying(personality)
+    assert client.ask(PAUSE, 0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING))
+    guided = (29.0, 6.0) if personality == "px4" else (1.0, 4.0)
+    assert client.ask(SET_MODE, *guided, within_s=10) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOVERING))
+
+
+@both
+def test_a_second_hold_within_two_seconds_is_a_hold(personality: Personality) -> None:
+    """It was let go on between."""
+    flight, client = flying(personality)
+    assert client.ask(PAUSE, 0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING))
+    assert client.ask(PAUSE, 1, within_s=10) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOVERING))
+    client.command(PAUSE, 0)
+    flight.until(lambda: flight.is_in(State.HOLDING), 3)
+
+
+@both
+def test_sticks_of_a_client_never_reach_the_vehicle(personality: Personality) -> None:
+    flight, client = flying(personality)
+    for z in (500, 0):  # the middle, and the throttle closed
+        client.send(dialect.MAVLink_manual_control_message(VEHICLE[0], 0, 0, z, 0, 0))
+    for raw in (0, 1100):
+        channels = [raw] * 8
+        client.send(dialect.MAVLink_rc_channels_override_message(*VEHICLE, *channels))
+    flight.run(1)
+    assert not flight.to_vehicle("MANUAL_CONTROL")
+    assert not flight.to_vehicle("RC_CHANNELS_OVERRIDE")
+    assert flight.state is State.HOVERING
+    assert len(flight.decisions("refused")) == 2, "sticks in the middle ask for nothing"
+
+
+@both
+def test_a_client_who_is_not_in_control_does_not_stop_a_return(personality: Personality) -> None:
+    """It asks for OFFBOARD or GUIDED, which is a hold and more."""
+    flight, client = flying(personality)
+    lat, lon, alt = north_of_home(flight, 10)
+    client.fly_to(lat, lon, alt + 5)
+    arrives(flight, 10)
+    assert client.ask(20) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.RETURNING), 3)
+    other = flight.join(255, 190)
+    guided = (29.0, 6.0) if personality == "px4" else (1.0, 4.0)
+    other.ask(SET_MODE, *guided)
+    assert "OTHER_OPERATOR" in other.texts()
+    assert flight.is_in(State.RETURNING)
+    # The one in control may.
+    assert client.ask(SET_MODE, *guided, within_s=10) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOVERING), 10)
+
+
+# ------------------------------------------------------------------------------- ArduPilot
+
+
+def test_dronekits_simple_goto() -> None:
+    """MISSION_ITEM with `current` 2, above home."""
+    flight, client = flying("ardupilot")
+    lat, lon, _ = north_of_home(flight, 10)
+    client.send(
+        dialect.MAVLink_mission_item_message(*VEHICLE, 0, 3, 16, 2, 0, 0, 0, 0, 0, lat, lon, 6.0)
+    )
+    arrives(flight, 10)
+    assert flight.truth_enu()[2] == pytest.approx(6, abs=0.7)
+
+
+def test_dronekits_simple_goto_out_of_the_fence() -> None:
+    flight, client = flying("ardupilot")
+    lat, lon, _ = north_of_home(flight, 200)
+    client.send(
+        dialect.MAVLink_mission_item_message(*VEHICLE, 0, 3, 16, 2, 0, 0, 0, 0, 0, lat, lon, 6.0)
+    )
+    flight.run(1)
+    assert not flight.to_vehicle("MISSION_ITEM")
+    assert flight.state is State.HOVERING
+    assert [one.code for one in flight.decisions("refused")] == ["OUTSIDE_FENCE"]
+
+
+@pytest.mark.parametrize("times", [1, 3, 40])
+def test_a_position_target_is_flown_to_its_end_however_often_it_is_sent(times: int) -> None:
+    """A script sends it once, three times to be sure, or ten times a second for a while (pymavlink,
+    type_mask 0xdf8); ArduPilot flies on to it all the same."""
+    flight, client = flying("ardupilot")
+    message = dialect.MAVLink_set_position_target_local_ned_message(
+        0, *VEHICLE, 1, 0xDF8, 12.0, 0.0, -6.0, 0, 0, 0, 0, 0, 0, 0, 0
+    )
+    for _ in range(times):
+        client.send(message)
+        flight.run(0.1)
+    flight.until(lambda: flight.is_in(State.HOVERING), 30)
+    assert flight.truth_enu()[1] == pytest.approx(12, abs=1.0)
+    assert [one.word for one in flight.decisions("accepted")].count("goto") == 1
+
+
+def test_qgroundcontrols_change_of_height() -> None:
+    """SET_POSITION_TARGET_LOCAL_NED in LOCAL_OFFSET_NED, type_mask 0xFFF8 (from memory)."""
+    flight, client = flying("ardupilot")
+    up_m = flight.truth_enu()[2]
+    client.send(
+        dialect.MAVLink_set_position_target_local_ned_message(
+            0, *VEHICLE, 7, 0xFFF8, 0, 0, -3.0, 0, 0, 0, 0, 0, 0, 0, 0
+        )
+    )
+    flight.until(lambda: flight.is_in(State.MOVING), 3)
+    flight.until(lambda: flight.is_in(State.HOVERING), 30)
+    assert flight.truth_enu()[2] == pytest.approx(up_m + 3, abs=0.7)
+
+
+def test_loiter_is_held_in_brake_and_the_client_reads_why() -> None:
+    flight, client = flying("ardupilot")
+    assert client.ask(SET_MODE, 1.0, 5.0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING))
+    assert "held in BRAKE instead" in client.texts()
+
+
+# ------------------------------------------------------------------------------------- PX4
+
+
+def test_qgroundcontrols_pause() -> None:
+    """DO_REPOSITION with nothing but the flag to change the mode (from memory)."""
+    flight, client = flying("px4")
+    lat, lon, alt = north_of_home(flight, 40)
+    client.fly_to(lat, lon, alt + 5)
+    flight.until(lambda: flight.is_in(State.MOVING), 3)
+    assert client.ask(REPOSITION, -1.0, 1.0, 0.0, NAN, NAN, NAN, NAN) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING), 3)
+    assert flight.truth_enu()[1] < 30
