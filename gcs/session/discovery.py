@@ -26,6 +26,7 @@ WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
     (MsgId.EKF_STATUS_REPORT, 2.0),  # ArduPilot's
     (MsgId.BATTERY_STATUS, 1.0),
     (MsgId.POSITION_TARGET_LOCAL_NED, 5.0),
+    (MsgId.FENCE_STATUS, 1.0),  # ArduPilot's
 )
 
 FASTEST_HZ = 200.0

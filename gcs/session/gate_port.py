@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from gcs.frames import Vec3
 from gcs.gate import effects, inputs
 from gcs.gate.airspace.stopping import predicted_stop, stops_of
 from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
@@ -61,7 +62,20 @@ class GatePort:
                 work.append(PlaceFence())
             if not self._start_checked:
                 work.append(CheckStart(given.pos_ned))
+            work += self._breached(given.pos_ned)
         return work
+
+    def _breached(self, pos_ned: Vec3) -> list[Work]:
+        """Whether it flies outside the fence: it does from where that is certain, until it is
+        inside for certain."""
+        was = Condition.FENCE_BREACHED in self.gate.conditions
+        outside = None
+        if self._verifier is not None and self.gate.state not in NOT_FLYING:
+            outside = self._verifier.outside(pos_ned, for_certain=not was)
+        if was == (outside is not None):
+            return []
+        text = "" if outside is None else outside.sentence
+        return [condition(Condition.FENCE_BREACHED, outside is not None, text)]
 
     def _is_news(self, given: inputs.ConditionChanged) -> bool:
         """Whether the condition changed; it is looked at far more often than it does."""

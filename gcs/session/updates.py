@@ -27,12 +27,6 @@ ORIGIN_DISAGREEMENT_M = 2.0
 MAX_PAIR_AGE_NS = 100_000_000
 CLOCK_STEP_BACK_MS = 1_000
 
-BATTERY_PCT = (
-    (Condition.BATTERY_LOW, 15.0),
-    (Condition.BATTERY_CRITICAL, 7.0),
-)
-"""PX4's BAT_LOW_THR and BAT_CRIT_THR, for a vehicle that tells only a percentage."""
-
 UPDATE_MESSAGES: Final = frozenset(
     {
         m.Heartbeat,
@@ -159,12 +153,8 @@ def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Updat
     yield from telemetry.health.system_status(message, bool(telemetry.armed))
     if message.voltage_battery not in (0, 0xFFFF):
         telemetry.battery_v = message.voltage_battery / 1e3
-    if message.battery_remaining < 0:
-        return
-    left_pct = telemetry.battery_pct = float(message.battery_remaining)
-    text = f"{left_pct:.0f} % are left"
-    for name, limit_pct in BATTERY_PCT:
-        yield condition(name, left_pct <= limit_pct, text)
+    if message.battery_remaining >= 0:
+        telemetry.battery_pct = float(message.battery_remaining)
 
 
 def _finite(*values: float) -> bool:

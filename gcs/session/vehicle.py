@@ -43,6 +43,7 @@ from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.updates import UPDATE_MESSAGES, updates
+from gcs.session.watch import WATCH_MESSAGES, Watch
 from gcs.session.words import Words, logged
 from gcs.session.work import AskMission, CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
@@ -70,6 +71,7 @@ INTERPRETED: Final = frozenset(
         *MISSION_MESSAGES,
         *EVENT_MESSAGES,
         *STATE_MESSAGES,
+        *WATCH_MESSAGES,
         m.CommandAck,
         m.Statustext,
         m.AutopilotVersion,
@@ -99,6 +101,7 @@ class Vehicle:
         self._met_ns = 0
         self._parameters: dict[str, float] = {}
         self._presence = Presence(times, gone_ns)
+        self._watch = Watch(policy, times)
         self.telemetry: Telemetry | None = None
 
     # ------------------------------------------------------------------------------ reading
@@ -160,6 +163,8 @@ class Vehicle:
         if isinstance(message, m.Heartbeat):
             work += self._discover(link, frame, message, now_ns)
         telemetry = self.telemetry
+        if isinstance(message, m.RadioStatus):
+            work += self._watch.radio(message, now_ns)
         if telemetry is None or frame.sysid != telemetry.sysid:
             return work
         number = self._presence.number(frame, now_ns)
@@ -202,6 +207,8 @@ class Vehicle:
             work += self._events.heard(heard, now_ns)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
             return work
+        if heard.compid == telemetry.compid:
+            work += self._watch.heard(message, now_ns)
         for update in updates(message, telemetry, now_ns):
             match update:
                 case ToGate(inputs.PositionSeen(reset=True)):
@@ -312,6 +319,7 @@ class Vehicle:
         missing = telemetry.origin is None and now_ns - self._met_ns > self._times.real_ns(
             ORIGIN_PATIENCE_NS
         )
+        work += self._watch.second(self.losses, now_ns)
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
         work.append(condition(Condition.ORIGIN_MISSING, missing, text))
         return [*work, Record(recorded.status(telemetry, lost_pct(self.losses)))]

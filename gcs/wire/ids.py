@@ -328,6 +328,38 @@ class MavType(IntEnum):
     GRIPPER = 48
 
 
+class ChargeState(IntEnum):
+    """MAV_BATTERY_CHARGE_STATE: BATTERY_STATUS.charge_state."""
+
+    UNDEFINED = 0
+    OK = 1
+    LOW = 2
+    CRITICAL = 3
+    EMERGENCY = 4
+    FAILED = 5
+    UNHEALTHY = 6
+    CHARGING = 7
+
+
+class BatteryFunction(IntEnum):
+    """MAV_BATTERY_FUNCTION: BATTERY_STATUS.battery_function."""
+
+    UNKNOWN = 0
+    ALL = 1
+    PROPULSION = 2
+    AVIONICS = 3
+    PAYLOAD = 4
+
+
+class FenceBreach(IntEnum):
+    """FENCE_BREACH: FENCE_STATUS.breach_type."""
+
+    NONE = 0
+    MINALT = 1
+    MAXALT = 2
+    BOUNDARY = 3
+
+
 class GpsFix(IntEnum):
     """GPS_FIX_TYPE: GPS_RAW_INT.fix_type."""
 

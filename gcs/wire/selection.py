@@ -228,6 +228,19 @@ ENUMS = (
         ("GENERIC", "ARDUPILOTMEGA", "INVALID", "PX4"),
     ),
     EnumChoice("MavType", "MAV_TYPE", "MAV_TYPE_", "HEARTBEAT.type"),
+    EnumChoice(
+        "ChargeState",
+        "MAV_BATTERY_CHARGE_STATE",
+        "MAV_BATTERY_CHARGE_STATE_",
+        "BATTERY_STATUS.charge_state",
+    ),
+    EnumChoice(
+        "BatteryFunction",
+        "MAV_BATTERY_FUNCTION",
+        "MAV_BATTERY_FUNCTION_",
+        "BATTERY_STATUS.battery_function",
+    ),
+    EnumChoice("FenceBreach", "FENCE_BREACH", "FENCE_BREACH_", "FENCE_STATUS.breach_type"),
     EnumChoice("GpsFix", "GPS_FIX_TYPE", "GPS_", "GPS_RAW_INT.fix_type"),
     EnumChoice(
         "EstimatorFlag",

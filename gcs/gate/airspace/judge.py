@@ -118,8 +118,15 @@ class FenceJudge:
                     return zone_refusal(subject, measure, margin_m, leg=False)
         return None
 
-    def outside(self, subject: str, pos_ned: Vec3, *, floor_applies: bool) -> Refusal | None:
-        """Refuses a point that is outside.  No margin is asked for.
+    def outside(
+        self,
+        subject: str,
+        pos_ned: Vec3,
+        *,
+        floor_applies: bool,
+        allow: Margins = NO_MARGINS,
+    ) -> Refusal | None:
+        """Refuses a point that is outside by more than `allow`.  No margin is asked for.
 
         Where the policy's slack is larger than its margin and position error together (as in the
         lab), a point may be outside by the difference.
@@ -127,7 +134,7 @@ class FenceJudge:
         here = Motion.between(pos_ned, pos_ned)
         for zone in self.zones:
             for measure in self._point_measures(zone, here, floor_applies, NO_MARGINS):
-                if not measure.least_m >= self._outermost(measure.face):
+                if not measure.least_m >= self._outermost(measure.face) - allow.of(measure.face):
                     return zone_refusal(subject, measure, 0.0, leg=False)
         return None
 

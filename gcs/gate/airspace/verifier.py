@@ -339,6 +339,20 @@ class Verifier:
             or self._judge.outside(f"start position {place(pos_ned)}", pos_ned, floor_applies=False)
         )
 
+    def outside(self, pos_ned: Vec3, *, for_certain: bool) -> Refusal | None:
+        """Why a vehicle at `pos_ned` is outside the fence; None if it is not, or no fence is known.
+
+        `for_certain`: by more than its position may be wrong.  The floor does not apply: every
+        landing ends there.
+        """
+        if not all(map(math.isfinite, pos_ned)):
+            return None
+        allow = self._error() if for_certain else NO_MARGINS
+        subject = f"position {place(pos_ned)}"
+        return beyond_reach(pos_ned) or self._judge.outside(
+            subject, pos_ned, floor_applies=False, allow=allow
+        )
+
     # ---------------------------------------------------------------- parts of the answers
 
     @property

@@ -78,6 +78,7 @@ def _build(
 ) -> Policy:
     table = _overlay(doc, defaults, doc.data)
     table["arrival"] = _without_none(table["arrival"], "speed_m_s")
+    table["battery"] = _without_none(table["battery"], "low_v", "critical_v")
     table["severities"] = _severities(doc, table["severities"])
     zones = _read_fence(doc, table["fence"], fence_file)
     policy = doc.convert(Policy, {**table, "fence": [written.zone for written in zones]})
@@ -186,6 +187,13 @@ def _check_limits(doc: toml.Document, p: Policy) -> None:
     if doc.has(("takeoff", "max_up_m")) and p.takeoff.max_up_m > p.max_up_m:
         what = f"{p.takeoff.max_up_m:g} is above the policy's max_up_m of {p.max_up_m:g}"
         raise doc.error(("takeoff", "max_up_m"), what)
+    battery = p.battery
+    if battery.critical_pct > battery.low_pct:
+        what = f"{battery.critical_pct:g} is above low_pct of {battery.low_pct:g}"
+        raise doc.error(("battery", "critical_pct"), what)
+    if battery.low_v is not None and (battery.critical_v or 0.0) > battery.low_v:
+        what = f"{battery.critical_v:g} is above low_v of {battery.low_v:g}"
+        raise doc.error(("battery", "critical_v"), what)
     if p.control.timeout_s <= p.control.stream_s:
         what = "is over before the stream has even begun to count"
         raise doc.error(("control", "timeout_s"), what)

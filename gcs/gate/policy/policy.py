@@ -122,6 +122,33 @@ class MissionRules(_Section, frozen=True):
     blocked_return: Literal["refuse", "refuse_exclusions", "warn"]
 
 
+class BatteryLimits(_Section, frozen=True):
+    """From where on a battery is low, or critical: a share of its charge, and its voltage (None:
+    no voltage is).  What the vehicle itself calls low or critical is so, too."""
+
+    low_pct: Annotated[float, Meta(ge=0.0, le=100.0)]
+    critical_pct: Annotated[float, Meta(ge=0.0, le=100.0)]
+    low_v: FromTenth | None
+    critical_v: FromTenth | None
+
+
+class LinkLimits(_Section, frozen=True):
+    """From where on a link is poor: more frames lost than `max_lost_pct` in `window_s`, or a radio
+    whose signal is not `min_radio_margin_db` above its noise."""
+
+    max_lost_pct: Annotated[float, Meta(ge=1.0, le=100.0)]
+    window_s: FromOne
+    min_radio_margin_db: FromZero
+
+
+class GpsLimits(_Section, frozen=True):
+    """From where on a GPS with a fix is poor."""
+
+    min_satellites: Annotated[int, Meta(ge=0, le=64)]
+    max_hdop: FromTenth
+    max_accuracy_h_m: FromTenth
+
+
 class BridgeRules(_Section, frozen=True):
     """What MAVLink clients of `gcs bridge` may change on the vehicle, and what they may cost.
 
@@ -219,6 +246,9 @@ class Policy(_Section, frozen=True):
     photo_timeout_s: FromTenth
     control: ControlTimes
 
+    battery: BatteryLimits
+    link: LinkLimits
+    gps: GpsLimits
     severities: Mapping[Condition, Severity]
     rtl_blocked: Literal["hold", "land", "forward"]
     mission: MissionRules

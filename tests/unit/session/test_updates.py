@@ -92,16 +92,6 @@ def test_an_attitude_that_is_no_number_is_none() -> None:
     assert seen.yaw_rad == 0.5
 
 
-@pytest.mark.parametrize(
-    ("left_pct", "low", "critical"), [(80, 0, 0), (16, 0, 0), (15, 1, 0), (7, 1, 1), (0, 1, 1)]
-)
-def test_a_low_battery_is_a_condition(left_pct: int, low: int, critical: int) -> None:
-    heard = list(updates(system_status(left_pct), vehicle(), SECOND_NS))
-    told = {x.condition: x.active for x in given(heard) if isinstance(x, inputs.ConditionChanged)}
-    assert told[Condition.BATTERY_LOW] is bool(low)
-    assert told[Condition.BATTERY_CRITICAL] is bool(critical)
-
-
 def test_a_battery_that_is_not_measured_is_not_empty() -> None:
     seen = vehicle()
     assert list(updates(system_status(-1), seen, SECOND_NS)) == []
