@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+
+import msgspec
 
 from gcs import ipc
 from gcs.bridge.bridge import Bridge
@@ -66,13 +68,24 @@ class BridgePort:
         return []
 
     def second(
-        self, now_ns: int, counts: Sequence[Counts], lost_pct: float
+        self,
+        now_ns: int,
+        counts: Sequence[Counts],
+        lost_pct: float,
+        signed: Callable[[int], str],
     ) -> list[BridgeEffect | Emit]:
-        """Once a second: who is lost, and how it stands for whoever watches the bridge."""
+        """Once a second: who is lost, and how it stands for whoever watches the bridge.
+
+        `signed` says of a link's number what is known of its signatures.
+        """
         done: list[BridgeEffect | Emit] = [*self.bridge.second(now_ns)]
         if self._shown:
             links = self._links(now_ns, counts, lost_pct)
-            done.append(Emit(ipc.BridgeStatus(now_ns, links, self.bridge.status(now_ns))))
+            clients = [
+                msgspec.structs.replace(client, signed=signed(client.link))
+                for client in self.bridge.status(now_ns)
+            ]
+            done.append(Emit(ipc.BridgeStatus(now_ns, links, clients)))
         return done
 
     def _links(

@@ -456,7 +456,8 @@ class Session:
     def _every_second(self, now_ns: int) -> list[Work]:
         """Heartbeat, what is missing, and the slow half of the record."""
         work: list[Work] = [*self._links.heartbeat(now_ns), *self._vehicle.remind()]
-        work += self._bridge.second(now_ns, self._links.counts, lost_pct(self._vehicle.losses))
+        lost = lost_pct(self._vehicle.losses)
+        work += self._bridge.second(now_ns, self._links.counts, lost, self._signatures.told)
         work += self._signatures.second(now_ns)
         if self._vehicle.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)

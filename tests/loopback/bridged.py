@@ -136,9 +136,22 @@ class BridgedFlight(Flight):
         up: Weather = CLEAR,
         down: Weather = CLEAR,
         config: StationConfig = BRIDGE,
+        vehicle_key: bytes | None = None,
+        station_key: bytes | None = None,
+        client_key: bytes | None = None,
     ) -> None:
         self.clients: dict[int, Client] = {}
-        super().__init__(personality, seed=seed, policy=policy, up=up, down=down, config=config)
+        super().__init__(
+            personality,
+            seed=seed,
+            policy=policy,
+            up=up,
+            down=down,
+            config=config,
+            vehicle_key=vehicle_key,
+            station_key=station_key,
+            client_key=client_key,
+        )
 
     def join(self, sysid: int = 245, compid: int = 190) -> Client:
         """A client connects and says that it is there."""

@@ -86,6 +86,7 @@ class Flight(Looks):
         config: StationConfig = CONFIG,
         vehicle_key: bytes | None = None,
         station_key: bytes | None = None,
+        client_key: bytes | None = None,
     ) -> None:
         """`up` is the weather towards the vehicle, `down` towards the ground station; the keys are
         what either side signs with."""
@@ -107,8 +108,13 @@ class Flight(Looks):
         )
         if station_key is not None:
             config = msgspec.structs.replace(config, vehicle_key_path="vehicle.key")
+        if client_key is not None:
+            config = msgspec.structs.replace(config, client_key_path="client.key")
         setup = Setup(config, "test", policy, "", ("a simulated link",), "")
-        keys = Keys(vehicle=None if station_key is None else SecretKey(station_key))
+        keys = Keys(
+            vehicle=None if station_key is None else SecretKey(station_key),
+            client=None if client_key is None else SecretKey(client_key),
+        )
         self.session = Session(setup, START_NS, keys)
         self.recorder = Flight.new_recorder()
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
