@@ -1,0 +1,123 @@
+"""What only passes through: not decoded, recorded frame by frame, sent on as it came."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+
+import pytest
+
+from gcs.report import Direction
+from gcs.session import vehicle
+from gcs.session.effects import Effect, Transmit
+from gcs.session.inputs import ClientCame, Datagram
+from gcs.session.links import MAX_DATAGRAM, datagrams
+from gcs.session.vehicle import INTERPRETED
+from gcs.wire.codec import FrameWriter
+from gcs.wire.dialect import MESSAGES, MESSAGES_BY_NAME
+from gcs.wire.messages import CLASSES
+from tests.unit.session import told, wire
+from tests.unit.session.station import Script
+
+UNTARGETED = ("HIGHRES_IMU", "VFR_HUD", "ATTITUDE_QUATERNION", "SERVO_OUTPUT_RAW")
+CLIENTS = (1, 2)
+
+
+def frame(writer: FrameWriter, name: str, payload: bytes | None = None) -> bytes:
+    definition = MESSAGES_BY_NAME[name]
+    if payload is None:
+        payload = random.Random(definition.msgid).randbytes(definition.max_len)
+    return writer.write_payload(definition.msgid, payload)
+
+
+def bridged() -> Script:
+    """A vehicle is heard, and two clients, 255/190 and 254/190."""
+    script = Script()
+    script.hear(wire.heartbeat())
+    for link, sysid in zip(CLIENTS, (255, 254), strict=True):
+        script.feed(ClientCame(link, f"udp 127.0.0.1:{link}", False))
+        script.feed(Datagram(link, wire.Sender(sysid, 190).frame(beat_of_a_client())))
+    return script
+
+
+def beat_of_a_client() -> wire.Message:
+    return wire.heartbeat(wire.NO_AUTOPILOT, type_=wire.GCS)
+
+
+def sent(effects: Iterable[Effect]) -> list[tuple[int, bytes]]:
+    return [(each.link, each.data) for each in effects if isinstance(each, Transmit)]
+
+
+def test_a_datagram_goes_to_every_client_whole_and_before_it_is_recorded() -> None:
+    script = bridged()
+    writer = FrameWriter(1, 1)
+    raws = [frame(writer, name) for name in UNTARGETED * 2]
+    effects = script.feed(Datagram(0, b"".join(raws)))
+    assert sent(effects) == [(1, b"".join(raws)), (2, b"".join(raws))]
+    assert [type(each) for each in effects[:2]] == [Transmit, Transmit]
+    kept = told.recorded(effects, "FrameItem")
+    assert [(x.link, x.direction, x.raw) for x in kept] == [
+        (0, Direction.RECEIVED, raw) for raw in raws
+    ]
+
+
+def test_a_frame_for_one_client_goes_to_that_one_alone() -> None:
+    script = bridged()
+    writer = FrameWriter(1, 1)
+    ack = frame(writer, "COMMAND_ACK", bytes((144, 1, 0, 0, 0, 0, 0, 0, 254, 190)))
+    before, after = frame(writer, "VFR_HUD"), frame(writer, "HIGHRES_IMU")
+    effects = script.feed(Datagram(0, before + ack + after))
+    assert sent(effects) == [(1, before + after), (2, before + ack + after)]
+
+
+def test_garbage_is_not_sent_on() -> None:
+    script = bridged()
+    raw = frame(FrameWriter(1, 1), "VFR_HUD")
+    effects = script.feed(Datagram(0, b"noise" + raw))
+    assert sent(effects) == [(1, raw), (2, raw)]
+    assert [x.reason for x in told.recorded(effects, "GarbageItem")] == ["text"]
+
+
+def test_long_reads_of_a_stream_are_cut_between_frames() -> None:
+    raws = [bytes((number,)) * 280 for number in range(12)]
+    made = datagrams(raws)
+    assert b"".join(made) == b"".join(raws)
+    assert [len(each) for each in made] == [MAX_DATAGRAM, MAX_DATAGRAM, 2 * 280]
+    assert datagrams([b"x" * 3000]) == [b"x" * 3000]
+    assert datagrams([]) == []
+
+
+@pytest.mark.parametrize("msgid", sorted(set(MESSAGES) - INTERPRETED))
+def test_decoding_what_passes_through_would_change_nothing(
+    msgid: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same datagrams with every message decoded: the same effects, and the same snapshot."""
+    writer, definition = FrameWriter(1, 1), MESSAGES[msgid]
+    payloads = [random.Random(seed).randbytes(definition.max_len) for seed in range(3)]
+    data = b"".join(writer.write_payload(msgid, payload) for payload in payloads)
+    passing = effects_of(data)
+    monkeypatch.setattr(vehicle, "INTERPRETED", frozenset(MESSAGES))
+    assert effects_of(data) == passing
+
+
+def effects_of(data: bytes) -> list[Effect]:
+    """And of what is told and recorded in the time after."""
+    script = bridged()
+    return [*script.feed(Datagram(0, data)), *script.run(0.3)]
+
+
+def test_most_of_the_dialect_passes_through_and_all_that_is_interpreted_has_a_class() -> None:
+    assert set(CLASSES) >= INTERPRETED
+    assert len(INTERPRETED) < 40 < len(MESSAGES)
+
+
+def test_the_deadline_is_the_same_after_what_passes_through(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    script = bridged()
+    before_ns = script.session.deadline_ns
+    effects = script.feed(Datagram(0, frame(FrameWriter(1, 1), "VFR_HUD")))
+    assert effects
+    assert script.session.deadline_ns == before_ns
+    monkeypatch.setattr(script.session, "_deadline_ns", None)
+    assert script.session.deadline_ns == before_ns
