@@ -207,6 +207,8 @@ class Bridge:
             case ipc.EndingEvent(id=ask_id) if ask_id == client.plan_ask:
                 client.plan_ask = 0
                 return of_plan(client, client.plans.ended(event, now_ns))
+            case ipc.Trouble(text) if client.plan_ask:
+                return of_plan(client, client.plans.finding(text, now_ns))
             case _:
                 return client.dialogue.told(event, now_ns)
 

@@ -24,6 +24,7 @@ from gcs.bridge.effects import (
     AsksVehicle,
     BridgeEffect,
     Notes,
+    Refuses,
     Says,
     StopsPlan,
     ToVehicle,
@@ -192,16 +193,13 @@ class Judge:
                 return self._configuration(given, message, row)
         effects = client.plans.handle(message, given.by, given.now_ns)
         refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
-        return Judged(refused, of_plan(client, effects, given, message))
+        return Judged(refused, of_plan(client, effects, given.frame))
 
 
 def of_plan(
-    client: Client,
-    effects: Sequence[PlanEffect],
-    given: Received | None = None,
-    message: Message | None = None,
+    client: Client, effects: Sequence[PlanEffect], frame: Frame | None = None
 ) -> list[BridgeEffect]:
-    """What a client's plan server wants; `given` is what it was given, if it was a frame."""
+    """What a client's plan server wants; `frame` is what it was given, if it was one."""
     done: list[BridgeEffect] = []
     for effect in effects:
         match effect:
@@ -213,10 +211,11 @@ def of_plan(
                 done.append(_ask_plan(client, "mission_clear", "", kind, None))
             case plan_effects.Withdraw(reason):
                 done.append(StopsPlan(client.number, client.plan_ask, reason))
-            case plan_effects.Pass() if given is not None:
-                done.append(ToVehicle(given.frame.raw))
-            case plan_effects.Refused(name, refusal) if given is not None:
-                done += client.dialogue.refuse(given.by, message, name, refusal, given.now_ns)
+            case plan_effects.Pass() if frame is not None:
+                done.append(ToVehicle(frame.raw))
+            case plan_effects.Refused(name, refusal):
+                ask = ipc.Ask(client.dialogue.number(), name.lower())  # answered already
+                done.append(Refuses(client.number, ask, refusal))
     return done
 
 

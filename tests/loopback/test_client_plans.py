@@ -1,0 +1,132 @@
+"""Missions from any client: verified whole, on board, answered once; nothing else gets there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from pymavlink.dialects.v20 import all as dialect
+
+from gcs.gate.states import State
+from tests.loopback.bridged import VEHICLE
+from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.plan_clients import (
+    ACCEPTED,
+    UPLOADS,
+    DroneKit,
+    Mavsdk,
+    PlanFlight,
+    Upload,
+    mission,
+)
+
+DENIED = 14
+ARM, MISSION_START = 400, 300
+FAR_E7 = 90_000
+"""A kilometre north."""
+SQUARE = ((20.0, 0.0, 10.0), (20.0, 20.0, 10.0), (0.0, 20.0, 10.0))
+BEYOND = ((20.0, 0.0, 10.0), (400.0, 0.0, 10.0), (500.0, 20.0, 10.0))
+
+
+def connected(personality: Personality) -> PlanFlight:
+    flight = PlanFlight(personality)
+    flight.join()
+    flight.connected()
+    return flight
+
+
+def ended(flight: PlanFlight, upload: Upload, within_s: float = 30.0) -> str:
+    flight.until(lambda: bool(upload.result), within_s)
+    return upload.result
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("kind", UPLOADS)
+def test_each_client_s_mission_is_on_board_and_acknowledged_once(
+    kind: type[Upload], personality: Personality
+) -> None:
+    flight = connected(personality)
+    upload = kind(flight, flight.clients[1], mission(personality, *SQUARE))
+    assert ended(flight, upload) == "complete"
+    flight.run(5.0)
+    assert upload.acks == [ACCEPTED]
+    assert [item.command for item in flight.vehicle.plan] == [item.command for item in upload.items]
+    tolerance = 10 if kind is DroneKit else 0  # float degrees: a metre
+    for ours, theirs in zip(flight.vehicle.plan[1:-1], upload.items[1:-1], strict=True):
+        assert abs(ours.x - round(theirs.lat_deg * 1e7)) <= 20 * tolerance
+        assert ours.z == theirs.alt_m
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("kind", UPLOADS)
+def test_a_mission_that_leaves_the_fence_never_reaches_the_vehicle(
+    kind: type[Upload], personality: Personality
+) -> None:
+    flight = connected(personality)
+    before = flight.vehicle.plan
+    upload = kind(flight, flight.clients[1], mission(personality, *BEYOND))
+    assert ended(flight, upload) == f"refused {DENIED}"
+    flight.run(5.0)
+    assert upload.acks == [DENIED]
+    assert flight.vehicle.plan == before
+    assert not flight.to_vehicle("MISSION_COUNT")
+    assert not flight.to_vehicle("MISSION_ITEM_INT")
+    said = flight.clients[1].texts()
+    assert "item 3" in said
+    assert "item 4" in said, "every finding is told"
+    (decision,) = flight.decisions("refused")
+    assert decision.word == "mission_upload"
+    assert decision.code in ("OUTSIDE_FENCE", "LEG_LEAVES_FENCE", "TOO_FAR")
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_mission_of_a_client_is_flown(personality: Personality) -> None:
+    flight = connected(personality)
+    client = flight.clients[1]
+    assert ended(flight, Mavsdk(flight, client, mission(personality, *SQUARE))) == "complete"
+    assert client.ask(ARM, 1) == ACCEPTED
+    client.command(MISSION_START)
+    flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_client_clears_the_mission(personality: Personality) -> None:
+    flight = connected(personality)
+    client = flight.clients[1]
+    ended(flight, Mavsdk(flight, client, mission(personality, *SQUARE)))
+    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, 0))
+    flight.run(1.0)
+    assert flight.vehicle.plan == ()
+    assert [ack.type for ack in client.messages("MISSION_ACK")] == [ACCEPTED, ACCEPTED]
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_client_that_falls_silent_half_way_changes_nothing(personality: Personality) -> None:
+    flight = connected(personality)
+    before = flight.vehicle.plan
+    client = flight.clients[1]
+    client.send(dialect.MAVLink_mission_count_message(*VEHICLE, 5, 0))
+    flight.beating(15.0)
+    assert flight.vehicle.plan == before
+    assert [ack.type for ack in client.messages("MISSION_ACK")] == [15]
+    assert flight.decisions("refused")[-1].code == "NO_ANSWER"
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_mission_put_on_board_past_the_bridge_is_verified_before_it_starts(
+    personality: Personality,
+) -> None:
+    """It was there before this station came."""
+    flight = PlanFlight(personality)
+    other = connected(personality)
+    ended(other, Mavsdk(other, other.clients[1], mission(personality, *SQUARE)))
+    good = other.vehicle.plan
+    client = flight.join()
+    flight.connected()
+    away = tuple(replace(item, x=item.x + FAR_E7) if item.x else item for item in good)
+    for plan, starts in ((away, False), (good, True)):
+        flight.vehicle.load_plan(plan)
+        assert client.ask(ARM, 1) == ACCEPTED
+        client.command(MISSION_START)
+        flight.beating(5.0)
+        assert flight.is_in(State.FLYING_MISSION) is starts
