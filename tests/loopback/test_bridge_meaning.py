@@ -116,6 +116,7 @@ def test_a_client_who_is_not_in_control_does_not_stop_a_return(personality: Pers
     other = flight.join(255, 190)
     guided = (29.0, 6.0) if personality == "px4" else (1.0, 4.0)
     other.ask(SET_MODE, *guided)
+    flight.run(0.2)
     assert "OTHER_OPERATOR" in other.texts()
     assert flight.is_in(State.RETURNING)
     # The one in control may.
