@@ -108,18 +108,15 @@ def test_sticks_of_a_client_never_reach_the_vehicle(personality: Personality) ->
 def test_a_client_who_is_not_in_control_does_not_stop_a_return(personality: Personality) -> None:
     """It asks for OFFBOARD or GUIDED, which is a hold and more."""
     flight, client = flying(personality)
-    lat, lon, alt = north_of_home(flight, 10)
-    client.fly_to(lat, lon, alt + 5)
-    arrives(flight, 10)
     assert client.ask(20) == ACCEPTED
     flight.until(lambda: flight.is_in(State.RETURNING), 3)
     other = flight.join(255, 190)
     guided = (29.0, 6.0) if personality == "px4" else (1.0, 4.0)
     other.ask(SET_MODE, *guided)
+    flight.run(0.2)
     assert "OTHER_OPERATOR" in other.texts()
-    assert flight.is_in(State.RETURNING)
-    # The one in control may.
-    assert client.ask(SET_MODE, *guided, within_s=10) == ACCEPTED
+    assert flight.state in (State.RETURNING, State.LANDING)
+    assert client.ask(SET_MODE, *guided, within_s=10) == ACCEPTED, "the one in control may"
     flight.until(lambda: flight.is_in(State.HOVERING), 10)
 
 

@@ -77,9 +77,10 @@ def guided(wanted: Mode, seen: Seen) -> Words:
         return mode(wanted.name)
     if seen.state in NOT_FLOWN_BY_US:
         return ask("resume")
-    if seen.state in FLIES_ITSELF:  # whatever mode the last heartbeat showed
-        stop = Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume")))
-        return stop if seen.in_control else ask("control")
+    if seen.state in FLIES_ITSELF:
+        # The heartbeat may still show the mode before: `mode_name` counts for nothing here.
+        stop_first = Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume")))
+        return stop_first if seen.in_control else ask("control")
     if seen.mode_name == wanted.name:
         return DONE
     return ask("control")
