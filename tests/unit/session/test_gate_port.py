@@ -223,3 +223,58 @@ def test_in_the_air_there_is_no_start() -> None:
     assert port.gate.state is State.EXTERNAL
     port.check_start(CheckStart((0.0, 90.0, 0.0)))
     assert port.bad_start is None
+
+
+# ------------------------------------------------------------------- outside of the fence
+
+
+def breached(port: GatePort, east_m: float) -> bool | None:
+    """What a position there tells the gate: outside, inside again, or nothing new."""
+    seen = inputs.PositionSeen((0.0, east_m, -5.0), (0.0, 0.0, 0.0), 2000)
+    told_now: bool | None = None
+    for item in of(ToGate, port.handle(seen, 2 * SECOND_NS)):
+        changed = item.given
+        if isinstance(changed, inputs.ConditionChanged):
+            assert changed.condition is Condition.FENCE_BREACHED
+            told_now = changed.active
+            port.handle(changed, 2 * SECOND_NS)
+    return told_now
+
+
+def flying_port() -> GatePort:
+    port, telemetry = GatePort(LOCAL, 0), vehicle()
+    grounded(port, telemetry)
+    telemetry.home_ned = (0.0, 0.0, 0.0)
+    for item in of(ToGate, port.place_fence(telemetry)):
+        port.handle(item.given, SECOND_NS)
+    return port
+
+
+def test_a_vehicle_that_flies_outside_is_a_condition_until_it_is_inside() -> None:
+    port = flying_port()
+    port.handle(inputs.HeartbeatSeen(True, FlightMode.HOLD, "AUTO.LOITER"), SECOND_NS)
+    port.handle(inputs.LandedSeen(LandedState.IN_AIR), SECOND_NS)
+    assert breached(port, 19.0) is None
+    assert breached(port, 20.3) is None, "the position may be wrong by half a metre"
+    assert breached(port, 20.6) is True
+    assert Condition.FENCE_BREACHED in port.gate.conditions
+    assert breached(port, 25.0) is None
+    assert breached(port, 20.3) is None, "not inside for certain"
+    assert breached(port, 19.9) is False
+    assert list(port.gate.conditions) == []
+
+
+def test_a_vehicle_that_stands_outside_does_not_fly_there() -> None:
+    port = flying_port()
+    assert breached(port, 30.0) is None
+
+
+def test_a_vehicle_that_lands_outside_flies_there_no_longer() -> None:
+    port = flying_port()
+    port.handle(inputs.HeartbeatSeen(True, FlightMode.LAND, "AUTO.LAND"), SECOND_NS)
+    port.handle(inputs.LandedSeen(LandedState.IN_AIR), SECOND_NS)
+    assert breached(port, 30.0) is True
+    port.handle(inputs.LandedSeen(LandedState.ON_GROUND), SECOND_NS)
+    port.handle(inputs.HeartbeatSeen(False, FlightMode.LAND, "AUTO.LAND"), SECOND_NS)
+    assert port.gate.state is State.GROUNDED
+    assert breached(port, 30.0) is False

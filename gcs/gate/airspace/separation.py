@@ -1,0 +1,120 @@
+"""How near two vehicles will come to each other, and how bad that is.
+
+Both are taken to fly on as they do, for as long as is looked ahead; how wrong their positions and
+velocities may be makes the distance smaller.  In one horizontal frame, metres and seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gcs.frames import Vec3
+from gcs.gate.condition import Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A vehicle at `pos_ned`, moving at `v_ned`, when `age_s` have passed since it was there.
+
+    `error_m` is how wrong its position may be, `v_error_m_s` its velocity, for each second.
+    """
+
+    pos_ned: Vec3
+    v_ned: Vec3
+    age_s: float = 0.0
+    error_m: float = 0.0
+    v_error_m_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """The nearest that two vehicles come to: in how many seconds, and how near at the least.
+
+    `beside_m` and `above_m` are the parts of the distance then, as they are flown; `least_m` is
+    the distance less what the positions may be wrong by, and never below 0.
+    """
+
+    in_s: float
+    beside_m: float
+    above_m: float
+    least_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class SeparationRules:
+    """Nearer than `least_m` within `within_s` is `severity`, which may be NOMINAL.
+
+    `near_m`, no less than `least_m`: nearer than that is at least CAUTION.
+    """
+
+    least_m: float
+    near_m: float
+    within_s: float
+    severity: Severity
+
+
+def closest_approach(a: Track, b: Track, within_s: float) -> Approach:
+    """Of two vehicles that fly straight on for `within_s` seconds.
+
+    What is not finite is taken for the worst: they are in one place, now.
+    """
+    numbers = (*a.pos_ned, *a.v_ned, *b.pos_ned, *b.v_ned, a.age_s, b.age_s, within_s)
+    errors = (a.error_m, b.error_m, a.v_error_m_s, b.v_error_m_s)
+    if not all(map(math.isfinite, (*numbers, *errors))):
+        return Approach(0.0, 0.0, 0.0, 0.0)
+    apart = _difference(_now(a), _now(b))
+    relative = _difference(a.v_ned, b.v_ned)
+    end_s = max(0.0, within_s)
+    wrong_m = a.error_m + b.error_m + a.v_error_m_s * a.age_s + b.v_error_m_s * b.age_s
+    widens_m_s = a.v_error_m_s + b.v_error_m_s
+    at_s = min(
+        _candidates(apart, relative, widens_m_s, end_s),
+        key=lambda t: math.hypot(*_along(apart, relative, t)) - widens_m_s * t,
+    )
+    north_m, east_m, down_m = _along(apart, relative, at_s)
+    distance_m = math.hypot(north_m, east_m, down_m)
+    least_m = max(0.0, distance_m - wrong_m - widens_m_s * at_s)
+    return Approach(at_s, math.hypot(north_m, east_m), abs(down_m), least_m)
+
+
+def severity_of(approach: Approach, rules: SeparationRules) -> Severity:
+    """How bad it is that two vehicles come that near."""
+    if not approach.least_m >= rules.least_m:
+        return rules.severity
+    return Severity.NOMINAL if approach.least_m >= rules.near_m else Severity.CAUTION
+
+
+def _candidates(apart: Vec3, relative: Vec3, widens_m_s: float, end_s: float) -> tuple[float, ...]:
+    """Times at which the distance less the growing error may be least: both ends, and where its
+    derivative is zero.
+
+    With s the closing of the lines, c their least distance and v the relative speed, the distance
+    at t is hypot(c, v (t - s)); its slope is the error's growth w where
+    v (t - s) = c w / sqrt(v^2 - w^2).
+    """
+    speed_m_s = math.hypot(*relative)
+    if speed_m_s <= widens_m_s or speed_m_s == 0.0:
+        return 0.0, end_s
+    closest_s = -_dot(apart, relative) / speed_m_s / speed_m_s
+    missed_m = math.hypot(*_along(apart, relative, closest_s))
+    slack = math.sqrt(speed_m_s - widens_m_s) * math.sqrt(speed_m_s + widens_m_s)
+    at_s = closest_s + missed_m * widens_m_s / slack / speed_m_s
+    return 0.0, min(max(at_s, 0.0), end_s), end_s
+
+
+def _now(track: Track) -> Vec3:
+    """Where it is by now, if it flew straight on."""
+    return _along(track.pos_ned, track.v_ned, track.age_s)
+
+
+def _along(start: Vec3, step: Vec3, t: float) -> Vec3:
+    return (start[0] + step[0] * t, start[1] + step[1] * t, start[2] + step[2] * t)
+
+
+def _difference(a: Vec3, b: Vec3) -> Vec3:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def _dot(a: Vec3, b: Vec3) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

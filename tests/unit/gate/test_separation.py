@@ -1,0 +1,140 @@
+"""How near two vehicles come, against every moment of their flight tried one by one."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gcs.gate.airspace.separation import (
+    Approach,
+    SeparationRules,
+    Track,
+    closest_approach,
+    severity_of,
+)
+from gcs.gate.condition import Severity
+
+STILL = (0.0, 0.0, 0.0)
+RULES = SeparationRules(least_m=5.0, near_m=10.0, within_s=10.0, severity=Severity.HOLD)
+
+
+def test_two_that_fly_towards_each_other_meet_in_the_middle() -> None:
+    found = closest_approach(
+        Track((0.0, 0.0, -10.0), (5.0, 0.0, 0.0)), Track((50.0, 0.0, -10.0), (-5.0, 0.0, 0.0)), 10.0
+    )
+    assert found == Approach(5.0, 0.0, 0.0, 0.0)
+
+
+def test_two_that_cross_at_different_heights_are_apart_by_the_height() -> None:
+    found = closest_approach(
+        Track((0.0, 0.0, -10.0), (5.0, 0.0, 0.0)),
+        Track((20.0, -20.0, -16.0), (0.0, 5.0, 0.0)),
+        10.0,
+    )
+    assert (found.in_s, found.beside_m, found.above_m) == pytest.approx((4.0, 0.0, 6.0))
+    assert found.least_m == pytest.approx(6.0)
+
+
+def test_two_that_fly_apart_are_nearest_now() -> None:
+    found = closest_approach(Track(STILL, (-1.0, 0.0, 0.0)), Track((8.0, 0.0, 0.0), STILL), 10.0)
+    assert found == Approach(0.0, 8.0, 0.0, 8.0)
+
+
+def test_what_comes_after_the_time_that_is_looked_ahead_does_not_count() -> None:
+    found = closest_approach(Track(STILL, (1.0, 0.0, 0.0)), Track((30.0, 0.0, 0.0), STILL), 10.0)
+    assert found == Approach(10.0, 20.0, 0.0, 20.0)
+
+
+def test_two_that_fly_side_by_side_are_as_near_as_they_are() -> None:
+    found = closest_approach(
+        Track(STILL, (9.0, 3.0, 1.0)), Track((0.0, 4.0, 3.0), (9.0, 3.0, 1.0)), 60.0
+    )
+    assert found.least_m == pytest.approx(5.0)
+
+
+def test_an_old_position_is_flown_on_and_its_error_grows() -> None:
+    old = Track((0.0, 0.0, 0.0), (4.0, 0.0, 0.0), age_s=2.0, error_m=0.5, v_error_m_s=0.25)
+    found = closest_approach(old, Track((20.0, 0.0, 0.0), STILL, error_m=1.0), 0.0)
+    assert found.beside_m == pytest.approx(12.0)
+    assert found.least_m == pytest.approx(12.0 - 0.5 - 1.0 - 0.5)
+
+
+def test_a_velocity_that_may_be_wrong_brings_two_that_hover_nearer_with_time() -> None:
+    found = closest_approach(
+        Track(STILL, STILL, v_error_m_s=0.5), Track((20.0, 0.0, 0.0), STILL, v_error_m_s=0.5), 8.0
+    )
+    assert (found.in_s, found.least_m) == (8.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("least_m", "severity"),
+    [
+        (20.0, Severity.NOMINAL),
+        (10.0, Severity.NOMINAL),
+        (9.9, Severity.CAUTION),
+        (5.0, Severity.CAUTION),
+        (4.9, Severity.HOLD),
+        (0.0, Severity.HOLD),
+        (math.nan, Severity.HOLD),
+    ],
+)
+def test_how_bad_it_is(least_m: float, severity: Severity) -> None:
+    assert severity_of(Approach(1.0, least_m, 0.0, least_m), RULES) is severity
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_what_is_no_number_is_the_worst(bad: float) -> None:
+    good = Track((500.0, 0.0, 0.0), STILL)
+    for track in (
+        Track((bad, 0.0, 0.0), STILL),
+        Track(STILL, (0.0, bad, 0.0)),
+        Track(STILL, STILL, age_s=bad),
+        Track(STILL, STILL, error_m=bad),
+        Track(STILL, STILL, v_error_m_s=bad),
+    ):
+        for pair in ((track, good), (good, track)):
+            assert severity_of(closest_approach(*pair, 5.0), RULES) is Severity.HOLD
+
+
+METRES = st.floats(-500.0, 500.0)
+SPEEDS = st.floats(-20.0, 20.0)
+TRACKS = st.builds(
+    Track,
+    pos_ned=st.tuples(METRES, METRES, METRES),
+    v_ned=st.tuples(SPEEDS, SPEEDS, SPEEDS),
+    age_s=st.floats(0.0, 2.0),
+    error_m=st.floats(0.0, 3.0),
+    v_error_m_s=st.floats(0.0, 1.0),
+)
+
+
+@given(a=TRACKS, b=TRACKS, within_s=st.floats(0.0, 30.0), share=st.floats(0.0, 1.0))
+def test_at_no_moment_are_they_nearer(a: Track, b: Track, within_s: float, share: float) -> None:
+    found = closest_approach(a, b, within_s)
+    at_s = share * within_s
+    places = [
+        [p + v * (each.age_s + at_s) for p, v in zip(each.pos_ned, each.v_ned, strict=True)]
+        for each in (a, b)
+    ]
+    wrong_m = sum(each.error_m + each.v_error_m_s * (each.age_s + at_s) for each in (a, b))
+    assert found.least_m <= max(0.0, math.dist(*places) - wrong_m) + 1e-6
+    assert 0.0 <= found.in_s <= within_s
+    swapped = closest_approach(b, a, within_s)
+    assert swapped.least_m == pytest.approx(found.least_m, abs=1e-6)
+
+
+@given(
+    pos=st.tuples(METRES, METRES, METRES),
+    v=st.tuples(SPEEDS, SPEEDS, SPEEDS),
+    error=st.floats(0, 5),
+)
+def test_a_wider_error_never_makes_it_safer(
+    pos: tuple[float, float, float], v: tuple[float, float, float], error: float
+) -> None:
+    still = Track(STILL, STILL)
+    sure = closest_approach(Track(pos, v), still, 10.0)
+    unsure = closest_approach(Track(pos, v, error_m=error, v_error_m_s=error), still, 10.0)
+    assert unsure.least_m <= sure.least_m + 1e-9
