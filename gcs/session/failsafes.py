@@ -21,6 +21,9 @@ LONGEST_STATION_LOSS_S: Final = 30.0
 """Without a station for longer than this, it might as well be never.  A judgement of ours."""
 LONGEST_SETPOINT_LOSS_S: Final = 10.0
 """The same of setpoints."""
+FENCE_ACTION: Final = "geofence breach"
+FENCE: Final = "geofence"
+"""What the cases about the vehicle's own fence are called."""
 SLACK_M: Final = 0.5
 """A limit of the vehicle's that is wider than the policy's by no more than this is as wide."""
 
@@ -324,8 +327,8 @@ CASES: Final[Mapping[str, tuple[Case, ...]]] = {
         Case("stick loss", ("NAV_RCL_ACT",), _px4_sticks),
         Case("offboard loss", ("COM_OBL_RC_ACT",), _px4_offboard, ("COM_OF_LOSS_T",)),
         Case("low battery", ("COM_LOW_BAT_ACT",), _px4_battery),
-        Case("geofence breach", ("GF_ACTION",), _px4_breach),
-        Case("geofence", ("GF_MAX_HOR_DIST", "GF_MAX_VER_DIST"), _px4_fence),
+        Case(FENCE_ACTION, ("GF_ACTION",), _px4_breach),
+        Case(FENCE, ("GF_MAX_HOR_DIST", "GF_MAX_VER_DIST"), _px4_fence),
         Case("return", ("RTL_RETURN_ALT",), lambda v, at: _ceiling(v, at, "RTL_RETURN_ALT")),
     ),
     "ardupilot": (
@@ -344,8 +347,8 @@ CASES: Final[Mapping[str, tuple[Case, ...]]] = {
             ("BATT_LOW_VOLT", "BATT_LOW_MAH"),
         ),
         Case("position lost", ("FS_EKF_ACTION",), _copter_estimate),
-        Case("geofence breach", ("FENCE_ENABLE",), _copter_breach, ("FENCE_ACTION",)),
-        Case("geofence", ("FENCE_TYPE", "FENCE_RADIUS", "FENCE_ALT_MAX"), _copter_fence),
+        Case(FENCE_ACTION, ("FENCE_ENABLE",), _copter_breach, ("FENCE_ACTION",)),
+        Case(FENCE, ("FENCE_TYPE", "FENCE_RADIUS", "FENCE_ALT_MAX"), _copter_fence),
         Case("return", ("RTL_ALT_M",), lambda v, at: _ceiling(v, at, "RTL_ALT_M")),
     ),
 }

@@ -36,6 +36,11 @@ TRANSFER_WORDS = frozenset({"mission_upload", "mission_download", "mission_clear
 MISSION_WORDS = TRANSFER_WORDS | {"mission_start"}
 KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
 
+NO_ITEMS = (0, 0xFFFF)
+"""MISSION_CURRENT.total without a mission.  PX4 has told it since 1.14; 0 was "not told" before."""
+NEWS_NS = 1_500_000_000
+"""How long a MISSION_CURRENT may still be about the mission before: it comes once a second."""
+
 STOPS = frozenset(
     {Event.ABORT, Event.HOLD, Event.LAND, Event.RETURN, Event.DISARM, Event.FORCE_DISARM}
 )
@@ -65,6 +70,11 @@ class Missions:
         """Whether the vehicle was seen flying the mission that was started last."""
         self.total: int | None = None
         """Items that the vehicle holds, as they were read back last."""
+        self._told: MissionCurrent | None = None
+        """What the vehicle tells of its plans."""
+        self._verified_id = 0
+        self._verified_ns: int | None = None
+        """The number that it gives the mission that was verified, and since when there is one."""
 
     @property
     def deadline_ns(self) -> int | None:
@@ -156,7 +166,9 @@ class Missions:
         """A message of the vehicle: about progress in flight, or for the transfer under way."""
         work: list[Work] = []
         match heard.message:
-            case MissionCurrent(seq=seq, mission_state=state):
+            case MissionCurrent(seq=seq, mission_state=state) as told:
+                self._told = told
+                self._number(told, now_ns)
                 self._was_active |= state == MissionState.ACTIVE
                 over = state == MissionState.COMPLETE and self._was_active
                 work += self._progress(seq, over)
@@ -166,6 +178,38 @@ class Missions:
             work += self._follow(self._job.heard(heard, view, now_ns))
         return work
 
+    @property
+    def fence_on_board(self) -> bool:
+        """Whether the vehicle says that a fence was uploaded to it; older firmware does not."""
+        return self._told is not None and self._told.fence_id != 0
+
+    @property
+    def unverified(self) -> str:
+        """What is wrong with the mission on board, as the vehicle tells of it (MISSION_CURRENT):
+        that it was not verified, or is another one.  Empty where it was, or where there is none."""
+        told, known = self._told, self._on_board
+        if told is None:
+            return "it has not told whether a mission is on board"
+        if told.total in NO_ITEMS:
+            return ""
+        if known is None:
+            return f"the mission on board ({told.total} items) was not verified: upload or clear it"
+        if told.total != len(known.sent):
+            which = f"{told.total} items, {len(known.sent)} were verified"
+            return f"another mission is on board than was verified ({which})"
+        if self._verified_id and told.mission_id != self._verified_id:
+            return "another mission of as many items is on board than was verified"
+        return ""
+
+    def _number(self, told: MissionCurrent, now_ns: int) -> None:
+        """Keep the number of the verified mission, once it is told after that was on board."""
+        if self._on_board is None:
+            self._verified_id, self._verified_ns = 0, None
+        elif self._verified_ns is None:
+            self._verified_ns = now_ns
+        elif not self._verified_id and now_ns - self._verified_ns >= self._times.real_ns(NEWS_NS):
+            self._verified_id = told.mission_id
+
     def wake(self, view: VehicleView, now_ns: int) -> list[Work]:
         if self._job is None:
             return []
@@ -173,6 +217,7 @@ class Missions:
 
     def forget(self) -> list[Work]:
         """The vehicle restarted or was away: nothing is known of what it has on board."""
+        self._told = None
         if self._on_board is None:
             return []
         self._on_board = None
@@ -207,6 +252,7 @@ class Missions:
         for item in job_work:
             if isinstance(item, OnBoardChanged):
                 self._on_board = item.on_board
+                self._verified_id, self._verified_ns = 0, None
                 if item.on_board is not None:
                     self.total = len(item.on_board.sent)
             else:

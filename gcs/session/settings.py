@@ -14,7 +14,7 @@ from gcs.protocol.effects import Address, Heard, Send, Wake
 from gcs.protocol.parameter_names import names_of
 from gcs.protocol.parameters import decode_value
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
-from gcs.session.failsafes import CASES, Limits, findings, parameters_of
+from gcs.session.failsafes import CASES, FENCE, FENCE_ACTION, Limits, findings, parameters_of
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.wire.ids import ParamType
@@ -194,6 +194,19 @@ class Settings:
         """What is weak, where that is news."""
         told, self._told = self._told, self._failsafes(_whose(telemetry))
         return [] if self._told == told else [self._told]
+
+    def without_fence(self, telemetry: Telemetry, *, fence_plan: bool) -> str:
+        """Why no fence of the vehicle's own would stop it; empty where one would.
+
+        `fence_plan`: it has one on board that was uploaded.
+        """
+        found = findings(_whose(telemetry), self._values, self._limits)
+        for each in found:
+            if each.weak and each.about == FENCE_ACTION:
+                return each.words
+            if each.weak and each.about == FENCE and not fence_plan:
+                return each.words
+        return "" if found else "its fence is not known here"
 
     def _failsafes(self, who: str) -> FailsafesKnown:
         if who not in CASES:

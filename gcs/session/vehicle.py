@@ -13,10 +13,12 @@ from gcs.config import StationConfig
 from gcs.gate import effects, inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
+from gcs.gate.machine.arming import why_not_arm
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
+from gcs.protocol import arm_authorizer
 from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
@@ -73,6 +75,7 @@ INTERPRETED: Final = frozenset(
         *STATE_MESSAGES,
         *WATCH_MESSAGES,
         m.CommandAck,
+        m.CommandLong,
         m.Statustext,
         m.AutopilotVersion,
     )
@@ -88,7 +91,7 @@ class Vehicle:
         self._times = times
         gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self._start_ns = now_ns
-        own = Address(config.sysid, config.compid)
+        own = self._own = Address(config.sysid, config.compid)
         self._port = GatePort(times.policy(policy), now_ns)
         self._commands = Commands(own, times)
         self._discovery = Discovery(times)
@@ -199,6 +202,8 @@ class Vehicle:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
         elif type(message) in MISSION_MESSAGES:
             work += self._missions.heard(heard, self._view(telemetry), now_ns)
+        elif isinstance(message, m.CommandLong):
+            work += self._authorized(telemetry, heard, message, now_ns)
         elif isinstance(message, m.Statustext):
             work += logged(self._words.text(heard.compid, message, now_ns))
         elif isinstance(message, m.AutopilotVersion):
@@ -215,6 +220,23 @@ class Vehicle:
                     work += self._missions.forget()
             work.append(update)
         return work + _accuracy(telemetry)
+
+    def _authorized(
+        self, telemetry: Telemetry, heard: Heard, asked: m.CommandLong, now_ns: int
+    ) -> list[Work]:
+        """The vehicle asks whether it may arm, where it is set up to ask this station."""
+        asker = Address(heard.sysid, heard.compid)
+        refusal = why_not_arm(self._port.policy, self.gate.memory, now_ns)
+        troubles = [
+            "" if refusal is None else refusal.sentence,
+            self._settings.without_fence(telemetry, fence_plan=self._missions.fence_on_board),
+            self._missions.unverified,
+        ]
+        answer = arm_authorizer.answer(asked, asker, self._own, [each for each in troubles if each])
+        if answer is None:
+            return []
+        level = Level.INFO if answer.granted else Level.WARNING
+        return [Send(answer.ack), Log(level, teller.NODE, answer.text)]
 
     # ---------------------------------------------------------------------------- discovery
 

@@ -170,7 +170,8 @@ class Flight(Looks):
 
     def _vehicle(self, given: Inbound | WorldWake) -> None:
         for output in self.world.handle(given, self.now_ns):
-            if isinstance(output, Transmit) and not self.vehicle_silent:
+            ours = isinstance(output, Transmit) and output.peer == PEER
+            if isinstance(output, Transmit) and ours and not self.vehicle_silent:
                 data = self._without_positions(output.data)
                 if data:
                     self.received.append(Sent(self.now_ns, data))

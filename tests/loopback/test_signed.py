@@ -17,7 +17,7 @@ from gcs.report import FrameItem
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
 from tests.loopback import eyes
-from tests.loopback.air import Weather
+from tests.loopback.air import CLEAR, Weather
 from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
 from tests.loopback.looks import START_NS
 from vehicle_sim.services.profile import profile_of
@@ -29,8 +29,10 @@ KEY, OTHER = bytes(range(32)), bytes(32 * [7])
 both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
-def signed(personality: Personality = "px4", **more: Weather) -> Flight:
-    return Flight(personality, vehicle_key=KEY, station_key=KEY, **more)
+def signed(
+    personality: Personality = "px4", *, up: Weather = CLEAR, down: Weather = CLEAR
+) -> Flight:
+    return Flight(personality, up=up, down=down, vehicle_key=KEY, station_key=KEY)
 
 
 def flown(flight: Flight) -> Flight:

@@ -1,0 +1,168 @@
+"""A PX4 that asks before it arms, and a station that answers: whoever wants it armed.
+
+Source of what the vehicle does: PX4's ArmAuthorization.cpp, as vehicle-sim plays it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+from pymavlink.dialects.v20 import all as dialect
+
+from gcs.gate.policy.parse import DEFAULT, parse_policy
+from gcs.gate.policy.policy import Policy
+from gcs.gate.states import State
+from gcs.session import inputs
+from tests.loopback import eyes
+from tests.loopback.flight import MISSIONS, Flight
+from vehicle_sim.simulation.world import Datagram, Transmit
+
+ARM, AUTHORIZATION = 400, 3001
+ACCEPTED, DENIED = 0, 2
+GUARDED = {
+    "COM_ARM_AUTH_REQ": 1.0,
+    "COM_ARM_AUTH_ID": 255.0,
+    "COM_ARM_AUTH_MET": 0.0,
+    "GF_ACTION": 2.0,
+    "GF_MAX_HOR_DIST": 100.0,
+    "GF_MAX_VER_DIST": 40.0,
+}
+STRANGER = "another station"
+SEQUENCES = itertools.count()
+
+
+def guarded(policy: Policy = DEFAULT, **params: float) -> Flight:
+    return Flight("px4", policy=policy, params=GUARDED | params).connected()
+
+
+def stranger(flight: Flight, *messages: Any) -> list[Any]:
+    """Another station says something straight to the vehicle; what it is answered."""
+    mav = dialect.MAVLink(None, srcSystem=254, srcComponent=190)
+    mav.seq = next(SEQUENCES) * 16 & 0xFF
+    answers = []
+    for message in messages:
+        data = Datagram(0, STRANGER, bytes(message.pack(mav)))
+        mav.seq = (mav.seq + 1) & 0xFF
+        for output in flight.world.handle(data, flight.now_ns):
+            if isinstance(output, Transmit) and output.peer == STRANGER:
+                answers += mav.parse_buffer(output.data) or []
+            elif isinstance(output, Transmit):
+                flight.down.send(output.data, flight.now_ns)
+    return answers
+
+
+def stranger_arms(flight: Flight) -> None:
+    stranger(flight, dialect.MAVLink_command_long_message(1, 1, ARM, 0, 1, 0, 0, 0, 0, 0, 0))
+    flight.run(1.5)
+
+
+def stranger_uploads(flight: Flight, items: int) -> None:
+    """A mission past the gate, of waypoints 100 m apart."""
+    asked = stranger(flight, dialect.MAVLink_mission_count_message(1, 1, items, 0))
+    for seq in range(items):
+        assert asked, "the vehicle asks for the next item"
+        item = dialect.MAVLink_mission_item_int_message(
+            1, 1, seq, 6, 16, 0, 1, 0, 0, 0, 0, 473977420 + 9000 * seq, 85455940, 20, 0
+        )
+        asked = stranger(flight, item)
+    assert "MISSION_ACK" in {message.get_type() for message in asked}
+    flight.run(3.0)
+
+
+def answers(flight: Flight) -> list[tuple[int, int, int]]:
+    """Result, progress and result_param2 of what we answered, as pymavlink reads them."""
+    seen = [eyes.read(sent.data) for sent in flight.sent]
+    acks = [m for m in seen if m.get_type() == "COMMAND_ACK" and m.command == AUTHORIZATION]
+    assert all((m.target_system, m.target_component) == (1, 1) for m in acks)
+    return [(m.result, m.progress, m.result_param2) for m in acks]
+
+
+def test_what_the_gate_arms_it_authorizes() -> None:
+    flight = guarded()
+    flight.do("arm")
+    assert answers(flight) == [(ACCEPTED, 10, 10)]
+    flight.do("takeoff", up_m=2.0)
+    assert flight.is_in(State.HOVERING)
+
+
+def test_another_station_may_arm_it_where_the_gate_would() -> None:
+    flight = guarded()
+    stranger_arms(flight)
+    assert answers(flight) == [(ACCEPTED, 10, 10)]
+    assert flight.vehicle.armed
+
+
+def test_in_two_steps_the_second_request_is_granted() -> None:
+    flight = guarded(COM_ARM_AUTH_MET=1.0)
+    stranger_arms(flight)
+    assert not flight.vehicle.armed
+    stranger_arms(flight)
+    assert flight.vehicle.armed
+    assert len(answers(flight)) == 1
+
+
+def denied(flight: Flight, *words: str) -> None:
+    stranger_arms(flight)
+    assert not flight.vehicle.armed
+    assert answers(flight)[-1] == (DENIED, 1, 1)  # NONE: the reason is told in words
+    (line,) = [each for each in flight.lines("state_and_safety") if "may not arm" in each]
+    for word in words:
+        assert word in line
+
+
+def test_a_fence_that_does_nothing_is_named() -> None:
+    denied(guarded(GF_ACTION=1.0), "geofence breach", "GF_ACTION = 1")
+
+
+def test_no_fence_on_board_is_named() -> None:
+    denied(guarded(GF_MAX_HOR_DIST=0.0), "geofence", "GF_MAX_HOR_DIST")
+
+
+def test_a_severity_is_named() -> None:
+    policy = parse_policy('severities.vehicle_failsafe_weak = "hold"', "my.toml")
+    denied(guarded(policy, NAV_DLL_ACT=0.0), "severity is HOLD", "vehicle_failsafe_weak")
+
+
+def test_a_record_that_failed_is_named_where_the_policy_wants_one() -> None:
+    flight = guarded(parse_policy("arm_requires_recording = true", "my.toml"))
+    flight.feed(inputs.RecorderChanged(False, "", "the disk is full"))
+    denied(flight, "nothing is recorded")
+
+
+def test_a_mission_that_was_verified_speaks_not_against_it() -> None:
+    flight = guarded()
+    flight.do("mission_upload", path=str(MISSIONS / "demo.toml"))
+    flight.run(3.0)
+    stranger_arms(flight)
+    assert answers(flight) == [(ACCEPTED, 10, 10)]
+
+
+def test_a_mission_past_the_gate_is_named() -> None:
+    flight = guarded()
+    stranger_uploads(flight, 3)
+    denied(flight, "the mission on board (3 items) was not verified")
+
+
+def test_another_mission_in_the_place_of_the_verified_one_is_named() -> None:
+    flight = guarded()
+    flight.do("mission_upload", path=str(MISSIONS / "demo.toml"))
+    flight.run(3.0)
+    stranger_uploads(flight, _items_on_board(flight))
+    denied(flight, "another mission of as many items")
+
+
+def _items_on_board(flight: Flight) -> int:
+    (count,) = [
+        message
+        for message in stranger(flight, dialect.MAVLink_mission_request_list_message(1, 1, 0))
+        if message.get_type() == "MISSION_COUNT"
+    ]
+    return int(count.count)
+
+
+def test_without_a_request_nothing_is_answered() -> None:
+    flight = guarded(COM_ARM_AUTH_ID=10.0)
+    stranger_arms(flight)
+    assert answers(flight) == []
+    assert not flight.vehicle.armed
