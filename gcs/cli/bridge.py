@@ -30,6 +30,7 @@ Examples:
   gcs bridge --vehicle udpin://127.0.0.1:14540 --client udpout://127.0.0.1:14550
   gcs bridge --vehicle serial:///dev/ttyUSB0:57600 --client tcpin://127.0.0.1:5760 --policy lab
   gcs bridge --sim --client udpin://127.0.0.1:14551
+  gcs bridge --explain DO_REPOSITION
 
 A client speaks MAVLink with the bridge as if that were the vehicle. What moves the vehicle is
 verified by the gate, whoever sends it; what changes its settings is decided by [bridge] of the
@@ -39,6 +40,31 @@ On a terminal it shows a page, on a pipe it prints lines: decisions to standard 
 standard error. Ctrl-C ends it: where the gate flies the vehicle, it holds first. `gcs attach` opens
 a keyboard station on it.
 """
+
+
+def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> None:
+    """Print the row of the classification, or why a parameter is guarded.
+
+    Raises ExitError where there is none.
+    """
+    if name is None:
+        return
+    from gcs.bridge.classes.explain import explanation
+    from gcs.bridge.guard.safety_parameters import group_of
+    from gcs.exit_codes import ExitCode
+    from gcs.operator.errors import ExitError
+
+    try:
+        click.echo(explanation(name))
+    except KeyError as error:
+        groups = {each: group_of(each, name.upper()) for each in ("px4", "ardupilot")}
+        guarded = {each: group for each, group in groups.items() if group is not None}
+        if not guarded:
+            raise ExitError(ExitCode.USAGE, str(error.args[0])) from None
+        for autopilot, group in guarded.items():
+            click.echo(f"{name.upper()}, parameter of {autopilot}: guarded\n  why: {group.why}")
+    ctx.exit()
+
 
 OWN_COMPID = 191
 """MAV_COMP_ID_ONBOARD_COMPUTER: 255/190 is QGroundControl and 255/230 MAVProxy."""
@@ -90,6 +116,14 @@ OWN_COMPID = 191
     help="Exit 3 when no vehicle is heard for so many seconds.  [default: wait]",
 )
 @with_options(ROTATE_SIZE, ROTATE_AGE, COMPACT)
+@click.option(
+    "--explain",
+    metavar="NAME",
+    is_eager=True,
+    expose_value=False,
+    callback=_explain,
+    help="Say what becomes of a message, a command or a parameter of a client, and why; then end.",
+)
 @click.option("--plain", is_flag=True, help="Lines on a terminal, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print the events as JSON, a line each.")
 @click.option("--verbose", "-v", is_flag=True, help="Debug lines too.")

@@ -103,6 +103,30 @@ def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> N
     assert "nowhere.toml: no such policy file" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("do_reposition", ("MAV_CMD_DO_REPOSITION, command 192: motion", "  why: ")),
+        ("22", ("MAV_CMD_NAV_TAKEOFF, command 22: motion", "  why: ")),
+        ("PARAM_SET", ("PARAM_SET, message 23: configuration", "  why: ")),
+        ("gf_action", ("GF_ACTION, parameter of px4: guarded", "the vehicle's own fence")),
+    ],
+)
+def test_explain_needs_nothing_else(
+    name: str, told: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main.run(["bridge", "--explain", name]) == ExitCode.DONE
+    said = capsys.readouterr().out
+    assert all(each in said for each in told), said
+
+
+def test_explain_of_what_there_is_not_names_what_is_close(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main.run(["bridge", "--explain", "DO_REPOSITON"]) == ExitCode.USAGE
+    assert "DO_REPOSITION" in capsys.readouterr().err
+
+
 # ------------------------------------------------------------------------------------ words
 
 

@@ -1,0 +1,190 @@
+"""What it costs to have the gate between a vehicle and one client, beside MAVProxy as a forwarder.
+
+    python -m tests.bench.bench_bridge [--seconds 8] [--mavproxy PATH] [--highest]
+
+One vehicle and one client, UDP on loopback, eight frames a datagram as vehicle-sim sends them.
+`gcs bridge` is the real program: gate, record and all; its CPU is of all its processes.  MAVProxy
+(`mavproxy.py` on the path, or `--mavproxy`; left out where there is none) forwards the same stream
+with `--master` and `--out`; it records a .tlog.  Both are measured in one run, one after the other.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+WARM_S = 3.0
+TICKS_A_SECOND = os.sysconf("SC_CLK_TCK")
+SETTLE_S = 2.0
+TRIES = 5
+LADDER = (60_000, 80_000, 100_000, 120_000, 150_000, 180_000, 220_000)
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Of one program at one rate."""
+
+    sent: int
+    received: int
+    cpu_us: float
+    """A message that came through, of all its processes."""
+    p50_us: float
+    p99_us: float
+    rate_hz: float
+
+    @property
+    def lost(self) -> int:
+        return max(0, self.sent - self.received)
+
+
+def free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", 0))
+        return int(sock.getsockname()[1])
+
+
+def family(pid: int) -> list[int]:
+    """The process and all that it has started."""
+    found = [pid]
+    for tasks in Path(f"/proc/{pid}/task").iterdir():
+        for child in (tasks / "children").read_text().split():
+            found += family(int(child))
+    return found
+
+
+def cpu_s(pids: list[int]) -> float:
+    """User and system time so far."""
+    total = 0
+    for pid in pids:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        total += int(fields[11]) + int(fields[12])
+    return total / TICKS_A_SECOND
+
+
+@contextmanager
+def started(command: list[str], folder: str) -> Iterator[subprocess.Popen[bytes]]:
+    process = subprocess.Popen(
+        command,
+        cwd=folder,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+    )
+    try:
+        yield process
+    finally:
+        process.terminate()
+        try:
+            process.wait(20.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def end(*words: object) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "tests.bench.bridge_ends", *map(str, words)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, cwd=Path(__file__).parents[2])
+
+
+def measure(program: str, rate_hz: int, seconds: float, mavproxy: str) -> Measured:
+    vehicle, client = free_port(), free_port()
+    with tempfile.TemporaryDirectory() as folder:
+        if program == "gcs":
+            command = [sys.executable, "-m", "gcs", "bridge", "--plain", "--log-dir", folder]
+            command += ["--vehicle", f"udpin://127.0.0.1:{vehicle}"]
+            command += ["--client", f"udpin://127.0.0.1:{client}"]
+            how = "connect"
+        else:
+            command = [mavproxy, f"--master=udpin:127.0.0.1:{vehicle}", "--daemon"]
+            command += [f"--out=udpout:127.0.0.1:{client}", "--streamrate=-1", "--state-basedir=."]
+            command += ["--default-modules="]
+            how = "listen"
+        with started(command, folder) as process:
+            time.sleep(SETTLE_S)
+            return _stream(process, vehicle, client, how, rate_hz, seconds)
+
+
+def _stream(
+    process: subprocess.Popen[bytes],
+    vehicle: int,
+    client: int,
+    how: str,
+    rate_hz: int,
+    seconds: float,
+) -> Measured:
+    """A short stream, so that the parameters and settings of the start are behind; then one that
+    is measured."""
+    for _ in range(TRIES):
+        warm = end("receive", how, client, WARM_S + 1.0)
+        end("send", vehicle, 1000, WARM_S).communicate()
+        if json.loads(warm.communicate()[0])["received"]:
+            break
+    else:
+        raise SystemExit("nothing comes through: see what the program says when it is started")
+    counting = end("receive", how, client, seconds + 2.5)
+    time.sleep(0.5)
+    pids = family(process.pid)
+    before_s = cpu_s(pids)
+    said = json.loads(end("send", vehicle, rate_hz, seconds).communicate()[0])
+    used_s = cpu_s(pids) - before_s
+    heard = json.loads(counting.communicate()[0])
+    return Measured(
+        said["sent"],
+        heard["received"],
+        used_s / max(1, heard["received"]) * 1e6,
+        heard["p50_us"],
+        heard["p99_us"],
+        said["sent"] / said["seconds"],
+    )
+
+
+def line(name: str, got: Measured) -> str:
+    return (
+        f"  {name:9} {got.rate_hz:8.0f}/s  {got.cpu_us:7.2f} us CPU a message  "
+        f"lost {got.lost} of {got.sent}  latency p50 {got.p50_us:.0f} us, p99 {got.p99_us:.0f} us"
+    )
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=8.0)
+    parser.add_argument("--mavproxy", default=shutil.which("mavproxy.py") or "")
+    parser.add_argument("--highest", action="store_true", help="look for the highest rate too")
+    asked = parser.parse_args()
+    print(f"one vehicle, one client, 8 frames a datagram, load {os.getloadavg()[0]:.1f}")
+    ours = measure("gcs", 1_000, asked.seconds, "")
+    print(line("gcs", ours), flush=True)
+    if asked.mavproxy:
+        theirs = measure("mavproxy", 1_000, asked.seconds, asked.mavproxy)
+        print(line("MAVProxy", theirs), flush=True)
+        print(f"  ratio of CPU a message at 1000/s: 1/{theirs.cpu_us / ours.cpu_us:.1f}")
+    else:
+        print("  MAVProxy is not installed: no comparison")
+    for rate_hz in (20_000, 100_000):
+        print(line("gcs", measure("gcs", rate_hz, asked.seconds, "")), flush=True)
+    if asked.highest:
+        best = 0.0
+        for rate_hz in LADDER:
+            got = measure("gcs", rate_hz, asked.seconds, "")
+            print(line("gcs", got), flush=True)
+            if got.lost:
+                break
+            best = got.rate_hz
+        print(f"  highest rate without loss: {best:.0f}/s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
