@@ -179,7 +179,7 @@ class Judge:
     def _guarded(self, message: Message, by: From, seen: Seen) -> Judgement:
         if self._guard is None:
             self._guard = Guard(self._rules, seen.autopilot.name)
-        at = GuardSeen(by.source, by.addressed, seen.armed, seen.on_ground)
+        at = GuardSeen(by.source, by.addressed, seen.armed, seen.on_ground, seen.max_takeoff_up_m)
         return self._guard.judge(message, at)
 
     # ------------------------------------------------------------------------------- plans

@@ -16,7 +16,7 @@ from gcs.gate.effects import Level
 from gcs.gate.inputs import CommandEnded, Input
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.turn import REFUSED_LINE
-from gcs.gate.policy.policy import BridgeRules
+from gcs.gate.policy.policy import Policy
 from gcs.protocol.effects import Address
 from gcs.session import teller
 from gcs.session.discovery import needed_hz
@@ -37,14 +37,16 @@ class BridgePort:
         self,
         config: StationConfig,
         endpoints: Sequence[str],
-        rules: BridgeRules,
+        policy: Policy,
         times: Times,
         vehicle: Vehicle,
     ) -> None:
+        rules = policy.bridge
         own = Address(config.sysid, config.compid)
         silent_ns = times.real_ns(round(rules.client_gone_s * 1e9))
         self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing_of(times))
         self._vehicle = vehicle
+        self._max_takeoff_up_m = policy.takeoff.max_up_m
         self._endpoints = endpoints
         self._shown = config.bridge or bool(config.clients)
         self._before: list[tuple[int, int]] = [(0, 0)] * len(endpoints)
@@ -59,7 +61,9 @@ class BridgePort:
         telemetry = self._vehicle.telemetry
         if telemetry is None:
             return None
-        return seen_of(telemetry, self._vehicle.gate, self._vehicle.parameters)
+        return seen_of(
+            telemetry, self._vehicle.gate, self._vehicle.parameters, self._max_takeoff_up_m
+        )
 
     def before_gate(self, given: Input, now_ns: int) -> list[BridgeEffect]:
         """The vehicle's own answer to a command is what the client is answered, too."""
@@ -136,7 +140,9 @@ TAKEOFF_UP_M = 2.5
 """PX4's MIS_TAKEOFF_ALT where it is not known."""
 
 
-def seen_of(telemetry: Telemetry, gate: Gate, parameters: Mapping[str, float]) -> Seen:
+def seen_of(
+    telemetry: Telemetry, gate: Gate, parameters: Mapping[str, float], max_takeoff_up_m: float
+) -> Seen:
     """What a client's words are judged by."""
     return Seen(
         autopilot=telemetry.autopilot,
@@ -152,4 +158,5 @@ def seen_of(telemetry: Telemetry, gate: Gate, parameters: Mapping[str, float]) -
         goal_ned=gate.active_goal_ned,
         takeoff_up_m=parameters.get("MIS_TAKEOFF_ALT", TAKEOFF_UP_M),
         state=gate.state,
+        max_takeoff_up_m=max_takeoff_up_m,
     )

@@ -128,9 +128,7 @@ class Session:
         self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._operators = Operators(setup, self._times)
-        self._bridge = BridgePort(
-            config, setup.endpoints, setup.policy.bridge, self._times, self._vehicle
-        )
+        self._bridge = BridgePort(config, setup.endpoints, setup.policy, self._times, self._vehicle)
         self._first_client_link = count
         self._own = config.sysid, config.compid
         self._deadline_ns: int | None = None

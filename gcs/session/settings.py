@@ -36,7 +36,9 @@ ACCEPTANCE_RADIUS: Final = {"px4": "NAV_ACC_RAD", "ardupilot": "WP_RADIUS_M"}
 """How near a waypoint counts as reached, metres, by its newest name."""
 CLIMB_END: Final = {"px4": "NAV_MC_ALT_RAD"}
 """How far below the height asked for a take-off may end, metres; ArduCopter has no such range."""
-READ_FIRST: Final = (RETURN_HEIGHT, CLIMB_END, ACCEPTANCE_RADIUS)
+TAKEOFF_HEIGHT: Final = {"px4": "MIS_TAKEOFF_ALT"}
+"""How high it takes off at least, metres above where it stands; ArduCopter has no such height."""
+READ_FIRST: Final = (RETURN_HEIGHT, CLIMB_END, ACCEPTANCE_RADIUS, TAKEOFF_HEIGHT)
 """What a flight waits for comes before the failsafes."""
 
 

@@ -17,7 +17,7 @@ from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
-from gcs.protocol.autopilot import ParamEncoding
+from gcs.protocol.autopilot import PX4, ParamEncoding
 from gcs.protocol.parameters import BY_NAME, decode_value
 from gcs.wire.ids import ParamExtResult, ParamFault, ParamType
 from gcs.wire.messages import (
@@ -34,6 +34,14 @@ from gcs.wire.messages import (
 HASH_CHECK: Final = "_HASH_CHECK"
 """Written to a PX4 to say that its parameters are known already; it is no parameter."""
 KEY: Final = "policy: bridge.parameters"
+TAKEOFF_HEIGHT: Final = "MIS_TAKEOFF_ALT"
+"""PX4's default and least height of a take-off.
+
+MAVSDK has no other way to say how high it wants to take off: it writes this before
+(`set_takeoff_altitude`, recorded of 4.1.0 and mavsdk-grpc 4.0.5).  The gate reads it as it changes,
+decides on the climb to it, and verifies a mission with it anew before each start, so it may be
+written while nothing flies.
+"""
 MOST_KEPT: Final = 4096
 """Values that are kept at most; an autopilot has 900 to 1,400."""
 _TYPES: Final = frozenset(int(kind) for kind in ParamType)
@@ -66,7 +74,7 @@ class ParameterGuard:
         value = self._decoded(message.param_value, message.param_type)
         finite = math.isfinite(value)
         numbers = (("value", float(value)),) if finite else ()
-        why = self.why_refused(name)
+        why = None if self._is_height_of_takeoff(name, value, seen) else self.why_refused(name)
         if why is None and not finite:
             refusal = Refusal(Code.NON_FINITE, f"{name}: the value is not a finite number")
         elif why is None:
@@ -93,6 +101,17 @@ class ParameterGuard:
                 ),
             )
         return Refused(refusal, (told,), ask)
+
+    def _is_height_of_takeoff(self, name: str, value: float, seen: GuardSeen) -> bool:
+        """Whether it is a PX4's, on the ground, and one that the policy allows to take off to."""
+        return (
+            self._autopilot == PX4.name
+            and self._rules.parameters == "guard"
+            and name == TAKEOFF_HEIGHT
+            and not self._guarded.fullmatch(name)
+            and seen.stands_disarmed
+            and 0.0 < value <= seen.max_takeoff_up_m
+        )
 
     def judge_extended(self, message: ParamExtSet, seen: GuardSeen) -> Judgement:
         """PARAM_EXT_SET: of a camera, a gimbal, a program on board."""

@@ -19,6 +19,8 @@ class GuardSeen:
     """The autopilot's."""
     armed: bool | None
     on_ground: bool
+    max_takeoff_up_m: float = 0.0
+    """The policy's highest take-off; 0: its default height may not be set."""
 
     @property
     def stands_disarmed(self) -> bool:

@@ -48,6 +48,8 @@ class Seen:
     """A mission of this vehicle was stopped by a hold, and nothing else was flown since."""
     max_speed_m_s: float = 0.0
     """A client may set speeds up to this; 0: none."""
+    max_takeoff_up_m: float = 0.0
+    """A client may set the default height of a take-off up to this; 0: not at all."""
 
 
 @dataclass(frozen=True, slots=True)

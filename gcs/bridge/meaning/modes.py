@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
-from gcs.bridge.meaning.meaning import Meaning, Seen, Words
+from gcs.bridge.meaning.meaning import Forward, Meaning, Seen, Words
 from gcs.bridge.meaning.says import DONE, NOT_FLOWN_BY_US, ask, mode, unsupported
 from gcs.gate.states import FlightMode, State
 from gcs.protocol.autopilot import Autopilot, Mode, mode_of
@@ -66,15 +66,16 @@ def hold(seen: Seen, asked_for: str = "") -> Words:
     return ask("hold", f"{asked_for}: held in {sent} instead, as {asked_for} obeys the sticks")
 
 
-def guided(wanted: Mode, seen: Seen) -> Words:
+def guided(wanted: Mode, seen: Seen) -> Meaning:
     """OFFBOARD or GUIDED: let a station fly it.  The gate hovers until it is told where to.
 
     A mode that the vehicle flies by itself is stopped first, by a client who may go on from there:
-    `hold` alone is heard from everybody.  On the ground it is a mode like any other: the gate lets
-    it be set where nothing moves by it.
+    `hold` alone is heard from everybody.  On the ground GUIDED waits for a take-off, and clients of
+    ArduPilot set it before they arm; OFFBOARD would fly to whatever setpoint comes.
     """
     if seen.on_ground:
-        return mode(wanted.name)
+        waits = not seen.autopilot.mode_in_two_parts
+        return Forward() if waits else mode(wanted.name)
     if seen.state in NOT_FLOWN_BY_US:
         return ask("resume")
     if seen.state in FLIES_ITSELF:

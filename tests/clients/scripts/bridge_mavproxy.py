@@ -71,10 +71,10 @@ class Peer:
         self.do("wp list", f"Requesting {count} waypoints", f"Saved {count} waypoints to")
         if self.autopilot == "ardupilot":
             self.do("mode guided", "Mode GUIDED")
-            self.do("arm throttle", "COMPONENT_ARM_DISARM: ACCEPTED", "ARMED")
+            self.do("arm throttle", "COMPONENT_ARM_DISARM: ACCEPTED")
             self.do(f"takeoff {UP_M}", "NAV_TAKEOFF: ACCEPTED")
         else:
-            self.do("arm throttle", "COMPONENT_ARM_DISARM: ACCEPTED", "ARMED")
+            self.do("arm throttle", "COMPONENT_ARM_DISARM: ACCEPTED")
             self.long("DO_SET_MODE 29 4 2", "ACCEPTED")
         time.sleep(15.0)
         self.guided(12, 0, UP_M, "ACCEPTED")

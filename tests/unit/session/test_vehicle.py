@@ -399,6 +399,7 @@ def settings(script: Script, **params: float) -> list[Work]:
     else:
         answered += script.hear(wire.no_param("RTL_RETURN_ALT"))
     answered += script.hear(wire.float_param("NAV_MC_ALT_RAD", params.get("NAV_MC_ALT_RAD", 0.8)))
+    answered += script.hear(wire.float_param("MIS_TAKEOFF_ALT", 2.5))
     return [*work, *answered]
 
 
@@ -438,6 +439,15 @@ def test_the_gate_is_told_how_near_its_height_the_vehicle_ends_a_climb() -> None
     work = settings(Script(), NAV_MC_ALT_RAD=2.5)
     within_m = [g.within_m for g in gate_inputs(work) if isinstance(g, inputs.ClimbEndSeen)]
     assert within_m == [0.8, 2.5]
+
+
+def test_the_default_height_of_a_take_off_is_read_and_followed() -> None:
+    """MAVSDK writes it before each take-off."""
+    script = Script()
+    settings(script)
+    assert script.vehicle.parameters["MIS_TAKEOFF_ALT"] == 2.5
+    script.hear(wire.float_param("MIS_TAKEOFF_ALT", 5.0))
+    assert script.vehicle.parameters["MIS_TAKEOFF_ALT"] == 5.0
 
 
 def test_a_failsafe_that_is_off_is_a_condition_and_not_called_on() -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import struct
+from dataclasses import replace
 
 import pytest
 
 from gcs.bridge.guard.guard import Guard
 from gcs.bridge.guard.safety_parameters import group_of
+from gcs.bridge.guard.verdict import GuardSeen
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code
 from gcs.protocol.parameter_names import names_of
@@ -72,6 +75,47 @@ def test_the_vehicle_is_asked_in_the_writes_place_so_that_the_client_hears_the_o
 def test_a_broadcast_is_asked_of_the_autopilot() -> None:
     found = refused(guard().judge(sent("param_set", 0, 0, b"GF_ACTION", 0.0, INT32), FLYING))
     assert found.ask_vehicle == (ParamRequestRead(-1, 1, 1, "GF_ACTION"),)
+
+
+TAKEOFF_HEIGHT = b"MIS_TAKEOFF_ALT"
+PARKED_BELOW_30_M = replace(PARKED, max_takeoff_up_m=30.0)
+
+
+@pytest.mark.parametrize("value", [2.5, 30.0])
+def test_the_height_of_a_take_off_may_be_set_on_the_ground_as_mavsdk_does(value: float) -> None:
+    allowed(guard().judge(param_set(TAKEOFF_HEIGHT, value), PARKED_BELOW_30_M))
+
+
+@pytest.mark.parametrize(
+    ("value", "seen"),
+    [
+        (30.1, PARKED_BELOW_30_M),
+        (0.0, PARKED_BELOW_30_M),
+        (-5.0, PARKED_BELOW_30_M),
+        (math.nan, PARKED_BELOW_30_M),
+        (math.inf, PARKED_BELOW_30_M),
+        (5.0, PARKED),
+        (5.0, replace(PARKED_BELOW_30_M, armed=True)),
+        (5.0, replace(PARKED_BELOW_30_M, armed=None)),
+        (5.0, replace(PARKED_BELOW_30_M, on_ground=False)),
+    ],
+)
+def test_no_higher_than_the_policy_allows_and_not_while_something_may_fly(
+    value: float, seen: GuardSeen
+) -> None:
+    refused(guard().judge(param_set(TAKEOFF_HEIGHT, value), seen))
+
+
+@pytest.mark.parametrize(
+    "rules", ['parameters = "refuse"', 'parameters_guarded = ["MIS_TAKEOFF_ALT"]']
+)
+def test_a_policy_may_keep_the_height_of_a_take_off_too(rules: str) -> None:
+    refused(guard(rules).judge(param_set(TAKEOFF_HEIGHT, 5.0), PARKED_BELOW_30_M))
+
+
+def test_an_arducopter_has_no_such_height() -> None:
+    own = guard(autopilot="ardupilot")
+    refused(own.judge(param_set(TAKEOFF_HEIGHT, 5.0), PARKED_BELOW_30_M))
 
 
 @pytest.mark.parametrize("component", [0, 1, 100, 190])

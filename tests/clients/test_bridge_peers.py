@@ -1,0 +1,58 @@
+"""Other ground stations fly a vehicle through `gcs bridge`, unchanged, and cannot leave its fence.
+
+What the vehicle really did is its own truth, 50 times a second.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.clients.bridged_flight import bridged, end_peer, start_peer
+from tests.clients.mavutil_client import in_order
+from vehicle_sim.testing.process import Personality
+
+pytestmark = pytest.mark.system
+
+URLS = {
+    "pymavlink": "udpout:{}",
+    "mavproxy": "udpout:{}",
+    "mavsdk": "udpout://{}",
+    "mavsdk3": "udpout://{}",
+}
+WORDS = {
+    "pymavlink": ("fly", "offboard", "escape", "land"),
+    "mavproxy": ("fly", "escape", "land"),
+    "mavsdk": ("fly", "offboard", "escape", "land"),
+    "mavsdk3": ("fly", "offboard", "escape", "land"),
+}
+FLOWN = {
+    "pymavlink": ("^all parameters", "^mission of", "^arm", "^goto", "^mission item 2", "^returns"),
+    "mavproxy": ("^online, all parameters", "wp list", "ARMED", "DO_REPOSITION", "waypoint 2"),
+    "mavsdk": ("^all parameters", "^mission True", "^took off", "^goto", "^flies the mission"),
+    "mavsdk3": ("^all parameters", "^mission True", "^arm", "^goto", "^flies the mission"),
+}
+REFUSED = {
+    "pymavlink": 20,
+    "mavproxy": 10,
+    "mavsdk": 9,
+    "mavsdk3": 8,
+}
+"""So many attempts of the script to leave the fence are refused to its face, at least."""
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+@pytest.mark.parametrize("client", list(URLS))
+def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_path: Path) -> None:
+    with bridged(personality, tmp_path) as flight:
+        url = URLS[client].format(flight.clients[0])
+        lines = end_peer(start_peer(client, url, flight, *WORDS[client]))
+    print(*lines, sep="\n")
+    in_order(lines, *FLOWN[client])
+    refused = [line for line in lines if " refused " in line or "NIED" in line or "REJEC" in line]
+    assert len(refused) >= REFUSED[client]
+    assert flight.refusals()
+    assert len(flight.truth.places) > 50 * 60
+    assert max(north_m for north_m, _, _ in flight.truth.places) > 14.0  # it did fly
+    assert flight.truth.outside() == []
