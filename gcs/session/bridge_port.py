@@ -18,11 +18,13 @@ from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.turn import REFUSED_LINE
 from gcs.gate.policy.policy import Policy
 from gcs.protocol.effects import Address
+from gcs.protocol.parameter_names import names_of
 from gcs.session import teller
 from gcs.session.discovery import needed_hz
 from gcs.session.effects import Emit
 from gcs.session.links import Counts
 from gcs.session.missions import timing_of
+from gcs.session.settings import SPEED, TAKE_OFF_HEIGHT
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
@@ -156,7 +158,17 @@ def seen_of(
         armed=bool(telemetry.armed),
         mode_name=telemetry.mode_name,
         goal_ned=gate.active_goal_ned,
-        takeoff_up_m=parameters.get("MIS_TAKEOFF_ALT", TAKEOFF_UP_M),
+        takeoff_up_m=parameters.get(TAKE_OFF_HEIGHT["px4"], TAKEOFF_UP_M),
         state=gate.state,
         max_takeoff_up_m=max_takeoff_up_m,
+        max_speed_m_s=_own_speed_m_s(telemetry, parameters),
     )
+
+
+def _own_speed_m_s(telemetry: Telemetry, parameters: Mapping[str, float]) -> float:
+    """What it flies at by itself, and what missions are verified with; 0 before it is known."""
+    newest = SPEED.get(telemetry.autopilot.name)
+    for name in names_of(newest) if newest else ():
+        if name.name in parameters:
+            return parameters[name.name] * name.scale
+    return 0.0

@@ -1,4 +1,4 @@
-"""What the vehicle's own parameters say: its failsafes, its return height, when it has arrived.
+"""What the vehicle's own parameters say: failsafes, return height, when it has arrived, speed.
 
 They are read when a vehicle appears, the return height first, because a return and a mission that
 ends in one wait for it.  What no answer comes to is asked for again until it is known or the
@@ -40,6 +40,12 @@ TAKEOFF_HEIGHT: Final = {"px4": "MIS_TAKEOFF_ALT"}
 """How high it takes off at least, metres above where it stands; ArduCopter has no such height."""
 READ_FIRST: Final = (RETURN_HEIGHT, CLIMB_END, ACCEPTANCE_RADIUS, TAKEOFF_HEIGHT)
 """What a flight waits for comes before the failsafes."""
+TAKE_OFF_HEIGHT: Final = {"px4": "MIS_TAKEOFF_ALT"}
+"""Metres above the ground that a take-off without a height climbs, and the least of any."""
+SPEED: Final = {"px4": "MPC_XY_CRUISE", "ardupilot": "WP_SPD"}
+"""How fast it flies its legs where nothing else is asked for, m/s, by its newest name."""
+READ_LAST: Final = (TAKE_OFF_HEIGHT, SPEED)
+"""What is needed where a client asks for something without naming it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +116,7 @@ class Settings:
         who = _whose(telemetry)
         wanted = [table[who] for table in READ_FIRST if who in table]
         wanted += [name for name in parameters_of(who) if name not in wanted]
+        wanted += [table[who] for table in READ_LAST if who in table]
         names = [(newest, name) for newest in wanted for name in names_of(newest)]
         self._scales = {name.name: (newest, name.scale) for newest, name in names}
         self._values, self._told = {}, None

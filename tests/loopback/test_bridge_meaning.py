@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import Control, State
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
@@ -120,6 +122,16 @@ def test_a_client_who_is_not_in_control_does_not_stop_a_return(personality: Pers
     flight.until(lambda: flight.is_in(State.HOVERING), 10)
 
 
+@both
+def test_speeds_up_to_the_vehicles_own(personality: Personality) -> None:
+    """MAVSDK's `set_current_speed`: 1, 2 m/s, -1."""
+    flight, client = flying(personality)
+    assert client.ask(178, 1.0, 2.0, -1.0) == ACCEPTED
+    assert client.ask(178, 1.0, 12.0, -1.0) == dialect.MAV_RESULT_DENIED
+    assert "vehicle's own" in client.texts()
+    assert len([frame for frame in flight.to_vehicle("COMMAND_LONG") if frame.sysid == 245]) == 1
+
+
 # ------------------------------------------------------------------------------- ArduPilot
 
 
@@ -195,3 +207,18 @@ def test_qgroundcontrols_pause() -> None:
     assert client.ask(REPOSITION, -1.0, 1.0, 0.0, NAN, NAN, NAN, NAN) == ACCEPTED
     flight.until(lambda: flight.is_in(State.HOLDING), 3)
     assert flight.truth_enu()[1] < 30
+
+
+def test_mavsdks_take_off_height() -> None:
+    """PARAM_SET MIS_TAKEOFF_ALT, then a take-off without a height (seen of MAVSDK 4.1.0), where the
+    policy lets it be set."""
+    rules = msgspec.structs.replace(DEFAULT.bridge, parameters_allowed=("MIS_TAKEOFF_ALT",))
+    flight = BridgedFlight("px4", policy=msgspec.structs.replace(DEFAULT, bridge=rules))
+    client = flight.join()
+    flight.connected()
+    client.send(dialect.MAVLink_param_set_message(*VEHICLE, b"MIS_TAKEOFF_ALT", 4.0, 9))
+    flight.run(0.5)
+    assert client.ask(ARM, 1, *[NAN] * 6, within_s=10) == ACCEPTED
+    assert client.ask(TAKE_OFF, *[NAN] * 7) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOVERING), 30)
+    assert flight.truth_enu()[2] == pytest.approx(4, abs=0.7)

@@ -98,7 +98,8 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
     ),
     Cmd.DO_CHANGE_SPEED: _same(
         mission.change_speed,
-        "forwarded up to the greatest speed that the policy allows; refused in a mission",
+        "forwarded up to the vehicle's own speed (MPC_XY_CRUISE, WP_SPD); refused in a mission, "
+        "and on ArduPilot for climb and descent",
     ),
     Cmd.DO_SET_ROI_LOCATION: _ROI,
     Cmd.DO_SET_ROI_WPNEXT_OFFSET: _ROI,

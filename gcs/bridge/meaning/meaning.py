@@ -47,7 +47,8 @@ class Seen:
     mission_paused: bool = False
     """A mission of this vehicle was stopped by a hold, and nothing else was flown since."""
     max_speed_m_s: float = 0.0
-    """A client may set speeds up to this; 0: none."""
+    """A client may set speeds up to this: the vehicle's own, which missions are verified with.
+    0: none, as it is not known."""
     max_takeoff_up_m: float = 0.0
     """A client may set the default height of a take-off up to this; 0: not at all."""
 

@@ -63,7 +63,8 @@ def _set_current(number: int, seen: Seen) -> Meaning:
 def change_speed(command: Command, seen: Seen) -> Meaning:
     """Slower is let through, also "as before" (0, -1, -2); a mission is verified with its own.
 
-    p2 is m/s.  NaN stops ArduCopter's simulation with a floating point exception (recorded).
+    p2 is m/s.  NaN stops ArduCopter's simulation with a floating point exception (recorded).  p1 is
+    the kind of speed: px4 ignores it (recorded), ardupilot has 0 and 1 for the horizontal one.
     """
     if not math.isfinite(command.p2):
         return refuse(Code.NON_FINITE, "a speed that is no number")
@@ -72,10 +73,12 @@ def change_speed(command: Command, seen: Seen) -> Meaning:
         flown is not None and flown.meaning is FlightMode.MISSION
     ):
         return refuse(Code.POLICY, "a mission is verified with its own speeds, and flown with them")
+    if not seen.autopilot.mode_in_two_parts and command.p1 not in (0.0, 1.0):
+        return refuse(Code.POLICY, "speeds of climb and descent stay the vehicle's own")
     if command.p2 > seen.max_speed_m_s:
         return refuse(
             Code.POLICY,
-            f"{command.p2:g} m/s is faster than the {seen.max_speed_m_s:g} m/s that are allowed",
+            f"{command.p2:g} m/s is faster than the vehicle's own {seen.max_speed_m_s:g} m/s",
             ("asked_m_s", command.p2),
             ("max_m_s", seen.max_speed_m_s),
         )

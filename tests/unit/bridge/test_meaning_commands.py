@@ -433,6 +433,15 @@ def test_speeds_up_to_the_policys(autopilot: Autopilot) -> None:
     assert refusal(meaning_of(command_long(178, 1.0, 0.5), unknown)).startswith("POLICY")
 
 
+@pytest.mark.parametrize("kind", [2.0, 3.0, 4.0, NAN])
+def test_climb_and_descent_keep_their_speeds(kind: float) -> None:
+    """ArduCopter 4.7, recorded: 2 is climb, 3 descent, 4 DENIED.  PX4 1.14.3: the kind is ignored,
+    "type 2 (climb) 1 m/s makes the horizontal cruise 1.05 m/s"."""
+    message = command_long(178, kind, 1.0)
+    assert refusal(meaning_of(message, flying(ARDUPILOT))).startswith("POLICY")
+    assert meaning_of(message, flying(PX4)) == Forward()
+
+
 @BOTH
 @pytest.mark.parametrize("speed_m_s", [NAN, math.inf, -math.inf])
 def test_a_speed_that_is_no_number_never_reaches_the_vehicle(

@@ -40,6 +40,8 @@ PX4_ON: dict[str, float | None] = {
     "RTL_RETURN_ALT": 30.0,
     "NAV_ACC_RAD": 2.0,
     "NAV_MC_ALT_RAD": 1.5,
+    "MIS_TAKEOFF_ALT": 2.5,
+    "MPC_XY_CRUISE": 5.0,
 }
 _COPTER: dict[str, float | None] = {
     "FS_GCS_ENABLE": 1,
@@ -61,6 +63,7 @@ ARDUPILOT_ON: dict[str, float | None] = {
     "SYSID_MYGCS": 255,
     "RTL_ALT": 1500,
     "WPNAV_RADIUS": 200,
+    "WPNAV_SPEED": 1000.0,
 }
 """With the names of 4.5, whose heights and radii are centimetres."""
 ARDUPILOT_4_7: dict[str, float | None] = {
@@ -69,6 +72,7 @@ ARDUPILOT_4_7: dict[str, float | None] = {
     "MAV_GCS_SYSID_HI": 0,
     "RTL_ALT_M": 15.0,
     "WP_RADIUS_M": 2.0,
+    "WP_SPD": 10.0,
 }
 
 

@@ -16,7 +16,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.protocol.effects import Send
 from gcs.session.failsafes import parameters_of
-from gcs.session.settings import READ_FIRST
+from gcs.session.settings import READ_FIRST, READ_LAST
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import Log, PlaceFence, ToGate, Work
@@ -139,7 +139,8 @@ def test_a_vehicle_that_is_met_is_asked_for_its_origin_its_home_and_its_version(
     ]
     assert names[0] == "RTL_RETURN_ALT"  # a return waits for it
     assert len(names) == len(set(names)), "each is asked for once"
-    assert set(names) == {table["px4"] for table in READ_FIRST} | {*parameters_of("px4")}
+    wanted = {table["px4"] for table in (*READ_FIRST, *READ_LAST)} | {*parameters_of("px4")}
+    assert set(names) == wanted
 
 
 def test_several_vehicles_are_named_and_none_is_meant() -> None:
@@ -400,6 +401,7 @@ def settings(script: Script, **params: float) -> list[Work]:
         answered += script.hear(wire.no_param("RTL_RETURN_ALT"))
     answered += script.hear(wire.float_param("NAV_MC_ALT_RAD", params.get("NAV_MC_ALT_RAD", 0.8)))
     answered += script.hear(wire.float_param("MIS_TAKEOFF_ALT", 2.5))
+    answered += script.hear(wire.float_param("MPC_XY_CRUISE", 5.0))
     return [*work, *answered]
 
 
