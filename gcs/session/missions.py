@@ -81,6 +81,11 @@ class Missions:
         """When a transfer's wait is over."""
         return self._job.deadline_ns if self._job else None
 
+    @property
+    def busy(self) -> bool:
+        """A job is under way."""
+        return self._job is not None
+
     # ----------------------------------------------------------------------------- requests
 
     def ask(

@@ -165,3 +165,30 @@ def test_five_hundred_items_cross_two_links_that_lose_a_quarter(
     result = ended(flight, upload, LONG_S)
     print(f"{personality} seed {seed}: {result}, {upload.took_s:.1f} s")
     assert len(flight.vehicle.plan) == (LONG if result == "complete" else len(before))
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_two_clients_read_the_plan_one_after_the_other_and_the_station_in_between(
+    personality: Personality,
+) -> None:
+    flight = connected(personality)
+    first, second = flight.clients[1], flight.join(255, 190)
+    assert ended(flight, Mavsdk(flight, first, mission(personality, *SQUARE))) == "complete"
+    many = len(flight.vehicle.plan)
+    flight.say("station_take")
+    for client in (first, second):
+        client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+    flight.run(0.1)
+    assert [count.count for count in first.messages("MISSION_COUNT")] == [many]
+    assert not second.messages("MISSION_COUNT")
+    assert "another client reads" in second.texts()
+    flight.do("mission_download")
+    for seq in range(many):
+        first.send(dialect.MAVLink_mission_request_int_message(*VEHICLE, seq, 0))
+        flight.run(0.05)
+    first.send(dialect.MAVLink_mission_ack_message(*VEHICLE, ACCEPTED, 0))
+    second.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+    flight.run(0.1)
+    assert [item.seq for item in first.messages("MISSION_ITEM_INT")] == [*range(many)]
+    assert [count.count for count in second.messages("MISSION_COUNT")] == [many]
+    assert not second.messages("MISSION_ITEM_INT"), "answers go to whom they are for"

@@ -48,6 +48,8 @@ class Seen:
     """A mission of this vehicle was stopped by a hold, and nothing else was flown since."""
     max_speed_m_s: float = 0.0
     """A client may set speeds up to this; 0: none."""
+    plan_transfer: bool = False
+    """The station reads or writes a plan of the vehicle."""
 
 
 @dataclass(frozen=True, slots=True)
