@@ -36,6 +36,7 @@ from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans import effects as plan_effects
+from gcs.bridge.plans.downloads import Downloads
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.server import PLAN_MESSAGES
 from gcs.frames import Vec3, enu_from_ned
@@ -86,13 +87,14 @@ class Received:
 
 
 class Judge:
-    """Of everything that clients send to the one vehicle; it has no memory of its own."""
+    """Of everything that clients send to the one vehicle."""
 
     def __init__(self, rules: BridgeRules, needed_hz: Rates) -> None:
         """`needed_hz`: how often the gate needs which message."""
         self._rules = rules
         self._needed_hz = needed_hz
         self._guard: Guard | None = None
+        self._downloads = Downloads()
         self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
         self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
         """What the policy says of messages and commands by name."""
@@ -191,6 +193,11 @@ class Judge:
             judged = self._guarded(message, given.by, seen)
             if isinstance(judged, guard_verdict.Refused):
                 return self._configuration(given, message, row)
+        busy = seen is not None and seen.plan_transfer
+        held = self._downloads.holds(message, (given.by.link, given.by.source), busy, given.now_ns)
+        if held:
+            text = f"{row.name}: not now: {held}"
+            return Judged(True, client.dialogue.text(given.by, Level.INFO, text, given.now_ns))
         effects = client.plans.handle(message, given.by, given.now_ns)
         refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
         return Judged(refused, of_plan(client, effects, given.frame))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import msgspec
 
@@ -63,9 +64,10 @@ class BridgePort:
         telemetry = self._vehicle.telemetry
         if telemetry is None:
             return None
-        return seen_of(
+        seen = seen_of(
             telemetry, self._vehicle.gate, self._vehicle.parameters, self._max_takeoff_up_m
         )
+        return replace(seen, plan_transfer=self._vehicle.plan_transfer)
 
     def before_gate(self, given: Input, now_ns: int) -> list[BridgeEffect]:
         """The vehicle's own answer to a command is what the client is answered, too."""

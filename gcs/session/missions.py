@@ -81,6 +81,11 @@ class Missions:
         """When a transfer's wait is over."""
         return self._job.deadline_ns if self._job else None
 
+    @property
+    def busy(self) -> bool:
+        """A job is under way."""
+        return self._job is not None
+
     # ----------------------------------------------------------------------------- requests
 
     def ask(
@@ -105,7 +110,7 @@ class Missions:
             return [*refused(request_id, ask.word, refusal)]
         assert telemetry is not None
         asked = Asked(request_id, ask.id, ask.word, self._own, self._timing, self._times)
-        job = self._job_for(ask, asked, plan, kind, state)
+        job = self._job_for(ask, asked, plan, kind, state, policy)
         if job is None:
             return [AskGate(request_id, StartMission())]
         self._job = job
@@ -118,6 +123,7 @@ class Missions:
         plan: ClientPlan | None,
         kind: MissionType,
         state: State,
+        policy: Policy,
     ) -> Job | None:
         """None: what cannot be flown at all the gate refuses at once."""
         match ask.word:
@@ -132,7 +138,9 @@ class Missions:
                 return Clear(asked, KINDS if kind is MissionType.ALL else (kind,))
         if state not in (State.HOVERING, State.GROUNDED):
             return None
-        return Adopt(asked) if self._on_board is None else Start(asked, self._on_board)
+        if self._on_board is not None:
+            return Start(asked, self._on_board)
+        return Adopt(asked) if policy.bridge.on_board == "verify" else None
 
     def _cannot_begin(
         self, ask: ipc.Ask, state: State, plan: ClientPlan | None, kind: MissionType

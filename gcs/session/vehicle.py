@@ -151,6 +151,11 @@ class Vehicle:
     def mission_total(self) -> int | None:
         return self._missions.total
 
+    @property
+    def plan_transfer(self) -> bool:
+        """The station reads or writes a plan of the vehicle, or is about to."""
+        return self._missions.busy
+
     def _view(self, telemetry: Telemetry) -> VehicleView:
         return VehicleView(telemetry, self.gate.state, self._port.policy)
 

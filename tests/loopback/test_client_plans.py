@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import State
+from tests.loopback.air import Weather
 from tests.loopback.bridged import VEHICLE
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import (
@@ -16,6 +18,8 @@ from tests.loopback.plan_clients import (
     DroneKit,
     Mavsdk,
     PlanFlight,
+    PlanItem,
+    Pymavlink,
     Upload,
     mission,
 )
@@ -130,3 +134,61 @@ def test_a_mission_put_on_board_past_the_bridge_is_verified_before_it_starts(
         client.command(MISSION_START)
         flight.beating(5.0)
         assert flight.is_in(State.FLYING_MISSION) is starts
+
+
+LOSSY = Weather(loss=0.25, delay_s=(0.001, 0.004))
+LONG = 500
+LONG_S = 120.0
+SEEDS = range(1, 11)
+
+
+def long_mission(personality: Personality) -> list[PlanItem]:
+    """A take-off, a spiral within 60 m of home, a return: 500 items with ArduPilot's home."""
+    many = LONG - len(mission(personality))
+    places = ((math.cos(0.1 * n), math.sin(0.1 * n), 0.1 * n) for n in range(many))
+    return mission(personality, *((r * north, r * east, 10.0) for north, east, r in places))
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize(
+    "seed", [pytest.param(n, marks=[] if n == 1 else [pytest.mark.soak]) for n in SEEDS]
+)
+def test_five_hundred_items_cross_two_links_that_lose_a_quarter(
+    seed: int, personality: Personality
+) -> None:
+    """Complete within two minutes, or refused whole; a client that keeps on gets its ACK."""
+    flight = PlanFlight(personality, seed=seed, vehicle_weather=LOSSY, client_weather=LOSSY)
+    client = flight.join()
+    flight.connected()
+    before = flight.vehicle.plan
+    upload = Pymavlink(flight, client, long_mission(personality))
+    result = ended(flight, upload, LONG_S)
+    print(f"{personality} seed {seed}: {result}, {upload.took_s:.1f} s")
+    assert len(flight.vehicle.plan) == (LONG if result == "complete" else len(before))
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_two_clients_read_the_plan_one_after_the_other_and_the_station_in_between(
+    personality: Personality,
+) -> None:
+    flight = connected(personality)
+    first, second = flight.clients[1], flight.join(255, 190)
+    assert ended(flight, Mavsdk(flight, first, mission(personality, *SQUARE))) == "complete"
+    many = len(flight.vehicle.plan)
+    flight.say("station_take")
+    for client in (first, second):
+        client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+    flight.run(0.1)
+    assert [count.count for count in first.messages("MISSION_COUNT")] == [many]
+    assert not second.messages("MISSION_COUNT")
+    assert "another client reads" in second.texts()
+    flight.do("mission_download")
+    for seq in range(many):
+        first.send(dialect.MAVLink_mission_request_int_message(*VEHICLE, seq, 0))
+        flight.run(0.05)
+    first.send(dialect.MAVLink_mission_ack_message(*VEHICLE, ACCEPTED, 0))
+    second.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+    flight.run(0.1)
+    assert [item.seq for item in first.messages("MISSION_ITEM_INT")] == [*range(many)]
+    assert [count.count for count in second.messages("MISSION_COUNT")] == [many]
+    assert not second.messages("MISSION_ITEM_INT"), "answers go to whom they are for"

@@ -51,6 +51,8 @@ class Seen:
     0: none, as it is not known."""
     max_takeoff_up_m: float = 0.0
     """A client may set the default height of a take-off up to this; 0: not at all."""
+    plan_transfer: bool = False
+    """The station reads or writes a plan of the vehicle."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ from gcs.session.work import AskGate, ToGate
 from gcs.wire.messages import MissionItemInt
 
 LEFT = "its operator left before it began"
+AGAIN = "ask once more and that one is verified"
 STOPPED = "an operator stopped the vehicle before it began"
 
 
@@ -58,7 +59,7 @@ class Start(VerifiedJob):
         sent, name = self._on_board.sent, autopilot_name(view.telemetry)
         differences = compare.same_meaning(sent, received, name)
         if differences:
-            text = f"another mission is on board than was verified: {differences[0]}"
+            text = f"another mission is on board than was verified: {differences[0]}; {AGAIN}"
             forget: list[JobWork] = [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
             return forget + self.refuse(Refusal(Code.BAD_MISSION, text))
         return self.verify(self._on_board.plan, view, now_ns)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from msgspec import structs
 
 from gcs import ipc
 from gcs.gate.effects import Outcome, Ruling
@@ -47,6 +48,7 @@ class Script:
         self.board = Board()
         self.telemetry: Telemetry | None = placed()
         self.state = State.GROUNDED
+        self.policy = DEFAULT
         self.now_ns = START_NS
         self._requests = 0
 
@@ -54,7 +56,7 @@ class Script:
         """The next request; its id is `self.last`."""
         self._requests += 1
         ask = ipc.Ask(100 + self._requests, word, path=path)
-        policy, state = DEFAULT, self.state
+        policy, state = self.policy, self.state
         work = self.missions.ask(self._requests, ask, self.telemetry, state, policy, self.now_ns)
         return self._with_replies(work)
 
@@ -210,6 +212,13 @@ def test_without_a_mission_of_ours_what_is_on_board_is_looked_up_before_a_start(
     assert isinstance(work[0], Send)
     assert work[-1] == AskGate(1, StartMission())
     assert not any(isinstance(item, ToGate) for item in work)
+
+
+def test_where_the_policy_wants_no_other_mission_none_is_looked_up() -> None:
+    script = Script()
+    bridge = structs.replace(DEFAULT.bridge, on_board="refuse")
+    script.policy = structs.replace(DEFAULT, bridge=bridge)
+    assert script.ask("mission_start") == [AskGate(1, StartMission())]
 
 
 def test_where_none_can_be_started_nothing_on_board_is_looked_up() -> None:

@@ -1,0 +1,50 @@
+"""One reader of a plan at a time, as PX4 answers one at a time."""
+
+from __future__ import annotations
+
+from gcs.bridge.plans.downloads import SILENT_NS, Downloads
+from gcs.protocol.effects import Address
+from gcs.wire.ids import MissionResult
+from gcs.wire.messages import MissionAck, MissionCount, MissionRequestInt, MissionRequestList
+
+TO = {"target_system": 1, "target_component": 1}
+LIST = MissionRequestList(**TO)
+ITEM = MissionRequestInt(seq=0, **TO)
+DONE = MissionAck(type=MissionResult.ACCEPTED, **TO)
+ONE, TWO = (1, Address(245, 190)), (2, Address(255, 190))
+MS = 1_000_000
+
+
+def test_a_second_reader_waits_until_the_first_has_its_plan() -> None:
+    downloads = Downloads()
+    assert downloads.holds(LIST, ONE, False, 0) == ""
+    assert "another client" in downloads.holds(LIST, TWO, False, 10 * MS)
+    assert downloads.holds(ITEM, ONE, False, 20 * MS) == ""
+    assert downloads.holds(DONE, ONE, False, 30 * MS) == ""
+    assert downloads.holds(LIST, TWO, False, 40 * MS) == ""
+
+
+def test_a_reader_that_has_fallen_silent_is_waited_for_no_longer() -> None:
+    downloads = Downloads()
+    downloads.holds(LIST, ONE, False, 0)
+    downloads.holds(ITEM, ONE, False, 100 * MS)
+    assert downloads.holds(LIST, TWO, False, SILENT_NS + 99 * MS)
+    assert downloads.holds(LIST, TWO, False, SILENT_NS + 100 * MS) == ""
+
+
+def test_the_same_reader_may_begin_again() -> None:
+    downloads = Downloads()
+    downloads.holds(LIST, ONE, False, 0)
+    assert downloads.holds(LIST, ONE, False, 10 * MS) == ""
+
+
+def test_nobody_begins_during_the_station_s_own_transfer() -> None:
+    downloads = Downloads()
+    assert "station" in downloads.holds(LIST, ONE, True, 0)
+    assert downloads.holds(LIST, ONE, False, 10 * MS) == ""
+
+
+def test_what_is_no_download_is_not_held() -> None:
+    count = MissionCount(count=1, **TO)
+    assert Downloads().holds(count, ONE, True, 0) == ""
+    assert Downloads().holds(DONE, ONE, True, 0) == ""
