@@ -136,6 +136,7 @@ class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):
     fence: list[FenceShape] = []
     schema: int = SCHEMA
     client: int = 1  # the number that the station knows this operator by; 1 has started it
+    client_ports: list[str] = []  # where MAVLink clients reach the vehicle through the station
 
 
 class OperatorInfo(msgspec.Struct, frozen=True):

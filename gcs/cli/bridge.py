@@ -222,7 +222,7 @@ def _run(
         if page and sys.stdout.isatty():
             from gcs.cli.bridge_page import BridgePage
 
-            with BridgePage(config.clients, min_level) as drawn:
+            with BridgePage(min_level) as drawn:
                 ended = watch(station, interrupts, drawn, timeout_s)
         else:
             lines = BridgeLines(to_stdout, to_stderr, min_level=min_level, as_json=as_json)

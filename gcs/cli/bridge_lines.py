@@ -35,6 +35,8 @@ class BridgeLines:
             case ipc.Hello():
                 for where in event.endpoints:
                     self._err(f"vehicle: {where}")
+                for where in event.client_ports:
+                    self._err(f"clients: {where}")
                 self._err(f"policy: {event.policy}; log: {event.log_path or 'none'}")
             case ipc.Snapshot():
                 if event.vehicle and (self._seen is None or not self._seen.vehicle):

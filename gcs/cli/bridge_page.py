@@ -29,9 +29,8 @@ NUMBERS = ("in/s", "out/s", "lost", "refused", "dropped")
 class BridgePage:
     """A `Display` that draws; use it as a context, so that the cursor comes back."""
 
-    def __init__(self, clients: Sequence[str], min_level: int) -> None:
-        """`clients`: where clients may come; `min_level`: of the log lines above the page."""
-        self._where = ", ".join(clients)
+    def __init__(self, min_level: int) -> None:
+        """`min_level`: of the log lines above the page."""
         self._min_level = min_level
         self._console = Console(highlight=False)
         self._live = Live(console=self._console, auto_refresh=False)
@@ -89,7 +88,7 @@ class BridgePage:
             parts.append(Text(f"wrong: {wrong}", style="yellow"))
         parts += [_table(bridge_text.link_rows(self._status)), _table(clients[: room + 1])]
         if len(clients) == 1:
-            parts.append(Text(f"nobody yet, at {self._where}", style="dim"))
+            parts += [Text(f"nobody yet; {where}", style="dim") for where in self._where]
         elif hidden > 0:
             parts.append(Text(f"and {hidden} more", style="dim"))
         parts += [self._decision(each) for each in self._decisions]
@@ -101,6 +100,10 @@ class BridgePage:
         line = f"{bridge_text.clock_text(decision.time_ns)} {bridge_text.decision_line(decision)}"
         style = OUTCOME_STYLES.get(decision.outcome, "")
         return Text(line, style=style, no_wrap=True, overflow="ellipsis")
+
+    @property
+    def _where(self) -> Sequence[str]:
+        return self._hello.client_ports if self._hello else ()
 
     def _footer(self) -> str:
         policy = self._hello.policy if self._hello else ""

@@ -97,7 +97,15 @@ def hello(
 ) -> ipc.Hello:
     """The first event that an operator's program is told."""
     endpoints, policy = list(setup.endpoints), setup.policy.name
-    return ipc.Hello(setup.version, log_path, endpoints, policy, list(fence), client=client)
+    return ipc.Hello(
+        setup.version,
+        log_path,
+        endpoints,
+        policy,
+        list(fence),
+        client=client,
+        client_ports=list(setup.client_ports),
+    )
 
 
 def recorded(given: OtherInput) -> list[Effect]:

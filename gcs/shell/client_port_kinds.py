@@ -136,7 +136,7 @@ class UdpPort(Port):
             table.heard(link, data, now_ns)
 
     def describe(self) -> str:
-        return f"clients: waiting for datagrams on udp {self.endpoint.host}:{self._bound}"
+        return f"waiting for datagrams on udp {self.endpoint.host}:{self._bound}"
 
     def close(self) -> None:
         self.socket.close()
@@ -231,7 +231,7 @@ class TcpPort(Port):
                 self.links[peer] = link
 
     def describe(self) -> str:
-        return f"clients: waiting for connections on tcp {self.endpoint.host}:{self._bound}"
+        return f"waiting for connections on tcp {self.endpoint.host}:{self._bound}"
 
     def close(self) -> None:
         self._listener.close()
@@ -304,7 +304,7 @@ class LinkPort(Port):
         return self.link.deadline_ns
 
     def describe(self) -> str:
-        return f"clients: {self.link.describe()}"
+        return self.link.describe()
 
     def close(self) -> None:
         self.link.close()

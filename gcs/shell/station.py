@@ -149,11 +149,11 @@ def _read_keys(setup: StationConfig) -> Keys:
 
 def _open_links(setup: StationConfig, opened: ExitStack) -> list[sockets.Link]:
     urls = setup.endpoints or ["udpin://127.0.0.1:0"]
+    option = "--vehicle" if setup.bridge else "--link"
+    hint_in_use = f"another ground station may be running; choose another port with {option}"
     links = []
     for url in urls:
-        with _opening(
-            url, "another ground station may be running; choose another port with --link"
-        ):
+        with _opening(url, hint_in_use):
             link = sockets.open_link(parse_endpoint(url))
         opened.callback(link.close)
         links.append(link)

@@ -20,7 +20,9 @@ from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInte
 VEHICLE = ("--vehicle", "udpin://127.0.0.1:14540")
 CLIENT = ("--client", "udpout://127.0.0.1:14550")
 
-HELLO = ipc.Hello("1", "logs/a.mcap", ["udp 127.0.0.1:14540"], "lab")
+HELLO = ipc.Hello(
+    "1", "logs/a.mcap", ["udp 127.0.0.1:14540"], "lab", client_ports=["udp 127.0.0.1:14551"]
+)
 LINK = ipc.BridgeLink(0, "udp 127.0.0.1:14540", 212.4, 4.0, 0.05)
 ONE = ipc.BridgeClient(1000, 1, "udp 127.0.0.1:5001", ["255/190"], 1.0, 212.0, in_control=True)
 TWO = ipc.BridgeClient(1001, 2, "tcp 127.0.0.1:5002", [], 0.0, 212.0, 3, 40, silent_s=4.2)
@@ -189,6 +191,7 @@ def test_the_log_goes_to_standard_error_from_its_level_up() -> None:
     printed = Printed()(HELLO, ipc.LogEvent(0, 1, "link", "detail"), ipc.LogEvent(0, 3, "x", "y"))
     assert printed.err == [
         "vehicle: udp 127.0.0.1:14540",
+        "clients: udp 127.0.0.1:14551",
         "policy: lab; log: logs/a.mcap",
         "WARN  x: y",
     ]
@@ -209,10 +212,8 @@ def test_json_is_every_event_as_it_came() -> None:
 
 
 def drawn(*events: ipc.Event, height: int = 40) -> str:
-    page = BridgePage(["udpin://127.0.0.1:14551"], 2)
-    page.__exit__(None, None, None)
-    for event in events:
-        if not isinstance(event, ipc.Hello):
+    with BridgePage(2) as page:
+        for event in (HELLO, *events):
             page.event(event)
     out = io.StringIO()
     Console(file=out, width=150).print(page.page(height))
@@ -234,7 +235,7 @@ def test_the_page_shows_vehicle_control_links_clients_and_decisions() -> None:
 def test_an_empty_page_says_where_clients_may_come() -> None:
     text = drawn()
     assert "no vehicle heard yet" in text
-    assert "nobody yet, at udpin://127.0.0.1:14551" in text
+    assert "nobody yet; udp 127.0.0.1:14551" in text
 
 
 def test_a_low_terminal_shows_as_many_clients_as_fit() -> None:

@@ -497,6 +497,6 @@ def test_what_the_ports_are_is_told_in_their_order(bench: Make) -> None:
     here.turns(3)
     udp, tcp = (endpoint.port for endpoint in here.ports.endpoints)
     assert here.ports.describe() == (
-        f"clients: waiting for datagrams on udp 127.0.0.1:{udp}",
-        f"clients: waiting for connections on tcp 127.0.0.1:{tcp}",
+        f"waiting for datagrams on udp 127.0.0.1:{udp}",
+        f"waiting for connections on tcp 127.0.0.1:{tcp}",
     )
