@@ -23,6 +23,8 @@ from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.warning_filter import WarningFilter
 
 FRESH_WAIT_S = 0.5
+SAMPLE_S = 0.1
+"""From one sample of a velocity to the next."""
 Printer = Callable[[str], None]
 
 
@@ -59,6 +61,7 @@ class Plain:
         err: Printer,
     ) -> None:
         self._config = config
+        self._connection = connection
         self._out, self._err = out, err
         self._dialogue = Dialogue(connection, interrupts, self._on_event)
         self._warnings = WarningFilter(cautions=True)
@@ -122,8 +125,8 @@ class Plain:
                 self._show_help()
             case request_words.Quit():
                 raise _LeaveNowError
-            case request_words.Wait():
-                raise AssertionError("a wait has its turn")
+            case request_words.Wait() | request_words.FlyVelocity():
+                raise AssertionError("it has its turn")
 
     def _send_at_once(self, line: line_parser.Line) -> None:
         assert isinstance(line.action, request_words.SendRequests)
@@ -171,6 +174,8 @@ class Plain:
             case request_words.SendRequests(requests):
                 # Not waited for: what has to follow another request cannot be sent blindly.
                 self._dialogue.send(requests[0], line.text)
+            case request_words.FlyVelocity():
+                self._fly_velocity(line.text, line.action)
             case request_words.Wait(seconds):
                 seconds /= self._config.speedup
                 self._dialogue.wait_until(lambda: self._overtaken, seconds)
@@ -185,6 +190,22 @@ class Plain:
                 self._show_help()
             case request_words.Quit():
                 return
+
+    def _fly_velocity(self, text: str, asked: request_words.FlyVelocity) -> None:
+        """A stream of one velocity, until its time is over, a line overtakes it, or it ends."""
+        begun = self._dialogue.send(ipc.Ask(0, "stream_begin"), text)
+        samples = max(1, round(asked.seconds / self._config.speedup / SAMPLE_S))
+
+        def over() -> bool:
+            return begun.settled or self._overtaken
+
+        for _ in range(samples):
+            if not over():
+                self._connection.send(ipc.Stream(v_enu=asked.v_enu))
+                self._dialogue.wait_until(over, SAMPLE_S)
+        if not over():
+            self._dialogue.send(ipc.Ask(0, "stream_end"))
+            self._dialogue.wait_settled(begun)
 
     def _tell_bad(self, line: BadLine) -> None:
         self._bad_lines = True

@@ -89,7 +89,7 @@ class BeginStream:
 
 @dataclass(frozen=True, slots=True)
 class EndStream:
-    """End the setpoint stream that is flown, and hover where the vehicle comes to rest."""
+    """End the setpoint stream that is flown, and hover where the vehicle is."""
 
 
 @dataclass(frozen=True, slots=True)

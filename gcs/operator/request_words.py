@@ -60,6 +60,14 @@ class SendRequests:
 
 
 @dataclass(frozen=True, slots=True)
+class FlyVelocity:
+    """Stream this velocity, metres per second east, north and up, for so many seconds."""
+
+    v_enu: tuple[float, float, float]
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
 class Wait:
     """Do nothing for so many seconds of flight."""
 
@@ -81,7 +89,7 @@ class Quit:
     """Leave in good order."""
 
 
-Action: TypeAlias = SendRequests | Wait | ShowState | ShowHelp | Quit
+Action: TypeAlias = SendRequests | FlyVelocity | Wait | ShowState | ShowHelp | Quit
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,9 +135,17 @@ def _goto(values: Values) -> Action:
     )
 
 
+def _velocity(values: Values) -> Action:
+    east, north, up, *seconds = values.numbers
+    return FlyVelocity((east, north, up), seconds[0] if seconds else VELOCITY_S)
+
+
 def _mission_fly(values: Values) -> Action:
     return SendRequests((Ask(0, "mission_upload", path=values.text), Ask(0, "mission_start")))
 
+
+VELOCITY_S = 1.0
+"""How long a velocity is flown where nothing is said."""
 
 _UP = Argument("UP", ArgumentKind.NUMBER)
 _FILE = Argument("FILE", ArgumentKind.FILE)
@@ -159,6 +175,19 @@ WORDS: tuple[Word, ...] = (
         "YAW_DEG is clockwise from north",
         "goto 3 0 2",
         _goto,
+        moves=True,
+    ),
+    Word(
+        "velocity",
+        (
+            Argument("EAST", ArgumentKind.NUMBER),
+            Argument("NORTH", ArgumentKind.NUMBER),
+            _UP,
+            Argument("SECONDS", ArgumentKind.SECONDS, optional=True),
+        ),
+        "fly so many m/s east, north and up for SECONDS (1), then hover",
+        "velocity 1 0 0 3",
+        _velocity,
         moves=True,
     ),
     Word(
@@ -321,7 +350,9 @@ WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
 
 def label(request: Ask) -> str:
     """A request as an operator would type it: the table read backwards."""
-    name = request.word.replace("mission_", "mission ").replace("station_", "station ")
+    name = request.word
+    for first in ("mission", "station", "stream"):
+        name = name.replace(f"{first}_", f"{first} ")
     parts: list[str] = [name]
     if request.word == "takeoff":
         parts.append(_shown(request.up_m))

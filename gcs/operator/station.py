@@ -29,6 +29,7 @@ from gcs.operator.client import StationEnded, StationEvent
 from gcs.operator.dialogue import unexpected_end
 from gcs.operator.failures import Disconnected, NotCompleted, Refused
 from gcs.operator.request_words import label
+from gcs.operator.stream import Stream
 
 TELEMETRY_WAIT_S = 5.0
 ANSWER_WAIT_S = 10.0
@@ -106,6 +107,8 @@ class Station:
         self._unknown_messages = ""
         self._readers: list[deque[ipc.Event]] = []
         self.trouble: ipc.Trouble | None = None
+        self.stream_verdict: ipc.StreamVerdictEvent | None = None
+        """What was told last of this program's stream; see `Stream.refusal`."""
         self._ended: StationEnded | None = None
         self._left = False
         connection.listen(self._heard)
@@ -163,6 +166,39 @@ class Station:
         """Fly straight there and hover."""
         goal = (_finite(east_m), _finite(north_m), _finite(up_m))
         return self.request(ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw_deg), wait, timeout_s)
+
+    def stream(self) -> Stream:
+        """A setpoint stream: velocities or positions, one after the other, in a `with` block.
+
+        with station.stream() as stream:
+            for seconds in stream.ticks(10.0):
+                stream.velocity(1.0, 0.1 * seconds, 0.0)
+        """
+        return Stream(self)
+
+    def velocity(
+        self,
+        east_m_s: float,
+        north_m_s: float,
+        up_m_s: float,
+        yaw_rate_deg_s: float | None = None,
+        *,
+        seconds: float,
+    ) -> None:
+        """Fly this fast for so many seconds, then hover.
+
+        Raises Refused where that is refused, at once or on the way, such as before the fence: the
+        vehicle hovers there then.  Raises NotCompleted, Disconnected.
+        """
+        with self.stream() as stream:
+            for _ in stream.ticks(seconds):
+                stream.velocity(east_m_s, north_m_s, up_m_s, yaw_rate_deg_s=yaw_rate_deg_s)
+                if stream.refusal is not None:
+                    break
+            refusal = stream.refusal
+            stream.check()
+        if refusal is not None:
+            raise Refused(refusal.code, refusal.sentence, refusal.numbers)
 
     def fly(self, path: str, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
         """Upload a mission file (or a shipped mission by its name), then start it."""
@@ -313,6 +349,11 @@ class Station:
         left_s = None if deadline_s is None else max(0.0, deadline_s - time.monotonic())
         return operation.wait(left_s)
 
+    def tell(self, command: ipc.Command) -> None:
+        """Send what has no answer of its own.  Raises Disconnected."""
+        if not self._connection.send(command):
+            raise self._end()
+
     def wait_until(self, done: Callable[[], bool], timeout_s: float | None) -> None:
         """Until `done()`, or the time is over.  Raises Disconnected."""
         with self._changed:
@@ -357,6 +398,8 @@ class Station:
                     del self._operations[event.id]
             case ipc.EndingEvent() if event.id in self._operations:
                 self._operations.pop(event.id)._ending = event
+            case ipc.StreamVerdictEvent():
+                self.stream_verdict = event
             case ipc.MessageEvent():
                 self._messages[event.name] = event.fields
             case ipc.Trouble():

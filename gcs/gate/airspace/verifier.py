@@ -21,7 +21,7 @@ from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
 from gcs.gate.airspace.prediction import BadStop, bad_overshoot, bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
-from gcs.gate.airspace.stopping import Path, predicted_stop, stop_point, stops_of
+from gcs.gate.airspace.stopping import Path, predicted_stop, stops_of
 from gcs.gate.airspace.stream_samples import (
     TICK_S,
     StreamSample,
@@ -186,14 +186,18 @@ class Verifier:
         )
         return None if refusal is None else replace(refusal, code=Code.CANNOT_STOP)
 
-    def rest_point(self, pos_ned: Vec3, v_ned: Vec3, age_s: float) -> Vec3 | None:
-        """Where to hold a vehicle that flies: where it would come to rest, if it may hover there,
-        else as far on the way there as it may; None where no place clears."""
+    def hold_ahead(self, pos_ned: Vec3, v_ned: Vec3, age_s: float) -> Vec3 | None:
+        """Where to hold a vehicle that flies: where it is when the hold reaches it, if it may hover
+        there, else as far on the way there as it may; None where no place clears.
+
+        It flies past that while it brakes, and back.  A place farther ahead would send it on: px4
+        in OFFBOARD flies the faster to a position the farther that is away.
+        """
         if self._unusable(position=pos_ned, velocity=v_ned) or beyond_reach(pos_ned, v_ned):
             return None
-        n, e, d = (x + v * age_s for x, v in zip(pos_ned, v_ned, strict=True))
-        stop_ned = stop_point((n, e, d), v_ned, self.policy.braking_of(self.autopilot))
-        return self._brake_point(pos_ned, stop_ned, floor_applies=True)
+        heard_s = age_s + self.policy.approach_of(self.autopilot).react_s
+        north, east, down = (x + v * heard_s for x, v in zip(pos_ned, v_ned, strict=True))
+        return self._brake_point(pos_ned, (north, east, down), floor_applies=True)
 
     def takeoff(self, up_m: float, pos_ned: Vec3) -> Cleared | Refusal:
         """May the vehicle climb straight up to `up_m` metres above where it stands?

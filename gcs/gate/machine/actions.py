@@ -223,6 +223,7 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.TAKE_CONTROL_AT_TOP: _take_control_at_top,
         Action.FLY_TO_TOP: _fly_to_top,
         Action.ASK_GUIDED: _ask_guided,
+        Action.SET_GUIDED: commanding.set_guided,
         Action.GAIN_CONTROL: _gain_control,
         Action.RELEASE_CONTROL: _release_control,
         Action.ARM: commanding.arm,

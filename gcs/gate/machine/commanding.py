@@ -65,6 +65,12 @@ def send_waiting(turn: Turn) -> None:
         turn.command(task.waiting, "the vehicle shows the mode for it")
 
 
+def set_guided(turn: Turn) -> None:
+    """Command guided mode to a vehicle that stands and moves nothing in it."""
+    turn.set_deadline(turn.policy.control.timeout_s)
+    turn.command(CommandKind.GUIDED, "asked for on the ground, where it stands still in it")
+
+
 def disarm(turn: Turn) -> None:
     turn.set_deadline(turn.policy.control.timeout_s)
     turn.command(CommandKind.DISARM, "on the ground")

@@ -17,6 +17,7 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.rules import Guard
 from gcs.gate.machine.turn import Turn
+from gcs.gate.requests import SetMode
 from gcs.gate.states import Control, FlightMode, State
 
 MODES_OF_STATE: Final[Mapping[State, frozenset[FlightMode]]] = MappingProxyType(
@@ -77,6 +78,13 @@ def _force_disarm_unconfirmed(turn: Turn) -> bool:
     asked_ns = turn.memory.force_asked_ns
     within_ns = turn.policy.control.force_repeat_s * SECOND_NS
     return asked_ns is None or turn.now_ns - asked_ns > within_ns
+
+
+def _stands_in_guided(turn: Turn) -> bool:
+    """ArduPilot's GUIDED moves nothing on the ground; px4's OFFBOARD flies what is sent."""
+    asked = turn.requested
+    by_name = asked is not None and isinstance(asked.request, SetMode)
+    return by_name and turn.memory.autopilot == "ardupilot" and turn.memory.on_ground
 
 
 def _mode_fits_state(turn: Turn) -> bool:
@@ -144,6 +152,7 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.GUIDED_MAY_COME_LATE: lambda turn: turn.now_ns < turn.memory.guided_until_ns,
         Guard.TASK_IS_ARM: _task_in(Event.ARM),
         Guard.TASK_IS_TAKE_OFF: _task_in(Event.TAKE_OFF),
+        Guard.TASK_IS_CONTROL: _task_in(Event.CONTROL),
         Guard.TASK_WAITS: lambda turn: (
             turn.memory.task is not None and turn.memory.task.waiting is not None
         ),
@@ -177,6 +186,7 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.MODE_FITS_STATE: _mode_fits_state,
         Guard.GRACE_OVER: _grace_over,
         Guard.MODE_GUIDED: _mode(FlightMode.GUIDED),
+        Guard.STANDS_IN_GUIDED: _stands_in_guided,
         Guard.MODE_RETURN: _mode(FlightMode.RETURN),
         Guard.MODE_LAND: _mode(FlightMode.LAND),
         Guard.OWN_STREAM: streaming.own_stream,

@@ -84,6 +84,9 @@ hold_if_guided: Final = Branch(
     when=(Guard.MODE_GUIDED,), ends=NO_ANSWER, do=(Action.HOLD,), to=HOLDING
 )
 
+complete_if_task_is_control: Final = Branch(
+    when=(Guard.TASK_IS_CONTROL,), ends=COMPLETE, do=(Action.STOP_AWAITING_MODE,)
+)
 mode_confirmed: Final[Cell] = (
     complete_if_task_ends_held,
     send_command_that_waited_for_mode,
@@ -146,7 +149,8 @@ MODE_ROWS: Final[Mapping[Event, Row]] = {
     Event.MODE_CONFIRMED: row(
         during(NO_VEHICLE, then=unchanged),
         during(STALE, then=(complete_if_task_ends_held, confirm_hold_if_awaited, unchanged)),
-        during(GROUNDED, TAKING_OFF, then=mode_confirmed),
+        during(GROUNDED, then=(complete_if_task_is_control, *mode_confirmed)),
+        during(TAKING_OFF, then=mode_confirmed),
         during(
             HOVERING,
             then=(

@@ -62,6 +62,12 @@ take_control: Final = Branch(
     do=(Action.TAKE_CONTROL,),
     to=HOVERING,
 )
+guided_on_ground: Final[Cell] = (
+    Branch(when=(Guard.STANDS_IN_GUIDED, Guard.TASK_UNDER_WAY), refuse=Code.BUSY),
+    Branch(when=(Guard.STANDS_IN_GUIDED, Guard.MODE_GUIDED), reply=Reply.DONE),
+    Branch(when=(Guard.STANDS_IN_GUIDED,), reply=Reply.ACCEPTED, do=(Action.SET_GUIDED,)),
+    refuse(Code.NOT_FLYING),
+)
 complete_if_armed: Final = Branch(when=(Guard.ARMED,), reply=Reply.DONE)
 refuse_while_something_waits_for_a_position: Final = Branch(
     when=(Guard.NO_POSITION_YET, Guard.TASK_UNDER_WAY), refuse=Code.BUSY
@@ -121,7 +127,7 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
     Event.CONTROL: row(
         during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
         during(STALE, then=refuse(Code.STALE)),
-        during(GROUNDED, then=refuse(Code.NOT_FLYING)),
+        during(GROUNDED, then=guided_on_ground),
         during(TAKING_OFF, then=refuse(Code.BUSY)),
         during(HOVERING, then=(refuse_while_taking_control, complete_at_once)),
         during(VERIFYING, then=cannot_happen),

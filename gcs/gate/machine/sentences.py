@@ -153,6 +153,8 @@ def done_at_once(request: Request) -> str:
     """What is so already, or was done at once."""
     if isinstance(request, SwitchFence):
         return f"the fence is {'on' if request.on else 'off'}"
+    if isinstance(request, SetMode):
+        return f"the vehicle shows {request.name} already"
     return _DONE.get(event_of(request), "nothing is left to do")
 
 

@@ -87,7 +87,7 @@ def begin(turn: Turn) -> None:
     memory.refused_elsewhere = ()
     if memory.goal is not None:
         memory.goal = None
-        _hold_at_rest(turn)
+        _hold_ahead(turn)
 
 
 def fly(turn: Turn) -> None:
@@ -118,34 +118,34 @@ def note_good(turn: Turn) -> None:
 
 
 def hold_in_place(turn: Turn) -> None:
-    """Hold where the vehicle comes to rest, and tell the client why its samples are not flown."""
+    """Hold where the vehicle is, and tell the client why its samples are not flown."""
     memory = turn.memory
     turn.refuse_stream(turn.why or no_fresh_position(memory))
     if memory.flown is not None:
         memory.flown = None
-        _hold_at_rest(turn)
+        _hold_ahead(turn)
 
 
 def end(turn: Turn) -> None:
-    """The stream is over, in good order: the vehicle hovers where it comes to rest."""
+    """The stream is over, in good order: the vehicle hovers where it is."""
     memory = turn.memory
     turn.say(Level.INFO, f"The stream of {memory.streamer} is over")
     turn.end(End(OutcomeKind.COMPLETE))
     if memory.flown is not None:
         memory.flown = None
-        _hold_at_rest(turn)
+        _hold_ahead(turn)
 
 
-def _hold_at_rest(turn: Turn) -> None:
-    """The hold goal is where the vehicle comes to rest.  Where no such place clears, what is flown
-    clears no more, and only hold mode is left."""
+def _hold_ahead(turn: Turn) -> None:
+    """The hold goal is where the vehicle is when it hears of it.  Where no such place clears, what
+    is flown clears no more, and only hold mode is left."""
     memory = turn.memory
     assert memory.pos_ned is not None
-    rest_ned = verifying.rest_point(turn)
-    if rest_ned is None:
+    hold_ned = verifying.hold_ahead(turn)
+    if hold_ned is None:
         memory.hold = None
         turn.why = Refusal(Code.CANNOT_STOP, "no place to hold the vehicle at clears")
         turn.raised.append(Event.CLEARS_NO_MORE)
         return
-    evidence = (("rest_m", math.dist(memory.pos_ned, rest_ned)),)
-    memory.hold = Goal(rest_ned, None, evidence, memory.pos_ned)
+    evidence = (("ahead_m", math.dist(memory.pos_ned, hold_ned)),)
+    memory.hold = Goal(hold_ned, None, evidence, memory.pos_ned)

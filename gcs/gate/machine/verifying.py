@@ -111,13 +111,13 @@ def _sample(turn: Turn, sample: StreamSample) -> Refusal | None:
     return _keep(turn, judged)
 
 
-def rest_point(turn: Turn) -> Vec3 | None:
+def hold_ahead(turn: Turn) -> Vec3 | None:
     """Where to hold the vehicle that a stream flew; None where no place clears."""
     memory, age_s = turn.memory, _position_age_s(turn)
     if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
         return None
     at_most_s = turn.policy.position_age_s if age_s is None else age_s
-    return memory.verifier.rest_point(memory.pos_ned, memory.v_ned, at_most_s)
+    return memory.verifier.hold_ahead(memory.pos_ned, memory.v_ned, at_most_s)
 
 
 def _position_age_s(turn: Turn) -> float | None:

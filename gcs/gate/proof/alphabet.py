@@ -383,6 +383,7 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "in the air": _input(LandedSeen(LandedState.IN_AIR)),
         **{f"ask: {name}": _request(request) for name, request in REQUESTS.items()},
         **{f"another asks: {name}": _other_request(wish) for name, wish in REQUESTS.items()},
+        "ask: guided mode by its name": _request(SetMode("guided", FlightMode.GUIDED)),
         "ask: mission with none on board": _mission_without_one,
         "ask: mission without a fence": _mission_without_fence,
         "ask: force disarm too late": _force_disarm_too_late,

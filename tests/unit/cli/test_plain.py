@@ -90,6 +90,26 @@ def test_a_last_line_without_a_newline_counts() -> None:
     assert Session("arm").out == ["arm: accepted", "arm: complete"]
 
 
+def test_a_velocity_is_streamed_ten_times_a_second_and_ended() -> None:
+    session = Session("arm\ntakeoff 2\nvelocity 1 -2 0.5 3\ngoto 1 0 2\n")
+    samples = [sent for sent in session.connection.sent if isinstance(sent, ipc.Stream)]
+    assert samples == [ipc.Stream(v_enu=(1.0, -2.0, 0.5))] * 30
+    assert session.out[4:] == [
+        "velocity 1 -2 0.5 3: accepted",
+        "velocity 1 -2 0.5 3: complete",
+        "stream end: accepted",
+        "stream end: complete",
+        "goto 1 0 2: accepted",
+        "goto 1 0 2: complete",
+    ]
+
+
+def test_a_velocity_that_is_refused_is_not_streamed() -> None:
+    session = Session("velocity 1 0 0\n", PlainConfig(strict=True))
+    assert session.sent_words == ["stream_begin"]
+    assert session.exit_code == ExitCode.REFUSED_BY_GATE
+
+
 def test_quit_ends_it_before_the_end_of_the_input() -> None:
     assert Session("arm\nquit\nland\n").sent_words == ["arm"]
 

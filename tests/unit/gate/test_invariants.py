@@ -142,7 +142,7 @@ class Run:
         assert 0.0 <= -down_m <= CEILING_M
         if permit.reason.startswith("brake"):
             self.places.add(pos_ned)
-        if hold is not None and pos_ned == hold.pos_ned and hold.evidence[0][0] == "rest_m":
+        if hold is not None and pos_ned == hold.pos_ned and hold.evidence[0][0] == "ahead_m":
             inside = math.hypot(north_m, east_m) <= RADIUS_M - MARGIN_M
             assert inside or pos_ned in self.places
             self.places.add(pos_ned)

@@ -19,9 +19,10 @@ from gcs.gate.requests import (
     ReturnHome,
     SetMode,
     SwitchFence,
+    TakeControl,
     TakeOff,
 )
-from gcs.gate.states import FlightMode, LandedState, State
+from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import default_policy, ended, state_of
 from tests.unit.gate.script import Script, policy
 
@@ -293,3 +294,74 @@ def test_an_arming_that_is_taken_back_is_not_sent_again() -> None:
     request_id = script.ask(Arm())
     script.ask(Hold())
     assert CancelCommand(request_id, ARM) in script.all(CancelCommand)
+
+
+class TestGuidedByItsName:
+    """Clients of an ArduCopter set GUIDED before they arm: it moves nothing on the ground.  px4's
+    OFFBOARD flies what a stream sends, and is not set there."""
+
+    GUIDED = SetMode("guided", FlightMode.GUIDED)
+
+    def standing(self, autopilot: str) -> Script:
+        script = Script(policy("default"), autopilot).connect()
+        script.forget()
+        return script
+
+    def test_it_is_sent_and_complete_when_it_is_seen(self) -> None:
+        script = self.standing("ardupilot")
+        request_id = script.ask(self.GUIDED)
+        assert script.verdict(request_id).ruling is Ruling.ACCEPTED
+        assert script.commands() == [CommandKind.GUIDED]
+        script.answer(CommandKind.GUIDED, 0)
+        assert ended(script, request_id) == ""
+        script.heartbeat(FlightMode.GUIDED)
+        assert (state_of(script), ended(script, request_id)) == (State.GROUNDED, "complete")
+        assert script.gate.control is Control.NONE
+
+    def test_an_armed_vehicle_on_the_ground_takes_it_too(self) -> None:
+        script = self.standing("ardupilot")
+        script.heartbeat(armed=True)
+        script.ask(self.GUIDED)
+        assert script.commands() == [CommandKind.GUIDED]
+
+    def test_where_it_is_shown_nothing_is_sent(self) -> None:
+        script = self.standing("ardupilot")
+        script.heartbeat(FlightMode.GUIDED)
+        assert ended(script, script.ask(self.GUIDED)) == "complete"
+        assert script.commands() == []
+
+    def test_a_refusal_of_the_vehicle_ends_it(self) -> None:
+        script = self.standing("ardupilot")
+        request_id = script.ask(self.GUIDED)
+        script.answer(CommandKind.GUIDED, 4)
+        assert ended(script, request_id) == "aborted VEHICLE_REFUSED"
+
+    def test_without_a_heartbeat_that_shows_it_it_times_out(self) -> None:
+        script = self.standing("ardupilot")
+        request_id = script.ask(self.GUIDED)
+        script.answer(CommandKind.GUIDED, 0)
+        script.wait(5.1)
+        assert ended(script, request_id) == "timed out NO_ANSWER"
+
+    def test_another_request_under_way_is_not_replaced(self) -> None:
+        script = self.standing("ardupilot")
+        script.ask(Arm())
+        assert script.refusal(script.ask(self.GUIDED)) is Code.BUSY
+
+    def test_control_that_is_not_asked_for_by_the_mode_is_refused_as_before(self) -> None:
+        script = self.standing("ardupilot")
+        assert script.refusal(script.ask(TakeControl())) is Code.NOT_FLYING
+
+    def test_px4_is_not_set_to_offboard_on_the_ground(self) -> None:
+        script = self.standing("px4")
+        assert script.refusal(script.ask(self.GUIDED)) is Code.NOT_FLYING
+        assert script.commands() == []
+
+    @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+    def test_a_hold_mode_is_set_on_the_ground_of_either(self, autopilot: str) -> None:
+        script = self.standing(autopilot)
+        script.heartbeat(FlightMode.OTHER)
+        request_id = script.ask(SetMode("hold", FlightMode.HOLD))
+        assert script.commands() == [HOLD]
+        script.heartbeat(FlightMode.HOLD)
+        assert ended(script, request_id) == "complete"

@@ -51,6 +51,14 @@ def value(policy: Policy, key: str) -> object:
         ("position_age_s", 0.05, 0.049),
         ("takeoff.max_up_m", 0.1, 0.09),
         ("deadline_min_s", 0.1, 0.09),
+        ("stream.good_again_s", 0.0, -0.001),
+        ("stream.position_age_s", 0.1, 0.09),
+        ("stream.deadman_s", 0.1, 0.09),
+        ("stream.max_speed_h_m_s", 0.0, -0.001),
+        ("stream.max_speed_up_m_s", 0.0, -0.001),
+        ("stream.max_speed_down_m_s", 0.0, -0.001),
+        ("stream.max_a_m_s2", 0.0, -0.001),
+        ("stream.max_yaw_rate_deg_s", 0.0, -0.001),
         ("photo_timeout_s", 0.1, 0.09),
         ("heartbeat_age_s", 1.0, 0.99),
         ("jump_speed_m_s", 1.0, 0.99),
@@ -318,3 +326,26 @@ class TestNamesOfFenceFiles:
     def test_the_same_name_twice_is_a_mistake(self) -> None:
         with pytest.raises(TomlError, match='two zones are called "y"'):
             self.parse('path = "yard.plan"\nname = "y"', 'path = "field.plan"\nname = "y"')
+
+
+class TestStream:
+    def test_it_is_over_no_sooner_than_a_sample_counts_no_more(self) -> None:
+        policy = parse_policy("stream.deadman_s = 0.1\nstream.ends_after_s = 0.1", "my.toml")
+        assert policy.stream.ends_after_s == policy.stream.deadman_s == 0.1
+        wrong = error("stream.deadman_s = 1.0\nstream.ends_after_s = 0.9")
+        assert (wrong.key, wrong.line) == ("stream.ends_after_s", 2)
+        assert "0.9 is less than deadman_s of 1" in str(wrong)
+
+    def test_a_position_for_a_sample_is_no_older_than_any(self) -> None:
+        policy = parse_policy("position_age_s = 0.4\nstream.position_age_s = 0.4", "my.toml")
+        assert policy.stream.position_age_s == 0.4
+        wrong = error("position_age_s = 0.4\nstream.position_age_s = 0.45")
+        assert wrong.key == "stream.position_age_s"
+        assert "0.45 is more than position_age_s of 0.4" in str(wrong)
+
+    @pytest.mark.parametrize("value", ["nan", "inf", "1e6", '"fast"'])
+    def test_a_speed_is_a_number(self, value: str) -> None:
+        assert error(f"stream.max_speed_h_m_s = {value}").key == "stream.max_speed_h_m_s"
+
+    def test_a_key_that_there_is_not(self) -> None:
+        assert error("stream.max_speed = 3").key == "stream.max_speed"

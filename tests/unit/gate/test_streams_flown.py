@@ -120,8 +120,8 @@ def test_its_end_is_asked_for_and_completes_both_requests() -> None:
     assert script.outcome(ended).kind is OutcomeKind.COMPLETE
     assert script.gate.state is State.HOVERING
     east_m = script.pos_ned[1]
-    # 4 m/s: 0.7 s and 0.125 s of reaction and age, 16 / 4 m of braking
-    assert script.gate.hold_goal_ned == pytest.approx((0.0, east_m + 4 * 0.825 + 4.0, -UP))
+    # 4 m/s: 0.125 s old is the position, and 0.3 s it takes until the vehicle reacts
+    assert script.gate.hold_goal_ned == pytest.approx((0.0, east_m + 4 * 0.425, -UP))
 
 
 def test_the_end_of_no_stream_is_complete_at_once() -> None:
@@ -203,7 +203,7 @@ def test_a_stream_that_is_asked_for_stops_the_flight_to_a_goal() -> None:
     script.tick()
     (permit,) = sent(script)
     assert permit.pos_ned is not None
-    assert enu_from_ned(permit.pos_ned)[0] == pytest.approx(4.0 + 2.0 * 0.825 + 1.0)
+    assert enu_from_ned(permit.pos_ned)[0] == pytest.approx(4.0 + 2.0 * 0.425)
 
 
 def test_a_stream_does_not_replace_a_goal_where_the_policy_does_not_allow_it() -> None:
@@ -228,9 +228,9 @@ def test_a_velocity_straight_at_the_fence_is_flown_as_long_as_it_can_be_stopped(
     assert told(script) == [None, Code.CANNOT_STOP]
     places = [enu_from_ned(p.pos_ned) for p in sent(script) if p.pos_ned is not None]
     last_m = max(east_m for east_m, _, _ in places)
-    stop_m = {"px4": 10 * 0.825 + 25.0, "ardupilot": 10 * 1.325 + 25.0}[autopilot]
+    held_m = {"px4": 10 * 0.425, "ardupilot": 10 * 0.525}[autopilot]
     begins_m = 150.0 - 2.5 - m
-    assert begins_m + stop_m - 0.5 <= last_m <= begins_m + stop_m + 0.5
+    assert begins_m + held_m - 0.5 <= last_m <= begins_m + held_m + 0.5
 
 
 def test_a_refused_stream_is_held_in_its_place_and_handed_back_when_it_leads_back() -> None:

@@ -51,6 +51,7 @@ class FakeStation:
     done: bool = False
     time_s: float = 0.0
     in_control: ipc.OperatorInfo | None = FIRST
+    stream_told: str = ""
     refusals: dict[ipc.Vec3, tuple[str, str]] = field(default_factory=dict)
     """Goals that are refused, with code and sentence."""
     brakes: dict[ipc.Vec3, str] = field(default_factory=dict)
@@ -81,13 +82,9 @@ class FakeStation:
                 return [self._log(f"Keyboard: {goal_enu}")]
             case ipc.Ask():
                 return self._asked(command, now_s)
-            case (
-                ipc.Join()
-                | ipc.Subscribe()
-                | ipc.ListOperations()
-                | ipc.WatchTopics()
-                | ipc.Stream()
-            ):
+            case ipc.Stream(v_enu=v_enu):
+                return self._streamed(v_enu)
+            case ipc.Join() | ipc.Subscribe() | ipc.ListOperations() | ipc.WatchTopics():
                 return []
 
     def tick(self, now_s: float) -> list[ipc.Event]:
@@ -127,7 +124,21 @@ class FakeStation:
             return self._quick(ask, self.state)
         return self._motion(ask, now_s)
 
+    def _streamed(self, v_enu: ipc.Maybe3 | None) -> list[ipc.Event]:
+        """A sample: faster than 10 m/s is refused, and told where that changes."""
+        if self.state != "STREAMING" or v_enu is None:
+            return []
+        told = "refused" if math.hypot(*(v or 0.0 for v in v_enu)) > 10.0 else "accepted"
+        if told == self.stream_told:
+            return []
+        self.stream_told = told
+        reason = ("POLICY", "too fast") if told == "refused" else ("", "")
+        return [ipc.StreamVerdictEvent(told, *reason)]
+
     def _motion(self, ask: ipc.Ask, now_s: float) -> list[ipc.Event]:
+        if ask.word == "stream_end":
+            ended = self._end("complete") if self.state == "STREAMING" else []
+            return [*ended, *self._quick(ask, "HOVERING")]
         goal = ask.goal_enu
         if goal is not None and any(metres is None for metres in goal):
             return self._refuse(ask, "NON_FINITE", "the goal is not a number")
@@ -141,6 +152,9 @@ class FakeStation:
             return [*ended, *self._begin(ask, "LANDING", (*self.pos[:2], 0.0))]
         if self.state not in FREE:
             return self._refuse(ask, "BUSY", f"the vehicle is {self.state}")
+        if ask.word == "stream_begin":
+            self.stream_told = ""
+            return self._begin(ask, "STREAMING", None)
         if ask.word == "photo":
             self.photo_until_s = now_s + PHOTO_S
             return self._begin(ask, "TAKING_PICTURE", None)

@@ -1,0 +1,109 @@
+"""A setpoint stream of a Python program: it begins, is fed sample by sample, and ends.
+
+Nothing is sent behind the program's back: a sample counts half a second (the policy's dead-man's
+time), and a program that hangs is a stream that falls silent, so that the vehicle is held.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from gcs import ipc
+from gcs.operator.failures import Disconnected, NotCompleted
+
+if TYPE_CHECKING:
+    from gcs.operator.station import Operation, Station
+
+PERIOD_S = 0.1
+"""From one sample to the next: five of them count at a time."""
+
+
+class Stream:
+    """Made by `Station.stream`; a `with` block begins it, and ends it in good order.
+
+    East, north and up are metres, and metres per second; yaw is degrees clockwise from north.
+    """
+
+    def __init__(self, station: Station) -> None:
+        self._station = station
+        self._operation: Operation | None = None
+
+    def __enter__(self) -> Stream:
+        self._station.stream_verdict = None
+        self._operation = self._station.request(ipc.Ask(0, "stream_begin"), wait=False)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._ended or isinstance(error, Disconnected):
+            return
+        self._station.request(ipc.Ask(0, "stream_end"))
+
+    @property
+    def refusal(self) -> ipc.StreamVerdictEvent | None:
+        """Why the samples are refused and the vehicle is held in its place; None: they are flown,
+        or nothing was told yet."""
+        told = self._station.stream_verdict
+        return None if told is None or told.outcome == "accepted" else told
+
+    @property
+    def _ended(self) -> bool:
+        return self._operation is None or self._operation.state != "running"
+
+    def velocity(
+        self,
+        east_m_s: float,
+        north_m_s: float,
+        up_m_s: float,
+        *,
+        yaw_deg: float | None = None,
+        yaw_rate_deg_s: float | None = None,
+    ) -> None:
+        """Fly this fast until the next sample comes.  Raises NotCompleted where the stream has
+        ended, as by a hold, and Disconnected."""
+        v_enu = _vector(east_m_s, north_m_s, up_m_s)
+        self.send(ipc.Stream(v_enu=v_enu, yaw_deg=yaw_deg, yaw_rate_deg_s=yaw_rate_deg_s))
+
+    def position(
+        self, east_m: float, north_m: float, up_m: float, *, yaw_deg: float | None = None
+    ) -> None:
+        """Fly there until the next sample comes.  Raises NotCompleted, Disconnected."""
+        self.send(ipc.Stream(pos_enu=_vector(east_m, north_m, up_m), yaw_deg=yaw_deg))
+
+    def send(self, sample: ipc.Stream) -> None:
+        """Any sample.  Raises NotCompleted, Disconnected."""
+        self.check()
+        self._station.tell(sample)
+
+    def check(self) -> None:
+        """Raises NotCompleted where the stream is not flown any more, Disconnected."""
+        if self._operation is None:
+            raise NotCompleted("refused", "NOT_RUNNING", "the stream begins with a `with` block")
+        if self._ended:
+            self._operation.wait(0.0)  # raises how it has ended
+            raise NotCompleted("complete", "NOT_RUNNING", "the stream is over")
+
+    def ticks(self, seconds: float = math.inf, period_s: float = PERIOD_S) -> Iterator[float]:
+        """For one sample each: how many seconds the stream is old, for so many seconds.
+
+        Ends sooner where the stream ends.
+        """
+        begun_s = time.monotonic()
+        while not self._ended and (past_s := time.monotonic() - begun_s) < seconds:
+            yield past_s
+            left_s = begun_s + seconds - time.monotonic()
+            self._station.wait_until(lambda: self._ended, max(0.0, min(period_s, left_s)))
+
+
+def _vector(east: float, north: float, up: float) -> ipc.Maybe3:
+    """JSON has no NaN: null stands for it, and the gate refuses it by name."""
+    a, b, c = (float(x) if math.isfinite(x) else None for x in (east, north, up))
+    return (a, b, c)
