@@ -58,7 +58,8 @@ from gcs.wire.messages import (
     RequestDataStream,
 )
 
-DECODED_IDS: Final = frozenset(cls.MSG_ID for cls in (*PLAN_MESSAGES, RequestDataStream))
+_LOOKED_INTO: tuple[type[Message], ...] = (*PLAN_MESSAGES, RequestDataStream)
+DECODED_IDS: Final = frozenset(kind.MSG_ID for kind in _LOOKED_INTO)
 """Messages that are looked into although they may be harmless."""
 GUIDED_CURRENT: Final = frozenset({2, 3})
 """MISSION_ITEM.current of an item that ArduPilot flies to at once, or whose height it takes."""

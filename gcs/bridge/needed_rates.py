@@ -9,20 +9,19 @@ it needs faster than the client does.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TypeVar
+from typing import TypeAlias
 
 import msgspec
 
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import CommandInt, CommandLong, RequestDataStream
 
-Rates = Mapping[int, float]
+Command: TypeAlias = CommandLong | CommandInt
+Rates: TypeAlias = Mapping[int, float]
 """Message id -> Hz."""
 
-C = TypeVar("C", CommandLong, CommandInt)
 
-
-def not_slower(command: C, needed_hz: Rates) -> C | None:
+def not_slower(command: Command, needed_hz: Rates) -> Command | None:
     """The command with an interval that is short enough; None where it may stay as it is.
 
     param1 is a message id, param2 the interval in microseconds: -1 none, 0 the vehicle's default.
