@@ -294,6 +294,22 @@ class Peer:
         self.escape_by_false_reports()
         self.escape_by_streams()
 
+    def offboard(self):
+        """A stream of positions, then one of velocities, both where they may be flown."""
+        start_m = self.here()[0]
+        here = self.latest("LOCAL_POSITION_NED")
+        self.stream(8.0, POSITION, position=(here.x + 6.0, here.y, here.z))
+        north_m = self.here()[0] - start_m
+        assert abs(north_m - 6.0) < 1.5, (north_m, self.texts[-6:])
+        print("offboard position", flush=True)
+        self.stream(4.0, VELOCITY, velocity=(-1.5, 0, 0))
+        south_m = north_m - (self.here()[0] - start_m)
+        assert south_m > 2.5, (south_m, self.texts[-6:])
+        self.stream(1.5, VELOCITY)
+        print("offboard velocity", flush=True)
+        self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
+        self.rest(2.0)
+
     def escape_by_streams(self):
         far_m = self.stream(6.0, POSITION, position=(200, 0, -UP_M))
         print(f"offboard position outside: came {far_m:.0f} m", flush=True)
