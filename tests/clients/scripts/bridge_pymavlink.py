@@ -40,8 +40,15 @@ class Peer:
         self.beat()
         message = self.link.recv_match(blocking=True, timeout=seconds)
         if message is not None and message.get_type() == "STATUSTEXT":
-            self.texts.append(message.text)
+            self.read(message)
         return message
+
+    def read(self, message):
+        """A text, or the next piece of one that is too long for a message."""
+        if message.id and message.chunk_seq and self.texts:
+            self.texts[-1] += message.text
+        else:
+            self.texts.append(message.text)
 
     def wait(self, kinds, holds=lambda message: True, seconds=30.0, needed=True):
         """The first message of these kinds for which it holds; None if not `needed`."""
@@ -57,7 +64,7 @@ class Peer:
     def latest(self, kind):
         while (message := self.link.recv_match()) is not None:
             if message.get_type() == "STATUSTEXT":
-                self.texts.append(message.text)
+                self.read(message)
         return self.link.messages[kind]
 
     def rest(self, seconds):
@@ -107,7 +114,7 @@ class Peer:
 
     def last_text(self):
         self.rest(0.3)
-        return repr(self.texts[-1] if self.texts else "")
+        return self.texts[-1] if self.texts else ""
 
     # --------------------------------------------------------------------------- places
 
@@ -277,8 +284,8 @@ class Peer:
             self.link.mav.set_position_target_local_ned_send(
                 *(0, 1, 1, M.MAV_FRAME_LOCAL_NED, mask, *position, *velocity, 0, 0, 0, 0, 0)
             )
-            if turn == 30 and self.autopilot == "px4":
-                self.link.set_mode("OFFBOARD")
+            if turn == 30:
+                self.link.set_mode("OFFBOARD" if self.autopilot == "px4" else "GUIDED")
             turn += 1
             self.rest(0.05)
             farthest_m = max(farthest_m, *(abs(x) for x in self.here()[:2]))
