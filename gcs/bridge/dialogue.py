@@ -74,6 +74,23 @@ class _Told:
 
 
 @dataclass(slots=True)
+class _Lately:
+    """What was said in the last seconds, and is not said again so soon."""
+
+    _until_ns: dict[str, int] = field(default_factory=dict)
+
+    def is_news(self, text: str, now_ns: int) -> bool:
+        """Not said lately, and not the one too many."""
+        if self._until_ns.get(text, now_ns) > now_ns:
+            return False
+        self._until_ns = {said: at for said, at in self._until_ns.items() if at > now_ns}
+        if len(self._until_ns) >= MOST_TEXTS:
+            return False
+        self._until_ns[text] = now_ns + SAME_TEXT_NS
+        return True
+
+
+@dataclass(slots=True)
 class Dialogue:
     """One client's requests; `client` is its number among the operators."""
 
@@ -85,7 +102,9 @@ class Dialogue:
     """The message that was asked for last."""
     _told: _Told | None = None
     """Its answer, if it was accepted."""
-    _texts: dict[str, int] = field(default_factory=dict)
+    _texts: _Lately = field(default_factory=_Lately)
+    _refusals: _Lately = field(default_factory=_Lately)
+    """Of messages that are not acknowledged."""
 
     # ----------------------------------------------------------------------------- asking
 
@@ -111,9 +130,13 @@ class Dialogue:
     ) -> list[BridgeEffect]:
         """What never reaches the gate: unsupported, denied by the table or by a guard.
 
-        `name` is the message's or command's; a message that cannot be decoded is None.
+        `name` is the message's or command's; a message that cannot be decoded is None.  Messages
+        that are not acknowledged come in streams, as GPS_INPUT does: the same refusal is a decision
+        once in some seconds.  The record has every refused frame.
         """
         key, command = _key(message), _command(message)
+        if not command and not self._refusals.is_news(f"{name}: {refusal.sentence}", now_ns):
+            return []
         repeated = self._repeated(asked_by, key, command, now_ns)
         if repeated is not None:
             return repeated
@@ -221,12 +244,8 @@ class Dialogue:
 
     def text(self, to: From, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
         """STATUSTEXT for this client; the same words not more often than every few seconds."""
-        if self._texts.get(text, now_ns) > now_ns:
+        if not self._texts.is_news(text, now_ns):
             return []
-        self._texts = {said: until for said, until in self._texts.items() if until > now_ns}
-        if len(self._texts) >= MOST_TEXTS:
-            return []
-        self._texts[text] = now_ns + SAME_TEXT_NS
         self._next_text = self._next_text % 0xFFFF + 1
         return [
             Answers(to.link, to.addressed, message)

@@ -40,8 +40,15 @@ class Peer:
         self.beat()
         message = self.link.recv_match(blocking=True, timeout=seconds)
         if message is not None and message.get_type() == "STATUSTEXT":
-            self.texts.append(message.text)
+            self.read(message)
         return message
+
+    def read(self, message):
+        """A text, or the next piece of one that is too long for a message."""
+        if message.id and message.chunk_seq and self.texts:
+            self.texts[-1] += message.text
+        else:
+            self.texts.append(message.text)
 
     def wait(self, kinds, holds=lambda message: True, seconds=30.0, needed=True):
         """The first message of these kinds for which it holds; None if not `needed`."""
@@ -57,7 +64,7 @@ class Peer:
     def latest(self, kind):
         while (message := self.link.recv_match()) is not None:
             if message.get_type() == "STATUSTEXT":
-                self.texts.append(message.text)
+                self.read(message)
         return self.link.messages[kind]
 
     def rest(self, seconds):
@@ -107,7 +114,7 @@ class Peer:
 
     def last_text(self):
         self.rest(0.3)
-        return repr(self.texts[-1] if self.texts else "")
+        return self.texts[-1] if self.texts else ""
 
     # --------------------------------------------------------------------------- places
 
@@ -277,8 +284,8 @@ class Peer:
             self.link.mav.set_position_target_local_ned_send(
                 *(0, 1, 1, M.MAV_FRAME_LOCAL_NED, mask, *position, *velocity, 0, 0, 0, 0, 0)
             )
-            if turn == 30 and self.autopilot == "px4":
-                self.link.set_mode("OFFBOARD")
+            if turn == 30:
+                self.link.set_mode("OFFBOARD" if self.autopilot == "px4" else "GUIDED")
             turn += 1
             self.rest(0.05)
             farthest_m = max(farthest_m, *(abs(x) for x in self.here()[:2]))
@@ -293,6 +300,22 @@ class Peer:
         self.escape_by_settings()
         self.escape_by_false_reports()
         self.escape_by_streams()
+
+    def offboard(self):
+        """A stream of positions, then one of velocities, both where they may be flown."""
+        start_m = self.here()[0]
+        here = self.latest("LOCAL_POSITION_NED")
+        self.stream(8.0, POSITION, position=(here.x + 6.0, here.y, here.z))
+        north_m = self.here()[0] - start_m
+        assert abs(north_m - 6.0) < 1.5, (north_m, self.texts[-6:])
+        print("offboard position", flush=True)
+        self.stream(4.0, VELOCITY, velocity=(-1.5, 0, 0))
+        south_m = north_m - (self.here()[0] - start_m)
+        assert south_m > 2.5, (south_m, self.texts[-6:])
+        self.stream(1.5, VELOCITY)
+        print("offboard velocity", flush=True)
+        self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
+        self.rest(2.0)
 
     def escape_by_streams(self):
         far_m = self.stream(6.0, POSITION, position=(200, 0, -UP_M))
