@@ -136,7 +136,9 @@ class Bridge:
         def seen() -> Seen | None:
             found = look()
             in_control = self._in_control in (0, client.number)
-            return None if found is None else replace(found, in_control=in_control)
+            if found is None:
+                return None
+            return replace(found, in_control=in_control, manual_modes=self._manual_modes)
 
         return seen
 
