@@ -41,6 +41,7 @@ class Bridge:
         clients send."""
         self._own = own
         self._judge = Judge(rules, needed_hz)
+        self._manual_modes = rules.manual_modes
         self._silent_ns = silent_ns
         self._timing = timing
         self._routes = Routes()
