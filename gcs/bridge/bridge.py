@@ -41,6 +41,7 @@ class Bridge:
         clients send."""
         self._own = own
         self._judge = Judge(rules, needed_hz)
+        self._manual_modes = rules.manual_modes
         self._silent_ns = silent_ns
         self._timing = timing
         self._routes = Routes()
@@ -136,7 +137,9 @@ class Bridge:
         def seen() -> Seen | None:
             found = look()
             in_control = self._in_control in (0, client.number)
-            return None if found is None else replace(found, in_control=in_control)
+            if found is None:
+                return None
+            return replace(found, in_control=in_control, manual_modes=self._manual_modes)
 
         return seen
 

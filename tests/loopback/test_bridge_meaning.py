@@ -132,6 +132,33 @@ def test_speeds_up_to_the_vehicles_own(personality: Personality) -> None:
     assert len([frame for frame in flight.to_vehicle("COMMAND_LONG") if frame.sysid == 245]) == 1
 
 
+def velocity(v_ned: tuple[float, float, float], frame: int = 1) -> object:
+    """SET_POSITION_TARGET_LOCAL_NED with MAVSDK's masks: 0x9c7 with a yaw, 0x5c7 with a yaw rate in
+    the body frame."""
+    mask = 0x9C7 if frame == 1 else 0x5C7
+    return dialect.MAVLink_set_position_target_local_ned_message(
+        0, *VEHICLE, frame, mask, 0, 0, 0, *v_ned, 0, 0, 0, 0, 0
+    )
+
+
+@both
+@pytest.mark.parametrize("frame", [1, 8])
+def test_mavsdks_offboard_velocity(personality: Personality, frame: int) -> None:
+    """20 Hz of it, then OFFBOARD or GUIDED, which it is in already."""
+    flight, client = flying(personality)
+    before = flight.truth_enu()
+    for _ in range(60):
+        client.send(velocity((1.0, 0.0, 0.0), frame))
+        flight.run(0.05)
+    assert flight.state is State.STREAMING
+    guided = (129.0, 6.0) if personality == "px4" else (129.0, 4.0)
+    assert client.ask(SET_MODE, *guided, within_s=1) == ACCEPTED
+    moved = math.dist(flight.truth_enu()[:2], before[:2])
+    assert 1.0 < moved < 4.0
+    assert client.ask(PAUSE, 0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING), 5)
+
+
 # ------------------------------------------------------------------------------- ArduPilot
 
 
@@ -172,6 +199,20 @@ def test_a_position_target_is_flown_to_its_end_however_often_it_is_sent(times: i
     flight.until(lambda: flight.is_in(State.HOVERING), 30)
     assert flight.truth_enu()[1] == pytest.approx(12, abs=1.0)
     assert [one.word for one in flight.decisions("accepted")].count("goto") == 1
+
+
+def test_a_position_that_moves_is_a_stream() -> None:
+    """MAVROS's setpoint_position along a line, 20 Hz."""
+    flight, client = flying("ardupilot")
+    for step in range(80):
+        client.send(
+            dialect.MAVLink_set_position_target_local_ned_message(
+                0, *VEHICLE, 1, 0xDF8, 0.05 * step, 0.0, -5.0, 0, 0, 0, 0, 0, 0, 0, 0
+            )
+        )
+        flight.run(0.05)
+    assert flight.state is State.STREAMING
+    assert flight.truth_enu()[1] > 2.0
 
 
 def test_qgroundcontrols_change_of_height() -> None:

@@ -42,6 +42,8 @@ class Seen:
     """Of the gate's machine."""
     in_control: bool = False
     """The client who asks is in control of the station, or nobody is."""
+    manual_modes: tuple[str, ...] = ()
+    """Modes flown with sticks that the policy lets a client ask for."""
     goal_yaw_rad: float | None = None
     """The heading that was asked for with `goal_ned`."""
     mission_paused: bool = False

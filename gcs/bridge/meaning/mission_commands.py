@@ -7,9 +7,9 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
-from gcs.bridge.meaning.meaning import Forward, Meaning, Seen, Words
+from gcs.bridge.meaning.meaning import Meaning, Seen, Words
 from gcs.bridge.meaning.modes import meaning_named
-from gcs.bridge.meaning.says import refuse, unsupported
+from gcs.bridge.meaning.says import forward, refuse, unsupported
 from gcs.gate.refusal import Code
 from gcs.gate.states import FlightMode, State
 from gcs.protocol.autopilot import mode_named
@@ -56,7 +56,7 @@ def _set_current(number: int, seen: Seen) -> Meaning:
     flown = mode_named(seen.autopilot, seen.mode_name)
     in_mission = flown is not None and flown.meaning is FlightMode.MISSION
     if 0 <= number <= first and not in_mission and seen.state is not State.FLYING_MISSION:
-        return Forward()
+        return forward(seen)
     return unsupported(f"a jump to item {number}: {FROM_THE_FIRST}")
 
 
@@ -82,12 +82,12 @@ def change_speed(command: Command, seen: Seen) -> Meaning:
             ("asked_m_s", command.p2),
             ("max_m_s", seen.max_speed_m_s),
         )
-    return Forward()
+    return forward(seen)
 
 
 def region_of_interest(command: Command, seen: Seen) -> Meaning:
     """Turns the camera or the vehicle's nose, and moves it nowhere."""
-    return Forward()
+    return forward(seen)
 
 
 def orbit(command: Command, seen: Seen) -> Meaning:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
-from gcs.bridge.meaning.meaning import Forward, Meaning, Seen, Words
-from gcs.bridge.meaning.says import DONE, NOT_FLOWN_BY_US, ask, mode, unsupported
+from gcs.bridge.meaning.meaning import Meaning, Seen, Words
+from gcs.bridge.meaning.says import DONE, NOT_FLOWN_BY_US, ask, forward, mode, unsupported
 from gcs.gate.states import FlightMode, State
-from gcs.protocol.autopilot import Autopilot, Mode, mode_of
+from gcs.protocol.autopilot import Autopilot, Mode, mode_named, mode_of
 from gcs.wire.ids import ModeFlag
 from gcs.wire.messages import SetMode
 
@@ -45,6 +45,8 @@ def _by_number(flags: int, custom_mode: int, seen: Seen) -> Meaning:
 
 def for_mode(wanted: Mode, seen: Seen) -> Meaning:
     """What a client that asks for this mode wants the vehicle to do."""
+    if _is_let_through(wanted, seen):
+        return forward(seen)
     match wanted.meaning:
         case FlightMode.HOLD:
             return hold(seen, wanted.name)
@@ -56,6 +58,14 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
             return _flown_by_itself(wanted, seen)
         case FlightMode.OTHER:
             return mode(wanted.name)
+
+
+def _is_let_through(wanted: Mode, seen: Seen) -> bool:
+    """A mode of the sticks that the policy names, as `mode_named` takes names."""
+    by_sticks = wanted.meaning in (FlightMode.OTHER, FlightMode.HOLD)
+    if not by_sticks or wanted.name == _sent(seen.autopilot, wanted.meaning):
+        return False
+    return any(mode_named(seen.autopilot, name) == wanted for name in seen.manual_modes)
 
 
 def hold(seen: Seen, asked_for: str = "") -> Words:
@@ -75,7 +85,7 @@ def guided(wanted: Mode, seen: Seen) -> Meaning:
     """
     if seen.on_ground:
         waits = not seen.autopilot.mode_in_two_parts
-        return Forward() if waits else mode(wanted.name)
+        return forward(seen) if waits else mode(wanted.name)
     if seen.state in NOT_FLOWN_BY_US:
         return ask("resume")
     if seen.state in FLIES_ITSELF:

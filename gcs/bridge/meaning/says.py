@@ -6,7 +6,7 @@ import math
 from typing import Final
 
 from gcs import ipc
-from gcs.bridge.meaning.meaning import Reject, Seen, Words
+from gcs.bridge.meaning.meaning import Forward, Reject, Seen, Words
 from gcs.frames import Vec3, as_on_the_wire, enu_from_ned
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
@@ -31,6 +31,11 @@ def ask(word: str, note: str = "") -> Words:
 def mode(name: str) -> Words:
     """The request for a mode by the autopilot's own name."""
     return Words((ipc.Ask(0, "mode", mode=name),))
+
+
+def forward(seen: Seen) -> Forward | Words:
+    """Unchanged to the vehicle, for a client who is in control; else the refusal that it is not."""
+    return Forward() if seen.in_control else ask("control")
 
 
 def go_to(

@@ -13,6 +13,7 @@ from gcs.bridge.meaning.translate import meaning_of
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, GENERIC, PX4, Autopilot
+from gcs.wire.messages import Message
 from tests.unit.bridge.vehicles import (
     NAN,
     UNSET,
@@ -366,6 +367,19 @@ def test_circles_and_going_around_are_refused_with_what_to_do_instead(autopilot:
 @pytest.mark.parametrize("command", [195, 196, 197, 198, 201])
 def test_looking_somewhere_is_forwarded(autopilot: Autopilot, command: int) -> None:
     assert meaning_of(command_long(command), flying(autopilot)) == Forward()
+
+
+@BOTH
+@pytest.mark.parametrize(
+    "message", [command_long(195), command_long(178, 1.0, 2.0), command_long(224, 0.0)]
+)
+def test_what_is_forwarded_is_so_for_the_client_in_control_only(
+    autopilot: Autopilot, message: Message
+) -> None:
+    """`control` is the request that is refused OTHER_OPERATOR, as it should be."""
+    assert meaning_of(message, flying(autopilot)) == Forward()
+    other = flying(autopilot, in_control=False)
+    assert words(meaning_of(message, other)) == ["control"]
 
 
 # ----------------------------------------------------------------------- missions and speeds

@@ -81,6 +81,17 @@ def test_a_hold_that_obeys_the_sticks_is_held_otherwise_and_told() -> None:
     assert not brake.note
 
 
+def test_a_policy_may_let_modes_of_the_sticks_through() -> None:
+    """`[bridge] manual_modes`, by the names that `mode` takes, too."""
+    names = ("POSCTL", "loiter")
+    assert meaning_of(px4("POSCTL"), flying(PX4, manual_modes=names)) == Forward()
+    assert words(meaning_of(px4("ALTCTL"), flying(PX4, manual_modes=names))) == ["mode"]
+    assert words(meaning_of(px4("LOITER"), flying(PX4, manual_modes=names))) == ["hold"]
+    assert meaning_of(copter("LOITER"), flying(ARDUPILOT, manual_modes=names)) == Forward()
+    other = flying(PX4, manual_modes=names, in_control=False)
+    assert words(meaning_of(px4("POSCTL"), other)) == ["control"], "refused: not in control"
+
+
 def test_px4s_take_off_mode_climbs_to_its_own_height() -> None:
     meaning = meaning_of(px4("TAKEOFF"), standing(PX4, armed=True))
     assert isinstance(meaning, Words)

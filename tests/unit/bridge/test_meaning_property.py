@@ -60,6 +60,7 @@ seen = st.builds(
     takeoff_up_m=st.floats(0.0, 100.0),
     state=st.sampled_from(State),
     in_control=st.booleans(),
+    manual_modes=st.sampled_from([(), ("POSCTL", "loiter"), ("STABILIZE", "nonsense")]),
     goal_yaw_rad=st.none() | st.floats(-math.pi, math.pi),
     mission_paused=st.booleans(),
     max_speed_m_s=st.floats(0.0, 20.0),
