@@ -8,6 +8,7 @@ the usual script of pymavlink from memory.  Their bytes are pymavlink's.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -26,7 +27,7 @@ S = 1_000 * MS
 MISSION, FENCE, RALLY = 0, 1, 2
 ACCEPTED = 0
 UNSUPPORTED = 3
-WAYPOINT, RETURN, TAKE_OFF = 16, 20, 22
+WAYPOINT, RETURN, TAKE_OFF, DO_JUMP, RALLY_POINT = 16, 20, 22, 177, 5100
 AMSL, NO_PLACE, ABOVE_HOME = 0, 2, 3
 NORTH_DEG = 1.0 / 111_319.5
 
@@ -330,3 +331,24 @@ def mission(personality: Personality, *places_m: tuple[float, float, float]) -> 
         *(at(WAYPOINT, *place_m) for place_m in places_m),
         PlanItem(RETURN, frame=NO_PLACE),
     ]
+
+
+def items_of(document: dict[str, Any], personality: Personality) -> list[PlanItem]:
+    """The mission of a .plan of simple items, as a client sends it."""
+    home = HOMES[personality]
+    first = [PlanItem(WAYPOINT, home.lat_deg, home.lon_deg, home.alt_amsl_m, AMSL)]
+    found = first if personality == "ardupilot" else []
+    shift = len(found) - 1
+    for entry in document["mission"]["items"]:
+        nan = 0.0 if personality == "ardupilot" else math.nan  # which ArduPilot refuses
+        p1, p2, p3, p4, x, y, z = (nan if value is None else value for value in entry["params"])
+        if entry["command"] == DO_JUMP:
+            p1 += shift  # a doJumpId there, a seq here
+        found.append(PlanItem(entry["command"], x, y, z, entry["frame"], (p1, p2, p3, p4)))
+    return found
+
+
+def rally_points(document: dict[str, Any]) -> list[PlanItem]:
+    """Its rally points, a plan of their own."""
+    points = document["rallyPoints"]["points"]
+    return [PlanItem(RALLY_POINT, *point, kind=RALLY) for point in points]

@@ -2,7 +2,8 @@
 
 `python -m tests.loopback.random_missions px4 0 250` flies those of the seeds 0 to 249 and prints
 how many were refused, and how near the nearest came; with `--alone` the vehicle flies what it was
-given without the station, which takes a fifth of the time.  The fence is the policy's, so that the
+given without the station, which takes a fifth of the time; with `--through-bridge` a client of
+pymavlink uploads and starts it through the bridge.  The fence is the policy's, so that the
 vehicle has none of its own that could hold it back; shapely says where the truth is.
 """
 
@@ -24,7 +25,15 @@ from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import CircleSpec, PolygonSpec, ZoneSpec
+from tests.loopback.bridged import Client
 from tests.loopback.flight import HOMES, Flight, Personality
+from tests.loopback.plan_clients import (
+    ACCEPTED,
+    PlanFlight,
+    Pymavlink,
+    items_of,
+    rally_points,
+)
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.simulation.fault_script import fault_of
 
@@ -203,9 +212,13 @@ def _room_m(zone: ZoneSpec, shape: shapely.Polygon, enu: tuple[float, float, flo
     return max(beside_m, above_m)
 
 
-def fly(seed: int, personality: Personality, *, alone: bool = False) -> Flown:
+def fly(
+    seed: int, personality: Personality, *, alone: bool = False, through_bridge: bool = False
+) -> Flown:
     """Verified by an upload; where it clears, flown to its end, `alone` without the station."""
     mission = mission_of(seed, personality)
+    if through_bridge:
+        return _fly_through_bridge(seed, personality, mission)
     flight = Flight(personality, seed=seed, policy=mission.policy, params=mission.params)
     flight.connected()
     with TemporaryDirectory() as folder:
@@ -216,16 +229,58 @@ def fly(seed: int, personality: Personality, *, alone: bool = False) -> Flown:
     if ended != "complete":
         [verdict] = flight.verdicts(ask)
         return Flown(seed, verdict.sentence, kinds=mission.kinds)
+    moments = _alone(flight) if alone else _with_station(flight)
+    return _flown(seed, mission, flight, moments)
+
+
+def _flown(seed: int, mission: Mission, flight: Flight, moments: Iterator[str]) -> Flown:
+    """In wind, to its end; how near the truth came to a forbidden place."""
     wind = {"wind_ned_m_s": [*mission.wind_ned, 0.0], "gust_m_s": 1.0}
     assert flight.world.inject(fault_of("wind", wind, "script"), 1)
     shapes = [(zone, _shape(zone)) for zone in mission.zones]
     nearest_m, ended = math.inf, ""
-    moments = _alone(flight) if alone else _with_station(flight)
     for told in moments:
         ended = told
         truth = flight.truth_enu()
         nearest_m = min(nearest_m, *(_room_m(zone, shape, truth) for zone, shape in shapes))
     return Flown(seed, None, nearest_m, ended, mission.kinds)
+
+
+def _fly_through_bridge(seed: int, personality: Personality, mission: Mission) -> Flown:
+    """The same, uploaded, armed and started by a MAVLink client."""
+    rules = structs.replace(DEFAULT.bridge, rally="forward")
+    policy = structs.replace(mission.policy, bridge=rules)
+    flight = PlanFlight(personality, seed=seed, policy=policy)
+    for name, value in mission.params.items():
+        flight.vehicle.parameters.set(name, value)
+    client = flight.join()
+    flight.connected()
+    for items in (rally_points(mission.document), items_of(mission.document, personality)):
+        if items:
+            upload = Pymavlink(flight, client, items)
+            flight.until(lambda upload=upload: bool(upload.result), 60.0)  # type: ignore[misc]
+            if upload.result != "complete":
+                refused = flight.decisions("refused")
+                why = refused[-1].sentence if refused else upload.result
+                return Flown(seed, why, kinds=mission.kinds)
+    return _flown(seed, mission, flight, _with_client(flight, client))
+
+
+def _with_client(flight: PlanFlight, client: Client) -> Iterator[str]:
+    """Armed and started by commands of the client."""
+    assert client.ask(400, 1, within_s=20.0) == ACCEPTED
+    client.command(300)
+    began_s = flight.elapsed_s
+    while flight.elapsed_s - began_s < LONGEST_S:
+        if round((flight.elapsed_s - began_s) / SAMPLE_S) % 10 == 0:
+            client.beat()
+        flight.run(SAMPLE_S)
+        told = [one for one in flight.decisions() if one.word in ("mission_start", "mode")]
+        ended = told[-1].outcome if told else ""
+        over = ended not in ("", "requested", "accepted")
+        yield ended if over else "still flying"
+        if over:
+            return
 
 
 def _with_station(flight: Flight) -> Iterator[str]:
@@ -262,7 +317,8 @@ def main() -> None:
     flown: list[Flown] = []
     for seed in range(first, last):
         who: Personality = "ardupilot" if personality == "ardupilot" else "px4"
-        found = fly(seed, who, alone="--alone" in sys.argv)
+        bridged = "--through-bridge" in sys.argv
+        found = fly(seed, who, alone="--alone" in sys.argv, through_bridge=bridged)
         flown.append(found)
         told = found.refusal or f"{found.ended}, nearest {found.nearest_m:.2f} m"
         print(f"{personality} {seed}: {told}", flush=True)
