@@ -25,6 +25,7 @@ from gcs.protocol.effects import Address
 from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MsgId
+from gcs.wire.messages import ParamValue
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
@@ -196,6 +197,10 @@ class Bridge:
         for link, raws in shares:
             self._by_link[link].sent.count(len(raws), now_ns)
         return shares
+
+    def parameter(self, message: ParamValue, autopilot: str) -> list[BridgeEffect]:
+        """PARAM_VALUE of the vehicle's autopilot."""
+        return self._judge.parameter(message, autopilot)
 
     def told(self, number: int, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
         """What the station tells a client as an operator."""

@@ -31,6 +31,7 @@ from gcs.bridge.effects import (
 )
 from gcs.bridge.guard import verdict as guard_verdict
 from gcs.bridge.guard.guard import Guard
+from gcs.bridge.guard.manual_modes import refused_mode
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
 from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
 from gcs.bridge.meaning.translate import meaning_of
@@ -55,6 +56,7 @@ from gcs.wire.messages import (
     MissionItem,
     MissionItemInt,
     MissionSetCurrent,
+    ParamValue,
     RequestDataStream,
 )
 
@@ -139,8 +141,7 @@ class Judge:
 
     # ------------------------------------------------------------------------------ motion
 
-    @staticmethod
-    def _motion(given: Received, message: Message | None, row: Row) -> Judged:
+    def _motion(self, given: Received, message: Message | None, row: Row) -> Judged:
         """What would move the vehicle becomes a request to the gate."""
         client, seen, now_ns = given.client, given.look(), given.now_ns
         if seen is None:
@@ -150,6 +151,10 @@ class Judge:
         meaning = client.pace.settle(meaning_of(message, seen), now_ns)
         match meaning:
             case Words(asks, note):
+                standing = seen.on_ground and not seen.armed
+                bad_mode = refused_mode(asks, seen.autopilot, self._rules, stands_disarmed=standing)
+                if bad_mode is not None:
+                    return _refuse(given, message, row, bad_mode)
                 told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
                 asked = client.dialogue.ask(given.by, message, asks, now_ns)
                 return Judged(False, [*told, *asked])
@@ -179,11 +184,19 @@ class Judge:
                 to_vehicle = [AsksVehicle(by.source, each) for each in ask_vehicle]
                 return Judged(True, [*refused.effects, *to_client, *to_vehicle])
 
-    def _guarded(self, message: Message, by: From, seen: Seen) -> Judgement:
+    def parameter(self, message: ParamValue, autopilot: str) -> list[BridgeEffect]:
+        """PARAM_VALUE of the vehicle's autopilot: what has changed, for the log."""
+        changed = self._guard_of(autopilot).heard(message)
+        return [] if changed is None else [Notes(changed.level, changed.text)]
+
+    def _guard_of(self, autopilot: str) -> Guard:
         if self._guard is None:
-            self._guard = Guard(self._rules, seen.autopilot.name)
+            self._guard = Guard(self._rules, autopilot)
+        return self._guard
+
+    def _guarded(self, message: Message, by: From, seen: Seen) -> Judgement:
         at = GuardSeen(by.source, by.addressed, seen.armed, seen.on_ground, seen.max_takeoff_up_m)
-        return self._guard.judge(message, at)
+        return self._guard_of(seen.autopilot.name).judge(message, at)
 
     # ------------------------------------------------------------------------------- plans
 

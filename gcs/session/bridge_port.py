@@ -30,7 +30,9 @@ from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.work import Log
+from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
+from gcs.wire.messages import ParamValue
 
 
 class BridgePort:
@@ -68,6 +70,16 @@ class BridgePort:
             telemetry, self._vehicle.gate, self._vehicle.parameters, self._max_takeoff_up_m
         )
         return replace(seen, plan_transfer=self._vehicle.plan_transfer)
+
+    def parameter(self, frame: Frame) -> list[BridgeEffect]:
+        """PARAM_VALUE on a vehicle's link: what it says of what clients have written."""
+        telemetry = self._vehicle.telemetry
+        if telemetry is None or (frame.sysid, frame.compid) != (telemetry.sysid, telemetry.compid):
+            return []
+        message = decode(frame) if self._shown else None
+        if not isinstance(message, ParamValue):
+            return []
+        return self.bridge.parameter(message, telemetry.autopilot.name)
 
     def before_gate(self, given: Input, now_ns: int) -> list[BridgeEffect]:
         """The vehicle's own answer to a command is what the client is answered, too."""

@@ -92,6 +92,7 @@ from gcs.session.work import (
 )
 from gcs.wire.blanking import without_key
 from gcs.wire.frame import Frame, Garbage, Item
+from gcs.wire.ids import MsgId
 from gcs.wire.signing import Reason
 
 OTHER_STATION_NS = 5_000_000_000
@@ -447,7 +448,10 @@ class Session:
             self._other_station_ns = now_ns
             text = f"another station on link {link} calls itself {sysid}/{compid}"
             return [condition(Condition.OTHER_STATION, True, text)]
-        return self._vehicle.frame(link, frame, now_ns)
+        work = self._vehicle.frame(link, frame, now_ns)
+        if frame.msgid == MsgId.PARAM_VALUE:
+            work += self._bridge.parameter(frame)
+        return work
 
     # ------------------------------------------------------------------------------ time
 

@@ -13,6 +13,7 @@ from gcs.bridge.guard.safety_parameters import group_of
 from gcs.bridge.guard.verdict import GuardSeen
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code
+from gcs.plan.model import AutopilotName
 from gcs.protocol.parameter_names import names_of
 from gcs.session import failsafes, settings
 from gcs.session.jobs import facts
@@ -236,7 +237,7 @@ def test_extended_parameters_are_guarded_by_name_too() -> None:
 
 @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 def test_every_parameter_that_the_station_stands_on_is_guarded_by_every_name(
-    autopilot: str,
+    autopilot: AutopilotName,
 ) -> None:
     wanted = {table[autopilot] for table in settings.READ_FIRST if autopilot in table}
     wanted |= {*failsafes.parameters_of(autopilot)}
