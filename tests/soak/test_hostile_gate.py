@@ -1,0 +1,134 @@
+"""Hostile runs of the gate against a vehicle that is as bad as the policy allows: `hostile_run.py`.
+
+`make test` flies a share, `make soak` a hundred thousand of them, on all cores.  The soak fails,
+too, where a cell of the table or a reason was met so seldom that the runs say little of it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from itertools import repeat
+from typing import Final
+
+import pytest
+
+from gcs.gate.effects import CommandKind, SendCommand
+from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.table import TABLE
+from gcs.gate.refusal import Code
+from gcs.gate.states import FlightMode, State
+from tests.soak.hostile_acts import fly
+from tests.soak.hostile_policies import policy_of
+from tests.soak.hostile_run import Broken, Seen
+from tests.soak.point_mass import PointMass
+from tests.soak.seeds import base_seed
+from tests.unit.gate.unreached import UNREACHED
+
+RUNS: Final = 100_000
+A_SHARE: Final = 300
+JUDGED_OF: Final = 10
+"""One run in so many is held against the explorer's invariants, step by step."""
+AT_LEAST: Final = 30
+"""So often each cell and each reason is met in a soak."""
+
+NOT_THE_GATES: Final = frozenset(
+    {
+        Code.BAD_MISSION,  # of a mission job, before the gate hears of a mission
+        Code.NO_ORIGIN,  # these fences are not geographic
+        Code.SEVERAL_VEHICLES,  # the session's
+        Code.UNSUPPORTED_VEHICLE,  # the session's
+        Code.OTHER_OPERATOR,  # the session's
+        Code.NOT_RUNNING,  # the session's
+    }
+)
+"""Reasons that no run of the gate alone can meet."""
+
+
+def flown(first: int, count: int) -> Seen:
+    seen = Seen()
+    for seed in range(first, first + count):
+        seen.add(fly(seed, policy_of(seed), judged=seed % JUDGED_OF == 0))
+    return seen
+
+
+def test_no_hostile_run_breaks_a_promise() -> None:
+    seen = flown(base_seed(), A_SHARE)
+    assert seen.runs == A_SHARE
+    assert seen.under_promise > 10 * A_SHARE
+    print(told(seen))
+
+
+@pytest.mark.soak
+def test_a_hundred_thousand_hostile_runs_break_no_promise() -> None:
+    seen = Seen()
+    firsts = range(base_seed(), base_seed() + RUNS, 250)
+    with ProcessPoolExecutor(os.cpu_count()) as workers:
+        for part in workers.map(flown, firsts, repeat(250)):
+            seen.add(part)
+    print(told(seen))
+    assert not list(too_seldom(seen)), told(seen)
+
+
+def told(seen: Seen) -> str:
+    least = ", ".join(too_seldom(seen))
+    return (
+        f"seed {base_seed()}: {seen.runs} runs, {seen.steps} steps of 20 ms, "
+        f"{seen.under_promise} under promise, nearest to leaving the fence {seen.worst_m:.2f} m; "
+        f"{len(seen.cells)} cells met; less than {AT_LEAST} times: {least or 'none'}"
+    )
+
+
+def too_seldom(seen: Seen) -> Iterator[str]:
+    """Cells and reasons that can be met and were not, or seldom."""
+    unreached = {entry for listed in UNREACHED for entry in listed.entries}
+    for (state, event), cell in TABLE.items():
+        name = f"{state.name} / {event.value}"
+        if cell and name not in unreached and seen.cells[state, event] < AT_LEAST:
+            yield f"{name} {seen.cells[state, event]}"
+    for code in Code:
+        if code not in NOT_THE_GATES and seen.codes[code.value] < AT_LEAST:
+            yield f"{code.value} {seen.codes[code.value]}"
+
+
+# ---------------------------------------------------------------- can these runs fail?
+
+
+def first_broken(count: int = 120) -> str:
+    """What the first run says that breaks a promise."""
+    try:
+        flown(0, count)
+    except Broken as broken:
+        return str(broken)
+    return ""
+
+
+def test_a_gate_that_brakes_too_late_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The vehicle needs ten times as long to brake as the policy says."""
+    step = PointMass._towards_velocity
+
+    def weak(
+        vehicle: PointMass, wanted: tuple[float, float, float], a_h: float, a_v: float
+    ) -> None:
+        slows = vehicle.mode is not FlightMode.OTHER and a_h < 12.0
+        step(vehicle, wanted, a_h * (0.1 if slows else 1.0), a_v)
+
+    monkeypatch.setattr(PointMass, "_towards_velocity", weak)
+    assert "m outside" in first_broken()
+
+
+def test_a_command_without_a_permit_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    permitted = Gate._permitted
+
+    def careless(gate: Gate, draft: object) -> object:
+        effect = permitted(gate, draft)  # type: ignore[arg-type]
+        if isinstance(effect, SendCommand) and effect.kind is CommandKind.GUIDED:
+            return SendCommand(effect.request_id, effect.kind, effect.deadline_ns)
+        return effect
+
+    monkeypatch.setattr(Gate, "_permitted", careless)
+    found = first_broken()
+    assert "without a permit" in found
+    assert "seed " in found
+    assert State.HOVERING.name in found
