@@ -17,6 +17,7 @@ from gcs.gate.states import State
 from gcs.report import DecisionItem
 from gcs.session.inputs import OperatorJoined, OperatorLine
 from tests.loopback.flight import Flight
+from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.simulation.fault_script import fault_of
 
 HALF_M, CEILING_M = 55.0, 40.0
@@ -42,7 +43,7 @@ def flight_of(kind: str) -> Flight:
     policy = parse_policy(POLICY, "my.toml")
     if kind == "ardupilot":
         return Flight("ardupilot", policy=policy).hovering(UP_M)
-    offboard = "real" if "real" in kind else "smooth"
+    offboard: Offboard = "real" if "real" in kind else "smooth"
     return Flight("px4", policy=policy, offboard=offboard).hovering(UP_M)
 
 

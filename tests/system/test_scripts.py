@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -15,7 +16,7 @@ from tests.system.vehicle_program import free_port, vehicle_sim
 pytestmark = pytest.mark.system
 
 SCRIPTS = Path(__file__).parents[2] / "missions" / "scripts"
-TESTED = {"square.py", "fly_plan.py", "watch_battery.py", "stop.py"}
+TESTED = {"square.py", "fly_plan.py", "watch_battery.py", "velocity.py", "stop.py"}
 
 
 def run(name: str, *arguments: str, folder: Path) -> list[str]:
@@ -63,6 +64,23 @@ def test_the_square_flies_on_a_vehicle_of_others(tmp_path: Path) -> None:
     with vehicle_sim("--link", f"udpout://127.0.0.1:{port}"):
         *_, end = run("square.py", f"udpin://127.0.0.1:{port}", folder=tmp_path)
     assert end.startswith("GROUNDED ")
+
+
+def test_velocities_are_flown_refused_and_streamed(tmp_path: Path) -> None:
+    """2 s at 1 m/s are 2 m; a circle of 1 m about the place north of where it began takes 6.3 s."""
+    after, refusal, round_, end = run("velocity.py", folder=tmp_path)
+    assert refusal == "POLICY {'asked': 50.0, 'max_speed_h_m_s': 10.0}"
+    east_m, north_m, _ = place_of(after)
+    assert (east_m, north_m) == (pytest.approx(2.0, abs=1.0), pytest.approx(0.0, abs=0.7))
+    assert math.dist(place_of(round_)[:2], (east_m, north_m)) < 1.5
+    assert end.startswith("GROUNDED logs/")
+    states = [state.state for state in whole(only_log(tmp_path / "logs")).states]
+    assert states.count("STREAMING") == 3
+
+
+def place_of(line: str) -> tuple[float, ...]:
+    """Of a line such as `at (2.0, 0.0, 3.0)`."""
+    return tuple(float(metres) for metres in line.removeprefix("at (").rstrip(")").split(", "))
 
 
 def test_a_plan_is_flown_with_its_events(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ from gcs.gate.permit import Permit
 from gcs.gate.refusal import Code
 from gcs.gate.requests import Abort, BeginStream, EndStream, GoTo, Hold, Land
 from gcs.gate.states import FlightMode, State
-from tests.unit.gate.reactions import default_policy
+from tests.unit.gate.reactions import default_policy, state_of
 from tests.unit.gate.script import MS, SECOND, Script, policy
 
 UP = 10.0
@@ -52,7 +52,7 @@ def streaming(v_enu: Vec3 = (1.0, 0.0, 0.0)) -> Script:
     script = hovering()
     script.feed(velocity(*v_enu))
     script.tick()
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
     script.feed(velocity(*v_enu))
     script.forget()
     return script
@@ -102,7 +102,7 @@ def test_a_stream_that_is_asked_for_holds_until_its_first_sample() -> None:
     script = hovering()
     asked = script.ask(BeginStream())
     assert script.verdict(asked).ruling is Ruling.ACCEPTED
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
     script.tick()
     assert [permit.pos_ned for permit in sent(script)] == [(0.0, 0.0, -UP)]
     script.feed(velocity(1.0, 0.0, 0.0))
@@ -118,7 +118,7 @@ def test_its_end_is_asked_for_and_completes_both_requests() -> None:
     ended = script.ask(EndStream())
     assert script.outcome(begun).kind is OutcomeKind.COMPLETE
     assert script.outcome(ended).kind is OutcomeKind.COMPLETE
-    assert script.gate.state is State.HOVERING
+    assert state_of(script) is State.HOVERING
     east_m = script.pos_ned[1]
     # 4 m/s: 0.125 s old is the position, and 0.3 s it takes until the vehicle reacts
     assert script.gate.hold_goal_ned == pytest.approx((0.0, east_m + 4 * 0.425, -UP))
@@ -145,7 +145,7 @@ def test_a_hold_ends_the_stream_in_hold_mode(request_: Hold | Abort) -> None:
     begun = script.ask(BeginStream())
     script.feed(velocity(1.0, 0.0, 0.0))
     script.ask(request_, "another")
-    assert script.gate.state is State.HOLDING
+    assert state_of(script) is State.HOLDING
     assert script.outcome(begun).kind is OutcomeKind.ABORTED
     script.feed(velocity(1.0, 0.0, 0.0))
     script.forget()
@@ -156,7 +156,7 @@ def test_a_hold_ends_the_stream_in_hold_mode(request_: Hold | Abort) -> None:
 def test_a_landing_ends_the_stream() -> None:
     script = streaming()
     script.ask(Land())
-    assert script.gate.state is State.LANDING
+    assert state_of(script) is State.LANDING
     script.forget()
     script.tick()
     assert sent(script) == []
@@ -168,17 +168,17 @@ def test_a_goal_of_its_client_ends_the_stream_and_is_flown() -> None:
     script.feed(velocity(1.0, 0.0, 0.0))
     goal = script.goto(5.0, 0.0, UP)
     assert script.outcome(begun).kind is OutcomeKind.COMPLETE
-    assert script.gate.state is State.HOVERING
+    assert state_of(script) is State.HOVERING
     script.tick()
     assert script.verdict(goal).ruling is Ruling.ACCEPTED
-    assert script.gate.state is State.MOVING
+    assert state_of(script) is State.MOVING
 
 
 def test_a_goal_of_another_client_is_busy() -> None:
     script = streaming()
     asked = script.ask(GoTo((0.0, 5.0, -UP)), "another")
     assert script.refusal(asked) is Code.BUSY
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
 
 
 def test_a_stream_replaces_a_goal_where_the_policy_allows_it() -> None:
@@ -189,7 +189,7 @@ def test_a_stream_replaces_a_goal_where_the_policy_allows_it() -> None:
     assert told(script) == [Code.BUSY]
     script.feed(velocity(0.0, 1.0, 0.0))
     assert script.outcome(goal).kind is OutcomeKind.SUPERSEDED
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
 
 
 def test_a_stream_that_is_asked_for_stops_the_flight_to_a_goal() -> None:
@@ -213,7 +213,7 @@ def test_a_stream_does_not_replace_a_goal_where_the_policy_does_not_allow_it() -
     assert script.refusal(script.ask(BeginStream())) is Code.BUSY
     script.feed(velocity(0.0, 1.0, 0.0))
     assert told(script) == [Code.BUSY]
-    assert script.gate.state is State.MOVING
+    assert state_of(script) is State.MOVING
 
 
 # ------------------------------------------------------------------------- verified samples
@@ -236,7 +236,7 @@ def test_a_velocity_straight_at_the_fence_is_flown_as_long_as_it_can_be_stopped(
 def test_a_refused_stream_is_held_in_its_place_and_handed_back_when_it_leads_back() -> None:
     script = hovering()
     fly(script, 20.0, velocity(10.0, 0.0, 0.0))
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
     held_ned = script.gate.hold_goal_ned
     assert held_ned is not None
     script.forget()
@@ -249,7 +249,7 @@ def test_a_refused_stream_is_held_in_its_place_and_handed_back_when_it_leads_bac
     fly(script, 2.0, velocity(-5.0, 0.0, 0.0))
     assert told(script) == [None]
     assert sent(script)[-1].v_ned == (0.0, -5.0, 0.0)
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
 
 
 def test_good_and_bad_samples_by_turns_do_not_move_it() -> None:
@@ -329,7 +329,7 @@ def test_a_sample_is_judged(name: str) -> None:
     script.feed(sample)
     script.tick()
     assert told(script) == [code]
-    assert (script.gate.state is State.STREAMING) == (code is None)
+    assert (state_of(script) is State.STREAMING) == (code is None)
 
 
 @pytest.mark.parametrize("name", [name for name, (_, code) in SAMPLES.items() if code is not None])
@@ -379,7 +379,7 @@ def test_velocities_towards_the_ground_are_stopped_above_the_floor() -> None:
     script = hovering()
     fly(script, 10.0, velocity(0.0, 0.0, -2.0))
     assert told(script) == [None, Code.CANNOT_STOP]
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
     assert script.pos_ned[2] < -0.5
 
 
@@ -404,7 +404,7 @@ def test_a_source_that_goes_silent_is_held_in_its_place() -> None:
     assert script.now_ns - at_ns == 500 * MS
     assert [permit.v_ned for permit in sent(script)] == [None]
     assert told(script) == [Code.DEADLINE]
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
 
 
 def test_a_sample_after_a_silence_waits_for_others() -> None:
@@ -433,10 +433,10 @@ def test_a_stream_that_stays_silent_is_over() -> None:
     script.feed(velocity(1.0, 0.0, 0.0))
     at_ns = script.now_ns
     script.wait(4.95)
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
     script.tick()
     assert script.now_ns - at_ns == 5 * SECOND
-    assert script.gate.state is State.HOVERING
+    assert state_of(script) is State.HOVERING
     outcome = script.outcome(begun)
     assert (outcome.kind, outcome.code) == (OutcomeKind.TIMED_OUT, Code.DEADLINE)
     assert "no sample of the stream came for 5 s" in outcome.sentence
@@ -491,7 +491,7 @@ def test_without_a_fresh_position_no_sample_is_flown() -> None:
         script.feed(velocity(1.0, 0.0, 0.0))
         script.tick()
     assert told(script) == [Code.STALE]
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
     script.reports_position = True
     script.forget()
     fly(script, 1.0, velocity(1.0, 0.0, 0.0))
@@ -504,12 +504,12 @@ def test_a_position_too_old_interrupts_it_and_the_hold_goes_on_for_the_grace() -
     for _ in range(24):
         script.feed(velocity(1.0, 0.0, 0.0))
         script.tick()
-    assert script.gate.state is State.STALE
+    assert state_of(script) is State.STALE
     assert told(script) == [Code.STALE]
     assert sent(script)[-1].pos_ned is not None
     script.reports_position = True
     script.tick()
-    assert script.gate.state is State.STREAMING
+    assert state_of(script) is State.STREAMING
     script.forget()
     fly(script, 1.0, velocity(1.0, 0.0, 0.0))
     assert told(script) == [None]
@@ -533,7 +533,7 @@ def test_a_breach_that_is_predicted_all_the_same_is_braked_in_hold_mode() -> Non
     script.v_ned = ned_from_enu((5.0, 0.0, 0.0))
     script.forget()
     script.position()
-    assert script.gate.state is State.HOLDING
+    assert state_of(script) is State.HOLDING
     assert script.commands() == [CommandKind.HOLD]
 
 
@@ -542,7 +542,7 @@ def test_a_pilot_who_takes_over_ends_the_stream() -> None:
     begun = script.ask(BeginStream())
     script.feed(velocity(1.0, 0.0, 0.0))
     script.heartbeat(FlightMode.OTHER)
-    assert script.gate.state is State.EXTERNAL
+    assert state_of(script) is State.EXTERNAL
     assert script.outcome(begun).kind is OutcomeKind.TAKEN_OVER
     script.forget()
     script.feed(velocity(1.0, 0.0, 0.0))
