@@ -186,6 +186,8 @@ class Dialogue:
         for pending in self._pending.values():
             if pending.operation == operation and operation:
                 pending.vehicle_result = result
+                if pending.rest:
+                    return []  # the last of what was asked for answers the command
                 if result == Result.ACCEPTED and pending.word not in SEEN_SOON:
                     return self._answer(pending, Result.ACCEPTED, None, now_ns)
         return []
@@ -214,7 +216,9 @@ class Dialogue:
         if event.ended == "complete":
             if pending.rest:
                 ask, rest = pending.rest[0], pending.rest[1:]
-                following = replace(pending, rest=rest, word=ask.word, vehicle_result=None)
+                following = replace(
+                    pending, rest=rest, name=ask.word, word=ask.word, vehicle_result=None
+                )
                 return [Says(self.client, self._open(following, ask))]
             return self._answer(pending, Result.ACCEPTED, None, now_ns)
         code = _code(event.code)

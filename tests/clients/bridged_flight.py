@@ -11,7 +11,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -77,7 +77,6 @@ class Bridged:
     clients: list[str]
     """host:port, one for each client link."""
     truth: Truth
-    vehicle: Simulator
     log_dir: Path
     said: list[str] = field(default_factory=list)
 
@@ -89,25 +88,38 @@ class Bridged:
 @contextmanager
 def bridged(personality: Personality, folder: Path, clients: int = 1) -> Iterator[Bridged]:
     """It has heard its vehicle; at the end it must leave in order."""
-    truth = Truth(personality)
     vehicle_at = f"127.0.0.1:{free_port()}"
     places = [f"127.0.0.1:{free_port()}" for _ in range(clients)]
-    link = ["--link", f"udpout://{vehicle_at}", "--view", truth.url]
-    vehicle = Simulator(personality, options=link)
-    words = [sys.executable, "-m", "gcs", "bridge", "--plain", "--policy", str(POLICY)]
-    words += ["--vehicle", f"udpin://{vehicle_at}", "--log-dir", str(folder / "logs")]
+    words = ["--vehicle", f"udpin://{vehicle_at}", "--log-dir", str(folder / "logs")]
     for place in places:
         words += ["--client", f"udpin://{place}"]
-    process = subprocess.Popen(
-        words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True
-    )
-    assert process.stdout is not None
-    flight = Bridged(personality, places, truth, vehicle, folder / "logs")
-    reader = threading.Thread(target=flight.said.extend, args=(process.stdout,))
-    reader.start()
-    try:
+    with ExitStack() as ends:
+        truth = Truth(personality)
+        ends.callback(truth.close)
+        link = ["--link", f"udpout://{vehicle_at}", "--view", truth.url]
+        vehicle = Simulator(personality, options=link)
+        ends.callback(vehicle.stop)
+        flight = Bridged(personality, places, truth, folder / "logs")
+        ends.callback(lambda: print(*flight.said, sep=""))  # shown where the test fails
+        ends.enter_context(_bridge(words, flight.said))
         until(lambda: any("GROUNDED" in line for line in flight.said), "the bridge is ready")
         yield flight
+
+
+@contextmanager
+def _bridge(words: list[str], said: list[str]) -> Iterator[None]:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "gcs", "bridge", "--plain", "--policy", str(POLICY), *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    reader = threading.Thread(target=said.extend, args=(process.stdout,))
+    reader.start()
+    try:
+        yield
     finally:
         process.send_signal(signal.SIGINT)
         try:
@@ -117,9 +129,6 @@ def bridged(personality: Personality, folder: Path, clients: int = 1) -> Iterato
             code = process.wait()
         reader.join()
         process.stdout.close()
-        vehicle.stop()
-        truth.close()
-        print(*flight.said, sep="")  # shown where the test fails
     assert code == 0
 
 

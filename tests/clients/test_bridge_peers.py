@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from gcs.bridge.answers import NUMBER_OF
+from gcs.gate.refusal import Code
 from tests.clients.bridged_flight import bridged, end_peer, start_peer
 from tests.clients.mavutil_client import in_order
 from vehicle_sim.testing.process import Personality
@@ -55,4 +57,25 @@ def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_pa
     assert flight.refusals()
     assert len(flight.truth.places) > 50 * 60
     assert max(north_m for north_m, _, _ in flight.truth.places) > 14.0  # it did fly
+    assert flight.truth.outside() == []
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+def test_two_at_once_and_one_in_control(personality: Personality, tmp_path: Path) -> None:
+    """Both on one port.  The other one reads everything, and is told who is in control."""
+    with bridged(personality, tmp_path) as flight:
+        in_control = start_peer("mavsdk", f"udpout://{flight.clients[0]}", flight, "fly", "land")
+        other = start_peer("pymavlink", f"udpout:{flight.clients[0]}", flight, "look_on")
+        looked, flown = end_peer(other), end_peer(in_control)
+    print(*looked, *flown, sep="\n")
+    in_order(flown, *FLOWN["mavsdk"], "^landed and disarmed")
+    number = NUMBER_OF[Code.OTHER_OPERATOR]
+    in_order(
+        looked,
+        "^all parameters: True",
+        f"^goto of another: refused TEMPORARILY_REJECTED {number} ",
+        f"^take-off of another: refused TEMPORARILY_REJECTED {number} ",
+        "^mission of another: refused ",
+        "^told: gate: in control: MAVLink 245/190",
+    )
     assert flight.truth.outside() == []

@@ -97,6 +97,9 @@ def guided(wanted: Mode, seen: Seen) -> Meaning:
     return ask("control")
 
 
+UNDER_WAY = frozenset({State.TAKING_OFF, State.MOVING, State.STREAMING, State.RETURNING})
+"""States out of which a mission is started by stopping first."""
+
 _WORD_OF = {
     FlightMode.MISSION: "mission_start",
     FlightMode.RETURN: "rtl",
@@ -108,6 +111,8 @@ def _flown_by_itself(wanted: Mode, seen: Seen) -> Words:
     """By its name where it is not the mode that the gate sends: the gate says which one that is.
 
     A mission may be started, or gone on with, from a hold: its client has no word for `resume`.
+    Out of a go-to that is not there yet an autopilot starts it at once, and clients rely on that;
+    the gate starts one from a hover, so the client in control stops first.
     """
     if wanted.name != _sent(seen.autopilot, wanted.meaning):
         return mode(wanted.name)
@@ -118,6 +123,8 @@ def _flown_by_itself(wanted: Mode, seen: Seen) -> Words:
         return DONE
     if seen.state in NOT_FLOWN_BY_US and not seen.on_ground:
         return Words((ipc.Ask(0, "resume"), *word.asks))
+    if seen.state in UNDER_WAY and seen.in_control:
+        return Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume"), *word.asks))
     return word
 
 

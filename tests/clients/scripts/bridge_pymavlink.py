@@ -24,6 +24,7 @@ POSITION, VELOCITY = 0b110111111000, 0b110111000111
 class Peer:
     def __init__(self, url, autopilot, source_system=250):
         self.autopilot = autopilot
+        self.sysid = source_system
         self.link = mavutil.mavlink_connection(url, source_system=source_system)
         self.beaten_s = 0.0
         self.texts = []
@@ -169,7 +170,7 @@ class Peer:
         while time.monotonic() < end:
             message = self.wait(
                 ["MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"],
-                lambda m: m.mission_type == mission_type and m.target_system == 250,
+                lambda m: m.mission_type == mission_type and m.target_system == self.sysid,
             )
             if message.get_type() == "MISSION_ACK":
                 return message.type
@@ -261,6 +262,18 @@ class Peer:
         self.in_mode("RTL")
         print("returns", flush=True)
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
+
+    def look_on(self):
+        """While another one flies: it reads all, and moves nothing."""
+        self.connect()
+        self.parameters()
+        self.wait("HEARTBEAT", lambda m: m.get_srcComponent() == 1 and m.system_status == 4, 60.0)
+        self.wait("GLOBAL_POSITION_INT", lambda m: m.relative_alt > 3000, 60.0)
+        self.refused("goto of another", self.goto(5, 5, UP_M))
+        self.refused("take-off of another", self.long(M.MAV_CMD_NAV_TAKEOFF, *[math.nan] * 7))
+        result = self.upload(self.mission((5, 5, UP_M, 1), last=21))
+        self.denied("mission of another", result)
+        print(f"told: {next(text for text in self.texts if 'in control' in text)}", flush=True)
 
     def hold_mode(self):
         return (1 | 128, 4, 3) if self.autopilot == "px4" else (1 | 128, 5, 0)  # LOITER
@@ -396,7 +409,7 @@ class Peer:
 
 
 def main(url, autopilot, *words):
-    peer = Peer(url, autopilot)
+    peer = Peer(url, autopilot, source_system=251 if "look_on" in words else 250)
     for word in words:
         getattr(peer, word)()
 

@@ -166,6 +166,19 @@ def test_a_mission_that_is_flown_need_not_start() -> None:
     assert words(meaning_of(px4("MISSION"), flown)) == []
 
 
+UNDER_WAY = [State.TAKING_OFF, State.MOVING, State.STREAMING, State.RETURNING]
+
+
+@pytest.mark.parametrize("state", UNDER_WAY, ids=lambda s: s.name)
+def test_a_mission_starts_out_of_what_is_flown_by_stopping_first(state: State) -> None:
+    """MAVSDK's goto_location, then start_mission before it is there."""
+    mine = flying(PX4, state=state, mode_name="OFFBOARD")
+    assert words(meaning_of(px4("MISSION"), mine)) == ["hold", "resume", "mission_start"]
+    assert words(meaning_of(command_long(300), mine)) == ["hold", "resume", "mission_start"]
+    other = flying(PX4, state=state, mode_name="OFFBOARD", in_control=False)
+    assert words(meaning_of(px4("MISSION"), other)) == ["mission_start"]
+
+
 @pytest.mark.parametrize("state", [State.HOLDING, State.EXTERNAL], ids=lambda s: s.name)
 def test_a_mission_goes_on_after_a_hold(state: State) -> None:
     """MAVSDK pauses with the hold mode and starts again with the mission mode, or MISSION_START."""

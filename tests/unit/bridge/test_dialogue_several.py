@@ -1,0 +1,71 @@
+"""One command of a client that stands for several requests: the last of them answers it."""
+
+from __future__ import annotations
+
+import pytest
+
+from gcs import ipc
+from gcs.bridge.dialogue import Dialogue, From
+from gcs.bridge.effects import Answers, BridgeEffect, Says
+from gcs.protocol.effects import Address
+from gcs.wire.ids import Cmd, Result
+from gcs.wire.messages import CommandAck, CommandLong, Statustext
+
+CLIENT = From(1, Address(245, 190), Address(1, 1))
+START = CommandLong(0, 0, 0, 0, 0, 0, 0, Cmd.MISSION_START, 1, 1, 0)
+
+
+class Start:
+    """MISSION_START: `first`, then `mission_start`."""
+
+    def __init__(self, first: str) -> None:
+        self.first, self.dialogue = first, Dialogue(1000)
+        asks = (ipc.Ask(0, first), ipc.Ask(0, "mission_start"))
+        self.asked = self.number_of(self.dialogue.ask(CLIENT, START, asks, 0))
+
+    @staticmethod
+    def number_of(effects: list[BridgeEffect]) -> int:
+        (said,) = effects
+        assert isinstance(said, Says)
+        assert isinstance(said.command, ipc.Ask)
+        return said.command.id
+
+    def first_done(self) -> list[BridgeEffect]:
+        """The gate accepts, the vehicle acknowledges, and the heartbeat shows it."""
+        verdict = ipc.VerdictEvent(self.asked, self.first, "accepted", operation=1)
+        answered = self.dialogue.told(verdict, 0) + self.dialogue.command_answered(
+            1, Result.ACCEPTED, 0
+        )
+        ended = self.dialogue.told(ipc.EndingEvent(self.asked, self.first, "complete"), 0)
+        self.asked = self.number_of(ended)
+        return answered
+
+
+def results(effects: list[BridgeEffect]) -> list[int]:
+    acks = [each.message for each in effects if isinstance(each, Answers)]
+    return [ack.result for ack in acks if isinstance(ack, CommandAck)]
+
+
+def texts(effects: list[BridgeEffect]) -> str:
+    said = [each.message for each in effects if isinstance(each, Answers)]
+    return "".join(text.text for text in said if isinstance(text, Statustext))
+
+
+@pytest.mark.parametrize("first", ["arm", "hold"])
+def test_the_vehicles_answer_to_the_first_is_not_yet_the_answer(first: str) -> None:
+    """On the ground it arms first, out of a go-to it holds first."""
+    start = Start(first)
+    assert results(start.first_done()) == []
+    verdict = ipc.VerdictEvent(start.asked, "mission_start", "accepted", operation=2)
+    assert results(start.dialogue.told(verdict, 0)) == []
+    assert results(start.dialogue.command_answered(2, Result.ACCEPTED, 0)) == [Result.ACCEPTED]
+
+
+@pytest.mark.parametrize("first", ["arm", "hold"])
+def test_a_refusal_of_the_last_is_what_the_client_hears_by_its_name(first: str) -> None:
+    start = Start(first)
+    start.first_done()
+    verdict = ipc.VerdictEvent(start.asked, "mission_start", "refused", "NO_MISSION", "none")
+    effects = start.dialogue.told(verdict, 0)
+    assert results(effects) == [Result.DENIED]
+    assert texts(effects).startswith("mission_start: refused NO_MISSION")
