@@ -25,7 +25,7 @@ from gcs.session.discovery import needed_hz
 from gcs.session.effects import Emit
 from gcs.session.links import Counts
 from gcs.session.missions import timing_of
-from gcs.session.settings import SPEED, TAKE_OFF_HEIGHT
+from gcs.session.settings import SPEED, TAKEOFF_HEIGHT
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
@@ -160,7 +160,7 @@ def seen_of(
         armed=bool(telemetry.armed),
         mode_name=telemetry.mode_name,
         goal_ned=gate.active_goal_ned,
-        takeoff_up_m=parameters.get(TAKE_OFF_HEIGHT["px4"], TAKEOFF_UP_M),
+        takeoff_up_m=parameters.get(TAKEOFF_HEIGHT["px4"], TAKEOFF_UP_M),
         state=gate.state,
         max_takeoff_up_m=max_takeoff_up_m,
         max_speed_m_s=_own_speed_m_s(telemetry, parameters),

@@ -40,12 +40,10 @@ TAKEOFF_HEIGHT: Final = {"px4": "MIS_TAKEOFF_ALT"}
 """How high it takes off at least, metres above where it stands; ArduCopter has no such height."""
 READ_FIRST: Final = (RETURN_HEIGHT, CLIMB_END, ACCEPTANCE_RADIUS, TAKEOFF_HEIGHT)
 """What a flight waits for comes before the failsafes."""
-TAKE_OFF_HEIGHT: Final = {"px4": "MIS_TAKEOFF_ALT"}
-"""Metres above the ground that a take-off without a height climbs, and the least of any."""
 SPEED: Final = {"px4": "MPC_XY_CRUISE", "ardupilot": "WP_SPD"}
 """How fast it flies its legs where nothing else is asked for, m/s, by its newest name."""
-READ_LAST: Final = (TAKE_OFF_HEIGHT, SPEED)
-"""What is needed where a client asks for something without naming it."""
+READ_LAST: Final = (SPEED,)
+"""What only clients' requests for another speed are judged by."""
 
 
 @dataclass(frozen=True, slots=True)
