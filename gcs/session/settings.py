@@ -44,7 +44,7 @@ READ_FIRST: Final = (RETURN_HEIGHT, CLIMB_END, ACCEPTANCE_RADIUS, TAKEOFF_HEIGHT
 SPEED: Final = {"px4": "MPC_XY_CRUISE", "ardupilot": "WP_SPD"}
 """How fast it flies its legs where nothing else is asked for, m/s, by its newest name."""
 READ_LAST: Final = (SPEED,)
-"""What is needed where a client changes its speed."""
+"""What only clients' requests for another speed are judged by."""
 
 
 @dataclass(frozen=True, slots=True)

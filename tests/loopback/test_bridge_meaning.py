@@ -9,11 +9,9 @@ from __future__ import annotations
 
 import math
 
-import msgspec
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
-from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import Control, State
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
@@ -251,10 +249,8 @@ def test_qgroundcontrols_pause() -> None:
 
 
 def test_mavsdks_take_off_height() -> None:
-    """PARAM_SET MIS_TAKEOFF_ALT, then a take-off without a height (seen of MAVSDK 4.1.0), where the
-    policy lets it be set."""
-    rules = msgspec.structs.replace(DEFAULT.bridge, parameters_allowed=("MIS_TAKEOFF_ALT",))
-    flight = BridgedFlight("px4", policy=msgspec.structs.replace(DEFAULT, bridge=rules))
+    """PARAM_SET MIS_TAKEOFF_ALT, then a take-off without a height (seen of MAVSDK 4.1.0)."""
+    flight = BridgedFlight("px4")
     client = flight.join()
     flight.connected()
     client.send(dialect.MAVLink_param_set_message(*VEHICLE, b"MIS_TAKEOFF_ALT", 4.0, 9))
