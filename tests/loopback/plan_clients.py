@@ -123,7 +123,6 @@ class Upload:
         self.began_ns = flight.now_ns
         self.ended_ns = 0
         self.deadline_ns: int | None = None
-        self._next_beat_ns = 0
         self._read = len(client.heard)
         flight.uploads.append(self)
         self.begin()
@@ -141,8 +140,10 @@ class Upload:
                 self.acks.append(message.type)
             if not self.result:
                 self.hear(message)
-        if self.deadline_ns is not None and now_ns >= self.deadline_ns and not self.result:
-            self.late()
+        if self.deadline_ns is not None and now_ns >= self.deadline_ns:
+            self.deadline_ns = None
+            if not self.result:
+                self.late()
 
     @property
     def took_s(self) -> float:
