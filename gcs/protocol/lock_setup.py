@@ -23,7 +23,7 @@ from gcs.wire.ids import Component, MavType, ModeFlag, ParamType
 from gcs.wire.signing import GOOD, Checker, SecretKey, Signer, SigningClock
 
 EVERY_NS: Final = 700_000_000
-TRIES: Final = 8
+TRIES: Final = 12
 
 _TYPES: Final = frozenset(int(kind) for kind in ParamType)
 
