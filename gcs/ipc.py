@@ -40,7 +40,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
 
     `word` is one of: control arm disarm takeoff goto land rtl hold abort resume photo mode
     fence mission_start mission_upload mission_download mission_clear stream_begin stream_end
-    station_take station_end.
+    station_take station_release station_end.
     """
 
     id: int

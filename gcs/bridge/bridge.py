@@ -13,8 +13,9 @@ from typing import Final
 from gcs import ipc
 from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client
+from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
-from gcs.bridge.effects import BridgeEffect, Joined, Lost, Notes, ToLink
+from gcs.bridge.effects import Answers, BridgeEffect, Joined, Lost, Notes, ToLink
 from gcs.bridge.judge import Judge, Judged, Look, Received, of_plan
 from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.needed_rates import Rates
@@ -41,8 +42,9 @@ class Bridge:
         message; a client that is silent for `silent_ns` is lost; `timing` is of the plans that
         clients send."""
         self._own = own
-        self._judge = Judge(rules, needed_hz)
         self._manual_modes = rules.manual_modes
+        self._control = ControlServer()
+        self._judge = Judge(rules, needed_hz, self._control)
         self._silent_ns = silent_ns
         self._timing = timing
         self._routes = Routes()
@@ -236,8 +238,23 @@ class Bridge:
     ) -> list[BridgeEffect]:
         """Who is in control, all clients read; `number` is 0 for nobody."""
         self._in_control = number
+        self._control.changed(number, self._sysid_of(number))
         who = f"in control: {name}" if number else "nobody is in control"
         return self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
+
+    def control_status(self, vehicle: Address) -> list[BridgeEffect]:
+        """Who is in control, by the protocol's own message, for every client."""
+        status = self._control.status
+        return [Answers(c.link, vehicle, status) for c in self._by_number.values()]
+
+    def _sysid_of(self, number: int) -> int:
+        """What the operator in control calls itself: a client by its system id, an operator of the
+        station by the station's."""
+        client = self._by_number.get(number)
+        if client is None:
+            return self._own.sysid if number else 0
+        heard = self._routes.components(client.link)
+        return heard[0][0] if heard else 0
 
     def _to_all(self, vehicle: Address, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
         effects: list[BridgeEffect] = []

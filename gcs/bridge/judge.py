@@ -16,6 +16,7 @@ from gcs import ipc
 from gcs.bridge.classes import Kind, Row, command_row, explain, message_row
 from gcs.bridge.client import Client
 from gcs.bridge.client_plan import ClientPlan
+from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
     Answers,
@@ -92,8 +93,9 @@ class Received:
 class Judge:
     """Of everything that clients send to the one vehicle."""
 
-    def __init__(self, rules: BridgeRules, needed_hz: Rates) -> None:
-        """`needed_hz`: how often the gate needs which message."""
+    def __init__(self, rules: BridgeRules, needed_hz: Rates, control: ControlServer) -> None:
+        """`needed_hz`: how often the gate needs which message; `control`: who is in control."""
+        self._control = control
         self._rules = rules
         self._needed_hz = needed_hz
         self._guard: Guard | None = None
@@ -118,6 +120,9 @@ class Judge:
         match kind:
             case Kind.HARMLESS:
                 return Judged(False, self._forward(given, message))
+            case Kind.LOCAL if message is not None:
+                about_control = self._control.handle(message, given.client, given.by, given.now_ns)
+                return Judged(False, about_control)
             case Kind.LOCAL:
                 return Judged(False, [])
             case Kind.DENIED | Kind.CARRIER:

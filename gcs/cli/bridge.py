@@ -108,6 +108,12 @@ OWN_COMPID = 191
     show_default=True,
     help="Its component id.",
 )
+@click.option(
+    "--lock",
+    is_flag=True,
+    help="First give the vehicle the key of --sign-key, and make it ask the bridge before it arms "
+    "(PX4). Says what it changes. The vehicle must be disarmed.",
+)
 @with_options(*SIM_OPTIONS)
 @click.option(
     "--timeout",
@@ -141,6 +147,7 @@ def bridge(
     target: int | None,
     sysid: int,
     compid: int,
+    lock: bool,
     sim: bool,
     autopilot: str,
     home: str,
@@ -175,6 +182,8 @@ def bridge(
         hint = "such as --client udpin://127.0.0.1:14551 or --client udpout://127.0.0.1:14550"
         raise click.UsageError(f"where do clients reach it? {hint}")
     refuse_shared_places(vehicles, clients, vehicle_option="--vehicle")
+    if lock and not sign_key:
+        raise click.UsageError("--lock needs the vehicle's key: --sign-key FILE (gcs key new FILE)")
     if sim and sign_key:
         raise click.UsageError("--sim starts a vehicle without a key: leave out --sign-key")
     config = station_config(
@@ -200,6 +209,10 @@ def bridge(
         operator=f"gcs bridge, pid {os.getpid()}",
     )
     config = with_files(config, rotate_size, rotate_age, compact)
+    if lock:
+        from gcs.cli.bridge_lock import lock_vehicle
+
+        lock_vehicle(vehicles[0], sign_key, sysid, target, timeout or 10.0)
     level = 1 if verbose else 3 if quiet else 2
     ctx.exit(_run(config, timeout, page=not (plain or as_json), as_json=as_json, min_level=level))
 

@@ -12,6 +12,8 @@ from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.protocol.signing_setup import SigningSetup
+    from gcs.shell.clock import Clock
+    from gcs.shell.key_setup import Setup
     from gcs.wire.signing import SecretKey
 
 KEY_LINK = click.Option(
@@ -51,7 +53,7 @@ def new(file: str) -> None:
 @click.argument("file", type=UTF8)
 def show(file: str) -> None:
     """Print the fingerprint of a key, by which keys are compared; never the key."""
-    click.echo(f"{file}: fingerprint {_read(file).fingerprint}")
+    click.echo(f"{file}: fingerprint {read_key_file(file).fingerprint}")
 
 
 @key.command(epilog="Example: gcs key install vehicle.key --link serial:///dev/ttyACM0:115200")
@@ -63,8 +65,8 @@ def install(file: str, old_key: str | None, link: str, vehicle: int | None, time
 
     It must be disarmed. The vehicle is asked afterwards, signed and unsigned. Nothing is recorded.
     """
-    new_one = _read(file)
-    setup = _carried_out(new_one, _read(old_key) if old_key else None, link, vehicle, timeout)
+    new_one = read_key_file(file)
+    setup = give_key(new_one, read_key_file(old_key) if old_key else None, link, vehicle, timeout)
     had = "had already" if setup.had_it else "has"
     click.echo(
         f"vehicle {setup.vehicle} {had} the key {new_one.fingerprint}; "
@@ -80,14 +82,14 @@ def remove(file: str, link: str, vehicle: int | None, timeout: float) -> None:
 
     The file stays. The vehicle must be disarmed.
     """
-    setup = _carried_out(None, _read(file), link, vehicle, timeout)
+    setup = give_key(None, read_key_file(file), link, vehicle, timeout)
     click.echo(
         f"vehicle {setup.vehicle} has no key{' (it had none)' if setup.had_it else ''}; "
         "it takes what is not signed"
     )
 
 
-def _read(file: str) -> SecretKey:
+def read_key_file(file: str) -> SecretKey:
     from gcs.shell.key_files import KeyFileError, read_key
 
     try:
@@ -96,7 +98,7 @@ def _read(file: str) -> SecretKey:
         raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from error
 
 
-def _carried_out(
+def give_key(
     new_key: SecretKey | None,
     old_key: SecretKey | None,
     url: str,
@@ -106,13 +108,23 @@ def _carried_out(
     """Raises ExitError unless the vehicle is as it should be afterwards."""
     from gcs.protocol.signing_setup import SigningSetup
     from gcs.shell.clock import Clock
-    from gcs.shell.endpoints import EndpointError, parse_endpoint
-    from gcs.shell.key_setup import run
-    from gcs.shell.sockets import AddressInUse, open_link
 
     clock = Clock()
     deadline_ns = clock.now_ns() + round(timeout_s * 1e9)
     setup = SigningSetup(new_key, old_key, vehicle or 0, deadline_ns)
+    over_link(setup, url, clock)
+    trouble = _trouble(setup, url, timeout_s)
+    if trouble is not None:
+        raise trouble
+    return setup
+
+
+def over_link(setup: Setup, url: str, clock: Clock) -> None:
+    """Run a set-up until it has its ending.  Raises ExitError where the link cannot be opened."""
+    from gcs.shell.endpoints import EndpointError, parse_endpoint
+    from gcs.shell.key_setup import run
+    from gcs.shell.sockets import AddressInUse, open_link
+
     try:
         opened = open_link(parse_endpoint(url))
     except EndpointError as error:
@@ -126,10 +138,6 @@ def _carried_out(
         run(setup, opened, clock)
     finally:
         opened.close()
-    trouble = _trouble(setup, url, timeout_s)
-    if trouble is not None:
-        raise trouble
-    return setup
 
 
 def _trouble(setup: SigningSetup, url: str, timeout_s: float) -> ExitError | None:

@@ -37,3 +37,12 @@ def decode_value(wire: float, type_: ParamType, encoding: ParamEncoding) -> int 
         value: int = struct.unpack_from("<" + code, struct.pack("<f", wire))[0]
         return value
     return round(wire) if math.isfinite(wire) else wire
+
+
+def encode_value(value: float, type_: ParamType, encoding: ParamEncoding) -> float:
+    """The float that `decode_value` makes `value` of; an integer type takes a whole number."""
+    code = _INTEGER.get(type_)
+    if code is None or encoding is not ParamEncoding.BYTEWISE:
+        return value
+    packed = struct.pack("<" + code, round(value)).ljust(4, b"\0")
+    return float(struct.unpack("<f", packed)[0])

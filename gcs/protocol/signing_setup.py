@@ -1,6 +1,6 @@
 """Gives a vehicle a signing key, or takes it away: SETUP_SIGNING, and whether that had its effect.
 
-MAVLink has no answer to SETUP_SIGNING.  So it is sent until the vehicle's heartbeat is signed as it
+MAVLink has no answer to SETUP_SIGNING.  So it is sent until the vehicle's frames are signed as they
 should be, at most `TRIES` times; then one signed request must be answered, and an unsigned one must
 not.  Pure: frames and times in, frames out.
 """
@@ -29,8 +29,11 @@ from gcs.wire.signing import (
 LINK_ID: Final = 199
 EVERY_NS: Final = 1_000_000_000
 TRIES: Final = 5
-UNSIGNED_WAIT_NS: Final = 1_500_000_000
-"""How long the answer to an unsigned request may take; vehicles answer within milliseconds."""
+ANSWER_TRIES: Final = 12
+"""How often a signed request is sent: on a link that loses a third of all frames each way, one in
+five thousand such set-ups has no answer then."""
+UNSIGNED_TRIES: Final = 3
+"""How often an unsigned request is sent before no answer counts: one may be lost."""
 SENDER: Final = Address(254, 190)
 """Not a ground station's 255: no autopilot shall miss this one when it goes."""
 
@@ -89,7 +92,12 @@ class SigningSetup:
         """A frame came in; what is to be sent."""
         if self.ending is not None or frame.compid != Component.AUTOPILOT1:
             return []
-        signer = self._signer_of(frame, now_ns)
+        signer, seen_before = self._signer_of(frame, now_ns)
+        if seen_before:
+            return []
+        if self._phase is _Phase.ASK and frame.sysid == self._sysid:
+            # Any frame shows it: on a bad link heartbeats are lost, or overtaken.
+            return self._has_it(now_ns) if self._as_wanted(frame, signer) else []
         message = decode(frame)
         if isinstance(message, m.Heartbeat) and message.type != MavType.GCS:
             if self._sysid in (0, frame.sysid):
@@ -116,33 +124,37 @@ class SigningSetup:
                     return []
                 return [self._setup(now_ns)]
             case _Phase.SIGNED_REQUEST:
-                if self._tries >= TRIES:
+                if self._tries >= ANSWER_TRIES:
                     self.ending = Ending.NO_ANSWER
                     return []
                 self._tries += 1
                 return [self._signed(self._request(), self._new, now_ns)]
             case _Phase.UNSIGNED_REQUEST:
-                self.ending = Ending.DONE
-                return []
+                if self._tries >= UNSIGNED_TRIES:
+                    self.ending = Ending.DONE
+                    return []
+                self._tries += 1
+                return [self._unsigned_request()]
 
     # ----------------------------------------------------------------------------- what comes
 
-    def _signer_of(self, frame: Frame, now_ns: int) -> SecretKey | None:
-        """Whose key signed the frame, of those that we know.
+    def _signer_of(self, frame: Frame, now_ns: int) -> tuple[SecretKey | None, bool]:
+        """Which key signed the frame, of those that we know; and whether it was overtaken by a
+        later one, or came before.
 
         The clock of a vehicle that has just started may be behind: what we send moves it on.
         """
         for key, checker in self._checkers.items():
-            if frame.signature and checker.check(frame, now_ns) in (GOOD, Bad(Reason.TOO_OLD)):
-                return key
-        return None
+            verdict = checker.check(frame, now_ns) if frame.signature else Bad(Reason.UNSIGNED)
+            if verdict in (GOOD, Bad(Reason.TOO_OLD), Bad(Reason.REPLAYED)):
+                return key, verdict == Bad(Reason.REPLAYED)
+        return None, False
 
     def _beat(
         self, frame: Frame, beat: m.Heartbeat, signer: SecretKey | None, now_ns: int
     ) -> list[bytes]:
-        as_wanted = signer == self._new and bool(frame.signature) == (self._new is not None)
         match self._phase:
-            case _Phase.LISTEN if as_wanted:
+            case _Phase.LISTEN if self._as_wanted(frame, signer):
                 self.had_it = True
                 return self._has_it(now_ns)
             case _Phase.LISTEN if beat.base_mode & ModeFlag.SAFETY_ARMED:
@@ -154,10 +166,12 @@ class SigningSetup:
             case _Phase.LISTEN:
                 self._phase, self._next_ns = _Phase.ASK, now_ns + EVERY_NS
                 return [self._setup(now_ns)]
-            case _Phase.ASK if as_wanted:
-                return self._has_it(now_ns)
             case _:
                 return []
+
+    def _as_wanted(self, frame: Frame, signer: SecretKey | None) -> bool:
+        """Whether it is signed with the new key, or not at all where there is to be none."""
+        return signer == self._new and bool(frame.signature) == (self._new is not None)
 
     def _has_it(self, now_ns: int) -> list[bytes]:
         if self._new is None:
@@ -167,12 +181,13 @@ class SigningSetup:
         return [self._signed(self._request(), self._new, now_ns)]
 
     def _ack(self, ack: m.CommandAck, now_ns: int) -> list[bytes]:
-        if ack.command != Cmd.REQUEST_MESSAGE:
-            return []
-        if self._phase is _Phase.SIGNED_REQUEST:
-            self._phase, self._next_ns = _Phase.UNSIGNED_REQUEST, now_ns + UNSIGNED_WAIT_NS
-            return [self._request()]
-        if self._phase is _Phase.UNSIGNED_REQUEST:
+        """Each of the two requests is another command: an answer may come late, and twice."""
+        if self._phase is _Phase.SIGNED_REQUEST and ack.command == Cmd.REQUEST_MESSAGE:
+            self._phase, self._tries = _Phase.UNSIGNED_REQUEST, 1
+            self._next_ns = now_ns + EVERY_NS
+            return [self._unsigned_request()]
+        unsigned = ack.command == Cmd.REQUEST_AUTOPILOT_CAPABILITIES
+        if self._phase is _Phase.UNSIGNED_REQUEST and unsigned:
             self.ending = Ending.TAKES_UNSIGNED
         return []
 
@@ -189,11 +204,16 @@ class SigningSetup:
 
     def _request(self) -> bytes:
         """REQUEST_MESSAGE of AUTOPILOT_VERSION: every autopilot answers it, and nothing moves."""
-        version = float(MsgId.AUTOPILOT_VERSION)
+        return self._command(Cmd.REQUEST_MESSAGE, float(MsgId.AUTOPILOT_VERSION))
+
+    def _unsigned_request(self) -> bytes:
+        """The same in an older form, which is answered, too, if only as unknown."""
+        return self._command(Cmd.REQUEST_AUTOPILOT_CAPABILITIES, 1.0)
+
+    def _command(self, command: Cmd, param1: float) -> bytes:
         target = self._sysid, Component.AUTOPILOT1
-        params = (version, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        command = m.CommandLong(*params, Cmd.REQUEST_MESSAGE, *target, 0)
-        return self._writer.write(command)
+        params = (param1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return self._writer.write(m.CommandLong(*params, command, *target, 0))
 
     def _heartbeat(self) -> bytes:
         beat = m.Heartbeat(0, MavType.GENERIC, MavAutopilot.INVALID, 0, MavState.ACTIVE)

@@ -99,6 +99,8 @@ class BridgePort:
         `signed` says of a link's number what is known of its signatures.
         """
         done: list[BridgeEffect | Emit] = [*self.bridge.second(now_ns)]
+        if self._address is not None:
+            done += self.bridge.control_status(self._address)
         if self._shown:
             links = self._links(now_ns, counts, lost_pct)
             clients = [

@@ -20,7 +20,9 @@ from gcs.session.work import Log, ToGate, Work
 FIRST = 1
 """The operator's program that started the station."""
 NOBODY = 0
-ALWAYS_HEARD = frozenset({"abort", "hold", "land", "rtl", "disarm", "station_take"})
+ALWAYS_HEARD = frozenset(
+    {"abort", "hold", "land", "rtl", "disarm", "station_take", "station_release"}
+)
 """Requests of any operator, in control or not."""
 
 LEAVING_NS = 3_000_000_000
@@ -146,6 +148,10 @@ class Clients:
     def take(self, client: int) -> list[Work]:
         """It takes control over from whoever has it."""
         return [] if client == self._in_control else self._give(client)
+
+    def release(self, client: int) -> list[Work]:
+        """It gives control up; what is under way goes on, and the first who asks gets control."""
+        return self._give(NOBODY) if client == self._in_control else []
 
     def _give(self, client: int) -> list[Work]:
         before, self._in_control = self._there.get(self._in_control), client

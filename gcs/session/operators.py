@@ -47,7 +47,7 @@ from gcs.wire.messages import CommandLong
 NODE = "link"
 LOGGED_LETTERS = 40
 """Of a word that may be anything; all operators read the log."""
-STATION_WORDS = frozenset({"station_take", "station_end"})
+STATION_WORDS = frozenset({"station_take", "station_release", "station_end"})
 
 
 class Operators:
@@ -194,6 +194,8 @@ class Operators:
         done = _done(self._requests.open(ask, client), "")
         if ask.word == "station_take":
             return [*self._clients.take(client), *done]
+        if ask.word == "station_release":
+            return [*self._clients.release(client), *done]
         return [*done, EndSession(f"operator {client} ended the station")]
 
     def _ask_stop(self, client: int, ask: ipc.Ask) -> list[Work]:

@@ -1,10 +1,10 @@
-"""Runs a `SigningSetup` over a link.  Nothing is recorded: what is sent is the key."""
+"""Runs a `SigningSetup` or a `LockSetup` over a link.  Nothing is recorded: a key is sent."""
 
 from __future__ import annotations
 
 import select
+from typing import Protocol
 
-from gcs.protocol.signing_setup import SigningSetup
 from gcs.shell.clock import Clock
 from gcs.shell.sockets import Link
 from gcs.wire.frame import Frame, StreamSplitter, split
@@ -13,7 +13,16 @@ WAIT_S = 0.1
 BURST = 256
 
 
-def run(setup: SigningSetup, link: Link, clock: Clock) -> None:
+class Setup(Protocol):
+    """What is done to one vehicle, until it has its ending."""
+
+    @property
+    def ending(self) -> object | None: ...
+    def handle(self, frame: Frame, now_ns: int) -> list[bytes]: ...
+    def wake(self, now_ns: int) -> list[bytes]: ...
+
+
+def run(setup: Setup, link: Link, clock: Clock) -> None:
     """Until it has its ending."""
     splitter = StreamSplitter()
     while setup.ending is None:

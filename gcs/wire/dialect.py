@@ -158,8 +158,7 @@ def _load_enums() -> dict[str, EnumDef]:
             for value, entry in table.items()
             if not entry.name.endswith("_ENUM_END")
         }
-        if enum_name == "MAV_RESULT":
-            names = supplement.RESULTS | names
+        names = supplement.ENTRIES.get(enum_name, {}) | names
         entries = tuple(EnumEntry(value, names[value]) for value in sorted(names))
         found[enum_name] = EnumDef(enum_name, entries)
     return found

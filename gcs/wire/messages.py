@@ -68,6 +68,15 @@ class ChangeOperatorControl(Message, frozen=True, gc=False):
     passkey: str  # at most 25 bytes
 
 
+class ChangeOperatorControlAck(Message, frozen=True, gc=False):
+    """CHANGE_OPERATOR_CONTROL_ACK (6): 3 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.CHANGE_OPERATOR_CONTROL_ACK
+    gcs_system_id: int
+    control_request: int
+    ack: int
+
+
 class SetMode(Message, frozen=True, gc=False):
     """SET_MODE (11): 6 bytes."""
 
@@ -890,6 +899,15 @@ class ResponseEventError(Message, frozen=True, gc=False):
     target_system: int
     target_component: int
     reason: int
+
+
+class ControlStatus(Message, frozen=True, gc=False):
+    """CONTROL_STATUS (512): 12 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.CONTROL_STATUS
+    flags: int
+    gcs_main: int
+    gcs_secondary: tuple[int, ...]  # 10 values
 
 
 CLASSES: Mapping[int, type[Message]] = MappingProxyType(

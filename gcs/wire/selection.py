@@ -50,6 +50,8 @@ MESSAGES = (
     "REQUEST_DATA_STREAM",
     "SET_MODE",
     "CHANGE_OPERATOR_CONTROL",
+    "CHANGE_OPERATOR_CONTROL_ACK",
+    "CONTROL_STATUS",
     "PARAM_REQUEST_LIST",
     "PARAM_SET",
     "PARAM_EXT_SET",
@@ -180,6 +182,7 @@ COMMANDS = (
     "NAV_FENCE_CIRCLE_INCLUSION",
     "NAV_FENCE_CIRCLE_EXCLUSION",
     "NAV_RALLY_POINT",
+    "REQUEST_OPERATOR_CONTROL",
 )
 """Sent, flown in missions, or called by name when a mission file has them."""
 

@@ -32,6 +32,17 @@ RESULTS = {
 }
 """MAV_RESULT entries that pymavlink lacks."""
 
+COMMANDS = {32100: "MAV_CMD_REQUEST_OPERATOR_CONTROL"}
+"""MAV_CMD entries that pymavlink lacks."""
+
+DEVELOPMENT = frozenset({512})
+"""Messages of these that are in MAVLink's development.xml, where work goes on: the message and the
+command of operator control."""
+
+
+ENTRIES = {"MAV_RESULT": RESULTS, "MAV_CMD": COMMANDS}
+"""By the enum's name."""
+
 
 def messages() -> tuple[SupplementMessage, ...]:
     """`_MESSAGES`, parsed."""
@@ -118,4 +129,5 @@ _MESSAGES = """
 440 ILLUMINATOR_STATUS 66: uint32 uptime_ms, uint32 error_status, float brightness, float
     strobe_period, float strobe_duty_cycle, float temp_c, float min_strobe_period, float
     max_strobe_period, uint8 enable, uint8 mode_bitmask, uint8 mode
+512 CONTROL_STATUS 21: uint8 flags, uint8 gcs_main, uint8[10] gcs_secondary
 """

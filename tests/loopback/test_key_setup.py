@@ -26,6 +26,7 @@ def carried_out(
     deaf: bool = False,
 ) -> SigningSetup:
     """The set-up against the flight's vehicle, without its station."""
+    flight.run(0.05)  # its record, which may be audited, begins with the station
     world = flight.world
     now_ns = flight.now_ns
     setup = SigningSetup(new, old, 0, now_ns + 10 * 10**9)

@@ -6,6 +6,13 @@ from gcs.bridge.classes.row import Group, Kind
 
 SETUP: tuple[Group, ...] = (
     Group(
+        Kind.LOCAL,
+        "The gate decides who is in control, so a client asks the gate.",
+        {
+            32100: "REQUEST_OPERATOR_CONTROL",
+        },
+    ),
+    Group(
         Kind.HARMLESS,
         "It asks for messages and for how often they come.",
         {

@@ -174,6 +174,7 @@ REPORTS: tuple[Group, ...] = (
         "A vehicle answers a request by it; from a client it would be a false answer.",
         {
             6: "CHANGE_OPERATOR_CONTROL_ACK",
+            512: "CONTROL_STATUS",
             22: "PARAM_VALUE",
             67: "DATA_STREAM",
             118: "LOG_ENTRY",

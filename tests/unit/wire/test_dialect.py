@@ -7,6 +7,7 @@ import json
 import pytest
 from fastcrc import crc16
 from pymavlink.dialects.v20 import all as pymavlink_dialect
+from pymavlink.generator.mavcrc import x25crc
 
 from gcs.wire import supplement
 from gcs.wire.dialect import (
@@ -60,7 +61,7 @@ def test_every_message_of_pymavlink_is_there_in_full() -> None:
         assert ours.max_len >= theirs.unpacker.size
         names = [field.name for field in ours.fields]
         assert names[: len(theirs.ordered_fieldnames)] == theirs.ordered_fieldnames
-    assert len(MESSAGES) == len(pymavlink_dialect.mavlink_map) + 21
+    assert len(MESSAGES) == len(pymavlink_dialect.mavlink_map) + 22
 
 
 def struct_format(fields: tuple[FieldDef, ...]) -> str:
@@ -109,7 +110,9 @@ def test_enums_have_no_end_marks_and_all_results() -> None:
 def test_the_supplement_is_what_upstream_has() -> None:
     facts = json.loads(elsewhere("dialect_supplement.json").read_text())
     listed = {message.msgid: message for message in supplement.messages()}
-    assert listed.keys() == {fact["id"] for fact in facts["messages"]}
+    common = {fact["id"] for fact in facts["messages"]}
+    assert listed.keys() == common | supplement.DEVELOPMENT
+    assert not common & supplement.DEVELOPMENT
     for fact in facts["messages"]:
         ours = MESSAGES[fact["id"]]
         assert (ours.name, ours.crc_extra) == (fact["name"], fact["crc_extra"])
@@ -120,3 +123,15 @@ def test_the_supplement_is_what_upstream_has() -> None:
         }
     results = {int(value): name for value, name in facts["mav_result"].items()}
     assert supplement.RESULTS.items() <= results.items()
+
+
+def test_the_crc_extra_of_what_is_in_development_is_that_of_its_fields() -> None:
+    """MAVLink guide, "CRC_EXTRA calculation": over name, types and names of the fields."""
+    for msgid in supplement.DEVELOPMENT:
+        message = MESSAGES[msgid]
+        crc = x25crc(f"{message.name} ".encode())
+        for field in message.fields:
+            crc.accumulate(f"{field.type}_t {field.name} ".encode())
+            if field.array_length:
+                crc.accumulate(bytes((field.array_length,)))
+        assert (crc.crc & 0xFF) ^ (crc.crc >> 8) == message.crc_extra
