@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from time import monotonic
 from typing import ClassVar, Protocol
 
 from rich.console import RenderableType
@@ -23,13 +24,14 @@ from gcs.operator import event_text
 from gcs.operator.client import StationEnded, StationEvent
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.hang_up import on_hang_up
-from gcs.tui.keyboard import PendingGoal
+from gcs.tui.keyboard import PendingGoal, VelocityKeys
 from gcs.tui.keys import ABORT, ACTIONS, KEYS
 from gcs.tui.log_panel import LogPanel
 from gcs.tui.result import SessionResult
 from gcs.tui.scene import Answer, Scene
 
 REDRAW_S = 0.1
+STREAM_S = 0.1
 LEAVE_WAIT_S = 8.0
 RESTORE_WAIT_S = 5.0
 """For the screen to be given back.  A terminal that has closed, or that nobody reads, blocks every
@@ -148,6 +150,7 @@ class FlyApp(App[None]):
             self._handle(event)
         self._connection.listen(lambda event: self._hear(loop, event))
         self.set_interval(REDRAW_S, self.redraw)
+        self.set_interval(STREAM_S, self._stream)
         self.set_interval(FOLDED_AFTER_S, self.query_one(LogPanel).tell_folded)
         if self._timeout_s is not None:
             self.set_timer(self._timeout_s, self._leave_without_vehicle)
@@ -197,6 +200,10 @@ class FlyApp(App[None]):
             case ipc.LogEvent():
                 style = look.LEVEL[event.level]
                 self._log_line(event_text.log_line(event), style, event.level, event.time_ns)
+            case ipc.StateEvent(before="STREAMING", after=after) if after != "STALE":
+                self.scene.velocity = None
+            case ipc.VerdictEvent(word="stream_begin", outcome="refused"):
+                self.scene.velocity = None
             case ipc.EndingEvent() if event.id == self._start_after:
                 self._start_after = None
                 if event.ended == "complete":
@@ -256,6 +263,11 @@ class FlyApp(App[None]):
         self.redraw()
 
     def action_move(self, direction: str) -> None:
+        if self.scene.velocity is not None:
+            step_m = self.scene.pending.step_m
+            self.scene.velocity = self.scene.velocity.pressed(direction, step_m, monotonic())
+            self._stream()
+            return
         self._set_pending(self.scene.pending.moved(direction))
 
     def action_turn(self, by_deg: float) -> None:
@@ -299,6 +311,20 @@ class FlyApp(App[None]):
             self._request(ipc.Ask(self._next_id, "mission_upload", path=self._mission_path))
         else:
             self.action_request("mission_start")
+
+    def action_velocity(self) -> None:
+        """Into velocity mode, which is a stream to the station, and out of it."""
+        if self.scene.velocity is not None:
+            self.scene.velocity = None
+            self.action_request("stream_end")
+            return
+        self.scene.velocity = VelocityKeys()
+        self.action_request("stream_begin")
+
+    def _stream(self) -> None:
+        """In velocity mode: what the keys say now, or to stand still."""
+        if self.scene.velocity is not None and not self._leaving:
+            self._connection.send(ipc.Stream(v_enu=self.scene.velocity.flown(monotonic())))
 
     def action_switch_fence(self) -> None:
         self._request(ipc.Ask(self._next_id, "fence", on=not self.scene.fence_on))

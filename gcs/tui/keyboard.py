@@ -1,4 +1,4 @@
-"""The keyboard manager: keys change a pending goal, and nothing else."""
+"""The keyboard manager: keys change a pending goal, and nothing else; in velocity mode they fly."""
 
 from __future__ import annotations
 
@@ -18,6 +18,29 @@ DIRECTIONS: Final[dict[str, Vec3]] = {
     "up": (0.0, 0.0, 1.0),
     "down": (0.0, 0.0, -1.0),
 }
+
+
+KEY_COUNTS_S: Final = 0.8
+"""A key that is held down counts as held from one repetition of the terminal to the next; before
+the first one most wait half a second."""
+STILL: Final[Vec3] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class VelocityKeys:
+    """Velocity mode: a direction key flies that way for as long as it is held down, then the
+    vehicle is asked to stand still.  Metres per second E N U."""
+
+    v_enu: Vec3 = STILL
+    until_s: float = 0.0
+
+    def pressed(self, direction: str, speed_m_s: float, now_s: float) -> VelocityKeys:
+        east, north, up = DIRECTIONS[direction]
+        v_enu = (east * speed_m_s, north * speed_m_s, up * speed_m_s)
+        return VelocityKeys(v_enu, now_s + KEY_COUNTS_S)
+
+    def flown(self, now_s: float) -> Vec3:
+        return self.v_enu if now_s < self.until_s else STILL
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """THE keys: one table that feeds the bindings, the footer and the help.
 
 Directions are named by what the vehicle does.  Keys that move only change the pending goal;
-nothing is sent before Enter.
+nothing is sent before Enter, but in velocity mode.
 """
 
 from __future__ import annotations
@@ -70,6 +70,7 @@ SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
             Key(("b",), "b", "request('rtl')", "back home and land", "back home"),
             Key(("p",), "p", "request('photo')", "take a picture", "picture"),
             Key(("i",), "i", "fly_mission", "fly the mission on board, or of --mission", "mission"),
+            Key(("y",), "y", "velocity", "velocity mode: arrows fly the step in m/s; again: over"),
             Key(("k",), "k", "switch_fence", "fence off and on (lab policy only)"),
         ),
     ),

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from gcs import ipc
 from gcs.gate.states import State
 from gcs.operator import control_text, event_text, request_words
-from gcs.tui.keyboard import PendingGoal
+from gcs.tui.keyboard import PendingGoal, VelocityKeys
 
 TRAIL_POINTS = 800
 TRAIL_STEP_M = 0.1
@@ -35,6 +35,7 @@ class Scene:
     """Updated with the station's events; read by the panels ten times a second."""
 
     pending: PendingGoal = field(default_factory=PendingGoal)
+    velocity: VelocityKeys | None = None  # in velocity mode
     snapshot: ipc.Snapshot | None = None
     hello: ipc.Hello | None = None
     zones: list[ipc.FenceShape] = field(default_factory=list)

@@ -79,8 +79,11 @@ def goals(scene: Scene) -> Text:
     pending, seen = scene.pending, scene.snapshot
     yaw = "" if pending.yaw_deg is None else f" {pending.yaw_deg:03.0f}°"
     line = Text(no_wrap=True, end="", overflow="ellipsis")
-    line.append(f"◇ pending {signed_enu(pending.goal_enu)}{yaw}", look.PENDING)
-    line.append(f" ±{pending.step_m:g} m", look.DIM)
+    if scene.velocity is not None:
+        line.append(f"◇ velocity mode: keys fly {pending.step_m:g} m/s, y ends it", look.PENDING)
+    else:
+        line.append(f"◇ pending {signed_enu(pending.goal_enu)}{yaw}", look.PENDING)
+        line.append(f" ±{pending.step_m:g} m", look.DIM)
     active = scene.active_enu
     line.append("  ◉ active ", look.ACTIVE)
     line.append(signed_enu(active) if active else "none", look.ACTIVE if active else look.DIM)

@@ -82,6 +82,45 @@ def test_every_command_key_asks_for_its_word() -> None:
     flown(script)
 
 
+def test_in_velocity_mode_a_direction_key_is_flown_while_it_is_held_down() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.state = "HOVERING"
+        await pilot.press("y", "x", "right")
+        assert station.requests() == ["stream_begin"]
+        assert station.sent[-1] == ipc.Stream(v_enu=(5.0, 0.0, 0.0))
+        assert app.scene.pending.goal_enu == (0.0, 0.0, 0.5)
+        await asyncio.sleep(1.1)
+        assert station.sent[-1] == ipc.Stream(v_enu=(0.0, 0.0, 0.0))
+        await drawn(app, pilot)
+        assert "velocity mode: keys fly 5 m/s" in screen_text(app)
+        await pilot.press("y")
+        assert station.requests()[-1] == "stream_end"
+        assert app.scene.velocity is None
+        await pilot.press("left")
+        assert app.scene.pending.goal_enu == (-5.0, 0.0, 0.5)
+
+    flown(script)
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        ipc.VerdictEvent(1, "stream_begin", "refused", "NOT_FLYING", "it stands"),
+        ipc.StateEvent("STREAMING", "HOLDING", "hold", "OURS", "NOMINAL"),
+    ],
+)
+def test_velocity_mode_ends_with_its_stream(event: ipc.Event) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.state = "HOVERING"
+        await pilot.press("y")
+        assert app.scene.velocity is not None
+        station.say(event)
+        await pilot.pause()
+        assert app.scene.velocity is None
+
+    flown(script)
+
+
 @pytest.mark.parametrize("key", ["space", "escape"])
 def test_abort_is_one_key_and_is_on_its_way_before_anything_is_drawn(key: str) -> None:
     async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
