@@ -24,19 +24,19 @@ URLS = {
     "mavsdk3": "udpout://{}",
 }
 WORDS = {
-    "pymavlink": ("fly", "offboard", "escape", "land"),
+    "pymavlink": ("fly", "offboard", "return_blocked", "escape", "land"),
     "mavproxy": ("fly", "escape", "land"),
     "mavsdk": ("fly", "offboard", "escape", "land"),
     "mavsdk3": ("fly", "offboard", "escape", "land"),
 }
 FLOWN = {
     "pymavlink": ("^all parameters", "^mission of", "^arm", "^goto", "^mission item 2", "^returns"),
-    "mavproxy": ("^online, all parameters", "wp list", "ARMED", "DO_REPOSITION", "waypoint 2"),
+    "mavproxy": ("^online, all", "wp list", "ARM_DISARM: ACC", "DO_REPOSITION: ACC", "waypoint 2"),
     "mavsdk": ("^all parameters", "^mission True", "^took off", "^goto", "^flies the mission"),
     "mavsdk3": ("^all parameters", "^mission True", "^arm", "^goto", "^flies the mission"),
 }
 REFUSED = {
-    "pymavlink": 20,
+    "pymavlink": 21,
     "mavproxy": 10,
     "mavsdk": 9,
     "mavsdk3": 8,

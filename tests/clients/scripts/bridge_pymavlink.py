@@ -330,6 +330,15 @@ class Peer:
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
         self.rest(2.0)
 
+    def return_blocked(self):
+        """From behind the mast the way home is not free: the gate holds instead."""
+        for place in ((30, 0), (30, 45), (0, 45)):
+            self.go(*place, UP_M)
+        self.refused("return through the mast", self.long(M.MAV_CMD_NAV_RETURN_TO_LAUNCH))
+        self.rest(3.0)
+        for place in ((30, 45), (30, 0), (0, 0)):
+            self.go(*place, UP_M)
+
     def escape_by_streams(self):
         far_m = self.stream(6.0, POSITION, position=(200, 0, -UP_M))
         print(f"offboard position outside: came {far_m:.0f} m", flush=True)

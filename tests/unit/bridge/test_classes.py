@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 import pytest
 
@@ -101,6 +102,14 @@ class TestTheTableIsTotal:
             Kind.CONFIGURATION: 17,
             Kind.LOCAL: 1,
         }
+
+    def test_the_page_has_these_figures(self) -> None:
+        page = (Path(__file__).parents[3] / "docs" / "bridge.md").read_text(encoding="utf-8")
+        of_messages = Counter(row.kind for row in MESSAGE_ROWS.values())
+        of_commands = Counter(row.kind for row in COMMAND_ROWS.values())
+        for kind in Kind:
+            commands = f"{of_commands[kind]} " if of_commands[kind] else ""
+            assert f"| {kind} | {of_messages[kind]} | {commands}| " in page
 
 
 class TestTheDesignsRules:
