@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from msgspec import structs
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from tests.loopback.air import Weather
 from tests.loopback.bridged import VEHICLE
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.plan_clients import (
     ACCEPTED,
+    AMSL,
+    FENCE,
+    NORTH_DEG,
+    RALLY,
+    RALLY_POINT,
     UPLOADS,
     DroneKit,
     Mavsdk,
@@ -25,7 +33,7 @@ from tests.loopback.plan_clients import (
 )
 
 DENIED = 14
-ARM, MISSION_START = 400, 300
+ARM, MISSION_START, FENCE_CORNER, ALL = 400, 300, 5001, 255
 FAR_E7 = 90_000
 """A kilometre north."""
 SQUARE = ((20.0, 0.0, 10.0), (20.0, 20.0, 10.0), (0.0, 20.0, 10.0))
@@ -192,3 +200,82 @@ def test_two_clients_read_the_plan_one_after_the_other_and_the_station_in_betwee
     assert [item.seq for item in first.messages("MISSION_ITEM_INT")] == [*range(many)]
     assert [count.count for count in second.messages("MISSION_COUNT")] == [many]
     assert not second.messages("MISSION_ITEM_INT"), "answers go to whom they are for"
+
+
+def square_fence(personality: Personality) -> list[PlanItem]:
+    """An inclusion polygon of four corners, 60 m from home."""
+    home = HOMES[personality]
+    return [
+        PlanItem(
+            FENCE_CORNER,
+            home.lat_deg + 60.0 * north * NORTH_DEG,
+            home.lon_deg + 60.0 * east * NORTH_DEG,
+            frame=AMSL,
+            params=(4.0, 0.0, 0.0, 0.0),
+            kind=FENCE,
+        )
+        for north, east in ((1, 1), (1, -1), (-1, -1), (-1, 1))
+    ]
+
+
+def rally_point(personality: Personality) -> list[PlanItem]:
+    home = HOMES[personality]
+    return [PlanItem(RALLY_POINT, home.lat_deg + 20.0 * NORTH_DEG, home.lon_deg, 15.0, kind=RALLY)]
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("plan", [square_fence, rally_point])
+def test_a_fence_and_rally_points_are_refused_unless_the_policy_lets_them(
+    plan: Callable[[Personality], list[PlanItem]], personality: Personality
+) -> None:
+    flight = connected(personality)
+    upload = Mavsdk(flight, flight.clients[1], plan(personality))
+    assert ended(flight, upload) == f"refused {DENIED}"
+    assert not flight.to_vehicle("MISSION_COUNT")
+    assert flight.decisions("refused")[-1].code == "POLICY"
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("plan", [square_fence, rally_point])
+def test_where_the_policy_lets_them_they_are_on_board_whole(
+    plan: Callable[[Personality], list[PlanItem]], personality: Personality
+) -> None:
+    rules = structs.replace(DEFAULT.bridge, fence="forward", rally="forward")
+    flight = PlanFlight(personality, policy=structs.replace(DEFAULT, bridge=rules))
+    client = flight.join()
+    flight.connected()
+    items = plan(personality)
+    upload = Mavsdk(flight, client, items)
+    assert ended(flight, upload) == "complete"
+    client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, items[0].kind))
+    flight.run(0.2)
+    assert [count.count for count in client.messages("MISSION_COUNT")] == [len(items)]
+    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, ALL))
+    flight.run(1.0)
+    client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, items[0].kind))
+    flight.run(0.2)
+    assert [count.count for count in client.messages("MISSION_COUNT")][-1] == 0
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_all_plans_at_once_are_not_cleared_where_the_fence_must_stay(
+    personality: Personality,
+) -> None:
+    flight = connected(personality)
+    client = flight.clients[1]
+    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, ALL))
+    flight.run(1.0)
+    assert [ack.type for ack in client.messages("MISSION_ACK")] == [DENIED]
+    assert not flight.to_vehicle("MISSION_CLEAR_ALL")
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_who_is_not_in_control_brings_no_mission(personality: Personality) -> None:
+    flight = connected(personality)
+    first, second = flight.clients[1], flight.join(255, 190)
+    assert ended(flight, Mavsdk(flight, first, mission(personality, *SQUARE))) == "complete"
+    before = flight.vehicle.plan
+    upload = Mavsdk(flight, second, mission(personality, (10.0, 0.0, 10.0)))
+    assert ended(flight, upload) == f"refused {DENIED}"
+    assert "OTHER_OPERATOR" in second.texts()
+    assert flight.vehicle.plan == before
