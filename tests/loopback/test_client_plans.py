@@ -47,11 +47,6 @@ def connected(personality: Personality) -> PlanFlight:
     return flight
 
 
-def ended(flight: PlanFlight, upload: Upload, within_s: float = 30.0) -> str:
-    flight.until(lambda: bool(upload.result), within_s)
-    return upload.result
-
-
 @pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("kind", UPLOADS)
 def test_each_client_s_mission_is_on_board_and_acknowledged_once(
@@ -59,7 +54,7 @@ def test_each_client_s_mission_is_on_board_and_acknowledged_once(
 ) -> None:
     flight = connected(personality)
     upload = kind(flight, flight.clients[1], mission(personality, *SQUARE))
-    assert ended(flight, upload) == "complete"
+    assert upload.ended() == "complete"
     flight.run(5.0)
     assert upload.acks == [ACCEPTED]
     assert [item.command for item in flight.vehicle.plan] == [item.command for item in upload.items]
@@ -77,7 +72,7 @@ def test_a_mission_that_leaves_the_fence_never_reaches_the_vehicle(
     flight = connected(personality)
     before = flight.vehicle.plan
     upload = kind(flight, flight.clients[1], mission(personality, *BEYOND))
-    assert ended(flight, upload) == f"refused {DENIED}"
+    assert upload.ended() == f"refused {DENIED}"
     flight.run(5.0)
     assert upload.acks == [DENIED]
     assert flight.vehicle.plan == before
@@ -95,7 +90,7 @@ def test_a_mission_that_leaves_the_fence_never_reaches_the_vehicle(
 def test_a_mission_of_a_client_is_flown(personality: Personality) -> None:
     flight = connected(personality)
     client = flight.clients[1]
-    assert ended(flight, Mavsdk(flight, client, mission(personality, *SQUARE))) == "complete"
+    assert Mavsdk(flight, client, mission(personality, *SQUARE)).ended() == "complete"
     assert client.ask(ARM, 1) == ACCEPTED
     client.command(MISSION_START)
     flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
@@ -105,7 +100,7 @@ def test_a_mission_of_a_client_is_flown(personality: Personality) -> None:
 def test_a_client_clears_the_mission(personality: Personality) -> None:
     flight = connected(personality)
     client = flight.clients[1]
-    ended(flight, Mavsdk(flight, client, mission(personality, *SQUARE)))
+    Mavsdk(flight, client, mission(personality, *SQUARE)).ended()
     client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, 0))
     flight.run(1.0)
     assert flight.vehicle.plan == ()
@@ -131,7 +126,7 @@ def test_a_mission_put_on_board_past_the_bridge_is_verified_before_it_starts(
     """It was there before this station came."""
     flight = PlanFlight(personality)
     other = connected(personality)
-    ended(other, Mavsdk(other, other.clients[1], mission(personality, *SQUARE)))
+    Mavsdk(other, other.clients[1], mission(personality, *SQUARE)).ended()
     good = other.vehicle.plan
     client = flight.join()
     flight.connected()
@@ -170,7 +165,7 @@ def test_five_hundred_items_cross_two_links_that_lose_a_quarter(
     flight.connected()
     before = flight.vehicle.plan
     upload = Pymavlink(flight, client, long_mission(personality))
-    result = ended(flight, upload, LONG_S)
+    result = upload.ended(LONG_S)
     print(f"{personality} seed {seed}: {result}, {upload.took_s:.1f} s")
     assert len(flight.vehicle.plan) == (LONG if result == "complete" else len(before))
 
@@ -181,7 +176,7 @@ def test_two_clients_read_the_plan_one_after_the_other_and_the_station_in_betwee
 ) -> None:
     flight = connected(personality)
     first, second = flight.clients[1], flight.join(255, 190)
-    assert ended(flight, Mavsdk(flight, first, mission(personality, *SQUARE))) == "complete"
+    assert Mavsdk(flight, first, mission(personality, *SQUARE)).ended() == "complete"
     many = len(flight.vehicle.plan)
     flight.say("station_take")
     for client in (first, second):
@@ -230,7 +225,7 @@ def test_a_fence_and_rally_points_are_refused_unless_the_policy_lets_them(
 ) -> None:
     flight = connected(personality)
     upload = Mavsdk(flight, flight.clients[1], plan(personality))
-    assert ended(flight, upload) == f"refused {DENIED}"
+    assert upload.ended() == f"refused {DENIED}"
     assert not flight.to_vehicle("MISSION_COUNT")
     assert flight.decisions("refused")[-1].code == "POLICY"
 
@@ -246,7 +241,7 @@ def test_where_the_policy_lets_them_they_are_on_board_whole(
     flight.connected()
     items = plan(personality)
     upload = Mavsdk(flight, client, items)
-    assert ended(flight, upload) == "complete"
+    assert upload.ended() == "complete"
     client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, items[0].kind))
     flight.run(0.2)
     assert [count.count for count in client.messages("MISSION_COUNT")] == [len(items)]
@@ -273,9 +268,9 @@ def test_all_plans_at_once_are_not_cleared_where_the_fence_must_stay(
 def test_who_is_not_in_control_brings_no_mission(personality: Personality) -> None:
     flight = connected(personality)
     first, second = flight.clients[1], flight.join(255, 190)
-    assert ended(flight, Mavsdk(flight, first, mission(personality, *SQUARE))) == "complete"
+    assert Mavsdk(flight, first, mission(personality, *SQUARE)).ended() == "complete"
     before = flight.vehicle.plan
     upload = Mavsdk(flight, second, mission(personality, (10.0, 0.0, 10.0)))
-    assert ended(flight, upload) == f"refused {DENIED}"
+    assert upload.ended() == f"refused {DENIED}"
     assert "OTHER_OPERATOR" in second.texts()
     assert flight.vehicle.plan == before
