@@ -127,9 +127,9 @@ class Missions:
     ) -> Job | None:
         """None: what cannot be flown at all the gate refuses at once."""
         match ask.word:
-            case "mission_upload" if plan is None:
-                return Upload(asked, ask.path)
             case "mission_upload":
+                if plan is None:
+                    return Upload(asked, ask.path)
                 mission = kind is MissionType.MISSION
                 return ClientUpload(asked, plan) if mission else RelayPlan(asked, plan)
             case "mission_download":

@@ -149,6 +149,11 @@ class Upload:
     def took_s(self) -> float:
         return (self.ended_ns - self.began_ns) / 1e9
 
+    def ended(self, within_s: float = 30.0) -> str:
+        """Let time pass to its end; what the client believes then."""
+        self.flight.until(lambda: bool(self.result), within_s)
+        return self.result
+
     def wait(self, span_ns: int) -> None:
         self.deadline_ns = self.flight.now_ns + span_ns
 
@@ -169,8 +174,8 @@ class Upload:
             place = (round(item.lat_deg * scale), round(item.lon_deg * scale), item.alt_m)
             self._send(dialect.MAVLink_mission_item_int_message(*head, *place, self.kind))
         else:
-            place = (item.lat_deg, item.lon_deg, item.alt_m)
-            self._send(dialect.MAVLink_mission_item_message(*head, *place, self.kind))
+            degrees = (item.lat_deg, item.lon_deg, item.alt_m)
+            self._send(dialect.MAVLink_mission_item_message(*head, *degrees, self.kind))
 
     def send_ack(self, result: int) -> None:
         self._send(dialect.MAVLink_mission_ack_message(*VEHICLE, result, self.kind))
@@ -352,4 +357,4 @@ def items_of(document: dict[str, Any], personality: Personality) -> list[PlanIte
 def rally_points(document: dict[str, Any]) -> list[PlanItem]:
     """Its rally points, a plan of their own."""
     points = document["rallyPoints"]["points"]
-    return [PlanItem(RALLY_POINT, *point, kind=RALLY) for point in points]
+    return [PlanItem(RALLY_POINT, lat, lon, alt_m, kind=RALLY) for lat, lon, alt_m in points]

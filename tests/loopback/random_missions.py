@@ -258,8 +258,7 @@ def _fly_through_bridge(seed: int, personality: Personality, mission: Mission) -
     for items in (rally_points(mission.document), items_of(mission.document, personality)):
         if items:
             upload = Pymavlink(flight, client, items)
-            flight.until(lambda upload=upload: bool(upload.result), 60.0)  # type: ignore[misc]
-            if upload.result != "complete":
+            if upload.ended(60.0) != "complete":
                 refused = flight.decisions("refused")
                 why = refused[-1].sentence if refused else upload.result
                 return Flown(seed, why, kinds=mission.kinds)

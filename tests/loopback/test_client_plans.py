@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from msgspec import structs
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from tests.loopback.air import Weather
 from tests.loopback.bridged import VEHICLE
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.plan_clients import (
     ACCEPTED,
+    AMSL,
+    FENCE,
+    NORTH_DEG,
+    RALLY,
+    RALLY_POINT,
     UPLOADS,
     DroneKit,
     Mavsdk,
@@ -25,7 +33,7 @@ from tests.loopback.plan_clients import (
 )
 
 DENIED = 14
-ARM, MISSION_START = 400, 300
+ARM, MISSION_START, FENCE_CORNER, ALL = 400, 300, 5001, 255
 FAR_E7 = 90_000
 """A kilometre north."""
 SQUARE = ((20.0, 0.0, 10.0), (20.0, 20.0, 10.0), (0.0, 20.0, 10.0))
@@ -39,11 +47,6 @@ def connected(personality: Personality) -> PlanFlight:
     return flight
 
 
-def ended(flight: PlanFlight, upload: Upload, within_s: float = 30.0) -> str:
-    flight.until(lambda: bool(upload.result), within_s)
-    return upload.result
-
-
 @pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("kind", UPLOADS)
 def test_each_client_s_mission_is_on_board_and_acknowledged_once(
@@ -51,7 +54,7 @@ def test_each_client_s_mission_is_on_board_and_acknowledged_once(
 ) -> None:
     flight = connected(personality)
     upload = kind(flight, flight.clients[1], mission(personality, *SQUARE))
-    assert ended(flight, upload) == "complete"
+    assert upload.ended() == "complete"
     flight.run(5.0)
     assert upload.acks == [ACCEPTED]
     assert [item.command for item in flight.vehicle.plan] == [item.command for item in upload.items]
@@ -69,7 +72,7 @@ def test_a_mission_that_leaves_the_fence_never_reaches_the_vehicle(
     flight = connected(personality)
     before = flight.vehicle.plan
     upload = kind(flight, flight.clients[1], mission(personality, *BEYOND))
-    assert ended(flight, upload) == f"refused {DENIED}"
+    assert upload.ended() == f"refused {DENIED}"
     flight.run(5.0)
     assert upload.acks == [DENIED]
     assert flight.vehicle.plan == before
@@ -87,7 +90,7 @@ def test_a_mission_that_leaves_the_fence_never_reaches_the_vehicle(
 def test_a_mission_of_a_client_is_flown(personality: Personality) -> None:
     flight = connected(personality)
     client = flight.clients[1]
-    assert ended(flight, Mavsdk(flight, client, mission(personality, *SQUARE))) == "complete"
+    assert Mavsdk(flight, client, mission(personality, *SQUARE)).ended() == "complete"
     assert client.ask(ARM, 1) == ACCEPTED
     client.command(MISSION_START)
     flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
@@ -97,7 +100,7 @@ def test_a_mission_of_a_client_is_flown(personality: Personality) -> None:
 def test_a_client_clears_the_mission(personality: Personality) -> None:
     flight = connected(personality)
     client = flight.clients[1]
-    ended(flight, Mavsdk(flight, client, mission(personality, *SQUARE)))
+    Mavsdk(flight, client, mission(personality, *SQUARE)).ended()
     client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, 0))
     flight.run(1.0)
     assert flight.vehicle.plan == ()
@@ -123,7 +126,7 @@ def test_a_mission_put_on_board_past_the_bridge_is_verified_before_it_starts(
     """It was there before this station came."""
     flight = PlanFlight(personality)
     other = connected(personality)
-    ended(other, Mavsdk(other, other.clients[1], mission(personality, *SQUARE)))
+    Mavsdk(other, other.clients[1], mission(personality, *SQUARE)).ended()
     good = other.vehicle.plan
     client = flight.join()
     flight.connected()
@@ -162,7 +165,7 @@ def test_five_hundred_items_cross_two_links_that_lose_a_quarter(
     flight.connected()
     before = flight.vehicle.plan
     upload = Pymavlink(flight, client, long_mission(personality))
-    result = ended(flight, upload, LONG_S)
+    result = upload.ended(LONG_S)
     print(f"{personality} seed {seed}: {result}, {upload.took_s:.1f} s")
     assert len(flight.vehicle.plan) == (LONG if result == "complete" else len(before))
 
@@ -173,7 +176,7 @@ def test_two_clients_read_the_plan_one_after_the_other_and_the_station_in_betwee
 ) -> None:
     flight = connected(personality)
     first, second = flight.clients[1], flight.join(255, 190)
-    assert ended(flight, Mavsdk(flight, first, mission(personality, *SQUARE))) == "complete"
+    assert Mavsdk(flight, first, mission(personality, *SQUARE)).ended() == "complete"
     many = len(flight.vehicle.plan)
     flight.say("station_take")
     for client in (first, second):
@@ -192,3 +195,82 @@ def test_two_clients_read_the_plan_one_after_the_other_and_the_station_in_betwee
     assert [item.seq for item in first.messages("MISSION_ITEM_INT")] == [*range(many)]
     assert [count.count for count in second.messages("MISSION_COUNT")] == [many]
     assert not second.messages("MISSION_ITEM_INT"), "answers go to whom they are for"
+
+
+def square_fence(personality: Personality) -> list[PlanItem]:
+    """An inclusion polygon of four corners, 60 m from home."""
+    home = HOMES[personality]
+    return [
+        PlanItem(
+            FENCE_CORNER,
+            home.lat_deg + 60.0 * north * NORTH_DEG,
+            home.lon_deg + 60.0 * east * NORTH_DEG,
+            frame=AMSL,
+            params=(4.0, 0.0, 0.0, 0.0),
+            kind=FENCE,
+        )
+        for north, east in ((1, 1), (1, -1), (-1, -1), (-1, 1))
+    ]
+
+
+def rally_point(personality: Personality) -> list[PlanItem]:
+    home = HOMES[personality]
+    return [PlanItem(RALLY_POINT, home.lat_deg + 20.0 * NORTH_DEG, home.lon_deg, 15.0, kind=RALLY)]
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("plan", [square_fence, rally_point])
+def test_a_fence_and_rally_points_are_refused_unless_the_policy_lets_them(
+    plan: Callable[[Personality], list[PlanItem]], personality: Personality
+) -> None:
+    flight = connected(personality)
+    upload = Mavsdk(flight, flight.clients[1], plan(personality))
+    assert upload.ended() == f"refused {DENIED}"
+    assert not flight.to_vehicle("MISSION_COUNT")
+    assert flight.decisions("refused")[-1].code == "POLICY"
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("plan", [square_fence, rally_point])
+def test_where_the_policy_lets_them_they_are_on_board_whole(
+    plan: Callable[[Personality], list[PlanItem]], personality: Personality
+) -> None:
+    rules = structs.replace(DEFAULT.bridge, fence="forward", rally="forward")
+    flight = PlanFlight(personality, policy=structs.replace(DEFAULT, bridge=rules))
+    client = flight.join()
+    flight.connected()
+    items = plan(personality)
+    upload = Mavsdk(flight, client, items)
+    assert upload.ended() == "complete"
+    client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, items[0].kind))
+    flight.run(0.2)
+    assert [count.count for count in client.messages("MISSION_COUNT")] == [len(items)]
+    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, ALL))
+    flight.run(1.0)
+    client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, items[0].kind))
+    flight.run(0.2)
+    assert [count.count for count in client.messages("MISSION_COUNT")][-1] == 0
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_all_plans_at_once_are_not_cleared_where_the_fence_must_stay(
+    personality: Personality,
+) -> None:
+    flight = connected(personality)
+    client = flight.clients[1]
+    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, ALL))
+    flight.run(1.0)
+    assert [ack.type for ack in client.messages("MISSION_ACK")] == [DENIED]
+    assert not flight.to_vehicle("MISSION_CLEAR_ALL")
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_who_is_not_in_control_brings_no_mission(personality: Personality) -> None:
+    flight = connected(personality)
+    first, second = flight.clients[1], flight.join(255, 190)
+    assert Mavsdk(flight, first, mission(personality, *SQUARE)).ended() == "complete"
+    before = flight.vehicle.plan
+    upload = Mavsdk(flight, second, mission(personality, (10.0, 0.0, 10.0)))
+    assert upload.ended() == f"refused {DENIED}"
+    assert "OTHER_OPERATOR" in second.texts()
+    assert flight.vehicle.plan == before
