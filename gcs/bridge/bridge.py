@@ -243,9 +243,9 @@ class Bridge:
         return self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
 
     def control_status(self, vehicle: Address) -> list[BridgeEffect]:
-        """Who is in control, by the protocol's own message, for every client."""
-        status = self._control.status
-        return [Answers(c.link, vehicle, status) for c in self._by_number.values()]
+        """Who is in control, by the protocol's own message, for the clients that understand it."""
+        told = [c for c in self._by_number.values() if self._control.speaks(c.number)]
+        return [Answers(client.link, vehicle, self._control.status) for client in told]
 
     def _sysid_of(self, number: int) -> int:
         """What the operator in control calls itself: a client by its system id, an operator of the

@@ -2,7 +2,8 @@
 
 A client asks for control, or gives it up, by MAV_CMD_REQUEST_OPERATOR_CONTROL (development.xml) or
 by CHANGE_OPERATOR_CONTROL; both become the station's own words: its rules hold for everybody.
-CONTROL_STATUS tells all clients once a second who is in control.
+CONTROL_STATUS tells once a second who is in control, to those who have used that command: others do
+not know the message, and count it as a broken frame.
 """
 
 from __future__ import annotations
@@ -50,6 +51,8 @@ class ControlServer:
         self._sysid = 0
         self._keeps: dict[int, From] = {}
         """Clients that let nobody take over, by number, and whom to ask then."""
+        self._speakers: set[int] = set()
+        """Clients that have used the command."""
 
     def handle(self, message: Message, client: Client, by: From, now_ns: int) -> list[BridgeEffect]:
         """A client's message about control; nothing for any other message."""
@@ -68,9 +71,13 @@ class ControlServer:
 
     @property
     def status(self) -> ControlStatus:
-        """For all clients, in the vehicle's name."""
+        """For those who understand it, in the vehicle's name."""
         flags = SYSTEM_MANAGER | (0 if self._owner in self._keeps else TAKEOVER_ALLOWED)
         return ControlStatus(flags, self._sysid, NO_SECONDARIES)
+
+    def speaks(self, number: int) -> bool:
+        """Whether a client understands CONTROL_STATUS, as far as it has shown."""
+        return number in self._speakers
 
     def _kept(self, client: Client) -> bool:
         """Whether another client is in control that lets nobody take over."""
@@ -80,6 +87,7 @@ class ControlServer:
         self, message: CommandLong | CommandInt, client: Client, by: From, now_ns: int
     ) -> list[BridgeEffect]:
         dialogue, wish = client.dialogue, message.param1
+        self._speakers.add(client.number)
         if wish == _RELEASE:
             return dialogue.ask(by, message, [ipc.Ask(0, "station_release")], now_ns)
         if wish != _REQUEST:

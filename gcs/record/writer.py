@@ -319,7 +319,7 @@ class Recorder:
             return self._watched_log(ros1.crowd_channel()), ros1.codec(0).encode
         msgid = ros1.msgid_of(raw)
         log = self._watched_log(ros1.frame_channel(*ros1.source_of(raw), msgid))
-        encode = ros1.codec(ros1.full_length(msgid)).encode
+        encode: ros1.Encode = ros1.codec(ros1.full_length(msgid)).encode
         if msgid == SETUP_SIGNING:
             encode = _without_key(encode)
         known = self._frame_logs[key] = log, encode

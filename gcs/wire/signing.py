@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from functools import cache
 from hashlib import sha256
 from hmac import compare_digest
 from typing import Final, Protocol, TypeAlias
@@ -243,13 +242,19 @@ def _with_flag_turned(frame: bytes) -> bytes:
     The checksum is corrected without being counted anew, so this works for messages, too, that the
     dialect lacks: it is linear over the bits of frames of one length.
     """
-    checksum = int.from_bytes(frame[-CHECKSUM_SIZE:], "little") ^ _flag_in_checksum(frame[1])
-    flags = bytes((frame[_FLAGS] ^ SIGNED,))
-    return frame[:2] + flags + frame[3:-CHECKSUM_SIZE] + checksum.to_bytes(2, "little")
+    turned = bytearray(frame)
+    low, high = _FLAG_IN_CHECKSUM[frame[1]]
+    turned[_FLAGS] ^= SIGNED
+    turned[-2] ^= low
+    turned[-1] ^= high
+    return bytes(turned)
 
 
-@cache
-def _flag_in_checksum(payload_length: int) -> int:
+def _flag_in_checksum(payload_length: int) -> bytes:
     """What the flag SIGNED changes in the checksum of a frame with a payload of that length."""
     rest = bytes(HEADER_V2 - 1 - _FLAGS + payload_length + 1)  # the checksum ends with CRC extra
-    return mcrf4xx(b"\0" + bytes((SIGNED,)) + rest) ^ mcrf4xx(b"\0\0" + rest)
+    changed = mcrf4xx(b"\0" + bytes((SIGNED,)) + rest) ^ mcrf4xx(b"\0\0" + rest)
+    return changed.to_bytes(CHECKSUM_SIZE, "little")
+
+
+_FLAG_IN_CHECKSUM: Final = tuple(map(_flag_in_checksum, range(256)))
