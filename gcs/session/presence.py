@@ -38,15 +38,16 @@ class Presence:
     def number(self, frame: Frame, now_ns: int) -> int:
         """The frame's place among all of its sender; it is counted."""
         sender = (frame.sysid, frame.compid)
-        heard_ns, self._heard_ns[sender] = self._heard_ns.get(sender, now_ns), now_ns
+        heard_ns = self._heard_ns.get(sender, now_ns)
+        self._heard_ns[sender] = now_ns
         number = self.losses.in_turn(sender, frame.seq)
-        if number is not None:
-            return number
-        silent = now_ns - heard_ns > self._restart_silence_ns
-        if silent and self.losses.late(*sender, frame.seq):
+        return self._out_of_turn(sender, frame.seq, now_ns - heard_ns) if number is None else number
+
+    def _out_of_turn(self, sender: tuple[int, int], seq: int, silence_ns: int) -> int:
+        if silence_ns > self._restart_silence_ns and self.losses.late(*sender, seq):
             self.losses.restart(*sender)
-        number = self.losses.number(*sender, frame.seq)
-        self.losses.seen(*sender, frame.seq)
+        number = self.losses.number(*sender, seq)
+        self.losses.seen(*sender, seq)
         return number
 
     def overtaken(self, frame: Frame, message: m.Message, number: int) -> bool:

@@ -56,9 +56,10 @@ class WorkQueue:
                 gate_answers |= kind is ToGate
                 agenda += reversed(step(item, now_ns))
 
-    def put(self, effect: Effect) -> None:
-        """An effect that leads to nothing, between two calls of `run`."""
-        self._effects.append(effect)
+    @property
+    def put(self) -> Callable[[Effect], None]:
+        """Takes an effect that leads to nothing, between two calls of `run`; good until `take`."""
+        return self._effects.append
 
     def take(self) -> list[Effect]:
         """The effects so far, in the order in which the shell is to perform them."""

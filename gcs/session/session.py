@@ -74,7 +74,7 @@ from gcs.session.signatures import NO_KEYS, Keys, Signatures
 from gcs.session.telemetry import Telemetry
 from gcs.session.ticks import Ticks
 from gcs.session.times import Times
-from gcs.session.vehicle import Vehicle
+from gcs.session.vehicle import INTERPRETED, Vehicle
 from gcs.session.work import (
     AskGate,
     AskMission,
@@ -105,6 +105,7 @@ vehicle is known."""
 NODE = "link"
 MAX_FAULTS = 10
 
+_ALIVE: Sequence[Work] = (ToGate(gate_inputs.MessageSeen()),)
 _RECEIVED = Direction.RECEIVED  # looking it up costs more than what it is used for
 
 
@@ -415,7 +416,8 @@ class Session:
         """What came on a vehicle's link: its frames are first of all sent on to the clients,
         together as they came.  Nearly all of them are only recorded and counted, which is no work
         for the queue."""
-        put, subscribed = self._queue.put, self._operators.subscribed
+        put, passes = self._queue.put, self._vehicle.passes
+        special, own_compid = self._operators.subscribed, self._own[1]
         frames = [item for item in taken if type(item) is Frame]
         for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
             for sent in self._links.together(to, raws, now_ns):
@@ -423,14 +425,17 @@ class Session:
         if frames:
             self._links.peer_known(link)
         worked = False
+        work: Sequence[Work]
         for item in taken:
             if isinstance(item, GarbageItem):
                 put(Record(item))
                 continue
             put(Record(FrameItem(link, _RECEIVED, item.raw)))
-            work = self._vehicle_frame(link, item, now_ns)
-            if item.msgid in subscribed and item.sysid == self._vehicle.sysid:
-                work += self._operators.heard(item, now_ns)
+            msgid = item.msgid
+            if msgid in INTERPRETED or msgid in special or item.compid == own_compid:
+                work = self._vehicle_frame(link, item, now_ns)
+            else:
+                work = _ALIVE if passes(link, item, now_ns) else ()
             if work:
                 worked = True
                 self._queue.run(work, now_ns)
@@ -451,6 +456,8 @@ class Session:
         work = self._vehicle.frame(link, frame, now_ns)
         if frame.msgid == MsgId.PARAM_VALUE:
             work += self._bridge.parameter(frame)
+        if frame.sysid == self._vehicle.sysid:
+            work += self._operators.heard(frame, now_ns)
         return work
 
     # ------------------------------------------------------------------------------ time

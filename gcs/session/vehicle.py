@@ -161,11 +161,27 @@ class Vehicle:
 
     # ------------------------------------------------------------------------------- frames
 
-    def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
-        """A good frame of anybody on `link`; what is not our vehicle's changes nothing.
+    def passes(self, link: int, frame: Frame, now_ns: int) -> bool:
+        """A good frame of a message that is not in `INTERPRETED`: it is counted, and not decoded.
 
-        Most frames only pass through: they are counted, and not decoded.
+        True: the gate is to hear that the vehicle lives.
         """
+        telemetry = self.telemetry
+        if telemetry is None or frame.sysid != telemetry.sysid:
+            return False
+        self._presence.number(frame, now_ns)
+        telemetry.count_frame(now_ns)
+        return frame.compid == telemetry.compid and self._alive(telemetry, link, now_ns)
+
+    def _alive(self, telemetry: Telemetry, link: int, now_ns: int) -> bool:
+        """A frame of its autopilot came; whether the gate is to hear of it."""
+        if telemetry.heard_ns == now_ns == telemetry.link_ns:
+            return False  # the datagram's first frame has told it
+        self._presence.choose_link(telemetry, link, now_ns)
+        return self._presence.alive(telemetry, now_ns)
+
+    def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        """A good frame of anybody on `link`; what is not our vehicle's changes nothing."""
         work: list[Work] = []
         message = decode(frame) if frame.msgid in INTERPRETED else None
         if isinstance(message, m.Heartbeat):
@@ -177,11 +193,8 @@ class Vehicle:
             return work
         number = self._presence.number(frame, now_ns)
         telemetry.count_frame(now_ns)
-        told_now = telemetry.heard_ns == now_ns == telemetry.link_ns
-        if frame.compid == telemetry.compid and not told_now:
-            self._presence.choose_link(telemetry, link, now_ns)
-            if self._presence.alive(telemetry, now_ns):
-                work.append(ToGate(inputs.MessageSeen()))
+        if frame.compid == telemetry.compid and self._alive(telemetry, link, now_ns):
+            work.append(ToGate(inputs.MessageSeen()))
         if message is not None and not self._presence.overtaken(frame, message, number):
             work += self._interpreted(telemetry, frame, message, now_ns)
         return work

@@ -14,6 +14,7 @@ PROGRAMS = (
     "bench_record",
     "bench_logfile",
     "bench_loop",
+    "bench_bridge",
     "bench_vehicle",
     "measure_starts",
     "measure_armable",

@@ -164,6 +164,7 @@ def check() -> None:
 if __name__ == "__main__":
     check()
     if sys.argv[1] == "send":
-        send(int(sys.argv[2]), int(sys.argv[3]), float(sys.argv[4]), int((*sys.argv, 8)[5]))
+        _, _, port, rate_hz, seconds, *frames = sys.argv
+        send(int(port), int(rate_hz), float(seconds), int(frames[0]) if frames else 8)
     else:
         receive(sys.argv[2], int(sys.argv[3]), float(sys.argv[4]))

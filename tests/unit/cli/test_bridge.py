@@ -261,23 +261,23 @@ class Told:
         self.draws += 1
 
 
-class InterruptAfter(NoInterrupts):
-    """A Ctrl-C once the display was drawn five times."""
+class DrawnFiveTimes(Told):
+    """After that, there is a SIGTERM."""
 
-    def __init__(self, told: Told) -> None:
-        self._told = told
+    def __init__(self, interrupts: NoInterrupts) -> None:
+        super().__init__()
+        self._interrupts = interrupts
 
-    @property
-    def name(self) -> str:
-        return "SIGTERM" if self._told.draws == 5 else ""
-
-    def forget(self) -> None:
-        self._told.draws += 1
+    def draw(self) -> None:
+        super().draw()
+        if self.draws == 5:
+            self._interrupts.name = "SIGTERM"
 
 
 def test_a_signal_ends_it_in_good_order() -> None:
-    told, connection = Told(), FakeConnection(FakeStation("airborne"))
-    ended = watch(connection, InterruptAfter(told), told, None)
+    interrupts, connection = NoInterrupts(), FakeConnection(FakeStation("airborne"))
+    told = DrawnFiveTimes(interrupts)
+    ended = watch(connection, interrupts, told, None)
     assert ended.bye is not None
     assert ended.bye.exit_code == 0
     assert connection.sent == [ipc.Leave("SIGTERM")]

@@ -526,7 +526,7 @@ class PaperPorts(ClientPorts):
 def test_what_clients_send_is_handed_on_and_what_is_for_them_goes_to_their_ports() -> None:
     ports = PaperPorts()
     rig = Rig(links=2, client_ports=ports)
-    came = [ClientCame(2, "udp 127.0.0.1:5", False), Datagram(2, b"theirs")]
+    came: list[Arrival] = [ClientCame(2, "udp 127.0.0.1:5", False), Datagram(2, b"theirs")]
     ports.brings = [*came]
     rig.core.answers[came[1]] = [Transmit(0, b"for the vehicle"), Transmit(2, b"for the client")]
     rig.run(lambda: None)
