@@ -185,8 +185,9 @@ def random_frame(flight: HostileFlight, client: Client) -> None:
     )
     if msgid in TARGETS and dice.random() < 0.9:
         system_at, component_at = TARGETS[msgid]
-        payload[system_at] = 1
-        if component_at >= 0:
+        if system_at < size:  # the dialects differ in a few messages
+            payload[system_at] = 1
+        if 0 <= component_at < size:
             payload[component_at] = dice.choice((0, 1, 1))
     sysid, compid = dice.choice(((245, 190), (245, 190), (1, 1), STATION, (0, 0)))
     say_frame(flight, client, msgid, cls.crc_extra, bytes(payload), sysid, compid)
@@ -401,6 +402,7 @@ def uploads(flight: HostileFlight, client: Client) -> None:
         for _ in range(dice.randint(1, 4))
     ]
     items: list[PlanItem] = mission(flight.personality, *places)
+    flight.uploads.clear()
     dice.choice(UPLOADS)(flight, client, items)
     flight.flies(dice.choice((0.3, 3.0)))
     if dice.random() < 0.7:
