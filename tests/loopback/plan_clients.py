@@ -166,6 +166,8 @@ class Upload:
         self._send(dialect.MAVLink_mission_count_message(*VEHICLE, len(self.items), self.kind))
 
     def send_item(self, seq: int) -> None:
+        if seq >= len(self.items):
+            return  # a question about another upload
         self.asked.append(seq)
         item = self.items[seq]
         head = (*VEHICLE, seq, item.frame, item.command, int(seq == 0), 1, *item.params)

@@ -24,13 +24,16 @@ from gcs.gate.inputs import (
     OperatorLost,
     PhotoSeen,
     PositionSeen,
+    StreamSeen,
     VerifierChanged,
 )
 from gcs.gate.policy.policy import Policy
 from gcs.gate.requests import (
     Abort,
     Arm,
+    BeginStream,
     Disarm,
+    EndStream,
     GoTo,
     Hold,
     Land,
@@ -199,6 +202,26 @@ def dashes(run: HostileRun) -> None:
     run.run(1.0)
 
 
+def streams(run: HostileRun) -> None:
+    """Velocities at 20 Hz, mostly straight out of the fence; with gaps, and with wild samples."""
+    dice = run.dice
+    if dice.random() < 0.8:
+        taken(run)
+    if dice.random() < 0.7:
+        run.ask(BeginStream())
+    source = dice.choice(("operator", "operator", "another"))
+    speed, turn = dice.choice((1.0, 4.0, 9.0, 12.0)), dice.uniform(0.0, math.tau)
+    v_ned = (speed * math.cos(turn), speed * math.sin(turn), dice.choice((0.0, 0.0, -2.0, 1.5)))
+    for _ in range(dice.choice((5, 30, 80))):
+        pos_ned = _goal(run) if dice.random() < 0.02 else None
+        wild = (math.nan, 0.0, 0.0) if dice.random() < 0.01 else v_ned
+        if dice.random() < 0.95:
+            run.feed(StreamSeen(source, pos_ned, None if pos_ned else wild, None, None, None))
+        run.run(0.04 if dice.random() < 0.5 else 0.06)
+    if dice.random() < 0.2:
+        run.ask(dice.choice((EndStream(), Abort(), GoTo(_goal(run)))), source)
+
+
 def asks(run: HostileRun) -> None:
     dice = run.dice
     requests: tuple[Request, ...] = (
@@ -213,6 +236,8 @@ def asks(run: HostileRun) -> None:
         Disarm(force=True),
         TakeOff(dice.choice((2.0, 10.0, 29.9, 40.0, 0.0, -1.0, math.nan))),
         TakePhoto(),
+        BeginStream(),
+        EndStream(),
         StartMission(),
         SwitchFence(dice.random() < 0.5),
         SetMode("X", dice.choice(list(FlightMode))),
@@ -385,6 +410,7 @@ ACTS: tuple[Act, ...] = (
     *[sensible] * 16,
     *[goes] * 12,
     *[dashes] * 4,
+    *[streams] * 4,
     goes_twice,
     *[asks] * 12,
     *[waits] * 6,

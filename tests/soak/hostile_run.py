@@ -206,10 +206,13 @@ class HostileRun:
             self._fail(f"no reason: {verdict}")
 
     def _check_setpoint(self, permit: Permit) -> None:
+        if not isinstance(permit, Permit):
+            self._fail(f"a setpoint without a permit: {permit}")
+        asked = (permit.pos_ned, permit.v_ned, permit.a_ned)
+        if asked == (None, None, None) or not all(math.isfinite(x) for v in asked for x in v or ()):
+            self._fail(f"a setpoint that says nothing: {permit}")
         pos_ned = permit.pos_ned
-        if not isinstance(permit, Permit) or pos_ned is None:
-            self._fail(f"a setpoint without a permit or a place: {permit}")
-        elif self.fence_on and not self.clearance(pos_ned) > -self._allowed():
+        if pos_ned is not None and self.fence_on and self.clearance(pos_ned) < -self._allowed():
             self._fail(f"a setpoint outside: {pos_ned}")
 
     def all_answered(self) -> None:
@@ -326,8 +329,7 @@ class HostileRun:
         if self.now_ns < self.deaf_until_ns:
             return
         if isinstance(what, SendSetpoint):
-            assert what.permit.pos_ned is not None
-            self.vehicle.hears_setpoint(what.permit.pos_ned)
+            self.vehicle.hears_setpoint(what.permit.pos_ned, what.permit.v_ned)
             return
         result = self.vehicle.hears_command(what)
         key = (what.request_id, what.kind)

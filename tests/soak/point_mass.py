@@ -46,6 +46,7 @@ class PointMass:
         self.landed = LandedState.ON_GROUND
         self.failsafe = False
         self.setpoint: Vec3 | None = None
+        self.velocity: Vec3 | None = None
         self.setpoint_s = -9.0
         self.path: list[Vec3] = []
         self.items_flown = 0
@@ -84,13 +85,18 @@ class PointMass:
 
     # -------------------------------------------------------------------------- commands
 
-    def hears_setpoint(self, pos_ned: Vec3) -> None:
-        if self.setpoint != pos_ned:
+    def hears_setpoint(self, pos_ned: Vec3 | None, v_ned: Vec3 | None) -> None:
+        """A position wins over the velocity beside it; without either nothing changes."""
+        self.setpoint_s = self.now_s
+        if pos_ned is None:
+            self.velocity = v_ned
+            return
+        streamed, self.velocity = self.velocity is not None, None
+        if self.setpoint != pos_ned or streamed:
             self._leg_from = self.at
             self.setpoint = pos_ned
             if self.mode is FlightMode.GUIDED:
                 self._stops_first()
-        self.setpoint_s = self.now_s
 
     def hears_command(self, sent: SendCommand) -> int:
         """MAV_RESULT."""
@@ -163,6 +169,8 @@ class PointMass:
 
     def _slows_down(self) -> bool:
         """Is it on its way to a goal, so that it has kept its speed for stopping there?"""
+        if self.velocity is not None or self._stopping:
+            return False
         return self._goal() is not None and self.speed_m_s > STILL
 
     def takes_over(self, mode: FlightMode, v_ned: Vec3) -> None:
@@ -207,6 +215,13 @@ class PointMass:
         self._meets_the_ground()
 
     def _flies_its_path(self) -> None:
+        if self.mode is FlightMode.GUIDED and self.velocity is not None:
+            b = self.braking
+            slower = math.hypot(*self.velocity[:2]) < math.hypot(*self.vel[:2])
+            a_h = b.a_brake_h_m_s2 if slower else GAIN_M_S2
+            self._towards_velocity(self.velocity, a_h, b.a_brake_v_m_s2)
+            self._stopping = False
+            return
         goal = self._goal()
         if goal is None:
             if self.mode is FlightMode.RETURN:

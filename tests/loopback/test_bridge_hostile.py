@@ -1,0 +1,69 @@
+"""Whatever MAVLink clients send, the vehicle stays inside, and the record of it is sound.
+
+`make test` flies a share, `make soak` all; a failure names its seed.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from gcs.audit.audit import audit
+from gcs.audit.messages import Tape
+from gcs.bridge.classes import Kind, Row
+from gcs.record.writer import Recorder
+from tests.loopback import bridge_clients
+from tests.loopback.flight import Flight
+from tests.loopback.looks import START_NS
+
+FLIGHTS = 200
+FLIGHTS_IN_EACH_RUN = 6
+
+flights = pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(seed, marks=[pytest.mark.soak] if seed >= FLIGHTS_IN_EACH_RUN else [])
+        for seed in range(FLIGHTS)
+    ],
+)
+
+
+@flights
+def test_no_client_gets_the_vehicle_out_of_the_fence(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every one of these flights is recorded and audited, not a share of them."""
+    tape = Tape()
+    recorder = Recorder.without_file(tape, START_NS)
+    monkeypatch.setattr(Flight, "new_recorder", staticmethod(lambda: recorder))
+    try:
+        flight = bridge_clients.flown(seed)
+    except AssertionError as broken:
+        raise AssertionError(f"hostile flight {seed}: {broken}") from broken
+    assert flight.decisions("refused"), "nothing that was sent was refused"
+    result = audit(tape.take(), tape.attachments, "test", "")
+    assert result.good, (seed, result.notes, result.first[:5])
+    print(f"{seed}: nearest to leaving the fence {-flight.outmost_m:.2f} m; {flight.passed}")
+
+
+def test_a_frame_that_slips_through_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here every message is called harmless where the bridge looks it up."""
+    row = Row("ANY", Kind.HARMLESS, "planted")
+    monkeypatch.setattr("gcs.bridge.judge.message_row", lambda msgid: row)
+    with pytest.raises(AssertionError, match="reaches the vehicle"):
+        bridge_clients.flown(0)
+
+
+def test_a_vehicle_outside_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    flight = bridge_clients.HostileFlight(0)
+    flight.connected()
+    monkeypatch.setattr(flight, "truth_enu", lambda: (33.0, 0.0, 10.0))
+    with pytest.raises(AssertionError, match=r"is 3\.00 m outside"):
+        flight.flies(0.2)
+
+
+def test_a_vehicle_in_the_tower_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    flight = bridge_clients.HostileFlight(0)
+    flight.connected()
+    monkeypatch.setattr(flight, "truth_enu", lambda: (16.0, 0.0, 10.0))
+    with pytest.raises(AssertionError, match="m outside"):
+        flight.flies(0.2)
