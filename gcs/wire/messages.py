@@ -96,14 +96,6 @@ class ParamRequestRead(Message, frozen=True, gc=False):
     param_id: str  # at most 16 bytes
 
 
-class ParamRequestList(Message, frozen=True, gc=False):
-    """PARAM_REQUEST_LIST (21): 2 bytes."""
-
-    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_REQUEST_LIST
-    target_system: int
-    target_component: int
-
-
 class ParamValue(Message, frozen=True, gc=False):
     """PARAM_VALUE (22): 25 bytes."""
 
@@ -342,33 +334,6 @@ class MissionRequestInt(Message, frozen=True, gc=False):
     mission_type: int = 0  # MAV_MISSION_TYPE
 
 
-class RcChannels(Message, frozen=True, gc=False):
-    """RC_CHANNELS (65): 42 bytes."""
-
-    MSG_ID: ClassVar[MsgId] = MsgId.RC_CHANNELS
-    time_boot_ms: int  # ms
-    chan1_raw: int  # us
-    chan2_raw: int  # us
-    chan3_raw: int  # us
-    chan4_raw: int  # us
-    chan5_raw: int  # us
-    chan6_raw: int  # us
-    chan7_raw: int  # us
-    chan8_raw: int  # us
-    chan9_raw: int  # us
-    chan10_raw: int  # us
-    chan11_raw: int  # us
-    chan12_raw: int  # us
-    chan13_raw: int  # us
-    chan14_raw: int  # us
-    chan15_raw: int  # us
-    chan16_raw: int  # us
-    chan17_raw: int  # us
-    chan18_raw: int  # us
-    chancount: int
-    rssi: int
-
-
 class RequestDataStream(Message, frozen=True, gc=False):
     """REQUEST_DATA_STREAM (66): 6 bytes."""
 
@@ -447,18 +412,6 @@ class MissionItemInt(Message, frozen=True, gc=False):
     current: int
     autocontinue: int
     mission_type: int = 0  # MAV_MISSION_TYPE
-
-
-class VfrHud(Message, frozen=True, gc=False):
-    """VFR_HUD (74): 20 bytes."""
-
-    MSG_ID: ClassVar[MsgId] = MsgId.VFR_HUD
-    airspeed: float  # m/s
-    groundspeed: float  # m/s
-    alt: float  # m
-    climb: float  # m/s
-    heading: int  # deg
-    throttle: int  # %
 
 
 class CommandInt(Message, frozen=True, gc=False):

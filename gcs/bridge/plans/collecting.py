@@ -88,7 +88,7 @@ class Collecting:
         self.items.append(item)
         self._heard_ns = now_ns
         self._repeats = 0
-        if self.whole:
+        if len(self.items) == self.opened.count:
             self.deadline_ns = None
             return []
         return self._ask(now_ns)

@@ -93,8 +93,7 @@ def _place(spec: ZoneSpec, home_ned: Vec3 | None, projection: Projection | None)
             corners = ((west, south), (east, south), (east, north), (west, north))
             placed = Polygon(tuple(local(c) for c in corners))
         case PolygonSpec(corners):
-            corners = open_ring(corners)
-            here = tuple(local(c) for c in corners)
+            here = tuple(local(c) for c in open_ring(corners))
             fault = polygon_fault(here)
             if fault is not None:
                 return Refusal(Code.POLICY, f"fence zone '{spec.name}': {fault}", zone=spec.name)

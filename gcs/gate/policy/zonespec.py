@@ -109,8 +109,8 @@ def _shape_fault(zone: ZoneSpec) -> Fault | None:
         case PolygonSpec(corners):
             fault = _degrees_fault("corners", zone.frame, corners)
             if fault is None:
-                what = polygon_fault(plane_corners(zone))
-                fault = None if what is None else Fault("corners", what, CORNERS_HINT)
+                bad = polygon_fault(plane_corners(zone))
+                fault = None if bad is None else Fault("corners", bad, CORNERS_HINT)
             return fault
 
 
