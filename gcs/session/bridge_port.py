@@ -9,7 +9,20 @@ import msgspec
 
 from gcs import ipc
 from gcs.bridge.bridge import Bridge
-from gcs.bridge.effects import BridgeEffect
+from gcs.bridge.effects import (
+    Answers,
+    AsksPlan,
+    AsksVehicle,
+    BridgeEffect,
+    Joined,
+    Lost,
+    Notes,
+    Refuses,
+    Says,
+    StopsPlan,
+    ToLink,
+    ToVehicle,
+)
 from gcs.bridge.judge import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
@@ -22,17 +35,20 @@ from gcs.protocol.effects import Address
 from gcs.protocol.parameter_names import names_of
 from gcs.session import teller
 from gcs.session.discovery import needed_hz
-from gcs.session.effects import Emit
-from gcs.session.links import Counts
+from gcs.session.effects import Effect, Emit
+from gcs.session.links import Counts, Links
 from gcs.session.missions import timing_of
+from gcs.session.operators import Operators
 from gcs.session.settings import SPEED, TAKEOFF_HEIGHT
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
-from gcs.session.work import Log
+from gcs.session.work import Log, Work
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.messages import ParamValue
+
+NODE = "link"
 
 
 class BridgePort:
@@ -45,12 +61,16 @@ class BridgePort:
         policy: Policy,
         times: Times,
         vehicle: Vehicle,
+        operators: Operators,
+        links: Links,
     ) -> None:
         rules = policy.bridge
         own = Address(config.sysid, config.compid)
         silent_ns = times.real_ns(round(rules.client_gone_s * 1e9))
         self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing_of(times))
         self._vehicle = vehicle
+        self._operators = operators
+        self._links = links
         self._max_takeoff_up_m = policy.takeoff.max_up_m
         self._endpoints = endpoints
         self._shown = config.bridge or bool(config.clients)
@@ -102,7 +122,7 @@ class BridgePort:
         if self._address is not None:
             done += self.bridge.control_status(self._address)
         if self._shown:
-            links = self._links(now_ns, counts, lost_pct)
+            links = self._link_rows(now_ns, counts, lost_pct)
             clients = [
                 msgspec.structs.replace(client, signed=signed(client.link))
                 for client in self.bridge.status(now_ns)
@@ -110,7 +130,7 @@ class BridgePort:
             done.append(Emit(ipc.BridgeStatus(now_ns, links, clients)))
         return done
 
-    def _links(
+    def _link_rows(
         self, now_ns: int, counts: Sequence[Counts], lost_pct: float
     ) -> list[ipc.BridgeLink]:
         """The links that vehicles are on, with their rates since the last time."""
@@ -130,6 +150,49 @@ class BridgePort:
         self._before = [(count.received, count.sent) for count in counts]
         self._before_ns = now_ns
         return rows
+
+    def as_operator(
+        self,
+        item: Joined | Lost | Says | Refuses | AsksPlan | StopsPlan | Notes | Emit,
+        now_ns: int,
+    ) -> list[Work]:
+        """What a MAVLink client does as an operator, and what it is told as one."""
+        match item:
+            case Joined(client, name):
+                return self._operators.join(client, name, hold_on_leave=True)
+            case Lost(client, reason):
+                return self._operators.lost(client, reason)
+            case Says(client, command):
+                return self._operators.line(
+                    client, command, *self._vehicle.for_operators(now_ns), now_ns
+                )
+            case Refuses(client, ask, refusal):
+                return self._operators.refuse(client, ask, refusal)
+            case AsksPlan():
+                return self._operators.ask_plan(item, self._vehicle.refusal(now_ns))
+            case StopsPlan():
+                return self._operators.stop_plan(item)
+            case Notes(level, text):
+                return [Log(level, NODE, text)]
+            case Emit(event, client):
+                return [*self.bridge.told(client, event, now_ns)]
+
+    def pass_on(
+        self, item: ToVehicle | AsksVehicle | ToLink | Answers, now_ns: int
+    ) -> list[Effect]:
+        """Frames between clients and the vehicle."""
+        telemetry = self._vehicle.telemetry
+        match item:
+            case ToLink(link, raw):
+                return self._links.pass_on(link, raw, now_ns)
+            case Answers(link, source, message):
+                return self._links.send_as(source, link, message, now_ns)
+            case ToVehicle(raw) if telemetry is not None:
+                return self._links.pass_on(telemetry.link, raw, now_ns)
+            case AsksVehicle(source, message) if telemetry is not None:
+                return self._links.send_as(source, telemetry.link, message, now_ns)
+            case _:
+                return []
 
     def logged(self, line: Log, now_ns: int) -> list[BridgeEffect]:
         """What the gate warns of, the clients read too; of a refusal only the one who asked."""

@@ -7,7 +7,6 @@ what the gate decides becomes commands and setpoints; and all of it becomes the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import assert_never
 
 from gcs import ipc
@@ -27,21 +26,17 @@ from gcs.bridge.effects import (
 )
 from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
-from gcs.gate import inputs as gate_inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.gate.machine.gate import Gate
-from gcs.protocol.effects import Send
-from gcs.report import (
-    Direction,
-    FrameItem,
-    GarbageItem,
-)
+from gcs.protocol.effects import Address, Send
 from gcs.session import teller
 from gcs.session.bridge_port import BridgePort
-from gcs.session.clients import FIRST, LEAVING_NS
-from gcs.session.effects import Effect, Emit, Finish, Record
+from gcs.session.clients import FIRST
+from gcs.session.effects import Effect, Emit, Finish
+from gcs.session.ending import Ending
 from gcs.session.gate_port import condition
+from gcs.session.incoming import Incoming
 from gcs.session.inputs import (
     ClientCame,
     ClientFlooded,
@@ -67,14 +62,14 @@ from gcs.session.inputs import (
 from gcs.session.links import Links
 from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
-from gcs.session.recorded import fault, hello, introduction, pieces, recorded, sim_line
+from gcs.session.recorded import fault, hello, introduction, recorded, sim_line
 from gcs.session.screen import lost_pct, snapshot
 from gcs.session.setup import Setup
 from gcs.session.signatures import NO_KEYS, Keys, Signatures
 from gcs.session.telemetry import Telemetry
 from gcs.session.ticks import Ticks
 from gcs.session.times import Times
-from gcs.session.vehicle import INTERPRETED, Vehicle
+from gcs.session.vehicle import Vehicle
 from gcs.session.work import (
     AskGate,
     AskMission,
@@ -90,10 +85,6 @@ from gcs.session.work import (
     ToGate,
     Work,
 )
-from gcs.wire.blanking import without_key
-from gcs.wire.frame import Frame, Garbage, Item
-from gcs.wire.ids import MsgId
-from gcs.wire.signing import Reason
 
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
@@ -104,9 +95,6 @@ vehicle is known."""
 
 NODE = "link"
 MAX_FAULTS = 10
-
-_ALIVE: Sequence[Work] = (ToGate(gate_inputs.MessageSeen()),)
-_RECEIVED = Direction.RECEIVED  # looking it up costs more than what it is used for
 
 
 class Session:
@@ -130,21 +118,35 @@ class Session:
         self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
         self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
         self._operators = Operators(setup, self._times)
-        self._bridge = BridgePort(config, setup.endpoints, setup.policy, self._times, self._vehicle)
-        self._first_client_link = count
-        self._own = config.sysid, config.compid
+        self._bridge = BridgePort(
+            config,
+            setup.endpoints,
+            setup.policy,
+            self._times,
+            self._vehicle,
+            self._operators,
+            self._links,
+        )
         self._deadline_ns: int | None = None
         """As it was last looked up; None once something may have changed it."""
         self._queue = WorkQueue(self._step)
+        self._incoming = Incoming(
+            Address(config.sysid, config.compid),
+            count,
+            self._links,
+            self._signatures,
+            self._queue,
+            self._vehicle,
+            self._operators,
+            self._bridge,
+        )
+        self._ending = Ending(setup, self._times, self._vehicle, self._operators)
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
-        self._leaving_since_ns: int | None = None
         self._told_no_vehicle = False
-        self._other_station_ns = 0
         self._faults = 0
         self._introduced = False
-        self._finished = False
         self._unfinished: Input | None = None
         """The input that is being handled: none of its effects has left yet."""
 
@@ -183,13 +185,13 @@ class Session:
             begin = [*introduction(self._setup, self._start_ns), *self._vehicle.remind()]
             queue.run(begin, now_ns)
         if isinstance(given, Datagram):
-            if not self._datagram(given, now_ns):
+            if not self._incoming.datagram(given, now_ns):
                 self._unfinished = None
                 return queue.take()
         else:
             queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
         queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
-        queue.run(self._end_if_due(now_ns), now_ns)
+        queue.run(self._ending.if_due(self._log_path, now_ns), now_ns)
         self._unfinished = self._deadline_ns = None
         return queue.take()
 
@@ -214,7 +216,7 @@ class Session:
             bye = ipc.Bye(ExitCode.BUG, "", "an internal error of the station", goes_on=True)
             work.append(Emit(bye, given.client))
         if isinstance(given, Wake) or self._faults > MAX_FAULTS:
-            self._finished = True
+            self._ending.finished = True
             hold = self._vehicle.hold_without_gate(now_ns)
             work += [item for item in hold if isinstance(item, Send)]
             work.append(Finish(ExitCode.BUG, "an internal error: the vehicle was told to hold"))
@@ -232,7 +234,9 @@ class Session:
             case OperatorJoined():
                 return self._welcome(given, now_ns)
             case OperatorLine(client, command):
-                return self._line(client, command, now_ns)
+                return self._operators.line(
+                    client, command, *self._vehicle.for_operators(now_ns), now_ns
+                )
             case OperatorNoise(client, text):
                 return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
             case OperatorGone(client, reason):
@@ -306,7 +310,7 @@ class Session:
             case Tell():
                 return self._operators.tell(item)
             case EndSession(reason):
-                return self._end(reason, now_ns)
+                return self._ending.begin(reason, now_ns)
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
@@ -314,151 +318,13 @@ class Session:
             case (
                 Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()
             ):
-                return self._of_client(item, now_ns)
+                return self._bridge.as_operator(item, now_ns)
             case AsksForStreams(msgids):
                 return self._vehicle.ask_for_streams(msgids, now_ns)
             case ToVehicle() | AsksVehicle() | ToLink() | Answers():
-                return [*self._pass_on(item, now_ns)]
+                return [*self._bridge.pass_on(item, now_ns)]
             case _:
                 raise AssertionError(f"the queue keeps {item} for itself")
-
-    def _line(self, client: int, command: ipc.Command, now_ns: int) -> list[Work]:
-        """What an operator says, or a MAVLink client in an operator's words."""
-        telemetry = self._vehicle.telemetry
-        autopilot = telemetry.autopilot if telemetry else None
-        no_vehicle = self._vehicle.refusal(now_ns)
-        return self._operators.line(client, command, autopilot, no_vehicle, now_ns)
-
-    # ---------------------------------------------------------------------- the bridge
-
-    def _of_client(
-        self,
-        item: Joined | Lost | Says | Refuses | AsksPlan | StopsPlan | Notes | Emit,
-        now_ns: int,
-    ) -> list[Work]:
-        """What a MAVLink client does as an operator, and what it is told as one."""
-        match item:
-            case Joined(client, name):
-                return self._operators.join(client, name, hold_on_leave=True)
-            case Lost(client, reason):
-                return self._operators.lost(client, reason)
-            case Says(client, command):
-                return self._line(client, command, now_ns)
-            case Refuses(client, ask, refusal):
-                return self._operators.refuse(client, ask, refusal)
-            case AsksPlan():
-                return self._operators.ask_plan(item, self._vehicle.refusal(now_ns))
-            case StopsPlan():
-                return self._operators.stop_plan(item)
-            case Notes(level, text):
-                return [Log(level, NODE, text)]
-            case Emit(event, client):
-                return [*self._bridge.bridge.told(client, event, now_ns)]
-
-    def _pass_on(
-        self, item: ToVehicle | AsksVehicle | ToLink | Answers, now_ns: int
-    ) -> list[Effect]:
-        """Frames between clients and the vehicle."""
-        telemetry = self._vehicle.telemetry
-        match item:
-            case ToLink(link, raw):
-                return self._links.pass_on(link, raw, now_ns)
-            case Answers(link, source, message):
-                return self._links.send_as(source, link, message, now_ns)
-            case ToVehicle(raw) if telemetry is not None:
-                return self._links.pass_on(telemetry.link, raw, now_ns)
-            case AsksVehicle(source, message) if telemetry is not None:
-                return self._links.send_as(source, telemetry.link, message, now_ns)
-            case _:
-                return []
-
-    # ------------------------------------------------------------------------------- frames
-
-    def _datagram(self, given: Datagram, now_ns: int) -> bool:
-        """Frame by frame: what one leads to is done before the next is looked at.
-
-        False: nothing was in it but what only passes through, so nothing else has changed."""
-        link, run = given.link, self._queue.run
-        items = self._links.split(link, given.data)
-        announced = pieces(link, len(items), self._links.rest(link))
-        if announced:
-            run(announced, now_ns)
-        taken = self._taken(link, items, now_ns)
-        if link < self._first_client_link:
-            return self._from_vehicles(link, taken, now_ns)
-        for item in taken:
-            if isinstance(item, GarbageItem):
-                run([Record(item)], now_ns)
-            else:
-                run(self._client_frame(link, item, now_ns), now_ns)
-        return True
-
-    def _taken(self, link: int, items: Sequence[Item], now_ns: int) -> list[Frame | GarbageItem]:
-        """The frames that are taken, and the rest as the record has it."""
-        signed = self._signatures.signed(link)
-        taken: list[Frame | GarbageItem] = []
-        for item in items:
-            if isinstance(item, Garbage):
-                taken.append(GarbageItem(link, item.raw, item.reason.value))
-            elif (signed or item.signature) and (
-                reason := self._signatures.refused(link, item, now_ns)
-            ):
-                # Not as a frame: nobody shall take it for the sender's, in a viewer neither.
-                taken.append(GarbageItem(link, without_key(item.raw), reason.value))
-                if reason is Reason.TOO_OLD:
-                    # It has the key.  What we send moves its clock on, which may be behind.
-                    self._links.peer_known(link)
-            else:
-                taken.append(item)
-        return taken
-
-    def _from_vehicles(self, link: int, taken: Sequence[Frame | GarbageItem], now_ns: int) -> bool:
-        """What came on a vehicle's link: its frames are first of all sent on to the clients,
-        together as they came.  Nearly all of them are only recorded and counted, which is no work
-        for the queue."""
-        put, passes = self._queue.put, self._vehicle.passes
-        special, own_compid = self._operators.subscribed, self._own[1]
-        frames = [item for item in taken if type(item) is Frame]
-        for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
-            for sent in self._links.together(to, raws, now_ns):
-                put(sent)
-        if frames:
-            self._links.peer_known(link)
-        worked = False
-        work: Sequence[Work]
-        for item in taken:
-            if isinstance(item, GarbageItem):
-                put(Record(item))
-                continue
-            put(Record(FrameItem(link, _RECEIVED, item.raw)))
-            msgid = item.msgid
-            if msgid in INTERPRETED or msgid in special or item.compid == own_compid:
-                work = self._vehicle_frame(link, item, now_ns)
-            else:
-                work = _ALIVE if passes(link, item, now_ns) else ()
-            if work:
-                worked = True
-                self._queue.run(work, now_ns)
-        return worked
-
-    def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
-        """A good frame of a MAVLink client: judged first, because the record says how."""
-        judged = self._bridge.from_client(link, frame, now_ns)
-        direction = Direction.REFUSED if judged.refused else Direction.RECEIVED
-        return [Record(FrameItem(link, direction, frame.raw)), *judged.effects]
-
-    def _vehicle_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
-        sysid, compid = self._own
-        if frame.compid == compid and frame.sysid == sysid:
-            self._other_station_ns = now_ns
-            text = f"another station on link {link} calls itself {sysid}/{compid}"
-            return [condition(Condition.OTHER_STATION, True, text)]
-        work = self._vehicle.frame(link, frame, now_ns)
-        if frame.msgid == MsgId.PARAM_VALUE:
-            work += self._bridge.parameter(frame)
-        if frame.sysid == self._vehicle.sysid:
-            work += self._operators.heard(frame, now_ns)
-        return work
 
     # ------------------------------------------------------------------------------ time
 
@@ -470,7 +336,7 @@ class Session:
         work += self._signatures.second(now_ns)
         if self._vehicle.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)
-        if now_ns - self._other_station_ns > self._times.real_ns(OTHER_STATION_NS):
+        if now_ns - self._incoming.other_station_ns > self._times.real_ns(OTHER_STATION_NS):
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
         wanted = self._operators.missing_messages(self._vehicle.telemetry, now_ns)
         return [*work, *self._vehicle.second(now_ns), *self._vehicle.send_own(wanted, now_ns)]
@@ -508,58 +374,6 @@ class Session:
             *self._operators.join(client, joined.name, joined.hold_on_leave),
         ]
 
-    # --------------------------------------------------------------------------- leaving
-
-    def _end(self, reason: str, now_ns: int) -> list[Work]:
-        """Hold where we fly, wait until that is seen (at most 3 s), then finish."""
-        if self._leaving_since_ns is not None:
-            return []
-        self._leaving_since_ns = now_ns
-        lost = gate_inputs.OperatorLost(reason)
-        return [Log(Level.INFO, NODE, f"leaving: {reason}"), ToGate(lost)]
-
-    def _end_if_due(self, now_ns: int) -> list[Work]:
-        """The end of the session, where the start is refused or the vehicle may be left."""
-        if self._finished:
-            return []
-        refusal = self._vehicle.bad_start
-        if refusal is not None:
-            policy = self._setup.config.policy_path or self._setup.policy.name
-            text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
-            hint = "fly from inside the fence, or give a policy for this place with --policy"
-            trouble = Emit(ipc.Trouble(text, hint, ExitCode.REFUSED_BY_GATE))
-            return [trouble, *self._finish(ExitCode.REFUSED_BY_GATE, text)]
-        if self._leaving_since_ns is None:
-            return self._farewells(now_ns) if self._operators.anyone_leaves else []
-        overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
-        return self._finish(0, self._last_words()) if self.gate.settled or overdue else []
-
-    def _farewells(self, now_ns: int) -> list[Work]:
-        """To those who leave a station that lives on."""
-        settled = self.gate.settled
-        words = self._last_words() if settled else "the vehicle was not seen to hold yet"
-        return self._operators.farewells(settled, words, self._log_path, now_ns)
-
-    def _finish(self, exit_code: int, sentence: str) -> list[Work]:
-        self._finished = True
-        return [
-            *self._vehicle.leave(),
-            Log(Level.INFO, NODE, sentence),
-            *self._vehicle.remind(),
-            Finish(exit_code, sentence),
-        ]
-
-    def _last_words(self) -> str:
-        telemetry = self._vehicle.telemetry
-        if telemetry is None:
-            return "no vehicle was heard"
-        if not self.gate.settled:
-            return f"the vehicle was not seen to hold within {LEAVING_NS / 1e9:.0f} s"
-        if self.gate.memory.on_ground:
-            return "the vehicle is on the ground" + (", still ARMED" if telemetry.armed else "")
-        height = "" if telemetry.pos_ned is None else f", {-telemetry.pos_ned[2]:.1f} m up"
-        return f"the vehicle is STILL FLYING in {telemetry.mode_name}{height}"
-
     # ---------------------------------------------------------------------------- record
 
     def _recorder(self, news: RecorderChanged) -> list[Work]:
@@ -578,7 +392,7 @@ class Session:
         return [
             log,
             Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)),
-            *self._finish(ExitCode.NO_VEHICLE, text),
+            *self._ending.finish(ExitCode.NO_VEHICLE, text),
         ]
 
     def _snapshot(self, now_ns: int) -> ipc.Snapshot:

@@ -19,7 +19,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
 from gcs.protocol import arm_authorizer
-from gcs.protocol.autopilot import autopilot_of
+from gcs.protocol.autopilot import Autopilot, autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
@@ -395,6 +395,10 @@ class Vehicle:
             sentence = f"this station flies multirotors with PX4 or ArduPilot only; {what}"
             return Refusal(Code.UNSUPPORTED_VEHICLE, sentence)
         return refusal
+
+    def for_operators(self, now_ns: int) -> tuple[Autopilot | None, Refusal | None]:
+        """Its autopilot, None before it is heard; and why nothing at all can be asked of it."""
+        return self.telemetry.autopilot if self.telemetry else None, self.refusal(now_ns)
 
     def heard_vehicles(self, now_ns: int) -> list[str]:
         """The names of all that are heard."""

@@ -1,0 +1,80 @@
+"""The end of a session, and of an operator's stay: the vehicle is seen safe first."""
+
+from __future__ import annotations
+
+from gcs import ipc
+from gcs.exit_codes import ExitCode
+from gcs.gate import inputs as gate_inputs
+from gcs.gate.effects import Level
+from gcs.session.clients import LEAVING_NS
+from gcs.session.effects import Emit, Finish
+from gcs.session.operators import Operators
+from gcs.session.setup import Setup
+from gcs.session.times import Times
+from gcs.session.vehicle import Vehicle
+from gcs.session.work import Log, ToGate, Work
+
+NODE = "link"
+
+
+class Ending:
+    """Whether the session is being left, and what is said at its end."""
+
+    def __init__(self, setup: Setup, times: Times, vehicle: Vehicle, operators: Operators) -> None:
+        self._setup = setup
+        self._times = times
+        self._vehicle = vehicle
+        self._operators = operators
+        self._leaving_since_ns: int | None = None
+        self.finished = False
+
+    def begin(self, reason: str, now_ns: int) -> list[Work]:
+        """Hold where we fly, wait until that is seen (at most 3 s), then finish."""
+        if self._leaving_since_ns is not None:
+            return []
+        self._leaving_since_ns = now_ns
+        lost = gate_inputs.OperatorLost(reason)
+        return [Log(Level.INFO, NODE, f"leaving: {reason}"), ToGate(lost)]
+
+    def if_due(self, log_path: str, now_ns: int) -> list[Work]:
+        """The end of the session, where the start is refused or the vehicle may be left."""
+        if self.finished:
+            return []
+        refusal = self._vehicle.bad_start
+        if refusal is not None:
+            policy = self._setup.config.policy_path or self._setup.policy.name
+            text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
+            hint = "fly from inside the fence, or give a policy for this place with --policy"
+            trouble = Emit(ipc.Trouble(text, hint, ExitCode.REFUSED_BY_GATE))
+            return [trouble, *self.finish(ExitCode.REFUSED_BY_GATE, text)]
+        if self._leaving_since_ns is None:
+            return self._farewells(log_path, now_ns) if self._operators.anyone_leaves else []
+        overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
+        return self.finish(0, self._last_words()) if self._vehicle.gate.settled or overdue else []
+
+    def _farewells(self, log_path: str, now_ns: int) -> list[Work]:
+        """To those who leave a station that lives on."""
+        settled = self._vehicle.gate.settled
+        words = self._last_words() if settled else "the vehicle was not seen to hold yet"
+        return self._operators.farewells(settled, words, log_path, now_ns)
+
+    def finish(self, exit_code: int, sentence: str) -> list[Work]:
+        """Now, with this exit code."""
+        self.finished = True
+        return [
+            *self._vehicle.leave(),
+            Log(Level.INFO, NODE, sentence),
+            *self._vehicle.remind(),
+            Finish(exit_code, sentence),
+        ]
+
+    def _last_words(self) -> str:
+        telemetry = self._vehicle.telemetry
+        if telemetry is None:
+            return "no vehicle was heard"
+        if not self._vehicle.gate.settled:
+            return f"the vehicle was not seen to hold within {LEAVING_NS / 1e9:.0f} s"
+        if self._vehicle.gate.memory.on_ground:
+            return "the vehicle is on the ground" + (", still ARMED" if telemetry.armed else "")
+        height = "" if telemetry.pos_ned is None else f", {-telemetry.pos_ned[2]:.1f} m up"
+        return f"the vehicle is STILL FLYING in {telemetry.mode_name}{height}"

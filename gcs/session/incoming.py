@@ -1,0 +1,145 @@
+"""What comes in on the links: bytes become frames, and each frame goes to the part that it is for.
+
+Nearly all frames of a vehicle are only recorded, counted and sent on to clients, which is no work
+for the queue: at 100,000 a second every call counts here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcs.gate import inputs as gate_inputs
+from gcs.gate.condition import Condition
+from gcs.protocol.effects import Address
+from gcs.report import Direction, FrameItem, GarbageItem
+from gcs.session.bridge_port import BridgePort
+from gcs.session.effects import Record
+from gcs.session.gate_port import condition
+from gcs.session.inputs import Datagram
+from gcs.session.links import Links
+from gcs.session.operators import Operators
+from gcs.session.queue import WorkQueue
+from gcs.session.recorded import pieces
+from gcs.session.signatures import Signatures
+from gcs.session.vehicle import INTERPRETED, Vehicle
+from gcs.session.work import ToGate, Work
+from gcs.wire.blanking import without_key
+from gcs.wire.frame import Frame, Garbage, Item
+from gcs.wire.ids import MsgId
+from gcs.wire.signing import Reason
+
+_ALIVE: Sequence[Work] = (ToGate(gate_inputs.MessageSeen()),)
+_RECEIVED = Direction.RECEIVED  # looking it up costs more than what it is used for
+
+
+class Incoming:
+    """The way of every datagram into the session; client links have the numbers from
+    `first_client_link` up."""
+
+    def __init__(
+        self,
+        own: Address,
+        first_client_link: int,
+        links: Links,
+        signatures: Signatures,
+        queue: WorkQueue,
+        vehicle: Vehicle,
+        operators: Operators,
+        bridge: BridgePort,
+    ) -> None:
+        self._own = own.sysid, own.compid
+        self._first_client_link = first_client_link
+        self._links = links
+        self._signatures = signatures
+        self._queue = queue
+        self._vehicle = vehicle
+        self._operators = operators
+        self._bridge = bridge
+        self.other_station_ns = 0
+        """When a frame of another station that calls itself as this one came last."""
+
+    def datagram(self, given: Datagram, now_ns: int) -> bool:
+        """Frame by frame: what one leads to is done before the next is looked at.
+
+        False: nothing was in it but what only passes through, so nothing else has changed."""
+        link, run = given.link, self._queue.run
+        items = self._links.split(link, given.data)
+        announced = pieces(link, len(items), self._links.rest(link))
+        if announced:
+            run(announced, now_ns)
+        taken = self._taken(link, items, now_ns)
+        if link < self._first_client_link:
+            return self._from_vehicles(link, taken, now_ns)
+        for item in taken:
+            if isinstance(item, GarbageItem):
+                run([Record(item)], now_ns)
+            else:
+                run(self._client_frame(link, item, now_ns), now_ns)
+        return True
+
+    def _taken(self, link: int, items: Sequence[Item], now_ns: int) -> list[Frame | GarbageItem]:
+        """The frames that are taken, and the rest as the record has it."""
+        signed = self._signatures.signed(link)
+        taken: list[Frame | GarbageItem] = []
+        for item in items:
+            if isinstance(item, Garbage):
+                taken.append(GarbageItem(link, item.raw, item.reason.value))
+            elif (signed or item.signature) and (
+                reason := self._signatures.refused(link, item, now_ns)
+            ):
+                # Not as a frame: nobody shall take it for the sender's, in a viewer neither.
+                taken.append(GarbageItem(link, without_key(item.raw), reason.value))
+                if reason is Reason.TOO_OLD:
+                    # It has the key.  What we send moves its clock on, which may be behind.
+                    self._links.peer_known(link)
+            else:
+                taken.append(item)
+        return taken
+
+    def _from_vehicles(self, link: int, taken: Sequence[Frame | GarbageItem], now_ns: int) -> bool:
+        """What came on a vehicle's link: its frames are first of all sent on to the clients,
+        together as they came.  Nearly all of them are only recorded and counted, which is no work
+        for the queue."""
+        put, passes = self._queue.put, self._vehicle.passes
+        special, own_compid = self._operators.subscribed, self._own[1]
+        frames = [item for item in taken if type(item) is Frame]
+        for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
+            for sent in self._links.together(to, raws, now_ns):
+                put(sent)
+        if frames:
+            self._links.peer_known(link)
+        worked = False
+        work: Sequence[Work]
+        for item in taken:
+            if isinstance(item, GarbageItem):
+                put(Record(item))
+                continue
+            put(Record(FrameItem(link, _RECEIVED, item.raw)))
+            msgid = item.msgid
+            if msgid in INTERPRETED or msgid in special or item.compid == own_compid:
+                work = self._vehicle_frame(link, item, now_ns)
+            else:
+                work = _ALIVE if passes(link, item, now_ns) else ()
+            if work:
+                worked = True
+                self._queue.run(work, now_ns)
+        return worked
+
+    def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        """A good frame of a MAVLink client: judged first, because the record says how."""
+        judged = self._bridge.from_client(link, frame, now_ns)
+        direction = Direction.REFUSED if judged.refused else Direction.RECEIVED
+        return [Record(FrameItem(link, direction, frame.raw)), *judged.effects]
+
+    def _vehicle_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        sysid, compid = self._own
+        if frame.compid == compid and frame.sysid == sysid:
+            self.other_station_ns = now_ns
+            text = f"another station on link {link} calls itself {sysid}/{compid}"
+            return [condition(Condition.OTHER_STATION, True, text)]
+        work = self._vehicle.frame(link, frame, now_ns)
+        if frame.msgid == MsgId.PARAM_VALUE:
+            work += self._bridge.parameter(frame)
+        if frame.sysid == self._vehicle.sysid:
+            work += self._operators.heard(frame, now_ns)
+        return work
