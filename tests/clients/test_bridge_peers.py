@@ -56,7 +56,8 @@ def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_pa
     assert len(refused) >= REFUSED[client]
     assert flight.refusals()
     assert len(flight.truth.places) > 50 * 60
-    assert max(north_m for north_m, _, _ in flight.truth.places) > 14.0  # it did fly
+    # It did fly: each script goes to 12 m north, and comes there within 1.2 m.
+    assert max(north_m for north_m, _, _ in flight.truth.places) > 12.0 - 1.2
     assert flight.truth.outside() == []
 
 
