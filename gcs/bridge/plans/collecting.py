@@ -65,6 +65,11 @@ class Collecting:
         return len(self.items) == self.opened.count
 
     @property
+    def answer_ns(self) -> int:
+        """How long this client's link takes to bring an answer, at most, where none is lost."""
+        return self._round_trip.wait_ns
+
+    @property
     def asks_int(self) -> bool:
         """The form of question that this client answers."""
         return self._as_int
