@@ -65,6 +65,11 @@ class Collecting:
         return len(self.items) == self.opened.count
 
     @property
+    def answer_ns(self) -> int:
+        """How long this client's link takes to bring an answer, at most, where none is lost."""
+        return self._round_trip.wait_ns
+
+    @property
     def asks_int(self) -> bool:
         """The form of question that this client answers."""
         return self._as_int
@@ -75,7 +80,8 @@ class Collecting:
 
     def item(self, message: ItemMessage, now_ns: int) -> list[Question]:
         """An item of this plan: the one that was asked for, or one that came late."""
-        if message.seq != len(self.items) or self.whole:
+        wanted = len(self.items)
+        if message.seq != wanted or wanted == self.opened.count:
             return []
         if self._repeats == 0:
             self._round_trip.measured(now_ns - self._asked_ns)

@@ -20,14 +20,17 @@ from gcs.protocol.effects import Address
 from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.wire.ids import MissionType
 
-WINDOW: Final = 8
+WINDOW: Final = 16
 """Items that are asked for again: so many questions are at most between the outcome and its ACK."""
-PAUSE_NS: Final = 400_000_000
-"""Between an answer and the next question."""
+PAUSE_NS: Final = 200_000_000
+"""Between an answer and the next question: where one is lost, another comes before MAVSDK's 0.5 s
+are over.  Going back uses up a try, so the question after that follows at once."""
 LONE_PAUSE_NS: Final = 1_200_000_000
 """The same where there is one item only: each question uses up a try of MAVSDK's four."""
-LAST_TRIES: Final = 4
+LAST_TRIES: Final = 6
 """Questions in vain before the ACK is sent all the same."""
+QUICK_TRIES: Final = 2
+"""After so many the pauses grow, as those of `collecting.py` do."""
 
 
 class Following:
@@ -39,14 +42,17 @@ class Following:
         client: Address,
         kind: MissionType,
         as_int: bool,
+        again_ns: int,
         timing: Timing,
         now_ns: int,
     ) -> None:
+        """`again_ns`: how long this client's link takes to bring an answer."""
         self._count = count
         self._client = client
         self._kind = kind
         self._as_int = as_int
-        self._again_ns = timing.item_wait_ns
+        self._again_ns = again_ns
+        self._longest_ns = 2 * timing.item_wait_ns
         pause_ns = PAUSE_NS if count > 1 else LONE_PAUSE_NS
         self._pause_ns = pause_ns * timing.item_wait_ns // SPEC_TIMING.item_wait_ns
         self._next = max(0, count - WINDOW)
@@ -54,6 +60,8 @@ class Following:
         self._tries = 0
         self._finishing = False
         self._at_end = True
+        """The last item is the one that was asked for last."""
+        self._went_back = False
         self.deadline_ns: int | None = now_ns + self._pause_ns
 
     @property
@@ -65,13 +73,14 @@ class Following:
         """An item came (again)."""
         if seq != self._asked:
             return []
+        went_back, self._went_back = self._went_back, False
         self._asked, self._tries = None, 0
         self._at_end = seq + 1 == self._count
         self._next = max(0, self._count - WINDOW) if self._at_end else seq + 1
         if self.ready:
             self.deadline_ns = None
             return []
-        if self._finishing:
+        if self._finishing or (went_back and not self._at_end):
             return self._ask(self._next, now_ns)
         self.deadline_ns = now_ns + self._pause_ns
         return []
@@ -95,6 +104,8 @@ class Following:
         return self._ask(self._next if self._asked is None else self._asked, now_ns)
 
     def _ask(self, seq: int, now_ns: int) -> list[Question]:
+        self._went_back |= self._at_end
         self._asked, self._at_end = seq, self._count == 1
-        self.deadline_ns = now_ns + self._again_ns
+        wait_ns = self._again_ns << max(0, self._tries - QUICK_TRIES)
+        self.deadline_ns = now_ns + min(wait_ns, self._longest_ns)
         return [question(seq, self._client, self._kind, self._as_int)]

@@ -295,7 +295,7 @@ class PlanServer:
             kind,
             plan,
             collecting.opened,
-            Following(count, client, kind, as_int, self._timing, now_ns),
+            Following(count, client, kind, as_int, collecting.answer_ns, self._timing, now_ns),
             as_int,
             collecting.repeated > 0,
         )
