@@ -53,6 +53,8 @@ from gcs.shell.topic_stream import TopicStream
 
 MAX_PLAN_BYTES = 16 << 20
 MAX_DATAGRAMS_A_TURN = 256
+LOOK_NS = 50_000_000
+"""The rest is looked at so often, however much comes of vehicles."""
 
 
 class Core(Protocol):
@@ -105,6 +107,7 @@ class Loop:
         self._operator_open = True
         self._sim_open = sim is not None
         self._finish: Finish | None = None
+        self._look_ns = 0
 
     def run(self) -> Finish:
         """Returns when the session says so; whoever called closes what it opened."""
@@ -122,6 +125,27 @@ class Loop:
         if self._screen in writable:
             self._screen.flush()
         self._read_links(readable)
+        if not self._only_links(readable, writable):
+            self._read_others(readable, writable)
+        if self._screen.broken and self._operator_open:
+            self._operator_open = False
+            self._feed(OperatorGone(FIRST, "nobody reads the link's output"))
+        self._wake_if_due()
+        for change in self._recording.upkeep(self._clock.now_ns()):
+            self._feed(change)
+
+    def _only_links(self, readable: list[Source], writable: list[Source]) -> bool:
+        """Nothing has come but of vehicles, and all else was looked at a moment ago: what is due
+        there by time alone can wait as long as a tick."""
+        now_ns = self._clock.now_ns()
+        busy = self._clients is not None and self._clients.busy
+        if readable and not writable and not busy and now_ns < self._look_ns:
+            return all(source in self._links for source in readable)
+        self._look_ns = now_ns + LOOK_NS
+        return False
+
+    def _read_others(self, readable: list[Source], writable: list[Source]) -> None:
+        """All but the links to vehicles."""
         self._read_client_ports(readable, writable)
         if self._signals in readable:
             for name in self._signals.read():
@@ -130,13 +154,8 @@ class Loop:
             self._read_operator()
         if self._sim_open and self._sim is not None and self._sim.lines in readable:
             self._read_sim(self._sim)
-        if self._screen.broken and self._operator_open:
-            self._operator_open = False
-            self._feed(OperatorGone(FIRST, "nobody reads the link's output"))
         self._wake_if_due()
         self._read_clients(readable, writable)
-        for change in self._recording.upkeep(self._clock.now_ns()):
-            self._feed(change)
 
     def _wait(self) -> tuple[list[Source], list[Source]]:
         sources: list[Source] = [link for link in self._links if link.fileno() >= 0]

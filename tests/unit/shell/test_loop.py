@@ -508,6 +508,7 @@ class PaperPorts(ClientPorts):
         self.brings: list[Arrival] = []
         self.sent: list[tuple[int, bytes]] = []
         self.due_ns = 1 << 62
+        self.turns_ns: list[int] = []
 
     @property
     def deadline_ns(self) -> int:
@@ -516,11 +517,39 @@ class PaperPorts(ClientPorts):
     def turn(
         self, readable: Sequence[object], writable: Sequence[object], now_ns: int
     ) -> list[Arrival]:
+        self.turns_ns.append(now_ns)
         brings, self.brings = self.brings, []
         return brings
 
     def send(self, link: int, data: bytes) -> None:
         self.sent.append((link, data))
+
+
+def test_while_vehicles_send_all_else_is_looked_at_every_tick_and_at_once_where_it_has_come() -> (
+    None
+):
+    ports = PaperPorts()
+    rig = Rig(client_ports=ports)
+
+    def flood(milliseconds: float) -> None:
+        rig.advance(milliseconds)
+        rig.links[0].bring(b"of a vehicle")
+
+    steps = [lambda: flood(10)] * 12
+    rig.run(*steps)
+    assert [(now_ns - START_NS) // MS for now_ns in ports.turns_ns][:3] == [10, 60, 110]
+
+    second = Rig(client_ports=PaperPorts())
+    asked = ipc.encode(ipc.Ask(1, "abort"))
+
+    def abort_in_the_flood() -> None:
+        second.links[0].bring(b"of a vehicle")
+        second.type(asked)
+
+    second.run(lambda: second.links[0].bring(b"first"), abort_in_the_flood)
+    assert OperatorLine(1, ipc.Ask(1, "abort")) in second.core.inputs[:4]
+    rig.close()
+    second.close()
 
 
 def test_what_clients_send_is_handed_on_and_what_is_for_them_goes_to_their_ports() -> None:
