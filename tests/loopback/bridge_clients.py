@@ -360,8 +360,8 @@ def words(flight: HostileFlight, client: Client) -> None:
 
 def parameters(flight: HostileFlight, client: Client) -> None:
     dice = flight.dice
-    names = (b"FENCE_ENABLE", b"GF_ACTION", b"MPC_XY_VEL_MAX", b"WPNAV_SPEED", b"COM_OBL_RC_ACT")
-    names += (b"FENCE_RADIUS", b"RTL_RETURN_ALT", b"RTL_ALT", b"SYSID_MYGCS", b"NAV_DLL_ACT")
+    names = [b"FENCE_ENABLE", b"GF_ACTION", b"MPC_XY_VEL_MAX", b"WPNAV_SPEED", b"COM_OBL_RC_ACT"]
+    names += [b"FENCE_RADIUS", b"RTL_RETURN_ALT", b"RTL_ALT", b"SYSID_MYGCS", b"NAV_DLL_ACT"]
     message = dialect.MAVLink_param_set_message(
         *VEHICLE, dice.choice(names), dice.choice((0.0, 1.0, 1e6, math.nan)), 9
     )

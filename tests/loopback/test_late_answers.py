@@ -85,8 +85,8 @@ class LateFlight(Flight):
         late_ns = self.now_ns - round((ON_ITS_WAY_S + (3.0 if what == "takeoff" else 0.0)) * 1e9)
         assert any(end is None or end >= late_ns for end in ends), f"{what} takes effect late"
 
-    def asks(self, word: str, **named: float) -> None:
-        self.asked.append((self.say(word, **named), word))
+    def asks(self, word: str, up_m: float | None = None) -> None:
+        self.asked.append((self.say(word, up_m=up_m), word))
 
     def ended_ns(self, ask_id: int) -> int | None:
         """When its ending was told, or its refusal."""

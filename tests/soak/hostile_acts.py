@@ -188,11 +188,12 @@ def dashes(run: HostileRun) -> None:
     east, north = edge_place(dice, zone, policy.margin_h_m)
     run.ask(GoTo((north, east, vehicle.pos[2])))
     late_m = dice.choice((0.0, 1.0, 3.0, 8.0))
+    run.until_tick()
     for _ in range(400):
         run.step()
         v, b = vehicle.speed_m_s, vehicle.braking
         held_m = v * b.react_s + v * v / (2.0 * b.a_brake_h_m_s2)
-        if held_m > run.clearance(vehicle.at) + late_m or run.gate.state is not State.MOVING:
+        if held_m > run.clearance(vehicle.at) + late_m or not run.gate.moving:
             break
     stop: Request = dice.choice((Abort(), Hold(), Land(), GoTo(_goal(run))))
     if dice.random() < 0.7:
@@ -369,7 +370,8 @@ def wild_answer(run: HostileRun) -> None:
     waiting = list(run._awaited)
     if waiting and dice.random() < 0.8:
         key = dice.choice(waiting)
-        del run._awaited[key]
+        del run._awaited[key]  # it never reaches the vehicle
+        run.promised = False
     else:
         key = (dice.randrange(9), dice.choice(list(CommandKind)))
     run.feed(CommandEnded(*key, dice.choice((0, 1, 2, 4, None)), "hostile"))

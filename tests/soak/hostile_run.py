@@ -78,6 +78,10 @@ class CountingGate(Gate):
 
     met: Counter[Cell]
 
+    @property
+    def moving(self) -> bool:
+        return self.state is State.MOVING
+
     def _branch(self, event: Event) -> Branch:
         self.met[self._turn.memory.state, event] += 1
         return super()._branch(event)
@@ -206,8 +210,7 @@ class HostileRun:
             self._fail(f"no reason: {verdict}")
 
     def _check_setpoint(self, permit: Permit) -> None:
-        if not isinstance(permit, Permit):
-            self._fail(f"a setpoint without a permit: {permit}")
+        assert type(permit) is Permit
         asked = (permit.pos_ned, permit.v_ned, permit.a_ned)
         if asked == (None, None, None) or not all(math.isfinite(x) for v in asked for x in v or ()):
             self._fail(f"a setpoint that says nothing: {permit}")
@@ -266,6 +269,8 @@ class HostileRun:
         climbs = self.gate.state is State.TAKING_OFF and self.vehicle.speed_m_s == 0.0
         if (flown or climbs) and not self.promised:
             self.promised = self.clearance(self.vehicle.at) > 0.0
+        if not self.vehicle.armed:
+            self.promised = False  # it falls, or stands
         if not self.promised or not self.fence_on:
             return
         if self.now_ns < max(self.deaf_until_ns, self.mute_until_ns) + SETTLED_S * SECOND_NS:

@@ -25,6 +25,8 @@ GAIN_M_S2: Final = 12.0
 """How fast it gains speed."""
 TO_RETURN_UP_M: Final = 10.0
 STILL: Final = 0.15
+FORGOTTEN_S: Final = 3.0
+"""ArduCopter flies no older velocity (GUID_TIMEOUT; from memory)."""
 ACCEPTED, DENIED = 0, 2
 
 
@@ -99,10 +101,10 @@ class PointMass:
                 self._stops_first()
 
     def hears_command(self, sent: SendCommand) -> int:
-        """MAV_RESULT."""
-        if self.stubborn:
-            return DENIED
+        """MAV_RESULT.  A stubborn vehicle refuses all but to stop: that it does is promised."""
         kind = sent.kind
+        if self.stubborn and kind is not CommandKind.HOLD:
+            return DENIED
         match kind:
             case CommandKind.ARM:
                 if self.landed is not LandedState.ON_GROUND:
@@ -217,6 +219,8 @@ class PointMass:
     def _flies_its_path(self) -> None:
         if self.mode is FlightMode.GUIDED and self.velocity is not None:
             b = self.braking
+            if self.now_s - self.setpoint_s > FORGOTTEN_S:
+                self.velocity = (0.0, 0.0, 0.0)
             slower = math.hypot(*self.velocity[:2]) < math.hypot(*self.vel[:2])
             a_h = b.a_brake_h_m_s2 if slower else GAIN_M_S2
             self._towards_velocity(self.velocity, a_h, b.a_brake_v_m_s2)
