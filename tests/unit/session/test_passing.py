@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import pytest
 
 from gcs.report import Direction
-from gcs.session import session as session_module
+from gcs.session import incoming
 from gcs.session import vehicle
 from gcs.session.effects import Effect, Transmit
 from gcs.session.inputs import ClientCame, Datagram
@@ -97,7 +97,7 @@ def test_decoding_what_passes_through_would_change_nothing(
     payloads = [random.Random(seed).randbytes(definition.max_len) for seed in range(3)]
     data = b"".join(writer.write_payload(msgid, payload) for payload in payloads)
     passing = effects_of(data)
-    for module in (session_module, vehicle):
+    for module in (incoming, vehicle):
         monkeypatch.setattr(module, "INTERPRETED", frozenset(MESSAGES))
     assert effects_of(data) == passing
 
