@@ -17,6 +17,7 @@ NO_COMMAND: Final = "no command of this kind waits for an answer there"
 NO_CONTROL: Final = (
     "it is looked for where we have or take control, with something of ours to judge"
 )
+STREAM_BEGINS: Final = "a stream begins where no command waits for an answer, and sends none"
 NO_MODE: Final = "no mode is waited for there, or a hold is, which has its own clock"
 NO_HOLD: Final = "a hold is waited for in HOLDING, and in EXTERNAL where control was not taken"
 
@@ -58,6 +59,9 @@ UNREACHED: Final = (
     Unreached("return mode", "NO_VEHICLE", HEARD_FIRST),
     Unreached("land mode", "NO_VEHICLE", HEARD_FIRST),
     Unreached("another mode", "NO_VEHICLE", HEARD_FIRST),
+    Unreached("command accepted", "STREAMING", STREAM_BEGINS),
+    Unreached("command refused", "STREAMING", STREAM_BEGINS),
+    Unreached("command unanswered", "STREAMING", STREAM_BEGINS),
     Unreached("disarm refused", f"NO_VEHICLE {FLIGHT} HOLDING", NO_COMMAND),
     Unreached("hold refused", FLIGHT, NO_COMMAND),
     Unreached("hold unanswered", FLIGHT, NO_COMMAND),
