@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import os
 import sys
 import traceback
 from collections.abc import Awaitable
@@ -199,18 +200,22 @@ class Peer:
         await asyncio.sleep(4.0)
 
 
-async def main(url: str, autopilot: str, *words: str) -> int:
-    """The server ends with the last reference to `drone`: an exception would keep one."""
+async def main(url: str, autopilot: str, *words: str) -> None:
+    """Ends the process itself: after streams that were cut off, asyncio waits for ever."""
     drone = await connected(url)
+    code = 0
     try:
         peer = Peer(drone, autopilot)
         for word in words:
             await getattr(peer, word)()
     except Exception:  # noqa: BLE001  # said in full
         traceback.print_exc()
-        return 1
-    return 0
+        code = 1
+    drone._stop_mavsdk_server()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
 
 
 if __name__ == "__main__":
-    sys.exit(asyncio.run(main(*sys.argv[1:])))
+    asyncio.run(main(*sys.argv[1:]))
