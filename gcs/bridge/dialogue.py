@@ -105,6 +105,8 @@ class Dialogue:
     _texts: _Lately = field(default_factory=_Lately)
     _refusals: _Lately = field(default_factory=_Lately)
     """Of messages that are not acknowledged."""
+    _streams_from: From | None = None
+    """Who of this client sent the last sample of a stream."""
 
     # ----------------------------------------------------------------------------- asking
 
@@ -169,6 +171,11 @@ class Dialogue:
             return [self._acknowledge(asked_by, command, Result.ACCEPTED)]
         return None
 
+    def stream(self, asked_by: From, sample: ipc.Stream) -> list[BridgeEffect]:
+        """One sample of a setpoint stream; it has no answer of its own."""
+        self._streams_from = asked_by
+        return [Says(self.client, sample)]
+
     # ---------------------------------------------------------------------------- answers
 
     def told(self, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
@@ -178,6 +185,8 @@ class Dialogue:
                 return self._verdict(event, now_ns)
             case ipc.EndingEvent():
                 return self._ending(event, now_ns)
+            case ipc.StreamVerdictEvent():
+                return self._stream_verdict(event, now_ns)
             case _:
                 return []
 
@@ -208,6 +217,15 @@ class Dialogue:
             *self._answer(pending, result_of(code), code, now_ns),
             *self.text(pending.asked_by, Level.WARNING, text, now_ns),
         ]
+
+    def _stream_verdict(self, event: ipc.StreamVerdictEvent, now_ns: int) -> list[BridgeEffect]:
+        """Samples are refused from now on, or flown again."""
+        if self._streams_from is None:
+            return []
+        if event.outcome == "accepted":
+            return self.text(self._streams_from, Level.INFO, "stream: flown", now_ns)
+        text = f"stream: {event.outcome} {event.code}: {event.sentence}"
+        return self.text(self._streams_from, Level.WARNING, text, now_ns)
 
     def _ending(self, event: ipc.EndingEvent, now_ns: int) -> list[BridgeEffect]:
         pending = self._pending.pop(event.id, None)

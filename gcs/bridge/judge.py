@@ -26,7 +26,6 @@ from gcs.bridge.effects import (
     BridgeEffect,
     Notes,
     Refuses,
-    Says,
     StopsPlan,
     ToVehicle,
 )
@@ -164,7 +163,7 @@ class Judge:
                 asked = client.dialogue.ask(given.by, message, asks, now_ns)
                 return Judged(False, [*told, *asked])
             case Sample():
-                return Judged(False, [Says(client.number, _stream(meaning))])
+                return Judged(False, client.dialogue.stream(given.by, _stream(meaning)))
             case Forward():
                 return Judged(False, [ToVehicle(given.frame.raw)])
             case Reject(refusal):

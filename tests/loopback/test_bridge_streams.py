@@ -51,6 +51,7 @@ def test_full_speed_at_the_fence_is_held_inside_and_flown_back(personality: Pers
     farthest = stream(8.0, 40)
     assert flight.state in (State.STREAMING, State.HOLDING)
     assert 60 < farthest < FENCE_M
-    assert "refused" in client.texts()
+    assert "stream: refused" in client.texts()
     back = stream(-3.0, 20)
     assert back <= farthest + 0.5
+    assert "stream: flown" in client.texts()

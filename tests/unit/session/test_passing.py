@@ -8,8 +8,7 @@ from collections.abc import Iterable
 import pytest
 
 from gcs.report import Direction
-from gcs.session import incoming
-from gcs.session import vehicle
+from gcs.session import incoming, vehicle
 from gcs.session.effects import Effect, Transmit
 from gcs.session.inputs import ClientCame, Datagram
 from gcs.session.links import MAX_DATAGRAM, datagrams
