@@ -88,6 +88,21 @@ TARGETS: Final = {
             tables=(ValueTable("gcs.gate.machine.table", "TABLE", "tests.mutants.gate_table"),),
         ),
         Target(
+            name="bridge",
+            packages=("gcs/bridge",),
+            tests=("tests/unit/bridge", "tests/loopback/test_bridge.py"),
+            nearest=(
+                ("gcs/bridge/guard", ("tests/unit/bridge/guard",)),
+                ("gcs/bridge/meaning", ("tests/unit/bridge/test_meaning",)),
+                ("gcs/bridge/plans", ("tests/unit/bridge/test_plan",)),
+                ("gcs/bridge/classes", ("tests/unit/bridge/test_classes.py",)),
+            ),
+            skip=(
+                ("gcs/bridge/classes/explain.py", "sentences only"),
+                ("gcs/bridge/guard/explain.py", "sentences only"),
+            ),
+        ),
+        Target(
             name="vehicle",
             packages=("vehicle_sim/autopilot/failsafes", "vehicle_sim/estimation"),
             tests=(
