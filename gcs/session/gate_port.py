@@ -125,6 +125,7 @@ class GatePort:
         return [
             ToGate(inputs.VerifierChanged(verifier)),
             *teller.fence(verifier.zones, telemetry.origin, self.policy),
+            *([] if telemetry.pos_ned is None else self._breached(telemetry.pos_ned)),
         ]
 
     @property

@@ -57,7 +57,8 @@ end_own_stream_and_wait_for_tick: Final = Branch(
     to=HOVERING,
 )
 take_control: Final = Branch(
-    needs=(Check.SEVERITY, Check.POSITION),
+    # Outside the fence both refuse; the position says what is possible there.
+    needs=(Check.POSITION, Check.SEVERITY),
     reply=Reply.ACCEPTED,
     do=(Action.TAKE_CONTROL,),
     to=HOVERING,

@@ -230,6 +230,7 @@ class TestChecks:
         script.ask(Hold())
         script.heartbeat(FlightMode.HOLD)
         assert state_of(script) is State.HOLDING
+        script.at(0.0, 0.0, UP)
         script.feed(self.WRONG)
         assert script.refusal(script.ask(Resume())) is Code.SEVERITY
         script.feed(ConditionChanged(Condition.BATTERY_LOW, False))
