@@ -283,9 +283,10 @@ def _command(message: Message | None) -> int:
 def _key(message: Message | None) -> bytes:
     """What makes a command the same as another one: all but the number of its repetition.
 
-    As bytes, because NaN is a value of its own on the wire and equals nothing here.
+    As bytes, because NaN is a value of its own on the wire and equals nothing here.  Empty for what
+    is not acknowledged; a text in such a message may be any bytes, and cannot be written again.
     """
-    if message is None:
+    if not isinstance(message, CommandLong | CommandInt):
         return b""
     if isinstance(message, CommandLong):
         message = msgspec.structs.replace(message, confirmation=0)

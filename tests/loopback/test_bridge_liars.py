@@ -1,0 +1,86 @@
+"""Clients that break the rules: bytes that are no text, streams switched off, names of others."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+import pytest
+from pymavlink.dialects.v20 import all as dialect
+from pymavlink.generator.mavcrc import x25crc
+
+from gcs.session import inputs
+from gcs.session.effects import Finish
+from gcs.session.session import MAX_FAULTS
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.flight import PERSONALITIES, Personality
+
+NO_TEXT = b"\xff"
+"""No character of UTF-8 begins so."""
+
+each = pytest.mark.parametrize("personality", PERSONALITIES)
+
+
+def send_payload(client: Client, message: type, payload: bytes) -> None:
+    """A good frame of a message, whatever its payload says."""
+    header = struct.pack("<BBBBBBHB", len(payload), 0, 0, 0, 245, 190, message.id, 0)
+    checksum = x25crc(header + payload)
+    checksum.accumulate(bytes((message.crc_extra,)))
+    client.send_raw(b"\xfd" + header + payload + struct.pack("<H", checksum.crc))
+
+
+@each
+def test_a_text_of_any_bytes_is_refused_and_breaks_nothing(personality: Personality) -> None:
+    flight = BridgedFlight(personality)
+    client = flight.join()
+    flight.connected()
+    name = NO_TEXT * 16
+    send_payload(
+        client,
+        dialect.MAVLink_param_set_message,
+        struct.pack("<f2B", 1.0, *VEHICLE) + name + b"\x09",
+    )
+    send_payload(
+        client,
+        dialect.MAVLink_param_ext_set_message,
+        struct.pack("<2B", *VEHICLE) + name + NO_TEXT * 128 + b"\x01",
+    )
+    assert len(flight.decisions("refused")) == 2
+    send_payload(
+        client,
+        dialect.MAVLink_change_operator_control_message,
+        struct.pack("<3B", VEHICLE[0], 0, 0) + NO_TEXT * 25,
+    )
+    flight.run(0.2)
+    (answer,) = client.messages("CHANGE_OPERATOR_CONTROL_ACK")
+    assert answer.ack == 0
+
+
+def test_a_heading_without_end_is_refused() -> None:
+    flight = BridgedFlight("px4")
+    client = flight.join()
+    flight.connected()
+    place = (473977420, 85455940, 500.0)
+    for heading in (math.inf, -math.inf):
+        message = dialect.MAVLink_command_int_message(
+            *VEHICLE, 5, dialect.MAV_CMD_DO_REPOSITION, 0, 0, -1.0, 1.0, 0.0, heading, *place
+        )
+        client.send(message)
+    flight.run(0.2)
+    assert [ack.result for ack in client.acks(192)] == [dialect.MAV_RESULT_DENIED] * 2
+    assert {one.code for one in flight.decisions("refused")} == {"NON_FINITE"}
+
+
+def test_no_client_ends_the_station_with_frames_that_it_cannot_take() -> None:
+    """An internal error that a client's frame causes is a bug; the others go on flying."""
+    flight = BridgedFlight("px4")
+    client = flight.join()
+    flight.connected()
+    report = "Traceback\nValueError: planted"
+
+    def ends(link: int) -> bool:
+        done = [flight.fault(inputs.Datagram(link, b"?"), report) for _ in range(2 * MAX_FAULTS)]
+        return any(isinstance(effect, Finish) for answer in done for effect in answer)
+
+    assert not ends(client.link)
+    assert ends(0), "the vehicle's side"
