@@ -84,3 +84,24 @@ def test_no_client_ends_the_station_with_frames_that_it_cannot_take() -> None:
 
     assert not ends(client.link)
     assert ends(0), "the vehicle's side"
+
+
+@each
+def test_no_client_makes_the_gate_blind(personality: Personality) -> None:
+    """Whatever a client asks not to be sent, the gate goes on seeing mode, arming and home."""
+    flight = BridgedFlight(personality)
+    client = flight.join()
+    flight.connected()
+    for number in (*range(400), 410, 411):
+        client.command(dialect.MAV_CMD_SET_MESSAGE_INTERVAL, number - 0.4, -1.0)
+        client.command(dialect.MAV_CMD_SET_MESSAGE_INTERVAL, number, -1.0, 1.0)
+    flight.beating(4)
+    heard_at_ns = flight.now_ns
+    client.heard.clear()
+    flight.beating(4)
+    assert flight.now_ns > heard_at_ns
+    names = {one.message.get_type() for one in client.heard}
+    assert {"HEARTBEAT", "LOCAL_POSITION_NED", "ATTITUDE", "HOME_POSITION"} <= names
+    assert client.ask(400, 1, within_s=5) == 0
+    assert flight.session.telemetry is not None
+    assert flight.session.telemetry.armed
