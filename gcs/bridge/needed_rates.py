@@ -50,7 +50,7 @@ def not_slower(command: Command, needed_hz: Rates) -> Command | None:
     if command.command != Cmd.SET_MESSAGE_INTERVAL:
         return None
     asked_us, rate = command.param2, 0.0 if command.param3 > 0.0 else command.param3
-    wanted_hz = max((_kept_hz(each, asked_us, needed_hz) for each in _ids(command.param1)))
+    wanted_hz = max(_kept_hz(each, asked_us, needed_hz) for each in _ids(command.param1))
     if wanted_hz > 0.0 and not 0.0 < asked_us <= round(1e6 / wanted_hz):
         asked_us = float(round(1e6 / wanted_hz))
     elif rate is command.param3:

@@ -9,11 +9,13 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 from pymavlink.generator.mavcrc import x25crc
 
+from gcs.gate.states import State
 from gcs.session import inputs
 from gcs.session.effects import Finish
 from gcs.session.session import MAX_FAULTS
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.test_bridge import flying
 
 NO_TEXT = b"\xff"
 """No character of UTF-8 begins so."""
@@ -105,3 +107,40 @@ def test_no_client_makes_the_gate_blind(personality: Personality) -> None:
     assert client.ask(400, 1, within_s=5) == 0
     assert flight.session.telemetry is not None
     assert flight.session.telemetry.armed
+
+
+ARM, HOLD = 400, 17
+
+
+@each
+def test_what_another_one_has_undone_is_not_answered_from_memory(personality: Personality) -> None:
+    """ACCEPTED for an arming is remembered, for a client whose answer got lost; not past a stop."""
+    flight = BridgedFlight(personality)
+    first, second = flight.join(), flight.join(246)
+    flight.connected()
+    assert first.ask(ARM, 1, within_s=3) == 0
+    assert second.ask(ARM, 0, within_s=1) == 0
+    asked_before = len([one for one in flight.decisions() if one.word == "arm"])
+    first.command(ARM, 1)
+    flight.run(0.1)
+    assert len([one for one in flight.decisions() if one.word == "arm"]) > asked_before
+
+
+@each
+def test_a_goal_that_was_stopped_is_not_answered_from_memory(personality: Personality) -> None:
+    flight, first = flying(personality)
+    second = flight.join(246)
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    assert telemetry.home is not None
+    lat, lon, alt = telemetry.home
+    goal = (lat + 15 / 111_319.5, lon, alt + 6)
+    first.fly_to(*goal)
+    flight.run(0.3)
+    assert second.ask(HOLD, within_s=1) == 0
+    assert not flight.is_in(State.MOVING)
+    first.fly_to(*goal)
+    flight.run(0.1)
+    answers = [ack.result for ack in first.acks(192)]
+    again = [one for one in flight.decisions() if one.word in ("goto", "resume")]
+    assert len(again) > 2, (answers, again)
