@@ -13,6 +13,7 @@ from gcs.gate.states import State
 from gcs.session import inputs
 from gcs.session.effects import Finish
 from gcs.session.session import MAX_FAULTS
+from gcs.wire.frame import Frame, split
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.test_bridge import flying
@@ -109,7 +110,7 @@ def test_no_client_makes_the_gate_blind(personality: Personality) -> None:
     assert flight.session.telemetry.armed
 
 
-ARM, HOLD = 400, 17
+ARM, HOLD, TAKE_OFF = 400, 17, 22
 
 
 @each
@@ -144,3 +145,37 @@ def test_a_goal_that_was_stopped_is_not_answered_from_memory(personality: Person
     answers = [ack.result for ack in first.acks(192)]
     again = [one for one in flight.decisions() if one.word in ("goto", "resume")]
     assert len(again) > 2, (answers, again)
+
+
+class PoorDownlink(BridgedFlight):
+    """No PARAM_VALUE of the vehicle arrives while `deaf`."""
+
+    deaf = False
+
+    def feed(self, given: inputs.Input) -> None:
+        if self.deaf and isinstance(given, inputs.Datagram) and given.link == 0:
+            kept = [
+                item.raw
+                for item in split(given.data)
+                if not (isinstance(item, Frame) and item.name == "PARAM_VALUE")
+            ]
+            given = inputs.Datagram(0, b"".join(kept))
+        super().feed(given)
+
+
+def test_no_climb_is_decided_on_before_its_least_height_is_known() -> None:
+    """PX4 climbs to MIS_TAKEOFF_ALT at least (recorded), which a client may write on the ground."""
+    flight = PoorDownlink("px4")
+    client = flight.join()
+    flight.connected()
+    flight.beating(3)
+    flight.deaf = True
+    client.send(dialect.MAVLink_param_set_message(*VEHICLE, b"MIS_TAKEOFF_ALT", 28.0, 9))
+    flight.run(0.3)
+    assert flight.vehicle.parameters.get("MIS_TAKEOFF_ALT") == 28.0
+    assert client.ask(ARM, 1, within_s=5) == 0
+    assert client.ask(TAKE_OFF, *[math.nan] * 7) == dialect.MAV_RESULT_TEMPORARILY_REJECTED
+    flight.deaf = False
+    flight.run(0.5)
+    client.ask(TAKE_OFF, *[math.nan] * 7)
+    flight.until(lambda: flight.truth_enu()[2] > 5.0, 20)
