@@ -95,6 +95,7 @@ class Bridge:
             return []
         client.joined = False
         del self._by_number[client.number]
+        self._control.forget(client.number)
         return [Lost(client.number, reason)]
 
     def _meet(self, client: Client, frame: Frame) -> list[BridgeEffect]:
