@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import all as dialect
@@ -24,8 +25,8 @@ NO_TEXT = b"\xff"
 each = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
-def send_payload(client: Client, message: type, payload: bytes) -> None:
-    """A good frame of a message, whatever its payload says."""
+def send_payload(client: Client, message: Any, payload: bytes) -> None:
+    """A good frame of a message (pymavlink's class), whatever its payload says."""
     header = struct.pack("<BBBBBBHB", len(payload), 0, 0, 0, 245, 190, message.id, 0)
     checksum = x25crc(header + payload)
     checksum.accumulate(bytes((message.crc_extra,)))

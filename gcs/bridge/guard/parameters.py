@@ -102,7 +102,7 @@ class ParameterGuard:
         name = message.param_id
         why = self.why_refused(name)
         if why is None:
-            return Allowed(f"{name} = {message.param_value} is forwarded")
+            return Allowed(f"{name} = {_printable(message.param_value)} is forwarded")
         told = ParamExtAck(
             param_id=_sendable(name),
             param_value="",
@@ -200,4 +200,9 @@ def refused_write(
 
 def _sendable(name: str) -> str:
     """What fits into a message and into a sentence of what a client called a parameter."""
-    return re.sub(r"[^ -~]", "?", name)[:_LONGEST]
+    return _printable(name)[:_LONGEST]
+
+
+def _printable(text: str) -> str:
+    """Without what a terminal would obey: the log is shown on one."""
+    return re.sub(r"[^ -~]", "?", text)
