@@ -95,6 +95,7 @@ class Bridge:
             return []
         client.joined = False
         del self._by_number[client.number]
+        self._control.forget(client.number)
         return [Lost(client.number, reason)]
 
     def _meet(self, client: Client, frame: Frame) -> list[BridgeEffect]:
@@ -221,6 +222,12 @@ class Bridge:
                 return of_plan(client, client.plans.finding(text, now_ns))
             case _:
                 return client.dialogue.told(event, now_ns)
+
+    def asked(self, number: int) -> None:
+        """The operator `number`, a client or not, asks the gate for something."""
+        for client in self._by_number.values():
+            if client.number != number:
+                client.dialogue.forget()
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent; `operation` is the request's."""

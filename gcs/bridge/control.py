@@ -69,6 +69,11 @@ class ControlServer:
         self._owner, self._sysid = number, sysid
         self._keeps = {n: by for n, by in self._keeps.items() if n == number}
 
+    def forget(self, number: int) -> None:
+        """This client is lost; its number is never given again."""
+        self._keeps.pop(number, None)
+        self._speakers.discard(number)
+
     @property
     def status(self) -> ControlStatus:
         """For those who understand it, in the vehicle's name."""

@@ -25,8 +25,8 @@ from gcs.wire.messages import CommandInt, CommandLong, Message
 
 AGAIN_NS: Final = 2_000_000_000
 """The command that was accepted last, sent again within this time, is a repetition of it, not a new
-one.  Anything else that was asked in between, a refusal, or a stop is never answered from memory:
-the vehicle may be flown otherwise by now."""
+one.  Anything else that was asked in between, by whomever, a refusal, or a stop is never answered
+from memory, and neither is what has ended otherwise: the vehicle may be flown otherwise by now."""
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
 SAME_TEXT_NS: Final = 5_000_000_000
 """The same text is sent again to a client only after so long."""
@@ -145,6 +145,10 @@ class Dialogue:
         pending = _Pending(asked_by, command, key, (), name, "")
         return [Refuses(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
 
+    def forget(self) -> None:
+        """Somebody else has asked for something: what was accepted may hold no more."""
+        self._told = None
+
     def number(self) -> int:
         """The next number of a request of this client."""
         number = self._next_id
@@ -239,6 +243,8 @@ class Dialogue:
                 )
                 return [Says(self.client, self._open(following, ask))]
             return self._answer(pending, Result.ACCEPTED, None, now_ns)
+        if self._told is not None and self._told.key == pending.key:
+            self._told = None
         code = _code(event.code)
         refused = pending.vehicle_result not in (None, Result.ACCEPTED)
         result = pending.vehicle_result if refused else result_of(code)
@@ -283,9 +289,10 @@ def _command(message: Message | None) -> int:
 def _key(message: Message | None) -> bytes:
     """What makes a command the same as another one: all but the number of its repetition.
 
-    As bytes, because NaN is a value of its own on the wire and equals nothing here.
+    As bytes, because NaN is a value of its own on the wire and equals nothing here.  Empty for what
+    is not acknowledged; a text in such a message may be any bytes, and cannot be written again.
     """
-    if message is None:
+    if not isinstance(message, CommandLong | CommandInt):
         return b""
     if isinstance(message, CommandLong):
         message = msgspec.structs.replace(message, confirmation=0)

@@ -32,6 +32,7 @@ from gcs.bridge.effects import (
 from gcs.bridge.guard import verdict as guard_verdict
 from gcs.bridge.guard.guard import Guard
 from gcs.bridge.guard.manual_modes import refused_mode
+from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
 from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
 from gcs.bridge.meaning.translate import meaning_of
@@ -44,6 +45,7 @@ from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
+from gcs.protocol.parameters import BY_NAME
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MissionType
@@ -56,6 +58,7 @@ from gcs.wire.messages import (
     MissionItem,
     MissionItemInt,
     MissionSetCurrent,
+    ParamRequestRead,
     ParamValue,
     RequestDataStream,
 )
@@ -65,6 +68,11 @@ DECODED_IDS: Final = frozenset(kind.MSG_ID for kind in _LOOKED_INTO)
 """Messages that are looked into although they may be harmless."""
 GUIDED_CURRENT: Final = frozenset({2, 3})
 """MISSION_ITEM.current of an item that ArduPilot flies to at once, or whose height it takes."""
+
+CLIMBS: Final = frozenset({"takeoff", "mission_start"})
+HEIGHT_WRITTEN: Final = Refusal(
+    Code.BUSY, f"{TAKEOFF_HEIGHT} was written, and the vehicle has not told yet what it is now"
+)
 
 Look: TypeAlias = Callable[[], Seen | None]
 """How the vehicle is at this moment; None before one is heard."""
@@ -159,6 +167,9 @@ class Judge:
                 bad_mode = refused_mode(asks, seen.autopilot, self._rules, stands_disarmed=standing)
                 if bad_mode is not None:
                     return _refuse(given, message, row, bad_mode)
+                if self._height_of_takeoff_unknown(asks, seen):
+                    unknown = _refuse(given, message, row, HEIGHT_WRITTEN)
+                    return Judged(True, [*unknown.effects, _asks_for_height(given.by)])
                 told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
                 asked = client.dialogue.ask(given.by, message, asks, now_ns)
                 return Judged(False, [*told, *asked])
@@ -168,6 +179,11 @@ class Judge:
                 return Judged(False, [ToVehicle(given.frame.raw)])
             case Reject(refusal):
                 return _refuse(given, message, row, refusal)
+
+    def _height_of_takeoff_unknown(self, asks: Sequence[ipc.Ask], seen: Seen) -> bool:
+        """A climb is asked for, and the least height of one was written just now."""
+        climbs = any(each.word in CLIMBS for each in asks)
+        return climbs and self._guard_of(seen.autopilot.name).awaits(TAKEOFF_HEIGHT)
 
     # ------------------------------------------------------------------------------ set-up
 
@@ -199,7 +215,14 @@ class Judge:
         return self._guard
 
     def _guarded(self, message: Message, by: From, seen: Seen) -> Judgement:
-        at = GuardSeen(by.source, by.addressed, seen.armed, seen.on_ground, seen.max_takeoff_up_m)
+        at = GuardSeen(
+            by.source,
+            by.addressed,
+            seen.armed,
+            seen.on_ground,
+            seen.max_takeoff_up_m,
+            seen.in_control,
+        )
         return self._guard_of(seen.autopilot.name).judge(message, at)
 
     # ------------------------------------------------------------------------------- plans
@@ -219,6 +242,14 @@ class Judge:
         effects = client.plans.handle(message, given.by, given.now_ns)
         refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
         return Judged(refused, of_plan(client, effects, given.frame))
+
+
+def _asks_for_height(by: From) -> AsksVehicle:
+    """The answer is read by the gate as well."""
+    vehicle = by.addressed
+    return AsksVehicle(
+        by.source, ParamRequestRead(BY_NAME, vehicle.sysid, vehicle.compid, TAKEOFF_HEIGHT)
+    )
 
 
 def of_plan(

@@ -15,6 +15,9 @@ from gcs.wire.dialect import MESSAGES, MessageDef
 from gcs.wire.frame import Frame
 
 EVERYBODY: Final = (0, 0)
+MOST_COMPONENTS: Final = 255
+"""Of one client's link; a router with more behind it, or a client that makes up names, is sent what
+is for the others only where it is for everybody."""
 
 
 def _offsets(definition: MessageDef) -> tuple[int, int] | None:
@@ -66,7 +69,7 @@ class Routes:
     def heard(self, link: int, sysid: int, compid: int) -> None:
         """A good frame of that component came in on a client's link."""
         here = self._of_link[link]
-        if (sysid, compid) not in here:
+        if (sysid, compid) not in here and len(here) < MOST_COMPONENTS:
             here.add((sysid, compid))
             self._of_system.setdefault(sysid, set()).add(link)
 

@@ -27,7 +27,7 @@ from gcs.bridge.judge import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
 from gcs.gate.effects import Level
-from gcs.gate.inputs import CommandEnded, Input
+from gcs.gate.inputs import CommandEnded, Input, Requested
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.turn import REFUSED_LINE
 from gcs.gate.policy.policy import Policy
@@ -102,7 +102,10 @@ class BridgePort:
         return self.bridge.parameter(message, telemetry.autopilot.name)
 
     def before_gate(self, given: Input, now_ns: int) -> list[BridgeEffect]:
-        """The vehicle's own answer to a command is what the client is answered, too."""
+        """The vehicle's own answer to a command is what the client is answered, too; and what one
+        asks for, the answers to the others are older than."""
+        if isinstance(given, Requested):
+            self.bridge.asked(self._operators.client_of(given.request_id))
         if isinstance(given, CommandEnded) and given.result is not None:
             return self.bridge.command_answered(given.request_id, given.result, now_ns)
         return []

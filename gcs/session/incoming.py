@@ -58,6 +58,10 @@ class Incoming:
         self.other_station_ns = 0
         """When a frame of another station that calls itself as this one came last."""
 
+    def of_client(self, given: Datagram) -> bool:
+        """Whether it came from a MAVLink client, not from the vehicle's side."""
+        return given.link >= self._first_client_link
+
     def datagram(self, given: Datagram, now_ns: int) -> bool:
         """Frame by frame: what one leads to is done before the next is looked at.
 
@@ -68,7 +72,7 @@ class Incoming:
         if announced:
             run(announced, now_ns)
         taken = self._taken(link, items, now_ns)
-        if link < self._first_client_link:
+        if not self.of_client(given):
             return self._from_vehicles(link, taken, now_ns)
         for item in taken:
             if isinstance(item, GarbageItem):

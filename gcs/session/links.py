@@ -27,6 +27,10 @@ MAX_DATAGRAM = 1400
 (MAVSDK's has 2,048 bytes)."""
 
 
+MOST_NAMES = 1024
+"""Components in whose names frames are written; of more, all begin to count anew."""
+
+
 def datagrams(raws: Sequence[bytes]) -> list[bytes]:
     """Frames put together, as few datagrams as may be; none is cut."""
     together = raws[0] if len(raws) == 1 else b"".join(raws)
@@ -136,6 +140,8 @@ class Links:
         key = (link, source.sysid, source.compid)
         writer = self._named.get(key)
         if writer is None:
+            if len(self._named) >= MOST_NAMES:
+                self._named.clear()
             writer = self._named[key] = FrameWriter(source.sysid, source.compid)
         return self.pass_on(link, writer.write(message), now_ns)
 

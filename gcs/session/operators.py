@@ -67,6 +67,10 @@ class Operators:
         client = self._clients.in_control
         return ipc.OperatorInfo(client, self._clients.name(client)) if client else None
 
+    def client_of(self, request_id: int) -> int:
+        """Who has made the request that is not over yet."""
+        return self._requests.get(request_id).client
+
     # ----------------------------------------------------------------------- come and go
 
     def join(self, client: int, name: str, hold_on_leave: bool) -> list[Work]:

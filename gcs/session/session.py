@@ -200,13 +200,15 @@ class Session:
 
         Bytes or words that we cannot take are dropped, logged and recorded.  Where it happens on
         the clock, or again and again, the vehicle is told to hold and the station ends.  An
-        operator who has joined loses the connection instead: nobody's words end the station.
+        operator who has joined loses the connection instead: nobody's words end the station, and
+        no MAVLink client's either.
         """
         self._queue.drop()
         self._deadline_ns = None
         handled, self._unfinished = self._unfinished is None, None
         visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
-        self._faults += not visitor
+        of_client = isinstance(given, Datagram) and self._incoming.of_client(given)
+        self._faults += not (visitor or of_client)
         text = f"internal error: {report.splitlines()[-1]}"
         work: list[Work] = [
             fault(given, report, handled, now_ns),

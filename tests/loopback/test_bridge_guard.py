@@ -14,7 +14,7 @@ from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 
 ACCEPTED, DENIED = 0, 2
-ARM, TAKE_OFF, SET_MODE = 400, 22, 176
+ARM, TAKE_OFF, SET_MODE, REQUEST_CONTROL = 400, 22, 176, 32100
 FENCE_OFF = {"px4": ("GF_ACTION", 0, 6), "ardupilot": ("FENCE_ENABLE", 0, 2)}
 """Name, value, type of the parameter that switches the vehicle's own fence off."""
 FREE = {"px4": ("SDLOG_MODE", 2, 6), "ardupilot": ("LOG_DISARMED", 1, 2)}
@@ -144,3 +144,23 @@ def _command(payload: bytes, name: str) -> int | None:
         return None
     number: int = struct.unpack_from("<H", payload.ljust(33, b"\0"), 28)[0]
     return number
+
+
+def test_only_the_client_in_control_sets_up(personality: Personality) -> None:
+    """Nor does another one calibrate, or write what anybody in control may write."""
+    flight, first = joined(personality)
+    second = flight.join(246)
+    assert first.ask(REQUEST_CONTROL, 1, 1) == ACCEPTED
+    name, value, kind = FREE[personality]
+    told_before = len(values(second, name))
+    param_set(flight, second, name, value, kind)
+    second.command(dialect.MAV_CMD_PREFLIGHT_CALIBRATION, 1)
+    flight.run(1.0)
+    assert flight.to_vehicle("PARAM_SET") == []
+    assert [one.code for one in flight.decisions("refused")] == ["OTHER_OPERATOR"] * 2
+    assert [ack.result for ack in second.acks(241)] == [dialect.MAV_RESULT_TEMPORARILY_REJECTED]
+    assert second.messages("PARAM_ERROR")
+    assert len(values(second, name)) == told_before + 1, "the old value, from the vehicle itself"
+    param_set(flight, first, name, value, kind)
+    flight.run(1.0)
+    assert len(flight.to_vehicle("PARAM_SET")) == 1

@@ -49,10 +49,15 @@ _SYSTEM_FILE: Final = re.compile(rb"(?:^|[/\0])(@[^/\0]*)")
 mission, a fence, taken over past every check."""
 
 
+def is_read(payload: tuple[int, ...]) -> bool:
+    """Whether it changes nothing on board."""
+    return payload[_OPCODE] in READS
+
+
 def judge_file(message: FileTransferProtocol, rules: BridgeRules, seen: GuardSeen) -> Judgement:
     payload = message.payload
     opcode = payload[_OPCODE]
-    if opcode in READS:
+    if is_read(payload):
         return Allowed()
     if opcode in ANSWERS:
         sentence = "an answer of the file transfer, which nobody has asked a client for"

@@ -8,14 +8,14 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS
-from gcs.bridge.guard.files import judge_file
+from gcs.bridge.guard.files import is_read, judge_file
+from gcs.bridge.guard.parameters import HASH_CHECK, Changed, ParameterGuard, refused_write
 from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
-from gcs.bridge.guard.parameters import Changed, ParameterGuard
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import PX4, ParamEncoding
-from gcs.wire.ids import MissionResult, MissionType
+from gcs.wire.ids import MissionResult, MissionType, ParamFault
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
@@ -57,6 +57,15 @@ class Guard:
 
     def judge(self, message: Message, seen: GuardSeen) -> Judgement:
         """Whether `message` of a client may go to the vehicle."""
+        judged = self._by_policy(message, seen)
+        if isinstance(judged, Refused) or seen.in_control or _is_for_all(message):
+            return judged
+        refusal = Refusal(Code.OTHER_OPERATOR, "another client is in control, and sets up")
+        if isinstance(message, ParamSet):
+            return refused_write(message, seen, refusal, ParamFault.PERMISSION_DENIED)
+        return Refused(refusal)
+
+    def _by_policy(self, message: Message, seen: GuardSeen) -> Judgement:
         rules = self._rules
         match message:
             case ParamSet():
@@ -91,6 +100,10 @@ class Guard:
     def why_parameter_refused(self, name: str) -> str | None:
         """Why a client may not write the parameter, a sentence; None where it may."""
         return self._parameters.why_refused(name)
+
+    def awaits(self, name: str) -> bool:
+        """A client has written the parameter, and the vehicle has not told its value since."""
+        return self._parameters.awaits(name)
 
     def heard(self, message: ParamValue) -> Changed | None:
         """PARAM_VALUE of the vehicle's autopilot: the news in it, for the log."""
@@ -145,6 +158,21 @@ class Guard:
             if isinstance(judged, Refused):
                 return _plan_refused(message, seen, judged.refusal)
         return Allowed(f"changing {' and '.join(whose for _, whose in keys)} is forwarded")
+
+
+def _is_for_all(message: Message) -> bool:
+    """It changes nothing, or (a plan) the station says later who may: of any client."""
+    match message:
+        case ParamSet(param_id=name):
+            return name == HASH_CHECK
+        case FileTransferProtocol(payload=payload):
+            return is_read(payload)
+        case CommandLong() | CommandInt():
+            return ROWS[message.command].key == "parameters" and message.param1 in STORAGE_KEEPS
+        case _:
+            return isinstance(
+                message, GpsRtcmData | MissionCount | MissionClearAll | MissionWritePartialList
+            )
 
 
 def _known(message: MissionCount | MissionClearAll | MissionWritePartialList) -> bool:

@@ -83,24 +83,8 @@ class ParameterGuard:
             return Allowed("" if name == HASH_CHECK else self._told(name, value))
         else:
             refusal = Refusal(Code.POLICY, f"{why} ({KEY})", numbers)
-        told = ParamError(
-            param_index=BY_NAME,
-            target_system=seen.client.sysid,
-            target_component=seen.client.compid,
-            param_id=_sendable(name),
-            error=ParamFault.PERMISSION_DENIED if why else ParamFault.VALUE_OUT_OF_RANGE,
-        )
-        ask: tuple[Message, ...] = ()
-        if NAME.fullmatch(name):
-            ask = (
-                ParamRequestRead(
-                    param_index=BY_NAME,
-                    target_system=message.target_system or seen.vehicle.sysid,
-                    target_component=message.target_component or seen.vehicle.compid,
-                    param_id=name,
-                ),
-            )
-        return Refused(refusal, (told,), ask)
+        fault = ParamFault.PERMISSION_DENIED if why else ParamFault.VALUE_OUT_OF_RANGE
+        return refused_write(message, seen, refusal, fault)
 
     def _is_height_of_takeoff(self, name: str, value: float, seen: GuardSeen) -> bool:
         """Whether it is a PX4's, on the ground, and one that the policy allows to take off to."""
@@ -118,7 +102,7 @@ class ParameterGuard:
         name = message.param_id
         why = self.why_refused(name)
         if why is None:
-            return Allowed(f"{name} = {message.param_value} is forwarded")
+            return Allowed(f"{name} = {_printable(message.param_value)} is forwarded")
         told = ParamExtAck(
             param_id=_sendable(name),
             param_value="",
@@ -153,6 +137,10 @@ class ParameterGuard:
         group = group_of(self._autopilot, name)
         return None if group is None else f"{shown} is guarded: {group.why}"
 
+    def awaits(self, name: str) -> bool:
+        """It was let through, and its PARAM_VALUE has not come yet."""
+        return name in self._written_by
+
     def heard(self, message: ParamValue) -> Changed | None:
         """PARAM_VALUE of the vehicle: what is to be told of it."""
         name = message.param_id
@@ -185,6 +173,36 @@ class ParameterGuard:
         return float(decode_value(wire, ParamType(type_), self._encoding))
 
 
+def refused_write(
+    message: ParamSet, seen: GuardSeen, refusal: Refusal, fault: ParamFault
+) -> Refused:
+    """With PARAM_ERROR, and a question to the vehicle for the value that it still has."""
+    name = message.param_id
+    told = ParamError(
+        param_index=BY_NAME,
+        target_system=seen.client.sysid,
+        target_component=seen.client.compid,
+        param_id=_sendable(name),
+        error=fault,
+    )
+    ask: tuple[Message, ...] = ()
+    if NAME.fullmatch(name):
+        ask = (
+            ParamRequestRead(
+                param_index=BY_NAME,
+                target_system=message.target_system or seen.vehicle.sysid,
+                target_component=message.target_component or seen.vehicle.compid,
+                param_id=name,
+            ),
+        )
+    return Refused(refusal, (told,), ask)
+
+
 def _sendable(name: str) -> str:
     """What fits into a message and into a sentence of what a client called a parameter."""
-    return re.sub(r"[^ -~]", "?", name)[:_LONGEST]
+    return _printable(name)[:_LONGEST]
+
+
+def _printable(text: str) -> str:
+    """Without what a terminal would obey: the log is shown on one."""
+    return re.sub(r"[^ -~]", "?", text)

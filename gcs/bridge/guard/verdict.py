@@ -21,6 +21,8 @@ class GuardSeen:
     on_ground: bool
     max_takeoff_up_m: float = 0.0
     """The policy's highest take-off; 0: its default height may not be set."""
+    in_control: bool = True
+    """The client is in control of the station, or nobody is."""
 
     @property
     def stands_disarmed(self) -> bool:

@@ -130,6 +130,8 @@ def reposition_px4(command: Command, seen: Seen) -> Meaning:
     datum = Datum.SEA if command.frame is None else datum_of(command.frame)
     if isinstance(datum, Refusal):
         return Reject(datum)
+    if math.isinf(command.p4):
+        return refuse(Code.NON_FINITE, "a heading that is no number")
     goal_ned = place_of(seen, command.p5, command.p6, command.p7, datum)
     yaw_rad = None if math.isnan(command.p4) else command.p4
     return _reposition(goal_ned, yaw_rad, command, seen, resume=True)

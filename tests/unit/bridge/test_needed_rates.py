@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import pytest
 
 from gcs.bridge.needed_rates import asked_anew, not_slower
@@ -29,9 +30,44 @@ def test_a_faster_one_stays(interval_us: float) -> None:
     assert not_slower(interval(MsgId.LOCAL_POSITION_NED, interval_us), NEEDED) is None
 
 
-@pytest.mark.parametrize("msgid", [0.0, float(MsgId.ATTITUDE), -5.0, math.nan, math.inf, 1e30])
+@pytest.mark.parametrize("msgid", [float(MsgId.ATTITUDE)])
 def test_what_the_gate_does_not_need_is_the_clients(msgid: float) -> None:
     assert not_slower(interval(msgid, -1.0), NEEDED) is None
+
+
+@pytest.mark.parametrize("interval_us", [-1.0, 1e9, math.inf, math.nan])
+@pytest.mark.parametrize("msgid", [0.0, -0.5, -5.0, math.nan, math.inf, 1e30])
+def test_nobody_stops_the_heartbeat(msgid: float, interval_us: float) -> None:
+    """ArduPilot has it among the messages whose interval can be set (GCS_Common.cpp)."""
+    instead = not_slower(interval(msgid, interval_us), NEEDED)
+    assert instead is not None
+    assert (instead.param2, instead.command) == (1e6, Cmd.SET_MESSAGE_INTERVAL)
+
+
+@pytest.mark.parametrize("msgid", [MsgId.HOME_POSITION, MsgId.GPS_GLOBAL_ORIGIN, MsgId.EVENT])
+def test_what_comes_unasked_goes_on(msgid: MsgId) -> None:
+    stopped = not_slower(interval(msgid, -1.0), NEEDED)
+    assert stopped is not None
+    assert 0.0 < stopped.param2 <= 2e6
+    assert not_slower(interval(msgid, 0.0), NEEDED) is None, "the vehicle's default"
+    assert not_slower(interval(msgid, 1e5), NEEDED) is None
+
+
+@pytest.mark.parametrize("msgid", [31.5, 31.9, 32.4])
+def test_an_id_between_two_is_either(msgid: float) -> None:
+    """PX4: `(int)(param1 + 0.5f)`; ArduPilot cuts (mavlink_receiver.cpp, GCS_Common.cpp)."""
+    instead = not_slower(interval(msgid, -1.0), NEEDED)
+    assert instead is not None
+    assert instead.param2 == 33_333.0
+
+
+@pytest.mark.parametrize("msgid", [float(MsgId.ATTITUDE), float(MsgId.LOCAL_POSITION_NED), 9e3])
+def test_nobody_sets_the_bytes_of_the_whole_link(msgid: float) -> None:
+    """PX4: `set_message_interval(param1, param2, param3)`, the third is `data_rate`."""
+    command = msgspec.structs.replace(interval(msgid, 1e4), param3=1.0)
+    assert not_slower(command, NEEDED) == interval(msgid, 1e4)
+    unset = msgspec.structs.replace(interval(msgid, 1e4), param3=math.nan)
+    assert not_slower(unset, NEEDED) is None, "MAVSDK fills up with NaN"
 
 
 def test_another_command_is_none_of_this() -> None:

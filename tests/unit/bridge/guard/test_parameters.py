@@ -223,10 +223,12 @@ def test_an_autopilot_of_an_unknown_kind_has_the_guarded_names_of_both() -> None
 
 
 def test_extended_parameters_are_guarded_by_name_too() -> None:
-    def ext_set(name: bytes) -> Message:
-        return sent("param_ext_set", 1, 100, name, b"0", 11)
+    def ext_set(name: bytes, value: bytes = b"0") -> Message:
+        return sent("param_ext_set", 1, 100, name, value, 11)
 
     assert allowed(guard().judge(ext_set(b"CAM_MODE"), PARKED)).note == "CAM_MODE = 0 is forwarded"
+    told = allowed(guard().judge(ext_set(b"CAM_MODE", b"1\x1b[2J\n"), PARKED)).note
+    assert told == "CAM_MODE = 1?[2J? is forwarded", "the log is shown on a terminal"
     found = refused(guard().judge(ext_set(b"GF_ACTION"), PARKED))
     assert found.answers == (ParamExtAck("GF_ACTION", "", 11, ParamExtResult.FAILED),)
     assert found.ask_vehicle == (ParamExtRequestRead(-1, 1, 100, "GF_ACTION"),)
