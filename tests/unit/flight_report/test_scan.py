@@ -414,7 +414,8 @@ class TestWhatTheVehicleSaid:
         assert vehicle is not None
         assert (vehicle.autopilot, vehicle.kind) == ("px4", "quadrotor")
         assert vehicle.messages == 2
-        assert vehicle.said == vehicle.went_wrong == []
+        assert vehicle.said == []
+        assert vehicle.went_wrong == []
 
 
 @pytest.fixture(scope="module")
