@@ -133,7 +133,7 @@ class Judge:
             case Kind.LOCAL:
                 return Judged(False, [])
             case Kind.DENIED | Kind.CARRIER:
-                refusal = Refusal(Code.POLICY, f"{row.name}: {row.why}")
+                refusal = Refusal(Code.POLICY, row.why)
                 return _refuse(given, message, row, refusal)
             case Kind.MOTION:
                 return self._motion(given, message, row)
@@ -159,7 +159,7 @@ class Judge:
         if seen is None:
             return _refuse(given, message, row, Refusal(Code.NO_VEHICLE, "no vehicle is heard"))
         if message is None:
-            return _refuse(given, message, row, Refusal(Code.UNSUPPORTED, f"{row.name}: {row.why}"))
+            return _refuse(given, message, row, Refusal(Code.UNSUPPORTED, row.why))
         meaning = client.pace.settle(meaning_of(message, seen), now_ns)
         match meaning:
             case Words(asks, note):
@@ -191,7 +191,7 @@ class Judge:
         """What would change the vehicle's set-up."""
         seen = given.look()
         if seen is None or message is None:
-            return _refuse(given, message, row, Refusal(Code.POLICY, f"{row.name}: {row.why}"))
+            return _refuse(given, message, row, Refusal(Code.POLICY, row.why))
         judged = self._guarded(message, given.by, seen)
         match judged:
             case Allowed(note):

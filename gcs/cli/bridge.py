@@ -50,19 +50,19 @@ def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> N
     if name is None:
         return
     from gcs.bridge.classes.explain import explanation
-    from gcs.bridge.guard.safety_parameters import group_of
+    from gcs.bridge.guard.explain import parameter_explanation
     from gcs.exit_codes import ExitCode
     from gcs.operator.errors import ExitError
 
     try:
-        click.echo(explanation(name))
+        told = explanation(name)
     except KeyError as error:
-        groups = {each: group_of(each, name.upper()) for each in ("px4", "ardupilot")}
-        guarded = {each: group for each, group in groups.items() if group is not None}
-        if not guarded:
-            raise ExitError(ExitCode.USAGE, str(error.args[0])) from None
-        for autopilot, group in guarded.items():
-            click.echo(f"{name.upper()}, parameter of {autopilot}: guarded\n  why: {group.why}")
+        guarded = parameter_explanation(name)
+        if guarded is None:
+            hint = "a parameter of that name is not guarded: [bridge] parameters lets it be written"
+            raise ExitError(ExitCode.USAGE, str(error.args[0]), hint) from None
+        told = guarded
+    click.echo(told)
     ctx.exit()
 
 

@@ -6,10 +6,14 @@ from typing import Protocol
 
 from gcs import ipc
 from gcs.operator.client import StationEnded
-from gcs.operator.dialogue import Connection, Dialogue, InterruptSource
+from gcs.operator.dialogue import Connection, Dialogue, Hints, InterruptSource
 from gcs.operator.errors import Interrupted
 
 DRAW_S = 0.5
+HINTS = Hints(
+    "start one with `vehicle-sim`, use --sim, or say with --vehicle where it is",
+    "choose one with --target",
+)
 
 
 class Display(Protocol):
@@ -32,7 +36,7 @@ def watch(
     try:
         if timeout_s is not None:
             try:
-                dialogue.wait_until_heard(timeout_s)
+                dialogue.wait_until_heard(timeout_s, HINTS)
             except Exception:
                 dialogue.leave("no vehicle was heard")
                 raise

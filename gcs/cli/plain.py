@@ -68,6 +68,10 @@ class Plain:
         self._bad_lines = False
         self._dropped_lines = False
         self._overtaken = False
+        self._velocity: str = ""
+        """The line whose velocity is streamed now."""
+        self._velocity_refused = False
+        self._refused_velocities = False
         self._sent_at_once: list[TrackedRequest] = []
         self._until_heard: list[line_parser.Line] = []
 
@@ -192,7 +196,9 @@ class Plain:
                 return
 
     def _fly_velocity(self, text: str, asked: request_words.FlyVelocity) -> None:
-        """A stream of one velocity, until its time is over, a line overtakes it, or it ends."""
+        """A stream of one velocity, until its time is over, it is refused on the way, as before the
+        fence, a line overtakes it, or it ends."""
+        self._velocity, self._velocity_refused = text, False
         begun = self._dialogue.send(ipc.Ask(0, "stream_begin"), text)
         samples = max(1, round(asked.seconds / self._config.speedup / SAMPLE_S))
 
@@ -200,12 +206,13 @@ class Plain:
             return begun.settled or self._overtaken
 
         for _ in range(samples):
-            if not over():
+            if not over() and not self._velocity_refused:
                 self._connection.send(ipc.Stream(v_enu=asked.v_enu))
-                self._dialogue.wait_until(over, SAMPLE_S)
+                self._dialogue.wait_until(lambda: over() or self._velocity_refused, SAMPLE_S)
         if not over():
             self._dialogue.send(ipc.Ask(0, "stream_end"))
             self._dialogue.wait_settled(begun)
+        self._velocity = ""
 
     def _tell_bad(self, line: BadLine) -> None:
         self._bad_lines = True
@@ -231,6 +238,8 @@ class Plain:
                 for line in waiting:
                     self._send_at_once(line)
             return
+        if isinstance(event, ipc.StreamVerdictEvent) and event.outcome != "accepted":
+            self._velocity_refused = self._refused_velocities = True
         if self._config.as_json:
             self._out(ipc.encode(event).decode().rstrip())
             return
@@ -239,6 +248,9 @@ class Plain:
         match event:
             case ipc.VerdictEvent() if request is not None:
                 self._out(event_text.verdict_line(request.label, event))
+            case ipc.StreamVerdictEvent(outcome, code, sentence) if outcome != "accepted":
+                label = self._velocity or "velocity"
+                self._out(event_text.answer_line(label, outcome, code, sentence))
             case ipc.EndingEvent() if request is not None:
                 self._out(event_text.outcome_line(request.label, event))
             case ipc.LogEvent() if event.level >= self._config.min_level:
@@ -263,6 +275,8 @@ class Plain:
         if not self._config.strict:
             return ExitCode.DONE
         undone = ExitCode.NOT_COMPLETED if self._dropped_lines else ExitCode.DONE
+        if self._refused_velocities:
+            undone = ExitCode.REFUSED_BY_GATE
         return self._dialogue.first_failure() or undone
 
 

@@ -23,6 +23,7 @@ from gcs.cli.topic_reading import (
 from gcs.cli.topic_source import FROM, LAST, LINK, LOG, SECONDS, TO, Where, print_now
 
 if TYPE_CHECKING:
+    from gcs.topics.crossings import Crossings
     from gcs.topics.rates import Intervals, Rate
     from gcs.topics.selector import Path as FieldPath
     from gcs.topics.selector import Selector
@@ -202,7 +203,9 @@ def hz(
     """The rate of TOPIC: mean, and shortest, longest and spread of the times between messages.
 
     Judged on the times at which a station received them, not on when this program hears of them.
+    A frame that a bridge passed on is counted once.
     """
+    from gcs.topics.crossings import Crossings
     from gcs.topics.rates import DEFAULT_WINDOW, Intervals
 
     wanted = selectors(topics)
@@ -210,10 +213,11 @@ def hz(
     kept = window if window is not None or where.recorded else DEFAULT_WINDOW
     found: dict[str, Intervals] = {}
     since: dict[str, int] = {}
+    crossings = Crossings()
     next_s = time.monotonic() + EVERY_S
     with ended_by_hand():
         for heard in where.heard(seconds):
-            for name in _names(heard, wanted):
+            for name in _names(heard, wanted, crossings):
                 times = found.setdefault(name, Intervals.over(kept))
                 times.add(heard.time_ns if heard else 0)
                 since[name] = since.get(name, 0) + 1
@@ -232,9 +236,11 @@ def hz(
             _print_rate(name, times.rate(), as_json, alone=len(found) == 1)
 
 
-def _names(heard: Heard | None, wanted: Sequence[Selector]) -> list[str]:
-    """The topic's name, if it is wanted."""
-    if heard is None or not any(one.path_in(heard.topic.name) is not None for one in wanted):
+def _names(heard: Heard | None, wanted: Sequence[Selector], crossings: Crossings) -> list[str]:
+    """The topic's name, if it is wanted and the message counts."""
+    if heard is None or not crossings.counts(heard):
+        return []
+    if not any(one.path_in(heard.topic.name) is not None for one in wanted):
         return []
     return [heard.topic.name]
 

@@ -19,8 +19,9 @@ from gcs.flight_report.opening import open_flight
 from gcs.flight_report.topics import UNREADABLE, Source, source_of
 from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
+from gcs.record import ros1
 from gcs.record.reading import Condition, Message
-from gcs.report import FenceShape
+from gcs.report import Direction, FenceShape
 
 _FENCE = "/gate/fence"
 _POLICY = "policy.toml"
@@ -110,7 +111,7 @@ class Scan:
             self._fence(message.data)
             return
         source = self._sources.get(message.channel_id)
-        if source is None:
+        if source is None or (source.heard and not _was_received(message.data)):
             return
         t_s = (self._last_ns - flight.start_ns) / 1e9
         if source.heard:
@@ -174,6 +175,12 @@ class Scan:
 def _is_vehicle(flight: VehicleFlight) -> bool:
     """A ground station has frames of its own in the record, and nothing of these."""
     return bool(flight.kind or flight.track.points or flight.lanes.mode.changes or flight.requests)
+
+
+def _was_received(data: bytes) -> bool:
+    """Not so are a client's frames that call themselves the vehicle's, which are refused, and what
+    a bridge answers its clients in the vehicle's name, which is sent."""
+    return len(data) < ros1.FRAME_BYTES or data[1] == Direction.RECEIVED
 
 
 def _number(value: object, default: float) -> float:

@@ -76,6 +76,8 @@ class Traffic:
     _components: dict[tuple[int, int], str] = field(default_factory=dict)
     """What each says that it is."""
     _operators: dict[int, _Operator] = field(default_factory=dict)
+    _on_link: dict[int, dict[tuple[int, int], None]] = field(default_factory=dict)
+    """Link -> the components that were heard on it."""
     _asked_last: dict[str, int] = field(default_factory=dict)
     """Word -> the operator who asked it last."""
     _station: str = ""
@@ -134,31 +136,45 @@ class Traffic:
     # ------------------------------------------------------------------------- what is heard
 
     def _frame(self, heard: Heard, source: tuple[int, int], name: str) -> None:
-        if self.recorded and len(heard.data) >= FRAME_BYTES and heard.data[1] != Direction.RECEIVED:
+        framed = self.recorded and len(heard.data) >= FRAME_BYTES
+        if framed and heard.data[1] != Direction.RECEIVED:
             if heard.data[1] == Direction.SENT:
-                self._station = _id(source)
-                for target in self._targets(heard, name):
-                    self._count(HUB, _id(target), name, heard.time_ns)
+                self._sent(heard, source, name)
             return
         if source not in self._components:
             if len(self._components) >= MAX_COMPONENTS:
                 return
             self._components[source] = ""
+        if framed:
+            self._on_link.setdefault(heard.data[0], {})[source] = None
         if name == "HEARTBEAT" and not self._components[source]:
             self._components[source] = _self_description(_fields(heard))
         self._count(_id(source), HUB, name, heard.time_ns)
 
+    def _sent(self, heard: Heard, source: tuple[int, int], name: str) -> None:
+        """The station's own frame; of a bridge also one that it passes on, or an answer in the
+        vehicle's name."""
+        if source not in self._components:
+            self._station = _id(source)
+        for target in self._targets(heard, name):
+            self._count(HUB, _id(target), name, heard.time_ns)
+
     def _targets(self, heard: Heard, name: str) -> list[tuple[int, int]]:
-        """Whom a frame of the station's is for: the components of its target, or all."""
+        """Whom a sent frame is for: the components of its target, or all, among those who were
+        heard on its link (where nobody was: anywhere)."""
         sysid: Value = 0
         if _has_target(name):
             sysid = _fields(heard).get("target_system", 0)
-        autopilots = [each for each in self._components if each[1] == 1] or [*self._components]
+        there = [*(self._on_link.get(heard.data[0]) or self._components)]
+        autopilots = [each for each in there if each[1] == 1] or there
         return [each for each in autopilots if sysid in (0, each[0])]
 
     def _input(self, heard: Heard) -> None:
         kind, client, data = _session_input(heard)
         self._introduce(kind, client, data)
+        link = data.get("link")
+        if kind == "ClientGone" and isinstance(link, int):
+            self._on_link.pop(link, None)  # its number is another client's next
         command = data.get("command")
         if kind == "OperatorLine" and isinstance(command, dict):
             self._command(client, command, heard.time_ns)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import msgspec
 
@@ -90,6 +90,19 @@ EventHandler = Callable[[ipc.Event, TrackedRequest | None], None]
 """Is given every event, and the request that it answers if it is of this dialogue."""
 
 
+class Hints(NamedTuple):
+    """What a person can do who hears no vehicle, in the options of the command that was given."""
+
+    start: str
+    choose: str
+
+
+OPERATOR_HINTS = Hints(
+    "start one with `vehicle-sim`, use `gcs fly --sim`, or name the link with --link",
+    "choose one with --vehicle",
+)
+
+
 class Dialogue:
     """One operator's talk with one station.
 
@@ -165,7 +178,7 @@ class Dialogue:
         self.wait_until(self._can_be_judged, SETTLE_WAIT_S)
         return self.snapshot or seen
 
-    def wait_until_heard(self, timeout_s: float) -> ipc.Snapshot:
+    def wait_until_heard(self, timeout_s: float, hints: Hints = OPERATOR_HINTS) -> ipc.Snapshot:
         """Wait for the first word of a vehicle, for what may be asked of one without a position.
 
         Raises ExitError with NO_VEHICLE if none is heard.
@@ -174,7 +187,7 @@ class Dialogue:
         self.wait_until(
             lambda: self.snapshot is not None and bool(self.snapshot.vehicle), timeout_s
         )
-        return self._heard(timeout_s)
+        return self._heard(timeout_s, hints)
 
     def _wait_for_hello(self) -> None:
         """Raises ExitError: what keeps the station from starting, or that it does not start."""
@@ -182,19 +195,19 @@ class Dialogue:
         if self.hello is None:
             raise ExitError(ExitCode.BUG, f"the link process said nothing for {START_WAIT_S:g} s")
 
-    def _heard(self, timeout_s: float) -> ipc.Snapshot:
+    def _heard(self, timeout_s: float, hints: Hints = OPERATOR_HINTS) -> ipc.Snapshot:
         if self.snapshot is None or not self.snapshot.vehicle:
             where = ", ".join(self.hello.endpoints) if self.hello else "the link"
             if self.snapshot is not None and self.snapshot.vehicles:
                 raise ExitError(
                     ExitCode.NO_VEHICLE,
                     f"that vehicle was not heard within {timeout_s:g} s ({where})",
-                    f"heard: {', '.join(self.snapshot.vehicles)}; choose one with --vehicle",
+                    f"heard: {', '.join(self.snapshot.vehicles)}; {hints.choose}",
                 )
             raise ExitError(
                 ExitCode.NO_VEHICLE,
                 f"no vehicle heard within {timeout_s:g} s ({where})",
-                "start one with `vehicle-sim`, use `gcs fly --sim`, or name the link with --link",
+                hints.start,
             )
         return self.snapshot
 

@@ -29,7 +29,7 @@ from gcs.config import StationConfig
 from gcs.gate.effects import Level
 from gcs.gate.inputs import CommandEnded, Input, Requested
 from gcs.gate.machine.gate import Gate
-from gcs.gate.machine.turn import REFUSED_LINE
+from gcs.gate.machine.turn import REFUSED_LINE, REFUSED_STREAM_LINE
 from gcs.gate.policy.policy import Policy
 from gcs.protocol.effects import Address
 from gcs.protocol.parameter_names import names_of
@@ -201,7 +201,7 @@ class BridgePort:
         """What the gate warns of, the clients read too; of a refusal only the one who asked."""
         if line.node != teller.NODE or line.level < Level.WARNING or self._address is None:
             return []
-        if line.text.startswith(REFUSED_LINE):
+        if line.text.startswith((REFUSED_LINE, REFUSED_STREAM_LINE)):
             return []
         return self.bridge.warn(line.level, line.text, self._address, now_ns)
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs import ipc
+from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
@@ -139,9 +140,10 @@ class Clients:
         if self._in_control in (client, NOBODY) or (ask.word in ALWAYS_HEARD and not ask.force):
             return None
         other = self._there[self._in_control].label
+        take = "MAV_CMD_REQUEST_OPERATOR_CONTROL" if client >= FIRST_NUMBER else "`station take`"
         return Refusal(
             Code.OTHER_OPERATOR,
-            f"{other} is in control of this station; `station take` takes it over",
+            f"{other} is in control of this station; {take} takes it over",
             (("in_control", float(self._in_control)),),
         )
 

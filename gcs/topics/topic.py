@@ -62,6 +62,12 @@ class Heard(NamedTuple):
         """Raises DecodeError."""
         return self.topic.decode(self.data)
 
+    @property
+    def direction(self) -> int | None:
+        """The `Direction` of a frame in a record; None of what was just heard, or is no frame."""
+        is_frame = self.topic.is_mavlink and self.topic.decode is not frame_fields
+        return self.data[1] if is_frame and len(self.data) >= ros1.FRAME_BYTES else None
+
 
 def live_topic(frame: Frame) -> Topic:
     """The topic of a frame that was just received; its messages are whole frames."""

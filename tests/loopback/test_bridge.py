@@ -85,7 +85,7 @@ def test_what_feeds_the_estimator_never_reaches_the_vehicle(personality: Persona
     )
     flight.run(0.2)
     assert len(flight.to_vehicle("GPS_INPUT")) == sent_before == 0
-    assert "GPS_INPUT" in client.texts()
+    assert "GPS_INPUT: refused POLICY: It feeds the estimator" in client.texts()
     assert flight.decisions("refused")[-1].word == "gps_input"
 
 
@@ -114,6 +114,7 @@ def test_the_second_client_looks_and_may_stop(personality: Personality) -> None:
     second = flight.join(255, 190)
     assert second.ask(TAKE_OFF, 0, 0, 0, 0, 0, 0, 5) == REJECTED
     assert "OTHER_OPERATOR" in second.texts()
+    assert "MAV_CMD_REQUEST_OPERATOR_CONTROL takes it over" in second.texts()
     assert second.ask(LAND) == ACCEPTED
     assert flight.is_in(State.LANDING)
     assert not first.acks(999)

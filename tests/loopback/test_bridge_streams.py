@@ -55,3 +55,4 @@ def test_full_speed_at_the_fence_is_held_inside_and_flown_back(personality: Pers
     back = stream(-3.0, 20)
     assert back <= farthest + 0.5
     assert "stream: flown" in client.texts()
+    assert "gate: Stream refused" not in client.texts(), "its own sentence has told it"

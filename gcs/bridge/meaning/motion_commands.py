@@ -124,7 +124,9 @@ def reposition_px4(command: Command, seen: Seen) -> Meaning:
     mode, as COMMAND_LONG as well.
     """
     if command.whole(command.p2) != CHANGE_MODE:
-        return unsupported("DO_REPOSITION without MAV_DO_REPOSITION_FLAGS_CHANGE_MODE alone")
+        return unsupported(
+            "param2 is to be 1, MAV_DO_REPOSITION_FLAGS_CHANGE_MODE; PX4 takes no other flags"
+        )
     if all(map(math.isnan, (command.p5, command.p6, command.p7))):
         return hold(seen)
     datum = Datum.SEA if command.frame is None else datum_of(command.frame)

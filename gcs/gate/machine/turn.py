@@ -80,6 +80,7 @@ MODE_OF: Final[Mapping[CommandKind, FlightMode]] = MappingProxyType(
 
 
 REFUSED_LINE: Final = "Refused "
+REFUSED_STREAM_LINE: Final = "Stream refused "
 """How the line of a refusal begins."""
 
 SAID: Final = frozenset({Code.SUPERSEDED, Code.OPERATOR, Code.OPERATOR_LOST, Code.FENCE_BREACH})
@@ -198,7 +199,7 @@ class Turn:
 
     def _tell_refused(self, source: str, refusal: Refusal) -> None:
         self.out.append(StreamVerdict(source, refusal, refusal.numbers))
-        self.say(Level.WARNING, f"Stream refused ({refusal.code}): {refusal.sentence}")
+        self.say(Level.WARNING, f"{REFUSED_STREAM_LINE}({refusal.code}): {refusal.sentence}")
 
     # ------------------------------------------------------------------ tasks and outcomes
 

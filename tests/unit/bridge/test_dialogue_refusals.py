@@ -11,7 +11,7 @@ from gcs.wire.messages import CommandLong, Message
 
 MS = 1_000_000
 CLIENT = From(1, Address(250, 0), Address(1, 1))
-DENIED = Refusal(Code.POLICY, "GPS_INPUT: It feeds the estimator.")
+DENIED = Refusal(Code.POLICY, "It feeds the estimator.")
 
 
 def decisions(messages: list[tuple[Message | None, Refusal]], every_ms: int = 50) -> int:

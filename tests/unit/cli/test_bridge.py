@@ -111,7 +111,10 @@ def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> N
         ("do_reposition", ("MAV_CMD_DO_REPOSITION, command 192: motion", "  why: ")),
         ("22", ("MAV_CMD_NAV_TAKEOFF, command 22: motion", "  why: ")),
         ("PARAM_SET", ("PARAM_SET, message 23: configuration", "  why: ")),
-        ("gf_action", ("GF_ACTION, parameter of px4: guarded", "the vehicle's own fence")),
+        (
+            "gf_action",
+            ("GF_ACTION, a parameter that safety", "px4: it is of the vehicle's own fence"),
+        ),
     ],
 )
 def test_explain_needs_nothing_else(
@@ -127,6 +130,13 @@ def test_explain_of_what_there_is_not_names_what_is_close(
 ) -> None:
     assert main.run(["bridge", "--explain", "DO_REPOSITON"]) == ExitCode.USAGE
     assert "DO_REPOSITION" in capsys.readouterr().err
+
+
+def test_explain_tells_that_a_parameter_is_not_guarded(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main.run(["bridge", "--explain", "SDLOG_MODE"]) == ExitCode.USAGE
+    said = capsys.readouterr().err
+    assert "'SDLOG_MODE' is no message and no command of the dialect" in said
+    assert "hint: a parameter of that name is not guarded" in said
 
 
 # ------------------------------------------------------------------------------------ words
@@ -295,4 +305,5 @@ def test_with_a_time_out_no_vehicle_is_an_exit_code() -> None:
     with pytest.raises(ExitError) as caught:
         watch(connection, NoInterrupts(), Told(), 3.0)
     assert caught.value.exit_code == ExitCode.NO_VEHICLE
+    assert caught.value.hint.endswith("use --sim, or say with --vehicle where it is")
     assert connection.sent == [ipc.Leave("no vehicle was heard")]

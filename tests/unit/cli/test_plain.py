@@ -110,6 +110,15 @@ def test_a_velocity_that_is_refused_is_not_streamed() -> None:
     assert session.exit_code == ExitCode.REFUSED_BY_GATE
 
 
+def test_a_velocity_that_is_refused_on_the_way_is_told_and_ended() -> None:
+    session = Session("arm\ntakeoff 2\nvelocity 99 0 0 3\nland\n", PlainConfig(strict=True))
+    samples = [sent for sent in session.connection.sent if isinstance(sent, ipc.Stream)]
+    assert len(samples) == 1
+    assert "velocity 99 0 0 3: refused POLICY: too fast" in session.out
+    assert session.out[-2:] == ["land: accepted", "land: complete"]
+    assert session.exit_code == ExitCode.REFUSED_BY_GATE
+
+
 def test_quit_ends_it_before_the_end_of_the_input() -> None:
     assert Session("arm\nquit\nland\n").sent_words == ["arm"]
 

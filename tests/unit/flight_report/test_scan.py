@@ -398,6 +398,25 @@ class TestWhatTheVehicleSaid:
         assert vehicle is not None
         assert len(vehicle.said) == len(vehicle.went_wrong) == 1
 
+    def test_only_what_was_received_is_the_vehicle_s(self, tmp_path: Path) -> None:
+        """A bridge answers a client in the vehicle's name, and refuses one that calls itself so."""
+        text = b"goto: refused".ljust(50, b"\0")
+        answer = frame("STATUSTEXT", "<B50sHB", 4, text, 0, 0)
+        items: list[RecordItem] = [
+            heartbeat(),
+            status(armed=True, landed="IN_AIR"),
+            gps(3, 10),
+            FrameItem(1, Direction.SENT, answer.raw),
+            FrameItem(1, Direction.REFUSED, gps(0, 0).raw),
+            FrameItem(1, Direction.REFUSED, heartbeat(3, 1).raw),
+        ]
+        vehicle = scanned(tmp_path, items).main_vehicle()
+        assert vehicle is not None
+        assert (vehicle.autopilot, vehicle.kind) == ("px4", "quadrotor")
+        assert vehicle.messages == 2
+        assert vehicle.said == []
+        assert vehicle.went_wrong == []
+
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:

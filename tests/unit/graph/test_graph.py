@@ -224,3 +224,26 @@ def test_what_is_wrong_is_told(session: Path, tmp_path: Path) -> None:
     assert gcs("graph", "--log", tmp_path / "empty.mcap").exit_code == ExitCode.BAD_FILE
     nowhere = tmp_path / "none" / "x.svg"
     assert gcs("graph", "--log", session, "--svg", "-o", nowhere).exit_code == ExitCode.RECORDER
+
+
+def test_what_a_bridge_answers_goes_to_the_client_on_that_link(tmp_path: Path) -> None:
+    """In the vehicle's name; when that client has gone the link's number is another one's."""
+    text = frame_v2(253, struct.pack("<B50s", 4, b"goto: refused"), source=(1, 1))
+    answer = FrameItem(1, Direction.SENT, text)
+    command = to_vehicle(1).raw
+
+    def items() -> Iterator[RecordItem]:
+        yield FrameItem(0, Direction.RECEIVED, beat((1, 1), 2, 12))
+        yield FrameItem(1, Direction.RECEIVED, beat((254, 190), 6, 8))
+        yield FrameItem(0, Direction.SENT, command)
+        yield answer
+        yield InputItem.of("ClientGone", {"link": 1, "reason": "silent"})
+        yield FrameItem(1, Direction.RECEIVED, beat((253, 190), 6, 8))
+        yield answer
+        yield answer
+
+    graph = graph_of(record(tmp_path, items()))
+    assert graph["nodes"][0]["detail"] == "station 255/190"
+    assert flows(graph, "hub", "1/1") == {"COMMAND_LONG": (1, None)}
+    assert flows(graph, "hub", "254/190") == {"STATUSTEXT": (1, None)}
+    assert flows(graph, "hub", "253/190") == {"STATUSTEXT": (2, None)}

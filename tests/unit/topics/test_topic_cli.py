@@ -186,3 +186,28 @@ def test_any_damage_is_told_or_passed_over(
     file.write_bytes(whole)
     for words in (("list",), ("echo", "HEARTBEAT", "decision"), ("hz", "HEARTBEAT")):
         assert gcs("topic", *words, "--log", file).exit_code in (ExitCode.DONE, ExitCode.BAD_FILE)
+
+
+def test_a_rate_counts_a_frame_once_that_a_bridge_passed_on(tmp_path: Path) -> None:
+    """A client's heartbeat goes on to the vehicle and to another client; somebody on link 2 calls
+    itself the vehicle."""
+
+    def beat(link: int, direction: Direction, sysid: int, number: int) -> FrameItem:
+        payload = struct.pack("<IBBBBB", 0, 6, 8, 0, 4, 3)
+        return FrameItem(link, direction, frame_v1(0, payload, number, source=(sysid, 1)))
+
+    def items() -> Iterator[RecordItem]:
+        for number in range(10):
+            yield beat(0, Direction.RECEIVED, 1, number)
+            yield beat(1, Direction.RECEIVED, 254, number)
+            yield beat(0, Direction.SENT, 254, number)
+            yield beat(2, Direction.SENT, 254, number)
+            yield beat(2, Direction.REFUSED, 1, number)
+            yield beat(0, Direction.SENT, 255, number)
+
+    path = record(tmp_path, items(), step_ns=STEP_NS)
+    rates = {each["topic"]: each for each in objects(topic(path, "hz", "HEARTBEAT", "--json"))}
+    for sysid in (1, 254, 255):
+        told = rates[f"/mavlink/{sysid}/1/HEARTBEAT"]
+        assert told["window"] == 10
+        assert told["hz"] == pytest.approx(1e9 / (6 * STEP_NS))
