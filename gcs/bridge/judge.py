@@ -31,7 +31,6 @@ from gcs.bridge.effects import (
 )
 from gcs.bridge.guard import verdict as guard_verdict
 from gcs.bridge.guard.guard import Guard
-from gcs.bridge.guard.manual_modes import refused_mode
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
 from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
 from gcs.bridge.meaning.translate import meaning_of
@@ -155,10 +154,6 @@ class Judge:
         meaning = client.pace.settle(meaning_of(message, seen), now_ns)
         match meaning:
             case Words(asks, note):
-                standing = seen.on_ground and not seen.armed
-                bad_mode = refused_mode(asks, seen.autopilot, self._rules, stands_disarmed=standing)
-                if bad_mode is not None:
-                    return _refuse(given, message, row, bad_mode)
                 told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
                 asked = client.dialogue.ask(given.by, message, asks, now_ns)
                 return Judged(False, [*told, *asked])
