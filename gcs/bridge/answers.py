@@ -30,9 +30,13 @@ MAY_HELP_LATER: Final = frozenset(
         Code.SUPERSEDED,
         Code.NO_VEHICLE,
         Code.NO_ORIGIN,
+        Code.NOT_ARMED,
+        Code.NOT_FLYING,
+        Code.IN_AIR,
     }
 )
-"""Reasons that pass: the same command may be accepted a little later."""
+"""Reasons that pass: the same command may be accepted a little later, or after another one (an
+arming, a take-off, a landing).  Recorded of PX4 1.14: a disarming in the air is answered so."""
 
 UNSUPPORTED: Final = frozenset({Code.UNSUPPORTED, Code.UNSUPPORTED_VEHICLE})
 
