@@ -67,7 +67,9 @@ class BridgePort:
         rules = policy.bridge
         own = Address(config.sysid, config.compid)
         silent_ns = times.real_ns(round(rules.client_gone_s * 1e9))
-        self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing_of(times))
+        deadman_ns = round(times.policy(policy).stream.deadman_s * 1e9)
+        timing = timing_of(times)
+        self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing, deadman_ns)
         self._vehicle = vehicle
         self._operators = operators
         self._links = links
