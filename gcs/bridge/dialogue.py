@@ -1,8 +1,9 @@
 """What one client has asked for and what it was answered: from a command to its COMMAND_ACK.
 
-A command is acknowledged once: with a refusal's reason; at the verdict where the gate alone decides
-(a go-to); else with what the vehicle itself answered.  The same command again, sent because no
-answer came, is not asked a second time: it gets IN_PROGRESS, or the answer that it had.
+A command, or a mission item that is to be flown to at once, is acknowledged once: with a refusal's
+reason; at the verdict where the gate alone decides (a go-to); else with what the vehicle itself
+answered.  The same command again, sent because no answer came, is not asked a second time: it gets
+IN_PROGRESS, or the answer that it had.
 """
 
 from __future__ import annotations
@@ -14,20 +15,22 @@ from typing import Final
 import msgspec
 
 from gcs import ipc
-from gcs.bridge.answers import acknowledgement, result_of, texts
+from gcs.bridge.answers import acknowledgement, item_acknowledgement, result_of, texts
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.codec import encode
 from gcs.wire.ids import Result
-from gcs.wire.messages import CommandInt, CommandLong, Message
+from gcs.wire.messages import CommandInt, CommandLong, Message, MissionItem, MissionItemInt
 
 AGAIN_NS: Final = 2_000_000_000
 """The command that was accepted last, sent again within this time, is a repetition of it, not a new
 one.  Anything else that was asked in between, a refusal, or a stop is never answered from memory:
 the vehicle may be flown otherwise by now."""
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
+GUIDED_ITEM: Final = -1
+"""In the place of a command: a mission item to be flown to at once, which has a MISSION_ACK."""
 SAME_TEXT_NS: Final = 5_000_000_000
 """The same text is sent again to a client only after so long."""
 MOST_TEXTS: Final = 50
@@ -54,7 +57,7 @@ class _Pending:
 
     asked_by: From
     command: int
-    """MAV_CMD; 0 for what is not acknowledged."""
+    """MAV_CMD; GUIDED_ITEM; 0 for what is not acknowledged."""
     key: bytes
     rest: tuple[ipc.Ask, ...]
     """What is to be asked after it."""
@@ -164,6 +167,8 @@ class Dialogue:
             return None
         for pending in self._pending.values():
             if pending.key == key and pending.asked_by == asked_by:
+                if pending.answered is None and command == GUIDED_ITEM:
+                    return []  # MISSION_ACK has no word for that it is under way
                 result = Result.IN_PROGRESS if pending.answered is None else pending.answered
                 return [self._acknowledge(asked_by, command, result)]
         told = self._told
@@ -262,6 +267,8 @@ class Dialogue:
 
     @staticmethod
     def _acknowledge(to: From, command: int, result: int, code: Code | None = None) -> Answers:
+        if command == GUIDED_ITEM:
+            return Answers(to.link, to.addressed, item_acknowledgement(result, to.source))
         return Answers(to.link, to.addressed, acknowledgement(command, result, to.source, code))
 
     def text(self, to: From, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
@@ -276,7 +283,10 @@ class Dialogue:
 
 
 def _command(message: Message | None) -> int:
-    """MAV_CMD; 0 for a message that is not acknowledged."""
+    """MAV_CMD; GUIDED_ITEM for an item that is flown to at once; 0 for a message that is not
+    acknowledged."""
+    if isinstance(message, MissionItem | MissionItemInt):
+        return GUIDED_ITEM
     return message.command if isinstance(message, CommandLong | CommandInt) else 0
 
 

@@ -218,6 +218,7 @@ def test_dronekits_simple_goto() -> None:
     )
     arrives(flight, 10)
     assert flight.truth_enu()[2] == pytest.approx(6, abs=0.7)
+    assert [ack.type for ack in client.messages("MISSION_ACK")] == [ACCEPTED]
 
 
 def test_dronekits_simple_goto_out_of_the_fence() -> None:
@@ -230,6 +231,9 @@ def test_dronekits_simple_goto_out_of_the_fence() -> None:
     assert not flight.to_vehicle("MISSION_ITEM")
     assert flight.state is State.HOVERING
     assert [one.code for one in flight.decisions("refused")] == ["OUTSIDE_FENCE"]
+    [ack] = client.messages("MISSION_ACK")
+    assert ack.type == dialect.MAV_MISSION_DENIED
+    assert (ack.target_system, ack.target_component) == (245, 190)
 
 
 @pytest.mark.parametrize("times", [1, 3, 40])
