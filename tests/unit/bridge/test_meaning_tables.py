@@ -46,8 +46,8 @@ def test_the_page_is_the_tables() -> None:
 def test_no_mode_of_the_sticks_is_ever_asked_of_the_vehicle(
     autopilot: Autopilot, state: State
 ) -> None:
-    """It is refused at once, by the policy.  What is asked for by its name is refused by the gate: it
-    is not the one of its kind that the gate sends."""
+    """It is refused at once, by the policy.  What is asked for by its name is refused by the gate:
+    it is not the one of its kind that the gate sends."""
     on_ground = state is State.GROUNDED
     seen = flying(autopilot, state=state, on_ground=on_ground, mode_name="")
     for mode in autopilot.modes:
