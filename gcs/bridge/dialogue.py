@@ -8,9 +8,9 @@ IN_PROGRESS, or the answer that it had.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final
+from typing import Final, TypeVar
 
 import msgspec
 
@@ -23,6 +23,8 @@ from gcs.protocol.effects import Address
 from gcs.wire.codec import encode
 from gcs.wire.ids import Result
 from gcs.wire.messages import CommandInt, CommandLong, Message, MissionItem, MissionItemInt
+
+Over = TypeVar("Over", ipc.VerdictEvent, ipc.EndingEvent)
 
 AGAIN_NS: Final = 2_000_000_000
 """The command that was accepted last, sent again within this time, is a repetition of it, not a new
@@ -101,6 +103,8 @@ class Dialogue:
     _next_id: int = 1
     _next_text: int = 1
     _pending: dict[int, _Pending] = field(default_factory=dict)
+    _with_arm: dict[int, list[int]] = field(default_factory=dict)
+    """By the number of an arming that is under way: the requests that were to arm first, too."""
     _last_key: bytes = b""
     """The message that was asked for last."""
     _told: _Told | None = None
@@ -128,6 +132,12 @@ class Dialogue:
             done = [self._acknowledge(asked_by, command, Result.ACCEPTED)]
             return [*done] if command else []
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
+        arming = self._arming() if pending.rest and pending.word == "arm" else None
+        if arming is not None:
+            number = self.number()
+            self._pending[number] = pending
+            self._with_arm.setdefault(arming, []).append(number)
+            return []
         return [Says(self.client, self._open(pending, asks[0]))]
 
     def refuse(
@@ -147,6 +157,11 @@ class Dialogue:
             return repeated
         pending = _Pending(asked_by, command, key, (), name, "")
         return [Refuses(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
+
+    def _arming(self) -> int | None:
+        """The arming that this client has asked for, and that has not ended."""
+        arms = (number for number, each in self._pending.items() if each.word == "arm")
+        return next(arms, None)
 
     def number(self) -> int:
         """The next number of a request of this client."""
@@ -186,10 +201,12 @@ class Dialogue:
     def told(self, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
         """What the station tells this client as an operator, in MAVLink's words."""
         match event:
-            case ipc.VerdictEvent():
+            case ipc.VerdictEvent() if event.outcome == "accepted":
                 return self._verdict(event, now_ns)
+            case ipc.VerdictEvent():
+                return self._each_with(event, self._verdict, now_ns)
             case ipc.EndingEvent():
-                return self._ending(event, now_ns)
+                return self._each_with(event, self._ending, now_ns)
             case ipc.StreamVerdictEvent():
                 return self._stream_verdict(event, now_ns)
             case _:
@@ -205,6 +222,18 @@ class Dialogue:
                 if result == Result.ACCEPTED and pending.word not in SEEN_SOON:
                     return self._answer(pending, Result.ACCEPTED, None, now_ns)
         return []
+
+    def _each_with(
+        self,
+        event: Over,
+        told: Callable[[Over, int], list[BridgeEffect]],
+        now_ns: int,
+    ) -> list[BridgeEffect]:
+        """What became of a request, and of those that waited for the same arming."""
+        effects = told(event, now_ns)
+        for number in self._with_arm.pop(event.id, ()):
+            effects += told(msgspec.structs.replace(event, id=number), now_ns)
+        return effects
 
     def _verdict(self, event: ipc.VerdictEvent, now_ns: int) -> list[BridgeEffect]:
         pending = self._pending.get(event.id)
