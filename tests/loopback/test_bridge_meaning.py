@@ -97,6 +97,7 @@ def test_a_mission_that_was_held_goes_on_from_its_first_item(personality: Person
     assert client.ask(PAUSE, 1, within_s=20) == ACCEPTED
     flight.until(lambda: flight.is_in(State.FLYING_MISSION), 3)
     flight.run(1.5)
+    assert telemetry.mission_seq is not None
     assert telemetry.mission_seq < second
     assert "begins anew" in client.texts()
     assert client.ask(PAUSE, 0) == ACCEPTED
@@ -299,6 +300,22 @@ def test_qgroundcontrols_pause() -> None:
     assert client.ask(REPOSITION, -1.0, 1.0, 0.0, NAN, NAN, NAN, NAN) == ACCEPTED
     flight.until(lambda: flight.is_in(State.HOLDING), 3)
     assert flight.truth_enu()[1] < 30
+
+
+@pytest.mark.parametrize("order", [TAKE_OFF, SET_MODE])
+def test_what_was_refused_before_arming_is_not_flown_after_it(order: int) -> None:
+    """QGroundControl (from memory) asks a PX4 for the take-off, or the mission mode, and arms then.
+    Nothing is kept: the client reads what to do."""
+    flight = BridgedFlight("px4")
+    client = flight.join()
+    flight.connected()
+    params = (0, 0, 0, NAN, NAN, NAN, NAN) if order == TAKE_OFF else (29.0, 4.0, 4.0)
+    assert client.ask(order, *params, within_s=10) == dialect.MAV_RESULT_TEMPORARILY_REJECTED
+    assert "arm it first" in client.texts()
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    flight.beating(5.0)
+    assert flight.is_in(State.GROUNDED)
+    assert client.ask(TAKE_OFF, 0, 0, 0, NAN, NAN, NAN, NAN) == ACCEPTED
 
 
 def test_mavsdks_take_off_height() -> None:
