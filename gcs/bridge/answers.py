@@ -11,8 +11,8 @@ from typing import Final
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code
 from gcs.protocol.effects import Address
-from gcs.wire.ids import Result, Severity
-from gcs.wire.messages import CommandAck, Statustext
+from gcs.wire.ids import MissionResult, Result, Severity
+from gcs.wire.messages import CommandAck, MissionAck, Statustext
 
 NUMBER_OF: Final = {code: number for number, code in enumerate(Code, start=1)}
 """Reason code -> its number on the wire."""
@@ -30,9 +30,13 @@ MAY_HELP_LATER: Final = frozenset(
         Code.SUPERSEDED,
         Code.NO_VEHICLE,
         Code.NO_ORIGIN,
+        Code.NOT_ARMED,
+        Code.NOT_FLYING,
+        Code.IN_AIR,
     }
 )
-"""Reasons that pass: the same command may be accepted a little later."""
+"""Reasons that pass: the same command may be accepted a little later, or after another one (an
+arming, a take-off, a landing).  Recorded of PX4 1.14: a disarming in the air is answered so."""
 
 UNSUPPORTED: Final = frozenset({Code.UNSUPPORTED, Code.UNSUPPORTED_VEHICLE})
 
@@ -71,6 +75,16 @@ def acknowledgement(
         result_param2=NUMBER_OF[code] if code else 0,
         target_system=to.sysid,
         target_component=to.compid,
+    )
+
+
+def item_acknowledgement(result: int, to: Address) -> MissionAck:
+    """MISSION_ACK for whoever sent a mission item that is to be flown to at once."""
+    accepted = result == Result.ACCEPTED
+    return MissionAck(
+        target_system=to.sysid,
+        target_component=to.compid,
+        type=MissionResult.ACCEPTED if accepted else MissionResult.DENIED,
     )
 
 

@@ -36,17 +36,24 @@ class Bridge:
     """All MAVLink clients of one station, and its vehicle, whose system id is `vehicle.sysid`."""
 
     def __init__(
-        self, own: Address, rules: BridgeRules, needed_hz: Rates, silent_ns: int, timing: Timing
+        self,
+        own: Address,
+        rules: BridgeRules,
+        needed_hz: Rates,
+        silent_ns: int,
+        timing: Timing,
+        deadman_ns: int,
     ) -> None:
         """`own` is what the station calls itself; `needed_hz` is how often the gate needs which
         message; a client that is silent for `silent_ns` is lost; `timing` is of the plans that
-        clients send."""
+        clients send; one sample of their setpoint streams counts for `deadman_ns`."""
         self._own = own
         self._manual_modes = rules.manual_modes
         self._control = ControlServer()
         self._judge = Judge(rules, needed_hz, self._control)
         self._silent_ns = silent_ns
         self._timing = timing
+        self._deadman_ns = deadman_ns
         self._routes = Routes()
         self._by_link: dict[int, Client] = {}
         self._by_number: dict[int, Client] = {}
@@ -59,7 +66,7 @@ class Bridge:
     def came(self, link: int, name: str) -> list[BridgeEffect]:
         """A peer is there; it is a client with its first good frame."""
         self._routes.open(link)
-        self._by_link[link] = Client(link, name, self._timing)
+        self._by_link[link] = Client(link, name, self._timing, self._deadman_ns)
         return [Notes(Level.INFO, f"{name} has connected, on link {link}")]
 
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:

@@ -32,11 +32,13 @@ class Rate:
 class Client:
     """One peer; an operator with a number of its own from its first good frame on."""
 
-    def __init__(self, link: int, name: str, timing: Timing) -> None:
-        """`name` is where it is; `timing` is of the plans that it sends."""
+    def __init__(self, link: int, name: str, timing: Timing, deadman_ns: int) -> None:
+        """`name` is where it is; `timing` is of the plans that it sends; one sample of its
+        setpoint streams counts for `deadman_ns`."""
         self.link = link
         self.name = name
         self._timing = timing
+        self._deadman_ns = deadman_ns
         self.joined = False
         self.heard_ns = 0
         self.received = Rate()
@@ -52,6 +54,6 @@ class Client:
         self.joined = True
         self.dialogue = Dialogue(number)
         self.plans = PlanServer(self._timing)
-        self.pace = Pace()
+        self.pace = Pace(self._deadman_ns)
         self.plan_ask = 0
         """The number of the plan request that is not over; 0: none."""

@@ -1,33 +1,38 @@
 """What one client has asked for and what it was answered: from a command to its COMMAND_ACK.
 
-A command is acknowledged once: with a refusal's reason; at the verdict where the gate alone decides
-(a go-to); else with what the vehicle itself answered.  The same command again, sent because no
-answer came, is not asked a second time: it gets IN_PROGRESS, or the answer that it had.
+A command, or a mission item that is to be flown to at once, is acknowledged once: with a refusal's
+reason; at the verdict where the gate alone decides (a go-to); else with what the vehicle itself
+answered.  The same command again, sent because no answer came, is not asked a second time: it gets
+IN_PROGRESS, or the answer that it had.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final
+from typing import Final, TypeVar
 
 import msgspec
 
 from gcs import ipc
-from gcs.bridge.answers import acknowledgement, result_of, texts
+from gcs.bridge.answers import acknowledgement, item_acknowledgement, result_of, texts
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.codec import encode
 from gcs.wire.ids import Result
-from gcs.wire.messages import CommandInt, CommandLong, Message
+from gcs.wire.messages import CommandInt, CommandLong, Message, MissionItem, MissionItemInt
+
+Over = TypeVar("Over", ipc.VerdictEvent, ipc.EndingEvent)
 
 AGAIN_NS: Final = 2_000_000_000
 """The command that was accepted last, sent again within this time, is a repetition of it, not a new
 one.  Anything else that was asked in between, by whomever, a refusal, or a stop is never answered
 from memory, and neither is what has ended otherwise: the vehicle may be flown otherwise by now."""
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
+GUIDED_ITEM: Final = -1
+"""In the place of a command: a mission item to be flown to at once, which has a MISSION_ACK."""
 SAME_TEXT_NS: Final = 5_000_000_000
 """The same text is sent again to a client only after so long."""
 MOST_TEXTS: Final = 50
@@ -54,7 +59,7 @@ class _Pending:
 
     asked_by: From
     command: int
-    """MAV_CMD; 0 for what is not acknowledged."""
+    """MAV_CMD; GUIDED_ITEM; 0 for what is not acknowledged."""
     key: bytes
     rest: tuple[ipc.Ask, ...]
     """What is to be asked after it."""
@@ -98,6 +103,8 @@ class Dialogue:
     _next_id: int = 1
     _next_text: int = 1
     _pending: dict[int, _Pending] = field(default_factory=dict)
+    _with_arm: dict[int, list[int]] = field(default_factory=dict)
+    """By the number of an arming that is under way: the requests that were to arm first, too."""
     _last_key: bytes = b""
     """The message that was asked for last."""
     _told: _Told | None = None
@@ -125,6 +132,12 @@ class Dialogue:
             done = [self._acknowledge(asked_by, command, Result.ACCEPTED)]
             return [*done] if command else []
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
+        arming = self._arming() if pending.rest and pending.word == "arm" else None
+        if arming is not None:
+            number = self.number()
+            self._pending[number] = pending
+            self._with_arm.setdefault(arming, []).append(number)
+            return []
         return [Says(self.client, self._open(pending, asks[0]))]
 
     def refuse(
@@ -149,6 +162,11 @@ class Dialogue:
         """Somebody else has asked for something: what was accepted may hold no more."""
         self._told = None
 
+    def _arming(self) -> int | None:
+        """The arming that this client has asked for, and that has not ended."""
+        arms = (number for number, each in self._pending.items() if each.word == "arm")
+        return next(arms, None)
+
     def number(self) -> int:
         """The next number of a request of this client."""
         number = self._next_id
@@ -168,6 +186,8 @@ class Dialogue:
             return None
         for pending in self._pending.values():
             if pending.key == key and pending.asked_by == asked_by:
+                if pending.answered is None and command == GUIDED_ITEM:
+                    return []  # MISSION_ACK has no word for that it is under way
                 result = Result.IN_PROGRESS if pending.answered is None else pending.answered
                 return [self._acknowledge(asked_by, command, result)]
         told = self._told
@@ -185,10 +205,12 @@ class Dialogue:
     def told(self, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
         """What the station tells this client as an operator, in MAVLink's words."""
         match event:
-            case ipc.VerdictEvent():
+            case ipc.VerdictEvent() if event.outcome == "accepted":
                 return self._verdict(event, now_ns)
+            case ipc.VerdictEvent():
+                return self._each_with(event, self._verdict, now_ns)
             case ipc.EndingEvent():
-                return self._ending(event, now_ns)
+                return self._each_with(event, self._ending, now_ns)
             case ipc.StreamVerdictEvent():
                 return self._stream_verdict(event, now_ns)
             case _:
@@ -204,6 +226,18 @@ class Dialogue:
                 if result == Result.ACCEPTED and pending.word not in SEEN_SOON:
                     return self._answer(pending, Result.ACCEPTED, None, now_ns)
         return []
+
+    def _each_with(
+        self,
+        event: Over,
+        told: Callable[[Over, int], list[BridgeEffect]],
+        now_ns: int,
+    ) -> list[BridgeEffect]:
+        """What became of a request, and of those that waited for the same arming."""
+        effects = told(event, now_ns)
+        for number in self._with_arm.pop(event.id, ()):
+            effects += told(msgspec.structs.replace(event, id=number), now_ns)
+        return effects
 
     def _verdict(self, event: ipc.VerdictEvent, now_ns: int) -> list[BridgeEffect]:
         pending = self._pending.get(event.id)
@@ -268,6 +302,8 @@ class Dialogue:
 
     @staticmethod
     def _acknowledge(to: From, command: int, result: int, code: Code | None = None) -> Answers:
+        if command == GUIDED_ITEM:
+            return Answers(to.link, to.addressed, item_acknowledgement(result, to.source))
         return Answers(to.link, to.addressed, acknowledgement(command, result, to.source, code))
 
     def text(self, to: From, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
@@ -282,7 +318,10 @@ class Dialogue:
 
 
 def _command(message: Message | None) -> int:
-    """MAV_CMD; 0 for a message that is not acknowledged."""
+    """MAV_CMD; GUIDED_ITEM for an item that is flown to at once; 0 for a message that is not
+    acknowledged."""
+    if isinstance(message, MissionItem | MissionItemInt):
+        return GUIDED_ITEM
     return message.command if isinstance(message, CommandLong | CommandInt) else 0
 
 

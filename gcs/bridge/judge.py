@@ -31,7 +31,6 @@ from gcs.bridge.effects import (
 )
 from gcs.bridge.guard import verdict as guard_verdict
 from gcs.bridge.guard.guard import Guard
-from gcs.bridge.guard.manual_modes import refused_mode
 from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
 from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
@@ -163,10 +162,6 @@ class Judge:
         meaning = client.pace.settle(meaning_of(message, seen), now_ns)
         match meaning:
             case Words(asks, note):
-                standing = seen.on_ground and not seen.armed
-                bad_mode = refused_mode(asks, seen.autopilot, self._rules, stands_disarmed=standing)
-                if bad_mode is not None:
-                    return _refuse(given, message, row, bad_mode)
                 if self._height_of_takeoff_unknown(asks, seen):
                     unknown = _refuse(given, message, row, HEIGHT_WRITTEN)
                     return Judged(True, [*unknown.effects, _asks_for_height(given.by)])

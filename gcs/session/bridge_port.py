@@ -67,7 +67,9 @@ class BridgePort:
         rules = policy.bridge
         own = Address(config.sysid, config.compid)
         silent_ns = times.real_ns(round(rules.client_gone_s * 1e9))
-        self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing_of(times))
+        deadman_ns = round(times.policy(policy).stream.deadman_s * 1e9)
+        timing = timing_of(times)
+        self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing, deadman_ns)
         self._vehicle = vehicle
         self._operators = operators
         self._links = links
@@ -89,7 +91,10 @@ class BridgePort:
         seen = seen_of(
             telemetry, self._vehicle.gate, self._vehicle.parameters, self._max_takeoff_up_m
         )
-        return replace(seen, plan_transfer=self._vehicle.plan_transfer)
+        vehicle = self._vehicle
+        return replace(
+            seen, plan_transfer=vehicle.plan_transfer, mission_paused=vehicle.mission_paused
+        )
 
     def parameter(self, frame: Frame) -> list[BridgeEffect]:
         """PARAM_VALUE on a vehicle's link: what it says of what clients have written."""
@@ -228,6 +233,8 @@ def seen_of(
     telemetry: Telemetry, gate: Gate, parameters: Mapping[str, float], max_takeoff_up_m: float
 ) -> Seen:
     """What a client's words are judged by."""
+    memory = gate.memory
+    goal = memory.goal or memory.hold
     return Seen(
         autopilot=telemetry.autopilot,
         origin=telemetry.origin,
@@ -236,12 +243,13 @@ def seen_of(
         pos_ned=telemetry.pos_ned,
         v_ned=telemetry.v_ned,
         yaw_rad=telemetry.yaw_rad,
-        on_ground=gate.memory.on_ground,
+        on_ground=memory.on_ground,
         armed=bool(telemetry.armed),
         mode_name=telemetry.mode_name,
         goal_ned=gate.active_goal_ned,
         takeoff_up_m=parameters.get(TAKEOFF_HEIGHT["px4"], TAKEOFF_UP_M),
         state=gate.state,
+        goal_yaw_rad=goal.yaw_rad if goal else None,
         max_takeoff_up_m=max_takeoff_up_m,
         max_speed_m_s=_own_speed_m_s(telemetry, parameters),
     )

@@ -56,6 +56,16 @@ def timing_of(times: Times) -> Timing:
     )
 
 
+def still_paused(paused: bool, before: State, after: State) -> bool:
+    """Was a mission stopped by a hold, and has nothing else been flown since?
+
+    `before` and `after` are the gate's states around one input.
+    """
+    if before is State.FLYING_MISSION and after is State.HOLDING:
+        return True
+    return paused and after in (State.HOLDING, State.HOVERING, State.STALE)
+
+
 class Missions:
     """Takes the mission requests of one vehicle, and tells the gate how its mission goes."""
 

@@ -34,7 +34,7 @@ from gcs.session.failsafes import limits_of
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
-from gcs.session.missions import Missions
+from gcs.session.missions import Missions, still_paused
 from gcs.session.position_health import GPS_SILENT_NS
 from gcs.session.presence import STATE_MESSAGES, Presence
 from gcs.session.reasons import Reasons
@@ -106,6 +106,8 @@ class Vehicle:
         self._presence = Presence(times, gone_ns)
         self._watch = Watch(policy, times)
         self.telemetry: Telemetry | None = None
+        self.mission_paused = False
+        """A mission was stopped by a hold, and nothing else was flown since."""
 
     # ------------------------------------------------------------------------------ reading
 
@@ -444,7 +446,10 @@ class Vehicle:
     # --------------------------------------------------------------------------------- gate
 
     def ask_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
-        return [*self._port.handle(given, now_ns), *self._missions.overruled(given)]
+        before = self.gate.state
+        work = [*self._port.handle(given, now_ns), *self._missions.overruled(given)]
+        self.mission_paused = still_paused(self.mission_paused, before, self.gate.state)
+        return work
 
     def carry_out(
         self, effect: effects.Effect | PlaceFence | CheckStart, now_ns: int

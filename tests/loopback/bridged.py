@@ -83,7 +83,9 @@ class Client:
         self.flight.until(answered, within_s)
         return found[0]
 
-    def fly_to(self, lat_deg: float, lon_deg: float, alt_amsl_m: float) -> None:
+    def fly_to(
+        self, lat_deg: float, lon_deg: float, alt_amsl_m: float, yaw_rad: float = math.nan
+    ) -> None:
         """DO_REPOSITION, as MAVSDK and QGroundControl send it."""
         self.send(
             dialect.MAVLink_command_int_message(
@@ -95,7 +97,7 @@ class Client:
                 -1.0,
                 1.0,
                 0.0,
-                math.nan,
+                yaw_rad,
                 round(lat_deg * 1e7),
                 round(lon_deg * 1e7),
                 alt_amsl_m,

@@ -15,18 +15,21 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs.gate.states import Control, State
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.plan_clients import PlanFlight, Pymavlink, mission
 
 ACCEPTED = 0
 ARM, TAKE_OFF, SET_MODE, REPOSITION, PAUSE = 400, 22, 176, 192, 193
+MISSION_START, CONDITION_YAW = 300, 115
+GUIDED = {"px4": (29.0, 6.0), "ardupilot": (1.0, 4.0)}
 METRES_PER_DEGREE = 111_319.5
 NAN = math.nan
 
 both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
-def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
+def flying(personality: Personality) -> tuple[PlanFlight, Client]:
     """Armed and taken off by a client, hovering at home."""
-    flight = BridgedFlight(personality)
+    flight = PlanFlight(personality)
     client = flight.join()
     flight.connected()
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
@@ -75,6 +78,53 @@ def test_guided_takes_it_out_of_a_hold(personality: Personality) -> None:
     guided = (29.0, 6.0) if personality == "px4" else (1.0, 4.0)
     assert client.ask(SET_MODE, *guided, within_s=10) == ACCEPTED
     flight.until(lambda: flight.is_in(State.HOVERING))
+
+
+@both
+def test_a_mission_that_was_held_goes_on_from_its_first_item(personality: Personality) -> None:
+    """Pause and continue: the client reads that it begins anew."""
+    flight, client = flying(personality)
+    places = ((20.0, 0.0, 10.0), (20.0, 20.0, 10.0), (0.0, 20.0, 10.0))
+    assert Pymavlink(flight, client, mission(personality, *places)).ended() == "complete"
+    assert client.ask(MISSION_START, within_s=20) == ACCEPTED
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    second = 2 if personality == "px4" else 3
+    while (telemetry.mission_seq or 0) <= second:
+        flight.beating(1.0)
+    assert client.ask(PAUSE, 0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING), 3)
+    assert client.ask(PAUSE, 1, within_s=20) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.FLYING_MISSION), 3)
+    flight.run(1.5)
+    assert telemetry.mission_seq is not None
+    assert telemetry.mission_seq < second
+    assert "begins anew" in client.texts()
+    assert client.ask(PAUSE, 0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING), 3)
+    assert client.ask(SET_MODE, *GUIDED[personality], within_s=10) == ACCEPTED
+    lat, lon, alt = north_of_home(flight, 10)
+    client.fly_to(lat, lon, alt + 8)
+    flight.until(lambda: flight.is_in(State.MOVING), 3)
+    assert client.ask(PAUSE, 0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING), 3)
+    assert client.ask(PAUSE, 1, within_s=10) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOVERING), 3)
+
+
+@both
+def test_a_heading_that_is_flown_already_asks_for_nothing(personality: Personality) -> None:
+    """PX4: DO_REPOSITION with a heading, twice; ArduPilot: CONDITION_YAW."""
+    flight, client = flying(personality)
+    for _ in range(2):
+        if personality == "px4":
+            lat, lon, alt = north_of_home(flight, 20)
+            client.fly_to(lat, lon, alt + 5, yaw_rad=1.0)
+        else:
+            client.command(CONDITION_YAW, 90.0, 0.0, 0.0, 0.0)
+        flight.run(2.5)
+    assert [one.word for one in flight.decisions("accepted")].count("goto") == 1
+    assert not flight.decisions("refused")
 
 
 @both
@@ -169,6 +219,7 @@ def test_dronekits_simple_goto() -> None:
     )
     arrives(flight, 10)
     assert flight.truth_enu()[2] == pytest.approx(6, abs=0.7)
+    assert [ack.type for ack in client.messages("MISSION_ACK")] == [ACCEPTED]
 
 
 def test_dronekits_simple_goto_out_of_the_fence() -> None:
@@ -181,6 +232,9 @@ def test_dronekits_simple_goto_out_of_the_fence() -> None:
     assert not flight.to_vehicle("MISSION_ITEM")
     assert flight.state is State.HOVERING
     assert [one.code for one in flight.decisions("refused")] == ["OUTSIDE_FENCE"]
+    [ack] = client.messages("MISSION_ACK")
+    assert ack.type == dialect.MAV_MISSION_DENIED
+    assert (ack.target_system, ack.target_component) == (245, 190)
 
 
 @pytest.mark.parametrize("times", [1, 3, 40])
@@ -246,6 +300,22 @@ def test_qgroundcontrols_pause() -> None:
     assert client.ask(REPOSITION, -1.0, 1.0, 0.0, NAN, NAN, NAN, NAN) == ACCEPTED
     flight.until(lambda: flight.is_in(State.HOLDING), 3)
     assert flight.truth_enu()[1] < 30
+
+
+@pytest.mark.parametrize("order", [TAKE_OFF, SET_MODE])
+def test_what_was_refused_before_arming_is_not_flown_after_it(order: int) -> None:
+    """QGroundControl (from memory) asks a PX4 for the take-off, or the mission mode, and arms then.
+    Nothing is kept: the client reads what to do."""
+    flight = BridgedFlight("px4")
+    client = flight.join()
+    flight.connected()
+    params = (0, 0, 0, NAN, NAN, NAN, NAN) if order == TAKE_OFF else (29.0, 4.0, 4.0)
+    assert client.ask(order, *params, within_s=10) == dialect.MAV_RESULT_TEMPORARILY_REJECTED
+    assert "arm it first" in client.texts()
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    flight.beating(5.0)
+    assert flight.is_in(State.GROUNDED)
+    assert client.ask(TAKE_OFF, 0, 0, 0, NAN, NAN, NAN, NAN) == ACCEPTED
 
 
 def test_mavsdks_take_off_height() -> None:

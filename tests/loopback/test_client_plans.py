@@ -97,6 +97,21 @@ def test_a_mission_of_a_client_is_flown(personality: Personality) -> None:
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_mission_start_waits_for_the_arming_that_is_under_way(personality: Personality) -> None:
+    """PX4 arms at a mission start by itself; a client that arms and starts at once asks for both.
+    The start is asked for when the vehicle is armed, and verified then."""
+    flight = connected(personality)
+    client = flight.clients[1]
+    assert Mavsdk(flight, client, mission(personality, *SQUARE)).ended() == "complete"
+    client.command(ARM, 1)
+    client.command(MISSION_START)
+    flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
+    assert [ack.result for ack in client.acks(ARM)] == [ACCEPTED]
+    flight.until(lambda: bool(client.acks(MISSION_START)), 3.0)
+    assert [ack.result for ack in client.acks(MISSION_START)] == [ACCEPTED]
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_client_clears_the_mission(personality: Personality) -> None:
     flight = connected(personality)
     client = flight.clients[1]

@@ -197,6 +197,30 @@ def test_a_mission_is_verified_anew_from_where_it_starts() -> None:
     assert flight.done(flight.say("mission_start")) == "complete"
 
 
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_mission_that_was_stopped_is_flown_from_where_it_was_verified(
+    personality: Personality,
+) -> None:
+    """Its first item.  An autopilot of itself flies on to the item that it had left, on a leg from
+    where it is now that nobody verified."""
+    flight = Flight(personality).hovering(5.0)
+    flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
+    first = next(item.seq for item in flight.vehicle.plan if item.command == WAYPOINT and item.seq)
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    flight.say("mission_start")
+    flight.until(lambda: telemetry.mission_seq is not None and telemetry.mission_seq >= first + 2)
+    flight.do("hold")
+    flight.do("resume")
+    assert flight.done(flight.goto(0.0, 5.0, 5.0)) == "complete"
+    start = flight.say("mission_start")
+    flight.until(lambda: flight.is_in(State.FLYING_MISSION))
+    flight.run(1.5)
+    assert telemetry.mission_seq is not None
+    assert telemetry.mission_seq <= first
+    assert flight.done(start, 120.0) == "complete"
+
+
 def test_without_arming_or_without_a_mission_none_is_started() -> None:
     flight = Flight(policy=POLICIES["lab"]).connected()
     assert flight.done(flight.say("mission_start")) == "refused NOT_ARMED"

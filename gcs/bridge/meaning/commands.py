@@ -80,7 +80,8 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
     ),
     Cmd.DO_PAUSE_CONTINUE: _same(
         motion.pause_or_continue,
-        "pause: hold; continue: the mission that was stopped, else resume (a goal is gone)",
+        "pause: hold; continue: the mission that was stopped, from its first item, else resume "
+        "(a goal is gone)",
     ),
     Cmd.OVERRIDE_GOTO: _same(
         motion.override_goto, "hold here: hold; continue: as above; another place is refused"

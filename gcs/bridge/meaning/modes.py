@@ -5,7 +5,16 @@ from __future__ import annotations
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
 from gcs.bridge.meaning.meaning import Meaning, Seen, Words
-from gcs.bridge.meaning.says import DONE, NOT_FLOWN_BY_US, ask, forward, mode, unsupported
+from gcs.bridge.meaning.says import (
+    DONE,
+    NOT_FLOWN_BY_US,
+    ask,
+    forward,
+    mode,
+    refuse,
+    unsupported,
+)
+from gcs.gate.refusal import Code
 from gcs.gate.states import FlightMode, State
 from gcs.protocol.autopilot import Autopilot, Mode, mode_named, mode_of
 from gcs.wire.ids import ModeFlag
@@ -56,8 +65,11 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
             return Words((ipc.Ask(0, "takeoff", up_m=seen.takeoff_up_m),))
         case FlightMode.MISSION | FlightMode.RETURN | FlightMode.LAND:
             return _flown_by_itself(wanted, seen)
-        case FlightMode.OTHER:
+        case FlightMode.OTHER if seen.on_ground and not seen.armed:
             return mode(wanted.name)
+        case FlightMode.OTHER:
+            sentence = f"{wanted.name} is flown with sticks: the gate could hold nothing in it"
+            return refuse(Code.POLICY, f"{sentence} (policy: bridge.manual_modes)")
 
 
 def _is_let_through(wanted: Mode, seen: Seen) -> bool:

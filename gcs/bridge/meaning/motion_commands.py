@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Final
 
 from gcs import ipc
@@ -22,6 +23,7 @@ CHANGE_MODE: Final = 1
 """MAV_DO_REPOSITION_FLAGS_CHANGE_MODE."""
 PLACE_OF_TAKEOFF_M: Final = 5.0
 """A take-off at a place no farther from here than this is a take-off here."""
+ANEW: Final = "the mission begins anew, at its first item"
 OWN_SPEED: Final = "flown at the vehicle's own speed"
 
 
@@ -202,7 +204,7 @@ def condition_yaw(command: Command, seen: Seen) -> Meaning:
 
 
 def pause_or_continue(command: Command, seen: Seen) -> Meaning:
-    """p1 0: stop; 1: go on with the mission that was stopped, or hover under control again."""
+    """p1 0: stop; 1: fly the mission that was stopped anew, or hover under control again."""
     if command.p1 == 0.0:
         return hold(seen)
     if command.p1 == 1.0:
@@ -213,7 +215,8 @@ def pause_or_continue(command: Command, seen: Seen) -> Meaning:
 def go_on(seen: Seen) -> Meaning:
     """After a stop: the mission, if one was stopped.  A goal that was stopped is gone."""
     if seen.mission_paused:
-        return meaning_named(seen, FlightMode.MISSION)
+        start = meaning_named(seen, FlightMode.MISSION)
+        return replace(start, note=ANEW) if isinstance(start, Words) else start
     return ask("resume", "hovers under control; a goal that was stopped is gone")
 
 

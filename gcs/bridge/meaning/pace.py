@@ -6,7 +6,7 @@ positions that are sent to an ArduPilot:
 
 - a position that is flown to or held already asks for nothing, however often it is sent;
 - another one is a sample of a stream if it follows a target of the same client within
-  `WITHIN_NS`, and a go-to otherwise.
+  the time that one sample counts (`[stream] deadman_s`), and a go-to otherwise.
 
 So a position that does not change is a go-to, which is flown to its end; one that moves is a
 stream, which counts only as long as it goes on.
@@ -18,8 +18,6 @@ from typing import Final
 
 from gcs.bridge.meaning.meaning import Meaning, Sample, Words
 
-WITHIN_NS: Final = 500_000_000
-"""A stream is no slower than 2 Hz: what PX4 needs for OFFBOARD."""
 UNDECIDED_NS: Final = 150_000_000
 """A go-to waits for the gate's next tick: until then `Seen` does not tell what became of it."""
 
@@ -27,9 +25,11 @@ UNDECIDED_NS: Final = 150_000_000
 class Pace:
     """One client's."""
 
-    __slots__ = ("_asked", "_asked_ns", "_last_ns")
+    __slots__ = ("_asked", "_asked_ns", "_last_ns", "_within_ns")
 
-    def __init__(self) -> None:
+    def __init__(self, within_ns: int) -> None:
+        """A stream has no longer gaps than `within_ns`."""
+        self._within_ns = within_ns
         self._last_ns: int | None = None
         self._asked: Words | None = None
         self._asked_ns = 0
@@ -41,7 +41,7 @@ class Pace:
             return meaning
         if not isinstance(meaning, Words) or meaning.if_repeated is None:
             return meaning
-        follows = self._last_ns is not None and now_ns - self._last_ns <= WITHIN_NS
+        follows = self._last_ns is not None and now_ns - self._last_ns <= self._within_ns
         self._last_ns = now_ns
         once = Words(meaning.asks, meaning.note)
         if not follows or not once.asks:

@@ -49,7 +49,8 @@ def _command(message: m.CommandLong | m.CommandInt, seen: Seen) -> Meaning:
 
 _COMMAND: Final = "its command decides"
 _ITEM: Final = (
-    "ArduPilot: `current` 2 is a goto, 3 a goto to another height. PX4: refused; "
+    "ArduPilot: `current` 2 is a goto, 3 a goto to another height, with a MISSION_ACK (ACCEPTED, "
+    "DENIED). PX4: refused; "
     "with `current` 0 or 1 it is part of a plan"
 )
 

@@ -30,7 +30,7 @@ def _recorder(turn: Turn) -> Refusal | None:
 def _armed(turn: Turn) -> Refusal | None:
     if turn.memory.armed:
         return None
-    return Refusal(Code.NOT_ARMED, "the vehicle is not armed")
+    return Refusal(Code.NOT_ARMED, "the vehicle is not armed: arm it first")
 
 
 def _on_ground(turn: Turn) -> Refusal | None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import StartMission
 from gcs.plan.errors import PlanError
 from gcs.plan.verify import Verification
 from gcs.plan.wire import WireItem
@@ -19,9 +18,10 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import Asked, JobWork, OnBoardChanged, VehicleView, code_of
 from gcs.session.jobs.prepared import PreparedJob
 from gcs.session.jobs.start import LEFT, STOPPED
-from gcs.session.paths import autopilot_name, cleared
+from gcs.session.jobs.verified import first_item
+from gcs.session.paths import cleared
 from gcs.session.plans import item_of, on_board, prepare_items
-from gcs.session.work import AskGate, ToGate
+from gcs.session.work import ToGate
 from gcs.wire.messages import MissionItemInt
 
 SOURCE = "the mission on board"
@@ -48,12 +48,12 @@ class Adopt(PreparedJob):
     def done(
         self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int
     ) -> list[JobWork]:
+        if self.rewinding:
+            return self.ask_gate()
         self.stop_transfer()
         self._received = tuple(item_of(message) for message in items)
-        home_items = 1 if autopilot_name(view.telemetry) == "ardupilot" else 0
-        if len(self._received) <= home_items:
-            self.over = True
-            return [AskGate(self.asked.request_id, StartMission())]  # which knows of none
+        if len(self._received) <= first_item(view.telemetry):
+            return self.ask_gate()  # which knows of none
         steps = prepare_items(SOURCE, self._received, view.telemetry)
         return self.prepare_with(steps, len(items) <= SMALL_ITEMS, view, now_ns)
 
@@ -66,18 +66,17 @@ class Adopt(PreparedJob):
             return self.refuse_path(found, answer)
         plan = self.prepared.plan
         points = tuple(dict.fromkeys(end for leg in found.path.segments for end in leg))
-        self.over = True
         return [
             OnBoardChanged(on_board(plan, self._received)),
             Record(MissionItem(plan.name, points)),
             ToGate(MissionLoaded(plan.name, len(plan.items))),
-            AskGate(self.asked.request_id, StartMission()),
+            *self.begin_at_first(self._received, view, now_ns),
         ]
 
     def failed(
         self, result: int | None, text: str, view: VehicleView, now_ns: int
     ) -> list[JobWork]:
-        sentence = f"what is on board could not be read: {text}"
+        sentence = text if self.rewinding else f"what is on board could not be read: {text}"
         return self.refuse(Refusal(code_of(result), sentence))
 
     def leave(self) -> list[JobWork]:

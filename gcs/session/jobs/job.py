@@ -2,7 +2,7 @@
 
 Upload    READING -> LEARNING -> VERIFYING -> (verdict) -> UPLOADING -> READING BACK -> on board;
           the last two for the fence and the rally points of the plan first
-Start     LEARNING -> READING BACK -> VERIFYING -> (verdict: the gate's)
+Start     LEARNING -> READING BACK -> VERIFYING -> AT THE FIRST ITEM -> (verdict: the gate's)
 Download  (verdict) -> DOWNLOADING -> WRITING -> done
 Clear     (verdict) -> CLEARING -> done
 """
@@ -31,6 +31,7 @@ from gcs.protocol.effects import (
     Wake,
 )
 from gcs.protocol.mission import MissionClear, MissionDownload, MissionUpload
+from gcs.protocol.mission_rewind import MissionRewind
 from gcs.protocol.transfer import Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.plans import OnBoard
@@ -45,7 +46,7 @@ JOB_NS = 60_000_000_000
 ITEM_NS = 1_000_000_000
 """How long a transfer may take: a minute, and a second an item."""
 
-Transfer: TypeAlias = MissionUpload | MissionDownload | MissionClear
+Transfer: TypeAlias = MissionUpload | MissionDownload | MissionClear | MissionRewind
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import StartMission
 from gcs.plan import compare
 from gcs.plan.verify import Verification
 from gcs.protocol.mission import MissionDownload
@@ -23,7 +22,7 @@ from gcs.session.jobs.job import (
 from gcs.session.jobs.verified import VerifiedJob
 from gcs.session.paths import autopilot_name, cleared
 from gcs.session.plans import OnBoard, item_of
-from gcs.session.work import AskGate, ToGate
+from gcs.session.work import ToGate
 from gcs.wire.messages import MissionItemInt
 
 LEFT = "its operator left before it began"
@@ -55,6 +54,8 @@ class Start(VerifiedJob):
         self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int
     ) -> list[JobWork]:
         """Is it still the mission that was verified?"""
+        if self.rewinding:
+            return self.ask_gate()
         received = tuple(item_of(message) for message in items)
         sent, name = self._on_board.sent, autopilot_name(view.telemetry)
         differences = compare.same_meaning(sent, received, name)
@@ -69,13 +70,12 @@ class Start(VerifiedJob):
         answer = cleared(found)
         if isinstance(answer, Refusal):
             return self.refuse(answer)
-        self.over = True
-        return [AskGate(self.asked.request_id, StartMission())]
+        return self.begin_at_first(self._on_board.sent, view, now_ns)
 
     def failed(
         self, result: int | None, text: str, view: VehicleView, now_ns: int
     ) -> list[JobWork]:
-        sentence = f"what is on board could not be read: {text}"
+        sentence = text if self.rewinding else f"what is on board could not be read: {text}"
         return self.refuse(Refusal(code_of(result), sentence))
 
     def leave(self) -> list[JobWork]:

@@ -69,3 +69,35 @@ def test_a_refusal_of_the_last_is_what_the_client_hears_by_its_name(first: str) 
     effects = start.dialogue.told(verdict, 0)
     assert results(effects) == [Result.DENIED]
     assert texts(effects).startswith("mission_start: refused NO_MISSION")
+
+
+def armed_before() -> tuple[Dialogue, int, list[BridgeEffect]]:
+    """A client has asked to arm, and asks for a mission start before that has ended."""
+    dialogue = Dialogue(1000)
+    arm = CommandLong(1, 0, 0, 0, 0, 0, 0, Cmd.COMPONENT_ARM_DISARM, 1, 1, 0)
+    asked = Start.number_of(dialogue.ask(CLIENT, arm, (ipc.Ask(0, "arm"),), 0))
+    asks = (ipc.Ask(0, "arm"), ipc.Ask(0, "mission_start"))
+    return dialogue, asked, dialogue.ask(CLIENT, START, asks, 0)
+
+
+def test_a_start_waits_for_the_arming_that_is_under_way() -> None:
+    """To arm once more would be refused BUSY."""
+    dialogue, arming, effects = armed_before()
+    assert effects == []
+    dialogue.told(ipc.VerdictEvent(arming, "arm", "accepted", operation=1), 0)
+    ended = dialogue.told(ipc.EndingEvent(arming, "arm", "complete"), 0)
+    assert results(ended) == [Result.ACCEPTED], "the arming"
+    asked = [each.command for each in ended if isinstance(each, Says)]
+    assert [ask.word for ask in asked if isinstance(ask, ipc.Ask)] == ["mission_start"]
+
+
+def test_a_start_fails_with_the_arming_that_it_waits_for() -> None:
+    dialogue, arming, _ = armed_before()
+    refused = ipc.VerdictEvent(arming, "arm", "refused", "SEVERITY", "low battery")
+    assert results(dialogue.told(refused, 0)) == [Result.TEMPORARILY_REJECTED] * 2
+    dialogue, arming, _ = armed_before()
+    dialogue.told(ipc.VerdictEvent(arming, "arm", "accepted", operation=1), 0)
+    aborted = ipc.EndingEvent(arming, "arm", "aborted", "OPERATOR", "stopped")
+    effects = dialogue.told(aborted, 0)
+    assert results(effects) == [Result.DENIED] * 2
+    assert not [each for each in effects if isinstance(each, Says)], "never asked for"

@@ -40,9 +40,6 @@ def set_mode(base: int, custom: int) -> Message:
         ("RTL", ["rtl"]),
         ("LAND", ["land"]),
         ("TAKEOFF", ["takeoff"]),
-        ("MANUAL", ["mode"]),
-        ("POSCTL", ["mode"]),
-        ("FOLLOWME", ["mode"]),
     ],
 )
 def test_px4s_modes(name: str, asked: list[str]) -> None:
@@ -57,13 +54,22 @@ def test_px4s_modes(name: str, asked: list[str]) -> None:
         ("AUTO", ["mission_start"]),
         ("RTL", ["rtl"]),
         ("LAND", ["land"]),
-        ("STABILIZE", ["mode"]),
         ("SMART_RTL", ["mode"]),
-        ("CIRCLE", ["mode"]),
     ],
 )
 def test_ardupilots_modes(name: str, asked: list[str]) -> None:
     assert words(meaning_of(copter(name), flying(ARDUPILOT))) == asked
+
+
+@pytest.mark.parametrize("name", ["MANUAL", "POSCTL", "FOLLOWME"])
+def test_px4s_modes_of_the_sticks_are_refused(name: str) -> None:
+    assert refusal(meaning_of(px4(name), flying(PX4))).startswith("POLICY")
+    assert refusal(meaning_of(px4(name), standing(PX4, armed=True))).startswith("POLICY")
+
+
+@pytest.mark.parametrize("name", ["STABILIZE", "CIRCLE"])
+def test_ardupilots_modes_of_the_sticks_are_refused(name: str) -> None:
+    assert refusal(meaning_of(copter(name), flying(ARDUPILOT))).startswith("POLICY")
 
 
 def test_the_old_message_says_the_same() -> None:
@@ -85,7 +91,8 @@ def test_a_policy_may_let_modes_of_the_sticks_through() -> None:
     """`[bridge] manual_modes`, by the names that `mode` takes, too."""
     names = ("POSCTL", "loiter")
     assert meaning_of(px4("POSCTL"), flying(PX4, manual_modes=names)) == Forward()
-    assert words(meaning_of(px4("ALTCTL"), flying(PX4, manual_modes=names))) == ["mode"]
+    assert "manual_modes" in refusal(meaning_of(px4("ALTCTL"), flying(PX4, manual_modes=names)))
+    assert words(meaning_of(px4("ALTCTL"), standing(PX4))) == ["mode"], "the gate's to refuse"
     assert words(meaning_of(px4("LOITER"), flying(PX4, manual_modes=names))) == ["hold"]
     assert meaning_of(copter("LOITER"), flying(ARDUPILOT, manual_modes=names)) == Forward()
     other = flying(PX4, manual_modes=names, in_control=False)

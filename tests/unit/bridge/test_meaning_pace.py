@@ -21,8 +21,8 @@ A, B = (10.0, 0.0, -22.0), (20.0, 0.0, -22.0)
 class Client:
     """Sends positions and hears what they were taken for."""
 
-    def __init__(self, seen: Seen) -> None:
-        self.seen, self.pace, self.now_ns = seen, Pace(), 0
+    def __init__(self, seen: Seen, within_ms: int = 500) -> None:
+        self.seen, self.pace, self.now_ns = seen, Pace(within_ms * MS), 0
 
     def sends(self, place: Vec3, after_ms: int) -> str:
         self.now_ns += after_ms * MS
@@ -62,6 +62,19 @@ def test_a_position_that_moves_is_a_stream() -> None:
     assert [client.sends((10.0, y, -22.0), 50) for y in (0.1, 0.2, 0.3)] == ["sample"] * 3
 
 
+def test_what_is_slower_than_one_sample_counts_is_no_stream() -> None:
+    """`[stream] deadman_s` of the policy: 0.5 s, or as it is set."""
+    for within_ms, slower, then in (
+        (500, 450, "sample"),
+        (500, 550, "goto"),
+        (1000, 550, "sample"),
+    ):
+        client = Client(flying(ARDUPILOT), within_ms)
+        assert client.sends(A, 0) == "goto"
+        client.gate(State.MOVING, A)
+        assert client.sends(B, slower) == then
+
+
 def test_a_stream_that_stands_is_a_go_to_until_it_moves_on() -> None:
     client = Client(flying(ARDUPILOT))
     client.sends(A, 0)
@@ -85,7 +98,7 @@ def test_px4_and_velocities_are_samples_from_the_first_on() -> None:
 
 
 def test_what_is_no_target_is_left_as_it_is() -> None:
-    pace, hold = Pace(), Words(())
+    pace, hold = Pace(500 * MS), Words(())
     assert pace.settle(Forward(), 0) == Forward()
     assert pace.settle(hold, 0) is hold
 

@@ -97,7 +97,7 @@ commands = st.builds(
 
 def check(message: Message, vehicle: Seen) -> None:
     meaning = meaning_of(message, vehicle)
-    for settled in (meaning, Pace().settle(meaning, 0)):
+    for settled in (meaning, Pace(500_000_000).settle(meaning, 0)):
         match settled:
             case Words(asks, _, sample):
                 assert {ask.word for ask in asks} <= WORDS_OF_ASKS

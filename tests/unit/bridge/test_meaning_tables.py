@@ -10,6 +10,7 @@ from gcs.bridge.meaning.commands import COMMANDS
 from gcs.bridge.meaning.meaning import Forward, Reject, Words
 from gcs.bridge.meaning.modes import for_mode
 from gcs.bridge.meaning.translate import MESSAGES
+from gcs.gate.refusal import Code
 from gcs.gate.requests import SetMode
 from gcs.gate.states import FlightMode, State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
@@ -45,12 +46,16 @@ def test_the_page_is_the_tables() -> None:
 def test_no_mode_of_the_sticks_is_ever_asked_of_the_vehicle(
     autopilot: Autopilot, state: State
 ) -> None:
-    """What is asked for by its name is refused by the gate: it means OTHER, or is not the one of
-    its kind that the gate sends."""
+    """It is refused at once, by the policy.  What is asked for by its name is refused by the gate:
+    it is not the one of its kind that the gate sends."""
     on_ground = state is State.GROUNDED
     seen = flying(autopilot, state=state, on_ground=on_ground, mode_name="")
     for mode in autopilot.modes:
         meaning = for_mode(mode, seen)
+        if mode.meaning is FlightMode.OTHER:
+            assert isinstance(meaning, Reject)
+            assert meaning.refusal.code is Code.POLICY
+            continue
         assert not isinstance(meaning, Reject)
         if isinstance(meaning, Forward):
             assert (autopilot, mode.name, on_ground) == (ARDUPILOT, "GUIDED", True)
