@@ -14,6 +14,14 @@ if TYPE_CHECKING:
     from gcs.protocol.lock_setup import LockSetup
 
 
+ASKS_TO_ARM = "COM_ARM_AUTH_REQ"
+NEEDS_A_FENCE = (
+    "it arms only with a fence of its own: GF_MAX_HOR_DIST and GF_MAX_VER_DIST above 0, or a fence "
+    "plan on board"
+)
+"""PX4's default has neither, and then the bridge says no."""
+
+
 def lock_vehicle(
     url: str, key_file: str, own_sysid: int, vehicle: int | None, timeout_s: float
 ) -> None:
@@ -36,6 +44,8 @@ def lock_vehicle(
     for change in setup.changes:
         was = f"was {change.before:g}" if change.before != change.after else "as it was"
         click.echo(f"{name}: {change.name} = {change.after:g} ({was})", err=True)
+    if any(change.name == ASKS_TO_ARM for change in setup.changes):
+        click.echo(f"{name}: {NEEDS_A_FENCE}", err=True)
     trouble = _trouble(setup, given.vehicle)
     if trouble is not None:
         raise trouble
