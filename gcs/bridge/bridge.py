@@ -134,7 +134,9 @@ class Bridge:
         if not at_vehicle and (vehicle is not None or sysid):
             judged = self._elsewhere(client, asked_by, frame, sysid)
         else:
-            received = Received(client, asked_by, frame, self._look(look, client), now_ns)
+            in_control = client.number == self._in_control
+            seen = self._look(look, client)
+            received = Received(client, asked_by, frame, seen, now_ns, in_control)
             judged = self._judge.judge(received)
             if frame.msgid == MsgId.HEARTBEAT:
                 others = self._routes.between_clients(frame, link)

@@ -94,6 +94,8 @@ class Received:
     frame: Frame
     look: Look
     now_ns: int
+    in_control: bool = False
+    """The client is the one in control."""
 
 
 class Judge:
@@ -230,7 +232,10 @@ class Judge:
             if isinstance(judged, guard_verdict.Refused):
                 return self._configuration(given, message, row)
         busy = seen is not None and seen.plan_transfer
-        held = self._downloads.holds(message, (given.by.link, given.by.source), busy, given.now_ns)
+        reader = given.by.link, given.by.source
+        held = self._downloads.holds(
+            message, reader, busy, given.now_ns, in_control=given.in_control
+        )
         if held:
             text = f"{row.name}: not now: {held}"
             return Judged(True, client.dialogue.text(given.by, Level.INFO, text, given.now_ns))

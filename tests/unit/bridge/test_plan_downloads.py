@@ -38,6 +38,15 @@ def test_the_same_reader_may_begin_again() -> None:
     assert downloads.holds(LIST, ONE, False, 10 * MS) == ""
 
 
+def test_who_is_in_control_waits_for_no_other_client() -> None:
+    """The other one would keep its turn by asking once a second."""
+    downloads = Downloads()
+    assert downloads.holds(LIST, TWO, False, 0) == ""
+    assert downloads.holds(LIST, ONE, False, 10 * MS, in_control=True) == ""
+    assert "another client" in downloads.holds(LIST, TWO, False, 20 * MS)
+    assert downloads.holds(LIST, (3, Address(9, 1)), False, 30 * MS), "nor does a third one"
+
+
 def test_nobody_begins_during_the_station_s_own_transfer() -> None:
     downloads = Downloads()
     assert "station" in downloads.holds(LIST, ONE, True, 0)
