@@ -72,6 +72,7 @@ class Bridge:
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:
         """It has gone, and its link's number is free."""
         self._routes.close(link)
+        self._told_once = {told for told in self._told_once if told[0] != link}
         client = self._by_link.pop(link, None)
         if client is None:
             return []

@@ -1,4 +1,4 @@
-"""The gate's own eyes: a client may have a stream faster than the gate needs it, and never slower.
+"""How often the gate needs which message: a client may have it faster, and never slower.
 
 A vehicle sends one set of streams on a link, whoever asks.  So a client's SET_MESSAGE_INTERVAL of
 a message that the gate flies by goes on with the gate's interval at the most; and after a

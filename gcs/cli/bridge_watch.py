@@ -37,7 +37,7 @@ def watch(
         if timeout_s is not None:
             try:
                 dialogue.wait_until_heard(timeout_s, HINTS)
-            except Exception:
+            except Exception:  # whatever it is, the station is left in order before it is told
                 dialogue.leave("no vehicle was heard")
                 raise
         while True:

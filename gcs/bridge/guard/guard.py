@@ -97,10 +97,6 @@ class Guard:
                 sentence = f"{type(message).__name__} has no rule here"
                 return Refused(Refusal(Code.UNSUPPORTED, sentence))
 
-    def why_parameter_refused(self, name: str) -> str | None:
-        """Why a client may not write the parameter, a sentence; None where it may."""
-        return self._parameters.why_refused(name)
-
     def awaits(self, name: str) -> bool:
         """A client has written the parameter, and the vehicle has not told its value since."""
         return self._parameters.awaits(name)

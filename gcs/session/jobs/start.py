@@ -10,27 +10,23 @@ from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan import compare
 from gcs.plan.verify import Verification
+from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload
-from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import (
     Asked,
     JobWork,
     OnBoardChanged,
     VehicleView,
-    code_of,
 )
-from gcs.session.jobs.verified import VerifiedJob
+from gcs.session.jobs.starting import StartingJob
 from gcs.session.paths import autopilot_name, cleared
-from gcs.session.plans import OnBoard, item_of
+from gcs.session.plans import OnBoard
 from gcs.session.work import ToGate
-from gcs.wire.messages import MissionItemInt
 
-LEFT = "its operator left before it began"
 AGAIN = "ask once more and that one is verified"
-STOPPED = "an operator stopped the vehicle before it began"
 
 
-class Start(VerifiedJob):
+class Start(StartingJob):
     """The mission on board, read back and verified once more; then the gate decides."""
 
     def __init__(self, asked: Asked, on_board: OnBoard) -> None:
@@ -47,16 +43,10 @@ class Start(VerifiedJob):
     def progress_of(self) -> str:
         return "reading back"
 
-    def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[JobWork]:
-        return []
-
-    def done(
-        self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int
+    def read_back(
+        self, received: tuple[WireItem, ...], view: VehicleView, now_ns: int
     ) -> list[JobWork]:
         """Is it still the mission that was verified?"""
-        if self.rewinding:
-            return self.ask_gate()
-        received = tuple(item_of(message) for message in items)
         sent, name = self._on_board.sent, autopilot_name(view.telemetry)
         differences = compare.same_meaning(sent, received, name)
         if differences:
@@ -71,17 +61,3 @@ class Start(VerifiedJob):
         if isinstance(answer, Refusal):
             return self.refuse(answer)
         return self.begin_at_first(self._on_board.sent, view, now_ns)
-
-    def failed(
-        self, result: int | None, text: str, view: VehicleView, now_ns: int
-    ) -> list[JobWork]:
-        sentence = text if self.rewinding else f"what is on board could not be read: {text}"
-        return self.refuse(Refusal(code_of(result), sentence))
-
-    def leave(self) -> list[JobWork]:
-        """Its operator, or the station, goes before the verdict."""
-        return self.refuse(Refusal(Code.OPERATOR_LOST, LEFT))
-
-    def stop(self) -> list[JobWork]:
-        """It has no verdict yet, so it is refused."""
-        return self.refuse(Refusal(Code.OPERATOR, STOPPED))

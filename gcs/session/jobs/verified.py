@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
-from typing import Final
 
 from gcs.gate.refusal import Refusal
-from gcs.gate.requests import StartMission
 from gcs.plan.legs import LandingPlace
 from gcs.plan.model import Plan
 from gcs.plan.verify import Verification, Verifying
-from gcs.plan.wire import WireItem
 from gcs.plan.wire_fence import rally_to_wire
-from gcs.protocol.effects import Address, Heard, Wake
-from gcs.protocol.mission_rewind import MissionRewind
+from gcs.protocol.effects import Heard, Wake
 from gcs.session.jobs.facts import Facts, Learning, landings_on_board
 from gcs.session.jobs.job import Asked, Job, JobWork, VehicleView
-from gcs.session.paths import autopilot_name, verifying
-from gcs.session.telemetry import Telemetry
-from gcs.session.work import AskGate
-from gcs.wire.ids import Cmd
+from gcs.session.paths import verifying
 
 PAUSE_NS = 15_000_000
 """Between two steps of some milliseconds: positions and ticks are handled in time meanwhile."""
-NAV_LAST: Final = 95
-"""MAV_CMD_NAV_LAST: items up to it are flown, or waited for; those after it are done on the way."""
 
 
 class VerifiedJob(Job):
@@ -37,8 +27,6 @@ class VerifiedJob(Job):
         self._verifying: Verifying | None = None
         self._step_ns = 0
         self.facts: Facts | None = None
-        self.rewinding = False
-        """The vehicle is to go back to the first item."""
 
     @property
     def deadline_ns(self) -> int | None:
@@ -96,33 +84,6 @@ class VerifiedJob(Job):
         """When the next step of something long is due."""
         return now_ns + self.asked.times.real_ns(PAUSE_NS)
 
-    def begin_at_first(
-        self, items: Sequence[WireItem], view: VehicleView, now_ns: int
-    ) -> list[JobWork]:
-        """Ask the gate for the start, once the vehicle is at the first of `items`.
-
-        From there the mission was verified; the vehicle itself would go on where it was left.
-        """
-        first = first_item(view.telemetry)
-        flown = (
-            seq
-            for seq, item in enumerate(items)
-            if seq >= first and item.command <= NAV_LAST and item.command != Cmd.NAV_ROI
-        )
-        up_to = next(flown, first)
-        current = view.telemetry.mission_seq
-        if current is None or current <= up_to:
-            return self.ask_gate()
-        self.rewinding = True
-        target = Address(view.telemetry.sysid, view.telemetry.compid)
-        rewind = MissionRewind(self.asked.own, target, first, up_to, self.asked.timing)
-        return self.begin(rewind, 0, view, now_ns)
-
-    def ask_gate(self) -> list[JobWork]:
-        """All that is known of the mission is: the start is the gate's to decide."""
-        self.over = True
-        return [AskGate(self.asked.request_id, StartMission())]
-
     def _learn_on(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         learning = self._learning
         if learning is None or not learning.over:
@@ -148,8 +109,3 @@ class VerifiedJob(Job):
         if plan.rally:
             return landings_on_board(rally_to_wire(plan.rally), view.telemetry)
         return landings_on_board(self.facts.rally, view.telemetry, "rally point on board")
-
-
-def first_item(telemetry: Telemetry) -> int:
-    """The first item that is flown; ardupilot keeps home as item 0."""
-    return 1 if autopilot_name(telemetry) == "ardupilot" else 0
