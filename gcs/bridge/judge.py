@@ -68,6 +68,9 @@ DECODED_IDS: Final = frozenset(kind.MSG_ID for kind in _LOOKED_INTO)
 GUIDED_CURRENT: Final = frozenset({2, 3})
 """MISSION_ITEM.current of an item that ArduPilot flies to at once, or whose height it takes."""
 
+POINTED_BY_ANOTHER: Final = Refusal(
+    Code.OTHER_OPERATOR, "another client is in control, and points the camera"
+)
 CLIMBS: Final = frozenset({"takeoff", "mission_start"})
 HEIGHT_WRITTEN: Final = Refusal(
     Code.BUSY, f"{TAKEOFF_HEIGHT} was written, and the vehicle has not told yet what it is now"
@@ -128,6 +131,8 @@ class Judge:
         match kind:
             case Kind.HARMLESS:
                 return Judged(False, self._forward(given, message))
+            case Kind.POINTING:
+                return self._pointing(given, message, row)
             case Kind.LOCAL if message is not None:
                 about_control = self._control.handle(message, given.client, given.by, given.now_ns)
                 return Judged(False, about_control)
@@ -151,6 +156,13 @@ class Judge:
             again = asked_anew(message, self._needed_hz)
             return [ToVehicle(given.frame.raw), AsksForStreams(tuple(again))]
         return [ToVehicle(given.frame.raw)]
+
+    def _pointing(self, given: Received, message: Message | None, row: Row) -> Judged:
+        """What points a camera, and may turn the nose: not while another one flies."""
+        seen = given.look()
+        if seen is not None and not seen.in_control:
+            return _refuse(given, message, row, POINTED_BY_ANOTHER)
+        return Judged(False, [ToVehicle(given.frame.raw)])
 
     # ------------------------------------------------------------------------------ motion
 

@@ -54,7 +54,7 @@ north_m = [{TOWER[2]}, {TOWER[3]}]
 """,
     "hostile.toml",
 )
-SAFE: Final = frozenset({Kind.HARMLESS, Kind.CONFIGURATION})
+SAFE: Final = frozenset({Kind.HARMLESS, Kind.POINTING, Kind.CONFIGURATION})
 COMMANDS: Final = tuple(sorted(dialect.enums["MAV_CMD"]))
 NUMBERS: Final = (0.0, 1.0, -1.0, math.nan, math.inf, 1e9, -1e30, 21196.0, 21.0, 5.0)
 LOOKED_AT_S: Final = 0.1

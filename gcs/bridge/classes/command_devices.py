@@ -14,7 +14,6 @@ DEVICES: tuple[Group, ...] = (
             203: "DO_DIGICAM_CONTROL",
             206: "DO_SET_CAM_TRIGG_DIST",
             214: "DO_SET_CAM_TRIGG_INTERVAL",
-            260: "OBLIQUE_SURVEY",
             529: "RESET_CAMERA_SETTINGS",
             530: "SET_CAMERA_MODE",
             531: "SET_CAMERA_ZOOM",
@@ -24,8 +23,6 @@ DEVICES: tuple[Group, ...] = (
             2000: "IMAGE_START_CAPTURE",
             2001: "IMAGE_STOP_CAPTURE",
             2003: "DO_TRIGGER_CONTROL",
-            2004: "CAMERA_TRACK_POINT",
-            2005: "CAMERA_TRACK_RECTANGLE",
             2010: "CAMERA_STOP_TRACKING",
             2020: "CAMERA_START_MTI",
             2021: "CAMERA_STOP_MTI",
@@ -36,15 +33,18 @@ DEVICES: tuple[Group, ...] = (
         },
     ),
     Group(
-        Kind.HARMLESS,
-        "It points a camera; at most the nose of a copter turns, where its mount cannot (from "
-        "memory).",
+        Kind.POINTING,
+        "It points a camera; a copter whose mount cannot turn sideways turns its nose instead (from "
+        "memory), and that moves it nowhere.",
         {
             204: "DO_MOUNT_CONFIGURE",
             205: "DO_MOUNT_CONTROL",
             220: "DO_MOUNT_CONTROL_QUAT",
+            260: "OBLIQUE_SURVEY",
             1000: "DO_GIMBAL_MANAGER_PITCHYAW",
             1001: "DO_GIMBAL_MANAGER_CONFIGURE",
+            2004: "CAMERA_TRACK_POINT",
+            2005: "CAMERA_TRACK_RECTANGLE",
             42501: "GIMBAL_RESET",
             60002: "STORM32_DO_GIMBAL_MANAGER_CONTROL_PITCHYAW",
             60010: "STORM32_DO_GIMBAL_MANAGER_SETUP",

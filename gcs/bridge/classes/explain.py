@@ -12,6 +12,7 @@ PREFIX: Final = "MAV_CMD_"
 
 WHAT_IS_DONE: Final = {
     Kind.HARMLESS: "forwarded to the vehicle, unchanged",
+    Kind.POINTING: "forwarded for the client in control, or for any while nobody is",
     Kind.MOTION: "a request of the client, which the gate decides as it does every operator's",
     Kind.CONFIGURATION: "decided by [bridge] of the policy; by default the strict way",
     Kind.DENIED: "refused, and the client is told; unless [bridge] of the policy allows it",

@@ -138,9 +138,9 @@ REQUESTS: tuple[Group, ...] = (
         },
     ),
     Group(
-        Kind.HARMLESS,
-        "It points a camera; at most the nose of a copter turns, where its mount cannot (from "
-        "memory).",
+        Kind.POINTING,
+        "It points a camera; a copter whose mount cannot turn sideways turns its nose instead (from "
+        "memory), and that moves it nowhere.",
         {
             156: "MOUNT_CONFIGURE",
             157: "MOUNT_CONTROL",

@@ -13,6 +13,9 @@ class Kind(StrEnum):
 
     HARMLESS = "harmless"
     """It is forwarded unchanged."""
+    POINTING = "pointing"
+    """It points a camera, for which a vehicle may turn its nose: it is forwarded for the client in
+    control, or for any while nobody is."""
     MOTION = "motion"
     """It moves the vehicle or decides how it moves: the gate decides, as for any operator."""
     CONFIGURATION = "configuration"

@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
+from gcs.bridge.guard.free_parameters import free_group_of
 from gcs.bridge.guard.safety_parameters import NAME, group_of, pattern_of
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
 from gcs.gate.effects import Level
@@ -42,6 +43,7 @@ MAVSDK has no other way to say how high it wants to take off: it writes this bef
 decides on the climb to it, and verifies a mission with it anew before each start, so it may be
 written while nothing flies.
 """
+UNKNOWN: Final = "it is in no table here, so nobody has looked at what stands on it"
 MOST_KEPT: Final = 4096
 """Values that are kept at most; an autopilot has 900 to 1,400."""
 _TYPES: Final = frozenset(int(kind) for kind in ParamType)
@@ -100,7 +102,7 @@ class ParameterGuard:
     def judge_extended(self, message: ParamExtSet, seen: GuardSeen) -> Judgement:
         """PARAM_EXT_SET: of a camera, a gimbal, a program on board."""
         name = message.param_id
-        why = self.why_refused(name)
+        why = self.why_refused(name, of_autopilot=False)
         if why is None:
             return Allowed(f"{name} = {_printable(message.param_value)} is forwarded")
         told = ParamExtAck(
@@ -121,8 +123,12 @@ class ParameterGuard:
             )
         return Refused(Refusal(Code.POLICY, f"{why} ({KEY})"), (told,), ask)
 
-    def why_refused(self, name: str) -> str | None:
-        """A sentence; None where the parameter may be written."""
+    def why_refused(self, name: str, *, of_autopilot: bool = True) -> str | None:
+        """A sentence; None where the parameter may be written.
+
+        What no table knows is guarded, but for names of other components (`of_autopilot` is
+        False), which nobody has lists of.
+        """
         if name == HASH_CHECK:
             return None
         shown = _sendable(name)
@@ -135,7 +141,11 @@ class ParameterGuard:
         if self._guarded.fullmatch(name):
             return f"{shown} is guarded: the policy names it in parameters_guarded"
         group = group_of(self._autopilot, name)
-        return None if group is None else f"{shown} is guarded: {group.why}"
+        if group is not None:
+            return f"{shown} is guarded: {group.why}"
+        if of_autopilot and free_group_of(self._autopilot, name) is None:
+            return f"{shown} is guarded: {UNKNOWN}"
+        return None
 
     def awaits(self, name: str) -> bool:
         """It was let through, and its PARAM_VALUE has not come yet."""

@@ -1,5 +1,8 @@
 """The parameters that safety stands on, by autopilot: groups of names, each with the reason.
 
+What is in no group here and not in `free_parameters.py` either is guarded too: nobody has looked at
+it.
+
 In a name `*` stands for any letters.  Names are those of the recorded lists of a PX4 1.14.3 and an
 ArduCopter 4.7-dev, of ArduCopter 4.5 where 4.7 renamed them, and, from memory, of what these
 firmwares have on other boards (`SER_*`, `UAVCAN_*`, `EK2_*` ...).
@@ -49,7 +52,8 @@ _RETURN: Final = "returns, landings and missions are verified with it"
 _MOTION: Final = "how fast the vehicle flies and how far it takes to stop stand on it"
 _ESTIMATOR: Final = "the vehicle finds its position by it"
 _OUTPUTS: Final = "it says what is connected to the autopilot and what drives the motors"
-_LINKS: Final = "it says whom the vehicle listens to"
+_LINKS: Final = "it says whom the vehicle listens to, and how much it sends on a link"
+_OTHER_VEHICLES: Final = "planes, VTOLs, helicopters or rovers fly by it"
 _SIMULATED: Final = "it changes what a simulated vehicle senses and how it flies"
 
 PX4: Final = (
@@ -59,12 +63,13 @@ PX4: Final = (
         "NAV_DLL_ACT NAV_RCL_ACT NAV_TRAFF_* COM_*_LOSS_T COM_HLDL_REG_T COM_OBL_* COM_LOW_BAT_ACT"
         " COM_ACT_FAIL_ACT COM_FAIL_ACT_T COM_IMB_PROP_ACT COM_QC_ACT COM_POSCTL_NAVL COM_RCL_*"
         " COM_POS_* COM_VEL_FS_* COM_WIND_* COM_FLT_TIME_MAX COM_PARACHUTE COM_LKDOWN_TKO"
-        " COM_OBS_AVOID COM_TAKEOFF_ACT COM_DLL_* COM_MODE_ARM_CHK COM_SPOOLUP_TIME FD_* BAT*",
+        " COM_OBS_AVOID COM_TAKEOFF_ACT COM_DLL_* COM_MODE* COM_SPOOLUP_TIME FD_* BAT*",
     ),
     _group(
         _ARMING,
         "COM_ARM_* COM_ARMABLE COM_PREARM_MODE COM_DISARM_* COM_KILL_DISARM COM_FORCE_SAFETY"
-        " COM_MOT_TEST_EN COM_CPU_MAX COM_RAM_MAX COM_THROW_* MAN_* CBRK_*",
+        " COM_MOT_TEST_EN COM_CPU_MAX COM_RAM_MAX COM_POWER_COUNT COM_REARM_GRACE COM_THROW_* MAN_*"
+        " CBRK_*",
     ),
     _group(_PILOT, "COM_RC_* COM_FLTMODE* RC*"),
     _group(
@@ -77,8 +82,9 @@ PX4: Final = (
         "EKF2_* ATT_* LPE_* SENS_* CAL_* IMU_* GPS_* HTE_* LND_* LNDMC_* TC_* BARO_* MAG_*",
         learned=True,
     ),
-    _group(_OUTPUTS, "CA_* PWM_* MOT_* DSHOT_* SYS_* UAVCAN_* CYPHAL_* VT_* HIL_* ASPD_DO_CHECKS"),
+    _group(_OUTPUTS, "CA_* PWM_* MOT_* DSHOT_* SYS_* UAVCAN_* CYPHAL_* HIL_* PD_*"),
     _group(_LINKS, "MAV_* SER_* UXRCE_* XRCE_* RTPS_* ZENOH_*"),
+    _group(_OTHER_VEHICLES, "FW_* VT_* VTO_* GND_* ASPD_* NPFG_* RWTO_* UUV_*"),
     _group(_SIMULATED, "SIM_* SIH_*"),
 )
 
@@ -87,16 +93,18 @@ ARDUCOPTER: Final = (
     _group(
         _FAILSAFE,
         "FS_* BATT* GUID_* RC_FS_* CHUTE_* DISARM_DELAY GCS_PID_MASK FLIGHT_OPTIONS DEV_OPTIONS"
-        " ADSB_*",
+        " ADSB_* AFS_*",
     ),
     _group(_ARMING, "ARMING_* BRD_* BTN_* INITIAL_MODE LAND_REPOSITION"),
-    _group(_PILOT, "RC* FLTMODE* SIMPLE SUPER_SIMPLE PILOT_* PHLD_* THR_DZ TUNE* AUTOTUNE_*"),
+    _group(
+        _PILOT, "RC* FLTMODE* SIMPLE SUPER_SIMPLE PILOT_* PHLD_* THR_DZ TUNE* AUTOTUNE_* TMODE_*"
+    ),
     _group(
         _RETURN,
         "RTL_* SRTL_* LAND_* RALLY_* MIS_* AUTO_* TERRAIN_* CIRCLE_* WP_* WPNAV_* PLND_* FOLL_*"
         " THROW_* ZIGZ_* TKOFF_* SURFTRAK_*",
     ),
-    _group(_MOTION, "LOIT_* PSC_* ATC_* ACRO_* ANGLE_MAX WVANE_* SID_* FHLD_* CUST_ROT_*"),
+    _group(_MOTION, "LOIT_* PSC_* ATC_* ACRO_* ANGLE_MAX WVANE_* SID_* FHLD_* CUST_ROT_* QUIK_*"),
     _group(
         _ESTIMATOR,
         "EK2_* EK3_* AHRS_* COMPASS_* GPS* INS_* BARO* VISO_* BCN_* FLOW_* RNGFND* PRX* EARTH_*"
@@ -106,10 +114,14 @@ ARDUCOPTER: Final = (
     _group(
         _OUTPUTS,
         "SERVO* RELAY* FRAME_* SCHED_* FSTRATE_* SCR_* CAN_* ESC_* DID_* FORMAT_VERSION"
-        " KDE_* CC_* PLDP_*",
+        " KDE_* CC_* PLDP_* EFI_* GEN_* GRIP_* LGR_* RPM* RSSI_* SPRAY_* TEMP* WINCH_* VTX_*"
+        " NTF_BUZZ_PIN",
     ),
     _group(_OUTPUTS, "MOT_*", learned=True),
-    _group(_LINKS, "SYSID_* MAV_* MAV*_OPTIONS SERIAL* NET_* DDS_* TELEM_* SR*_OPTIONS FRSKY_*"),
+    _group(
+        _LINKS, "SYSID_* MAV* SERIAL* NET_* DDS_* TELEM_* SR* FRSKY_* LOG_BACKEND_TYPE LOG_MAV_*"
+    ),
+    _group(_OTHER_VEHICLES, "H_* IM_*"),
     _group(_SIMULATED, "SIM_*"),
 )
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import math
 import struct
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from gcs.bridge.guard.free_parameters import free_group_of
 from gcs.bridge.guard.guard import Guard
 from gcs.bridge.guard.safety_parameters import group_of
 from gcs.bridge.guard.verdict import GuardSeen
@@ -259,7 +262,8 @@ GUARDED = {
         " RTL_TYPE RTL_CONE_ANG COM_ARM_WO_GPS COM_ARM_AUTH_REQ MPC_XY_VEL_MAX MPC_ACC_HOR"
         " MPC_Z_VEL_MAX_UP MAV_SYS_ID EKF2_GPS_CTRL EKF2_HGT_REF SYS_FAILURE_EN SYS_AUTOSTART"
         " PWM_MAIN_FUNC1 RC_MAP_KILL_SW CAL_GYRO0_XOFF SIM_GPS_USED NAV_ACC_RAD MIS_TAKEOFF_ALT"
-        " FD_FAIL_P COM_DISARM_LAND MC_PITCH_P COM_FLTMODE1 COM_POS_FS_EPH"
+        " FD_FAIL_P COM_DISARM_LAND MC_PITCH_P COM_FLTMODE1 COM_POS_FS_EPH COM_POWER_COUNT"
+        " PD_GRIPPER_EN"
     ),
     "ardupilot": (
         "FENCE_ENABLE FENCE_ACTION FENCE_RADIUS FENCE_ALT_MAX FENCE_MARGIN FENCE_TYPE"
@@ -269,14 +273,16 @@ GUARDED = {
         " WPNAV_SPEED WP_SPD WP_RADIUS_M LOIT_SPEED_MS PSC_NE_VEL_P PSC_ACCZ_P EK3_ENABLE"
         " AHRS_EKF_TYPE SERVO1_FUNCTION SIM_GPS1_ENABLE SIM_WIND_SPD DISARM_DELAY GUID_TIMEOUT"
         " AVOID_ENABLE RALLY_INCL_HOME MOT_SPIN_ARM FLTMODE1 RC7_OPTION SERIAL1_PROTOCOL"
-        " ATC_RAT_RLL_P SCR_ENABLE MAV1_OPTIONS"
+        " ATC_RAT_RLL_P SCR_ENABLE MAV1_OPTIONS MAV1_EXTRA1 SR0_EXTRA1 LOG_BACKEND_TYPE LGR_ENABLE"
+        " GRIP_ENABLE WINCH_TYPE NTF_BUZZ_PIN AFS_ENABLE AFS_TERM_ACTION AFS_TERMINATE TMODE_ENABLE"
+        " QUIK_ENABLE"
     ),
 }
 FREE = {
-    "px4": "SDLOG_MODE SDLOG_UTC_OFFSET MNT_MODE_IN PD_GRIPPER_EN CAM_EXPOSURE_S TRIG_MODE",
+    "px4": "SDLOG_MODE SDLOG_UTC_OFFSET MNT_MODE_IN CAM_EXPOSURE_S TRIG_MODE COM_FLIGHT_UUID",
     "ardupilot": (
-        "LOG_BITMASK LOG_DISARMED NTF_LED_BRIGHT CAM1_TYPE MNT1_TYPE SR0_EXTRA1 MAV1_EXTRA1"
-        " OSD_TYPE STAT_RESET CAM_EXPOSURE_S"
+        "LOG_BITMASK LOG_DISARMED NTF_LED_BRIGHT CAM1_TYPE MNT1_TYPE OSD_TYPE STAT_RESET"
+        " CAM_EXPOSURE_S"
     ),
 }
 
@@ -285,5 +291,51 @@ FREE = {
 def test_what_is_guarded_and_what_is_free(autopilot: str) -> None:
     for name in GUARDED[autopilot].split():
         assert group_of(autopilot, name) is not None, name
+        assert free_group_of(autopilot, name) is None, name
     for name in FREE[autopilot].split():
         assert group_of(autopilot, name) is None, name
+        assert free_group_of(autopilot, name) is not None, name
+
+
+# Every parameter of the recorded lists that a client may write, family by family as
+# `free_parameters.py` has them; all others are guarded.
+FREE_OF_RECORDED = {
+    "px4": (
+        "px4_1_14_params.json",
+        "COM_FLIGHT_UUID COM_FLT_PROFILE MNT_MODE_IN SDLOG_BOOT_BAT SDLOG_DIRS_MAX SDLOG_MISSION"
+        " SDLOG_MODE SDLOG_PROFILE SDLOG_UTC_OFFSET SDLOG_UUID",
+    ),
+    "ardupilot": (
+        "arducopter_4_7_params.json",
+        "CAM1_TYPE CAM2_TYPE CAM_AUTO_ONLY CAM_MAX_ROLL LOG_BITMASK LOG_BLK_RATEMAX"
+        " LOG_DARM_RATEMAX LOG_DISARMED LOG_FILE_BUFSIZE LOG_FILE_DSRMROT LOG_FILE_MB_FREE"
+        " LOG_FILE_RATEMAX LOG_FILE_TIMEOUT LOG_MAX_FILES LOG_REPLAY MNT1_TYPE MNT2_TYPE"
+        " MSP_OPTIONS MSP_OSD_NCELLS NMEA_MSG_EN NMEA_RATE_MS NTF_BUZZ_ON_LVL NTF_BUZZ_TYPES"
+        " NTF_BUZZ_VOLUME NTF_DISPLAY_TYPE NTF_LED_BRIGHT NTF_LED_LEN NTF_LED_OVERRIDE"
+        " NTF_LED_TYPES OSD_TYPE STAT_BOOTCNT STAT_DISTFLWN STAT_FLTCNT STAT_FLTTIME STAT_RESET"
+        " STAT_RUNTIME",
+    ),
+}
+RECORDED = Path(__file__).parents[5] / "shared" / "data" / "autopilots"
+
+
+@pytest.mark.skipif(not RECORDED.is_dir(), reason="the recorded lists are not here")
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_each_recorded_parameter_is_in_a_table(autopilot: str) -> None:
+    """Neither forgotten by both tables nor free without a reason."""
+    file, wanted = FREE_OF_RECORDED[autopilot]
+    rows = json.loads((RECORDED / file).read_text(encoding="utf-8"))
+    names = [row["name"] for row in rows if row["name"] != "_HASH_CHECK"]
+    free = {name for name in names if free_group_of(autopilot, name) is not None}
+    assert free == set(wanted.split())
+    forgotten = [name for name in names if name not in free and not group_of(autopilot, name)]
+    assert forgotten == []
+
+
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_what_no_table_knows_is_guarded(autopilot: str) -> None:
+    found = refused(guard(autopilot=autopilot).judge(param_set(b"NEW_IN_5_0"), PARKED))
+    assert "it is in no table here" in found.refusal.sentence
+    allowed(
+        guard('parameters_allowed = ["NEW_*"]', autopilot).judge(param_set(b"NEW_IN_5_0"), PARKED)
+    )
