@@ -112,7 +112,20 @@ OWN_COMPID = 191
     "--lock",
     is_flag=True,
     help="First give the vehicle the key of --sign-key, and make it ask the bridge before it arms "
-    "(PX4). Says what it changes. The vehicle must be disarmed.",
+    "(PX4). Without --sign-key the latter alone. Says what it changes. The vehicle must be "
+    "disarmed.",
+)
+@click.option(
+    "--set-fence",
+    is_flag=True,
+    help="With --lock: give the vehicle a fence of its own where it has none, or a wider one: a "
+    "cylinder about home as large as the policy's fence.",
+)
+@click.option(
+    "--enforce-sysid",
+    is_flag=True,
+    help="With --lock: an ArduPilot hears the bridge's system id alone. Clients need the same one "
+    "(--sysid) to read anything from it.",
 )
 @with_options(*SIM_OPTIONS)
 @click.option(
@@ -148,6 +161,8 @@ def bridge(
     sysid: int,
     compid: int,
     lock: bool,
+    set_fence: bool,
+    enforce_sysid: bool,
     sim: bool,
     autopilot: str,
     home: str,
@@ -182,8 +197,10 @@ def bridge(
         hint = "such as --client udpin://127.0.0.1:14551 or --client udpout://127.0.0.1:14550"
         raise click.UsageError(f"where do clients reach it? {hint}")
     refuse_shared_places(vehicles, clients, vehicle_option="--vehicle")
-    if lock and not sign_key:
-        raise click.UsageError("--lock needs the vehicle's key: --sign-key FILE (gcs key new FILE)")
+    if lock and sim:
+        raise click.UsageError("--lock is for a vehicle of yours: leave out --sim")
+    if not lock and (set_fence or enforce_sysid):
+        raise click.UsageError("--set-fence and --enforce-sysid are parts of --lock")
     if sim and sign_key:
         raise click.UsageError("--sim starts a vehicle without a key: leave out --sign-key")
     config = station_config(
@@ -210,9 +227,10 @@ def bridge(
     )
     config = with_files(config, rotate_size, rotate_age, compact)
     if lock:
-        from gcs.cli.bridge_lock import lock_vehicle
+        from gcs.cli.bridge_lock import LockOptions, lock_vehicle
 
-        lock_vehicle(vehicles[0], sign_key, sysid, target, timeout or 10.0)
+        options = LockOptions(sysid, policy, set_fence, enforce_sysid)
+        lock_vehicle(vehicles[0], sign_key, options, target, timeout or 10.0)
     level = 1 if verbose else 3 if quiet else 2
     ctx.exit(_run(config, timeout, page=not (plain or as_json), as_json=as_json, min_level=level))
 

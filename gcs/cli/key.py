@@ -25,7 +25,14 @@ KEY_LINK = click.Option(
     help="Where the vehicle is. The key passes over it unencrypted: use a cable.",
 )
 
-ON_VEHICLE = (KEY_LINK, VEHICLE, TIMEOUT)
+KEY_SYSID = click.Option(
+    ["--sysid"],
+    type=click.IntRange(1, 255),
+    help="The MAVLink system id to speak in: an ArduPilot that `gcs bridge --lock --enforce-sysid` "
+    "locked hears that of its bridge, 255, alone.  [default: 254]",
+)
+
+ON_VEHICLE = (KEY_LINK, VEHICLE, TIMEOUT, KEY_SYSID)
 
 
 @click.group()
@@ -60,13 +67,21 @@ def show(file: str) -> None:
 @click.argument("file", type=UTF8)
 @click.option("--old-key", type=UTF8, metavar="FILE", help="The key that the vehicle has now.")
 @with_options(*ON_VEHICLE)
-def install(file: str, old_key: str | None, link: str, vehicle: int | None, timeout: float) -> None:
+def install(
+    file: str,
+    old_key: str | None,
+    link: str,
+    vehicle: int | None,
+    timeout: float,
+    sysid: int | None,
+) -> None:
     """Give the vehicle the key; from then on it obeys only who signs with it.
 
     It must be disarmed. The vehicle is asked afterwards, signed and unsigned. Nothing is recorded.
     """
     new_one = read_key_file(file)
-    setup = give_key(new_one, read_key_file(old_key) if old_key else None, link, vehicle, timeout)
+    old_one = read_key_file(old_key) if old_key else None
+    setup = give_key(new_one, old_one, link, vehicle, timeout, sysid)
     had = "had already" if setup.had_it else "has"
     click.echo(
         f"vehicle {setup.vehicle} {had} the key {new_one.fingerprint}; "
@@ -77,12 +92,12 @@ def install(file: str, old_key: str | None, link: str, vehicle: int | None, time
 @key.command(epilog="Example: gcs key remove vehicle.key --link udpin://127.0.0.1:14550")
 @click.argument("file", type=UTF8)
 @with_options(*ON_VEHICLE)
-def remove(file: str, link: str, vehicle: int | None, timeout: float) -> None:
+def remove(file: str, link: str, vehicle: int | None, timeout: float, sysid: int | None) -> None:
     """Take the key in FILE away from the vehicle, which obeys anybody then.
 
     The file stays. The vehicle must be disarmed.
     """
-    setup = give_key(None, read_key_file(file), link, vehicle, timeout)
+    setup = give_key(None, read_key_file(file), link, vehicle, timeout, sysid)
     click.echo(
         f"vehicle {setup.vehicle} has no key{' (it had none)' if setup.had_it else ''}; "
         "it takes what is not signed"
@@ -104,14 +119,18 @@ def give_key(
     url: str,
     vehicle: int | None,
     timeout_s: float,
+    own_sysid: int | None = None,
 ) -> SigningSetup:
-    """Raises ExitError unless the vehicle is as it should be afterwards."""
-    from gcs.protocol.signing_setup import SigningSetup
+    """Raises ExitError unless the vehicle is as it should be afterwards.
+
+    `own_sysid` is the system id to speak in, None for the usual one.
+    """
+    from gcs.protocol.signing_setup import SENDER, SigningSetup
     from gcs.shell.clock import Clock
 
     clock = Clock()
     deadline_ns = clock.now_ns() + round(timeout_s * 1e9)
-    setup = SigningSetup(new_key, old_key, vehicle or 0, deadline_ns)
+    setup = SigningSetup(new_key, old_key, vehicle or 0, deadline_ns, own_sysid or SENDER.sysid)
     over_link(setup, url, clock)
     trouble = _trouble(setup, url, timeout_s)
     if trouble is not None:
@@ -158,7 +177,10 @@ def _trouble(setup: SigningSetup, url: str, timeout_s: float) -> ExitError | Non
             return ExitError(ExitCode.REFUSED_BY_VEHICLE, text, hint)
         case Ending.NO_EFFECT:
             text = f"{name} was sent SETUP_SIGNING {TRIES} times and goes on as before"
-            hint = "has its firmware MAVLink 2 signing? ArduPilot has; PX4 since 1.17"
+            hint = (
+                "has its firmware MAVLink 2 signing? ArduPilot has; PX4 since 1.17 (before: "
+                "gcs bridge --lock without --sign-key makes it ask before it arms)"
+            )
             return ExitError(ExitCode.REFUSED_BY_VEHICLE, text, hint)
         case Ending.NO_ANSWER:
             text = f"{name} signs with the key, and does not answer what is signed with it"

@@ -1,9 +1,7 @@
-"""The parameters that make a vehicle ask its gate: read, set where they differ, and read back.
+"""Sets the parameters of `lock_parameters.py` on a vehicle: read, set where they differ, read back.
 
-PX4 asks its arm authorizer (COM_ARM_AUTH_*).  ArduPilot has no such question; its station number
-says whose silence is a failsafe and whose sticks count.  SYSID_ENFORCE is left as it is: frames of
-clients are forwarded in their own name, and it is the signature that keeps strangers out.
-Everything is signed with the vehicle's key, which it must have already.  Pure.
+Everything is signed with the vehicle's key, which it must have already; or nothing, where it has
+none.  Pure.
 """
 
 from __future__ import annotations
@@ -13,9 +11,10 @@ from enum import StrEnum
 from typing import Final
 
 from gcs.protocol.autopilot import Autopilot, autopilot_of
+from gcs.protocol.lock_parameters import Locking, Wanted, wanted_of
 from gcs.protocol.parameter_names import names_of
 from gcs.protocol.parameters import BY_NAME, decode_value, encode_value
-from gcs.protocol.signing_setup import LINK_ID, SENDER
+from gcs.protocol.signing_setup import HEARTBEAT, LINK_ID, SENDER
 from gcs.wire import messages as m
 from gcs.wire.codec import FrameWriter, decode
 from gcs.wire.frame import Frame
@@ -26,17 +25,6 @@ EVERY_NS: Final = 700_000_000
 TRIES: Final = 12
 
 _TYPES: Final = frozenset(int(kind) for kind in ParamType)
-
-
-def wanted_of(autopilot: str, own_sysid: int) -> tuple[tuple[str, float], ...]:
-    """Names and values, in the order in which they are set: what switches it on comes last."""
-    if autopilot == "px4":
-        return (
-            ("COM_ARM_AUTH_ID", float(own_sysid)),
-            ("COM_ARM_AUTH_MET", 0.0),
-            ("COM_ARM_AUTH_REQ", 1.0),
-        )
-    return (("MAV_GCS_SYSID", float(own_sysid)),)
 
 
 class Ending(StrEnum):
@@ -61,20 +49,26 @@ class Change:
 class LockSetup:
     """One vehicle's parameters.  `ending` is None until it is over; `changes` are in order."""
 
-    def __init__(self, key: SecretKey, own_sysid: int, target_sysid: int, deadline_ns: int) -> None:
-        """`own_sysid`: of the bridge; `target_sysid` 0 is the first vehicle that is heard."""
+    def __init__(
+        self, key: SecretKey | None, lock: Locking, target_sysid: int, deadline_ns: int
+    ) -> None:
+        """`target_sysid` 0 is the first vehicle that is heard.  It speaks in the bridge's own
+        number: a vehicle that is locked already may hear no other one."""
         clock = SigningClock()
-        self._signer, self._checker = Signer(key, LINK_ID, clock), Checker(key, clock)
-        self._writer = FrameWriter(SENDER.sysid, SENDER.compid)
-        self._own_sysid, self._sysid = own_sysid, target_sysid
+        self._signer = None if key is None else Signer(key, LINK_ID, clock)
+        self._checker = None if key is None else Checker(key, clock)
+        self._writer = FrameWriter(lock.own_sysid, SENDER.compid)
+        self._lock, self._sysid = lock, target_sysid
         self._deadline_ns = deadline_ns
         self._autopilot: Autopilot | None = None
-        self._open: list[tuple[str, float]] = []
+        self._open: list[Wanted] = []
         self._set: m.ParamSet | None = None
         """What is asked to be set, until it is read back; None: it is read."""
         self._before = 0.0
         self._tries = 0
         self._next_ns = 0
+        self.vehicle = ""
+        """`1/1` once it is heard."""
         self.changes: list[Change] = []
         self.missing = ""
         """The parameter at which it ended INCOMPLETE."""
@@ -84,7 +78,9 @@ class LockSetup:
         """A frame came in; what is to be sent."""
         if self.ending is not None or frame.compid != Component.AUTOPILOT1:
             return []
-        if self._sysid not in (0, frame.sysid) or self._checker.check(frame, now_ns) != GOOD:
+        if self._sysid not in (0, frame.sysid):
+            return []
+        if self._checker is not None and self._checker.check(frame, now_ns) != GOOD:
             return []
         message = decode(frame)
         if isinstance(message, m.Heartbeat) and self._autopilot is None:
@@ -100,18 +96,20 @@ class LockSetup:
         if self._autopilot is None:
             if now_ns >= self._deadline_ns:
                 self.ending = Ending.NO_VEHICLE
-            return []
+            self._next_ns = now_ns + EVERY_NS
+            return [self._signed(HEARTBEAT, now_ns)]
         return self._ask(now_ns)
 
     def _met(self, sysid: int, beat: m.Heartbeat, now_ns: int) -> list[bytes]:
         if beat.type == MavType.GCS:
             return []
+        self.vehicle = f"{sysid}/{Component.AUTOPILOT1.value}"
         if beat.base_mode & ModeFlag.SAFETY_ARMED:
             self.ending = Ending.ARMED
             return []
         self._sysid = sysid
         self._autopilot = autopilot_of(beat.autopilot, beat.type)
-        self._open = list(wanted_of(self._autopilot.name, self._own_sysid))
+        self._open = list(wanted_of(self._autopilot.name, self._lock))
         return self._ask(now_ns)
 
     def _ask(self, now_ns: int) -> list[bytes]:
@@ -119,7 +117,7 @@ class LockSetup:
         if not self._open:
             self.ending = Ending.DONE
             return []
-        name = self._open[0][0]
+        name = self._open[0].name
         if self._tries >= TRIES:
             self.ending, self.missing = Ending.INCOMPLETE, name
             return []
@@ -136,25 +134,27 @@ class LockSetup:
     def _value(self, told: m.ParamValue, now_ns: int) -> list[bytes]:
         if not self._open or self._autopilot is None:
             return []
-        newest, wanted = self._open[0]
-        if told.param_id not in {each.name for each in names_of(newest)}:
+        wanted = self._open[0]
+        if told.param_id not in {each.name for each in names_of(wanted.name)}:
             return []
         kind = ParamType(told.param_type)
         encoding = self._autopilot.param_encoding
         value = float(decode_value(told.param_value, kind, encoding))
         if self._set is None:
             self._before = value
-        if value == wanted:
+        becomes = wanted.becomes(value)
+        if value == becomes:
             self.changes.append(Change(told.param_id, self._before, value))
             self._open.pop(0)
             self._set, self._tries = None, 0
             return self._ask(now_ns)
         if self._set is None:
-            wire = encode_value(wanted, kind, encoding)
+            wire = encode_value(becomes, kind, encoding)
             target = self._sysid, Component.AUTOPILOT1
             self._set, self._tries = m.ParamSet(wire, *target, told.param_id, kind), 0
             return self._ask(now_ns)
         return []
 
     def _signed(self, message: m.Message, now_ns: int) -> bytes:
-        return self._signer.sign(self._writer.write(message), now_ns)
+        raw = self._writer.write(message)
+        return raw if self._signer is None else self._signer.sign(raw, now_ns)

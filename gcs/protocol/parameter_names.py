@@ -37,6 +37,7 @@ RENAMED: Final = (
     Renamed("LAND_SPD_MS",      "LAND_SPEED",      _CM),
     Renamed("LOIT_SPEED_MS",    "LOIT_SPEED",      _CM),
     Renamed("MAV_GCS_SYSID",    "SYSID_MYGCS"),
+    Renamed("MAV_OPTIONS",      "SYSID_ENFORCE"),
     Renamed("MAV_SYSID",        "SYSID_THISMAV"),
     Renamed("RTL_ALT_FINAL_M",  "RTL_ALT_FINAL",   _CM),
     Renamed("RTL_ALT_M",        "RTL_ALT",         _CM),

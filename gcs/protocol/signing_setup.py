@@ -36,6 +36,8 @@ UNSIGNED_TRIES: Final = 3
 """How often an unsigned request is sent before no answer counts: one may be lost."""
 SENDER: Final = Address(254, 190)
 """Not a ground station's 255: no autopilot shall miss this one when it goes."""
+HEARTBEAT: Final = m.Heartbeat(0, MavType.GENERIC, MavAutopilot.INVALID, 0, MavState.ACTIVE)
+"""Of no ground station, for the same reason; for vehicles that send only to who speaks."""
 
 
 class Ending(StrEnum):
@@ -70,13 +72,15 @@ class SigningSetup:
         old: SecretKey | None,
         target_sysid: int,
         deadline_ns: int,
+        own_sysid: int = SENDER.sysid,
     ) -> None:
         """`new` is what it is to have from now on, None for no key; `old` what it has, if it has
-        one; `target_sysid` 0 is the first that is heard, until `deadline_ns`."""
+        one; `target_sysid` 0 is the first that is heard, until `deadline_ns`; `own_sysid` is whom
+        a vehicle hears that hears one number only."""
         self._new, self._old = new, old
         self._clock = SigningClock()
         self._checkers = {key: Checker(key, self._clock) for key in (new, old) if key is not None}
-        self._writer = FrameWriter(SENDER.sysid, SENDER.compid)
+        self._writer = FrameWriter(own_sysid, SENDER.compid)
         self._sysid = target_sysid
         self._listen_until_ns = deadline_ns
         self._phase = _Phase.LISTEN
@@ -117,7 +121,7 @@ class SigningSetup:
             case _Phase.LISTEN:
                 if now_ns >= self._listen_until_ns:
                     self.ending = Ending.NO_VEHICLE
-                return [self._heartbeat()]  # where a vehicle sends only to who speaks
+                return [self._writer.write(HEARTBEAT)]
             case _Phase.ASK:
                 if self._tries >= TRIES:
                     self.ending = Ending.NO_EFFECT
@@ -214,10 +218,6 @@ class SigningSetup:
         target = self._sysid, Component.AUTOPILOT1
         params = (param1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         return self._writer.write(m.CommandLong(*params, command, *target, 0))
-
-    def _heartbeat(self) -> bytes:
-        beat = m.Heartbeat(0, MavType.GENERIC, MavAutopilot.INVALID, 0, MavState.ACTIVE)
-        return self._writer.write(beat)
 
     def _signed(self, raw: bytes, key: SecretKey | None, now_ns: int) -> bytes:
         return raw if key is None else Signer(key, LINK_ID, self._clock).sign(raw, now_ns)

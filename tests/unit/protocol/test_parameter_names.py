@@ -14,6 +14,7 @@ LISTED_BY_4_7 = {
     "LAND_SPD_MS",
     "LOIT_SPEED_MS",
     "MAV_GCS_SYSID",
+    "MAV_OPTIONS",
     "MAV_SYSID",
     "RTL_ALT_FINAL_M",
     "RTL_ALT_M",

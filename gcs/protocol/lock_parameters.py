@@ -1,0 +1,105 @@
+"""Which parameters make a vehicle obey its bridge, and what each must be: tables by autopilot.
+
+PX4 asks its arm authorizer (COM_ARM_AUTH_*).  ArduPilot has no such question; its station number
+says whose silence is a failsafe and whose sticks count, and it can be told to hear no other number
+(SYSID_ENFORCE; from 4.7 on a bit of MAV_OPTIONS, from memory: of the recorded 4.7 the name alone is
+known).  Where the fence is set, too, it is a cylinder about home with an action.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+ENFORCE: Final = 0b1
+"""The bit of MAV_OPTIONS, and the value of SYSID_ENFORCE."""
+HEIGHT_AND_CIRCLE: Final = 0b11
+"""Of FENCE_TYPE."""
+PX4_HOLD: Final = 2
+"""GF_ACTION: hold; what is less does nothing."""
+COPTER_RETURN: Final = 1
+"""FENCE_ACTION: return, or land; 0 reports only."""
+_STEP_M: Final = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class FenceSize:
+    """The policy's, as a cylinder about home: how far, and how high above it, in metres."""
+
+    reach_m: float
+    ceiling_up_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Locking:
+    """What the user wants.  `own_sysid`: the bridge's number; `fence`: None leaves it as it is."""
+
+    own_sysid: int
+    fence: FenceSize | None = None
+    enforce_sysid: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """One parameter by its newest name.  `becomes` is given what it is, and answers what it is to
+    be: the same where it is right already."""
+
+    name: str
+    becomes: Callable[[float], float]
+
+
+def wanted_of(autopilot: str, lock: Locking) -> tuple[Wanted, ...]:
+    """In the order in which they are set: what switches something on comes last."""
+    own = float(lock.own_sysid)
+    if autopilot == "px4":
+        return (
+            *(() if lock.fence is None else _px4_fence(lock.fence)),
+            Wanted("COM_ARM_AUTH_ID", _always(own)),
+            Wanted("COM_ARM_AUTH_MET", _always(0.0)),
+            Wanted("COM_ARM_AUTH_REQ", _always(1.0)),
+        )
+    enforce = (Wanted("MAV_OPTIONS", _with_bits(ENFORCE)),) if lock.enforce_sysid else ()
+    return (
+        *(() if lock.fence is None else _copter_fence(lock.fence)),
+        Wanted("MAV_GCS_SYSID", _always(own)),
+        *enforce,
+    )
+
+
+def _px4_fence(fence: FenceSize) -> tuple[Wanted, ...]:
+    return (
+        Wanted("GF_MAX_HOR_DIST", _no_wider(fence.reach_m)),
+        Wanted("GF_MAX_VER_DIST", _no_wider(fence.ceiling_up_m)),
+        Wanted("GF_ACTION", _at_least(PX4_HOLD)),
+    )
+
+
+def _copter_fence(fence: FenceSize) -> tuple[Wanted, ...]:
+    return (
+        Wanted("FENCE_RADIUS", _no_wider(fence.reach_m)),
+        Wanted("FENCE_ALT_MAX", _no_wider(fence.ceiling_up_m)),
+        Wanted("FENCE_TYPE", _with_bits(HEIGHT_AND_CIRCLE)),
+        Wanted("FENCE_ACTION", _at_least(COPTER_RETURN)),
+        Wanted("FENCE_ENABLE", _at_least(1)),
+    )
+
+
+def _always(value: float) -> Callable[[float], float]:
+    return lambda _: value
+
+
+def _no_wider(most_m: float) -> Callable[[float], float]:
+    """A limit that is there and no wider stays; else half metres, which every float holds."""
+    limit_m = max(_STEP_M, math.floor(most_m / _STEP_M) * _STEP_M)
+    return lambda is_m: is_m if 0.0 < is_m <= limit_m else limit_m
+
+
+def _at_least(least: int) -> Callable[[float], float]:
+    return lambda value: value if value >= least else float(least)
+
+
+def _with_bits(bits: int) -> Callable[[float], float]:
+    """Not a number, which no whole number is made of, has none."""
+    return lambda value: float((int(value) if math.isfinite(value) else 0) | bits)
