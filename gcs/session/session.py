@@ -29,6 +29,7 @@ from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
+from gcs.gate.inputs import PositionSeen
 from gcs.gate.machine.gate import Gate
 from gcs.protocol.effects import Address, Send
 from gcs.session import teller
@@ -66,6 +67,7 @@ from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
 from gcs.session.recorded import fault, hello, introduction, recorded, sim_line
 from gcs.session.screen import snapshot
+from gcs.session.separation import Separation
 from gcs.session.setup import Setup
 from gcs.session.signatures import NO_KEYS, Keys, Signatures
 from gcs.session.telemetry import Telemetry
@@ -122,6 +124,7 @@ class Session:
         )
         self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
         self._vehicles = Vehicles(config, setup.policy, self._times, now_ns)
+        self._separation = Separation(setup.policy.separation)
         self._operators = Operators(setup, self._times)
         self._bridge = BridgePort(
             config,
@@ -289,7 +292,10 @@ class Session:
                 return self._vehicles.to_all(item)
             case ToGate(given):
                 answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
-                return [*answered, *vehicle.ask_gate(given, now_ns)]
+                work = [*answered, *vehicle.ask_gate(given, now_ns)]
+                if type(given) is PositionSeen:
+                    work += self._separation.moved(self._vehicles, owner, now_ns)
+                return work
             case Send(message):
                 telemetry = vehicle.telemetry
                 if telemetry is None:

@@ -78,6 +78,7 @@ class Fleet(BridgedFlight):
             self.vehicles[sysid] = vehicle
         self.vehicle = self.vehicles[1]
         self.link_count = links
+        self.apart_m = apart_m
         specs = [LinkSpec((PEER,))]
         if links > 1:
             specs = [LinkSpec((PEER,), vehicle=number) for number in range(links)]
@@ -245,6 +246,10 @@ class Fleet(BridgedFlight):
         lat, lon, alt = telemetry.home
         lon += east_m / (METRES_PER_DEGREE * math.cos(math.radians(lat)))
         client.fly_to(lat + north_m / METRES_PER_DEGREE, lon, alt + up_m, target=(sysid, 1))
+
+    def reaches(self, sysid: int, state: State, within_s: float = 30.0) -> None:
+        """Let time pass until the gate of that vehicle is in that state."""
+        self.until(lambda: self.state_of(sysid) is state, within_s)
 
     def say_leave(self) -> None:
         """Whoever started the bridge ends it."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs import ipc
+from gcs.gate.condition import Condition, Severity
+from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.report import DecisionItem
 from tests.loopback.fleet import (
@@ -51,8 +55,8 @@ def test_a_goal_for_one_never_moves_the_other() -> None:
         flight.run(0.01)  # what comes from here on is later than the end of what was before
         before, since_ns = flight.place_enu(3 - sysid), flight.now_ns
         flight.send_to(client, sysid, 0, 10, 5)
-        flight.until(lambda n=sysid: flight.state_of(n) is State.MOVING, 2)
-        flight.until(lambda n=sysid: flight.state_of(n) is State.HOVERING)
+        flight.reaches(sysid, State.MOVING, 2)
+        flight.reaches(sysid, State.HOVERING)
         client.beat()
         assert flight.place_enu(sysid)[1] == pytest.approx(10, abs=0.8)
         assert flight.place_enu(3 - sysid) == pytest.approx(before, abs=0.5)
@@ -136,8 +140,8 @@ def test_one_that_is_lost_does_not_disturb_the_other() -> None:
     assert flight.state_of(1) in (State.STALE, State.NO_VEHICLE)
     assert flight.state_of(2) is State.HOVERING
     flight.send_to(client, 2, 0, 10, 5)
-    flight.until(lambda: flight.state_of(2) is State.MOVING, 2)
-    flight.until(lambda: flight.state_of(2) is State.HOVERING)
+    flight.reaches(2, State.MOVING, 2)
+    flight.reaches(2, State.HOVERING)
     assert flight.place_enu(2)[1] == pytest.approx(10, abs=0.8)
     flight.silent = set()
     flight.beating(3)
@@ -154,7 +158,7 @@ def test_one_without_positions_does_not_disturb_the_other(stale: int) -> None:
     assert flight.state_of(stale) is not State.HOVERING
     assert flight.state_of(other) is State.HOVERING
     flight.send_to(client, other, 0, 10, 5)
-    flight.until(lambda: flight.state_of(other) is State.MOVING, 2)
+    flight.reaches(other, State.MOVING, 2)
 
 
 def test_a_client_that_goes_silent_in_control_is_held_for_with_both() -> None:
@@ -189,3 +193,59 @@ def test_at_the_end_both_are_held() -> None:
     assert flight.finish.sentence.startswith("vehicle 1 is STILL FLYING in")
     assert "; vehicle 2 is STILL FLYING in" in flight.finish.sentence
     assert flight.each(lambda n: flight.state_of(n) is State.HOLDING)()
+
+
+def too_close(flight: Fleet) -> list[bool]:
+    return [Condition.TOO_CLOSE in flight.gate(n).conditions for n in (1, 2)]
+
+
+def least_distance_m(flight: Fleet, seconds: float) -> float:
+    """How near they really come in that time; heartbeats go on."""
+    least_m = math.inf
+    for _ in range(round(seconds * 10)):
+        flight.beating(0.1)
+        (x1, y1, z1), (x2, y2, z2) = flight.place_enu(1), flight.place_enu(2)
+        least_m = min(least_m, math.dist((x1, y1, z1), (x2 + flight.apart_m, y2, z2)))
+    return least_m
+
+
+def flown_at_each_other(policy: str) -> tuple[Fleet, float]:
+    """Both fly to the place between them, at one height; how near they have come."""
+    flight = Fleet(("px4", "px4"), policy=parse_policy(policy, "test"), apart_m=60.0)
+    client = flight.all_flying()
+    assert too_close(flight) == [False, False]
+    flight.send_to(client, 1, 30, 0, 5)
+    flight.send_to(client, 2, -30, 0, 5)
+    return flight, least_distance_m(flight, 15)
+
+
+def test_two_that_fly_at_each_other_are_stopped_where_the_policy_says_hold() -> None:
+    flight, least_m = flown_at_each_other('severities.too_close = "hold"')
+    assert [flight.state_of(n) for n in (1, 2)] == [State.HOLDING] * 2
+    assert least_m > 5.0
+    assert too_close(flight) == [False, False], "both rest, and are far enough from each other"
+    told = [line for line in flight.lines("state_and_safety") if "too_close" in line]
+    assert any(line.startswith("vehicle 1: ") and "vehicle 2: " in line for line in told), told
+
+
+def test_by_default_they_are_only_told() -> None:
+    """The same flight without the policy's hold: they meet, so the test above can fail."""
+    flight, least_m = flown_at_each_other("")
+    assert least_m < 5.0
+    assert too_close(flight) == [True, True]
+    assert all(flight.gate(n).severity is Severity.CAUTION for n in (1, 2))
+
+
+def test_a_vehicle_on_the_ground_is_too_close_to_nobody() -> None:
+    flight = Fleet(apart_m=3.0)
+    client = flight.join()
+    flight.all_connected()
+    flight.take_off(client, 1)
+    flight.beating(1)
+    assert too_close(flight) == [False, False]
+    flight.take_off(client, 2)
+    flight.beating(1)
+    assert too_close(flight) == [True, True], "each by its own map, and yet in one place"
+    flight.silent = {2}
+    flight.beating(3)
+    assert Condition.TOO_CLOSE not in flight.gate(1).conditions, "one that is lost is not compared"
