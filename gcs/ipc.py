@@ -53,6 +53,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     on: bool = True  # fence
     path: str = ""  # mission_upload: file to read; mission_download: where to write
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
+    vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
 
 
 class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_defaults=True):
@@ -70,6 +71,7 @@ class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_d
     a_enu: Maybe3 | None = None  # metres per second squared
     yaw_deg: float | None = None
     yaw_rate_deg_s: float | None = None  # clockwise
+    vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
 
 
 class Pending(msgspec.Struct, frozen=True, tag="pending", tag_field="type"):
@@ -186,6 +188,7 @@ class StreamVerdictEvent(msgspec.Struct, frozen=True, tag="stream_verdict", tag_
     sentence: str = ""
     zone: str = ""
     numbers: dict[str, float | None] = {}
+    vehicle: int = 0  # system id
 
 
 class EndingEvent(msgspec.Struct, frozen=True, tag="ending", tag_field="type"):
@@ -343,6 +346,22 @@ class BridgeClient(msgspec.Struct, frozen=True):
     silent_s: float = 0.0  # since its last frame
 
 
+class BridgeVehicle(msgspec.Struct, frozen=True):
+    """One vehicle behind a bridge; the screens of operators show the first one in full."""
+
+    vehicle: int  # system id
+    name: str  # "1/1 px4 quadrotor"
+    state: str
+    control: str
+    severity: str
+    conditions: list[str] = []
+    mode: str = ""
+    armed: bool | None = None
+    link: int = 0  # that it is answered on
+    lost_pct: float = 0.0  # of its frames, by their sequence numbers
+    silent_s: float = 0.0  # since anything was heard of it
+
+
 class BridgeStatus(msgspec.Struct, frozen=True, tag="bridge", tag_field="type"):
     """Who is connected to the bridge, and what goes through it; at most two a second, dropped when
     the reader is slow."""
@@ -350,6 +369,7 @@ class BridgeStatus(msgspec.Struct, frozen=True, tag="bridge", tag_field="type"):
     time_ns: int
     links: list[BridgeLink]
     clients: list[BridgeClient]
+    vehicles: list[BridgeVehicle] = []  # in the order in which they were met
 
 
 class BridgeDecision(msgspec.Struct, frozen=True, tag="bridge_decision", tag_field="type"):
@@ -366,6 +386,7 @@ class BridgeDecision(msgspec.Struct, frozen=True, tag="bridge_decision", tag_fie
     outcome: str  # accepted | refused | superseded
     code: str = ""
     sentence: str = ""
+    vehicle: int = 0  # system id; 0 = none, as before one is heard
 
 
 class Trouble(msgspec.Struct, frozen=True, tag="trouble", tag_field="type"):

@@ -1,4 +1,4 @@
-"""The bridge: all MAVLink clients of one station, before its one vehicle.
+"""The bridge: all MAVLink clients of one station, before its vehicles.
 
 Who is there (`client.py`), where frames go (`routing.py`), what is done with each (`judge.py`), and
 what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded here.
@@ -6,20 +6,20 @@ what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Final
 
 from gcs import ipc
 from gcs.bridge.classes import Kind, message_row
-from gcs.bridge.client import Client
+from gcs.bridge.client import Client, Exchange
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
-from gcs.bridge.effects import Answers, BridgeEffect, Joined, Lost, Notes, ToLink
+from gcs.bridge.effects import Answers, BridgeEffect, Joined, Lost, Notes, OfVehicle, ToLink
 from gcs.bridge.judge import Judge, Judged, Look, Received, of_plan
 from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.needed_rates import Rates
-from gcs.bridge.routing import Routes, target_of
+from gcs.bridge.routing import TARGETS, Routes, readdressed, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
@@ -30,10 +30,12 @@ from gcs.wire.messages import ParamValue
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
+NO_VEHICLE: Final = Address(0, Component.AUTOPILOT1)
+"""Stands for the vehicle before one is heard."""
 
 
 class Bridge:
-    """All MAVLink clients of one station, and its vehicle, whose system id is `vehicle.sysid`."""
+    """All MAVLink clients of one station.  Vehicles are told apart by their system ids."""
 
     def __init__(
         self,
@@ -50,7 +52,10 @@ class Bridge:
         self._own = own
         self._manual_modes = rules.manual_modes
         self._control = ControlServer()
-        self._judge = Judge(rules, needed_hz, self._control)
+        self._rules = rules
+        self._needed_hz = needed_hz
+        self._judges: dict[int, Judge] = {}
+        """By the vehicle's system id."""
         self._silent_ns = silent_ns
         self._timing = timing
         self._deadman_ns = deadman_ns
@@ -115,12 +120,18 @@ class Bridge:
     # -------------------------------------------------------------------- from clients
 
     def from_client(
-        self, link: int, frame: Frame, vehicle: Address | None, look: Look, now_ns: int
+        self,
+        link: int,
+        frame: Frame,
+        vehicles: Sequence[Address],
+        look: Callable[[int], Seen | None],
+        now_ns: int,
     ) -> Judged:
-        """A good frame on a client's link; `vehicle` is None before one is heard."""
+        """A good frame on a client's link; `vehicles` are the autopilots that were heard, and
+        `look` tells of one, by its system id, how it is."""
         client = self._by_link[link]
         client.received.count(1, now_ns)
-        reason = self._why_not_from(frame, vehicle)
+        reason = self._why_not_from(frame, vehicles)
         if reason:
             client.refused += 1
             return Judged(True, self._once(client, reason))
@@ -128,28 +139,81 @@ class Bridge:
         effects: list[BridgeEffect] = [] if client.joined else self._meet(client, frame)
         self._routes.heard(link, frame.sysid, frame.compid)
         sysid, compid = target_of(frame)
-        at_vehicle = vehicle is not None and sysid in (0, vehicle.sysid)
-        component = compid or (vehicle.compid if vehicle else Component.AUTOPILOT1)
-        addressed = Address(vehicle.sysid if vehicle else sysid, component)
-        asked_by = From(link, Address(frame.sysid, frame.compid), addressed)
-        if not at_vehicle and (vehicle is not None or sysid):
+        addressed = [each for each in vehicles if sysid in (0, each.sysid)]
+        if sysid and not addressed:
+            asked_by = From(link, Address(frame.sysid, frame.compid), Address(sysid, compid))
             judged = self._elsewhere(client, asked_by, frame, sysid)
+        elif len(addressed) > 1:
+            judged = self._for_all(client, frame, addressed, look, now_ns)
         else:
-            in_control = client.number == self._in_control
-            seen = self._look(look, client)
-            received = Received(client, asked_by, frame, seen, now_ns, in_control)
-            judged = self._judge.judge(received)
-            if frame.msgid == MsgId.HEARTBEAT:
-                others = self._routes.between_clients(frame, link)
-                effects += [ToLink(other, frame.raw) for other in others]
+            vehicle = addressed[0] if addressed else NO_VEHICLE
+            judged = _at(vehicle, self._judged(client, frame, vehicle, look, now_ns))
+        if frame.msgid == MsgId.HEARTBEAT:
+            others = self._routes.between_clients(frame, link)
+            effects += [ToLink(other, frame.raw) for other in others]
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
 
-    def _look(self, look: Look, client: Client) -> Look:
-        """The same, with what is this client's."""
+    def _judged(
+        self,
+        client: Client,
+        frame: Frame,
+        vehicle: Address,
+        look: Callable[[int], Seen | None],
+        now_ns: int,
+    ) -> Judged:
+        """A frame that is for one vehicle."""
+        _, compid = target_of(frame)
+        addressed = Address(vehicle.sysid, compid or vehicle.compid)
+        asked_by = From(client.link, Address(frame.sysid, frame.compid), addressed)
+        received = Received(
+            client.at(vehicle.sysid),
+            asked_by,
+            frame,
+            self._look(look, client, vehicle.sysid),
+            now_ns,
+            client.number == self._in_control,
+        )
+        return self._judge(vehicle.sysid).judge(received)
+
+    def _for_all(
+        self,
+        client: Client,
+        frame: Frame,
+        vehicles: Sequence[Address],
+        look: Callable[[int], Seen | None],
+        now_ns: int,
+    ) -> Judged:
+        """A frame that reaches several vehicles.
+
+        What would move them or change them is judged for each, as if it had been sent to that one
+        alone; where the message has no target, one refusal is for all.  Everything else is looked
+        at once, and goes out once on each link.
+        """
+        first = vehicles[0]
+        if not self._judge(first.sysid).concerns_each(frame):
+            return self._judged(client, frame, first, look, now_ns)
+        done = [
+            (each, self._judged(client, readdressed(frame, each.sysid), each, look, now_ns))
+            for each in vehicles
+        ]
+        if frame.msgid not in TARGETS:
+            refused = [(each, judged) for each, judged in done if judged.refused]
+            return _at(*refused[0]) if refused else done[0][1]
+        effects = [effect for each, judged in done for effect in _at(each, judged).effects]
+        return Judged(all(judged.refused for _, judged in done), effects)
+
+    def _judge(self, sysid: int) -> Judge:
+        found = self._judges.get(sysid)
+        if found is None:
+            found = self._judges[sysid] = Judge(self._rules, self._needed_hz, self._control)
+        return found
+
+    def _look(self, look: Callable[[int], Seen | None], client: Client, sysid: int) -> Look:
+        """The same of one vehicle, with what is this client's."""
 
         def seen() -> Seen | None:
-            found = look()
+            found = look(sysid)
             in_control = self._in_control in (0, client.number)
             if found is None:
                 return None
@@ -157,19 +221,19 @@ class Bridge:
 
         return seen
 
-    def _why_not_from(self, frame: Frame, vehicle: Address | None) -> str:
+    def _why_not_from(self, frame: Frame, vehicles: Sequence[Address]) -> str:
         """Why no frame of this sender may come from a client; empty where it may.
 
-        A frame of the vehicle on a client's link is a loop of links, or somebody who plays it.
+        A frame of a vehicle on a client's link is a loop of links, or somebody who plays it.
         """
         if (frame.sysid, frame.compid) == (self._own.sysid, self._own.compid):
             return f"it calls itself {frame.sysid}/{frame.compid}, as this station does"
-        if vehicle is not None and frame.sysid == vehicle.sysid and frame.compid == vehicle.compid:
+        if any((frame.sysid, frame.compid) == (each.sysid, each.compid) for each in vehicles):
             return f"it calls itself {frame.sysid}/{frame.compid}, as the vehicle does"
         return ""
 
     def _elsewhere(self, client: Client, asked_by: From, frame: Frame, sysid: int) -> Judged:
-        """A frame for a system that is not our vehicle: another client, or nobody."""
+        """A frame for a system that is no vehicle of ours: another client, or nobody."""
         links = self._routes.between_clients(frame, asked_by.link)
         if links and message_row(frame.msgid).kind is not Kind.DENIED:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
@@ -180,17 +244,26 @@ class Bridge:
     @property
     def deadline_ns(self) -> int | None:
         """When `wake` is due."""
-        times = [client.plans.deadline_ns for client in self._by_number.values()]
+        times = [each.plans.deadline_ns for each in self._exchanges()]
         return min((time for time in times if time is not None), default=None)
 
     def wake(self, now_ns: int) -> list[BridgeEffect]:
         """`deadline_ns` has passed."""
         done: list[BridgeEffect] = []
-        for client in self._by_number.values():
-            due_ns = client.plans.deadline_ns
+        for each in self._exchanges():
+            due_ns = each.plans.deadline_ns
             if due_ns is not None and due_ns <= now_ns:
-                done += of_plan(client, client.plans.wake(now_ns))
+                done += _of(each, of_plan(each, each.plans.wake(now_ns)))
         return done
+
+    def _exchanges(self, vehicle: int | None = None) -> list[Exchange]:
+        """Of all clients that are there, with one vehicle or with all."""
+        return [
+            each
+            for client in self._by_number.values()
+            for each in client.exchanges
+            if vehicle in (None, each.vehicle)
+        ]
 
     def _once(self, client: Client, reason: str) -> list[BridgeEffect]:
         """A frame that nobody can be answered about: told once for each client and reason."""
@@ -211,15 +284,24 @@ class Bridge:
             self._by_link[link].sent.count(len(raws), now_ns)
         return shares
 
-    def parameter(self, message: ParamValue, autopilot: str) -> list[BridgeEffect]:
-        """PARAM_VALUE of the vehicle's autopilot."""
-        return self._judge.parameter(message, autopilot)
+    def parameter(self, message: ParamValue, autopilot: str, vehicle: int) -> list[BridgeEffect]:
+        """PARAM_VALUE of a vehicle's autopilot."""
+        return self._judge(vehicle).parameter(message, autopilot)
 
-    def told(self, number: int, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
-        """What the station tells a client as an operator."""
+    def told(self, number: int, event: ipc.Event, vehicle: int, now_ns: int) -> list[BridgeEffect]:
+        """What the station tells a client as an operator, of what it asked of a vehicle."""
         client = self._by_number.get(number)
         if client is None:
             return []
+        if not isinstance(event, ipc.VerdictEvent | ipc.EndingEvent):
+            return _of(client.at(vehicle), self._told(client.at(vehicle), event, now_ns))
+        # By its number, which is one of the client's, the exchange knows what it is about.
+        return [
+            done for each in client.exchanges for done in _of(each, self._told(each, event, now_ns))
+        ]
+
+    @staticmethod
+    def _told(client: Exchange, event: ipc.Event, now_ns: int) -> list[BridgeEffect]:
         match event:
             case ipc.VerdictEvent(id=ask_id) if ask_id == client.plan_ask:
                 if event.outcome != "accepted":
@@ -233,17 +315,17 @@ class Bridge:
             case _:
                 return client.dialogue.told(event, now_ns)
 
-    def asked(self, number: int) -> None:
-        """The operator `number`, a client or not, asks the gate for something."""
-        for client in self._by_number.values():
-            if client.number != number:
-                client.dialogue.forget()
+    def asked(self, number: int, vehicle: int) -> None:
+        """The operator `number`, a client or not, asks the gate of a vehicle for something."""
+        for each in self._exchanges(vehicle):
+            if each.number != number:
+                each.dialogue.forget()
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent; `operation` is the request's."""
         effects: list[BridgeEffect] = []
-        for client in self._by_number.values():
-            effects += client.dialogue.command_answered(operation, result, now_ns)
+        for each in self._exchanges():
+            effects += each.dialogue.command_answered(operation, result, now_ns)
         return effects
 
     def warn(self, level: Level, text: str, vehicle: Address, now_ns: int) -> list[BridgeEffect]:
@@ -251,18 +333,22 @@ class Bridge:
         return self._to_all(vehicle, level, f"gate: {text}", now_ns)
 
     def control_changed(
-        self, number: int, name: str, vehicle: Address, now_ns: int
+        self, number: int, name: str, vehicles: Sequence[Address], now_ns: int
     ) -> list[BridgeEffect]:
         """Who is in control, all clients read; `number` is 0 for nobody."""
         self._in_control = number
         self._control.changed(number, self._sysid_of(number))
         who = f"in control: {name}" if number else "nobody is in control"
-        return self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
+        effects: list[BridgeEffect] = []
+        for vehicle in vehicles:
+            effects += self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
+        return effects
 
-    def control_status(self, vehicle: Address) -> list[BridgeEffect]:
+    def control_status(self, vehicles: Sequence[Address]) -> list[BridgeEffect]:
         """Who is in control, by the protocol's own message, for the clients that understand it."""
         told = [c for c in self._by_number.values() if self._control.speaks(c.number)]
-        return [Answers(client.link, vehicle, self._control.status) for client in told]
+        status = self._control.status
+        return [Answers(client.link, vehicle, status) for client in told for vehicle in vehicles]
 
     def _sysid_of(self, number: int) -> int:
         """What the operator in control calls itself: a client by its system id, an operator of the
@@ -277,7 +363,7 @@ class Bridge:
         effects: list[BridgeEffect] = []
         for client in self._by_number.values():
             to = From(client.link, Address(0, 0), vehicle)
-            effects += client.dialogue.text(to, level, text, now_ns)
+            effects += client.at(vehicle.sysid).dialogue.text(to, level, text, now_ns)
         return effects
 
     def name(self, number: int) -> str:
@@ -302,3 +388,14 @@ class Bridge:
             )
             for client in self._by_link.values()
         ]
+
+
+def _of(exchange: Exchange, effects: Sequence[BridgeEffect]) -> list[BridgeEffect]:
+    """What an exchange leads to, as its vehicle's."""
+    return [OfVehicle(exchange.vehicle, tuple(effects))] if effects else []
+
+
+def _at(vehicle: Address, judged: Judged) -> Judged:
+    """The same, as that vehicle's."""
+    effects = judged.effects
+    return Judged(judged.refused, [OfVehicle(vehicle.sysid, tuple(effects))] if effects else [])

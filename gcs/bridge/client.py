@@ -1,8 +1,10 @@
-"""One MAVLink client: who it is, what it has sent, and what it has asked for."""
+"""One MAVLink client: who it is, what it has sent, and what it has asked of which vehicle."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import count
 
 from gcs.bridge.dialogue import Dialogue
 from gcs.bridge.meaning.pace import Pace
@@ -37,8 +39,8 @@ class Client:
         setpoint streams counts for `deadman_ns`."""
         self.link = link
         self.name = name
-        self._timing = timing
-        self._deadman_ns = deadman_ns
+        self.timing = timing
+        self.deadman_ns = deadman_ns
         self.joined = False
         self.heard_ns = 0
         self.received = Rate()
@@ -52,8 +54,32 @@ class Client:
         """It is an operator, with this number; what it asked for as another one is over."""
         self.number = number
         self.joined = True
-        self.dialogue = Dialogue(number)
-        self.plans = PlanServer(self._timing)
-        self.pace = Pace(self._deadman_ns)
+        self.numbers = count(1)
+        """Of its requests, whichever vehicle they are for."""
+        self._exchanges: dict[int, Exchange] = {}
+
+    def at(self, vehicle: int) -> Exchange:
+        """What it asks of the vehicle with that system id."""
+        found = self._exchanges.get(vehicle)
+        if found is None:
+            found = Exchange(self, vehicle)
+            self._exchanges[vehicle] = found
+        return found
+
+    @property
+    def exchanges(self) -> Iterable[Exchange]:
+        """With every vehicle that it has asked for something, or was told of."""
+        return tuple(self._exchanges.values())
+
+
+class Exchange:
+    """What one client asks of one vehicle: commands, plans and streams."""
+
+    def __init__(self, client: Client, vehicle: int) -> None:
+        self.vehicle = vehicle
+        self.number, self.name = client.number, client.name
+        self.dialogue = Dialogue(client.number, vehicle, client.numbers)
+        self.plans = PlanServer(client.timing)
+        self.pace = Pace(client.deadman_ns)
         self.plan_ask = 0
         """The number of the plan request that is not over; 0: none."""

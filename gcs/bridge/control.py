@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Final
 
 from gcs import ipc
-from gcs.bridge.client import Client
+from gcs.bridge.client import Exchange
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers, BridgeEffect
 from gcs.gate.refusal import Code, Refusal
@@ -54,7 +54,9 @@ class ControlServer:
         self._speakers: set[int] = set()
         """Clients that have used the command."""
 
-    def handle(self, message: Message, client: Client, by: From, now_ns: int) -> list[BridgeEffect]:
+    def handle(
+        self, message: Message, client: Exchange, by: From, now_ns: int
+    ) -> list[BridgeEffect]:
         """A client's message about control; nothing for any other message."""
         match message:
             case CommandLong() | CommandInt() if message.command == Cmd.REQUEST_OPERATOR_CONTROL:
@@ -84,12 +86,12 @@ class ControlServer:
         """Whether a client understands CONTROL_STATUS, as far as it has shown."""
         return number in self._speakers
 
-    def _kept(self, client: Client) -> bool:
+    def _kept(self, client: Exchange) -> bool:
         """Whether another client is in control that lets nobody take over."""
         return self._owner != client.number and self._owner in self._keeps
 
     def _command(
-        self, message: CommandLong | CommandInt, client: Client, by: From, now_ns: int
+        self, message: CommandLong | CommandInt, client: Exchange, by: From, now_ns: int
     ) -> list[BridgeEffect]:
         dialogue, wish = client.dialogue, message.param1
         self._speakers.add(client.number)
@@ -128,7 +130,7 @@ class ControlServer:
         return Answers(owner.link, owner.addressed, request)
 
     def _change(
-        self, message: Message, asked: int, client: Client, by: From, now_ns: int
+        self, message: Message, asked: int, client: Exchange, by: From, now_ns: int
     ) -> list[BridgeEffect]:
         """The older protocol: its pass key is not looked at, who may be here is the link's."""
         kept = asked == _CHANGE_REQUEST and self._kept(client)

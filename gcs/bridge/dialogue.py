@@ -8,8 +8,9 @@ IN_PROGRESS, or the answer that it had.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 from typing import Final, TypeVar
 
 import msgspec
@@ -97,10 +98,15 @@ class _Lately:
 
 @dataclass(slots=True)
 class Dialogue:
-    """One client's requests; `client` is its number among the operators."""
+    """One client's requests of one vehicle.
+
+    `client` is its number among the operators, `vehicle` a system id; `numbers` are those that its
+    requests get, of which other dialogues of the same client take theirs.
+    """
 
     client: int
-    _next_id: int = 1
+    vehicle: int = 0
+    numbers: Iterator[int] = field(default_factory=lambda: count(1))
     _next_text: int = 1
     _pending: dict[int, _Pending] = field(default_factory=dict)
     _with_arm: dict[int, list[int]] = field(default_factory=dict)
@@ -169,14 +175,12 @@ class Dialogue:
 
     def number(self) -> int:
         """The next number of a request of this client."""
-        number = self._next_id
-        self._next_id += 1
-        return number
+        return next(self.numbers)
 
     def _open(self, pending: _Pending, ask: ipc.Ask) -> ipc.Ask:
         number = self.number()
         self._pending[number] = pending
-        return msgspec.structs.replace(ask, id=number)
+        return msgspec.structs.replace(ask, id=number, vehicle=self.vehicle)
 
     def _repeated(
         self, asked_by: From, key: bytes, command: int, now_ns: int
@@ -198,7 +202,7 @@ class Dialogue:
     def stream(self, asked_by: From, sample: ipc.Stream) -> list[BridgeEffect]:
         """One sample of a setpoint stream; it has no answer of its own."""
         self._streams_from = asked_by
-        return [Says(self.client, sample)]
+        return [Says(self.client, msgspec.structs.replace(sample, vehicle=self.vehicle))]
 
     # ---------------------------------------------------------------------------- answers
 

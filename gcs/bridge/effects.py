@@ -67,8 +67,19 @@ class StopsPlan:
 
 
 @dataclass(frozen=True, slots=True)
+class OfVehicle:
+    """What is about the vehicle with that system id (0: the first, before it is heard).
+
+    What is in no such effect is about all of them.
+    """
+
+    vehicle: int
+    effects: tuple[BridgeEffect, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class ToVehicle:
-    """A frame of a client that goes to the vehicle as it is."""
+    """A frame of a client that goes to the vehicle as it is; for all, on each link once."""
 
     raw: bytes
 
@@ -118,6 +129,7 @@ BridgeEffect: TypeAlias = (
     | Lost
     | Says
     | Refuses
+    | OfVehicle
     | AsksPlan
     | StopsPlan
     | ToVehicle

@@ -14,7 +14,7 @@ from typing import Final, TypeAlias
 
 from gcs import ipc
 from gcs.bridge.classes import Kind, Row, command_row, explain, message_row
-from gcs.bridge.client import Client
+from gcs.bridge.client import Exchange
 from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
@@ -92,7 +92,7 @@ class Judged:
 class Received:
     """One frame of a client, and who it is from and for."""
 
-    client: Client
+    client: Exchange
     by: From
     frame: Frame
     look: Look
@@ -102,7 +102,7 @@ class Received:
 
 
 class Judge:
-    """Of everything that clients send to the one vehicle."""
+    """Of everything that clients send to one vehicle."""
 
     def __init__(self, rules: BridgeRules, needed_hz: Rates, control: ControlServer) -> None:
         """`needed_hz`: how often the gate needs which message; `control`: who is in control."""
@@ -115,15 +115,26 @@ class Judge:
         self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
         """What the policy says of messages and commands by name."""
 
-    def judge(self, given: Received) -> Judged:
-        """What is done with it."""
-        frame = given.frame
+    def concerns_each(self, frame: Frame) -> bool:
+        """Of a frame for all vehicles: whether each is to be judged by itself, because it would
+        move them, or change what they have on board."""
+        _, message, kind = self._classified(frame)
+        plan = message is not None and kind is not Kind.DENIED and _is_of_plan(message)
+        return plan or kind in (Kind.MOTION, Kind.CONFIGURATION)
+
+    def _classified(self, frame: Frame) -> tuple[Row, Message | None, Kind]:
+        """Its row in the tables, the message where it is looked into, and its kind by policy."""
         row, message = message_row(frame.msgid), None
         if row.kind is not Kind.HARMLESS or frame.msgid in DECODED_IDS:
             message = decode(frame)
             if isinstance(message, CommandLong | CommandInt):
                 row = command_row(message.command)
-        kind = self._kinds.get(row.name, row.kind)
+        return row, message, self._kinds.get(row.name, row.kind)
+
+    def judge(self, given: Received) -> Judged:
+        """What is done with it."""
+        frame = given.frame
+        row, message, kind = self._classified(frame)
         if message is not None and kind is not Kind.DENIED and _is_of_plan(message):
             return self._plan(given, message, row)
         if kind is Kind.CONFIGURATION and _is_flown_to_at_once(message):
@@ -265,7 +276,7 @@ def _asks_for_height(by: From) -> AsksVehicle:
 
 
 def of_plan(
-    client: Client, effects: Sequence[PlanEffect], frame: Frame | None = None
+    client: Exchange, effects: Sequence[PlanEffect], frame: Frame | None = None
 ) -> list[BridgeEffect]:
     """What a client's plan server wants; `frame` is what it was given, if it was one."""
     done: list[BridgeEffect] = []
@@ -288,10 +299,11 @@ def of_plan(
 
 
 def _ask_plan(
-    client: Client, word: str, source: str, kind: MissionType, plan: ClientPlan | None
+    client: Exchange, word: str, source: str, kind: MissionType, plan: ClientPlan | None
 ) -> AsksPlan:
     client.plan_ask = client.dialogue.number()
-    return AsksPlan(client.number, ipc.Ask(client.plan_ask, word, path=source), kind, plan)
+    ask = ipc.Ask(client.plan_ask, word, path=source, vehicle=client.vehicle)
+    return AsksPlan(client.number, ask, kind, plan)
 
 
 def _is_of_plan(message: Message) -> bool:

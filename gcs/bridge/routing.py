@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from gcs.wire.codec import FrameWriter
 from gcs.wire.dialect import MESSAGES, MessageDef
 from gcs.wire.frame import Frame
 
@@ -23,9 +24,10 @@ is for the others only where it is for everybody."""
 def _offsets(definition: MessageDef) -> tuple[int, int] | None:
     """Where target_system and target_component stand in the payload; -1: the message has none."""
     at = {field.name: field.offset for field in definition.fields}
-    if "target_system" not in at:
+    system = "target" if definition.name == "MANUAL_CONTROL" else "target_system"
+    if system not in at:
         return None
-    return at["target_system"], at.get("target_component", -1)
+    return at[system], at.get("target_component", -1)
 
 
 TARGETS: Final = {
@@ -47,6 +49,22 @@ def target_of(frame: Frame) -> tuple[int, int]:
 
 def _byte(payload: bytes, at: int) -> int:
     return payload[at] if 0 <= at < len(payload) else 0
+
+
+def readdressed(frame: Frame, sysid: int) -> Frame:
+    """A frame for all systems as one for that system: all else of it is the same.
+
+    A message without a target is as it was.
+    """
+    offsets = TARGETS.get(frame.msgid)
+    if offsets is None:
+        return frame
+    payload = bytearray(frame.payload.ljust(offsets[0] + 1, b"\0"))
+    payload[offsets[0]] = sysid
+    writer = FrameWriter(frame.sysid, frame.compid)
+    writer.seq = frame.seq
+    raw = writer.write_payload(frame.msgid, bytes(payload))
+    return frame._replace(raw=raw, payload=bytes(payload), signature=b"")
 
 
 class Routes:

@@ -31,6 +31,7 @@ class Condition(StrEnum):
     ESTIMATOR_UNRELIABLE = "estimator_unreliable"
     FENCE_BREACHED = "fence_breached"
     VEHICLE_FENCE_BREACHED = "vehicle_fence_breached"
+    TOO_CLOSE = "too_close"
     VEHICLE_FAILSAFE_WEAK = "vehicle_failsafe_weak"
     VEHICLE_FAILSAFE_ACTIVE = "vehicle_failsafe_active"
     TICK_LATE = "tick_late"

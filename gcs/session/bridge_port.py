@@ -38,11 +38,14 @@ from gcs.session.discovery import needed_hz
 from gcs.session.effects import Effect, Emit
 from gcs.session.links import Counts, Links
 from gcs.session.missions import timing_of
+from gcs.session.operator_lines import line
 from gcs.session.operators import Operators
+from gcs.session.screen import lost_pct
 from gcs.session.settings import SPEED, TAKEOFF_HEIGHT
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
+from gcs.session.vehicles import Vehicles
 from gcs.session.work import Log, Work
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
@@ -60,7 +63,7 @@ class BridgePort:
         endpoints: Sequence[str],
         policy: Policy,
         times: Times,
-        vehicle: Vehicle,
+        vehicles: Vehicles,
         operators: Operators,
         links: Links,
     ) -> None:
@@ -70,7 +73,7 @@ class BridgePort:
         deadman_ns = round(times.policy(policy).stream.deadman_s * 1e9)
         timing = timing_of(times)
         self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing, deadman_ns)
-        self._vehicle = vehicle
+        self._vehicles = vehicles
         self._operators = operators
         self._links = links
         self._max_takeoff_up_m = policy.takeoff.max_up_m
@@ -82,65 +85,63 @@ class BridgePort:
 
     def from_client(self, link: int, frame: Frame, now_ns: int) -> Judged:
         """A good frame on a client's link."""
-        return self.bridge.from_client(link, frame, self._address, self._seen, now_ns)
+        vehicles = self._vehicles.addresses
+        return self.bridge.from_client(link, frame, vehicles, self._seen, now_ns)
 
-    def _seen(self) -> Seen | None:
-        telemetry = self._vehicle.telemetry
-        if telemetry is None:
+    def _seen(self, sysid: int) -> Seen | None:
+        """How that vehicle is; None before it is heard."""
+        vehicle = self._vehicles.of_sysid(sysid)
+        if vehicle is None or vehicle.telemetry is None:
             return None
-        seen = seen_of(
-            telemetry, self._vehicle.gate, self._vehicle.parameters, self._max_takeoff_up_m
-        )
-        vehicle = self._vehicle
+        seen = seen_of(vehicle.telemetry, vehicle.gate, vehicle.parameters, self._max_takeoff_up_m)
         return replace(
             seen, plan_transfer=vehicle.plan_transfer, mission_paused=vehicle.mission_paused
         )
 
     def parameter(self, frame: Frame) -> list[BridgeEffect]:
         """PARAM_VALUE on a vehicle's link: what it says of what clients have written."""
-        telemetry = self._vehicle.telemetry
-        if telemetry is None or (frame.sysid, frame.compid) != (telemetry.sysid, telemetry.compid):
+        vehicle = self._vehicles.of_sysid(frame.sysid)
+        telemetry = None if vehicle is None else vehicle.telemetry
+        if telemetry is None or frame.compid != telemetry.compid:
             return []
         message = decode(frame) if self._shown else None
         if not isinstance(message, ParamValue):
             return []
-        return self.bridge.parameter(message, telemetry.autopilot.name)
+        return self.bridge.parameter(message, telemetry.autopilot.name, telemetry.sysid)
 
-    def before_gate(self, given: Input, now_ns: int) -> list[BridgeEffect]:
+    def before_gate(self, given: Input, sysid: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle's own answer to a command is what the client is answered, too; and what one
         asks for, the answers to the others are older than."""
         if isinstance(given, Requested):
-            self.bridge.asked(self._operators.client_of(given.request_id))
+            self.bridge.asked(self._operators.client_of(given.request_id), sysid)
         if isinstance(given, CommandEnded) and given.result is not None:
             return self.bridge.command_answered(given.request_id, given.result, now_ns)
         return []
 
     def second(
-        self,
-        now_ns: int,
-        counts: Sequence[Counts],
-        lost_pct: float,
-        signed: Callable[[int], str],
+        self, now_ns: int, counts: Sequence[Counts], signed: Callable[[int], str]
     ) -> list[BridgeEffect | Emit]:
         """Once a second: who is lost, and how it stands for whoever watches the bridge.
 
         `signed` says of a link's number what is known of its signatures.
         """
         done: list[BridgeEffect | Emit] = [*self.bridge.second(now_ns)]
-        if self._address is not None:
-            done += self.bridge.control_status(self._address)
+        done += self.bridge.control_status(self._vehicles.addresses)
         if self._shown:
-            links = self._link_rows(now_ns, counts, lost_pct)
+            links = self._link_rows(now_ns, counts)
             clients = [
                 msgspec.structs.replace(client, signed=signed(client.link))
                 for client in self.bridge.status(now_ns)
             ]
-            done.append(Emit(ipc.BridgeStatus(now_ns, links, clients)))
+            vehicles = [
+                _vehicle_row(each, each.telemetry, now_ns)
+                for each in self._vehicles
+                if each.telemetry is not None
+            ]
+            done.append(Emit(ipc.BridgeStatus(now_ns, links, clients, vehicles)))
         return done
 
-    def _link_rows(
-        self, now_ns: int, counts: Sequence[Counts], lost_pct: float
-    ) -> list[ipc.BridgeLink]:
+    def _link_rows(self, now_ns: int, counts: Sequence[Counts]) -> list[ipc.BridgeLink]:
         """The links that vehicles are on, with their rates since the last time."""
         span_s = (now_ns - self._before_ns) / 1e9
         rows = [
@@ -149,7 +150,7 @@ class BridgePort:
                 name,
                 (count.received - before[0]) / span_s if self._before_ns else 0.0,
                 (count.sent - before[1]) / span_s if self._before_ns else 0.0,
-                lost_pct,
+                self._lost_pct(number),
             )
             for number, (name, count, before) in enumerate(
                 zip(self._endpoints, counts, self._before, strict=True)
@@ -159,70 +160,91 @@ class BridgePort:
         self._before_ns = now_ns
         return rows
 
+    def _lost_pct(self, link: int) -> float:
+        """The worst of the vehicles that are answered there; of all where none is."""
+        here = [each for each in self._vehicles if link in each.links] or [*self._vehicles]
+        return max(lost_pct(each.losses) for each in here)
+
     def as_operator(
         self,
         item: Joined | Lost | Says | Refuses | AsksPlan | StopsPlan | Notes | Emit,
+        vehicle: Vehicle,
         now_ns: int,
     ) -> list[Work]:
-        """What a MAVLink client does as an operator, and what it is told as one."""
+        """What a MAVLink client does as an operator, and what it is told as one, about `vehicle`
+        where it is about one."""
         match item:
             case Joined(client, name):
                 return self._operators.join(client, name, hold_on_leave=True)
             case Lost(client, reason):
                 return self._operators.lost(client, reason)
             case Says(client, command):
-                return self._operators.line(
-                    client, command, *self._vehicle.for_operators(now_ns), now_ns
-                )
+                return [line(self._operators, self._vehicles, client, command, now_ns)]
             case Refuses(client, ask, refusal):
                 return self._operators.refuse(client, ask, refusal)
             case AsksPlan():
-                return self._operators.ask_plan(item, self._vehicle.refusal(now_ns))
+                return self._operators.ask_plan(item, vehicle.refusal(now_ns))
             case StopsPlan():
                 return self._operators.stop_plan(item)
             case Notes(level, text):
                 return [Log(level, NODE, text)]
             case Emit(event, client):
-                return [*self.bridge.told(client, event, now_ns)]
+                return [*self.bridge.told(client, event, vehicle.sysid, now_ns)]
 
     def pass_on(
-        self, item: ToVehicle | AsksVehicle | ToLink | Answers, now_ns: int
+        self, item: ToVehicle | AsksVehicle | ToLink | Answers, links: Sequence[int], now_ns: int
     ) -> list[Effect]:
-        """Frames between clients and the vehicle."""
-        telemetry = self._vehicle.telemetry
+        """Frames between clients and vehicles, which are answered on `links`."""
         match item:
             case ToLink(link, raw):
                 return self._links.pass_on(link, raw, now_ns)
             case Answers(link, source, message):
                 return self._links.send_as(source, link, message, now_ns)
-            case ToVehicle(raw) if telemetry is not None:
-                return self._links.pass_on(telemetry.link, raw, now_ns)
-            case AsksVehicle(source, message) if telemetry is not None:
-                return self._links.send_as(source, telemetry.link, message, now_ns)
-            case _:
-                return []
+            case ToVehicle(raw):
+                return [sent for link in links for sent in self._links.pass_on(link, raw, now_ns)]
+            case AsksVehicle(source, message):
+                return [
+                    sent
+                    for link in links
+                    for sent in self._links.send_as(source, link, message, now_ns)
+                ]
 
-    def logged(self, line: Log, now_ns: int) -> list[BridgeEffect]:
-        """What the gate warns of, the clients read too; of a refusal only the one who asked."""
-        if line.node != teller.NODE or line.level < Level.WARNING or self._address is None:
+    def logged(self, line: Log, vehicle: Vehicle, now_ns: int) -> list[BridgeEffect]:
+        """What a vehicle's gate warns of, the clients read too; of a refusal only the one who
+        asked."""
+        telemetry = vehicle.telemetry
+        if line.node != teller.NODE or line.level < Level.WARNING or telemetry is None:
             return []
         if line.text.startswith((REFUSED_LINE, REFUSED_STREAM_LINE)):
             return []
-        return self.bridge.warn(line.level, line.text, self._address, now_ns)
+        address = Address(telemetry.sysid, telemetry.compid)
+        return self.bridge.warn(line.level, line.text, address, now_ns)
 
     def control(self, in_control: ipc.OperatorInfo | None, now_ns: int) -> list[BridgeEffect]:
         """Tell the clients where another one is in control than before."""
         number = in_control.client if in_control else 0
-        if number == self._told_in_control or self._address is None:
+        if number == self._told_in_control or self._vehicles.first.telemetry is None:
             return []
         self._told_in_control = number
         name = in_control.name if in_control else ""
-        return self.bridge.control_changed(number, name, self._address, now_ns)
+        return self.bridge.control_changed(number, name, self._vehicles.addresses, now_ns)
 
-    @property
-    def _address(self) -> Address | None:
-        telemetry = self._vehicle.telemetry
-        return None if telemetry is None else Address(telemetry.sysid, telemetry.compid)
+
+def _vehicle_row(vehicle: Vehicle, telemetry: Telemetry, now_ns: int) -> ipc.BridgeVehicle:
+    gate = vehicle.gate
+    return ipc.BridgeVehicle(
+        vehicle=telemetry.sysid,
+        name=telemetry.label,
+        state=gate.state.name,
+        control=gate.control.name,
+        severity=gate.severity.name,
+        conditions=[each.value for each in gate.conditions],
+        mode=telemetry.mode_name,
+        armed=telemetry.armed,
+        link=telemetry.link,
+        lost_pct=lost_pct(vehicle.losses),
+        silent_s=(now_ns - telemetry.heard_ns) / 1e9,
+    )
 
 
 TAKEOFF_UP_M = 2.5

@@ -12,6 +12,7 @@ from gcs.session.operators import Operators
 from gcs.session.setup import Setup
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
+from gcs.session.vehicles import Vehicles
 from gcs.session.work import Log, ToGate, Work
 
 NODE = "link"
@@ -20,10 +21,12 @@ NODE = "link"
 class Ending:
     """Whether the session is being left, and what is said at its end."""
 
-    def __init__(self, setup: Setup, times: Times, vehicle: Vehicle, operators: Operators) -> None:
+    def __init__(
+        self, setup: Setup, times: Times, vehicles: Vehicles, operators: Operators
+    ) -> None:
         self._setup = setup
         self._times = times
-        self._vehicle = vehicle
+        self._vehicles = vehicles
         self._operators = operators
         self._leaving_since_ns: int | None = None
         self.finished = False
@@ -33,6 +36,7 @@ class Ending:
         if self._leaving_since_ns is not None:
             return []
         self._leaving_since_ns = now_ns
+        self._vehicles.closed = True
         lost = gate_inputs.OperatorLost(reason)
         return [Log(Level.INFO, NODE, f"leaving: {reason}"), ToGate(lost)]
 
@@ -40,8 +44,8 @@ class Ending:
         """The end of the session, where the start is refused or the vehicle may be left."""
         if self.finished:
             return []
-        refusal = self._vehicle.bad_start
-        if refusal is not None:
+        refusal = self._vehicles.first.bad_start
+        if refusal is not None and len(self._vehicles) == 1:
             policy = self._setup.config.policy_path or self._setup.policy.name
             text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
             hint = "fly from inside the fence, or give a policy for this place with --policy"
@@ -50,11 +54,11 @@ class Ending:
         if self._leaving_since_ns is None:
             return self._farewells(log_path, now_ns) if self._operators.anyone_leaves else []
         overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
-        return self.finish(0, self._last_words()) if self._vehicle.gate.settled or overdue else []
+        return self.finish(0, self._last_words()) if self._vehicles.settled or overdue else []
 
     def _farewells(self, log_path: str, now_ns: int) -> list[Work]:
         """To those who leave a station that lives on."""
-        settled = self._vehicle.gate.settled
+        settled = self._vehicles.settled
         words = self._last_words() if settled else "the vehicle was not seen to hold yet"
         return self._operators.farewells(settled, words, log_path, now_ns)
 
@@ -62,19 +66,26 @@ class Ending:
         """Now, with this exit code."""
         self.finished = True
         return [
-            *self._vehicle.leave(),
+            *self._vehicles.each(lambda each: each.leave()),
             Log(Level.INFO, NODE, sentence),
-            *self._vehicle.remind(),
+            *self._vehicles.each(lambda each: each.remind()),
             Finish(exit_code, sentence),
         ]
 
     def _last_words(self) -> str:
-        telemetry = self._vehicle.telemetry
-        if telemetry is None:
-            return "no vehicle was heard"
-        if not self._vehicle.gate.settled:
-            return f"the vehicle was not seen to hold within {LEAVING_NS / 1e9:.0f} s"
-        if self._vehicle.gate.memory.on_ground:
-            return "the vehicle is on the ground" + (", still ARMED" if telemetry.armed else "")
-        height = "" if telemetry.pos_ned is None else f", {-telemetry.pos_ned[2]:.1f} m up"
-        return f"the vehicle is STILL FLYING in {telemetry.mode_name}{height}"
+        if len(self._vehicles) == 1:
+            return _last_words(self._vehicles.first, "the vehicle")
+        return "; ".join(_last_words(each, f"vehicle {each.sysid}") for each in self._vehicles)
+
+
+def _last_words(vehicle: Vehicle, name: str) -> str:
+    """How it is left."""
+    telemetry = vehicle.telemetry
+    if telemetry is None:
+        return "no vehicle was heard"
+    if not vehicle.gate.settled:
+        return f"{name} was not seen to hold within {LEAVING_NS / 1e9:.0f} s"
+    if vehicle.gate.memory.on_ground:
+        return f"{name} is on the ground" + (", still ARMED" if telemetry.armed else "")
+    height = "" if telemetry.pos_ned is None else f", {-telemetry.pos_ned[2]:.1f} m up"
+    return f"{name} is STILL FLYING in {telemetry.mode_name}{height}"

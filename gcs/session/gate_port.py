@@ -20,7 +20,7 @@ from gcs.gate.requests import GoTo
 from gcs.gate.states import State
 from gcs.report import FenceShape, StopItem
 from gcs.session import teller
-from gcs.session.effects import Record
+from gcs.session.effects import Effect, Record
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
 
@@ -30,9 +30,11 @@ NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
 class GatePort:
     """Before a vehicle is heard the gate is one that refuses everything: NO_VEHICLE."""
 
-    def __init__(self, policy: Policy, now_ns: int) -> None:
-        """`policy` is on the session's clock: see `Times.policy`."""
+    def __init__(self, policy: Policy, now_ns: int, *, shown: bool = True) -> None:
+        """`policy` is on the session's clock: see `Times.policy`.  `shown`: operators are told of
+        its transitions and its fence."""
         self.policy = policy
+        self._shown = shown
         self.gate = Gate(self.policy, "", now_ns)
         self.bad_start: Refusal | None = None
         """Why the vehicle's place at the start is outside the fence, once that is known."""
@@ -93,12 +95,17 @@ class GatePort:
                 return [Decide(request_id, ruling, refusal, evidence, goal_ned)]
             case effects.Transition():
                 goal_ned = self.gate.active_goal_ned
-                return [*teller.transition(effect, goal_ned, teller.conditions(self.gate), sysid)]
+                wrong = teller.conditions(self.gate)
+                return self._for_screens(teller.transition(effect, goal_ned, wrong, sysid))
             case effects.Say(level, text):
                 return [Log(level, teller.NODE, text)]
             case effects.SwitchedFence(on):
                 self._fence_on = on
                 return [PlaceFence()]
+
+    def _for_screens(self, told: list[Effect]) -> list[Work]:
+        """All of it for the vehicle that is shown; of another one only the record."""
+        return [each for each in told if self._shown or isinstance(each, Record)]
 
     def predicted_stop(self, telemetry: Telemetry) -> list[Work]:
         """Where the gate predicts that the vehicle comes to rest; in flight only."""
@@ -124,7 +131,7 @@ class GatePort:
         )
         return [
             ToGate(inputs.VerifierChanged(verifier)),
-            *teller.fence(verifier.zones, telemetry.origin, self.policy),
+            *(teller.fence(verifier.zones, telemetry.origin, self.policy) if self._shown else ()),
             *([] if telemetry.pos_ned is None else self._breached(telemetry.pos_ned)),
         ]
 

@@ -21,8 +21,9 @@ from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
 from gcs.session.recorded import pieces
 from gcs.session.signatures import Signatures
-from gcs.session.vehicle import INTERPRETED, Vehicle
-from gcs.session.work import ToGate, Work
+from gcs.session.vehicle import INTERPRETED
+from gcs.session.vehicles import Vehicles
+from gcs.session.work import STATION, ToGate, Work
 from gcs.wire.blanking import without_key
 from gcs.wire.frame import Frame, Garbage, Item
 from gcs.wire.ids import MsgId
@@ -43,7 +44,7 @@ class Incoming:
         links: Links,
         signatures: Signatures,
         queue: WorkQueue,
-        vehicle: Vehicle,
+        vehicles: Vehicles,
         operators: Operators,
         bridge: BridgePort,
     ) -> None:
@@ -52,7 +53,7 @@ class Incoming:
         self._links = links
         self._signatures = signatures
         self._queue = queue
-        self._vehicle = vehicle
+        self._vehicles = vehicles
         self._operators = operators
         self._bridge = bridge
         self.other_station_ns = 0
@@ -104,7 +105,7 @@ class Incoming:
         """What came on a vehicle's link: its frames are first of all sent on to the clients,
         together as they came.  Nearly all of them are only recorded and counted, which is no work
         for the queue."""
-        put, passes = self._queue.put, self._vehicle.passes
+        put, passes = self._queue.put, self._vehicles.passes
         special, own_compid = self._operators.subscribed, self._own[1]
         frames = [item for item in taken if type(item) is Frame]
         for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
@@ -121,12 +122,14 @@ class Incoming:
             put(Record(FrameItem(link, _RECEIVED, item.raw)))
             msgid = item.msgid
             if msgid in INTERPRETED or msgid in special or item.compid == own_compid:
-                work = self._vehicle_frame(link, item, now_ns)
+                work, owner = self._vehicle_frame(link, item, now_ns), STATION
+            elif passes(link, item, now_ns):
+                work, owner = _ALIVE, self._vehicles.owner_of(item)
             else:
-                work = _ALIVE if passes(link, item, now_ns) else ()
+                continue
             if work:
                 worked = True
-                self._queue.run(work, now_ns)
+                self._queue.run(work, now_ns, owner)
         return worked
 
     def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
@@ -141,9 +144,9 @@ class Incoming:
             self.other_station_ns = now_ns
             text = f"another station on link {link} calls itself {sysid}/{compid}"
             return [condition(Condition.OTHER_STATION, True, text)]
-        work = self._vehicle.frame(link, frame, now_ns)
+        work = self._vehicles.frame(link, frame, now_ns)
         if frame.msgid == MsgId.PARAM_VALUE:
             work += self._bridge.parameter(frame)
-        if frame.sysid == self._vehicle.sysid:
+        if frame.sysid == self._vehicles.first.sysid:
             work += self._operators.heard(frame, now_ns)
         return work

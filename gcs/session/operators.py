@@ -120,6 +120,14 @@ class Operators:
 
     # ------------------------------------------------------------------------------ lines
 
+    def vehicle_of(self, command: ipc.Ask | ipc.Stream) -> int:
+        """The system id of the vehicle that it is for, 0 for the first: an abort of an operation
+        is for that one's."""
+        if isinstance(command, ipc.Ask) and command.operation:
+            operation = self._operations.get(command.operation)
+            return command.vehicle if operation is None else operation.asked.vehicle
+        return command.vehicle
+
     def line(
         self,
         client: int,
@@ -253,7 +261,7 @@ class Operators:
         name = self._clients.name(asked.client)
         work: list[Work] = [*teller.verdict(told, asked, sysid)]
         if asked.client >= FIRST_NUMBER:
-            work.append(teller.bridge_decision(told, asked, name, now_ns))
+            work.append(teller.bridge_decision(told, asked, name, sysid, now_ns))
         if told.ruling is not Ruling.ACCEPTED:
             requests.close(request_id)
             return work

@@ -4,6 +4,9 @@ Work is done in the order in which it was returned, and what an item leads to is
 place.  There is one exception: an input for the gate that is raised while effects of the gate
 are still being carried out waits until all of them are.  So the gate is never asked anything in
 the middle of its own answer, and the record tells transitions in the order they happened.
+
+Each item has an owner: a vehicle, by its slot, or the station.  What an item leads to has the same
+owner; `For` gives work to another one.
 """
 
 from __future__ import annotations
@@ -11,16 +14,24 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias, cast, get_args
 
+import msgspec
+
 from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.session.effects import Effect, Emit
-from gcs.session.work import GateAnswered, ToGate, Work
+from gcs.session.work import STATION, For, GateAnswered, ToGate, Work
 
 EFFECT_TYPES: Final = frozenset(get_args(Effect))
 """Looked up by type: `isinstance` costs more than the rest of a turn."""
 
-Step: TypeAlias = Callable[[Work, int], Sequence[Work]]
-"""Does one item at `now_ns` and returns what follows from it.  What follows from a `ToGate` holds
-one `GateAnswered`, behind the gate's own effects."""
+Step: TypeAlias = Callable[[Work, int, int], Sequence[Work]]
+"""Does one item of an owner at `now_ns` and returns what follows from it.  What follows from a
+`ToGate` of a vehicle holds one `GateAnswered`, behind the gate's own effects."""
+
+
+class _OwnedAgain(msgspec.Struct, frozen=True, gc=False):
+    """On the agenda: from here on the items are this owner's again."""
+
+    owner: int
 
 
 class WorkQueue:
@@ -28,33 +39,43 @@ class WorkQueue:
 
     def __init__(self, step: Step) -> None:
         self._step = step
-        self._postponed: list[Work] = []
+        self._postponed: list[For] = []
         self._effects: list[Work] = []
 
-    def run(self, work: Sequence[Work], now_ns: int) -> None:
-        """Do all of it, and all that it leads to.
+    def run(self, work: Sequence[Work], now_ns: int, owner: int = STATION) -> None:
+        """Do all of it, which is of `owner`, and all that it leads to.
 
         What a MAVLink client is told is work, too: the bridge puts it in MAVLink's words.
         """
-        agenda = list(reversed(work))  # the next item last
+        agenda: list[Work | _OwnedAgain] = list(reversed(work))  # the next item last
         step, effects, postponed = self._step, self._effects, self._postponed
         gate_answers = False
         while agenda:
             item = agenda.pop()
+            if isinstance(item, _OwnedAgain):
+                owner = item.owner
+                continue
             kind = type(item)
             if kind is Emit and cast("Emit", item).client >= FIRST_NUMBER:
-                agenda += reversed(step(item, now_ns))
+                agenda += reversed(step(item, owner, now_ns))
             elif kind in EFFECT_TYPES:
                 effects.append(item)
+            elif isinstance(item, For):
+                agenda.append(_OwnedAgain(owner))
+                agenda += reversed(item.work)
+                owner = item.owner
             elif kind is GateAnswered:
                 gate_answers = False
                 agenda += reversed(postponed)
                 postponed.clear()
-            elif kind is ToGate and gate_answers:
-                postponed.append(item)
+            elif kind is ToGate and owner != STATION:
+                if gate_answers:
+                    postponed.append(For(owner, (item,)))
+                else:
+                    gate_answers = True
+                    agenda += reversed(step(item, owner, now_ns))
             else:
-                gate_answers |= kind is ToGate
-                agenda += reversed(step(item, now_ns))
+                agenda += reversed(step(item, owner, now_ns))
 
     @property
     def put(self) -> Callable[[Effect], None]:

@@ -18,6 +18,7 @@ from gcs.bridge.effects import (
     Joined,
     Lost,
     Notes,
+    OfVehicle,
     Refuses,
     Says,
     StopsPlan,
@@ -28,6 +29,7 @@ from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
+from gcs.gate.inputs import PositionSeen
 from gcs.gate.machine.gate import Gate
 from gcs.protocol.effects import Address, Send
 from gcs.session import teller
@@ -60,22 +62,27 @@ from gcs.session.inputs import (
     Wake,
 )
 from gcs.session.links import Links
+from gcs.session.operator_lines import line
 from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
 from gcs.session.recorded import fault, hello, introduction, recorded, sim_line
-from gcs.session.screen import lost_pct, snapshot
+from gcs.session.screen import snapshot
+from gcs.session.separation import Separation
 from gcs.session.setup import Setup
 from gcs.session.signatures import NO_KEYS, Keys, Signatures
 from gcs.session.telemetry import Telemetry
 from gcs.session.ticks import Ticks
 from gcs.session.times import Times
-from gcs.session.vehicle import Vehicle
+from gcs.session.vehicles import FIRST as FIRST_SLOT
+from gcs.session.vehicles import Vehicles
 from gcs.session.work import (
+    STATION,
     AskGate,
     AskMission,
     CheckStart,
     Decide,
     EndSession,
+    For,
     Log,
     PlaceFence,
     SecondDue,
@@ -98,7 +105,7 @@ MAX_FAULTS = 10
 
 
 class Session:
-    """Any number of operators and links, one vehicle; from the first byte to `Finish`."""
+    """Any number of operators, links and vehicles; from the first byte to `Finish`."""
 
     def __init__(self, setup: Setup, now_ns: int, keys: Keys = NO_KEYS) -> None:
         """`keys` are no part of the set-up, which is recorded."""
@@ -116,14 +123,15 @@ class Session:
             unsigned_taken=setup.policy.signing.unsigned == "warn",
         )
         self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
-        self._vehicle = Vehicle(config, setup.policy, self._times, now_ns)
+        self._vehicles = Vehicles(config, setup.policy, self._times, now_ns)
+        self._separation = Separation(setup.policy.separation)
         self._operators = Operators(setup, self._times)
         self._bridge = BridgePort(
             config,
             setup.endpoints,
             setup.policy,
             self._times,
-            self._vehicle,
+            self._vehicles,
             self._operators,
             self._links,
         )
@@ -136,11 +144,11 @@ class Session:
             self._links,
             self._signatures,
             self._queue,
-            self._vehicle,
+            self._vehicles,
             self._operators,
             self._bridge,
         )
-        self._ending = Ending(setup, self._times, self._vehicle, self._operators)
+        self._ending = Ending(setup, self._times, self._vehicles, self._operators)
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
@@ -158,23 +166,28 @@ class Session:
         return self._deadline_ns
 
     def _next_deadline_ns(self) -> int:
-        waits = (self._ticks.next_ns, self._vehicle.deadline_ns, self._bridge.bridge.deadline_ns)
+        waits = (self._ticks.next_ns, self._vehicles.deadline_ns, self._bridge.bridge.deadline_ns)
         return min(time_ns for time_ns in waits if time_ns is not None)
 
     @property
     def gate(self) -> Gate:
-        """To look at, not to handle."""
-        return self._vehicle.gate
+        """The first vehicle's; to look at, not to handle."""
+        return self._vehicles.first.gate
 
     @property
     def nothing_heard(self) -> bool:
         """No vehicle was heard, and none of our own was started: there is nothing to keep."""
-        return self._vehicle.telemetry is None and self._setup.config.sim is None
+        return self._vehicles.first.telemetry is None and self._setup.config.sim is None
 
     @property
     def telemetry(self) -> Telemetry | None:
-        """The vehicle as it reports itself, None before one is heard."""
-        return self._vehicle.telemetry
+        """The first vehicle as it reports itself, None before one is heard."""
+        return self._vehicles.first.telemetry
+
+    @property
+    def vehicles(self) -> Vehicles:
+        """To look at, not to handle."""
+        return self._vehicles
 
     def handle(self, given: Input, now_ns: int) -> list[Effect]:
         """Everything that follows from `given` at `now_ns`, in order."""
@@ -182,7 +195,7 @@ class Session:
         self._unfinished = given
         if not self._introduced:
             self._introduced = True
-            begin = [*introduction(self._setup, self._start_ns), *self._vehicle.remind()]
+            begin = [*introduction(self._setup, self._start_ns), *self._remind()]
             queue.run(begin, now_ns)
         if isinstance(given, Datagram):
             if not self._incoming.datagram(given, now_ns):
@@ -219,8 +232,9 @@ class Session:
             work.append(Emit(bye, given.client))
         if isinstance(given, Wake) or self._faults > MAX_FAULTS:
             self._ending.finished = True
-            hold = self._vehicle.hold_without_gate(now_ns)
-            work += [item for item in hold if isinstance(item, Send)]
+            work += self._vehicles.each(
+                lambda each: [w for w in each.hold_without_gate(now_ns) if isinstance(w, Send)]
+            )
             work.append(Finish(ExitCode.BUG, "an internal error: the vehicle was told to hold"))
         self._queue.run(work, now_ns)
         return self._queue.take()
@@ -232,13 +246,12 @@ class Session:
         match given:
             case Wake():
                 of_clients = self._bridge.bridge.wake(now_ns)
-                return [*of_clients, *self._vehicle.wake(now_ns), *self._ticks.wake(now_ns)]
+                of_vehicles = self._vehicles.each(lambda each: each.wake(now_ns))
+                return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
             case OperatorJoined():
                 return self._welcome(given, now_ns)
             case OperatorLine(client, command):
-                return self._operators.line(
-                    client, command, *self._vehicle.for_operators(now_ns), now_ns
-                )
+                return [line(self._operators, self._vehicles, client, command, now_ns)]
             case OperatorNoise(client, text):
                 return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
             case OperatorGone(client, reason):
@@ -257,7 +270,7 @@ class Session:
             case ClientFlooded(link, dropped):
                 return [*self._bridge.bridge.flooded(link, dropped)]
             case FileRead() | FileWritten():
-                return self._vehicle.file(given, now_ns)
+                return self._vehicles.each(lambda each: each.file(given, now_ns))
             case RecorderChanged():
                 return self._recorder(given)
             case RecorderGrew(size_bytes):
@@ -271,21 +284,27 @@ class Session:
                 return self._sim_gone(exit_code)
         assert_never(given)
 
-    def _step(self, item: Work, now_ns: int) -> list[Work]:
-        """Hand one item of work to the part that it is for."""
+    def _step(self, item: Work, owner: int, now_ns: int) -> list[Work]:
+        """Hand one item of work to the part that it is for; `owner` is whose it is."""
+        vehicle = self._vehicles.of_owner(owner)
         match item:
+            case ToGate() if owner == STATION:
+                return self._vehicles.to_all(item)
             case ToGate(given):
-                answered = self._bridge.before_gate(given, now_ns)
-                return [*answered, *self._vehicle.ask_gate(given, now_ns)]
+                answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
+                work = [*answered, *vehicle.ask_gate(given, now_ns)]
+                if type(given) is PositionSeen:
+                    work += self._separation.moved(self._vehicles, owner, now_ns)
+                return work
             case Send(message):
-                telemetry = self._vehicle.telemetry
+                telemetry = vehicle.telemetry
                 if telemetry is None:
                     return []
                 return [*self._links.send(telemetry.link, message, now_ns)]
             case gate_effects.Outcome():
-                return self._operators.outcome(item, self._vehicle.sysid, now_ns)
+                return self._operators.outcome(item, vehicle.sysid, now_ns)
             case gate_effects.StreamVerdict():
-                return self._operators.stream_verdict(item, self._vehicle.sysid)
+                return self._operators.stream_verdict(item, vehicle.sysid)
             case (
                 gate_effects.SendSetpoint()
                 | gate_effects.SendCommand()
@@ -297,34 +316,42 @@ class Session:
                 | PlaceFence()
                 | CheckStart()
             ):
-                return self._vehicle.carry_out(item, now_ns)
+                return vehicle.carry_out(item, now_ns)
             case Log():
-                told = teller.log(item, now_ns)
-                return [*told, *self._bridge.logged(item, now_ns)]
+                prefix = self._vehicles.prefix(owner)
+                told = teller.log(item, now_ns, prefix)
+                return [*told, *self._bridge.logged(item, vehicle, now_ns)]
             case AskGate():
                 return self._operators.asked_of_gate(item)
             case AskMission():
-                return self._vehicle.ask_mission(item, now_ns)
+                return vehicle.ask_mission(item, now_ns)
             case StopTransfer(request_id):
-                return self._vehicle.stop_transfer(request_id)
+                return self._vehicles.each(lambda each: each.stop_transfer(request_id))
             case Decide():
-                return self._operators.verdict(item, self._vehicle.sysid, now_ns)
+                return self._operators.verdict(item, vehicle.sysid, now_ns)
             case Tell():
                 return self._operators.tell(item)
             case EndSession(reason):
-                return self._ending.begin(reason, now_ns)
+                return [For(STATION, tuple(self._ending.begin(reason, now_ns)))]
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
-                return [Emit(self._snapshot(now_ns)), *self._vehicle.predicted_stop()]
+                stops = self._vehicles.each(lambda each: each.predicted_stop())
+                return [Emit(self._snapshot(now_ns)), *stops]
             case (
                 Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()
             ):
-                return self._bridge.as_operator(item, now_ns)
+                return self._bridge.as_operator(item, vehicle, now_ns)
+            case OfVehicle(sysid, effects):
+                slot = self._vehicles.slot_of(sysid)
+                return [For(FIRST_SLOT if slot is None else slot, effects)]
+            case AsksForStreams() if owner == STATION:
+                return self._vehicles.to_all(item)
             case AsksForStreams(msgids):
-                return self._vehicle.ask_for_streams(msgids, now_ns)
+                return vehicle.ask_for_streams(msgids, now_ns)
             case ToVehicle() | AsksVehicle() | ToLink() | Answers():
-                return [*self._bridge.pass_on(item, now_ns)]
+                links = self._vehicles.links if owner == STATION else vehicle.links
+                return [*self._bridge.pass_on(item, links, now_ns)]
             case _:
                 raise AssertionError(f"the queue keeps {item} for itself")
 
@@ -332,16 +359,20 @@ class Session:
 
     def _every_second(self, now_ns: int) -> list[Work]:
         """Heartbeat, what is missing, and the slow half of the record."""
-        work: list[Work] = [*self._links.heartbeat(now_ns), *self._vehicle.remind()]
-        lost = lost_pct(self._vehicle.losses)
-        work += self._bridge.second(now_ns, self._links.counts, lost, self._signatures.told)
+        first = self._vehicles.first
+        work: list[Work] = [*self._links.heartbeat(now_ns), *self._remind()]
+        work += self._bridge.second(now_ns, self._links.counts, self._signatures.told)
         work += self._signatures.second(now_ns)
-        if self._vehicle.telemetry is None:
+        if first.telemetry is None:
             return work + self._no_vehicle_yet(now_ns)
         if now_ns - self._incoming.other_station_ns > self._times.real_ns(OTHER_STATION_NS):
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
-        wanted = self._operators.missing_messages(self._vehicle.telemetry, now_ns)
-        return [*work, *self._vehicle.second(now_ns), *self._vehicle.send_own(wanted, now_ns)]
+        wanted = self._operators.missing_messages(first.telemetry, now_ns)
+        work += self._vehicles.each(lambda each: each.second(now_ns))
+        return [*work, For(FIRST_SLOT, tuple(first.send_own(wanted, now_ns)))]
+
+    def _remind(self) -> list[Work]:
+        return self._vehicles.each(lambda each: each.remind())
 
     def _no_vehicle_yet(self, now_ns: int) -> list[Work]:
         waited_s = self._times.real_s(now_ns - self._start_ns)
@@ -355,7 +386,7 @@ class Session:
         self._told_no_vehicle = True
         where = ", ".join(self._setup.endpoints)
         hint = "is the vehicle running, and does it send to this address? (try: gcs fly --sim)"
-        heard = self._vehicle.heard_vehicles(now_ns)
+        heard = self._vehicles.heard_names(now_ns)
         wanted = self._setup.config.target_sysid
         text = f"no vehicle heard for {waited_s:.0f} s ({where})"
         if heard and wanted:
@@ -369,7 +400,7 @@ class Session:
 
     def _welcome(self, joined: OperatorJoined, now_ns: int) -> list[Work]:
         """What everybody else knows already, for one that has just joined."""
-        client, fence = joined.client, self._vehicle.fence_shapes
+        client, fence = joined.client, self._vehicles.first.fence_shapes
         return [
             Emit(hello(self._setup, self._log_path, fence, client), client),
             Emit(self._snapshot(now_ns), client),
@@ -388,7 +419,7 @@ class Session:
         """Before it was heard, there is nothing to wait for; later, its silence tells."""
         text = f"the vehicle's process ended by itself with exit code {exit_code}"
         log = Log(Level.ERROR, NODE, text)
-        if self._vehicle.telemetry is not None:
+        if self._vehicles.first.telemetry is not None:
             return [log]
         hint = "the lines from `sim` in the log tell why"
         return [
@@ -398,17 +429,18 @@ class Session:
         ]
 
     def _snapshot(self, now_ns: int) -> ipc.Snapshot:
+        first = self._vehicles.first
         return snapshot(
-            self.gate,
-            self._vehicle.telemetry,
+            first.gate,
+            first.telemetry,
             now_ns,
-            mission_total=self._vehicle.mission_total,
-            losses=self._vehicle.losses,
+            mission_total=first.mission_total,
+            losses=first.losses,
             log_path=self._log_path,
             recording=self._recording,
             recorded_bytes=self._recorded_bytes,
-            vehicles=self._vehicle.heard_vehicles(now_ns),
-            listening=self._vehicle.listening(now_ns),
+            vehicles=self._vehicles.heard_names(now_ns),
+            listening=first.listening(now_ns),
             in_control=self._operators.in_control,
         )
 

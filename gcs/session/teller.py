@@ -35,9 +35,9 @@ from gcs.session.work import Decide, Log
 NODE = "state_and_safety"
 
 
-def log(line: Log, now_ns: int) -> list[Effect]:
-    """One line, to the screen and to the record."""
-    event = LogEvent(now_ns, int(line.level), line.node, line.text)
+def log(line: Log, now_ns: int, prefix: str = "") -> list[Effect]:
+    """One line, to the screen and to the record; `prefix` names the vehicle that it is of."""
+    event = LogEvent(now_ns, int(line.level), line.node, prefix + line.text)
     return [Emit(event), Record(event)]
 
 
@@ -78,7 +78,7 @@ def verdict(told: Decide, asked: Asked, sysid: int) -> list[Effect]:
     return [Emit(event, asked.client), Record(item)]
 
 
-def bridge_decision(told: Decide, asked: Asked, name: str, now_ns: int) -> Emit:
+def bridge_decision(told: Decide, asked: Asked, name: str, sysid: int, now_ns: int) -> Emit:
     """The verdict on what a MAVLink client asked for, for whoever watches the bridge."""
     refusal = told.refusal
     return Emit(
@@ -90,6 +90,7 @@ def bridge_decision(told: Decide, asked: Asked, name: str, now_ns: int) -> Emit:
             outcome=told.ruling.value,
             code=refusal.code.value if refusal else "",
             sentence=refusal.sentence if refusal else "",
+            vehicle=sysid,
         )
     )
 
@@ -110,7 +111,9 @@ def stream_verdict(told: effects.StreamVerdict, client: int, sysid: int) -> list
         goal=None,
         numbers=dict(told.evidence),
     )
-    event = ipc.StreamVerdictEvent(item.outcome, item.code, item.sentence, item.zone, item.numbers)
+    event = ipc.StreamVerdictEvent(
+        item.outcome, item.code, item.sentence, item.zone, item.numbers, sysid
+    )
     return [Emit(event, client), Record(item)]
 
 

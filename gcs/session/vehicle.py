@@ -83,16 +83,35 @@ INTERPRETED: Final = frozenset(
 """Ids of the messages that `Vehicle` does something with; the others are only counted."""
 
 
-class Vehicle:
-    """The vehicle that a session flies; `telemetry` is None until it is heard."""
+def is_autopilot(frame: Frame) -> bool:
+    """A HEARTBEAT of an autopilot, not of a ground station, a camera or a radio."""
+    beat = decode(frame) if frame.compid == Component.AUTOPILOT1 else None
+    return isinstance(beat, m.Heartbeat) and _of_autopilot(beat)
 
-    def __init__(self, config: StationConfig, policy: Policy, times: Times, now_ns: int) -> None:
+
+def _of_autopilot(beat: m.Heartbeat) -> bool:
+    return beat.type != MavType.GCS and beat.autopilot != MavAutopilot.INVALID
+
+
+class Vehicle:
+    """One vehicle that a session flies; `telemetry` is None until it is heard."""
+
+    def __init__(
+        self,
+        config: StationConfig,
+        policy: Policy,
+        times: Times,
+        now_ns: int,
+        *,
+        shown: bool = True,
+    ) -> None:
+        """`shown`: it is the one that the screens of operators show."""
         self._config = config
         self._times = times
         gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self._start_ns = now_ns
         own = self._own = Address(config.sysid, config.compid)
-        self._port = GatePort(times.policy(policy), now_ns)
+        self._port = GatePort(times.policy(policy), now_ns, shown=shown)
         self._commands = Commands(own, times)
         self._discovery = Discovery(times)
         self._settings = Settings(own, times, limits_of(policy, own.sysid))
@@ -133,6 +152,11 @@ class Vehicle:
     def sysid(self) -> int:
         """0 before it is heard."""
         return self.telemetry.sysid if self.telemetry else 0
+
+    @property
+    def links(self) -> list[int]:
+        """The link that it is answered on; none before it is heard."""
+        return [] if self.telemetry is None else [self.telemetry.link]
 
     @property
     def fence_shapes(self) -> list[FenceShape]:
@@ -262,9 +286,7 @@ class Vehicle:
 
     def _discover(self, link: int, frame: Frame, beat: m.Heartbeat, now_ns: int) -> list[Work]:
         """Choose our vehicle: the first autopilot that is heard, or the one that was named."""
-        if beat.type == MavType.GCS or beat.autopilot == MavAutopilot.INVALID:
-            return []
-        if frame.compid != Component.AUTOPILOT1:
+        if not _of_autopilot(beat) or frame.compid != Component.AUTOPILOT1:
             return []
         work: list[Work] = []
         if self._roster.heard(frame.sysid, frame.compid, beat, now_ns):

@@ -23,9 +23,19 @@ from gcs.protocol.effects import Send
 from gcs.session.effects import Effect
 from gcs.wire.ids import MissionType
 
+STATION: Final = -1
+"""The owner of work that is no vehicle's; vehicles have their slots, from 0 up."""
+
+
+class For(msgspec.Struct, frozen=True):
+    """Work for another owner, and whatever it leads to."""
+
+    owner: int
+    work: tuple[Work, ...]
+
 
 class ToGate(msgspec.Struct, frozen=True, gc=False):
-    """An input for the vehicle's gate."""
+    """An input for the owner's gate; of the station: for every vehicle's gate."""
 
     given: gate_inputs.Input
 
@@ -114,6 +124,7 @@ class CheckStart(msgspec.Struct, frozen=True, gc=False):
 Work: TypeAlias = (
     Effect
     | gate_effects.Effect
+    | For
     | ToGate
     | GateAnswered
     | AskGate

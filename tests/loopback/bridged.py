@@ -84,12 +84,17 @@ class Client:
         return found[0]
 
     def fly_to(
-        self, lat_deg: float, lon_deg: float, alt_amsl_m: float, yaw_rad: float = math.nan
+        self,
+        lat_deg: float,
+        lon_deg: float,
+        alt_amsl_m: float,
+        yaw_rad: float = math.nan,
+        target: tuple[int, int] = VEHICLE,
     ) -> None:
         """DO_REPOSITION, as MAVSDK and QGroundControl send it."""
         self.send(
             dialect.MAVLink_command_int_message(
-                *VEHICLE,
+                *target,
                 dialect.MAV_FRAME_GLOBAL,
                 dialect.MAV_CMD_DO_REPOSITION,
                 0,

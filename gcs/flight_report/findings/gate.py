@@ -46,6 +46,7 @@ CONDITIONS = {
     "estimator_unreliable": "the estimator's position was in doubt",
     "fence_breached": "the vehicle was outside the fence",
     "vehicle_fence_breached": "the vehicle was outside its own fence",
+    "too_close": "the vehicle came too close to another one",
     "vehicle_failsafe_weak": "some of the vehicle's own failsafes are off",
     "vehicle_failsafe_active": "the vehicle said that it was in an emergency",
     "tick_late": "the station was late",

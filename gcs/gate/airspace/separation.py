@@ -1,4 +1,4 @@
-"""How near two vehicles will come to each other, and how bad that is.
+"""How near two vehicles will come to each other, and whether that is too close.
 
 Both are taken to fly on as they do, for as long as is looked ahead; how wrong their positions and
 velocities may be makes the distance smaller.  In one horizontal frame, metres and seconds.
@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
-from gcs.gate.condition import Severity
+from gcs.gate.policy.policy import SeparationLimits
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,19 +41,6 @@ class Approach:
     least_m: float
 
 
-@dataclass(frozen=True, slots=True)
-class SeparationRules:
-    """Nearer than `least_m` within `within_s` is `severity`, which may be NOMINAL.
-
-    `near_m`, no less than `least_m`: nearer than that is at least CAUTION.
-    """
-
-    least_m: float
-    near_m: float
-    within_s: float
-    severity: Severity
-
-
 def closest_approach(a: Track, b: Track, within_s: float) -> Approach:
     """Of two vehicles that fly straight on for `within_s` seconds.
 
@@ -78,11 +65,9 @@ def closest_approach(a: Track, b: Track, within_s: float) -> Approach:
     return Approach(at_s, math.hypot(north_m, east_m), abs(down_m), least_m)
 
 
-def severity_of(approach: Approach, rules: SeparationRules) -> Severity:
-    """How bad it is that two vehicles come that near."""
-    if not approach.least_m >= rules.least_m:
-        return rules.severity
-    return Severity.NOMINAL if approach.least_m >= rules.near_m else Severity.CAUTION
+def is_too_close(approach: Approach, limits: SeparationLimits, *, was: bool) -> bool:
+    """Whether two vehicles come too close to each other, `was` said whether they did so far."""
+    return not approach.least_m >= limits.least_m + (limits.hysteresis_m if was else 0.0)
 
 
 def _candidates(apart: Vec3, relative: Vec3, widens_m_s: float, end_s: float) -> tuple[float, ...]:

@@ -141,6 +141,15 @@ class LinkLimits(_Section, frozen=True):
     min_radio_margin_db: FromZero
 
 
+class SeparationLimits(_Section, frozen=True):
+    """Two vehicles that will be nearer than `least_m` within `within_s`, if each flies straight on,
+    are too close, until they stay `hysteresis_m` farther apart than that."""
+
+    least_m: FromZero
+    hysteresis_m: FromZero
+    within_s: Annotated[float, Meta(ge=0.0, le=60.0)]
+
+
 class GpsLimits(_Section, frozen=True):
     """From where on a GPS with a fix is poor."""
 
@@ -249,6 +258,7 @@ class Policy(_Section, frozen=True):
     battery: BatteryLimits
     link: LinkLimits
     gps: GpsLimits
+    separation: SeparationLimits
     severities: Mapping[Condition, Severity]
     rtl_blocked: Literal["hold", "land", "forward"]
     mission: MissionRules

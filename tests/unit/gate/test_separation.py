@@ -10,15 +10,14 @@ from hypothesis import strategies as st
 
 from gcs.gate.airspace.separation import (
     Approach,
-    SeparationRules,
     Track,
     closest_approach,
-    severity_of,
+    is_too_close,
 )
-from gcs.gate.condition import Severity
+from gcs.gate.policy.policy import SeparationLimits
 
 STILL = (0.0, 0.0, 0.0)
-RULES = SeparationRules(least_m=5.0, near_m=10.0, within_s=10.0, severity=Severity.HOLD)
+LIMITS = SeparationLimits(least_m=5.0, hysteresis_m=5.0, within_s=10.0)
 
 
 def test_two_that_fly_towards_each_other_meet_in_the_middle() -> None:
@@ -70,19 +69,28 @@ def test_a_velocity_that_may_be_wrong_brings_two_that_hover_nearer_with_time() -
 
 
 @pytest.mark.parametrize(
-    ("least_m", "severity"),
+    ("least_m", "anew", "still"),
     [
-        (20.0, Severity.NOMINAL),
-        (10.0, Severity.NOMINAL),
-        (9.9, Severity.CAUTION),
-        (5.0, Severity.CAUTION),
-        (4.9, Severity.HOLD),
-        (0.0, Severity.HOLD),
-        (math.nan, Severity.HOLD),
+        (20.0, False, False),
+        (10.0, False, False),
+        (9.9, False, True),
+        (5.0, False, True),
+        (4.9, True, True),
+        (0.0, True, True),
+        (math.nan, True, True),
     ],
 )
-def test_how_bad_it_is(least_m: float, severity: Severity) -> None:
-    assert severity_of(Approach(1.0, least_m, 0.0, least_m), RULES) is severity
+def test_it_begins_below_one_distance_and_ends_above_another(
+    least_m: float, anew: bool, still: bool
+) -> None:
+    approach = Approach(1.0, least_m, 0.0, least_m)
+    assert is_too_close(approach, LIMITS, was=False) is anew
+    assert is_too_close(approach, LIMITS, was=True) is still
+
+
+def test_a_least_distance_of_zero_finds_nothing() -> None:
+    touching = Approach(0.0, 0.0, 0.0, 0.0)
+    assert not is_too_close(touching, SeparationLimits(0.0, 0.0, 10.0), was=False)
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
@@ -96,7 +104,7 @@ def test_what_is_no_number_is_the_worst(bad: float) -> None:
         Track(STILL, STILL, v_error_m_s=bad),
     ):
         for pair in ((track, good), (good, track)):
-            assert severity_of(closest_approach(*pair, 5.0), RULES) is Severity.HOLD
+            assert is_too_close(closest_approach(*pair, 5.0), LIMITS, was=False)
 
 
 METRES = st.floats(-500.0, 500.0)

@@ -1,4 +1,4 @@
-"""The queue: in order, in place, and one gate input at a time."""
+"""The queue: in order, in place, each with its owner, and one gate input at a time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from gcs.gate.effects import Level
 from gcs.gate.inputs import MissionSeen
 from gcs.session.effects import Finish
 from gcs.session.queue import WorkQueue
-from gcs.session.work import GateAnswered, Log, ToGate, Work
+from gcs.session.work import STATION, For, GateAnswered, Log, ToGate, Work
 
 
 def effect(name: str) -> Finish:
@@ -33,14 +33,14 @@ class Script:
         self.asked: list[Work] = []
         self.queue = WorkQueue(self.step)
 
-    def step(self, item: Work, now_ns: int) -> list[Work]:
+    def step(self, item: Work, owner: int, now_ns: int) -> list[Work]:
         self.asked.append(item)
         if item == line("fails"):
             raise ZeroDivisionError
         return self._answers.get(item, [])
 
     def run(self, *work: Work) -> list[str]:
-        self.queue.run(work, 0)
+        self.queue.run(work, 0, 0)
         return [e.sentence for e in self.queue.take() if isinstance(e, Finish)]
 
 
@@ -107,3 +107,72 @@ def test_after_a_failure_nothing_of_it_is_left() -> None:
     script.queue.drop()
     assert script.run(gate(3), effect("next")) == ["3", "next"]
     assert gate(2) not in script.asked
+
+
+class Owned:
+    """Keeps whose each item of work was."""
+
+    def __init__(self, answers: dict[Work, list[Work]]) -> None:
+        self._answers = answers
+        self.asked: list[tuple[Work, int]] = []
+        self.queue = WorkQueue(self.step)
+
+    def step(self, item: Work, owner: int, now_ns: int) -> list[Work]:
+        self.asked.append((item, owner))
+        return self._answers.get(item, [])
+
+
+def test_what_an_item_leads_to_has_its_owner() -> None:
+    script = Owned({line("a"): [line("a1"), line("a2")]})
+    script.queue.run([For(3, (line("a"),)), line("b")], 0)
+    assert script.asked == [
+        (line("a"), 3),
+        (line("a1"), 3),
+        (line("a2"), 3),
+        (line("b"), STATION),
+    ]
+
+
+def test_another_owners_work_in_between_gives_the_owner_back() -> None:
+    script = Owned({line("a"): [For(1, (line("of 1"),)), line("a2")]})
+    script.queue.run([line("a"), line("b")], 0, 2)
+    assert script.asked == [(line("a"), 2), (line("of 1"), 1), (line("a2"), 2), (line("b"), 2)]
+
+
+def test_a_gate_input_that_waited_still_has_its_own_owner() -> None:
+    """One gate's answer leads to an input for another one: its gate, and no other, gets it."""
+    script = Owned(
+        {
+            gate(1): [For(1, (gate(2),)), line("still 0"), GateAnswered()],
+            gate(2): [line("of 1"), GateAnswered()],
+        }
+    )
+    script.queue.run([gate(1), line("after")], 0, 0)
+    assert script.asked == [
+        (gate(1), 0),
+        (line("still 0"), 0),
+        (gate(2), 1),
+        (line("of 1"), 1),
+        (line("after"), 0),
+    ]
+
+
+def test_a_gate_input_of_the_station_is_no_gates_answer() -> None:
+    """It goes to every gate, one after the other: each is done with it before the next has it."""
+    script = Owned(
+        {
+            gate(1): [For(0, (gate(2),)), For(1, (gate(3),))],
+            gate(2): [line("x"), GateAnswered()],
+            line("x"): [gate(4)],
+            gate(4): [GateAnswered()],
+            gate(3): [GateAnswered()],
+        }
+    )
+    script.queue.run([gate(1)], 0)
+    assert script.asked == [
+        (gate(1), STATION),
+        (gate(2), 0),
+        (line("x"), 0),
+        (gate(4), 0),
+        (gate(3), 1),
+    ]
