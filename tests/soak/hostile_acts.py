@@ -84,18 +84,25 @@ def begin(run: HostileRun) -> None:
     if kind == "nothing":
         return
     if kind in ("external", "control"):
-        vehicle.armed, vehicle.landed = True, LandedState.IN_AIR
-        vehicle.pos = list(place(dice, run.verifier().zones, run.policy))
-        vehicle.mode = FlightMode.HOLD
-    elif kind == "armed":
-        vehicle.armed = True
-    run.connects()
-    run.step()
+        hovers_at(run, place(dice, run.verifier().zones, run.policy))
+    else:
+        vehicle.armed = kind == "armed"
+        run.connects()
+        run.step()
     if kind == "external" and dice.random() < 0.5:
         somebody_flies(run)
     if kind == "control":
         run.ask(TakeControl())
         run.run(run.policy.control.stream_s + 0.3)
+
+
+def hovers_at(run: HostileRun, place_ned: Vec3) -> None:
+    """It hovers, in hold mode, and the gate has heard of it."""
+    vehicle = run.vehicle
+    vehicle.armed, vehicle.landed = True, LandedState.IN_AIR
+    vehicle.pos, vehicle.mode = list(place_ned), FlightMode.HOLD
+    run.connects()
+    run.step()
 
 
 def place(dice: random.Random, zones: tuple[Zone, ...], policy: Policy) -> Vec3:
@@ -260,7 +267,7 @@ def long_wait(run: HostileRun) -> None:
 def somebody_flies(run: HostileRun) -> None:
     """A pilot, or the vehicle by itself."""
     dice = run.dice
-    run.promised = False
+    run.taken_away()
     mode = dice.choice((*FlightMode, FlightMode.OTHER, FlightMode.OTHER, FlightMode.HOLD))
     fast = dice.choice((0.0, 2.0, 12.0))
     turn = dice.uniform(0.0, math.tau)
@@ -272,7 +279,7 @@ def somebody_flies(run: HostileRun) -> None:
 
 def pilot_arms(run: HostileRun) -> None:
     run.vehicle.armed = not run.vehicle.armed
-    run.promised = False
+    run.taken_away()
 
 
 def outage(run: HostileRun) -> None:
@@ -300,7 +307,7 @@ def positions_stop(run: HostileRun) -> None:
 def jump(run: HostileRun) -> None:
     """The estimate steps, or says that it did: the local frame has moved, and the truth in it."""
     dice, vehicle = run.dice, run.vehicle
-    run.promised = False
+    run.taken_away()
     step_m = dice.choice((0.0, 5.0, 60.0))
     vehicle.pos[0] += step_m
     north, east, down = vehicle.vel
@@ -322,7 +329,7 @@ def home_moves(run: HostileRun) -> None:
     x, y, _ = run.home_ned
     far_m = dice.choice((0.3, 3.0, 80.0))
     run.home_ned = (x + far_m, y, 0.0)
-    run.promised = False
+    run.taken_away()
     run.feed(HomeSeen(run.home_ned))
     run.feed(VerifierChanged(run.verifier()))
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.stopping import stop_point
 from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.effects import (
     CancelCommand,
@@ -67,6 +68,15 @@ SETTLED_S: Final = 3.0
 Cell = tuple[State, Event]
 Told = tuple[int, State, object]
 """When, in which state, and what: a line of the trace."""
+
+
+def along3(a: Vec3, b: Vec3, part: float) -> Vec3:
+    """The place on the line from `a` to `b`, at this part of it."""
+    return (
+        a[0] + part * (b[0] - a[0]),
+        a[1] + part * (b[1] - a[1]),
+        a[2] + part * (b[2] - a[2]),
+    )
 
 
 class Broken(AssertionError):  # noqa: N818 - it is what a test raises
@@ -138,6 +148,7 @@ class HostileRun:
         self.home_ned: Vec3 = (0.0, 0.0, 0.0)
         self.fence_on = True
         self.promised = False
+        self._stoppable = False
         self.deaf_until_ns = self.mute_until_ns = 0
         self._down: deque[tuple[int, Input]] = deque()
         self._up: deque[tuple[int, SendSetpoint | SendCommand]] = deque()
@@ -151,6 +162,11 @@ class HostileRun:
         self._steps = 0
         self._items = 0
         self._clear_ns = 0
+
+    @property
+    def vehicle_is_late(self) -> bool:
+        """Are its reports, or what it is told, under way for long?"""
+        return self.report_delay_ns + self.up_delay_ns > 0
 
     # ----------------------------------------------------------------------------- gate
 
@@ -268,7 +284,7 @@ class HostileRun:
         flown = self.gate.control is Control.OURS and self.vehicle.mode is FlightMode.GUIDED
         climbs = self.gate.state is State.TAKING_OFF and self.vehicle.speed_m_s == 0.0
         if (flown or climbs) and not self.promised:
-            self.promised = self.clearance(self.vehicle.at) > 0.0
+            self.promised = self.clearance(self.vehicle.at) > 0.0 and not self._hurled()
         if not self.vehicle.armed:
             self.promised = False  # it falls, or stands
         if not self.promised or not self.fence_on:
@@ -281,6 +297,20 @@ class HostileRun:
             self.seen.worst_m = clear_m
         if clear_m < -self._allowed():
             self._fail(f"the truth {self.vehicle.pos} is {-clear_m:.2f} m outside")
+
+    def taken_away(self) -> None:
+        """Somebody else flies it, or the place or the fence has moved: no promise holds until we
+        have it again, and as one that can be stopped inside."""
+        self.promised, self._stoppable = False, False
+
+    def _hurled(self) -> bool:
+        """Did others leave it so fast, so near to the edge, that no hold could stop it inside?"""
+        if not self._stoppable:
+            v, b = self.vehicle, self.vehicle.braking
+            rest_ned = stop_point(v.at, (v.vel[0], v.vel[1], v.vel[2]), b)
+            way = (along3(v.at, rest_ned, part / 8.0) for part in range(1, 9))
+            self._stoppable = all(self.clearance(spot) > 0.0 for spot in way)
+        return not self._stoppable
 
     # ---------------------------------------------------------------------------- time
 

@@ -1,11 +1,17 @@
 """A vehicle that is a point: it does what the policy trusts its kind to do, at the worst.
 
 It gains speed far faster than any real one, brakes no harder than `[braking]` and `[approach]`
-promise and begins no earlier, flies past its goals by most of `[overshoot]`, and reports where it
-is with all the error that the policy allows.  NED, metres, seconds; one step is 20 ms.
+promise and begins no earlier, flies past its goals by most of `[overshoot]`, and is wrong about
+where it is by all the error that the policy allows.  NED, metres, seconds; one step is 20 ms.
 
-Its own guidance brakes as `[approach]` says.  In hold mode it brakes as `[braking]` says, but for
-one case: told to hold while its guidance slows down for a goal, it brakes no worse than that.
+It knows where it is from its estimate alone: what it reports is also what its guidance flies by, as
+in every autopilot.  `[approach]` and `[overshoot]` were recorded in such positions.
+
+Its own guidance brakes as `[approach]` says.  Told to stop, by hold mode or by a landing, it
+brakes as `[braking]` says, but for one case: on its way to a goal it flies no farther past that
+than it would have by itself, or than real ones were recorded to (`RECORDED_HOLDS`).  That a vehicle
+does not brake worse when it is told to stop than it was going to by itself is an assumption of the
+policy; it is recorded up to 3 m/s.
 """
 
 from __future__ import annotations
@@ -28,6 +34,9 @@ STILL: Final = 0.15
 FORGOTTEN_S: Final = 3.0
 """ArduCopter flies no older velocity (GUID_TIMEOUT; from memory)."""
 ACCEPTED, DENIED = 0, 2
+RECORDED_HOLDS: Final = {"px4": (2.6, 3.1), "ardupilot": (3.0, 5.0)}
+"""m/s and the metres that a real one took to stop from there, told to hold: PX4 1.14.3, ArduCopter
+4.7; see `[braking]` in gcs/gate/policy/default.toml."""
 
 
 class PointMass:
@@ -59,22 +68,29 @@ class PointMass:
         self._leg_from: Vec3 = (0.0, 0.0, 0.0)
         self._acts_s = 0.0
         self._stopping = False
-        self._brakes_as: tuple[float, float] = (self.braking.a_brake_h_m_s2, 0.0)
+        self._brakes_as = (self.braking.a_brake_h_m_s2, self.braking.a_brake_v_m_s2)
         self._bearing = dice.uniform(0.0, math.tau)
+        self._error: Vec3 = (0.0, 0.0, 0.0)
+        self._estimates()
 
     # --------------------------------------------------------------------------- reports
 
     def reported(self) -> Vec3:
-        """Its position with all of the error that the policy allows, in a bearing that turns."""
+        """Its estimate: the truth with all of the error that the policy allows."""
+        north, east, down = self._error
+        return (self.pos[0] + north, self.pos[1] + east, self.pos[2] + down)
+
+    def _estimates(self) -> None:
+        """The error has a bearing, which turns.  On the ground there is none in height."""
         b = self.braking
         self._bearing += 0.004
         h = 0.99 * b.position_error_h_m
         v = 0.99 * b.position_error_v_m * math.sin(1.7 * self._bearing)
         airborne = self.landed is not LandedState.ON_GROUND
-        return (
-            self.pos[0] + h * math.cos(self._bearing),
-            self.pos[1] + h * math.sin(self._bearing),
-            self.pos[2] + (v if airborne else 0.0),
+        self._error = (
+            h * math.cos(self._bearing),
+            h * math.sin(self._bearing),
+            v if airborne else 0.0,
         )
 
     @property
@@ -93,12 +109,13 @@ class PointMass:
         if pos_ned is None:
             self.velocity = v_ned
             return
-        streamed, self.velocity = self.velocity is not None, None
+        streamed = self.velocity is not None
         if self.setpoint != pos_ned or streamed:
-            self._leg_from = self.at
-            self.setpoint = pos_ned
             if self.mode is FlightMode.GUIDED:
                 self._stops_first()
+            self._leg_from = self.reported()
+            self.setpoint = pos_ned
+        self.velocity = None
 
     def hears_command(self, sent: SendCommand) -> int:
         """MAV_RESULT.  A stubborn vehicle refuses all but to stop: that it does is promised."""
@@ -119,12 +136,13 @@ class PointMass:
             case CommandKind.TAKE_OFF:
                 if not self.armed:
                     return DENIED
-                self.path = [(self.pos[0], self.pos[1], self.pos[2] - sent.up_m)]
+                north, east, down = self.reported()
+                self.path = [(north, east, down - sent.up_m)]
                 if self.autopilot == "px4":
                     self._enter(FlightMode.TAKEOFF)
                 else:
                     self.setpoint, self.setpoint_s = self.path[0], 1e12
-                    self._leg_from = self.at
+                    self._leg_from = self.reported()
                     self._enter(FlightMode.GUIDED)
             case CommandKind.GUIDED:
                 stale = self.now_s - self.setpoint_s > 0.5
@@ -138,9 +156,9 @@ class PointMass:
             case CommandKind.LAND:
                 self._enter(FlightMode.LAND)
             case CommandKind.RETURN:
-                up_m = max(TO_RETURN_UP_M, -self.pos[2])
-                over = (self.pos[0], self.pos[1], -up_m)
-                self.path = [over, (0.0, 0.0, -up_m)]
+                north, east, down = self.reported()
+                up_m = max(TO_RETURN_UP_M, -down)
+                self.path = [(north, east, -up_m), (0.0, 0.0, -up_m)]
                 self._enter(FlightMode.RETURN)
             case CommandKind.START_MISSION:
                 if not self.path:
@@ -151,23 +169,64 @@ class PointMass:
         return ACCEPTED
 
     def _enter(self, mode: FlightMode) -> None:
-        """Hold mode brakes after the time that the promise leaves it, and as it promises."""
-        if mode is FlightMode.HOLD and self.mode is not FlightMode.HOLD:
-            own = self.mode is not FlightMode.OTHER and self._slows_down()
-            self._acts_s = self.now_s + (0.0 if own else max(0.0, self.hold_react_s))
-            figures = self.approach if own else self.braking
-            self._brakes_as = (figures.a_brake_h_m_s2, figures.a_brake_v_m_s2)
+        if mode is self.mode:
+            return
+        if mode in (FlightMode.HOLD, FlightMode.LAND):
+            self._told_to_stop()
+        self._stopping = False
         if mode is not FlightMode.HOLD:
-            self._leg_from = self.at
-        if mode is FlightMode.GUIDED and self.mode is not mode:
+            self._leg_from = self.reported()
+        if mode is FlightMode.GUIDED:
             self._stops_first()
         self.mode = mode
+
+    def _told_to_stop(self) -> None:
+        """When it begins to brake, and how hard.  One that brakes already goes on with that."""
+        if self.mode in (FlightMode.HOLD, FlightMode.LAND) or self._stopping:
+            return
+        b, v = self.braking, math.hypot(*self.vel[:2])
+        self._acts_s = self.now_s + max(0.0, self.hold_react_s)
+        self._brakes_as = (b.a_brake_h_m_s2, b.a_brake_v_m_s2)
+        room_m = self._room_to_stop_m(v)
+        held_m = v * max(0.0, self.hold_react_s) + v * v / 2.0 / b.a_brake_h_m_s2
+        if room_m < held_m:  # then it goes on for longer, and brakes harder
+            a = self.approach
+            brakes_m = v * v / 2.0 / a.a_brake_h_m_s2
+            self._acts_s = self.now_s + max(0.0, (room_m - brakes_m) / v)
+            self._brakes_as = (a.a_brake_h_m_s2, a.a_brake_v_m_s2)
+
+    def _room_to_stop_m(self, v: float) -> float:
+        """So far it flies at the most, level, until it rests, told to at `v` m/s."""
+        goal, a = self._goal(), self.approach
+        if self.mode is FlightMode.OTHER or goal is None or not self._slows_down():
+            return math.inf
+        here = self.reported()
+        away = (goal[0] - here[0], goal[1] - here[1])
+        ahead_m = (away[0] * self.vel[0] + away[1] * self.vel[1]) / v if v > STILL else 0.0
+        aside_m = math.sqrt(max(0.0, math.hypot(*away) ** 2 - ahead_m**2))
+        if aside_m > a.cross_track_m and v * aside_m > a.cross_track_m_s * math.hypot(*away):
+            return math.inf
+        own_m = v * a.react_s + v * v / 2.0 / a.a_brake_h_m_s2
+        return max(own_m, ahead_m + 0.9 * self._past_m(goal), self._recorded_m(v))
+
+    def _recorded_m(self, v: float) -> float:
+        fast_m_s, took_m = RECORDED_HOLDS[self.autopilot]
+        react_s, v = self.braking.react_s, min(v, fast_m_s)
+        a_m_s2 = fast_m_s * fast_m_s / 2.0 / (took_m - fast_m_s * react_s)
+        return v * react_s + v * v / 2.0 / a_m_s2
+
+    def _past_m(self, goal: Vec3) -> float:
+        """How far it may fly past a goal."""
+        if self.mode is not FlightMode.GUIDED:
+            return 0.0
+        leg_m = math.dist(self._leg_from[:2], goal[:2])
+        return min(self.overshoot.share_h * leg_m, self.overshoot.most_h_m)
 
     def _stops_first(self) -> None:
         """Sent elsewhere at speed, it stops as it would in hold mode before it flies there."""
         if self.speed_m_s > STILL:
+            self._told_to_stop()
             self._stopping = True
-            self._acts_s = self.now_s + max(0.0, self.hold_react_s)
 
     def _slows_down(self) -> bool:
         """Is it on its way to a goal, so that it has kept its speed for stopping there?"""
@@ -194,6 +253,7 @@ class PointMass:
     def step(self) -> None:
         """20 ms."""
         self.now_s += STEP_S
+        self._estimates()
         if not self.armed:
             self.vel = [0.0, 0.0, 0.0]
             self._falls()
@@ -201,11 +261,10 @@ class PointMass:
         match self.mode:
             case FlightMode.OTHER:
                 self._towards_velocity(self.pilot_v, GAIN_M_S2, GAIN_M_S2)
-            case FlightMode.HOLD:
+            case FlightMode.HOLD | FlightMode.LAND:
                 if self.now_s >= self._acts_s:
-                    self._towards_velocity((0.0, 0.0, 0.0), *self._brakes_as)
-            case FlightMode.LAND:
-                self._towards_velocity((0.0, 0.0, 0.7), *self._brakes_as)
+                    down_m_s = 0.0 if self.mode is FlightMode.HOLD else 0.7
+                    self._towards_velocity((0.0, 0.0, down_m_s), *self._brakes_as)
             case _:
                 self._flies_its_path()
         guided_px4 = self.mode is FlightMode.GUIDED and self.autopilot == "px4"
@@ -235,7 +294,7 @@ class PointMass:
                 self._towards_velocity((0.0, 0.0, 0.0), a.a_brake_h_m_s2, a.a_brake_v_m_s2)
             return
         self._fly_to(goal)
-        near = math.dist(self.pos, goal) < 0.4
+        near = math.dist(self.reported(), goal) < 0.4
         if near and self.mode is not FlightMode.GUIDED:
             self.path.pop(0)
             self.items_flown += 1
@@ -247,22 +306,21 @@ class PointMass:
 
     def _fly_to(self, goal: Vec3) -> None:
         """Straight there, as fast as it can still stop, a little behind it, by its approach."""
-        a, o = self.approach, self.overshoot
+        a = self.approach
         if self._stopping:
-            b = self.braking
             if self.now_s >= self._acts_s:
-                self._towards_velocity((0.0, 0.0, 0.0), b.a_brake_h_m_s2, b.a_brake_v_m_s2)
+                self._towards_velocity((0.0, 0.0, 0.0), *self._brakes_as)
             self._stopping = self.speed_m_s > STILL
             return
-        north, east = goal[0] - self.pos[0], goal[1] - self.pos[1]
+        here = self.reported()
+        north, east = goal[0] - here[0], goal[1] - here[1]
         away_m = math.hypot(north, east)
-        leg_m = math.dist(self._leg_from[:2], goal[:2])
-        past_m = min(o.share_h * leg_m, o.most_h_m) if self.mode is FlightMode.GUIDED else 0.0
-        v = min(self.cruise_m_s, _fastest(away_m + 0.9 * past_m, a.react_s, a.a_brake_h_m_s2))
+        past_m = 0.9 * self._past_m(goal)
+        v = min(self.cruise_m_s, _fastest(away_m + past_m, a.react_s, a.a_brake_h_m_s2))
         if away_m < 0.3:
             v = min(v, 0.5 * away_m)
         n, e = (north / away_m, east / away_m) if away_m > 1e-9 else (0.0, 0.0)
-        down = goal[2] - self.pos[2]
+        down = goal[2] - here[2]
         w = min(self.climb_m_s, _fastest(abs(down), a.react_s, a.a_brake_v_m_s2))
         wanted = (n * v, e * v, math.copysign(w, down))
         faster = math.hypot(*self.vel[:2]) < v

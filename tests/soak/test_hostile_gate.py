@@ -14,14 +14,16 @@ from typing import Final
 
 import pytest
 
+from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, SendCommand
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.table import TABLE
 from gcs.gate.refusal import Code
+from gcs.gate.requests import Abort, GoTo, Hold, Land, Request, TakeControl
 from gcs.gate.states import FlightMode, State
-from tests.soak.hostile_acts import fly
-from tests.soak.hostile_policies import policy_of
-from tests.soak.hostile_run import Broken, Seen
+from tests.soak.hostile_acts import fly, hovers_at
+from tests.soak.hostile_policies import POLICIES, policy_of
+from tests.soak.hostile_run import Broken, HostileRun, Seen
 from tests.soak.point_mass import PointMass
 from tests.soak.seeds import base_seed
 from tests.unit.gate.unreached import UNREACHED
@@ -30,7 +32,7 @@ RUNS: Final = 100_000
 A_SHARE: Final = 300
 JUDGED_OF: Final = 10
 """One run in so many is held against the explorer's invariants, step by step."""
-LANDS_OUTSIDE: Final = 5_000_276
+YARD: Final = next(policy for policy in POLICIES if policy.name == "yard")
 AT_LEAST: Final = 30
 """So often each cell and each reason is met in a soak."""
 
@@ -61,14 +63,56 @@ def test_no_hostile_run_breaks_a_promise() -> None:
     print(told(seen))
 
 
-@pytest.mark.xfail(
-    strict=True,
-    raises=Broken,
-    reason="a landing asked for at speed beside the fence drifts 2.02 m out, 2 m are allowed",
-)
-def test_a_landing_asked_for_at_speed_stays_within_the_margin() -> None:
-    """Found by seed; a landing in place is never refused, and nothing brakes it."""
-    fly(LANDS_OUTSIDE, policy_of(LANDS_OUTSIDE), judged=False)
+def begun(autopilot: str, place_ned: Vec3) -> HostileRun:
+    """A fast vehicle under control in the yard, whose link loses nothing and is not late."""
+    run = next(
+        run
+        for run in (HostileRun(seed, YARD) for seed in range(100))
+        if run.autopilot == autopilot and run.loss == 0.0 and not run.vehicle_is_late
+    )
+    run.vehicle.cruise_m_s, run.vehicle.climb_m_s = 12.0, 0.7
+    hovers_at(run, place_ned)
+    run.ask(TakeControl())
+    run.run(run.policy.control.stream_s + 0.6)
+    assert run.gate.state is State.HOVERING
+    return run
+
+
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_below_a_leg_over_a_tower_it_is_braked_before_that(autopilot: str) -> None:
+    """The straight leg is above the tower.  The vehicle flies 12 m/s and climbs with 0.7."""
+    run = begun(autopilot, (-27.0, -34.0, -3.0))
+    run.ask(GoTo((23.0, -17.0, -39.0)))
+    run.run(12.0)
+    assert run.seen.under_promise > 500
+    assert run.gate.state is State.HOLDING
+    run.all_answered()
+
+
+@pytest.mark.parametrize("stop", [Land(), Hold(), Abort()])
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+@pytest.mark.parametrize("after_s", [0.5, 1.5, 2.5, 3.5])
+def test_told_to_stop_at_speed_on_its_leg_it_rests_within_the_margin(
+    autopilot: str, stop: Request, after_s: float
+) -> None:
+    run = begun(autopilot, (-10.0, 20.0, -20.0))
+    run.ask(GoTo((27.99, 20.0, -20.0)))
+    run.run(after_s)
+    run.ask(stop)
+    run.run(6.0)
+    assert run.seen.under_promise > 300
+    run.all_answered()
+
+
+def test_nothing_is_promised_of_a_vehicle_that_is_taken_over_when_no_hold_could_stop_it() -> None:
+    """A pilot left it at 12 m/s, 1 m from the edge."""
+    run = begun("px4", (26.0, 20.0, -20.0))
+    run.taken_away()
+    run.vehicle.pos[0], run.vehicle.vel[0] = 29.0, 12.0
+    run.run(3.0)
+    assert run.gate.state is State.HOLDING
+    assert run.clearance(run.vehicle.at) < -2.0
+    assert not run.promised
 
 
 @pytest.mark.soak
