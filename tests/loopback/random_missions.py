@@ -2,223 +2,95 @@
 
 `python -m tests.loopback.random_missions px4 0 250` flies those of the seeds 0 to 249 and prints
 how many were refused, and how near the nearest came; with `--alone` the vehicle flies what it was
-given without the station, which takes a fifth of the time; with `--through-bridge` a client of
-pymavlink uploads and starts it through the bridge.  The fence is the policy's, so that the
-vehicle has none of its own that could hold it back; shapely says where the truth is.
+given without the station, which takes a fifth of the time.  With `--through-bridge` a script of
+pymavlink uploads, arms and starts it through the bridge; together with `--alone` nobody looks after
+the vehicle from then on.  With `--price` the refused ones are put on board past the gate and flown,
+too, to see how many would have stayed inside.  The fence is the policy's, so that the vehicle has
+none of its own that could hold it back; shapely says where the truth is.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
-import random
-import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import shapely
 from msgspec import structs
 
-from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.policy.parse import DEFAULT
-from gcs.gate.policy.policy import Policy
-from gcs.gate.policy.zonespec import CircleSpec, PolygonSpec, ZoneSpec
-from tests.loopback.bridged import Client
-from tests.loopback.flight import HOMES, Flight, Personality
-from tests.loopback.plan_clients import (
-    ACCEPTED,
-    PlanFlight,
-    Pymavlink,
-    items_of,
-    rally_points,
-)
-from vehicle_sim.autopilot.interface import Result
+from gcs.report import DecisionItem
+from tests.loopback.drawn_missions import Mission, mission_of, room_m, shape_of
+from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.loopback.plan_clients import NO_PLACE, items_of, rally_points
+from tests.loopback.plan_clients import PlanItem as SentItem
+from tests.loopback.pymavlink_script import ACCEPTED, ScriptFlight, VirtualLink
+from vehicle_sim.autopilot.interface import PlanItem, Result
 from vehicle_sim.simulation.fault_script import fault_of
 
 LONGEST_S = 420.0
 SAMPLE_S = 0.1
-Item = dict[str, object]
+ENDINGS = ("mission_start", "mode")
 
 
 @dataclass(frozen=True, slots=True)
 class Flown:
-    """`refusal` None: it was flown; `nearest_m` is the least distance to a forbidden place."""
+    """`refusal` None: it was flown; `nearest_m` is the least distance to a forbidden place.
+
+    Of a refused one that was flown past the gate it is what would have been.
+    """
 
     seed: int
     refusal: str | None
     nearest_m: float = math.inf
     ended: str = ""
     kinds: frozenset[int] = frozenset()
-
-
-@dataclass(frozen=True, slots=True)
-class Mission:
-    """A plan file, the policy that it is flown under, and the vehicle's radius parameter."""
-
-    document: dict[str, object]
-    zones: tuple[ZoneSpec, ...]
-    params: dict[str, float]
-    wind_ned: tuple[float, float]
-    kinds: frozenset[int]
-
-    @property
-    def policy(self) -> Policy:
-        return structs.replace(DEFAULT, fence=self.zones)
-
-
-def mission_of(seed: int, personality: Personality) -> Mission:
-    """A mission within 90 m round home, and zones that its straight legs pass closely."""
-    dice = random.Random(seed)
-    home = HOMES[personality]
-    projection = Projection(Origin(home.lat_deg, home.lon_deg, home.alt_amsl_m), personality)
-    way: list[tuple[float, float]] = [(0.0, 0.0)]
-    field = _field(dice)
-
-    def place() -> tuple[float, float]:
-        """East and north, inside the field."""
-        while True:
-            at = (dice.uniform(-75, 75), dice.uniform(-75, 75))
-            if _room_m(field, _shape(field), (*at, 0.0)) > 3.0:
-                return at
-
-    def degrees(at: tuple[float, float]) -> tuple[float, float]:
-        return projection.lat_lon(at[1], at[0])
-
-    items: list[Item] = []
-
-    def add(command: int, params: tuple[float | None, ...], frame: int = 3) -> None:
-        entry = {"type": "SimpleItem", "autoContinue": True, "command": command, "frame": frame}
-        items.append({**entry, "doJumpId": len(items) + 1, "params": list(params)})
-
-    up_m = dice.uniform(6.0, 20.0)
-    add(22, (0.0, 0.0, 0.0, None, home.lat_deg, home.lon_deg, up_m))
-    copter = personality == "ardupilot"
-    for _ in range(dice.randint(3, 8)):
-        at = place()
-        up_m = max(4.0, min(30.0, up_m + dice.choice([0.0, 0.0, dice.uniform(-6.0, 6.0)])))
-        where = (*degrees(at), up_m)
-        kind = dice.random()
-        if not 0.45 <= kind < 0.52:
-            way.append(at)
-        if copter and kind < 0.25:
-            add(82, (dice.choice([0.0, 0.0, 1.0]), 0.0, 0.0, 0.0, *where))
-        elif copter and kind < 0.35:
-            radius_m = dice.choice([-1.0, 1.0]) * dice.randint(4, 20)
-            add(18, (dice.choice([1.0, 1.5, 2.0]), 0.0, radius_m, 0.0, *where))
-        elif kind < 0.45:
-            add(19, (dice.uniform(0.0, 3.0), 0.0, 0.0, 0.0 if copter else None, *where))
-        elif kind < 0.52:
-            add(178, (1.0, dice.uniform(2.0, 10.0), -1.0, 0.0, 0.0, 0.0, 0.0), 2)
-        else:
-            own_m = 0.0 if copter else dice.choice([0.0, 0.0, dice.uniform(0.5, 25.0)])
-            hold_s = dice.choice([0.0, 0.0, 0.0, 1.0, 3.0])
-            add(16, (hold_s, own_m, 0.0, 0.0 if copter else None, *where))
-    places = [n for n, item in enumerate(items) if item["command"] != 178]
-    if len(places) > 3 and dice.random() < 0.4:
-        number = dice.randrange(1, len(places) - 1)
-        back = places[number] + 1
-        way += [way[number], way[-1]]
-        add(177, (float(back), float(dice.randint(1, 2)), 0.0, 0.0, 0.0, 0.0, 0.0), 2)
-    ending = dice.random()
-    if ending < 0.5:
-        way.append((0.0, 0.0))
-        add(20, (0.0,) * 7, 2)
-    elif ending < 0.8:
-        way.append(place())
-        add(21, (0.0, 0.0, 0.0, 0.0 if copter else None, *degrees(way[-1]), 0.0))
-    rally = [
-        [*degrees(place()), dice.choice([0.0, 5.0]) if not copter else dice.uniform(10, 30)]
-        for _ in range(dice.choice([0, 0, 1, 2]))
-    ]
-    document: dict[str, object] = {
-        "fileType": "Plan",
-        "geoFence": {"circles": [], "polygons": [], "version": 2},
-        "groundStation": "a test",
-        "mission": {
-            "cruiseSpeed": 15,
-            "firmwareType": 3 if copter else 12,
-            "globalPlanAltitudeMode": 1,
-            "hoverSpeed": 5,
-            "items": items,
-            "plannedHomePosition": [home.lat_deg, home.lon_deg, home.alt_amsl_m],
-            "vehicleType": 2,
-            "version": 2,
-        },
-        "rallyPoints": {"points": rally, "version": 2},
-        "version": 1,
-    }
-    radius_m = dice.choice([2.0, dice.uniform(0.5, 10.0)])
-    params = {"WPNAV_RADIUS": 100.0 * radius_m} if copter else {"NAV_ACC_RAD": radius_m}
-    wind_m_s, heading = dice.uniform(0.0, 8.0), dice.uniform(0.0, 2.0 * math.pi)
-    wind = (wind_m_s * math.cos(heading), wind_m_s * math.sin(heading))
-    kinds = frozenset(int(str(item["command"])) for item in items) | ({5100} if rally else set())
-    zones = (field, *_masts(dice, way))
-    return Mission(document, zones, params, wind, frozenset(kinds))
-
-
-def _field(dice: random.Random) -> ZoneSpec:
-    if dice.random() < 0.5:
-        return CircleSpec(90.0, (0.0, 0.0), name="field", inclusion=True)
-    notch = dice.uniform(-40.0, 40.0)  # a field with a notch
-    corners = ((-90, -90), (90, -90), (90, 90), (notch + 20, 90), (notch, 35), (notch - 20, 90))
-    return PolygonSpec((*corners, (-90, 90)), name="field", inclusion=True)
-
-
-def _masts(dice: random.Random, way: list[tuple[float, float]]) -> Iterator[ZoneSpec]:
-    """Exclusion zones beside the legs, mostly near their ends, where corners are cut."""
-    line = shapely.LineString(way)
-    for number in range(dice.randint(2, 6)):
-        corner = dice.randrange(1, len(way))
-        here, before = way[corner], way[corner - 1]
-        back = dice.uniform(0.0, 0.5)
-        at = [h + back * (b - h) for h, b in zip(here, before, strict=True)]
-        angle, size_m = dice.uniform(0, 2 * math.pi), dice.uniform(2.0, 12.0)
-        away_m = size_m + 2.1 + dice.choice([dice.uniform(0.0, 2.0), dice.uniform(0.0, 12.0)])
-        centre = (at[0] + away_m * math.cos(angle), at[1] + away_m * math.sin(angle))
-        ceiling = dice.choice([None, None, None, dice.uniform(8.0, 40.0)])
-        name = f"mast {number}"
-        zone: ZoneSpec
-        if dice.random() < 0.6:
-            zone = CircleSpec(size_m, centre, name=name, inclusion=False, ceiling_up_m=ceiling)
-        else:
-            corners = tuple(
-                (
-                    centre[0] + size_m * math.cos(angle + 0.5 * math.pi * n),
-                    centre[1] + size_m * math.sin(angle + 0.5 * math.pi * n),
-                )
-                for n in range(4)
-            )
-            zone = PolygonSpec(corners, name=name, inclusion=False, ceiling_up_m=ceiling)
-        if _shape(zone).distance(line) > 2.05 and _shape(zone).distance(shapely.Point(0, 0)) > 4.0:
-            yield zone
-
-
-def _shape(zone: ZoneSpec) -> shapely.Polygon:
-    if isinstance(zone, CircleSpec):
-        return shapely.Point(zone.centre).buffer(zone.radius_m, quad_segs=64)
-    assert isinstance(zone, PolygonSpec)
-    return shapely.Polygon(zone.corners)
-
-
-def _room_m(zone: ZoneSpec, shape: shapely.Polygon, enu: tuple[float, float, float]) -> float:
-    """Metres to where the zone forbids to be, negative there."""
-    at = shapely.Point(enu[0], enu[1])
-    beside_m: float = shape.exterior.distance(at) * (-1.0 if shape.contains(at) else 1.0)
-    if zone.inclusion:
-        return -beside_m
-    above_m = -math.inf if zone.ceiling_up_m is None else enu[2] - zone.ceiling_up_m
-    return max(beside_m, above_m)
+    code: str = ""
 
 
 def fly(
-    seed: int, personality: Personality, *, alone: bool = False, through_bridge: bool = False
+    seed: int,
+    personality: Personality,
+    *,
+    alone: bool = False,
+    through_bridge: bool = False,
+    price: bool = False,
 ) -> Flown:
     """Verified by an upload; where it clears, flown to its end, `alone` without the station."""
     mission = mission_of(seed, personality)
     if through_bridge:
-        return _fly_through_bridge(seed, personality, mission)
+        found, flight, moments = _through_bridge(seed, personality, mission, alone)
+    else:
+        found, flight, moments = _by_the_operator(seed, personality, mission, alone)
+    if found.refusal is None:
+        return _flown(found, mission, flight, moments)
+    if price:
+        return _flown(found, mission, flight, _past_the_gate(flight, mission))
+    return found
+
+
+def _flown(found: Flown, mission: Mission, flight: Flight, moments: Iterator[str]) -> Flown:
+    """In wind, to its end; how near the truth came to a forbidden place."""
+    wind = {"wind_ned_m_s": [*mission.wind_ned, 0.0], "gust_m_s": 1.0}
+    assert flight.world.inject(fault_of("wind", wind, "script"), 1)
+    shapes = [(zone, shape_of(zone)) for zone in mission.zones]
+    nearest_m, ended = math.inf, ""
+    for told in moments:
+        ended = told
+        truth = flight.truth_enu()
+        nearest_m = min(nearest_m, *(room_m(zone, shape, truth) for zone, shape in shapes))
+    return replace(found, nearest_m=nearest_m, ended=ended)
+
+
+# ------------------------------------------------------------------------------ by whom
+
+
+def _by_the_operator(
+    seed: int, personality: Personality, mission: Mission, alone: bool
+) -> tuple[Flown, Flight, Iterator[str]]:
     flight = Flight(personality, seed=seed, policy=mission.policy, params=mission.params)
     flight.connected()
     with TemporaryDirectory() as folder:
@@ -226,58 +98,53 @@ def fly(
         path.write_text(json.dumps(mission.document), encoding="utf-8")
         ask = flight.say("mission_upload", path=str(path))
         ended = flight.done(ask)
-    if ended != "complete":
-        [verdict] = flight.verdicts(ask)
-        return Flown(seed, verdict.sentence, kinds=mission.kinds)
-    moments = _alone(flight) if alone else _with_station(flight)
-    return _flown(seed, mission, flight, moments)
+    if ended == "complete":
+        moments = _alone(flight) if alone else _with_station(flight)
+        return Flown(seed, None, kinds=mission.kinds), flight, moments
+    [verdict] = flight.verdicts(ask)
+    refused = Flown(seed, verdict.sentence, kinds=mission.kinds, code=verdict.code)
+    return refused, flight, iter(())
 
 
-def _flown(seed: int, mission: Mission, flight: Flight, moments: Iterator[str]) -> Flown:
-    """In wind, to its end; how near the truth came to a forbidden place."""
-    wind = {"wind_ned_m_s": [*mission.wind_ned, 0.0], "gust_m_s": 1.0}
-    assert flight.world.inject(fault_of("wind", wind, "script"), 1)
-    shapes = [(zone, _shape(zone)) for zone in mission.zones]
-    nearest_m, ended = math.inf, ""
-    for told in moments:
-        ended = told
-        truth = flight.truth_enu()
-        nearest_m = min(nearest_m, *(_room_m(zone, shape, truth) for zone, shape in shapes))
-    return Flown(seed, None, nearest_m, ended, mission.kinds)
-
-
-def _fly_through_bridge(seed: int, personality: Personality, mission: Mission) -> Flown:
-    """The same, uploaded, armed and started by a MAVLink client."""
+def _through_bridge(
+    seed: int, personality: Personality, mission: Mission, alone: bool
+) -> tuple[Flown, Flight, Iterator[str]]:
+    """Uploaded, armed and started by a script of pymavlink."""
     rules = structs.replace(DEFAULT.bridge, rally="forward")
     policy = structs.replace(mission.policy, bridge=rules)
-    flight = PlanFlight(personality, seed=seed, policy=policy)
+    flight = ScriptFlight(personality, seed=seed, policy=policy)
     for name, value in mission.params.items():
         flight.vehicle.parameters.set(name, value)
-    client = flight.join()
+    script = flight.join_script()
     flight.connected()
     for items in (rally_points(mission.document), items_of(mission.document, personality)):
-        if items:
-            upload = Pymavlink(flight, client, items)
-            if upload.ended(60.0) != "complete":
-                refused = flight.decisions("refused")
-                why = refused[-1].sentence if refused else upload.result
-                return Flown(seed, why, kinds=mission.kinds)
-    return _flown(seed, mission, flight, _with_client(flight, client))
+        if items and script.upload(items) != ACCEPTED:
+            last = flight.decisions("refused")[-1]
+            refused = Flown(seed, last.sentence, kinds=mission.kinds, code=last.code)
+            return refused, flight, iter(())
+    found = Flown(seed, None, kinds=mission.kinds)
+    return found, flight, _with_script(flight, script, alone)
 
 
-def _with_client(flight: PlanFlight, client: Client) -> Iterator[str]:
-    """Armed and started by commands of the client."""
-    assert client.ask(400, 1, within_s=20.0) == ACCEPTED
-    client.command(300)
-    began_s = flight.elapsed_s
+# ------------------------------------------------------------------------------ how
+
+
+def _with_script(flight: ScriptFlight, script: VirtualLink, alone: bool) -> Iterator[str]:
+    """Armed and started by the script, which from then on sends its heartbeat only."""
+    assert script.arm() == ACCEPTED
+    assert script.start_mission() == ACCEPTED
+    script.deaf = True
+    if alone:
+        yield from _until_still(flight)
+        return
+    began_s, read = flight.elapsed_s, 0
     while flight.elapsed_s - began_s < LONGEST_S:
-        if round((flight.elapsed_s - began_s) / SAMPLE_S) % 10 == 0:
-            client.beat()
+        script.beat()
         flight.run(SAMPLE_S)
-        told = [one for one in flight.decisions() if one.word in ("mission_start", "mode")]
-        ended = told[-1].outcome if told else ""
-        over = ended not in ("", "requested", "accepted")
-        yield ended if over else "still flying"
+        new = [item for _, item in flight.records[read:] if isinstance(item, DecisionItem)]
+        read = len(flight.records)
+        over = [one.outcome for one in new if one.phase == "ending" and one.word in ENDINGS]
+        yield over[-1] if over else "still flying"
         if over:
             return
 
@@ -293,12 +160,48 @@ def _with_station(flight: Flight) -> Iterator[str]:
 
 
 def _alone(flight: Flight) -> Iterator[str]:
-    """The same by the vehicle itself, until it is disarmed or has stood still for 20 s."""
+    """The same by the vehicle itself."""
     vehicle = flight.vehicle
     if flight.personality == "ardupilot":
         assert vehicle.set_mode_kind("guided") is Result.ACCEPTED
     assert vehicle.arm(False) is Result.ACCEPTED
     assert vehicle.mission_start(0, 0) is Result.ACCEPTED
+    yield from _until_still(flight)
+
+
+def _past_the_gate(flight: Flight, mission: Mission) -> Iterator[str]:
+    """What the gate refused is put on board by hand, and flown alone."""
+    vehicle, personality = flight.vehicle, flight.personality
+    vehicle.load_rally(_on_board(rally_points(mission.document)))
+    items = _on_board(items_of(mission.document, personality))
+    bad = vehicle.check_plan(items)
+    if bad is not None:
+        yield f"the vehicle would not take it: {bad}"
+        return
+    vehicle.load_plan(items)
+    yield from _alone(flight)
+
+
+def _on_board(items: list[SentItem]) -> tuple[PlanItem, ...]:
+    """As the vehicle keeps what is sent to it."""
+    return tuple(
+        PlanItem(
+            seq,
+            item.frame,
+            item.command,
+            *item.params,
+            round(item.lat_deg * (1.0 if item.frame == NO_PLACE else 1e7)),
+            round(item.lon_deg * (1.0 if item.frame == NO_PLACE else 1e7)),
+            item.alt_m,
+            1,
+        )
+        for seq, item in enumerate(items)
+    )
+
+
+def _until_still(flight: Flight) -> Iterator[str]:
+    """The vehicle alone, until it is disarmed or has stood still in the air for 20 s."""
+    vehicle = flight.vehicle
     still_s, was = 0.0, flight.truth_enu()
     for _ in range(round(LONGEST_S / SAMPLE_S)):
         for _ in range(round(250 * SAMPLE_S)):
@@ -311,23 +214,53 @@ def _alone(flight: Flight) -> Iterator[str]:
             return
 
 
+# ------------------------------------------------------------------------------ the program
+
+
+def _told(found: Flown) -> str:
+    how = f"{found.ended}, nearest {found.nearest_m:.2f} m"
+    if found.refusal is None:
+        return how
+    flown = f" | would have been: {how}" if found.ended else ""
+    return f"refused {found.code}: {found.refusal}{flown}"
+
+
 def main() -> None:
-    personality, first, last = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("personality", choices=PERSONALITIES)
+    parser.add_argument("first", type=int)
+    parser.add_argument("last", type=int, help="not flown itself")
+    parser.add_argument("--alone", action="store_true")
+    parser.add_argument("--through-bridge", action="store_true")
+    parser.add_argument("--price", action="store_true")
+    asked = parser.parse_args()
     flown: list[Flown] = []
-    for seed in range(first, last):
-        who: Personality = "ardupilot" if personality == "ardupilot" else "px4"
-        bridged = "--through-bridge" in sys.argv
-        found = fly(seed, who, alone="--alone" in sys.argv, through_bridge=bridged)
+    for seed in range(asked.first, asked.last):
+        found = fly(
+            seed,
+            asked.personality,
+            alone=asked.alone,
+            through_bridge=asked.through_bridge,
+            price=asked.price,
+        )
         flown.append(found)
-        told = found.refusal or f"{found.ended}, nearest {found.nearest_m:.2f} m"
-        print(f"{personality} {seed}: {told}", flush=True)
+        print(f"{asked.personality} {seed}: {_told(found)}", flush=True)
     away = [one for one in flown if one.refusal is None]
     near = [one.nearest_m for one in away]
-    inside = sum(nearest_m < 0.0 for nearest_m in near)
     print(
-        f"{personality}: {len(flown)} missions, {len(flown) - len(away)} refused, "
-        f"{len(away)} flown; nearest {min(near, default=math.inf):.2f} m, inside {inside}"
+        f"{asked.personality}: {len(flown)} missions, {len(flown) - len(away)} refused, "
+        f"{len(away)} flown; nearest {min(near, default=math.inf):.2f} m, "
+        f"outside {sum(nearest_m < 0.0 for nearest_m in near)}"
     )
+    if asked.price:
+        would = [one.nearest_m for one in flown if one.refusal is not None and one.ended]
+        inside = [nearest_m for nearest_m in would if nearest_m > 0.0]
+        margin_m = DEFAULT.margin_h_m
+        kept = sum(nearest_m >= margin_m for nearest_m in inside)
+        print(
+            f"{asked.personality}: of {len(would)} refused ones {len(inside)} would have stayed "
+            f"inside, {kept} of them with the margin of {margin_m:g} m"
+        )
 
 
 if __name__ == "__main__":
