@@ -7,13 +7,16 @@ import struct
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs import ipc
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
+from gcs.session import inputs
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.test_bridge_streams import VELOCITY_ONLY, flying
 
 ACCEPTED, TEMPORARILY_REJECTED, DENIED = 0, 1, 2
-ARM, TAKE_OFF, INTERVAL, MOUNT, LOGGING_START = 400, 22, 511, 205, 2510
+ARM, INTERVAL, MOUNT, LOGGING_START = 400, 511, 205, 2510
 NAN = float("nan")
 
 pytestmark = pytest.mark.parametrize("personality", PERSONALITIES)
@@ -103,3 +106,61 @@ def test_only_the_client_in_control_points_the_camera(personality: Personality) 
     ]
     assert points[-1] == 245
     assert flight.session.gate.state is State.GROUNDED
+
+
+def in_control(flight: BridgedFlight) -> int:
+    """The number of the operator in control; 0: nobody."""
+    client = flight.session._operators.in_control
+    return client.client if client else 0
+
+
+def velocity(client: Client, v_n: float = 1.0) -> None:
+    client.send(
+        dialect.MAVLink_set_position_target_local_ned_message(
+            0, *VEHICLE, 1, VELOCITY_ONLY, 0, 0, 0, v_n, 0, 0, 0, 0, 0, 0, 0
+        )
+    )
+
+
+def test_one_sample_of_a_stream_takes_no_control_and_a_stream_does(
+    personality: Personality,
+) -> None:
+    flight, client = joined(personality)
+    for _ in range(3):
+        velocity(client)
+        flight.beating(2.0)
+    assert in_control(flight) == 0
+    for _ in range(20):
+        velocity(client, NAN)
+        flight.run(0.1)
+    assert in_control(flight) == 0, "no numbers"
+    for _ in range(3):
+        velocity(client)
+        flight.run(0.1)
+    assert in_control(flight) == 1000
+
+
+def test_what_cannot_be_read_takes_no_control(personality: Personality) -> None:
+    flight, client = joined(personality)
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(7, "goto")))
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(8, "no such word")))
+    flight.run(0.2)
+    assert in_control(flight) == 0
+    assert client.ask(ARM, 1.0) in (ACCEPTED, TEMPORARILY_REJECTED, DENIED, 4)
+    assert in_control(flight) == 1000
+
+
+def test_who_takes_over_need_not_wait_for_the_end_of_a_stream(personality: Personality) -> None:
+    flight, client = flying(personality)
+    other = flight.join(246)
+    for _ in range(20):
+        velocity(client)
+        flight.run(0.1)
+    assert flight.state is State.STREAMING
+    assert other.ask(32100, 1.0, 1.0) == ACCEPTED
+    flight.run(0.1)
+    assert flight.state is State.HOVERING
+    assert "The stream of operator 1000 is over" in flight.told()
+    velocity(client)
+    flight.run(0.1)
+    assert flight.state is State.HOVERING, "its samples are refused"
