@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from gcs import ipc
+from gcs.bridge.asked_rates import AskedRates
 from gcs.bridge.classes import Kind, Row, command_row, explain, message_row
 from gcs.bridge.client import Exchange
 from gcs.bridge.client_plan import ClientPlan
@@ -109,6 +110,7 @@ class Judge:
         self._control = control
         self._rules = rules
         self._needed_hz = needed_hz
+        self._asked_rates = AskedRates(rules, needed_hz)
         self._guard: Guard | None = None
         self._downloads = Downloads()
         self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
@@ -141,7 +143,7 @@ class Judge:
             return self._motion(given, message, row)
         match kind:
             case Kind.HARMLESS:
-                return Judged(False, self._forward(given, message))
+                return self._forward(given, message, row)
             case Kind.POINTING:
                 return self._pointing(given, message, row)
             case Kind.LOCAL if message is not None:
@@ -157,16 +159,23 @@ class Judge:
             case Kind.CONFIGURATION:
                 return self._configuration(given, message, row)
 
-    def _forward(self, given: Received, message: Message | None) -> list[BridgeEffect]:
-        """What is harmless, but for the rates that the gate needs."""
-        if isinstance(message, CommandLong | CommandInt):
-            instead = not_slower(message, self._needed_hz)
-            if instead is not None:
-                return [AsksVehicle(given.by.source, instead)]
-        elif isinstance(message, RequestDataStream):
-            again = asked_anew(message, self._needed_hz)
-            return [ToVehicle(given.frame.raw), AsksForStreams(tuple(again))]
-        return [ToVehicle(given.frame.raw)]
+    def _forward(self, given: Received, message: Message | None, row: Row) -> Judged:
+        """What is harmless, but for the rates that the gate needs and those that fill the link."""
+        if not isinstance(message, CommandLong | CommandInt | RequestDataStream):
+            return Judged(False, [ToVehicle(given.frame.raw)])
+        instead: Message | Refusal
+        again: list[BridgeEffect] = []
+        if isinstance(message, RequestDataStream):
+            instead = self._asked_rates.group(message)
+            if isinstance(instead, RequestDataStream):
+                again = [AsksForStreams(tuple(asked_anew(instead, self._needed_hz)))]
+        else:
+            instead = self._asked_rates.command(not_slower(message, self._needed_hz) or message)
+        if isinstance(instead, Refusal):
+            return _refuse(given, message, row, instead)
+        if instead is message:
+            return Judged(False, [ToVehicle(given.frame.raw), *again])
+        return Judged(False, [AsksVehicle(given.by.source, instead), *again])
 
     def _pointing(self, given: Received, message: Message | None, row: Row) -> Judged:
         """What points a camera, and may turn the nose: not while another one flies."""

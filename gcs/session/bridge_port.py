@@ -183,7 +183,7 @@ class BridgePort:
             case Refuses(client, ask, refusal):
                 return self._operators.refuse(client, ask, refusal)
             case AsksPlan():
-                return self._operators.ask_plan(item, vehicle.refusal(now_ns))
+                return self._operators.ask_plan(item, vehicle.refusal(now_ns), now_ns)
             case StopsPlan():
                 return self._operators.stop_plan(item)
             case Notes(level, text):

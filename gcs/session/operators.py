@@ -16,11 +16,11 @@ from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, StreamVerdict
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import Abort, SetMode
+from gcs.gate.requests import Abort, EndStream, SetMode
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC, Autopilot
 from gcs.session import teller
-from gcs.session.clients import FIRST, Clients
+from gcs.session.clients import FIRST, NOBODY, Clients
 from gcs.session.effects import Emit, ShowTopics
 from gcs.session.missions import MISSION_WORDS, TRANSFER_WORDS
 from gcs.session.operations import Operations
@@ -140,7 +140,7 @@ class Operators:
         why nothing can be asked of any, such as several that are heard."""
         match command:
             case ipc.Ask():
-                return self._ask(client, command, autopilot, no_vehicle)
+                return self._ask(client, command, autopilot, no_vehicle, now_ns)
             case ipc.Stream():
                 return self._stream(client, command, no_vehicle, now_ns)
             case ipc.Pending(goal_enu, _):
@@ -165,24 +165,27 @@ class Operators:
         ask: ipc.Ask,
         autopilot: Autopilot | None,
         no_vehicle: Refusal | None,
+        now_ns: int,
     ) -> list[Work]:
+        """What cannot be judged at all takes no control."""
         refusal = self._clients.refusal(client, ask)
         if refusal is not None:
             return self._refuse(self._requests.open(ask, client), ask, refusal)
-        given = self._clients.give_where_free(client, ask)
         if ask.word in STATION_WORDS:
-            return given + self._ask_station(client, ask)
+            return self._ask_station(client, ask, now_ns)
         if ask.operation:
-            return given + self._ask_stop(client, ask)
+            return self._ask_stop(client, ask)
         if no_vehicle is not None:
-            return given + self._refuse(self._requests.open(ask, client), ask, no_vehicle)
+            return self._refuse(self._requests.open(ask, client), ask, no_vehicle)
         if ask.word in MISSION_WORDS:
+            given = self._give_where_free(client, ask, now_ns)
             return [*given, AskMission(self._requests.open(ask, client), ask)]
         try:
             request = request_of(ask, autopilot or GENERIC)
         except BadAskError as error:
             refused = ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
-            return [*given, Emit(refused, client)]
+            return [Emit(refused, client)]
+        given = self._give_where_free(client, ask, now_ns)
         request_id = self._requests.open(ask, client)
         if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
             # The mission mode by its name is a mission start, and is verified like one.
@@ -196,16 +199,31 @@ class Operators:
         refusal = self._clients.refusal(client, BEGIN)
         if refusal is not None:
             return self._streams.refuse(client, refusal, 0, now_ns)
-        given = self._clients.give_where_free(client, BEGIN)
         if no_vehicle is not None:
-            return given + self._streams.refuse(client, no_vehicle, 0, now_ns)
-        return [*given, ToGate(self._streams.seen(client, sample))]
+            return self._streams.refuse(client, no_vehicle, 0, now_ns)
+        free = self._clients.in_control == NOBODY
+        if free and not self._streams.goes_on(client, sample, now_ns):
+            return []
+        given = self._give_where_free(client, BEGIN, now_ns)
+        return [*given, ToGate(self._streams.seen(client, sample, now_ns))]
 
-    def _ask_station(self, client: int, ask: ipc.Ask) -> list[Work]:
+    def _give_where_free(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
+        """Control, to the first who asks for something that needs it."""
+        return self._without_streams(client, self._clients.give_where_free(client, ask), now_ns)
+
+    def _without_streams(self, client: int, given: list[Work], now_ns: int) -> list[Work]:
+        """`client` is given control: the stream of whoever had it is over, and not only when it has
+        been silent for a while."""
+        others = self._streams.others(client, now_ns) if given else []
+        asks = [self._requests.open(ipc.Ask(0, "stream_end"), other) for other in others]
+        return [*(AskGate(request_id, EndStream()) for request_id in asks), *given]
+
+    def _ask_station(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """What is asked of the station, not of the vehicle, is done at once."""
         done = _done(self._requests.open(ask, client), "")
         if ask.word == "station_take":
-            return [*self._clients.take(client), *done]
+            taken = self._clients.take(client)
+            return [*self._without_streams(client, taken, now_ns), *done]
         if ask.word == "station_release":
             return [*self._clients.release(client), *done]
         return [*done, EndSession(f"operator {client} ended the station")]
@@ -222,14 +240,14 @@ class Operators:
             return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
         return [AskGate(request_id, Abort())]
 
-    def ask_plan(self, asked: AsksPlan, no_vehicle: Refusal | None) -> list[Work]:
+    def ask_plan(self, asked: AsksPlan, no_vehicle: Refusal | None, now_ns: int) -> list[Work]:
         """A MAVLink client brings a plan, or asks for one to be taken off."""
         client, ask = asked.client, asked.ask
         request_id = self._requests.open(ask, client)
         refusal = self._clients.refusal(client, ask) or no_vehicle
         if refusal is not None:
             return self._refuse(request_id, ask, refusal)
-        given = self._clients.give_where_free(client, ask)
+        given = self._give_where_free(client, ask, now_ns)
         return [*given, AskMission(request_id, ask, asked.plan, asked.kind)]
 
     def stop_plan(self, stopped: StopsPlan) -> list[Work]:

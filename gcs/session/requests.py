@@ -34,6 +34,11 @@ def source_of(client: int) -> str:
     return "operator" if client == 1 else f"operator {client}"
 
 
+def client_of(source: str) -> int:
+    """The operator whom `source_of` calls so."""
+    return int(source.removeprefix("operator") or 1)
+
+
 class BadAskError(ValueError):
     """The line is no request at all (a word or an argument is missing or unknown)."""
 

@@ -15,11 +15,15 @@ from gcs.gate.effects import Level, StreamVerdict
 from gcs.gate.inputs import StreamSeen
 from gcs.gate.refusal import Refusal
 from gcs.session import teller
-from gcs.session.requests import finite_or_nan, heading_rad, source_of
+from gcs.session.requests import client_of, finite_or_nan, heading_rad, source_of
 from gcs.session.work import Log, Work
 
 EPISODE_NS: Final = 5_000_000_000
 """Who is silent for so long is told anew that it may not stream."""
+
+BEGUN_WITHIN_NS: Final = 1_000_000_000
+"""Where nobody is in control: two samples within so long are a stream (a PX4 wants more than 2 Hz
+of it)."""
 
 BEGIN: Final = ipc.Ask(0, "stream_begin")
 """A sample asks for what this asks for."""
@@ -31,14 +35,37 @@ class Streams:
     """Which operators stream, and which of them were told that they may not."""
 
     def __init__(self) -> None:
-        self._client_of: dict[str, int] = {}
+        self._first_ns: dict[int, int] = {}
+        """The last sample of operators who are not in control."""
+        self._streamed_ns: dict[int, int] = {}
+        """The last sample that the gate was given."""
         self._refused_ns: dict[int, int] = {}
 
-    def seen(self, client: int, sample: ipc.Stream) -> StreamSeen:
+    def goes_on(self, client: int, sample: ipc.Stream, now_ns: int) -> bool:
+        """Whether it is a stream: a sample that says something, soon after another one.  One alone
+        takes no control."""
+        if not _says_something(sample):
+            return False
+        before_ns = self._first_ns.get(client)
+        self._first_ns[client] = now_ns
+        return before_ns is not None and now_ns - before_ns <= BEGUN_WITHIN_NS
+
+    def others(self, client: int, now_ns: int) -> list[int]:
+        """Who else has a stream that may not be over yet; they are told of once."""
+        found = [
+            other
+            for other, last_ns in self._streamed_ns.items()
+            if other != client and now_ns - last_ns <= EPISODE_NS
+        ]
+        for other in found:
+            del self._streamed_ns[other]
+        return found
+
+    def seen(self, client: int, sample: ipc.Stream, now_ns: int) -> StreamSeen:
         """The sample for the gate, in NED and as it is on the wire."""
         source = source_of(client)
-        self._client_of[source] = client
         self._refused_ns.pop(client, None)
+        self._streamed_ns[client] = now_ns
         yaw_deg, rate_deg_s = sample.yaw_deg, sample.yaw_rate_deg_s
         return StreamSeen(
             source,
@@ -63,11 +90,21 @@ class Streams:
 
     def verdict(self, told: StreamVerdict, sysid: int) -> list[Work]:
         """The gate's, for the operator whose stream it is."""
-        return [*teller.stream_verdict(told, self._client_of[told.source], sysid)]
+        return [*teller.stream_verdict(told, client_of(told.source), sysid)]
 
     def forget(self, client: int) -> None:
         """It has left, and its number is never given again."""
-        self._refused_ns.pop(client, None)
+        for times in (self._first_ns, self._streamed_ns, self._refused_ns):
+            times.pop(client, None)
+
+
+def _says_something(sample: ipc.Stream) -> bool:
+    """Somewhere to fly to or some way to fly, and no number that is none."""
+    triples = [each for each in (sample.pos_enu, sample.v_enu, sample.a_enu) if each is not None]
+    numbers = [value for triple in triples for value in triple]
+    numbers += [sample.yaw_deg, sample.yaw_rate_deg_s]
+    given = [value for value in numbers if value is not None]
+    return bool(triples) and all(math.isfinite(value) for value in given)
 
 
 def _ned(enu: ipc.Maybe3 | None) -> Vec3 | None:

@@ -555,6 +555,17 @@ class Timesync(Message, frozen=True, gc=False):
     target_component: int = 0
 
 
+class LogRequestData(Message, frozen=True, gc=False):
+    """LOG_REQUEST_DATA (119): 12 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.LOG_REQUEST_DATA
+    ofs: int
+    count: int  # bytes
+    id: int
+    target_system: int
+    target_component: int
+
+
 class BatteryStatus(Message, frozen=True, gc=False):
     """BATTERY_STATUS (147): 36 bytes, 54 with extensions."""
 
@@ -650,6 +661,16 @@ class CameraFeedback(Message, frozen=True, gc=False):
     cam_idx: int
     flags: int  # CAMERA_FEEDBACK_FLAGS
     completed_captures: int = 0
+
+
+class RemoteLogBlockStatus(Message, frozen=True, gc=False):
+    """REMOTE_LOG_BLOCK_STATUS (185): 7 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.REMOTE_LOG_BLOCK_STATUS
+    seqno: int
+    target_system: int
+    target_component: int
+    status: int  # MAV_REMOTE_LOG_DATA_BLOCK_STATUSES
 
 
 class EkfStatusReport(Message, frozen=True, gc=False):

@@ -34,8 +34,8 @@ DEVICES: tuple[Group, ...] = (
     ),
     Group(
         Kind.POINTING,
-        "It points a camera; a copter whose mount cannot turn sideways turns its nose instead (from "
-        "memory), and that moves it nowhere.",
+        "It points a camera; a copter whose mount cannot turn sideways turns its nose (from "
+        "memory), which moves it nowhere.",
         {
             204: "DO_MOUNT_CONFIGURE",
             205: "DO_MOUNT_CONTROL",

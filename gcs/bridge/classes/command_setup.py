@@ -35,10 +35,17 @@ SETUP: tuple[Group, ...] = (
         },
     ),
     Group(
-        Kind.HARMLESS,
-        "It lets the vehicle send its log as it is written.",
+        Kind.CONFIGURATION,
+        "It lets the vehicle send its log as it is written, which fills the link that flying "
+        "needs: on the ground, unless the policy allows it.",
         {
             2510: "LOGGING_START",
+        },
+    ),
+    Group(
+        Kind.HARMLESS,
+        "It ends the sending of the log.",
+        {
             2511: "LOGGING_STOP",
         },
     ),

@@ -96,18 +96,25 @@ REQUESTS: tuple[Group, ...] = (
     ),
     Group(
         Kind.HARMLESS,
-        "It reads the vehicle's logs.",
+        "It lists the vehicle's logs, or ends the reading of one.",
         {
             117: "LOG_REQUEST_LIST",
-            119: "LOG_REQUEST_DATA",
             122: "LOG_REQUEST_END",
         },
     ),
     Group(
-        Kind.HARMLESS,
-        "It tells the vehicle that a part of a log has come, so that it sends the next.",
+        Kind.CONFIGURATION,
+        "It reads a log, which fills the link that flying needs: on the ground, unless the policy "
+        "allows it.",
         {
+            119: "LOG_REQUEST_DATA",
             185: "REMOTE_LOG_BLOCK_STATUS",
+        },
+    ),
+    Group(
+        Kind.HARMLESS,
+        "It tells the vehicle that a part of a log has come.",
+        {
             268: "LOGGING_ACK",
         },
     ),
@@ -139,8 +146,8 @@ REQUESTS: tuple[Group, ...] = (
     ),
     Group(
         Kind.POINTING,
-        "It points a camera; a copter whose mount cannot turn sideways turns its nose instead (from "
-        "memory), and that moves it nowhere.",
+        "It points a camera; a copter whose mount cannot turn sideways turns its nose (from "
+        "memory), which moves it nowhere.",
         {
             156: "MOUNT_CONFIGURE",
             157: "MOUNT_CONTROL",

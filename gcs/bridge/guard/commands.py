@@ -10,7 +10,7 @@ from typing import Final, Literal, TypeAlias
 from gcs.wire.dialect import ENUMS
 
 Key: TypeAlias = Literal[
-    "fence", "home", "origin", "calibration", "reboot", "termination", "parameters"
+    "fence", "home", "origin", "calibration", "reboot", "termination", "parameters", "downloads"
 ]
 
 
@@ -42,6 +42,7 @@ _ROWS: Final = (
     CommandRow("PREFLIGHT_REBOOT_SHUTDOWN", "reboot", "rebooting or shutting down"),
     CommandRow("DO_FLIGHTTERMINATION", "termination", "ending the flight by stopping the motors"),
     CommandRow("PREFLIGHT_STORAGE", "parameters", "setting parameters back to defaults"),
+    CommandRow("LOGGING_START", "downloads", "sending the log as it is written"),
     CommandRow("INJECT_FAILURE", None, "making something fail"),
     CommandRow("PREFLIGHT_UAVCAN", None, "configuring what is on the CAN bus"),
 )

@@ -1,4 +1,4 @@
-"""FILE_TRANSFER_PROTOCOL: reading is free, writing is by policy.
+"""FILE_TRANSFER_PROTOCOL: lists are free, reading and writing are by policy.
 
 The payload is that of https://mavlink.io/en/services/ftp.html: seq (2 bytes), session, opcode,
 size, req_opcode, burst_complete, padding, offset (4 bytes), data.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
+from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused, by_choice
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.wire.ids import FtpError, FtpOpcode
@@ -32,6 +32,10 @@ READS: Final = frozenset(
         FtpOpcode.BURSTREADFILE,
     }
 )
+CONTENT: Final = frozenset(
+    {FtpOpcode.OPENFILERO, FtpOpcode.READFILE, FtpOpcode.BURSTREADFILE, FtpOpcode.CALCFILECRC}
+)
+"""Reads that fill the link, or keep the vehicle busy with its card."""
 WRITES: Final = {
     FtpOpcode.CREATEFILE: "creating a file",
     FtpOpcode.WRITEFILE: "writing into a file",
@@ -58,7 +62,11 @@ def judge_file(message: FileTransferProtocol, rules: BridgeRules, seen: GuardSee
     payload = message.payload
     opcode = payload[_OPCODE]
     if is_read(payload):
-        return Allowed()
+        judged = by_choice(rules.downloads, "downloads", "reading a file", seen)
+        if opcode not in CONTENT or isinstance(judged, Allowed):
+            return Allowed()
+        code, sentence = judged.refusal.code, judged.refusal.sentence
+        return _refused(message, seen, FtpError.FILEPROTECTED, code, sentence)
     if opcode in ANSWERS:
         sentence = "an answer of the file transfer, which nobody has asked a client for"
         return Refused(Refusal(Code.UNSUPPORTED, sentence))

@@ -11,7 +11,7 @@ from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS
 from gcs.bridge.guard.files import is_read, judge_file
 from gcs.bridge.guard.parameters import HASH_CHECK, Changed, ParameterGuard, refused_write
 from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
-from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
+from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused, by_choice
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import PX4, ParamEncoding
@@ -22,6 +22,7 @@ from gcs.wire.messages import (
     FencePoint,
     FileTransferProtocol,
     GpsRtcmData,
+    LogRequestData,
     Message,
     MissionAck,
     MissionClearAll,
@@ -31,6 +32,7 @@ from gcs.wire.messages import (
     ParamSet,
     ParamValue,
     RallyPoint,
+    RemoteLogBlockStatus,
     SetGpsGlobalOrigin,
     SetHomePosition,
     SetupSigning,
@@ -45,6 +47,16 @@ _PLANS: Final = {
     ),
 }
 """Keys of the policy that a transfer of that type stands under."""
+
+
+FOR_ALL: Final = (
+    GpsRtcmData,
+    LogRequestData,
+    RemoteLogBlockStatus,
+    MissionCount,
+    MissionClearAll,
+    MissionWritePartialList,
+)
 
 
 class Guard:
@@ -77,19 +89,22 @@ class Guard:
             case CommandLong() | CommandInt():
                 return self._command(message, seen)
             case SetHomePosition():
-                return _by(rules.home, "home", "moving home", seen)
+                return by_choice(rules.home, "home", "moving home", seen)
             case SetGpsGlobalOrigin():
                 what = "moving the origin of the local frame"
-                return _by(rules.origin, "origin", what, seen)
+                return by_choice(rules.origin, "origin", what, seen)
             case SetupSigning():
                 what = "giving the vehicle another key"
-                return _by(rules.signing, "signing", what, seen)
+                return by_choice(rules.signing, "signing", what, seen)
             case FencePoint():
-                return _by(rules.fence, "fence", "changing the vehicle's own fence", seen)
+                return by_choice(rules.fence, "fence", "changing the vehicle's own fence", seen)
             case RallyPoint():
-                return _by(rules.rally, "rally", "changing the vehicle's rally points", seen)
+                return by_choice(rules.rally, "rally", "changing the vehicle's rally points", seen)
             case GpsRtcmData():
-                judged = _by(rules.rtcm, "rtcm", "corrections for the GPS receiver", seen)
+                judged = by_choice(rules.rtcm, "rtcm", "corrections for the GPS receiver", seen)
+                return Allowed() if isinstance(judged, Allowed) else judged
+            case LogRequestData() | RemoteLogBlockStatus():
+                judged = by_choice(rules.downloads, "downloads", "reading a log", seen)
                 return Allowed() if isinstance(judged, Allowed) else judged
             case MissionCount() | MissionClearAll() | MissionWritePartialList():
                 return self._plan(message, seen)
@@ -128,7 +143,9 @@ class Guard:
                 choice = rules.reboot
             case "termination":
                 choice = rules.termination
-        return _by(choice, row.key, row.what, seen)
+            case "downloads":
+                choice = rules.downloads
+        return by_choice(choice, row.key, row.what, seen)
 
     def _storage(self, message: CommandLong | CommandInt, what: str, seen: GuardSeen) -> Judgement:
         """PREFLIGHT_STORAGE."""
@@ -136,7 +153,7 @@ class Guard:
             return Allowed()
         if self._rules.parameters != "forward":
             return Refused(Refusal(Code.POLICY, f"{what} is not allowed ({PARAMETERS_KEY})"))
-        return _by("on_ground", "parameters", what, seen)
+        return by_choice("on_ground", "parameters", what, seen)
 
     def _plan(
         self, message: MissionCount | MissionClearAll | MissionWritePartialList, seen: GuardSeen
@@ -150,7 +167,7 @@ class Guard:
             return _plan_refused(message, seen, Refusal(Code.UNSUPPORTED, sentence))
         for key, whose in keys:
             choice = self._rules.fence if key == "fence" else self._rules.rally
-            judged = _by(choice, key, f"changing {whose}", seen)
+            judged = by_choice(choice, key, f"changing {whose}", seen)
             if isinstance(judged, Refused):
                 return _plan_refused(message, seen, judged.refusal)
         return Allowed(f"changing {' and '.join(whose for _, whose in keys)} is forwarded")
@@ -164,11 +181,11 @@ def _is_for_all(message: Message) -> bool:
         case FileTransferProtocol(payload=payload):
             return is_read(payload)
         case CommandLong() | CommandInt():
-            return ROWS[message.command].key == "parameters" and message.param1 in STORAGE_KEEPS
+            key = ROWS[message.command].key
+            keeps = key == "parameters" and message.param1 in STORAGE_KEEPS
+            return keeps or key == "downloads"
         case _:
-            return isinstance(
-                message, GpsRtcmData | MissionCount | MissionClearAll | MissionWritePartialList
-            )
+            return isinstance(message, FOR_ALL)
 
 
 def _known(message: MissionCount | MissionClearAll | MissionWritePartialList) -> bool:
@@ -187,18 +204,3 @@ def _plan_refused(
         mission_type=message.mission_type,
     )
     return Refused(refusal, (answer,))
-
-
-def _by(choice: str, key: str, what: str, seen: GuardSeen) -> Judgement:
-    """As the policy's `choice` for `key` has it."""
-    match choice:
-        case "forward":
-            return Allowed(f"{what} is forwarded")
-        case "on_ground" if seen.stands_disarmed:
-            return Allowed(f"{what} is forwarded")
-        case "on_ground":
-            sentence = f"{what} is allowed while the vehicle is disarmed on the ground only"
-            return Refused(Refusal(Code.IN_AIR, f"{sentence} (policy: bridge.{key})"))
-        case _:
-            sentence = f"{what} is not allowed (policy: bridge.{key})"
-            return Refused(Refusal(Code.POLICY, sentence))

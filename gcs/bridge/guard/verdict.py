@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gcs.gate.refusal import Refusal
+from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.messages import Message
 
@@ -53,3 +53,18 @@ class Refused:
 
 
 Judgement: TypeAlias = Allowed | Refused
+
+
+def by_choice(choice: str, key: str, what: str, seen: GuardSeen) -> Judgement:
+    """As the policy's `choice` for `key` has it."""
+    match choice:
+        case "forward":
+            return Allowed(f"{what} is forwarded")
+        case "on_ground" if seen.stands_disarmed:
+            return Allowed(f"{what} is forwarded")
+        case "on_ground":
+            sentence = f"{what} is allowed while the vehicle is disarmed on the ground only"
+            return Refused(Refusal(Code.IN_AIR, f"{sentence} (policy: bridge.{key})"))
+        case _:
+            sentence = f"{what} is not allowed (policy: bridge.{key})"
+            return Refused(Refusal(Code.POLICY, sentence))

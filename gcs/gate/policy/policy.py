@@ -179,10 +179,13 @@ class BridgeRules(_Section, frozen=True):
     termination: Literal["refuse", "forward"]
     rtcm: Literal["refuse", "forward"]
     ftp_writes: Literal["refuse", "forward"]
+    downloads: Literal["refuse", "on_ground", "forward"]
     on_board: Literal["verify", "refuse"]
     manual_modes: tuple[Text, ...]
     extra_denied: tuple[Text, ...]
     extra_harmless: tuple[Text, ...]
+    message_hz: FromOne
+    messages_hz: FromOne
     client_rate_hz: FromOne
     client_gone_s: FromOne
     max_clients: Annotated[int, Meta(ge=1, le=64)]

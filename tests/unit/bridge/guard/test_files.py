@@ -1,4 +1,4 @@
-"""FILE_TRANSFER_PROTOCOL of a client: reading is free, writing is by policy."""
+"""FILE_TRANSFER_PROTOCOL of a client: reading and writing are by policy."""
 
 from __future__ import annotations
 
@@ -22,6 +22,12 @@ WRITES = (
     FtpOpcode.TRUNCATEFILE,
     FtpOpcode.RENAME,
 )
+CONTENT = {
+    FtpOpcode.OPENFILERO,
+    FtpOpcode.READFILE,
+    FtpOpcode.CALCFILECRC,
+    FtpOpcode.BURSTREADFILE,
+}
 READS = (
     FtpOpcode.NONE,
     FtpOpcode.TERMINATESESSION,
@@ -59,7 +65,20 @@ def negative(answers: tuple[object, ...]) -> tuple[int, int, int, int, int, int]
 
 @pytest.mark.parametrize("opcode", READS)
 def test_reading_is_forwarded(opcode: int) -> None:
-    allowed(guard().judge(ftp(opcode, b"@PARAM/param.pck"), FLYING))
+    allowed(guard().judge(ftp(opcode, b"@PARAM/param.pck"), PARKED))
+    allowed(guard('downloads = "forward"').judge(ftp(opcode, b"@PARAM/param.pck"), FLYING))
+
+
+@pytest.mark.parametrize("opcode", READS)
+def test_in_the_air_files_are_listed_and_not_read(opcode: int) -> None:
+    judged = guard().judge(ftp(opcode, b"/fs/microsd/log/1.ulg"), FLYING)
+    if opcode in CONTENT:
+        found = refused(judged)
+        assert found.refusal.code is Code.IN_AIR
+        assert "bridge.downloads" in found.refusal.sentence
+        assert negative(found.answers)[-1] == FtpError.FILEPROTECTED
+    else:
+        allowed(judged)
 
 
 @pytest.mark.parametrize("opcode", WRITES)

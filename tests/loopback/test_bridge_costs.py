@@ -1,0 +1,166 @@
+"""What a MAVLink client may cost the others: the link to the vehicle, and control."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+from pymavlink.dialects.v20 import all as dialect
+
+from gcs import ipc
+from gcs.gate.policy.parse import parse_policy
+from gcs.gate.states import State
+from gcs.session import inputs
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.test_bridge_streams import VELOCITY_ONLY, flying
+
+ACCEPTED, TEMPORARILY_REJECTED, DENIED = 0, 1, 2
+ARM, INTERVAL, MOUNT, LOGGING_START = 400, 511, 205, 2510
+NAN = float("nan")
+
+pytestmark = pytest.mark.parametrize("personality", PERSONALITIES)
+
+
+def joined(personality: Personality, rules: str = "") -> tuple[BridgedFlight, Client]:
+    policy = parse_policy(f"[bridge]\n{rules}", "my.toml")
+    flight = BridgedFlight(personality, policy=policy)
+    client = flight.join()
+    flight.connected()
+    return flight, client
+
+
+def armed(flight: BridgedFlight, client: Client) -> None:
+    if flight.personality == "ardupilot":
+        client.ask(176, 1.0, 4.0)
+    assert client.ask(ARM, 1.0) == ACCEPTED
+
+
+def log_data(client: Client) -> None:
+    client.send(dialect.MAVLink_log_request_data_message(*VEHICLE, 1, 0, 90))
+
+
+def burst(client: Client) -> None:
+    head = struct.pack("<HBBBBBxI", 7, 0, 15, 0, 0, 0, 0)
+    payload = list(head.ljust(251, b"\0"))
+    client.send(dialect.MAVLink_file_transfer_protocol_message(0, *VEHICLE, payload))
+
+
+def test_logs_and_files_are_read_on_the_ground_only(personality: Personality) -> None:
+    flight, client = joined(personality)
+    log_data(client)
+    burst(client)
+    flight.run(0.5)
+    read = ("LOG_REQUEST_DATA", "FILE_TRANSFER_PROTOCOL")
+    assert [len(flight.to_vehicle(name)) for name in read] == [1, 1]
+    armed(flight, client)
+    log_data(client)
+    burst(client)
+    flight.run(0.5)
+    assert [len(flight.to_vehicle(name)) for name in read] == [1, 1]
+    assert "reading a log is allowed while the vehicle is disarmed" in client.texts()
+    assert "reading a file is allowed while the vehicle is disarmed" in client.texts()
+    assert client.ask(LOGGING_START) == TEMPORARILY_REJECTED
+
+
+def test_the_policy_may_let_them_be_read_in_the_air(personality: Personality) -> None:
+    flight, client = joined(personality, 'downloads = "forward"')
+    armed(flight, client)
+    log_data(client)
+    burst(client)
+    flight.run(0.5)
+    read = ("LOG_REQUEST_DATA", "FILE_TRANSFER_PROTOCOL")
+    assert [len(flight.to_vehicle(name)) for name in read] == [1, 1]
+
+
+def test_a_client_s_rates_are_bounded(personality: Personality) -> None:
+    flight, client = joined(personality)
+    assert client.ask(INTERVAL, 105.0, 100.0) == ACCEPTED
+    asked = [
+        struct.unpack_from("<ff", frame.payload)
+        for frame in flight.to_vehicle("COMMAND_LONG")
+        if frame.sysid == 245
+    ]
+    assert asked[-1] == (105.0, 20_000.0)
+    client.send(dialect.MAVLink_request_data_stream_message(*VEHICLE, 0, 200, 1))
+    flight.run(0.5)
+    assert flight.to_vehicle("REQUEST_DATA_STREAM") == []
+    assert "bridge.messages_hz" in client.texts()
+
+
+def test_only_the_client_in_control_points_the_camera(personality: Personality) -> None:
+    flight, client = joined(personality)
+    other = flight.join(246)
+    before = len(flight.to_vehicle("COMMAND_LONG"))
+    other.command(MOUNT, 0.0, 0.0, 90.0, 0.0, 0.0, 0.0, 2.0)
+    flight.run(0.5)
+    mount = [frame for frame in flight.to_vehicle("COMMAND_LONG")[before:] if frame.sysid == 246]
+    assert len(mount) == 1, "nobody is in control"
+    armed(flight, client)
+    assert other.ask(MOUNT, 0.0, 0.0, 80.0, 0.0, 0.0, 0.0, 2.0) == TEMPORARILY_REJECTED
+    assert "points the camera" in other.texts()
+    client.command(MOUNT, 0.0, 0.0, 70.0, 0.0, 0.0, 0.0, 2.0)
+    flight.run(0.5)
+    points = [
+        frame.sysid for frame in flight.to_vehicle("COMMAND_LONG") if frame.sysid in (245, 246)
+    ]
+    assert points[-1] == 245
+    assert flight.session.gate.state is State.GROUNDED
+
+
+def in_control(flight: BridgedFlight) -> int:
+    """The number of the operator in control; 0: nobody."""
+    client = flight.session._operators.in_control
+    return client.client if client else 0
+
+
+def velocity(client: Client, v_n: float = 1.0) -> None:
+    client.send(
+        dialect.MAVLink_set_position_target_local_ned_message(
+            0, *VEHICLE, 1, VELOCITY_ONLY, 0, 0, 0, v_n, 0, 0, 0, 0, 0, 0, 0
+        )
+    )
+
+
+def test_one_sample_of_a_stream_takes_no_control_and_a_stream_does(
+    personality: Personality,
+) -> None:
+    flight, client = joined(personality)
+    for _ in range(3):
+        velocity(client)
+        flight.beating(2.0)
+    assert in_control(flight) == 0
+    for _ in range(20):
+        velocity(client, NAN)
+        flight.run(0.1)
+    assert in_control(flight) == 0, "no numbers"
+    for _ in range(3):
+        velocity(client)
+        flight.run(0.1)
+    assert in_control(flight) == 1000
+
+
+def test_what_cannot_be_read_takes_no_control(personality: Personality) -> None:
+    flight, client = joined(personality)
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(7, "goto")))
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(8, "no such word")))
+    flight.run(0.2)
+    assert in_control(flight) == 0
+    assert client.ask(ARM, 1.0) in (ACCEPTED, TEMPORARILY_REJECTED, DENIED, 4)
+    assert in_control(flight) == 1000
+
+
+def test_who_takes_over_need_not_wait_for_the_end_of_a_stream(personality: Personality) -> None:
+    flight, client = flying(personality)
+    other = flight.join(246)
+    for _ in range(20):
+        velocity(client)
+        flight.run(0.1)
+    assert flight.state is State.STREAMING
+    assert other.ask(32100, 1.0, 1.0) == ACCEPTED
+    flight.run(0.1)
+    assert flight.state is State.HOVERING
+    assert "The stream of operator 1000 is over" in flight.told()
+    velocity(client)
+    flight.run(0.1)
+    assert flight.state is State.HOVERING, "its samples are refused"
