@@ -136,7 +136,7 @@ class Bridge:
             judged = self._elsewhere(client, asked_by, frame, sysid)
         else:
             in_control = client.number == self._in_control
-            seen = self._look(look, client)
+            seen = self._look(look, client, now_ns)
             received = Received(client, asked_by, frame, seen, now_ns, in_control)
             judged = self._judge.judge(received)
             if frame.msgid == MsgId.HEARTBEAT:
@@ -145,7 +145,7 @@ class Bridge:
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
 
-    def _look(self, look: Look, client: Client) -> Look:
+    def _look(self, look: Look, client: Client, now_ns: int) -> Look:
         """The same, with what is this client's."""
 
         def seen() -> Seen | None:
@@ -153,7 +153,12 @@ class Bridge:
             in_control = self._in_control in (0, client.number)
             if found is None:
                 return None
-            return replace(found, in_control=in_control, manual_modes=self._manual_modes)
+            return replace(
+                found,
+                in_control=in_control,
+                manual_modes=self._manual_modes,
+                has_sticks=client.sticks.heard(now_ns),
+            )
 
         return seen
 
