@@ -170,7 +170,7 @@ class Bridge:
             client.at(vehicle.sysid),
             asked_by,
             frame,
-            self._look(look, client, vehicle.sysid),
+            self._look(look, client, vehicle.sysid, now_ns),
             now_ns,
             client.number == self._in_control,
         )
@@ -209,7 +209,9 @@ class Bridge:
             found = self._judges[sysid] = Judge(self._rules, self._needed_hz, self._control)
         return found
 
-    def _look(self, look: Callable[[int], Seen | None], client: Client, sysid: int) -> Look:
+    def _look(
+        self, look: Callable[[int], Seen | None], client: Client, sysid: int, now_ns: int
+    ) -> Look:
         """The same of one vehicle, with what is this client's."""
 
         def seen() -> Seen | None:
@@ -217,7 +219,12 @@ class Bridge:
             in_control = self._in_control in (0, client.number)
             if found is None:
                 return None
-            return replace(found, in_control=in_control, manual_modes=self._manual_modes)
+            return replace(
+                found,
+                in_control=in_control,
+                manual_modes=self._manual_modes,
+                has_sticks=client.at(sysid).sticks.heard(now_ns),
+            )
 
         return seen
 

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from itertools import count
 
 from gcs.bridge.dialogue import Dialogue
+from gcs.bridge.meaning.meaning import Meaning, Seen, Settled, Sticks
 from gcs.bridge.meaning.pace import Pace
+from gcs.bridge.meaning.stick_stream import StickStream
 from gcs.bridge.plans.server import PlanServer
 from gcs.protocol.transfer import Timing
 
@@ -81,5 +83,12 @@ class Exchange:
         self.dialogue = Dialogue(client.number, vehicle, client.numbers)
         self.plans = PlanServer(client.timing)
         self.pace = Pace(client.deadman_ns)
+        self.sticks = StickStream()
         self.plan_ask = 0
         """The number of the plan request that is not over; 0: none."""
+
+    def settle(self, meaning: Meaning, seen: Seen, now_ns: int) -> Settled:
+        """What a message of this client asks for, after those before it."""
+        if isinstance(meaning, Sticks):
+            return self.sticks.settle(meaning, seen, now_ns)
+        return self.pace.settle(meaning, now_ns)

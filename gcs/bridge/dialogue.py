@@ -128,6 +128,8 @@ class Dialogue:
     ) -> list[BridgeEffect]:
         """Ask for `asks`, one after the other, because of a message; none: it is so already."""
         key, command = _key(message), _command(message)
+        if not asks and not command:
+            return []  # such as sticks in the middle, 25 a second: nothing came in between
         if asks and asks[0].word in STOPS:
             self._told = None
         repeated = self._repeated(asked_by, key, command, now_ns)
@@ -135,8 +137,7 @@ class Dialogue:
             return repeated
         self._last_key, self._told = key, None
         if not asks:
-            done = [self._acknowledge(asked_by, command, Result.ACCEPTED)]
-            return [*done] if command else []
+            return [self._acknowledge(asked_by, command, Result.ACCEPTED)]
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
         arming = self._arming() if pending.rest and pending.word == "arm" else None
         if arming is not None:

@@ -34,7 +34,7 @@ from gcs.bridge.guard import verdict as guard_verdict
 from gcs.bridge.guard.guard import Guard
 from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
-from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
+from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Settled, Sticks, Words
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans import effects as plan_effects
@@ -193,7 +193,16 @@ class Judge:
             return _refuse(given, message, row, Refusal(Code.NO_VEHICLE, "no vehicle is heard"))
         if message is None:
             return _refuse(given, message, row, Refusal(Code.UNSUPPORTED, row.why))
-        meaning = client.pace.settle(meaning_of(message, seen), now_ns)
+        meant = meaning_of(message, seen)
+        ignored = client.sticks.news(meant) if isinstance(meant, Sticks) else ""
+        told = client.dialogue.text(given.by, Level.INFO, ignored, now_ns) if ignored else []
+        judged = self._meant(given, message, row, client.settle(meant, seen, now_ns), seen)
+        return Judged(judged.refused, [*told, *judged.effects])
+
+    def _meant(
+        self, given: Received, message: Message, row: Row, meaning: Settled, seen: Seen
+    ) -> Judged:
+        client, now_ns = given.client, given.now_ns
         match meaning:
             case Words(asks, note):
                 if self._height_of_takeoff_unknown(asks, seen):

@@ -49,13 +49,15 @@ def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> N
     """
     if name is None:
         return
-    from gcs.bridge.classes.explain import explanation
+    from gcs.bridge.classes.explain import explain, explanation
     from gcs.bridge.guard.explain import parameter_explanation
+    from gcs.bridge.meaning.explain import meaning_explanation
     from gcs.exit_codes import ExitCode
     from gcs.operator.errors import ExitError
 
     try:
-        told = explanation(name)
+        meaning = meaning_explanation(explain(name).name)
+        told = "\n".join(line for line in (explanation(name), meaning) if line)
     except KeyError as error:
         guarded = parameter_explanation(name)
         if guarded is None:

@@ -77,6 +77,7 @@ class BridgePort:
         self._operators = operators
         self._links = links
         self._max_takeoff_up_m = policy.takeoff.max_up_m
+        self._stream = policy.stream
         self._endpoints = endpoints
         self._shown = config.bridge or bool(config.clients)
         self._before: list[tuple[int, int]] = [(0, 0)] * len(endpoints)
@@ -95,7 +96,10 @@ class BridgePort:
             return None
         seen = seen_of(vehicle.telemetry, vehicle.gate, vehicle.parameters, self._max_takeoff_up_m)
         return replace(
-            seen, plan_transfer=vehicle.plan_transfer, mission_paused=vehicle.mission_paused
+            seen,
+            plan_transfer=vehicle.plan_transfer,
+            mission_paused=vehicle.mission_paused,
+            stream=self._stream,
         )
 
     def parameter(self, frame: Frame) -> list[BridgeEffect]:

@@ -319,6 +319,30 @@ def sticks(flight: HostileFlight, client: Client) -> None:
         flight.flies(0.05)
 
 
+def joystick_at_the_fence(flight: HostileFlight, client: Client) -> None:
+    """Let go of once, so that it flies; then pushed anywhere, for long, and let go of or lost."""
+    dice = flight.dice
+    ends = (-1000, -1000, 0, 400, 1000, 1000, 0x7FFF)
+    pushed = (dice.choice(ends), dice.choice(ends), dice.choice((0, 500, 500, 1000)))
+    turned = dice.choice((0, 0, -1000, 300))
+    by_channels = flight.personality == "ardupilot" and dice.random() < 0.3
+    for count in range(dice.choice((30, 125, 200))):
+        x, y, z = (0, 0, 500) if count < 3 else pushed
+        if by_channels:
+            raw = (1500 + y // 2, 1500 - x // 2, 1000 + z, 1500 + turned // 2)
+            message = dialect.MAVLink_rc_channels_override_message(
+                *VEHICLE, *(each if each < 2500 else 0xFFFF for each in raw), *(0,) * 4
+            )
+        else:
+            message = dialect.MAVLink_manual_control_message(1, x, y, z, turned * (count > 2), 0)
+        flight.say_as(client, message)
+        flight.flies(0.04)
+    if dice.random() < 0.5:
+        for _ in range(30):
+            flight.say_as(client, dialect.MAVLink_manual_control_message(1, 0, 0, 500, 0, 0))
+            flight.flies(0.04)
+
+
 def modes(flight: HostileFlight, client: Client) -> None:
     dice = flight.dice
     main, sub = dice.randrange(12), dice.randrange(10)
@@ -429,6 +453,7 @@ ACTS: Final[tuple[Act, ...]] = (
     *[goes] * 16,
     *[velocity_at_the_fence] * 8,
     sticks,
+    *[joystick_at_the_fence] * 4,
     *[modes] * 3,
     *[words] * 5,
     *[parameters] * 4,
@@ -444,6 +469,7 @@ FLYING: Final[tuple[Act, ...]] = (
     *[gets_going] * 6,
     *[goes] * 20,
     *[velocity_at_the_fence] * 12,
+    *[joystick_at_the_fence] * 8,
     *[uploads] * 3,
     *[lies] * 3,
     *[random_frame] * 6,

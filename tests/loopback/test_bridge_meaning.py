@@ -140,21 +140,6 @@ def test_a_second_hold_within_two_seconds_is_a_hold(personality: Personality) ->
 
 
 @both
-def test_sticks_of_a_client_never_reach_the_vehicle(personality: Personality) -> None:
-    flight, client = flying(personality)
-    for z in (500, 0):  # the middle, and the throttle closed
-        client.send(dialect.MAVLink_manual_control_message(VEHICLE[0], 0, 0, z, 0, 0))
-    for raw in (0, 1100):
-        channels = [raw] * 8
-        client.send(dialect.MAVLink_rc_channels_override_message(*VEHICLE, *channels))
-    flight.run(1)
-    assert not flight.to_vehicle("MANUAL_CONTROL")
-    assert not flight.to_vehicle("RC_CHANNELS_OVERRIDE")
-    assert flight.state is State.HOVERING
-    assert len(flight.decisions("refused")) == 2, "sticks in the middle ask for nothing"
-
-
-@both
 def test_a_client_who_is_not_in_control_does_not_stop_a_return(personality: Personality) -> None:
     """It asks for OFFBOARD or GUIDED, which is a hold and more."""
     flight, client = flying(personality)

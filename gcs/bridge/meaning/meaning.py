@@ -12,6 +12,7 @@ from typing import TypeAlias
 from gcs import ipc
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
+from gcs.gate.policy.policy import StreamRules
 from gcs.gate.refusal import Refusal
 from gcs.gate.states import State
 from gcs.protocol.autopilot import Autopilot
@@ -55,6 +56,10 @@ class Seen:
     """A client may set the default height of a take-off up to this; 0: not at all."""
     plan_transfer: bool = False
     """The station reads or writes a plan of the vehicle."""
+    stream: StreamRules | None = None
+    """What full stick asks for; None: sticks are refused."""
+    has_sticks: bool = False
+    """The client who asks has sent sticks lately."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +74,21 @@ class Sample:
     a_ned: Vec3 | None = None
     yaw_rad: float | None = None
     yaw_rate_rad_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Sticks:
+    """A pilot's sticks; whether they fly the vehicle now, `stick_stream.StickStream` knows."""
+
+    sample: Sample
+    """The velocity and the yaw rate that they ask for."""
+    centred: bool
+    """All of them are in the middle: the sample asks for standstill."""
+    resting: bool
+    """They are so but for the throttle, which may be below the middle, as it is before a take-off
+    where it has no spring."""
+    note: str = ""
+    """What of the message is ignored."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,4 +117,5 @@ class Reject:
     refusal: Refusal
 
 
-Meaning: TypeAlias = Words | Sample | Forward | Reject
+Settled: TypeAlias = Words | Sample | Forward | Reject
+Meaning: TypeAlias = Settled | Sticks

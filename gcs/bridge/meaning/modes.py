@@ -58,6 +58,9 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
         return forward(seen)
     match wanted.meaning:
         case FlightMode.HOLD:
+            obeys_sticks = wanted.name != _sent(seen.autopilot, FlightMode.HOLD)
+            if obeys_sticks and seen.has_sticks and seen.in_control and not seen.on_ground:
+                return Words(_HOVER_AGAIN, _by_sticks(wanted, seen))
             return hold(seen, wanted.name)
         case FlightMode.GUIDED:
             return guided(wanted, seen)
@@ -67,9 +70,40 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
             return _flown_by_itself(wanted, seen)
         case FlightMode.OTHER if seen.on_ground and not seen.armed:
             return mode(wanted.name)
+        case FlightMode.OTHER if wanted.name in _POSITION_MODES and not seen.on_ground:
+            return _position_mode(wanted, seen)
         case FlightMode.OTHER:
             sentence = f"{wanted.name} is flown with sticks: the gate could hold nothing in it"
             return refuse(Code.POLICY, f"{sentence} (policy: bridge.manual_modes)")
+
+
+_POSITION_MODES = frozenset({"POSCTL", "POSHOLD"})
+"""Modes in which the vehicle stays where it is until a stick is moved, and again after that."""
+_HOVER_AGAIN = (ipc.Ask(0, "hold"), ipc.Ask(0, "resume"))
+
+
+def _position_mode(wanted: Mode, seen: Seen) -> Meaning:
+    """The same is had from the gate: it hovers, and flies sticks as a stream that it verifies.
+
+    PX4 refuses POSCTL, too, where no sticks are heard (recorded: TEMPORARILY_REJECTED).
+    """
+    if not seen.has_sticks:
+        sentence = f"{wanted.name}: no MANUAL_CONTROL comes from this client, so nothing flies it"
+        return refuse(Code.POLICY, f"{sentence} (policy: bridge.manual_modes)")
+    note = _by_sticks(wanted, seen)
+    guided = _sent(seen.autopilot, FlightMode.GUIDED)
+    if not seen.in_control:
+        return ask("control")
+    if seen.state in NOT_FLOWN_BY_US:
+        return ask("resume", note)
+    if seen.state is State.STREAMING or (seen.state is State.HOVERING and seen.mode_name == guided):
+        return Words((), note)
+    return ask("control", note) if seen.state is State.HOVERING else Words(_HOVER_AGAIN, note)
+
+
+def _by_sticks(wanted: Mode, seen: Seen) -> str:
+    flown = _sent(seen.autopilot, FlightMode.GUIDED)
+    return f"{wanted.name}: flown in {flown}, where the gate verifies what the sticks ask for"
 
 
 def _is_let_through(wanted: Mode, seen: Seen) -> bool:

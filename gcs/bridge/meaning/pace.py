@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.meaning.meaning import Meaning, Sample, Words
+from gcs.bridge.meaning.meaning import Sample, Settled, Words
 
 UNDECIDED_NS: Final = 150_000_000
 """A go-to waits for the gate's next tick: until then `Seen` does not tell what became of it."""
@@ -34,7 +34,7 @@ class Pace:
         self._asked: Words | None = None
         self._asked_ns = 0
 
-    def settle(self, meaning: Meaning, now_ns: int) -> Meaning:
+    def settle(self, meaning: Settled, now_ns: int) -> Settled:
         """The meaning with the doubt removed: `Words.if_repeated` is done with."""
         if isinstance(meaning, Sample):
             self._last_ns = now_ns

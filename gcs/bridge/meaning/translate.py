@@ -75,12 +75,14 @@ MESSAGES: Final[Mapping[int, MessageRow]] = dict(
         _row(
             m.ManualControl,
             manual_control,
-            "refused; sticks in the middle without a button ask for nothing. Never forwarded",
+            "sticks: samples of a velocity stream, in the middle nothing. Buttons are ignored, and "
+            "nothing of it is forwarded",
         ),
         _row(
             m.RcChannelsOverride,
             rc_override,
-            "refused; channels that are released or left alone ask for nothing. Never forwarded",
+            "ArduPilot: channels 1 to 4 are sticks, if all others are released or left alone. PX4: "
+            "refused. Released channels ask for nothing. Never forwarded",
         ),
         _row(m.SetAttitudeTarget, attitude_target, "refused in every mask"),
     )

@@ -219,13 +219,19 @@ def _check_bridge(doc: toml.Document, rules: BridgeRules, check_names: CheckName
 
 
 def _check_stream(doc: toml.Document, p: Policy) -> None:
-    """A sample counts no longer than the stream, and no position is older than the policy's."""
+    """A sample counts no longer than the stream, no position is older than the policy's, and no
+    stick asks for more than a stream may."""
     if p.stream.ends_after_s < p.stream.deadman_s:
         what = f"{p.stream.ends_after_s:g} is less than deadman_s of {p.stream.deadman_s:g}"
         raise doc.error(("stream", "ends_after_s"), what)
     if doc.has(("stream", "position_age_s")) and p.stream.position_age_s > p.position_age_s:
         what = f"{p.stream.position_age_s:g} is more than position_age_s of {p.position_age_s:g}"
         raise doc.error(("stream", "position_age_s"), what)
+    for key in ("speed_h_m_s", "speed_up_m_s", "speed_down_m_s", "yaw_rate_deg_s"):
+        full, most = getattr(p.stream, f"stick_{key}"), getattr(p.stream, f"max_{key}")
+        if doc.has(("stream", f"stick_{key}")) and full > most:
+            what = f"{full:g} is more than max_{key} of {most:g}"
+            raise doc.error(("stream", f"stick_{key}"), what)
 
 
 def _check_slack(doc: toml.Document, p: Policy) -> None:

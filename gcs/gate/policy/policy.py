@@ -28,6 +28,7 @@ FromTwentieth: TypeAlias = Annotated[float, Meta(ge=0.05, le=MOST)]
 FromTenth: TypeAlias = Annotated[float, Meta(ge=0.1, le=MOST)]
 FromOne: TypeAlias = Annotated[float, Meta(ge=1.0, le=MOST)]
 Deceleration: TypeAlias = Annotated[float, Meta(ge=0.1, le=50.0)]
+DeadBand: TypeAlias = Annotated[float, Meta(ge=0.0, le=0.9)]
 
 
 class _Section(Struct, frozen=True, forbid_unknown_fields=True):
@@ -202,7 +203,8 @@ class StreamRules(_Section, frozen=True):
 
     A position older than `position_age_s` is none to judge a sample by.  Refused samples are flown
     again once they were good for `good_again_s`; a stream without a sample for `ends_after_s` is
-    over.
+    over.  `stick_*` is what a client's full stick asks for, and never more than the most that a
+    stream may ask for; `stick_dead_band` is the share of a stick's way that counts as the middle.
     """
 
     deadman_s: FromTenth
@@ -214,6 +216,11 @@ class StreamRules(_Section, frozen=True):
     max_speed_down_m_s: FromZero
     max_a_m_s2: FromZero
     max_yaw_rate_deg_s: FromZero
+    stick_speed_h_m_s: FromZero
+    stick_speed_up_m_s: FromZero
+    stick_speed_down_m_s: FromZero
+    stick_yaw_rate_deg_s: FromZero
+    stick_dead_band: DeadBand
 
 
 class Policy(_Section, frozen=True):

@@ -7,7 +7,7 @@ from gcs.bridge.dialogue import Dialogue, From
 from gcs.bridge.effects import Answers, Says
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, Result
-from gcs.wire.messages import CommandAck, CommandLong
+from gcs.wire.messages import CommandAck, CommandLong, ManualControl
 
 MS = 1_000_000
 CLIENT = From(1, Address(255, 190), Address(1, 1))
@@ -51,6 +51,15 @@ def test_a_repetition_is_answered_and_not_asked_twice() -> None:
     assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "asked"
     assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "answered ACCEPTED"
     assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm", after_ms=2500) == "asked"
+
+
+def test_what_asks_for_nothing_is_nothing_in_between() -> None:
+    """Sticks in the middle, 25 times a second."""
+    client = Client()
+    assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "asked"
+    middle = ManualControl(x=0, y=0, z=500, r=0, buttons=0, target=1)
+    assert client.dialogue.ask(CLIENT, middle, (), client.now_ns) == []
+    assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "answered ACCEPTED"
 
 
 def test_a_stop_is_never_answered_from_memory() -> None:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import struct
+from dataclasses import replace
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs.bridge.meaning.commands import COMMANDS
-from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Words
+from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Sticks, Words
 from gcs.bridge.meaning.pace import Pace
+from gcs.bridge.meaning.stick_stream import StickStream
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
+from gcs.gate.airspace.stream_samples import StreamSample, beyond_rules
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4
@@ -64,6 +68,8 @@ seen = st.builds(
     goal_yaw_rad=st.none() | st.floats(-math.pi, math.pi),
     mission_paused=st.booleans(),
     max_speed_m_s=st.floats(0.0, 20.0),
+    stream=st.none() | st.just(DEFAULT.stream),
+    has_sticks=st.booleans(),
 )
 
 
@@ -97,6 +103,9 @@ commands = st.builds(
 
 def check(message: Message, vehicle: Seen) -> None:
     meaning = meaning_of(message, vehicle)
+    if isinstance(meaning, Sticks):
+        check_sticks(meaning, vehicle)
+        return
     for settled in (meaning, Pace(500_000_000).settle(meaning, 0)):
         match settled:
             case Words(asks, _, sample):
@@ -112,6 +121,22 @@ def check(message: Message, vehicle: Seen) -> None:
             case Reject(refusal):
                 assert refusal.sentence
                 assert refusal.code in Code
+
+
+def check_sticks(sticks: Sticks, vehicle: Seen) -> None:
+    """Never beyond the policy's most, and standstill where they are in the middle."""
+    check_sample(sticks.sample)
+    v_ned, rate_rad_s = sticks.sample.v_ned, sticks.sample.yaw_rate_rad_s
+    asked = StreamSample(v_ned=v_ned, yaw_rate_rad_s=rate_rad_s)
+    assert beyond_rules(asked, DEFAULT.stream) is None
+    assert sticks.centred == (v_ned == (0.0, 0.0, 0.0) and not rate_rad_s)
+    assert sticks.resting or not sticks.centred
+    for flown in State:
+        stream, seen_then = StickStream(), replace(vehicle, state=flown)
+        for now_ns in range(0, 3_000_000_000, 500_000_000):
+            settled = stream.settle(sticks, seen_then, now_ns)
+            if isinstance(settled, Words):
+                assert {ask.word for ask in settled.asks} <= {"stream_end"}
 
 
 def check_sample(sample: Sample) -> None:

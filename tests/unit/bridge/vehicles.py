@@ -10,6 +10,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.meaning.meaning import Reject, Seen, Words
 from gcs.gate.airspace.projection import Origin
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.wire.codec import decode
@@ -39,6 +40,7 @@ def flying(autopilot: Autopilot, **changed: Any) -> Seen:
         state=State.HOVERING,
         in_control=True,
         max_speed_m_s=5.0,
+        stream=DEFAULT.stream,
     )
     return replace(seen, **changed)
 

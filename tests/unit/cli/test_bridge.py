@@ -110,6 +110,7 @@ def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> N
     [
         ("do_reposition", ("MAV_CMD_DO_REPOSITION, command 192: motion", "  why: ")),
         ("22", ("MAV_CMD_NAV_TAKEOFF, command 22: motion", "  why: ")),
+        ("MANUAL_CONTROL", ("MANUAL_CONTROL, message 69: motion", "samples of a velocity stream")),
         ("PARAM_SET", ("PARAM_SET, message 23: configuration", "  why: ")),
         (
             "gf_action",

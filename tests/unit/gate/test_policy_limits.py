@@ -59,6 +59,11 @@ def value(policy: Policy, key: str) -> object:
         ("stream.max_speed_down_m_s", 0.0, -0.001),
         ("stream.max_a_m_s2", 0.0, -0.001),
         ("stream.max_yaw_rate_deg_s", 0.0, -0.001),
+        ("stream.stick_speed_h_m_s", 0.0, -0.001),
+        ("stream.stick_speed_up_m_s", 0.0, -0.001),
+        ("stream.stick_speed_down_m_s", 0.0, -0.001),
+        ("stream.stick_yaw_rate_deg_s", 0.0, -0.001),
+        ("stream.stick_dead_band", 0.0, -0.001),
         ("photo_timeout_s", 0.1, 0.09),
         ("heartbeat_age_s", 1.0, 0.99),
         ("jump_speed_m_s", 1.0, 0.99),
@@ -342,6 +347,19 @@ class TestStream:
         wrong = error("position_age_s = 0.4\nstream.position_age_s = 0.45")
         assert wrong.key == "stream.position_age_s"
         assert "0.45 is more than position_age_s of 0.4" in str(wrong)
+
+    @pytest.mark.parametrize("key", ["speed_h_m_s", "speed_up_m_s", "speed_down_m_s"])
+    def test_no_stick_asks_for_more_than_a_stream_may(self, key: str) -> None:
+        text = f"stream.max_{key} = 0.5"
+        assert parse_policy(text, "my.toml").stream.deadman_s == 0.5, "a default stick is cut"
+        parse_policy(f"{text}\nstream.stick_{key} = 0.5", "my.toml")
+        wrong = error(f"{text}\nstream.stick_{key} = 0.6")
+        assert (wrong.key, wrong.line) == (f"stream.stick_{key}", 2)
+        assert f"0.6 is more than max_{key} of 0.5" in str(wrong)
+
+    def test_a_dead_band_leaves_some_of_the_stick(self) -> None:
+        assert parse_policy("stream.stick_dead_band = 0.9", "my.toml").stream.stick_dead_band == 0.9
+        assert error("stream.stick_dead_band = 0.91").key == "stream.stick_dead_band"
 
     @pytest.mark.parametrize("value", ["nan", "inf", "1e6", '"fast"'])
     def test_a_speed_is_a_number(self, value: str) -> None:

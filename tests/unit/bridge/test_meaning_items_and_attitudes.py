@@ -1,9 +1,6 @@
-"""Single mission items, sticks and attitudes of clients."""
+"""Single mission items and attitudes of clients; their sticks: `test_sticks.py`."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
@@ -57,56 +54,6 @@ def test_items_that_are_no_go_to() -> None:
     assert refusal(meaning_of(item(2, alt=NAN), flying(ARDUPILOT))).startswith("NON_FINITE")
     land = mavlink.MAVLink_mission_item_message(1, 1, 0, 3, 21, 2, 0, 0, 0, 0, 0, 47.3, 8.5, 5.0)
     assert refusal(meaning_of(sent(land), flying(ARDUPILOT))).startswith("UNSUPPORTED")
-
-
-def sticks(x: int = 0, y: int = 0, z: int = 500, r: int = 0, buttons: int = 0) -> Message:
-    return sent(mavlink.MAVLink_manual_control_message(1, x, y, z, r, buttons))
-
-
-@BOTH
-def test_sticks_in_the_middle_ask_for_nothing(autopilot: Autopilot) -> None:
-    """And are not forwarded: an autopilot that has seen sticks acts on their loss."""
-    assert words(meaning_of(sticks(), flying(autopilot))) == []
-    missing = 0x7FFF
-    assert words(meaning_of(sticks(missing, missing, missing, missing), flying(autopilot))) == []
-
-
-@BOTH
-@pytest.mark.parametrize(
-    "moved", [{"x": 1}, {"y": -1000}, {"z": 0}, {"z": 501}, {"r": 300}, {"buttons": 1}], ids=str
-)
-def test_sticks_that_ask_for_something(autopilot: Autopilot, moved: Mapping[str, int]) -> None:
-    text = refusal(meaning_of(sticks(**moved), flying(autopilot)))
-    assert text.startswith("UNSUPPORTED")
-    assert "cannot be verified" in text
-
-
-def channels(*raw: int, **later: Any) -> Message:
-    first = list(raw) + [65535] * (8 - len(raw))
-    return sent(mavlink.MAVLink_rc_channels_override_message(1, 1, *first, **later))
-
-
-@BOTH
-def test_channels_released_or_left_alone_ask_for_nothing(autopilot: Autopilot) -> None:
-    for message in (
-        channels(),
-        channels(0, 0, 0, 0, 0, 0, 0, 0),
-        channels(0, chan9_raw=65534, chan10_raw=65535),
-    ):
-        assert words(meaning_of(message, flying(autopilot))) == []
-
-
-@BOTH
-def test_channels_that_are_set(autopilot: Autopilot) -> None:
-    """1500 is no neutral value: on ArduPilot it holds the throttle of a pilot away."""
-    for message in (
-        channels(1500, 1500, 1500, 1500),
-        channels(65535, 65535, 1100),
-        channels(65534),
-        channels(0, chan9_raw=1800),
-        channels(0, chan18_raw=1000),
-    ):
-        assert refusal(meaning_of(message, flying(autopilot))).startswith("UNSUPPORTED")
 
 
 @BOTH
