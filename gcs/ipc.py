@@ -41,6 +41,8 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     `word` is one of: control arm disarm takeoff goto land rtl hold abort resume photo mode
     fence mission_start mission_upload mission_download mission_clear stream_begin stream_end
     station_take station_release station_end.
+    Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
+    for every one that flies, and the first of them answers.
     """
 
     id: int

@@ -6,32 +6,29 @@ what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from gcs import ipc
+from gcs.bridge.addressing import Given, Judges, LookAt
 from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client, Exchange
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers, BridgeEffect, Joined, Lost, Notes, OfVehicle, ToLink
-from gcs.bridge.judge import Judge, Judged, Look, Received, of_plan
-from gcs.bridge.meaning.meaning import Seen
+from gcs.bridge.judge import Judged, of_plan
 from gcs.bridge.needed_rates import Rates
-from gcs.bridge.routing import TARGETS, Routes, readdressed, target_of
+from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
-from gcs.wire.ids import Component, MsgId
+from gcs.wire.ids import MsgId
 from gcs.wire.messages import ParamValue
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
-NO_VEHICLE: Final = Address(0, Component.AUTOPILOT1)
-"""Stands for the vehicle before one is heard."""
 
 
 class Bridge:
@@ -50,12 +47,8 @@ class Bridge:
         message; a client that is silent for `silent_ns` is lost; `timing` is of the plans that
         clients send; one sample of their setpoint streams counts for `deadman_ns`."""
         self._own = own
-        self._manual_modes = rules.manual_modes
         self._control = ControlServer()
-        self._rules = rules
-        self._needed_hz = needed_hz
-        self._judges: dict[int, Judge] = {}
-        """By the vehicle's system id."""
+        self._judges = Judges(rules, needed_hz, self._control)
         self._silent_ns = silent_ns
         self._timing = timing
         self._deadman_ns = deadman_ns
@@ -124,7 +117,7 @@ class Bridge:
         link: int,
         frame: Frame,
         vehicles: Sequence[Address],
-        look: Callable[[int], Seen | None],
+        look: LookAt,
         now_ns: int,
     ) -> Judged:
         """A good frame on a client's link; `vehicles` are the autopilots that were heard, and
@@ -143,90 +136,14 @@ class Bridge:
         if sysid and not addressed:
             asked_by = From(link, Address(frame.sysid, frame.compid), Address(sysid, compid))
             judged = self._elsewhere(client, asked_by, frame, sysid)
-        elif len(addressed) > 1:
-            judged = self._for_all(client, frame, addressed, look, now_ns)
         else:
-            vehicle = addressed[0] if addressed else NO_VEHICLE
-            judged = _at(vehicle, self._judged(client, frame, vehicle, look, now_ns))
+            given = Given(client, frame, look, self._in_control, now_ns)
+            judged = self._judges.judge(given, addressed)
         if frame.msgid == MsgId.HEARTBEAT:
             others = self._routes.between_clients(frame, link)
             effects += [ToLink(other, frame.raw) for other in others]
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
-
-    def _judged(
-        self,
-        client: Client,
-        frame: Frame,
-        vehicle: Address,
-        look: Callable[[int], Seen | None],
-        now_ns: int,
-    ) -> Judged:
-        """A frame that is for one vehicle."""
-        _, compid = target_of(frame)
-        addressed = Address(vehicle.sysid, compid or vehicle.compid)
-        asked_by = From(client.link, Address(frame.sysid, frame.compid), addressed)
-        received = Received(
-            client.at(vehicle.sysid),
-            asked_by,
-            frame,
-            self._look(look, client, vehicle.sysid, now_ns),
-            now_ns,
-            client.number == self._in_control,
-        )
-        return self._judge(vehicle.sysid).judge(received)
-
-    def _for_all(
-        self,
-        client: Client,
-        frame: Frame,
-        vehicles: Sequence[Address],
-        look: Callable[[int], Seen | None],
-        now_ns: int,
-    ) -> Judged:
-        """A frame that reaches several vehicles.
-
-        What would move them or change them is judged for each, as if it had been sent to that one
-        alone; where the message has no target, one refusal is for all.  Everything else is looked
-        at once, and goes out once on each link.
-        """
-        first = vehicles[0]
-        if not self._judge(first.sysid).concerns_each(frame):
-            return self._judged(client, frame, first, look, now_ns)
-        done = [
-            (each, self._judged(client, readdressed(frame, each.sysid), each, look, now_ns))
-            for each in vehicles
-        ]
-        if frame.msgid not in TARGETS:
-            refused = [(each, judged) for each, judged in done if judged.refused]
-            return _at(*refused[0]) if refused else done[0][1]
-        effects = [effect for each, judged in done for effect in _at(each, judged).effects]
-        return Judged(all(judged.refused for _, judged in done), effects)
-
-    def _judge(self, sysid: int) -> Judge:
-        found = self._judges.get(sysid)
-        if found is None:
-            found = self._judges[sysid] = Judge(self._rules, self._needed_hz, self._control)
-        return found
-
-    def _look(
-        self, look: Callable[[int], Seen | None], client: Client, sysid: int, now_ns: int
-    ) -> Look:
-        """The same of one vehicle, with what is this client's."""
-
-        def seen() -> Seen | None:
-            found = look(sysid)
-            in_control = self._in_control in (0, client.number)
-            if found is None:
-                return None
-            return replace(
-                found,
-                in_control=in_control,
-                manual_modes=self._manual_modes,
-                has_sticks=client.at(sysid).sticks.heard(now_ns),
-            )
-
-        return seen
 
     def _why_not_from(self, frame: Frame, vehicles: Sequence[Address]) -> str:
         """Why no frame of this sender may come from a client; empty where it may.
@@ -293,7 +210,7 @@ class Bridge:
 
     def parameter(self, message: ParamValue, autopilot: str, vehicle: int) -> list[BridgeEffect]:
         """PARAM_VALUE of a vehicle's autopilot."""
-        return self._judge(vehicle).parameter(message, autopilot)
+        return self._judges.of(vehicle).parameter(message, autopilot)
 
     def told(self, number: int, event: ipc.Event, vehicle: int, now_ns: int) -> list[BridgeEffect]:
         """What the station tells a client as an operator, of what it asked of a vehicle."""
@@ -400,9 +317,3 @@ class Bridge:
 def _of(exchange: Exchange, effects: Sequence[BridgeEffect]) -> list[BridgeEffect]:
     """What an exchange leads to, as its vehicle's."""
     return [OfVehicle(exchange.vehicle, tuple(effects))] if effects else []
-
-
-def _at(vehicle: Address, judged: Judged) -> Judged:
-    """The same, as that vehicle's."""
-    effects = judged.effects
-    return Judged(judged.refused, [OfVehicle(vehicle.sysid, tuple(effects))] if effects else [])

@@ -94,7 +94,7 @@ OWN_COMPID = 191
     "--target",
     type=click.IntRange(1, 255),
     metavar="SYSID",
-    help="Which vehicle, by its MAVLink system id, where several are heard.",
+    help="Fly this vehicle alone, by its MAVLink system id.  [default: every one that is heard]",
 )
 @click.option(
     "--sysid",

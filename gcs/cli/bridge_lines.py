@@ -26,6 +26,7 @@ class BridgeLines:
         self._seen: ipc.Snapshot | None = None
         self._status_ns = 0
         self._status_clients: list[str] | None = None
+        self._status_before: ipc.BridgeStatus | None = None
 
     def event(self, event: ipc.Event) -> None:
         if self._as_json:
@@ -45,7 +46,9 @@ class BridgeLines:
             case ipc.BridgeStatus():
                 self._status(event)
             case ipc.BridgeDecision():
-                self._out(bridge_text.decision_line(event))
+                before = self._status_before
+                several = before is not None and len(before.vehicles) > 1
+                self._out(bridge_text.decision_line(event, several=several))
             case ipc.StateEvent():
                 how = f"control {event.control}, severity {event.severity}"
                 self._out(f"state: {event.before} -> {event.after} ({event.event}), {how}")
@@ -58,6 +61,9 @@ class BridgeLines:
 
     def _status(self, status: ipc.BridgeStatus) -> None:
         """Every ten seconds, and when a client has come or gone."""
+        for line in bridge_text.moves(self._status_before, status):
+            self._out(line)
+        self._status_before = status
         clients = [each.name for each in status.clients]
         if clients != self._status_clients or status.time_ns >= self._status_ns:
             self._status_clients = clients

@@ -78,7 +78,9 @@ class BridgePage:
         seen = self._seen
         wrong = bridge_text.conditions_line(seen)
         clients = bridge_text.client_rows(self._status)
-        room = max(3, height - OTHER_LINES - min(DECISIONS, len(self._decisions)))
+        vehicles = bridge_text.vehicle_rows(self._status)
+        room = height - OTHER_LINES - min(DECISIONS, len(self._decisions)) - len(vehicles)
+        room = max(3, room)
         hidden = len(clients) - 1 - room
         parts: list[RenderableType] = [
             Text(bridge_text.vehicle_line(seen), style="bold"),
@@ -86,6 +88,7 @@ class BridgePage:
         ]
         if wrong:
             parts.append(Text(f"wrong: {wrong}", style="yellow"))
+        parts += [_table(vehicles)] if vehicles else []
         parts += [_table(bridge_text.link_rows(self._status)), _table(clients[: room + 1])]
         if len(clients) == 1:
             parts += [Text(f"nobody yet; {where}", style="dim") for where in self._where]
@@ -95,9 +98,10 @@ class BridgePage:
         parts.append(Text(self._footer(), style="dim"))
         return Group(*parts)
 
-    @staticmethod
-    def _decision(decision: ipc.BridgeDecision) -> Text:
-        line = f"{bridge_text.clock_text(decision.time_ns)} {bridge_text.decision_line(decision)}"
+    def _decision(self, decision: ipc.BridgeDecision) -> Text:
+        several = self._status is not None and len(self._status.vehicles) > 1
+        told = bridge_text.decision_line(decision, several=several)
+        line = f"{bridge_text.clock_text(decision.time_ns)} {told}"
         style = OUTCOME_STYLES.get(decision.outcome, "")
         return Text(line, style=style, no_wrap=True, overflow="ellipsis")
 

@@ -11,6 +11,7 @@ Row = tuple[str, ...]
 
 LINKS_HEAD: Row = ("vehicle link", "in/s", "out/s", "lost")
 CLIENTS_HEAD: Row = ("client", "where", "calls itself", "in/s", "out/s", "refused", "dropped", "")
+VEHICLES_HEAD: Row = ("vehicle", "state", "control", "severity", "mode", "lost", "")
 LONG_SILENCE_S = 3.0
 
 
@@ -42,6 +43,40 @@ def link_rows(status: ipc.BridgeStatus | None) -> list[Row]:
             (each.name, f"{each.rx_hz:.0f}", f"{each.tx_hz:.0f}", f"{each.lost_pct:.1f} %")
             for each in links
         ),
+    ]
+
+
+def vehicle_rows(status: ipc.BridgeStatus | None) -> list[Row]:
+    """One a vehicle where there are several, the head first; else empty."""
+    vehicles = status.vehicles if status else []
+    return [VEHICLES_HEAD, *map(_vehicle_row, vehicles)] if len(vehicles) > 1 else []
+
+
+def _vehicle_row(each: ipc.BridgeVehicle) -> Row:
+    notes = ["armed"] if each.armed else []
+    if each.silent_s >= LONG_SILENCE_S:
+        notes.append(f"silent for {each.silent_s:.0f} s")
+    lost = f"{each.lost_pct:.1f} %"
+    notes += each.conditions
+    return (
+        each.name,
+        each.state,
+        each.control,
+        each.severity,
+        each.mode,
+        lost,
+        ", ".join(notes),
+    )
+
+
+def moves(before: ipc.BridgeStatus | None, after: ipc.BridgeStatus) -> list[str]:
+    """What has changed of all vehicles but the first, whose state is told as it changes."""
+    states = {each.vehicle: each.state for each in before.vehicles} if before else {}
+    return [
+        f"vehicle {each.vehicle}: {states.get(each.vehicle, 'NO_VEHICLE')} -> {each.state}, "
+        f"control {each.control}, severity {each.severity}"
+        for each in after.vehicles[1:]
+        if states.get(each.vehicle) != each.state
     ]
 
 
@@ -82,9 +117,13 @@ def status_line(status: ipc.BridgeStatus, seen: ipc.Snapshot | None) -> str:
     )
 
 
-def decision_line(decision: ipc.BridgeDecision) -> str:
-    """`1000 (udp 127.0.0.1:14551) DO_REPOSITION: refused OUTSIDE_FENCE: the goal is ...`."""
-    label = f"{decision.client} ({decision.name}) {decision.what}"
+def decision_line(decision: ipc.BridgeDecision, *, several: bool = False) -> str:
+    """`1000 (udp 127.0.0.1:14551) DO_REPOSITION: refused OUTSIDE_FENCE: the goal is ...`.
+
+    `several`: with the vehicle that it was for.
+    """
+    which = f" of vehicle {decision.vehicle}" if several and decision.vehicle else ""
+    label = f"{decision.client} ({decision.name}) {decision.what}{which}"
     return event_text.answer_line(label, decision.outcome, decision.code, decision.sentence)
 
 

@@ -13,7 +13,7 @@ from gcs.session.setup import Setup
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.vehicles import Vehicles
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import For, Log, ToGate, Work
 
 NODE = "link"
 
@@ -29,6 +29,7 @@ class Ending:
         self._vehicles = vehicles
         self._operators = operators
         self._leaving_since_ns: int | None = None
+        self._told_outside: set[int] = set()
         self.finished = False
 
     def begin(self, reason: str, now_ns: int) -> list[Work]:
@@ -45,7 +46,11 @@ class Ending:
         if self.finished:
             return []
         refusal = self._vehicles.first.bad_start
-        if refusal is not None and len(self._vehicles) == 1:
+        if len(self._vehicles) > 1:
+            outside = self._outside()
+            if outside:
+                return outside
+        elif refusal is not None:
             policy = self._setup.config.policy_path or self._setup.policy.name
             text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
             hint = "fly from inside the fence, or give a policy for this place with --policy"
@@ -55,6 +60,17 @@ class Ending:
             return self._farewells(log_path, now_ns) if self._operators.anyone_leaves else []
         overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
         return self.finish(0, self._last_words()) if self._vehicles.settled or overdue else []
+
+    def _outside(self) -> list[Work]:
+        """Of several vehicles, those that stand outside the fence are told and stay where they
+        are: every request is verified.  The others may fly on."""
+        told: list[Work] = []
+        for slot, vehicle in enumerate(self._vehicles):
+            if vehicle.bad_start is not None and slot not in self._told_outside:
+                self._told_outside.add(slot)
+                text = f"it stands outside the fence: {vehicle.bad_start.sentence}"
+                told.append(For(slot, (Log(Level.ERROR, NODE, text),)))
+        return told
 
     def _farewells(self, log_path: str, now_ns: int) -> list[Work]:
         """To those who leave a station that lives on."""

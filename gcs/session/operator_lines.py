@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Final
+
+import msgspec
+
 from gcs import ipc
+from gcs.session.gate_port import NOT_FLYING
 from gcs.session.operators import Operators
 from gcs.session.vehicles import Vehicles
 from gcs.session.work import STATION, For
+
+STOPS: Final = frozenset({"abort", "hold", "land", "rtl"})
+"""Where an operator names no vehicle, these are for every one that flies."""
 
 
 def line(
@@ -14,5 +23,28 @@ def line(
     """One command of the operator `client`; what is about no vehicle is the station's."""
     if not isinstance(command, ipc.Ask | ipc.Stream):
         return For(STATION, tuple(operators.line(client, command, None, None, now_ns)))
-    owner, autopilot, refusal = vehicles.asked(operators.vehicle_of(command), now_ns)
-    return For(owner, tuple(operators.line(client, command, autopilot, refusal, now_ns)))
+    work = [
+        For(owner, tuple(operators.line(client, asked, *vehicles.known(owner, now_ns), now_ns)))
+        for owner, asked in _for_each(operators, vehicles, command)
+    ]
+    return work[0] if len(work) == 1 else For(STATION, tuple(work))
+
+
+def _for_each(
+    operators: Operators, vehicles: Vehicles, command: ipc.Ask | ipc.Stream
+) -> Iterator[tuple[int, ipc.Ask | ipc.Stream]]:
+    """The vehicles that a command is for, by slot, and what is asked of each.
+
+    The operator is answered once, by its own number; of the others a stop has the number 0.
+    """
+    sysid = operators.vehicle_of(command)
+    stops = isinstance(command, ipc.Ask) and command.word in STOPS and not command.operation
+    flying = [
+        slot
+        for slot, vehicle in enumerate(vehicles)
+        if stops and not sysid and vehicle.gate.state not in NOT_FLYING
+    ]
+    if not flying:
+        yield vehicles.owner_for(sysid), command
+    for number, slot in enumerate(flying):
+        yield slot, command if number == 0 else msgspec.structs.replace(command, id=0)

@@ -75,6 +75,7 @@ from gcs.session.ticks import Ticks
 from gcs.session.times import Times
 from gcs.session.vehicles import FIRST as FIRST_SLOT
 from gcs.session.vehicles import Vehicles
+from gcs.session.waiting import WaitingForVehicle
 from gcs.session.work import (
     STATION,
     AskGate,
@@ -95,10 +96,6 @@ from gcs.session.work import (
 
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
-
-SIGNED_OTHERWISE_S = 2.0
-"""How long frames may come that are not rightly signed, before that is told as the reason why no
-vehicle is known."""
 
 NODE = "link"
 MAX_FAULTS = 10
@@ -149,10 +146,12 @@ class Session:
             self._bridge,
         )
         self._ending = Ending(setup, self._times, self._vehicles, self._operators)
+        self._waiting = WaitingForVehicle(
+            setup, self._times, self._vehicles, self._signatures, now_ns
+        )
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
-        self._told_no_vehicle = False
         self._faults = 0
         self._introduced = False
         self._unfinished: Input | None = None
@@ -364,7 +363,7 @@ class Session:
         work += self._bridge.second(now_ns, self._links.counts, self._signatures.told)
         work += self._signatures.second(now_ns)
         if first.telemetry is None:
-            return work + self._no_vehicle_yet(now_ns)
+            return work + self._waiting.second(now_ns)
         if now_ns - self._incoming.other_station_ns > self._times.real_ns(OTHER_STATION_NS):
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
         wanted = self._operators.missing_messages(first.telemetry, now_ns)
@@ -373,28 +372,6 @@ class Session:
 
     def _remind(self) -> list[Work]:
         return self._vehicles.each(lambda each: each.remind())
-
-    def _no_vehicle_yet(self, now_ns: int) -> list[Work]:
-        waited_s = self._times.real_s(now_ns - self._start_ns)
-        patience_s = self._setup.config.connect_timeout_s
-        what, why = self._signatures.why_no_vehicle()
-        if what:
-            # It is there, and waiting does not help: told before an operator has given up.
-            patience_s = min(patience_s, SIGNED_OTHERWISE_S)
-        if self._told_no_vehicle or waited_s < patience_s:
-            return []
-        self._told_no_vehicle = True
-        where = ", ".join(self._setup.endpoints)
-        hint = "is the vehicle running, and does it send to this address? (try: gcs fly --sim)"
-        heard = self._vehicles.heard_names(now_ns)
-        wanted = self._setup.config.target_sysid
-        text = f"no vehicle heard for {waited_s:.0f} s ({where})"
-        if heard and wanted:
-            text = f"vehicle {wanted} was not heard for {waited_s:.0f} s, but {', '.join(heard)}"
-            hint = "choose one of them with --vehicle"
-        if what:
-            text, hint = f"no vehicle is known after {waited_s:.0f} s ({where}): {what}", why
-        return [Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)), Log(Level.WARNING, NODE, text)]
 
     # -------------------------------------------------------------------------- operator
 

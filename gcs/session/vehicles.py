@@ -165,12 +165,16 @@ class Vehicles:
 
     # ---------------------------------------------------------------------------- requests
 
-    def asked(self, sysid: int, now_ns: int) -> tuple[int, Autopilot | None, Refusal | None]:
-        """The vehicle that a request is for (0: the first): its slot and autopilot, None before it
-        is heard; and why nothing at all can be asked of it."""
+    def owner_for(self, sysid: int) -> int:
+        """Whose a request for the vehicle with that system id is (0: the first); the station's
+        where it is not there."""
         slot = self.slot_of(sysid) if sysid else FIRST
-        if slot is not None:
-            return (slot, *self._all[slot].for_operators(now_ns))
+        return STATION if slot is None else slot
+
+    def known(self, owner: int, now_ns: int) -> tuple[Autopilot | None, Refusal | None]:
+        """The vehicle's autopilot, None before it is heard; and why nothing at all can be asked of
+        it, as of one that is not there (the station's)."""
+        if owner != STATION:
+            return self._all[owner].for_operators(now_ns)
         there = ", ".join(str(address.sysid) for address in self.addresses) or "none"
-        refusal = Refusal(Code.NO_VEHICLE, f"no vehicle {sysid} is heard here; there are: {there}")
-        return STATION, None, refusal
+        return None, Refusal(Code.NO_VEHICLE, f"no such vehicle is heard here; there are: {there}")

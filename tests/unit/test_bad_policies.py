@@ -37,6 +37,7 @@ def error(folder: Path, text: str | bytes, plan: object = None) -> PolicyFileErr
         ("margin = 2", "1: margin: ", "unknown key"),
         ("\n[arrival]\nradius = 3", "3: arrival.radius: ", "unknown key"),
         (ZONE + "radius_m = 9\ncolour = 1", "4: fence[1].colour: ", "unknown key"),
+        ("[separation]\nleast_m = -1", "2: separation.least_m: ", "-1"),
         ("margin_h_m = nan", "1: margin_h_m: ", "not finite"),
         ("max_up_m = -inf", "1: max_up_m: ", "not finite"),
         (ZONE + "radius_m = nan", "3: fence[1].radius_m: ", "not finite"),

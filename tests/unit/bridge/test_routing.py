@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
-from gcs.bridge.routing import EVERYBODY, Routes, target_of
+from gcs.bridge.routing import EVERYBODY, Routes, readdressed, target_of
 from gcs.wire.frame import Frame, split
 
 TARGETED = sorted(
@@ -94,3 +94,28 @@ class TestRoutes:
         routes.open(2)
         assert routes.components(2) == []
         assert routes.to_clients(ack_for(255, 230)) == []
+
+
+@pytest.mark.parametrize("cls", TARGETED, ids=lambda cls: str(cls.msgname))
+def test_a_frame_for_all_becomes_one_for_a_system(cls: Any) -> None:
+    """As pymavlink reads it: nothing but the target is another."""
+    given = {"target_component": 5} if "target_component" in cls.fieldnames else {}
+    frame = frame_of(blank(cls, **given), 245, 190)
+    changed = readdressed(frame, 7)
+    assert target_of(changed) == (7, given.get("target_component", 0))
+    reader = dialect.MAVLink(None)
+    (before,), (after,) = reader.parse_buffer(frame.raw), reader.parse_buffer(changed.raw)
+    assert (after.get_srcSystem(), after.get_srcComponent(), after.get_seq()) == (245, 190, 0)
+    assert after.target_system == 7
+    after.target_system = 0
+    assert str(after) == str(before)
+
+
+def test_manual_control_names_its_vehicle_as_target() -> None:
+    message = dialect.MAVLink_manual_control_message(7, 100, 0, 500, 0, 0)
+    assert target_of(frame_of(message, 245, 190)) == (7, 0)
+
+
+def test_a_message_without_a_target_stays_as_it_is() -> None:
+    frame = frame_of(dialect.MAVLink_system_time_message(1, 2), 245, 190)
+    assert readdressed(frame, 7) is frame

@@ -249,6 +249,36 @@ def test_an_empty_page_says_where_clients_may_come() -> None:
     assert "nobody yet; udp 127.0.0.1:14551" in text
 
 
+FLEET = [
+    ipc.BridgeVehicle(1, "1/1 px4 quadrotor", "HOVERING", "OURS", "NOMINAL", [], "OFFBOARD", True),
+    ipc.BridgeVehicle(
+        2, "2/1 ardupilot quadrotor", "STALE", "OURS", "CAUTION", ["too_close"], "GUIDED", True,
+        lost_pct=1.25, silent_s=4.1,
+    ),
+]  # fmt: skip
+
+
+def test_the_page_shows_several_vehicles_in_rows() -> None:
+    text = drawn(snapshot(), ipc.BridgeStatus(0, [LINK], [ONE], FLEET))
+    for row in bridge_text.vehicle_rows(ipc.BridgeStatus(0, [LINK], [ONE], FLEET)):
+        assert all(word in text for word in row)
+    assert "armed, silent for 4 s, too_close" in text
+    assert bridge_text.vehicle_rows(ipc.BridgeStatus(0, [LINK], [ONE], FLEET[:1])) == []
+
+
+def test_a_decision_names_its_vehicle_where_there_are_several() -> None:
+    decision = ipc.BridgeDecision(0, 1000, "udp", "goto", "accepted", vehicle=2)
+    out: list[str] = []
+    lines = BridgeLines(out.append, out.append, min_level=2, as_json=False)
+    lines.event(ipc.BridgeStatus(0, [LINK], [ONE], FLEET[:1]))
+    lines.event(decision)
+    assert out[-1] == "1000 (udp) goto: accepted"
+    lines.event(ipc.BridgeStatus(1, [LINK], [ONE], FLEET))
+    assert out[-1] == "vehicle 2: NO_VEHICLE -> STALE, control OURS, severity CAUTION"
+    lines.event(decision)
+    assert out[-1] == "1000 (udp) goto of vehicle 2: accepted"
+
+
 def test_a_low_terminal_shows_as_many_clients_as_fit() -> None:
     crowd = [ipc.BridgeClient(1000 + n, n, f"udp 127.0.0.1:{6000 + n}") for n in range(32)]
     events = [REFUSED] * 20

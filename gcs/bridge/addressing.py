@@ -1,0 +1,117 @@
+"""The vehicles that a client's frame reaches, and what each makes of it.
+
+A frame for one system is judged for that vehicle; one for all (target system 0, or no target) is
+judged for each vehicle where it would move or change them, and else goes out once on each link.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final, TypeAlias
+
+from gcs.bridge.client import Client
+from gcs.bridge.control import ControlServer
+from gcs.bridge.dialogue import From
+from gcs.bridge.effects import OfVehicle
+from gcs.bridge.judge import Judge, Judged, Look, Received
+from gcs.bridge.meaning.meaning import Seen
+from gcs.bridge.needed_rates import Rates
+from gcs.bridge.routing import TARGETS, readdressed, target_of
+from gcs.gate.policy.policy import BridgeRules
+from gcs.protocol.effects import Address
+from gcs.wire.frame import Frame
+from gcs.wire.ids import Component
+
+NO_VEHICLE: Final = Address(0, Component.AUTOPILOT1)
+"""Stands for the vehicle before one is heard."""
+
+LookAt: TypeAlias = Callable[[int], Seen | None]
+"""How the vehicle with that system id is; None before it is heard."""
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A frame of a client; `in_control` is the number of the client that is, 0 for none."""
+
+    client: Client
+    frame: Frame
+    look: LookAt
+    in_control: int
+    now_ns: int
+
+
+class Judges:
+    """One for each vehicle, by its system id."""
+
+    def __init__(self, rules: BridgeRules, needed_hz: Rates, control: ControlServer) -> None:
+        """`needed_hz`: how often the gate needs which message; `control`: who is in control."""
+        self._rules = rules
+        self._needed_hz = needed_hz
+        self._control = control
+        self._by_sysid: dict[int, Judge] = {}
+
+    def of(self, sysid: int) -> Judge:
+        """What judges everything that is for that vehicle."""
+        found = self._by_sysid.get(sysid)
+        if found is None:
+            found = Judge(self._rules, self._needed_hz, self._control)
+            self._by_sysid[sysid] = found
+        return found
+
+    def judge(self, given: Given, vehicles: Sequence[Address]) -> Judged:
+        """A frame that reaches these vehicles; none: no vehicle is heard yet.
+
+        What would move or change several is judged for each, as if it had been sent to that one
+        alone; where the message has no target, one refusal is for all.
+        """
+        first = vehicles[0] if vehicles else NO_VEHICLE
+        if len(vehicles) <= 1:
+            return _at(first, self._for_one(given, given.frame, first))
+        if not self.of(first.sysid).concerns_each(given.frame):
+            return self._for_one(given, given.frame, first)
+        done = [
+            (each, self._for_one(given, readdressed(given.frame, each.sysid), each))
+            for each in vehicles
+        ]
+        if given.frame.msgid not in TARGETS:
+            refused = [(each, judged) for each, judged in done if judged.refused]
+            return _at(*refused[0]) if refused else done[0][1]
+        effects = [effect for each, judged in done for effect in _at(each, judged).effects]
+        return Judged(all(judged.refused for _, judged in done), effects)
+
+    def _for_one(self, given: Given, frame: Frame, vehicle: Address) -> Judged:
+        client = given.client
+        _, compid = target_of(frame)
+        addressed = Address(vehicle.sysid, compid or vehicle.compid)
+        received = Received(
+            client.at(vehicle.sysid),
+            From(client.link, Address(frame.sysid, frame.compid), addressed),
+            frame,
+            self._look(given, vehicle.sysid),
+            given.now_ns,
+            client.number == given.in_control,
+        )
+        return self.of(vehicle.sysid).judge(received)
+
+    def _look(self, given: Given, sysid: int) -> Look:
+        """How the vehicle is, with what is this client's."""
+
+        def seen() -> Seen | None:
+            found = given.look(sysid)
+            if found is None:
+                return None
+            return replace(
+                found,
+                in_control=given.in_control in (0, given.client.number),
+                manual_modes=self._rules.manual_modes,
+                has_sticks=given.client.at(sysid).sticks.heard(given.now_ns),
+            )
+
+        return seen
+
+
+def _at(vehicle: Address, judged: Judged) -> Judged:
+    """The same, as that vehicle's."""
+    effects = judged.effects
+    return Judged(judged.refused, [OfVehicle(vehicle.sysid, tuple(effects))] if effects else [])
