@@ -75,9 +75,7 @@ class Breach:
         way = self.towards
         if way is None:
             return None
-        return way.verifier.brake_point(
-            way.pos_ned, way.stop_ned, floor_applies=way.floor_applies
-        )
+        return way.verifier.brake_point(way.pos_ned, way.stop_ned, floor_applies=way.floor_applies)
 
 
 @dataclass(frozen=True, slots=True)
