@@ -147,8 +147,18 @@ def along(a: Point, b: Point, t: float) -> Point:
 
 
 def point_segment_distance(p: Point, a: Point, b: Point) -> float:
-    """Metres from p to the nearest point of the segment a-b."""
-    return _distance(p, along(a, b, _projection(p, a, b)))
+    """Metres from p to the nearest point of the segment a-b.
+
+    Written out, because the gate asks it of every edge at every position.
+    """
+    e, n = a
+    de, dn = b[0] - e, b[1] - n
+    length2 = de * de + dn * dn
+    if length2 == 0.0:
+        return math.hypot(p[0] - e, p[1] - n)
+    t = ((p[0] - e) * de + (p[1] - n) * dn) / length2
+    t = 1.0 if t >= 1.0 else 0.0 if t <= 0.0 else t
+    return math.hypot(p[0] - (e + t * de), p[1] - (n + t * dn))
 
 
 def segment_distance(a: Point, b: Point, c: Point, d: Point) -> float:

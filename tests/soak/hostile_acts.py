@@ -25,6 +25,7 @@ from gcs.gate.inputs import (
     PhotoSeen,
     PositionSeen,
     StreamSeen,
+    Tick,
     VerifierChanged,
 )
 from gcs.gate.policy.policy import Policy
@@ -48,7 +49,9 @@ from gcs.gate.requests import (
     TakePhoto,
 )
 from gcs.gate.states import Control, FlightMode, LandedState, State
+from tests.soak.hostile_letters import is_told_anything
 from tests.soak.hostile_run import MS_NS, SECOND_NS, HostileRun, Seen
+from tests.soak.point_mass import STILL
 
 Act = Callable[[HostileRun], None]
 
@@ -65,11 +68,22 @@ def fly(seed: int, policy: Policy, *, seconds: float = 4.0, judged: bool = False
         for _ in range(more):
             run.step()
         done += more + 1
+    comes_to_rest(run)
     run.until_tick()
     run.all_answered()
     run.seen.steps = run._steps
     run.seen.cells = run.gate.met
     return run.seen
+
+
+def comes_to_rest(run: HostileRun) -> None:
+    """The last stop is seen to its end."""
+    if run.promised and run.vehicle.speed_m_s > 1.0:
+        run.ask(run.dice.choice((Abort(), Hold(), Land())))
+        for _ in range(600):
+            run.step()
+            if math.hypot(*run.vehicle.vel[:2]) < STILL or not run.promised:
+                break
 
 
 # ------------------------------------------------------------------------- beginnings
@@ -344,7 +358,7 @@ def conditions_over(run: HostileRun) -> None:
         run.feed(ConditionChanged(which, False))
 
 
-def mission(run: HostileRun) -> None:
+def mission(run: HostileRun, *, starts: bool = False) -> None:
     """One that is verified leg by leg, as a mission job does it; at times started at once."""
     dice, verifier = run.dice, run.verifier()
     x, y, z = run.vehicle.pos
@@ -358,7 +372,7 @@ def mission(run: HostileRun) -> None:
     if run.vehicle.mode is not FlightMode.MISSION:
         run.vehicle.path = path
     run.feed(MissionLoaded("hostile", len(path)))
-    if dice.random() < 0.5:
+    if starts or dice.random() < 0.5:
         run.ask(StartMission())
 
 
@@ -407,6 +421,85 @@ def operator_leaves(run: HostileRun) -> None:
     run.feed(OperatorLost("hostile", for_good=run.dice.random() < 0.2))
 
 
+def enters(run: HostileRun) -> None:
+    """Into a state in which it does something, as an operator brings it there."""
+    dice, vehicle = run.dice, run.vehicle
+    if run.gate.state is State.NO_VEHICLE:
+        run.connects()
+    vehicle.stubborn = False
+    run.tells()
+    conditions_over(run)
+    if vehicle.landed is LandedState.ON_GROUND:
+        vehicle.armed = vehicle.armed or dice.random() < 0.8
+        run.tells()
+        if dice.random() < 0.3:
+            return
+        run.ask(TakeOff(10.0))
+        run.run(dice.choice((0.1, 0.5, 6.0)))
+    if dice.random() < 0.2:
+        vehicle.takes_over(dice.choice(list(FlightMode)), (0.0, 0.0, 0.0))
+        run.taken_away()
+        run.tells()
+        return
+    if run.gate.state in (State.HOLDING, State.EXTERNAL):
+        run.ask(dice.choice((Resume(), TakeControl())))
+        run.run(1.4)
+    if dice.random() < 0.3:
+        run.unanswered_until_ns = run.now_ns + 3 * SECOND_NS
+    dice.choice(INTO)(run)
+
+
+def into_mission(run: HostileRun) -> None:
+    mission(run, starts=True)
+    run.run(run.dice.choice((0.1, 1.0)))
+
+
+def into_stream(run: HostileRun) -> None:
+    run.ask(BeginStream())
+    run.feed(StreamSeen("operator", None, (0.3, 0.0, 0.0), None, None, None))
+
+
+def into_moving(run: HostileRun) -> None:
+    for _ in range(4):
+        run.ask(GoTo(_goal(run)))
+        run.until_tick()
+        if run.gate.state is State.MOVING:
+            return
+
+
+def into_stale(run: HostileRun) -> None:
+    run.mute_until_ns = run.now_ns + SECOND_NS
+    run.passes(round((run.policy.position_age_s + 0.1) * SECOND_NS))
+    run.feed(MessageSeen())
+    run.feed(Tick(0))
+
+
+def into_no_vehicle(run: HostileRun) -> None:
+    run.mute_until_ns = run.now_ns + SECOND_NS
+    run.passes(round((run.policy.heartbeat_age_s + 0.1) * SECOND_NS))
+    run.feed(Tick(0))
+
+
+INTO: tuple[Act, ...] = (
+    *[into_mission] * 3,
+    *[into_stream] * 2,
+    *[lambda run: run.ask(TakePhoto())] * 2,
+    *[into_moving] * 2,
+    into_stale,
+    into_no_vehicle,
+    lambda run: run.ask(ReturnHome()),
+    lambda run: run.ask(Land()),
+    lambda run: run.ask(Abort()),
+    lambda run: None,
+)
+
+
+def told_anything(run: HostileRun) -> None:
+    if run.dice.random() < 0.7:
+        enters(run)
+    is_told_anything(run, run.dice.choice((1, 2, 3, 5, 12)))
+
+
 def taken(run: HostileRun) -> None:
     """Control, wherever it can be had."""
     if run.gate.control is Control.NONE:
@@ -418,8 +511,9 @@ def taken(run: HostileRun) -> None:
 ACTS: tuple[Act, ...] = (
     *[sensible] * 16,
     *[goes] * 12,
-    *[dashes] * 4,
+    *[dashes] * 8,
     *[streams] * 4,
+    *[told_anything] * 3,
     goes_twice,
     *[asks] * 12,
     *[waits] * 6,

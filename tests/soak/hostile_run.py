@@ -57,7 +57,7 @@ from gcs.gate.requests import (
     Request,
 )
 from gcs.gate.states import Control, FlightMode, State
-from tests.soak.point_mass import STEP_NS, TO_RETURN_UP_M, PointMass
+from tests.soak.point_mass import STEP_NS, STILL, TO_RETURN_UP_M, PointMass
 
 TICK_NS: Final = 50_000_000
 MS_NS: Final = 1_000_000
@@ -149,7 +149,7 @@ class HostileRun:
         self.fence_on = True
         self.promised = False
         self._stoppable = False
-        self.deaf_until_ns = self.mute_until_ns = 0
+        self.deaf_until_ns = self.mute_until_ns = self.unanswered_until_ns = 0
         self._down: deque[tuple[int, Input]] = deque()
         self._up: deque[tuple[int, SendSetpoint | SendCommand]] = deque()
         self._awaited: dict[tuple[int, CommandKind], _Awaited] = {}
@@ -346,8 +346,9 @@ class HostileRun:
             self._items = v.items_flown
             if v.mode is FlightMode.MISSION or not v.path:
                 self._say(MissionSeen(self._items, self._items + len(v.path), not v.path))
-        north, east, down = v.vel
-        self._say(PositionSeen(v.reported(), (north, east, down), self.now_ns // MS_NS))
+        if n % 5 == 0 or v.speed_m_s > STILL:
+            north, east, down = v.vel
+            self._say(PositionSeen(v.reported(), (north, east, down), self.now_ns // MS_NS))
 
     def _send_again(self) -> None:
         for key, awaited in list(self._awaited.items()):
@@ -368,7 +369,8 @@ class HostileRun:
             return
         result = self.vehicle.hears_command(what)
         key = (what.request_id, what.kind)
-        if key in self._awaited and self.dice.random() >= self.loss:
+        lost = self.dice.random() < self.loss or self.now_ns < self.unanswered_until_ns
+        if key in self._awaited and not lost:
             del self._awaited[key]
             self._say(CommandEnded(*key, result))
 
@@ -381,6 +383,17 @@ class HostileRun:
         due_ns = self._next_tick_ns
         while self._next_tick_ns == due_ns:
             self.step()
+
+    def passes(self, passes_ns: int) -> None:
+        """Time in which nothing is done: the vehicle stays where it is."""
+        self.now_ns += passes_ns
+        self.vehicle.now_s += passes_ns / SECOND_NS
+        self.vehicle.setpoint_s += passes_ns / SECOND_NS
+        self._next_tick_ns = max(self._next_tick_ns, self.now_ns)
+
+    def never_hears(self, key: tuple[int, CommandKind]) -> None:
+        """A command is answered in the vehicle's name before it is there."""
+        self._awaited.pop(key, None)
 
     def leap(self, seconds: float) -> None:
         """A long time in which nothing moves: the vehicle is only heard."""
@@ -402,13 +415,17 @@ class HostileRun:
         self._asked.add(self._next_id)
         self.feed(Requested(self._next_id, source, request))
 
-    def connects(self) -> None:
-        """What a station knows soon after it has heard the vehicle."""
+    def tells(self) -> None:
+        """All of how the vehicle is, at once."""
         v = self.vehicle
-        self.feed(HeartbeatSeen(v.armed, v.mode, v.mode.value, False))
+        self.feed(HeartbeatSeen(v.armed, v.mode, v.mode.value, v.failsafe))
         self.feed(LandedSeen(v.landed))
         north, east, down = v.vel
         self.feed(PositionSeen(v.reported(), (north, east, down), self.now_ns // MS_NS))
+
+    def connects(self) -> None:
+        """What a station knows soon after it has heard the vehicle."""
+        self.tells()
         self.feed(HomeSeen(self.home_ned))
         self.feed(ReturnHeightSeen(TO_RETURN_UP_M))
         self.feed(ClimbEndSeen(0.8 if self.autopilot == "px4" else 0.0))

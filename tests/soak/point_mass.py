@@ -239,6 +239,11 @@ class PointMass:
         self.pilot_v = v_ned
         self._enter(mode)
 
+    def has_no_mission(self) -> None:
+        """But one that it flies, it flies on."""
+        if self.mode is not FlightMode.MISSION:
+            self.path = []
+
     # ------------------------------------------------------------------------------ motion
 
     def _goal(self) -> Vec3 | None:

@@ -22,6 +22,7 @@ from gcs.gate.refusal import Code
 from gcs.gate.requests import Abort, GoTo, Hold, Land, Request, TakeControl
 from gcs.gate.states import FlightMode, State
 from tests.soak.hostile_acts import fly, hovers_at
+from tests.soak.hostile_letters import lettered
 from tests.soak.hostile_policies import POLICIES, policy_of
 from tests.soak.hostile_run import Broken, HostileRun, Seen
 from tests.soak.point_mass import PointMass
@@ -33,6 +34,9 @@ A_SHARE: Final = 300
 JUDGED_OF: Final = 10
 """One run in so many is held against the explorer's invariants, step by step."""
 YARD: Final = next(policy for policy in POLICIES if policy.name == "yard")
+PERMISSIVE: Final = next(policy for policy in POLICIES if policy.name == "permissive")
+LETTERED: Final = 6
+"""Beside each flight so many gates are told anything, letter by letter, for what is rare."""
 AT_LEAST: Final = 30
 """So often each cell and each reason is met in a soak."""
 
@@ -52,7 +56,12 @@ NOT_THE_GATES: Final = frozenset(
 def flown(first: int, count: int) -> Seen:
     seen = Seen()
     for seed in range(first, first + count):
-        seen.add(fly(seed, policy_of(seed), judged=seed % JUDGED_OF == 0))
+        judged = seed % JUDGED_OF == 0
+        seen.add(fly(seed, policy_of(seed), judged=judged))
+        for part in range(LETTERED):
+            told_seed = seed * LETTERED + part
+            policy = PERMISSIVE if part % 2 else policy_of(told_seed)
+            seen.add(lettered(HostileRun(told_seed, policy, judged=judged)))
     return seen
 
 

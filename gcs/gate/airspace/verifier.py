@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 from gcs.enu_text import place
@@ -52,18 +53,39 @@ class Cleared:
     evidence: tuple[tuple[str, float], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Breach:
     """The vehicle would stop outside the fence, or is outside already.
 
-    `brake_pos_ned` is a verified position to stop at.  It is None where there is none, because the
-    vehicle is outside or its position is not finite: then only hold mode is left.
+    `towards` is who judged it, and the way to the predicted stop; None where that is not finite.
     """
 
     zone: str
     sentence: str
     numbers: tuple[tuple[str, float], ...]
-    brake_pos_ned: Vec3 | None
+    towards: WayToStop | None
+
+    @cached_property
+    def brake_pos_ned(self) -> Vec3 | None:
+        """A verified position to stop at.  None where there is none, because the vehicle is outside
+        or its position is not finite: then only hold mode is left.
+
+        Looked for when it is asked for: a vehicle that is held already is not braked again, and its
+        breach is predicted with every position."""
+        way = self.towards
+        if way is None:
+            return None
+        return way.verifier.brake_point(way.pos_ned, way.stop_ned, floor_applies=way.floor_applies)
+
+
+@dataclass(frozen=True, slots=True)
+class WayToStop:
+    """From where to where, and whose floors count."""
+
+    verifier: Verifier
+    pos_ned: Vec3
+    stop_ned: Vec3
+    floor_applies: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +219,7 @@ class Verifier:
             return None
         heard_s = age_s + self.policy.approach_of(self.autopilot).react_s
         north, east, down = (x + v * heard_s for x, v in zip(pos_ned, v_ned, strict=True))
-        return self._brake_point(pos_ned, (north, east, down), floor_applies=True)
+        return self.brake_point(pos_ned, (north, east, down), floor_applies=True)
 
     def takeoff(self, up_m: float, pos_ned: Vec3) -> Cleared | Refusal:
         """May the vehicle climb straight up to `up_m` metres above where it stands?
@@ -238,8 +260,8 @@ class Verifier:
         bad = self._bad_stop(pos_ned, v_ned, path, floor_applies=floor_applies)
         if bad is None:
             return None
-        brake_pos_ned = self._brake_point(pos_ned, bad.stop_ned, floor_applies=floor_applies)
-        return Breach(bad.measure.zone.name, bad.sentence, bad.numbers, brake_pos_ned)
+        way = WayToStop(self, pos_ned, bad.stop_ned, floor_applies)
+        return Breach(bad.measure.zone.name, bad.sentence, bad.numbers, way)
 
     def return_path(self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> Cleared | Refusal:
         """As `return_refusal`, with the numbers where the way home is clear."""
@@ -416,7 +438,7 @@ class Verifier:
         named = ((f"{what}_clear_h_m", near.h_m), (f"{what}_clear_v_m", near.v_m))
         return tuple((name, value) for name, value in named if math.isfinite(value))
 
-    def _brake_point(self, pos_ned: Vec3, stop_ned: Vec3, *, floor_applies: bool) -> Vec3 | None:
+    def brake_point(self, pos_ned: Vec3, stop_ned: Vec3, *, floor_applies: bool) -> Vec3 | None:
         """Where to brake: the predicted stop, or the first position back from it towards the
         vehicle that would be accepted as a goal; else the vehicle's position, if it may stay
         there; else None."""
