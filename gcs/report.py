@@ -52,6 +52,15 @@ class FrameItem(msgspec.Struct, frozen=True, gc=False):
     raw: bytes
 
 
+class FramesItem(msgspec.Struct, frozen=True, gc=False):
+    """Frames that came together and were only passed on, in their order: recorded as so many
+    `FrameItem`s, at a fraction of the cost."""
+
+    link: int
+    direction: Direction
+    raws: tuple[bytes, ...]
+
+
 class GarbageItem(msgspec.Struct, frozen=True):
     """Bytes that were no frame (`reason` says why: crc, garbage, oversize, truncated, text)."""
 
@@ -272,6 +281,7 @@ class MetadataItem(msgspec.Struct, frozen=True):
 
 RecordItem: TypeAlias = (
     FrameItem
+    | FramesItem
     | GarbageItem
     | InputItem
     | PoseItem

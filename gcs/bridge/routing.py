@@ -37,6 +37,8 @@ TARGETS: Final = {
 }
 """Message id -> offsets of the target; a message that is not here is for everybody."""
 
+_TARGETED: Final = frozenset(TARGETS)
+
 
 def target_of(frame: Frame) -> tuple[int, int]:
     """Target system and component, 0 for all.  MAVLink 2 cuts zeros at the end of a payload."""
@@ -114,7 +116,7 @@ class Routes:
         """The same of frames that came together: client links, and what goes to each, in order."""
         if not self._of_link:
             return ()
-        if all(frame.msgid not in TARGETS for frame in frames):
+        if _TARGETED.isdisjoint([frame.msgid for frame in frames]):
             everything = [frame.raw for frame in frames]
             return [(link, everything) for link in self._of_link] if frames else ()
         shares: dict[int, list[bytes]] = {}

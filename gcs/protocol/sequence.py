@@ -8,6 +8,10 @@ REORDERED = 128
 """A step this large over the ring of 256 is a frame that came late, not a huge gap."""
 
 
+_RING = bytes(range(256)) * 3
+"""Sequence numbers as they follow each other, for runs of at most 512."""
+
+
 @dataclass(slots=True)
 class SequenceCount:
     """One sender's tally."""
@@ -59,6 +63,16 @@ class SequenceTracker:
         count.last_seq = seq
         count.last_number += 1
         return count.last_number
+
+    def all_in_turn(self, sender: tuple[int, int], seqs: bytes) -> bool:
+        """The same for frames in a row; False, and nothing is counted, where one is any other."""
+        count = self.senders.get(sender)
+        if count is None or count.resume or not _RING.startswith(seqs, (count.last_seq + 1) & 0xFF):
+            return False
+        count.received += len(seqs)
+        count.last_seq = seqs[-1]
+        count.last_number += len(seqs)
+        return True
 
     def late(self, sysid: int, compid: int, seq: int) -> bool:
         """Whether `seq` was sent before a frame that has come, unless the sender began anew."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TypeAlias
@@ -28,6 +28,7 @@ from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.report import (
     AttachmentItem,
     FrameItem,
+    FramesItem,
     GarbageItem,
     InputItem,
     MetadataItem,
@@ -202,25 +203,34 @@ class Recorder:
 
     def write(self, item: RecordItem, now_ns: int) -> None:
         """Record one item.  Look at `failed` afterwards."""
-        if type(item) is not FrameItem:
+        if type(item) is FramesItem:
+            self._write_frames(item.link, item.direction, item.raws, now_ns)
+        elif type(item) is FrameItem:
+            self._write_frames(item.link, item.direction, (item.raw,), now_ns)
+        else:
             self._write_other(item, now_ns)
-            return
-        # Called for every frame, so it stays in one piece.
-        raw = item.raw
-        try:
-            key = raw[5:10] if raw[0] == ros1.MAGIC_V2 else raw[3:6]
-            log, encode = self._frame_logs.get(key) or self._new_frame_log(key, raw)
-            message = encode(raw, item.link, item.direction)
-        except (struct.error, IndexError):
-            # Not a whole frame, whatever the sender of the item believes: kept all the same.
-            self._write_other(GarbageItem(item.link, raw, "malformed"), now_ns)
-            return
-        if now_ns <= self._last_ns:
-            now_ns = self._last_ns + 1
-        self._last_ns = now_ns
-        log(message, now_ns)
-        if self._seals:
-            self._unsealed.append(message)
+
+    def _write_frames(self, link: int, direction: int, raws: Sequence[bytes], now_ns: int) -> None:
+        """All that is received passes through this loop, so it stays in one piece."""
+        logs, keep = self._frame_logs.get, self._unsealed.append
+        seals, last_ns = self._seals, self._last_ns
+        if now_ns <= last_ns:
+            now_ns = last_ns + 1
+        for raw in raws:
+            try:
+                key = raw[5:10] if raw[0] == ros1.MAGIC_V2 else raw[3:6]
+                log, encode = logs(key) or self._new_frame_log(key, raw)
+                message = encode(raw, link, direction)
+            except (struct.error, IndexError):
+                # Not a whole frame, whatever the sender of the item believes: kept all the same.
+                self._write_other(GarbageItem(link, raw, "malformed"), now_ns)
+                now_ns = self._last_ns + 1
+                continue
+            self._last_ns = now_ns
+            log(message, now_ns)
+            if seals:
+                keep(message)
+            now_ns += 1
 
     def tick(self, now_ns: int) -> list[RecordNews]:
         """Flush when it is time, write what is due by the clock, begin a new part after a failure

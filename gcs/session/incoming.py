@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.condition import Condition
 from gcs.protocol.effects import Address
-from gcs.report import Direction, FrameItem, GarbageItem
+from gcs.report import Direction, FrameItem, FramesItem, GarbageItem
 from gcs.session.bridge_port import BridgePort
 from gcs.session.effects import Record
 from gcs.session.gate_port import condition
@@ -23,7 +23,7 @@ from gcs.session.recorded import pieces
 from gcs.session.signatures import Signatures
 from gcs.session.vehicle import INTERPRETED
 from gcs.session.vehicles import Vehicles
-from gcs.session.work import STATION, ToGate, Work
+from gcs.session.work import ToGate, Work
 from gcs.wire.blanking import without_key
 from gcs.wire.frame import Frame, Garbage, Item
 from gcs.wire.ids import MsgId
@@ -68,13 +68,20 @@ class Incoming:
 
         False: nothing was in it but what only passes through, so nothing else has changed."""
         link, run = given.link, self._queue.run
-        items = self._links.split(link, given.data)
+        items = self._links.split(link, given.data, given.frames)
+        if (
+            items is given.frames
+            and not self.of_client(given)
+            and not self._signatures.signed(link)
+        ):
+            return self._from_vehicles(link, given.frames, given.frames, now_ns)
         announced = pieces(link, len(items), self._links.rest(link))
         if announced:
             run(announced, now_ns)
         taken = self._taken(link, items, now_ns)
         if not self.of_client(given):
-            return self._from_vehicles(link, taken, now_ns)
+            frames = [item for item in taken if not isinstance(item, GarbageItem)]
+            return self._from_vehicles(link, taken, frames, now_ns)
         for item in taken:
             if isinstance(item, GarbageItem):
                 run([Record(item)], now_ns)
@@ -101,36 +108,57 @@ class Incoming:
                 taken.append(item)
         return taken
 
-    def _from_vehicles(self, link: int, taken: Sequence[Frame | GarbageItem], now_ns: int) -> bool:
-        """What came on a vehicle's link: its frames are first of all sent on to the clients,
-        together as they came.  Nearly all of them are only recorded and counted, which is no work
-        for the queue."""
-        put, passes = self._queue.put, self._vehicles.passes
-        special, own_compid = self._operators.subscribed, self._own[1]
-        frames = [item for item in taken if type(item) is Frame]
+    def _from_vehicles(
+        self,
+        link: int,
+        taken: Sequence[Frame | GarbageItem],
+        frames: Sequence[Frame],
+        now_ns: int,
+    ) -> bool:
+        """What came on a vehicle's link, and the frames of it: they are first of all sent on to the
+        clients, together as they came.  Nearly all of them are only recorded and counted, in runs
+        and not one by one, which is no work for the queue."""
+        put = self._queue.put
         for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
             for sent in self._links.together(to, raws, now_ns):
                 put(sent)
         if frames:
             self._links.peer_known(link)
         worked = False
-        work: Sequence[Work]
+        special, own_compid = self._operators.subscribed, self._own[1]
+        passing: list[Frame] = []
         for item in taken:
+            if type(item) is Frame:
+                msgid = item.msgid
+                alone = msgid in INTERPRETED or msgid in special or item.compid == own_compid
+                if not alone:
+                    passing.append(item)
+                    continue
+            worked |= self._pass(link, passing, now_ns)
+            passing = []
             if isinstance(item, GarbageItem):
                 put(Record(item))
                 continue
             put(Record(FrameItem(link, _RECEIVED, item.raw)))
-            msgid = item.msgid
-            if msgid in INTERPRETED or msgid in special or item.compid == own_compid:
-                work, owner = self._vehicle_frame(link, item, now_ns), STATION
-            elif passes(link, item, now_ns):
-                work, owner = _ALIVE, self._vehicles.owner_of(item)
-            else:
-                continue
-            if work:
-                worked = True
-                self._queue.run(work, now_ns, owner)
-        return worked
+            worked |= self._work(self._vehicle_frame(link, item, now_ns), now_ns)
+        return self._pass(link, passing, now_ns) or worked
+
+    def _pass(self, link: int, frames: Sequence[Frame], now_ns: int) -> bool:
+        """Frames in a row that only pass through; whether they lead to anything."""
+        if not frames:
+            return False
+        raws = tuple([frame.raw for frame in frames])
+        self._queue.put(Record(FramesItem(link, _RECEIVED, raws)))
+        alive = self._vehicles.passes(link, frames, now_ns)
+        for owner in alive:
+            self._queue.run(_ALIVE, now_ns, owner)
+        return bool(alive)
+
+    def _work(self, work: Sequence[Work], now_ns: int) -> bool:
+        """Do it; whether there is any."""
+        if work:
+            self._queue.run(work, now_ns)
+        return bool(work)
 
     def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of a MAVLink client: judged first, because the record says how."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs import ipc
+from gcs.wire.frame import Frame
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,6 +15,9 @@ class Datagram:
 
     link: int
     data: bytes
+    frames: tuple[Frame, ...] = ()
+    """`data`, split already: one or several datagrams of nothing but plain frames, put together
+    (see `gcs.wire.frame.plain_frames`); empty where it is still to be split."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from gcs.report import Direction, FrameItem
 from gcs.session.effects import Effect, Record, Transmit
 from gcs.session.signatures import NO_KEYS, Signatures
 from gcs.wire.codec import FrameWriter
-from gcs.wire.frame import Item, StreamSplitter, split
+from gcs.wire.frame import Frame, Item, StreamSplitter, split
 from gcs.wire.ids import MavAutopilot, MavState, MavType
 from gcs.wire.messages import Heartbeat, Message
 from gcs.wire.signing import UnsignableError
@@ -78,13 +78,13 @@ class Links:
         self._named: dict[tuple[int, int, int], FrameWriter] = {}
         """Who writes in the name of a component: by link, system and component."""
 
-    def split(self, link: int, data: bytes) -> list[Item]:
-        """Frames and garbage in `data`.
+    def split(self, link: int, data: bytes, frames: Sequence[Frame] = ()) -> Sequence[Item]:
+        """Frames and garbage in `data`; `frames` where a datagram was split already.
 
         A datagram is whole; a read of a stream goes on where the last one ended.
         """
         splitter = self._splitters.get(link)
-        items = split(data) if splitter is None else splitter.feed(data)
+        items = (frames or split(data)) if splitter is None else splitter.feed(data)
         if link < len(self.counts):
             self.counts[link].received += len(items)
         return items

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 from gcs.protocol.sequence import SequenceTracker
@@ -42,6 +43,17 @@ class Presence:
         self._heard_ns[sender] = now_ns
         number = self.losses.in_turn(sender, frame.seq)
         return self._out_of_turn(sender, frame.seq, now_ns - heard_ns) if number is None else number
+
+    def number_all(self, frames: Sequence[Frame], now_ns: int) -> None:
+        """The same for frames of one system that came together."""
+        compid = frames[0].compid
+        sender = (frames[0].sysid, compid)
+        seqs = bytes([frame.seq for frame in frames if frame.compid == compid])
+        if len(seqs) == len(frames) and self.losses.all_in_turn(sender, seqs):
+            self._heard_ns[sender] = now_ns
+        else:
+            for frame in frames:
+                self.number(frame, now_ns)
 
     def _out_of_turn(self, sender: tuple[int, int], seq: int, silence_ns: int) -> int:
         if silence_ns > self._restart_silence_ns and self.losses.late(*sender, seq):

@@ -98,9 +98,9 @@ class Telemetry:
         self.landed = LandedState.UNDEFINED
         self.health = PositionHealth(Gps(), Estimator())
 
-    def count_frame(self, now_ns: int) -> None:
-        """One more frame; the rate is renewed every two seconds."""
-        self.rx_count += 1
+    def count_frames(self, many: int, now_ns: int) -> None:
+        """So many more frames; the rate is renewed every two seconds."""
+        self.rx_count += many
         span_ns = now_ns - self.rx_window_start_ns
         if span_ns >= POSITION_RATE_WINDOW_NS:
             self.rx_hz = self.rx_count * 1e9 / span_ns

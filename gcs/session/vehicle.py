@@ -6,7 +6,7 @@ All that is per vehicle is here and in the parts that this composes; what is per
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
 from gcs.config import StationConfig
@@ -187,17 +187,21 @@ class Vehicle:
 
     # ------------------------------------------------------------------------------- frames
 
-    def passes(self, link: int, frame: Frame, now_ns: int) -> bool:
-        """A good frame of a message that is not in `INTERPRETED`: it is counted, and not decoded.
+    def passes(self, link: int, frames: Sequence[Frame], now_ns: int) -> bool:
+        """Good frames of messages that are not in `INTERPRETED`: counted, and not decoded.
 
         True: the gate is to hear that the vehicle lives.
         """
         telemetry = self.telemetry
-        if telemetry is None or frame.sysid != telemetry.sysid:
+        if telemetry is None:
             return False
-        self._presence.number(frame, now_ns)
-        telemetry.count_frame(now_ns)
-        return frame.compid == telemetry.compid and self._alive(telemetry, link, now_ns)
+        own = [frame for frame in frames if frame.sysid == telemetry.sysid]
+        if not own:
+            return False
+        self._presence.number_all(own, now_ns)
+        telemetry.count_frames(len(own), now_ns)
+        of_autopilot = telemetry.compid in [frame.compid for frame in own]
+        return of_autopilot and self._alive(telemetry, link, now_ns)
 
     def _alive(self, telemetry: Telemetry, link: int, now_ns: int) -> bool:
         """A frame of its autopilot came; whether the gate is to hear of it."""
@@ -218,7 +222,7 @@ class Vehicle:
         if telemetry is None or frame.sysid != telemetry.sysid:
             return work
         number = self._presence.number(frame, now_ns)
-        telemetry.count_frame(now_ns)
+        telemetry.count_frames(1, now_ns)
         if frame.compid == telemetry.compid and self._alive(telemetry, link, now_ns):
             work.append(ToGate(inputs.MessageSeen()))
         if message is not None and not self._presence.overtaken(frame, message, number):

@@ -118,15 +118,10 @@ class Vehicles:
 
     # ------------------------------------------------------------------------------ frames
 
-    def passes(self, link: int, frame: Frame, now_ns: int) -> bool:
-        """See `Vehicle.passes`."""
-        slot = self._slots.get(frame.sysid, FIRST)
-        return self._all[slot].passes(link, frame, now_ns)
-
-    def owner_of(self, frame: Frame) -> int:
-        """Whose a frame from a vehicle's link is; what nobody has sent that was met, the first
-        vehicle looks at."""
-        return self._slots.get(frame.sysid, FIRST)
+    def passes(self, link: int, frames: Sequence[Frame], now_ns: int) -> list[int]:
+        """See `Vehicle.passes`; the slots of those whose gate is to hear that they live."""
+        vehicles = enumerate(self._all)
+        return [slot for slot, vehicle in vehicles if vehicle.passes(link, frames, now_ns)]
 
     def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of anybody on a vehicle's link."""

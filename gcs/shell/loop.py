@@ -28,7 +28,6 @@ from gcs.session.effects import (
     WriteFile,
 )
 from gcs.session.inputs import (
-    Datagram,
     FileRead,
     FileWritten,
     Input,
@@ -44,6 +43,7 @@ from gcs.session.inputs import (
 from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
+from gcs.shell.datagram_runs import pieces, runs
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
@@ -188,8 +188,9 @@ class Loop:
         for number, link in enumerate(self._links):
             due = link.deadline_ns is not None and link.deadline_ns <= self._clock.now_ns()
             if link in readable:
-                for data in link.drain(MAX_DATAGRAMS_A_TURN):
-                    self._feed(Datagram(number, data))
+                came = link.drain(MAX_DATAGRAMS_A_TURN)
+                for given in pieces(number, came) if link.stream else runs(number, came):
+                    self._feed(given)
                     self._wake_if_due()
             elif not due:
                 continue

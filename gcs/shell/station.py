@@ -7,6 +7,7 @@ Speaks JSON lines with its operator (`gcs.ipc`) and writes nothing else to stand
 
 from __future__ import annotations
 
+import gc
 import socket
 import sys
 from collections.abc import Iterator, Sequence
@@ -102,6 +103,10 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
             keys,
         )
         operator = LineSource(sys.stdin.fileno())
+        # All that is there lives as long as the process.  Looking through it again at every full
+        # collection would stop the loop for 50 ms and more.
+        gc.collect()
+        gc.freeze()
         finish = Loop(
             session,
             clock,

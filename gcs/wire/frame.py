@@ -87,17 +87,26 @@ def split(data: bytes) -> list[Item]:
         return [Garbage(data, Reason.OVERSIZE)]
     frames, end = _known_frames(data)
     if end == len(data):
-        return frames
-    return frames + _scan(data[end:], whole=True)[0]
+        return [*frames]
+    return [*frames, *_scan(data[end:], whole=True)[0]]
 
 
-def _known_frames(data: bytes) -> tuple[list[Item], int]:
+def plain_frames(data: bytes) -> list[Frame]:
+    """The frames of `data` where it is made of unsigned MAVLink 2 frames of known messages alone;
+    else nothing: `split` tells what it is made of."""
+    if len(data) > MAX_DATAGRAM:
+        return []
+    frames, end = _known_frames(data)
+    return frames if end == len(data) else []
+
+
+def _known_frames(data: bytes) -> tuple[list[Frame], int]:
     """The unsigned MAVLink 2 frames of known messages that `data` begins with, and where they end.
 
     What nearly every datagram is made of.  One loop without calls: all that is received passes
     through it.
     """
-    frames: list[Item] = []
+    frames: list[Frame] = []
     size = len(data)
     at = 0
     while at + HEADER_V2 < size:
@@ -146,7 +155,7 @@ class StreamSplitter:
         frames, end = _known_frames(data)
         items, taken = _scan(data[end:], whole=False)
         self._rest = data[end + taken :]
-        return frames + items
+        return [*frames, *items]
 
     def close(self) -> list[Item]:
         """The stream ended: return what was kept."""

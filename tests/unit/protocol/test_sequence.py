@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import copy
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from gcs.protocol.sequence import SequenceTracker
 
@@ -59,3 +63,33 @@ def test_a_sender_that_was_away_may_begin_anew() -> None:
     assert tracker.seen(1, 1, 0) == 0
     assert tracker.number(1, 1, 1) == 202
     assert tracker.lost == 0
+
+
+@given(st.lists(st.integers(0, 255), max_size=6), st.integers(0, 255), st.integers(1, 300))
+def test_frames_in_a_row_are_counted_as_one_after_the_other(
+    before: list[int], first: int, many: int
+) -> None:
+    one, all_at_once = SequenceTracker(), SequenceTracker()
+    for seq in before:
+        one.seen(1, 1, seq)
+        all_at_once.seen(1, 1, seq)
+    untouched = copy.deepcopy(all_at_once.senders)
+    seqs = bytes((first + n) & 0xFF for n in range(many))
+    in_turn = [one.in_turn((1, 1), seq) for seq in seqs]
+    if all_at_once.all_in_turn((1, 1), seqs):
+        assert None not in in_turn
+        assert all_at_once.senders == one.senders
+    else:
+        assert in_turn[0] is None
+        assert all_at_once.senders == untouched
+
+
+def test_a_gap_within_frames_in_a_row_counts_none_of_them() -> None:
+    tracker = SequenceTracker()
+    tracker.seen(1, 1, 10)
+    assert not tracker.all_in_turn((1, 1), bytes((11, 12, 14)))
+    assert tracker.received == 1
+    assert tracker.all_in_turn((1, 1), bytes((11, 12)))
+    tracker.restart(1, 1)
+    assert not tracker.all_in_turn((1, 1), bytes((13, 14)))
+    assert tracker.received == 3

@@ -28,6 +28,7 @@ from gcs.report import (
     AttachmentItem,
     Direction,
     FrameItem,
+    FramesItem,
     GarbageItem,
     InputItem,
     LogEvent,
@@ -42,6 +43,7 @@ from tests.unit.record.flights import (
     START_NS,
     Logged,
     a_flight,
+    frame_v1,
     frame_v2,
     messages_of,
     position_frame,
@@ -172,6 +174,22 @@ def test_garbage_and_malformed_frames_are_kept_with_their_reason(tmp_path: Path)
     assert b"NMEA?" in found[0].data
     assert b"malformed" in found[1].data
     assert found[1].data.endswith(cut.raw)
+
+
+def test_frames_in_a_row_are_recorded_as_one_after_the_other(tmp_path: Path) -> None:
+    raws = (
+        position_frame(1).raw,
+        frame_v1(32, b"\1" * 28),
+        frame_v2(110, b"x" * 100),
+        b"\xfd\x30abc",
+        frame_v2(32, b"\1" * 40),
+        position_frame(2).raw,
+    )
+    single = [FrameItem(2, Direction.RECEIVED, raw) for raw in raws]
+    expected = messages_of(record(tmp_path / "a", single, step_ns=0))
+    together = [FramesItem(2, Direction.RECEIVED, raws)]
+    assert messages_of(record(tmp_path / "b", together, step_ns=0)) == expected
+    assert [message.log_time_ns - START_NS for message in expected] == [0, 1, 2, 3, 4, 5]
 
 
 def test_forged_sources_cannot_use_up_the_channels(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 
 from gcs.session.effects import Record, Transmit
@@ -15,11 +17,11 @@ REACHED = MissionItemReached(seq=7)
 NOW_NS = 1_700_000_000_000_000_000
 
 
-def raws(items: list[Item]) -> list[bytes]:
+def raws(items: Sequence[Item]) -> list[bytes]:
     return [item.raw for item in items if isinstance(item, Frame)]
 
 
-def is_garbage(items: list[Item]) -> bool:
+def is_garbage(items: Sequence[Item]) -> bool:
     return bool(items) and all(isinstance(item, Garbage) for item in items)
 
 

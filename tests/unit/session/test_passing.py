@@ -15,7 +15,8 @@ from gcs.session.links import MAX_DATAGRAM, datagrams
 from gcs.session.vehicle import INTERPRETED
 from gcs.wire.codec import FrameWriter
 from gcs.wire.dialect import MESSAGES, MESSAGES_BY_NAME
-from gcs.wire.messages import CLASSES
+from gcs.wire.frame import plain_frames
+from gcs.wire.messages import CLASSES, LocalPositionNed
 from tests.unit.session import told, wire
 from tests.unit.session.station import Script
 
@@ -104,7 +105,41 @@ def test_decoding_what_passes_through_would_change_nothing(
 def effects_of(data: bytes) -> list[Effect]:
     """And of what is told and recorded in the time after."""
     script = bridged()
-    return [*script.feed(Datagram(0, data)), *script.run(0.3)]
+    return told.separately([*script.feed(Datagram(0, data)), *script.run(0.3)])
+
+
+def test_datagrams_that_were_put_together_are_as_one_after_the_other() -> None:
+    """Routed, recorded, counted: frames of two components, lost, doubled and late ones, some for
+    one client alone, some interpreted."""
+    autopilot, camera, other = FrameWriter(1, 1), FrameWriter(1, 100), FrameWriter(7, 1)
+    raws = [frame(autopilot, name) for name in UNTARGETED * 3]
+    del raws[5]
+    raws += [raws[2], frame(camera, "VFR_HUD"), frame(other, "VFR_HUD"), raws[0]]
+    raws.insert(3, frame(autopilot, "COMMAND_ACK", bytes((144, 1, 0, 0, 0, 0, 0, 0, 254, 190))))
+    raws.insert(7, autopilot.write(LocalPositionNed(1000, 1.0, 2.0, -3.0, 0.0, 0.0, 0.0)))
+    single, joined = bridged(), bridged()
+    for script in (single, joined):
+        script.now_ns += 400 * wire.MS_NS  # the gate is to hear anew that the vehicle lives
+    one_by_one = [effect for raw in raws for effect in single.feed(Datagram(0, raw))]
+    data = b"".join(raws)
+    together = joined.feed(Datagram(0, data, tuple(plain_frames(data))))
+    assert told.recorded(together, "FrameItem") == told.recorded(one_by_one, "FrameItem")
+    for link in CLIENTS:
+        to_link = [
+            b"".join(raw for to, raw in sent(e) if to == link) for e in (one_by_one, together)
+        ]
+        assert to_link[0] == to_link[1]
+    assert len(sent(together)) < len(sent(one_by_one))
+    assert told.separately(joined.run(2.5)) == told.separately(single.run(2.5))
+    assert joined.session.telemetry == single.session.telemetry
+    assert joined.session.gate.memory == single.session.gate.memory
+
+
+def test_a_run_of_frames_is_split_anew_on_a_link_with_a_key_or_of_a_client() -> None:
+    script = bridged()
+    data = b"".join(frame(FrameWriter(9, 1), name) for name in UNTARGETED)
+    as_one = told.separately(script.feed(Datagram(1, data, tuple(plain_frames(data)))))
+    assert as_one == told.separately(bridged().feed(Datagram(1, data)))
 
 
 def test_most_of_the_dialect_passes_through_and_all_that_is_interpreted_has_a_class() -> None:

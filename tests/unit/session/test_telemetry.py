@@ -60,12 +60,12 @@ def test_roll_lowers_the_right_side_whatever_the_heading() -> None:
 def test_the_rate_of_frames_is_renewed_every_two_seconds() -> None:
     telemetry = vehicle()
     for n in range(1, 100):
-        telemetry.count_frame(n * 20 * MS_NS)
+        telemetry.count_frames(1, n * 20 * MS_NS)
     assert telemetry.rx_hz == 0.0
-    telemetry.count_frame(2 * SECOND_NS)
+    telemetry.count_frames(1, 2 * SECOND_NS)
     assert telemetry.rx_hz == pytest.approx(50.0)
-    for n in range(1, 21):
-        telemetry.count_frame(2 * SECOND_NS + n * 100 * MS_NS)
+    for n in range(1, 6):
+        telemetry.count_frames(4, 2 * SECOND_NS + n * 400 * MS_NS)
     assert telemetry.rx_hz == pytest.approx(10.0)
 
 

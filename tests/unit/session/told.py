@@ -9,7 +9,8 @@ from collections.abc import Iterable
 from typing import Any, TypeAlias, TypeVar
 
 from gcs import ipc
-from gcs.session.effects import Emit, Finish, ReadFile, Record, WriteFile
+from gcs.report import FrameItem, FramesItem, RecordItem
+from gcs.session.effects import Effect, Emit, Finish, ReadFile, Record, WriteFile
 from gcs.session.work import Tell
 
 E = TypeVar("E")
@@ -27,8 +28,31 @@ def events(effects: Told, kind: type[E]) -> list[E]:
 
 def recorded(effects: Told, kind: str) -> list[Any]:
     """What the record is told, of one kind by its name: `FrameItem`, `InputItem`..."""
-    items = (effect.item for effect in effects if isinstance(effect, Record))
+    items = (
+        item
+        for effect in effects
+        if isinstance(effect, Record)
+        for item in (one_by_one(effect.item) if kind == "FrameItem" else [effect.item])
+    )
     return [item for item in items if type(item).__name__ == kind]
+
+
+def one_by_one(item: RecordItem) -> list[RecordItem]:
+    """Frames that were recorded in a row, each as an item of its own."""
+    if isinstance(item, FramesItem):
+        return [FrameItem(item.link, item.direction, raw) for raw in item.raws]
+    return [item]
+
+
+def separately(effects: Iterable[Effect]) -> list[Effect]:
+    """The same, with every frame that was recorded as an effect of its own."""
+    done: list[Effect] = []
+    for effect in effects:
+        if isinstance(effect, Record):
+            done += [Record(item) for item in one_by_one(effect.item)]
+        else:
+            done.append(effect)
+    return done
 
 
 def verdicts(effects: Told) -> list[tuple[int, str, str]]:
