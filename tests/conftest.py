@@ -43,6 +43,7 @@ settings.register_profile("soak", ON_ANY_MACHINE, max_examples=2_000)
 settings.load_profile("soak" if SOAKING else "steady")
 
 
+@cache
 def is_slow(path: Path) -> bool:
     """By where it is; single files say it themselves (`pytestmark`)."""
     flown = any(path.is_relative_to(folder) for folder in FLOWN)

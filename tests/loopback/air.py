@@ -9,6 +9,8 @@ import heapq
 import random
 from dataclasses import dataclass, field
 
+NEVER_NS = 1 << 62
+
 
 @dataclass(frozen=True, slots=True)
 class Weather:
@@ -52,9 +54,9 @@ class Air:
             heapq.heappush(self._flying, (now_ns + delay_ns, self._count, data))
 
     @property
-    def next_ns(self) -> int | None:
-        """When the next datagram arrives."""
-        return self._flying[0][0] if self._flying else None
+    def next_ns(self) -> int:
+        """When the next datagram arrives; `NEVER_NS` where none is under way."""
+        return self._flying[0][0] if self._flying else NEVER_NS
 
     def arrived(self, now_ns: int) -> list[bytes]:
         """What has arrived by now, in order of arrival."""

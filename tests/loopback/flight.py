@@ -151,17 +151,18 @@ class Flight(Looks):
     def _step(self, limit_ns: int) -> bool:
         """To the next thing that happens, if it does by `limit_ns`."""
         session_ns, world_ns = self.session.deadline_ns, self.world.deadline_ns
-        times = [session_ns, world_ns]
-        times += [t for t in (self.up.next_ns, self.down.next_ns) if t is not None]
-        next_ns = max(self.now_ns, min(times))
+        up_ns, down_ns = self.up.next_ns, self.down.next_ns
+        next_ns = max(self.now_ns, min(session_ns, world_ns, up_ns, down_ns))
         if next_ns > limit_ns:
             self.now_ns = limit_ns
             return False
         self.now_ns = next_ns
-        for data in self.up.arrived(next_ns):
-            self._vehicle(Inbound(0, PEER, data))
-        for data in self.down.arrived(next_ns):
-            self.feed(inputs.Datagram(0, data))
+        if up_ns <= next_ns:
+            for data in self.up.arrived(next_ns):
+                self._vehicle(Inbound(0, PEER, data))
+        if self.down.next_ns <= next_ns:
+            for data in self.down.arrived(next_ns):
+                self.feed(inputs.Datagram(0, data))
         if world_ns <= next_ns:
             self._vehicle(WorldWake())
         if session_ns <= next_ns:
@@ -281,8 +282,15 @@ class Flight(Looks):
 
     def done(self, ask_id: int, timeout_s: float = 60.0) -> str:
         """Wait for the ending of a request, or for the verdict that is its end; say which."""
-        self.until(lambda: self.outcome(ask_id) is not None, timeout_s)
-        outcome = self.outcome(ask_id)
+        looked_at, outcome = -1, self.outcome(ask_id)
+
+        def over() -> bool:
+            nonlocal looked_at, outcome
+            if len(self.events) != looked_at:
+                looked_at, outcome = len(self.events), self.outcome(ask_id)
+            return outcome is not None
+
+        self.until(over, timeout_s)
         assert outcome is not None
         return outcome
 

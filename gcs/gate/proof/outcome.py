@@ -8,6 +8,7 @@ from functools import partial
 from typing import Final, TypeAlias, cast
 
 from gcs.gate.machine.memory import Task
+from gcs.gate.proof.columns import NEVER, Columns, Numbers
 from gcs.gate.proof.decision_tree import DecisionTree
 from gcs.gate.proof.edge import Edge, Objection
 from gcs.gate.proof.invariants import objections, objections_to_step
@@ -25,9 +26,8 @@ CHANGES: Final = 1 << 63
 class Outcome:
     """How a vector changes, and what the invariants still have to ask.
 
-    `sensible` is False where the letter makes no sense.  `places` are those of the vector that
-    change, one bit each.  `idle_ns` is the time that passes where nothing else changes, else
-    `CHANGES`.  `doubtful`: there may be objections.
+    `sensible` is False where the letter makes no sense.  `idle_ns` is the time that passes where
+    nothing else changes, else `CHANGES`.  `doubtful`: there may be objections.
     `cells` are those of the table that had a part in it.  `unmet`: no walk came upon it yet.
     """
 
@@ -36,11 +36,9 @@ class Outcome:
         "_changes",
         "_checks",
         "_moves",
-        "_unchecked",
         "cells",
         "doubtful",
         "idle_ns",
-        "places",
         "sensible",
         "unmet",
     )
@@ -50,7 +48,7 @@ class Outcome:
         self._moves: list[Move] = []
         self._checks: list[DecisionTree[list[Objection]]] = []
         self._bug = None if taken is None else taken.bug
-        self._unchecked = self.unmet = True
+        self.unmet = True
         self.cells = frozenset(() if taken is None else taken.cells)
         self.sensible = self.doubtful = taken is not None
         if taken is not None:
@@ -60,8 +58,6 @@ class Outcome:
                 DecisionTree(questions, partial(_objections, _unread(step), last=last), known)
                 for step, last in _with_last(taken.steps)
             ]
-        changed = {place for place, _ in self._changes} | {move[0] for move in self._moves}
-        self.places = sum(1 << place for place in changed)
         self.idle_ns = CHANGES
         if not self._changes and [move[:2] for move in self._moves] == [(NOW, NOW)]:
             self.idle_ns = self._moves[0][2]
@@ -102,16 +98,36 @@ class Outcome:
                 after[place] = cast(int, vector[origin]) + plus_ns
         return after
 
+    def write(self, before: Columns, numbers: Numbers, after: Columns) -> None:
+        """As `applied_to`, for the vectors with these numbers: `after` is a copy of them, and is
+        changed."""
+        for place, code in self._changes:
+            after[place] = code
+        for place, origin, plus_ns in self._moves:
+            after[place] = NEVER if origin is None else before[origin, numbers] + plus_ns
+
     def objections(self, vector: Vector) -> Iterator[Objection]:
         """Every invariant that is broken on the way from `vector`."""
         if self._bug is not None:
             yield Objection(0, f"a cell that cannot be entered: {self._bug}")
         for check in self._checks:
             yield from check(vector).result
-        if self._unchecked:
-            self._unchecked = False
-            self._checks = [check for check in self._checks if not check.constant]
-            self.doubtful = bool(self._checks or self._bug)
+
+    def first_objected(self, columns: Columns) -> int | None:
+        """The first of these vectors from which an invariant is broken on the way."""
+        if self._bug is not None:
+            return 0
+        objected = [
+            int(numbers[0])
+            for check in self._checks
+            for found, numbers in check.split(columns)
+            if found
+        ]
+        if objected:
+            return min(objected)
+        self._checks = [check for check in self._checks if not check.constant]
+        self.doubtful = bool(self._checks)
+        return None
 
 
 def _with_last(steps: list[Edge]) -> Iterator[tuple[Edge, bool]]:

@@ -158,6 +158,7 @@ class TestSelfContained:
         assert "@import" not in css
         assert "url(http" not in css
 
+    @pytest.mark.slow
     def test_ten_minutes_are_less_than_two_megabytes(self, tmp_path: Path) -> None:
         items: list[RecordItem] = []
         for step in range(600 * 5):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import random
+from collections.abc import Iterator
 from functools import cache
 
 import pytest
@@ -15,9 +17,10 @@ from gcs.gate.machine.rules import Branch
 from gcs.gate.machine.table import TABLE
 from gcs.gate.proof.alphabet import ALPHABET
 from gcs.gate.proof.edge import Objection
-from gcs.gate.proof.explorer import Explored, Explorer
+from gcs.gate.proof.explorer import Explorer
 from gcs.gate.proof.invariants import objections
 from gcs.gate.proof.taking import take
+from gcs.gate.proof.walk import Begun, Explored, Walk
 from gcs.gate.proof.world import CONDITIONS, YARD, World, world
 from gcs.gate.refusal import Code
 from gcs.gate.states import Control, State
@@ -40,6 +43,18 @@ ARDUPILOT = world(
 
 WORLDS = {"px4": PX4, "ardupilot": ARDUPILOT}
 SOAK = "MAVGATE_SOAK" in os.environ
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _only_here() -> Iterator[None]:
+    """What the exploration learns is millions of objects and no garbage: looking through them for
+    garbage costs a fifth of the walk, and of all tests after it while they are there."""
+    gc.disable()
+    yield
+    explorer.cache_clear()
+    explored.cache_clear()
+    gc.enable()
+    gc.collect()
 
 
 @cache
@@ -127,6 +142,21 @@ def test_the_trace_is_the_shortest_there_is() -> None:
         "ask: hold",
     ]
     assert fault.trace[-2][1] is State.EXTERNAL
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_edge_by_edge_and_in_batches_the_walk_is_the_same(name: str) -> None:
+    """A fault that is some letters away is met in many batches of few situations, or in one."""
+    table = {**TABLE, (State.HOVERING, Event.GOTO): ()}
+    learnt = explorer(name)
+    faults = []
+    for batch in (1, 7, 100, 10_000):
+        begun = Begun.from_starts(learnt.starts(table))
+        walk = Walk(learnt.letters(table), learnt.judge, begun, batch)
+        fault = walk.run().fault
+        assert fault is not None
+        faults.append(fault)
+    assert len(set(faults)) == 1
 
 
 def test_the_fault_is_printed_step_by_step() -> None:

@@ -130,6 +130,7 @@ def test_distance_of_two_segments_agrees_with_shapely(
     assert segment_distance(a, b, c, d) == pytest.approx(theirs, abs=1e-8)
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(stars(), spots, spots)
 def test_a_leg_is_inside_only_if_shapely_says_so(polygon: Polygon, a: Point, b: Point) -> None:
@@ -146,6 +147,7 @@ def test_a_leg_is_inside_only_if_shapely_says_so(polygon: Polygon, a: Point, b: 
         assert least < 0.0
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(stars(), spots, spots)
 def test_a_leg_is_outside_only_if_shapely_says_so(polygon: Polygon, a: Point, b: Point) -> None:

@@ -198,6 +198,7 @@ steps = st.lists(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(word=words)
@@ -208,6 +209,7 @@ def test_L17_any_interleaving_from_nothing(autopilot: str, word: list[str]) -> N
     run.closed()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("retarget", ["refuse", "replace"])
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(steps=steps)

@@ -137,6 +137,7 @@ def test_a_changed_cell_prints_differently() -> None:
     assert "MOVING -> HOLDING" in render.dot(changed)
 
 
+@pytest.mark.slow
 def test_permits_are_issued_in_one_module_only() -> None:
     package = Path(gcs.__file__).parent
     users = set()

@@ -103,6 +103,7 @@ class TestDeadlines:
             State.GROUNDED, Control.NONE, [], "complete"
         )
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("state", [State.RETURNING, State.FLYING_MISSION])
     def test_a_return_and_a_mission_have_as_long_as_it_takes(self, state: State) -> None:
         script, request_id = flight(state)

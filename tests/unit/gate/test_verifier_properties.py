@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 
+import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -69,6 +70,7 @@ def changed(verifier: Verifier, **keys: float) -> Verifier:
     return dataclasses.replace(verifier, policy=policy)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(verifiers(), places, places, velocities, wider, wider)
 def test_a_wider_margin_never_accepts_what_a_narrower_refuses(
@@ -88,6 +90,7 @@ def test_a_wider_margin_never_accepts_what_a_narrower_refuses(
             assert narrow.predicted_stop(start, v, floor_applies=floor_applies) is None
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(verifiers(), places, places)
 def test_a_leg_that_is_cleared_leaves_no_zone_to_shapely_either(
@@ -155,6 +158,7 @@ def test_an_unknown_fence_never_permits_anything(
     assert isinstance(unknown.takeoff(2.0, start), Refusal)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(verifiers(), st.tuples(*[anything] * 3), st.tuples(*[anything] * 3), anything, anything)
 def test_whatever_the_numbers_there_is_an_answer_and_never_yes_to_nonsense(
@@ -182,6 +186,7 @@ def test_whatever_the_numbers_there_is_an_answer_and_never_yes_to_nonsense(
             assert isinstance(home, Refusal)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(verifiers(), places, velocities, st.booleans())
 def test_a_brake_is_always_a_place_that_may_be_held(
@@ -193,6 +198,7 @@ def test_a_brake_is_always_a_place_that_may_be_held(
         assert isinstance(held, Cleared)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(verifiers(), places, places)
 def test_what_is_verified_as_a_goal_can_be_hovered_at(

@@ -104,6 +104,7 @@ def test_a_click_of_who_looks_is_answered_with_a_sentence_and_not_again_at_once(
     assert script.click(8) == [Notice(NEEDS_CONTROL, warning=True)]
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(st.integers(1, 3), st.sampled_from([*SERVICES]), st.text(max_size=9))))
 def test_without_the_code_only_stops_leave(calls: list[tuple[int, str, str]]) -> None:
     script = Script()

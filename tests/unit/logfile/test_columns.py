@@ -40,6 +40,7 @@ def same(ours: object, theirs: object) -> bool:
     return ours == theirs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "parts",
     [("logs", "quad_2015.tlog"), ("logs", "arducopter_sitl.tlog")],

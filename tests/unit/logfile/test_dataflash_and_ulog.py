@@ -92,6 +92,7 @@ def assert_every_value_is_dfreaders(path: Path, record: Path) -> None:
                 assert log_ns == pytest.approx(message._timestamp * 1e9, abs=20_000), kind
 
 
+@pytest.mark.slow
 def test_a_real_dataflash_log_keeps_every_message_of_every_kind(tmp_path: Path) -> None:
     path = elsewhere("logs", "test.BIN")
     told = imported(path, tmp_path / "a.mcap")
@@ -101,6 +102,7 @@ def test_a_real_dataflash_log_keeps_every_message_of_every_kind(tmp_path: Path) 
     assert_every_value_is_dfreaders(path, tmp_path / "a.mcap")
 
 
+@pytest.mark.slow
 def test_the_vehicles_dataflash_log_is_as_dfreader_reads_it(tmp_path: Path, bin_file: Path) -> None:
     told = imported(bin_file, tmp_path / "a.mcap")
     assert told["garbage_bytes"] == 0
@@ -204,6 +206,7 @@ def test_a_ulog_format_that_would_fill_the_memory_is_refused(
     assert "longer than a message can be" in ended.output
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.data(), st.sampled_from(["ardupilot", "px4"]))
 def test_a_damaged_log_is_read_as_far_as_it_goes_or_refused(

@@ -47,6 +47,7 @@ def the_way_back(source: Path, folder: Path) -> dict[str, object]:
     return told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "count", "kinds", "garbage"),
     [("quad_2015.tlog", 75_477, 35, 27_613), ("arducopter_sitl.tlog", 8_276, 33, 0)],
@@ -175,6 +176,7 @@ def test_unknown_messages_and_forged_ids_are_kept(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.slow
 def test_more_components_than_a_file_has_channels_for_are_kept(tmp_path: Path) -> None:
     heartbeats = []
     for number in range(5_000):
@@ -201,6 +203,7 @@ def test_a_flight_of_our_own_is_exported_as_pymavlink_reads_it(tmp_path: Path) -
     assert theirs[5]._timestamp == pytest.approx(START_US / 1e6 + 0.005, abs=2e-6)
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(
     st.lists(
@@ -282,6 +285,7 @@ def test_an_mcap_of_another_tool_has_no_frames_to_export(tmp_path: Path) -> None
     assert not (tmp_path / "b.tlog").exists()
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(st.data())
 def test_a_damaged_record_is_exported_as_far_as_it_goes_or_refused(data: st.DataObject) -> None:

@@ -87,6 +87,7 @@ def test_a_file_that_ends_within_a_frame_is_read_to_there(tmp_path: Path) -> Non
     assert read.gaps == [stamped(frames[3], START_US + 3 * 20_000)[:-3]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["quad_2015.tlog", "arducopter_sitl.tlog"])
 def test_real_files_hold_what_pymavlink_finds_in_them(name: str) -> None:
     path = elsewhere("logs", name)
@@ -108,6 +109,7 @@ def test_the_flight_of_2015_has_75_477_good_messages_and_27_613_damaged_bytes() 
     assert sum(map(len, read.gaps)) == 17_082 + 1_314 * 8 + 19
 
 
+@pytest.mark.slow
 @given(
     st.lists(
         st.one_of(

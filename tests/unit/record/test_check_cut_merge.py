@@ -151,6 +151,7 @@ def test_what_is_no_record_is_a_clear_error(
     assert not out.exists()
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
 def test_garbage_in_a_file_is_found_or_harmless_and_never_a_crash(data: st.DataObject) -> None:

@@ -22,10 +22,20 @@ from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_o
 pytestmark = pytest.mark.slow
 
 
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """40 s at 400 messages a second: 50 flushes.  Written once; nobody changes it."""
+    folder = tmp_path_factory.mktemp("recorded")
+    return record(folder / "logs", a_flight() * 1000, step_ns=5 * MS // 2)
+
+
 @pytest.fixture
-def flight(tmp_path: Path) -> Path:
-    """40 s at 400 messages a second: 50 flushes."""
-    return record(tmp_path / "logs", a_flight() * 1000, step_ns=5 * MS // 2)
+def flight(recorded: Path, tmp_path: Path) -> Path:
+    """A copy, for one test."""
+    path = tmp_path / "logs" / recorded.name
+    path.parent.mkdir()
+    path.write_bytes(recorded.read_bytes())
+    return path
 
 
 def others(path: Path) -> list[Attachment | Metadata]:

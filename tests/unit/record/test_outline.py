@@ -42,6 +42,7 @@ def test_a_margin_that_leaves_nothing_is_not_drawn() -> None:
     assert margin_outline(FenceShape("z", True, [], (0.0, 0.0), 5.0), 5.0) == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outline", [BOX, L_SHAPE, L_SHAPE[::-1]])
 def test_the_triangles_cover_the_area_once(outline: list[tuple[float, float]]) -> None:
     found = triangles(outline)

@@ -134,6 +134,7 @@ def test_constants_stand_before_their_field_and_fit_its_type() -> None:
     assert not any("ENUM_END" in line for line in lines)
 
 
+@pytest.mark.slow
 @given(
     msgid=st.one_of(st.sampled_from(sorted(MESSAGES)), st.integers(0, 2**24 - 1)),
     payload=st.binary(max_size=255),

@@ -56,6 +56,7 @@ def test_waits_for_the_other_side_do_not_shrink_and_flights_do_not_grow() -> Non
     assert same == DEFAULT
 
 
+@pytest.mark.slow
 @SPEEDS
 def test_a_hold_is_commanded_again_after_a_real_second(speedup: float) -> None:
     """The acknowledgement and the heartbeat that shows it take real time to come."""

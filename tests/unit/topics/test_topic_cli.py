@@ -174,6 +174,7 @@ def test_broken_files_end_with_exit_4_or_what_is_whole_in_them(
     assert gcs("topic", "list", "--log", tmp_path).exit_code != ExitCode.BUG
 
 
+@pytest.mark.slow
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_any_damage_is_told_or_passed_over(

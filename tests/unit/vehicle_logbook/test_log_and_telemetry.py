@@ -97,6 +97,7 @@ def test_ardupilot(tmp_path: Path) -> None:
     assert min(logged[2] for logged, _ in compared) < -2.0, "it flew"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
 def test_the_bytes_do_not_depend_on_how_often_the_world_is_woken(
     personality: Personality,

@@ -80,6 +80,7 @@ def test_a_calibrating_px4_says_so_and_takes_no_arming_and_no_second_one() -> No
     assert told(bench, calibrate(1), 200 * MS) == ([Result.TEMPORARILY_REJECTED], [])
 
 
+@pytest.mark.slow
 def test_px4s_gyro_calibration_denies_another_and_begins_anew_while_the_vehicle_moves() -> None:
     """D2: 20 tries of a second each; D1: done once it lies still."""
     for shaken_s, last in ((30.0, "[cal] calibration failed: gyro"), (3.0, "done: gyro")):
@@ -97,6 +98,7 @@ def test_px4s_gyro_calibration_denies_another_and_begins_anew_while_the_vehicle_
         assert said.count("motion, retrying..") == pytest.approx(min(20.0, shaken_s), abs=1)
 
 
+@pytest.mark.slow
 def test_px4_cancels_a_gyro_calibration_but_none_that_waits_for_a_side() -> None:
     """D1, D5, D6: a cancel is all zero."""
     bench = on_the_ground("px4")

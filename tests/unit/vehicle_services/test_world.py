@@ -73,6 +73,7 @@ def fly(seed: int, nap_ns: int, speedup: Fraction = Fraction(1)) -> bytes:
     return sent
 
 
+@pytest.mark.slow
 def test_the_bytes_do_not_depend_on_how_many_steps_a_call_covers() -> None:
     reference = fly(1, 4 * MS)
     assert len(reference) > 50_000
@@ -80,12 +81,14 @@ def test_the_bytes_do_not_depend_on_how_many_steps_a_call_covers() -> None:
         assert fly(1, nap_ns) == reference
 
 
+@pytest.mark.slow
 def test_the_bytes_are_equal_for_equal_seeds_only() -> None:
     speedup = Fraction(7, 3)
     assert fly(1, 100 * MS, speedup) == fly(1, 37 * MS, speedup)
     assert fly(1, 100 * MS) != fly(2, 100 * MS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speedup", [Fraction(1), Fraction(50), Fraction(1, 3), Fraction(7, 3)])
 def test_simulated_time_is_exact_for_ever(speedup: Fraction) -> None:
     bench = Bench(speedup=speedup)

@@ -203,6 +203,7 @@ PIECES = st.one_of(
 MAGICLESS = st.binary(max_size=60).map(lambda b: b.replace(b"\xfd", b"").replace(b"\xfe", b""))
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(st.lists(PIECES, max_size=8).map(b"".join))
 def test_no_bytes_raise_and_none_are_lost(data: bytes) -> None:

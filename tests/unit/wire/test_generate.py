@@ -63,10 +63,12 @@ def _via_alias(tree: ast.Module, module: str) -> set[str]:
     }
 
 
+@pytest.mark.slow
 def test_the_program_uses_every_message_class() -> None:
     assert {cls.__name__ for cls in CLASSES.values()} - names_from("messages") == set()
 
 
+@pytest.mark.slow
 def test_the_program_uses_every_enum() -> None:
     assert {choice.class_name for choice in selection.ENUMS} - names_from("ids") == set()
 

@@ -246,6 +246,7 @@ up_m = [0, 40]
     assert any("fence: is kept by the gate and not sent" in log.text for log in script.of(Log))
 
 
+@pytest.mark.slow
 def test_two_thousand_items_are_verified_in_steps() -> None:
     """Between two steps there is time for positions and ticks; a step before its time is none."""
     way = [samples.waypoint(n, LAT + 1e-7 * n, LON, 10) for n in range(2, 2001)]
