@@ -183,9 +183,14 @@ def status(telemetry: Telemetry, lost_pct: float) -> StatusItem:
     )
 
 
-def stood_on(parameters: Mapping[str, float], fence: Sequence[FenceShape]) -> list[Effect]:
-    """What the vehicle's parameters and the fence were, as files; nothing of what is not known."""
-    kept = {"parameters.json": parameters, "fence.json": fence}
+def stood_on(
+    parameters: Mapping[str, float], fence: Sequence[FenceShape], of: str = ""
+) -> list[Effect]:
+    """What the vehicle's parameters and the fence were, as files; nothing of what is not known.
+
+    `of` is in their names, for every vehicle but the first.
+    """
+    kept = {f"parameters{of}.json": parameters, f"fence{of}.json": fence}
     return [Record(AttachmentItem.of_json(name, what)) for name, what in kept.items() if what]
 
 

@@ -107,6 +107,7 @@ class Vehicle:
     ) -> None:
         """`shown`: it is the one that the screens of operators show."""
         self._config = config
+        self._shown = shown
         self._times = times
         gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self._start_ns = now_ns
@@ -466,7 +467,9 @@ class Vehicle:
         is attached to the record."""
         return [
             *self._missions.leave(),
-            *recorded.stood_on(self._parameters, self.fence_shapes),
+            *recorded.stood_on(
+                self._parameters, self.fence_shapes, "" if self._shown else f"-{self.sysid}"
+            ),
         ]
 
     # --------------------------------------------------------------------------------- gate
