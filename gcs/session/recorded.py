@@ -151,15 +151,15 @@ def fault(given: Input, report: str, handled: bool, at_ns: int) -> Record:
     return Record(InputItem.of("Fault", kept))
 
 
-def vehicle(telemetry: Telemetry, told: AutopilotVersion) -> MetadataItem:
-    """What vehicle this was, and with what firmware."""
+def vehicle(telemetry: Telemetry, told: AutopilotVersion, of: str = "") -> MetadataItem:
+    """What vehicle this was, and with what firmware; `of` is in its name, as in `stood_on`."""
     values = (
         ("vehicle", telemetry.label),
         ("firmware", firmware(told.flight_sw_version)),
         ("firmware_hash", bytes(told.flight_custom_version).hex()),
         ("uid", f"{told.uid:016x}"),
     )
-    return MetadataItem("vehicle", values)
+    return MetadataItem(f"vehicle{of}", values)
 
 
 def firmware(flight_sw_version: int) -> str:

@@ -160,6 +160,11 @@ class Vehicle:
         return [] if self.telemetry is None else [self.telemetry.link]
 
     @property
+    def _of(self) -> str:
+        """In names in the record, of which the first vehicle's are plain."""
+        return "" if self._shown else f"-{self.sysid}"
+
+    @property
     def fence_shapes(self) -> list[FenceShape]:
         """The fence as the verifier stands on it; empty before it is placed."""
         return self._port.fence_shapes
@@ -256,7 +261,7 @@ class Vehicle:
         elif isinstance(message, m.Statustext):
             work += logged(self._words.text(heard.compid, message, now_ns))
         elif isinstance(message, m.AutopilotVersion):
-            work.append(Record(recorded.vehicle(telemetry, message)))
+            work.append(Record(recorded.vehicle(telemetry, message, self._of)))
         elif type(message) in EVENT_MESSAGES and heard.compid == telemetry.compid:
             work += self._events.heard(heard, now_ns)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
@@ -467,9 +472,7 @@ class Vehicle:
         is attached to the record."""
         return [
             *self._missions.leave(),
-            *recorded.stood_on(
-                self._parameters, self.fence_shapes, "" if self._shown else f"-{self.sysid}"
-            ),
+            *recorded.stood_on(self._parameters, self.fence_shapes, self._of),
         ]
 
     # --------------------------------------------------------------------------------- gate
