@@ -151,15 +151,15 @@ def fault(given: Input, report: str, handled: bool, at_ns: int) -> Record:
     return Record(InputItem.of("Fault", kept))
 
 
-def vehicle(telemetry: Telemetry, told: AutopilotVersion) -> MetadataItem:
-    """What vehicle this was, and with what firmware."""
+def vehicle(telemetry: Telemetry, told: AutopilotVersion, of: str = "") -> MetadataItem:
+    """What vehicle this was, and with what firmware; `of` is in its name, as in `stood_on`."""
     values = (
         ("vehicle", telemetry.label),
         ("firmware", firmware(told.flight_sw_version)),
         ("firmware_hash", bytes(told.flight_custom_version).hex()),
         ("uid", f"{told.uid:016x}"),
     )
-    return MetadataItem("vehicle", values)
+    return MetadataItem(f"vehicle{of}", values)
 
 
 def firmware(flight_sw_version: int) -> str:
@@ -183,9 +183,14 @@ def status(telemetry: Telemetry, lost_pct: float) -> StatusItem:
     )
 
 
-def stood_on(parameters: Mapping[str, float], fence: Sequence[FenceShape]) -> list[Effect]:
-    """What the vehicle's parameters and the fence were, as files; nothing of what is not known."""
-    kept = {"parameters.json": parameters, "fence.json": fence}
+def stood_on(
+    parameters: Mapping[str, float], fence: Sequence[FenceShape], of: str = ""
+) -> list[Effect]:
+    """What the vehicle's parameters and the fence were, as files; nothing of what is not known.
+
+    `of` is in their names, for every vehicle but the first.
+    """
+    kept = {f"parameters{of}.json": parameters, f"fence{of}.json": fence}
     return [Record(AttachmentItem.of_json(name, what)) for name, what in kept.items() if what]
 
 

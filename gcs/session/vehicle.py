@@ -107,6 +107,7 @@ class Vehicle:
     ) -> None:
         """`shown`: it is the one that the screens of operators show."""
         self._config = config
+        self._shown = shown
         self._times = times
         gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self._start_ns = now_ns
@@ -157,6 +158,11 @@ class Vehicle:
     def links(self) -> list[int]:
         """The link that it is answered on; none before it is heard."""
         return [] if self.telemetry is None else [self.telemetry.link]
+
+    @property
+    def _of(self) -> str:
+        """In names in the record, of which the first vehicle's are plain."""
+        return "" if self._shown else f"-{self.sysid}"
 
     @property
     def fence_shapes(self) -> list[FenceShape]:
@@ -255,7 +261,7 @@ class Vehicle:
         elif isinstance(message, m.Statustext):
             work += logged(self._words.text(heard.compid, message, now_ns))
         elif isinstance(message, m.AutopilotVersion):
-            work.append(Record(recorded.vehicle(telemetry, message)))
+            work.append(Record(recorded.vehicle(telemetry, message, self._of)))
         elif type(message) in EVENT_MESSAGES and heard.compid == telemetry.compid:
             work += self._events.heard(heard, now_ns)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
@@ -466,7 +472,7 @@ class Vehicle:
         is attached to the record."""
         return [
             *self._missions.leave(),
-            *recorded.stood_on(self._parameters, self.fence_shapes),
+            *recorded.stood_on(self._parameters, self.fence_shapes, self._of),
         ]
 
     # --------------------------------------------------------------------------------- gate

@@ -98,7 +98,7 @@ class Fleet(BridgedFlight):
     def _step(self, limit_ns: int) -> bool:
         session_ns, world_ns = self.session.deadline_ns, self.world.deadline_ns
         airs = (air.next_ns for air in (*self.ups, *self.downs))
-        next_ns = max(self.now_ns, min(session_ns, world_ns, *(t for t in airs if t is not None)))
+        next_ns = max(self.now_ns, min(session_ns, world_ns, *airs))
         if next_ns > limit_ns:
             self.now_ns = limit_ns
             return False

@@ -11,7 +11,7 @@ from gcs import ipc
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
-from gcs.report import DecisionItem
+from gcs.report import AttachmentItem, DecisionItem
 from tests.loopback.fleet import (
     ACCEPTED,
     ARM,
@@ -193,6 +193,8 @@ def test_at_the_end_both_are_held() -> None:
     assert flight.finish.sentence.startswith("vehicle 1 is STILL FLYING in")
     assert "; vehicle 2 is STILL FLYING in" in flight.finish.sentence
     assert flight.each(lambda n: flight.state_of(n) is State.HOLDING)()
+    kept = {item.name for item in flight.recorded(AttachmentItem)}
+    assert {"parameters.json", "fence.json", "parameters-2.json", "fence-2.json"} <= kept
 
 
 def too_close(flight: Fleet) -> list[bool]:
