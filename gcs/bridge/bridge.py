@@ -15,12 +15,22 @@ from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client, Exchange
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
-from gcs.bridge.effects import Answers, BridgeEffect, Joined, Lost, Notes, OfVehicle, ToLink
-from gcs.bridge.judge import Judged, of_plan
+from gcs.bridge.effects import (
+    Answers,
+    AsksVehicle,
+    BridgeEffect,
+    Joined,
+    Lost,
+    Notes,
+    OfVehicle,
+    ToLink,
+)
+from gcs.bridge.judge import Judged, asks_for_height, climbs, of_plan
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
+from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
@@ -208,9 +218,19 @@ class Bridge:
             self._by_link[link].sent.count(len(raws), now_ns)
         return shares
 
-    def parameter(self, message: ParamValue, autopilot: str, vehicle: int) -> list[BridgeEffect]:
+    def parameter(
+        self, message: ParamValue, autopilot: str, vehicle: int, now_ns: int
+    ) -> list[BridgeEffect]:
         """PARAM_VALUE of a vehicle's autopilot."""
-        return self._judges.of(vehicle).parameter(message, autopilot)
+        return self._judges.of(vehicle).parameter(message, autopilot, now_ns)
+
+    def held_back(
+        self, command: ipc.Command, autopilot: Autopilot, vehicle: Address
+    ) -> AsksVehicle | None:
+        """A climb of any operator cannot be judged until the vehicle has answered this."""
+        if not isinstance(command, ipc.Ask) or not self._judges.of(vehicle.sysid).height_awaited:
+            return None
+        return asks_for_height(self._own, vehicle) if climbs(command, autopilot) else None
 
     def told(self, number: int, event: ipc.Event, vehicle: int, now_ns: int) -> list[BridgeEffect]:
         """What the station tells a client as an operator, of what it asked of a vehicle."""

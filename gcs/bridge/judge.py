@@ -45,6 +45,9 @@ from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import FlightMode
+from gcs.protocol.autopilot import Autopilot, mode_named
+from gcs.protocol.effects import Address
 from gcs.protocol.parameters import BY_NAME
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
@@ -73,6 +76,7 @@ POINTED_BY_ANOTHER: Final = Refusal(
     Code.OTHER_OPERATOR, "another client is in control, and points the camera"
 )
 CLIMBS: Final = frozenset({"takeoff", "mission_start"})
+CLIMBING: Final = frozenset({FlightMode.TAKEOFF, FlightMode.MISSION})
 HEIGHT_WRITTEN: Final = Refusal(
     Code.BUSY, f"{TAKEOFF_HEIGHT} was written, and the vehicle has not told yet what it is now"
 )
@@ -205,9 +209,10 @@ class Judge:
         client, now_ns = given.client, given.now_ns
         match meaning:
             case Words(asks, note):
-                if self._height_of_takeoff_unknown(asks, seen):
+                if self.height_awaited and any(climbs(each, seen.autopilot) for each in asks):
                     unknown = _refuse(given, message, row, HEIGHT_WRITTEN)
-                    return Judged(True, [*unknown.effects, _asks_for_height(given.by)])
+                    asks_for_it = asks_for_height(given.by.source, given.by.addressed)
+                    return Judged(True, [*unknown.effects, asks_for_it])
                 told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
                 asked = client.dialogue.ask(given.by, message, asks, now_ns)
                 return Judged(False, [*told, *asked])
@@ -218,10 +223,10 @@ class Judge:
             case Reject(refusal):
                 return _refuse(given, message, row, refusal)
 
-    def _height_of_takeoff_unknown(self, asks: Sequence[ipc.Ask], seen: Seen) -> bool:
-        """A climb is asked for, and the least height of one was written just now."""
-        climbs = any(each.word in CLIMBS for each in asks)
-        return climbs and self._guard_of(seen.autopilot.name).awaits(TAKEOFF_HEIGHT)
+    @property
+    def height_awaited(self) -> bool:
+        """The least height of a climb was written just now: nobody's climb can be judged."""
+        return self._guard is not None and self._guard.awaits(TAKEOFF_HEIGHT)
 
     # ------------------------------------------------------------------------------ set-up
 
@@ -230,7 +235,7 @@ class Judge:
         seen = given.look()
         if seen is None or message is None:
             return _refuse(given, message, row, Refusal(Code.POLICY, row.why))
-        judged = self._guarded(message, given.by, seen)
+        judged = self._guarded(message, given.by, seen, given.now_ns)
         match judged:
             case Allowed(note):
                 notes = [Notes(Level.INFO, f"{given.client.name}: {note}")] if note else []
@@ -242,9 +247,9 @@ class Judge:
                 to_vehicle = [AsksVehicle(by.source, each) for each in ask_vehicle]
                 return Judged(True, [*refused.effects, *to_client, *to_vehicle])
 
-    def parameter(self, message: ParamValue, autopilot: str) -> list[BridgeEffect]:
+    def parameter(self, message: ParamValue, autopilot: str, now_ns: int) -> list[BridgeEffect]:
         """PARAM_VALUE of the vehicle's autopilot: what has changed, for the log."""
-        changed = self._guard_of(autopilot).heard(message)
+        changed = self._guard_of(autopilot).heard(message, now_ns)
         return [] if changed is None else [Notes(changed.level, changed.text)]
 
     def _guard_of(self, autopilot: str) -> Guard:
@@ -252,7 +257,7 @@ class Judge:
             self._guard = Guard(self._rules, autopilot)
         return self._guard
 
-    def _guarded(self, message: Message, by: From, seen: Seen) -> Judgement:
+    def _guarded(self, message: Message, by: From, seen: Seen, now_ns: int) -> Judgement:
         at = GuardSeen(
             by.source,
             by.addressed,
@@ -260,6 +265,7 @@ class Judge:
             seen.on_ground,
             seen.max_takeoff_up_m,
             seen.in_control,
+            now_ns,
         )
         return self._guard_of(seen.autopilot.name).judge(message, at)
 
@@ -269,7 +275,7 @@ class Judge:
         """What a client says about missions, fences and rally points."""
         seen, client = given.look(), given.client
         if seen is not None and isinstance(message, MissionCount | MissionClearAll):
-            judged = self._guarded(message, given.by, seen)
+            judged = self._guarded(message, given.by, seen, given.now_ns)
             if isinstance(judged, guard_verdict.Refused):
                 return self._configuration(given, message, row)
         busy = seen is not None and seen.plan_transfer
@@ -285,11 +291,16 @@ class Judge:
         return Judged(refused, of_plan(client, effects, given.frame))
 
 
-def _asks_for_height(by: From) -> AsksVehicle:
+def climbs(ask: ipc.Ask, autopilot: Autopilot) -> bool:
+    """Whether it makes the vehicle take off, or may do so."""
+    mode = mode_named(autopilot, ask.mode) if ask.word == "mode" else None
+    return ask.word in CLIMBS or (mode is not None and mode.meaning in CLIMBING)
+
+
+def asks_for_height(source: Address, vehicle: Address) -> AsksVehicle:
     """The answer is read by the gate as well."""
-    vehicle = by.addressed
     return AsksVehicle(
-        by.source, ParamRequestRead(BY_NAME, vehicle.sysid, vehicle.compid, TAKEOFF_HEIGHT)
+        source, ParamRequestRead(BY_NAME, vehicle.sysid, vehicle.compid, TAKEOFF_HEIGHT)
     )
 
 

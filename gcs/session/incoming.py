@@ -174,7 +174,7 @@ class Incoming:
             return [condition(Condition.OTHER_STATION, True, text)]
         work = self._vehicles.frame(link, frame, now_ns)
         if frame.msgid == MsgId.PARAM_VALUE:
-            work += self._bridge.parameter(frame)
+            work += self._bridge.parameter(frame, now_ns)
         if frame.sysid == self._vehicles.first.sysid:
             work += self._operators.heard(frame, now_ns)
         return work

@@ -250,7 +250,8 @@ class Session:
             case OperatorJoined():
                 return self._welcome(given, now_ns)
             case OperatorLine(client, command):
-                return [line(self._operators, self._vehicles, client, command, now_ns)]
+                vehicles, bridge = self._vehicles, self._bridge.bridge
+                return [line(self._operators, vehicles, bridge, client, command, now_ns)]
             case OperatorNoise(client, text):
                 return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
             case OperatorGone(client, reason):
