@@ -289,6 +289,7 @@ class Dialogue:
         result = pending.vehicle_result if refused else result_of(code)
         assert result is not None
         text = f"{pending.name}: {event.ended} {event.code}: {event.sentence}"
+        self._texts.is_news(gates_line(event), now_ns)  # it says the same
         return [
             *self._answer(pending, result, code, now_ns),
             *self.text(pending.asked_by, Level.WARNING, text, now_ns),
@@ -320,6 +321,11 @@ class Dialogue:
             Answers(to.link, to.addressed, message)
             for message in texts(level, text, self._next_text)
         ]
+
+
+def gates_line(event: ipc.EndingEvent) -> str:
+    """What all clients are told of the ending of somebody's request (`Turn.end`)."""
+    return f"gate: {event.word}: {event.ended}: {event.sentence}"
 
 
 def _command(message: Message | None) -> int:

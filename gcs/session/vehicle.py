@@ -283,6 +283,7 @@ class Vehicle:
         answer = arm_authorizer.answer(asked, asker, self._own, [each for each in troubles if each])
         if answer is None:
             return []
+        self._commands.deny_arming("" if answer.granted else answer.text)
         level = Level.INFO if answer.granted else Level.WARNING
         return [Send(answer.ack), Log(level, teller.NODE, answer.text)]
 
