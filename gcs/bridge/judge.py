@@ -38,6 +38,7 @@ from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Settled, S
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans import effects as plan_effects
+from gcs.bridge.plans.collecting import acknowledgement as mission_acknowledgement
 from gcs.bridge.plans.downloads import Downloads
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.server import PLAN_MESSAGES
@@ -51,7 +52,7 @@ from gcs.protocol.effects import Address
 from gcs.protocol.parameters import BY_NAME
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
-from gcs.wire.ids import MissionType
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
@@ -285,7 +286,12 @@ class Judge:
         )
         if held:
             text = f"{row.name}: not now: {held}"
-            return Judged(True, client.dialogue.text(given.by, Level.INFO, text, given.now_ns))
+            told = client.dialogue.text(given.by, Level.INFO, text, given.now_ns)
+            if self._downloads.answers(reader, given.now_ns):
+                kind = getattr(message, "mission_type", MissionType.MISSION)
+                no = mission_acknowledgement(given.by.source, MissionResult.ERROR, kind)
+                told.append(Answers(given.by.link, given.by.addressed, no))
+            return Judged(True, told)
         effects = client.plans.handle(message, given.by, given.now_ns)
         refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
         return Judged(refused, of_plan(client, effects, given.frame))

@@ -156,11 +156,36 @@ def test_who_takes_over_need_not_wait_for_the_end_of_a_stream(personality: Perso
     for _ in range(20):
         velocity(client)
         flight.run(0.1)
-    assert flight.state is State.STREAMING
+    assert flight.is_in(State.STREAMING)
     assert other.ask(32100, 1.0, 1.0) == ACCEPTED
     flight.run(0.1)
-    assert flight.state is State.HOVERING
+    assert flight.is_in(State.HOVERING)
     assert "The stream of operator 1000 is over" in flight.told()
     velocity(client)
     flight.run(0.1)
-    assert flight.state is State.HOVERING, "its samples are refused"
+    assert flight.is_in(State.HOVERING), "its samples are refused"
+
+
+def test_who_waits_for_the_reading_of_a_plan_is_told_so_by_the_protocol(
+    personality: Personality,
+) -> None:
+    flight, client = joined(personality)
+    other = flight.join(246)
+    flight.run(3.0)
+    for _ in range(4):
+        client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+        other.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+        flight.run(0.5)
+    acks = other.messages("MISSION_ACK")
+    assert [(ack.type, ack.mission_type) for ack in acks] == [(1, 0)], "MAV_MISSION_ERROR"
+    assert "another client reads a plan" in other.texts()
+    assert client.messages("MISSION_ACK") == []
+
+
+def test_a_refused_plan_is_told_in_words_once_in_some_seconds(personality: Personality) -> None:
+    flight, client = joined(personality)
+    for _ in range(50):
+        client.send(dialect.MAVLink_mission_count_message(*VEHICLE, 3000, 0))
+        flight.run(0.02)
+    assert len(client.messages("MISSION_ACK")) == 50
+    assert client.texts().count("at most 2000") == 1
