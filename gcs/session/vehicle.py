@@ -144,6 +144,11 @@ class Vehicle:
         return self._port.gate
 
     @property
+    def bad_home(self) -> Refusal | None:
+        """Why its home is outside the fence, where its start was looked at."""
+        return self._port.bad_home
+
+    @property
     def bad_start(self) -> Refusal | None:
         """Why the place where it stands at the start is outside the fence."""
         return self._port.bad_start
