@@ -170,7 +170,8 @@ class Incoming:
         sysid, compid = self._own
         if frame.compid == compid and frame.sysid == sysid:
             self.other_station_ns = now_ns
-            text = f"another station on link {link} calls itself {sysid}/{compid}"
+            who = f"another station on link {link} calls itself {sysid}/{compid}"
+            text = f"{who}, as this one does: start one of the two with another --sysid"
             return [condition(Condition.OTHER_STATION, True, text)]
         work = self._vehicles.frame(link, frame, now_ns)
         if frame.msgid == MsgId.PARAM_VALUE:

@@ -8,10 +8,11 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs import ipc
+from gcs.gate.condition import Condition
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import STATION, VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.test_bridge_streams import VELOCITY_ONLY, flying
 
@@ -189,3 +190,28 @@ def test_a_refused_plan_is_told_in_words_once_in_some_seconds(personality: Perso
         flight.run(0.02)
     assert len(client.messages("MISSION_ACK")) == 50
     assert client.texts().count("at most 2000") == 1
+
+
+def test_a_second_bridge_of_the_same_address_is_told_on_both_sides(
+    personality: Personality,
+) -> None:
+    """Two in a row, neither with --sysid: nothing that the outer one sends would arrive."""
+    flight = BridgedFlight(personality)
+    flight.connected()
+    outer = flight.join(*STATION)
+    for _ in range(6):
+        outer.beat()
+        flight.run(1.0)
+    (line,) = [line for line in flight.told() if "as this station does" in line]
+    assert "start one of the two with another --sysid" in line
+    heard = [one for one in outer.messages("STATUSTEXT") if one.get_srcComponent() == STATION[1]]
+    assert 3 <= len(heard) / 2 <= 4, "every two seconds, in two pieces"
+    assert all(one.get_srcSystem() == STATION[0] for one in heard)
+
+    inner = BridgedFlight(personality)
+    inner.connected()
+    for one in heard[:2]:
+        inner.feed(inputs.Datagram(0, bytes(one.get_msgbuf())))
+    inner.run(0.2)
+    assert Condition.OTHER_STATION in inner.conditions
+    assert any("another --sysid" in line for line in inner.told())
