@@ -41,7 +41,7 @@ from gcs.wire.messages import ParamValue
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
 NAMESAKE_TOLD_NS: Final = 2_000_000_000
-"""Between two texts to another bridge of our address, whose people are warned as long as they come."""
+"""Between two texts to another bridge of our address."""
 
 
 class Bridge:
