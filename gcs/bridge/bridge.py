@@ -11,16 +11,27 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.addressing import Given, Judges, LookAt
+from gcs.bridge.answers import texts
 from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client, Exchange
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
-from gcs.bridge.effects import Answers, BridgeEffect, Joined, Lost, Notes, OfVehicle, ToLink
-from gcs.bridge.judge import Judged, of_plan
+from gcs.bridge.effects import (
+    Answers,
+    AsksVehicle,
+    BridgeEffect,
+    Joined,
+    Lost,
+    Notes,
+    OfVehicle,
+    ToLink,
+)
+from gcs.bridge.judge import Judged, asks_for_height, climbs, of_plan
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
+from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
@@ -29,6 +40,8 @@ from gcs.wire.messages import ParamValue
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
+NAMESAKE_TOLD_NS: Final = 2_000_000_000
+"""Between two texts to another bridge of our address."""
 
 
 class Bridge:
@@ -57,6 +70,8 @@ class Bridge:
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
         self._told_once: set[tuple[int, str]] = set()
+        self._namesakes: dict[int, int] = {}
+        """When a link was told that its sender's address is ours."""
         self._in_control = 0
 
     # --------------------------------------------------------------------- come and go
@@ -71,6 +86,7 @@ class Bridge:
         """It has gone, and its link's number is free."""
         self._routes.close(link)
         self._told_once = {told for told in self._told_once if told[0] != link}
+        self._namesakes.pop(link, None)
         client = self._by_link.pop(link, None)
         if client is None:
             return []
@@ -127,7 +143,7 @@ class Bridge:
         reason = self._why_not_from(frame, vehicles)
         if reason:
             client.refused += 1
-            return Judged(True, self._once(client, reason))
+            return Judged(True, [*self._once(client, reason), *self._namesake(link, frame, now_ns)])
         client.heard_ns = now_ns
         effects: list[BridgeEffect] = [] if client.joined else self._meet(client, frame)
         self._routes.heard(link, frame.sysid, frame.compid)
@@ -151,10 +167,26 @@ class Bridge:
         A frame of a vehicle on a client's link is a loop of links, or somebody who plays it.
         """
         if (frame.sysid, frame.compid) == (self._own.sysid, self._own.compid):
-            return f"it calls itself {frame.sysid}/{frame.compid}, as this station does"
+            return (
+                f"it calls itself {frame.sysid}/{frame.compid}, as this station does; "
+                "start one of the two with another --sysid"
+            )
         if any((frame.sysid, frame.compid) == (each.sysid, each.compid) for each in vehicles):
             return f"it calls itself {frame.sysid}/{frame.compid}, as the vehicle does"
         return ""
+
+    def _namesake(self, link: int, frame: Frame, now_ns: int) -> list[BridgeEffect]:
+        """Another bridge before this one, with the same address, is answered in our own name: it
+        finds a second station of its address on its vehicle's link, and tells its people."""
+        own = self._own
+        if (frame.sysid, frame.compid) != (own.sysid, own.compid) or frame.msgid != MsgId.HEARTBEAT:
+            return []
+        last_ns = self._namesakes.get(link)
+        if last_ns is not None and now_ns - last_ns < NAMESAKE_TOLD_NS:
+            return []
+        self._namesakes[link] = now_ns
+        text = f"refused: {own.sysid}/{own.compid} is this station's address, too: use --sysid"
+        return [Answers(link, own, message) for message in texts(Level.ERROR, text, 1)]
 
     def _elsewhere(self, client: Client, asked_by: From, frame: Frame, sysid: int) -> Judged:
         """A frame for a system that is no vehicle of ours: another client, or nobody."""
@@ -208,9 +240,19 @@ class Bridge:
             self._by_link[link].sent.count(len(raws), now_ns)
         return shares
 
-    def parameter(self, message: ParamValue, autopilot: str, vehicle: int) -> list[BridgeEffect]:
+    def parameter(
+        self, message: ParamValue, autopilot: str, vehicle: int, now_ns: int
+    ) -> list[BridgeEffect]:
         """PARAM_VALUE of a vehicle's autopilot."""
-        return self._judges.of(vehicle).parameter(message, autopilot)
+        return self._judges.of(vehicle).parameter(message, autopilot, now_ns)
+
+    def held_back(
+        self, command: ipc.Command, autopilot: Autopilot, vehicle: Address
+    ) -> AsksVehicle | None:
+        """A climb of any operator cannot be judged until the vehicle has answered this."""
+        if not isinstance(command, ipc.Ask) or not self._judges.of(vehicle.sysid).height_awaited:
+            return None
+        return asks_for_height(self._own, vehicle) if climbs(command, autopilot) else None
 
     def told(self, number: int, event: ipc.Event, vehicle: int, now_ns: int) -> list[BridgeEffect]:
         """What the station tells a client as an operator, of what it asked of a vehicle."""

@@ -18,6 +18,7 @@ import msgspec
 from gcs import ipc
 from gcs.bridge.answers import acknowledgement, item_acknowledgement, result_of, texts
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
+from gcs.bridge.lately import Lately
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
@@ -34,10 +35,6 @@ from memory, and neither is what has ended otherwise: the vehicle may be flown o
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
 GUIDED_ITEM: Final = -1
 """In the place of a command: a mission item to be flown to at once, which has a MISSION_ACK."""
-SAME_TEXT_NS: Final = 5_000_000_000
-"""The same text is sent again to a client only after so long."""
-MOST_TEXTS: Final = 50
-"""In `SAME_TEXT_NS`; a client that is refused more often than that reads the acknowledgements."""
 DECIDED_BY_GATE: Final = frozenset({"goto", "stream_begin", "stream_end"})
 """Words that no command to the vehicle stands for: they are answered with the verdict."""
 SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
@@ -80,23 +77,6 @@ class _Told:
 
 
 @dataclass(slots=True)
-class _Lately:
-    """What was said in the last seconds, and is not said again so soon."""
-
-    _until_ns: dict[str, int] = field(default_factory=dict)
-
-    def is_news(self, text: str, now_ns: int) -> bool:
-        """Not said lately, and not the one too many."""
-        if self._until_ns.get(text, now_ns) > now_ns:
-            return False
-        self._until_ns = {said: at for said, at in self._until_ns.items() if at > now_ns}
-        if len(self._until_ns) >= MOST_TEXTS:
-            return False
-        self._until_ns[text] = now_ns + SAME_TEXT_NS
-        return True
-
-
-@dataclass(slots=True)
 class Dialogue:
     """One client's requests of one vehicle.
 
@@ -115,8 +95,8 @@ class Dialogue:
     """The message that was asked for last."""
     _told: _Told | None = None
     """Its answer, if it was accepted."""
-    _texts: _Lately = field(default_factory=_Lately)
-    _refusals: _Lately = field(default_factory=_Lately)
+    _texts: Lately = field(default_factory=Lately)
+    _refusals: Lately = field(default_factory=Lately)
     """Of messages that are not acknowledged."""
     _streams_from: From | None = None
     """Who of this client sent the last sample of a stream."""
@@ -289,6 +269,7 @@ class Dialogue:
         result = pending.vehicle_result if refused else result_of(code)
         assert result is not None
         text = f"{pending.name}: {event.ended} {event.code}: {event.sentence}"
+        self._texts.is_news(gates_line(event), now_ns)  # it says the same
         return [
             *self._answer(pending, result, code, now_ns),
             *self.text(pending.asked_by, Level.WARNING, text, now_ns),
@@ -320,6 +301,11 @@ class Dialogue:
             Answers(to.link, to.addressed, message)
             for message in texts(level, text, self._next_text)
         ]
+
+
+def gates_line(event: ipc.EndingEvent) -> str:
+    """What all clients are told of the ending of somebody's request (`Turn.end`)."""
+    return f"gate: {event.word}: {event.ended}: {event.sentence}"
 
 
 def _command(message: Message | None) -> int:

@@ -38,6 +38,7 @@ from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Settled, S
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans import effects as plan_effects
+from gcs.bridge.plans.collecting import acknowledgement as mission_acknowledgement
 from gcs.bridge.plans.downloads import Downloads
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.server import PLAN_MESSAGES
@@ -45,10 +46,13 @@ from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import FlightMode
+from gcs.protocol.autopilot import Autopilot, mode_named
+from gcs.protocol.effects import Address
 from gcs.protocol.parameters import BY_NAME
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
-from gcs.wire.ids import MissionType
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
@@ -73,6 +77,7 @@ POINTED_BY_ANOTHER: Final = Refusal(
     Code.OTHER_OPERATOR, "another client is in control, and points the camera"
 )
 CLIMBS: Final = frozenset({"takeoff", "mission_start"})
+CLIMBING: Final = frozenset({FlightMode.TAKEOFF, FlightMode.MISSION})
 HEIGHT_WRITTEN: Final = Refusal(
     Code.BUSY, f"{TAKEOFF_HEIGHT} was written, and the vehicle has not told yet what it is now"
 )
@@ -205,9 +210,10 @@ class Judge:
         client, now_ns = given.client, given.now_ns
         match meaning:
             case Words(asks, note):
-                if self._height_of_takeoff_unknown(asks, seen):
+                if self.height_awaited and any(climbs(each, seen.autopilot) for each in asks):
                     unknown = _refuse(given, message, row, HEIGHT_WRITTEN)
-                    return Judged(True, [*unknown.effects, _asks_for_height(given.by)])
+                    asks_for_it = asks_for_height(given.by.source, given.by.addressed)
+                    return Judged(True, [*unknown.effects, asks_for_it])
                 told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
                 asked = client.dialogue.ask(given.by, message, asks, now_ns)
                 return Judged(False, [*told, *asked])
@@ -218,10 +224,10 @@ class Judge:
             case Reject(refusal):
                 return _refuse(given, message, row, refusal)
 
-    def _height_of_takeoff_unknown(self, asks: Sequence[ipc.Ask], seen: Seen) -> bool:
-        """A climb is asked for, and the least height of one was written just now."""
-        climbs = any(each.word in CLIMBS for each in asks)
-        return climbs and self._guard_of(seen.autopilot.name).awaits(TAKEOFF_HEIGHT)
+    @property
+    def height_awaited(self) -> bool:
+        """The least height of a climb was written just now: nobody's climb can be judged."""
+        return self._guard is not None and self._guard.awaits(TAKEOFF_HEIGHT)
 
     # ------------------------------------------------------------------------------ set-up
 
@@ -230,7 +236,7 @@ class Judge:
         seen = given.look()
         if seen is None or message is None:
             return _refuse(given, message, row, Refusal(Code.POLICY, row.why))
-        judged = self._guarded(message, given.by, seen)
+        judged = self._guarded(message, given.by, seen, given.now_ns)
         match judged:
             case Allowed(note):
                 notes = [Notes(Level.INFO, f"{given.client.name}: {note}")] if note else []
@@ -242,9 +248,9 @@ class Judge:
                 to_vehicle = [AsksVehicle(by.source, each) for each in ask_vehicle]
                 return Judged(True, [*refused.effects, *to_client, *to_vehicle])
 
-    def parameter(self, message: ParamValue, autopilot: str) -> list[BridgeEffect]:
+    def parameter(self, message: ParamValue, autopilot: str, now_ns: int) -> list[BridgeEffect]:
         """PARAM_VALUE of the vehicle's autopilot: what has changed, for the log."""
-        changed = self._guard_of(autopilot).heard(message)
+        changed = self._guard_of(autopilot).heard(message, now_ns)
         return [] if changed is None else [Notes(changed.level, changed.text)]
 
     def _guard_of(self, autopilot: str) -> Guard:
@@ -252,7 +258,7 @@ class Judge:
             self._guard = Guard(self._rules, autopilot)
         return self._guard
 
-    def _guarded(self, message: Message, by: From, seen: Seen) -> Judgement:
+    def _guarded(self, message: Message, by: From, seen: Seen, now_ns: int) -> Judgement:
         at = GuardSeen(
             by.source,
             by.addressed,
@@ -260,6 +266,7 @@ class Judge:
             seen.on_ground,
             seen.max_takeoff_up_m,
             seen.in_control,
+            now_ns,
         )
         return self._guard_of(seen.autopilot.name).judge(message, at)
 
@@ -269,7 +276,7 @@ class Judge:
         """What a client says about missions, fences and rally points."""
         seen, client = given.look(), given.client
         if seen is not None and isinstance(message, MissionCount | MissionClearAll):
-            judged = self._guarded(message, given.by, seen)
+            judged = self._guarded(message, given.by, seen, given.now_ns)
             if isinstance(judged, guard_verdict.Refused):
                 return self._configuration(given, message, row)
         busy = seen is not None and seen.plan_transfer
@@ -279,17 +286,27 @@ class Judge:
         )
         if held:
             text = f"{row.name}: not now: {held}"
-            return Judged(True, client.dialogue.text(given.by, Level.INFO, text, given.now_ns))
+            told = client.dialogue.text(given.by, Level.INFO, text, given.now_ns)
+            if self._downloads.answers(reader, given.now_ns):
+                kind = getattr(message, "mission_type", MissionType.MISSION)
+                no = mission_acknowledgement(given.by.source, MissionResult.ERROR, kind)
+                told.append(Answers(given.by.link, given.by.addressed, no))
+            return Judged(True, told)
         effects = client.plans.handle(message, given.by, given.now_ns)
         refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
         return Judged(refused, of_plan(client, effects, given.frame))
 
 
-def _asks_for_height(by: From) -> AsksVehicle:
+def climbs(ask: ipc.Ask, autopilot: Autopilot) -> bool:
+    """Whether it makes the vehicle take off, or may do so."""
+    mode = mode_named(autopilot, ask.mode) if ask.word == "mode" else None
+    return ask.word in CLIMBS or (mode is not None and mode.meaning in CLIMBING)
+
+
+def asks_for_height(source: Address, vehicle: Address) -> AsksVehicle:
     """The answer is read by the gate as well."""
-    vehicle = by.addressed
     return AsksVehicle(
-        by.source, ParamRequestRead(BY_NAME, vehicle.sysid, vehicle.compid, TAKEOFF_HEIGHT)
+        source, ParamRequestRead(BY_NAME, vehicle.sysid, vehicle.compid, TAKEOFF_HEIGHT)
     )
 
 

@@ -61,7 +61,7 @@ def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> N
     except KeyError as error:
         guarded = parameter_explanation(name)
         if guarded is None:
-            hint = "a parameter of that name is not guarded: [bridge] parameters lets it be written"
+            hint = "if it is a parameter: no table here knows it, so a client may not write it"
             raise ExitError(ExitCode.USAGE, str(error.args[0]), hint) from None
         told = guarded
     click.echo(told)

@@ -70,16 +70,23 @@ def list_topics(
     to_s: float | None,
     as_json: bool,
 ) -> None:
-    """The topics, their rates and types; on a link, after 3 s of listening (-t)."""
+    """The topics, their rates and types; on a link, after 3 s of listening (-t).
+
+    A frame that a bridge passed on is counted once.
+    """
     import msgspec
 
+    from gcs.topics.crossings import Crossings
     from gcs.topics.rates import LIST_SPAN_S, Intervals
 
     wanted = selectors(topics)
     found: dict[str, tuple[Topic, Intervals]] = {}
     where = Where(log_file, last, links, from_s, to_s)
     with ended_by_hand():
+        crossings = Crossings(each_topic=True)
         for heard, _ in selected(where.heard(seconds or LISTEN_S), wanted):
+            if not crossings.counts(heard):
+                continue
             one = found.setdefault(heard.topic.name, (heard.topic, Intervals.over(None)))
             one[1].add(heard.time_ns)
     rows = [(each, times, times.rate(LIST_SPAN_S)) for _, (each, times) in sorted(found.items())]
@@ -291,6 +298,7 @@ def info(
     """
     import msgspec
 
+    from gcs.topics.crossings import Crossings
     from gcs.topics.describe import message_info, topic_info
     from gcs.topics.rates import LIST_SPAN_S, Intervals
 
@@ -301,8 +309,11 @@ def info(
     looked = where.recorded or bool(links) or known is None
     if looked:
         with ended_by_hand():
+            crossings = Crossings(each_topic=True)
             for heard, _ in selected(where.heard(seconds or LISTEN_S), [selector]):
                 known = known or topic_info(heard.topic)
+                if not crossings.counts(heard):
+                    continue
                 senders.setdefault(heard.topic.name, Intervals.over(None)).add(heard.time_ns)
     if known is None:
         raise nothing_heard(where, [selector])

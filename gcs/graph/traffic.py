@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 from gcs.graph.model import Edge, Flow, Graph, Kind, Node
@@ -14,6 +15,8 @@ from gcs.wire.dialect import MESSAGES_BY_NAME
 HUB = "hub"
 RECORDER = "recorder"
 INPUTS = "/session/input"
+FIRST_NUMBER = 1000
+"""Operators from here up are MAVLink clients of a bridge (`gcs.bridge.bridge.FIRST_NUMBER`)."""
 LEAST_SPAN_NS = 2_000_000_000
 """What is sent for less time has no rate."""
 PAUSE_NS = 2_500_000_000
@@ -196,9 +199,17 @@ class Traffic:
         self._count(f"operator {client}", HUB, word, time_ns, stream=False)
 
     def _decision(self, heard: Heard) -> None:
-        """The record does not say to whom: to who asked that word last."""
+        """A verdict or an ending goes to who asked.  What MAVLink clients ask for is in no
+        operator's line; the words that it became are in the verdicts."""
         fields = _fields(heard)
-        client = self._asked_last.get(str(fields.get("word")))
+        word = str(fields.get("word"))
+        client = self._asked_last.get(word)
+        who = re.fullmatch(r"operator (\d{1,9})", str(fields.get("source")))
+        if who is not None and int(who[1]) >= FIRST_NUMBER:
+            client = int(who[1])
+            self._operators.setdefault(client, _Operator()).name = "MAVLink client"
+            if fields.get("phase") == "verdict":
+                self._count(f"operator {client}", HUB, word, heard.time_ns, stream=False)
         if client is None:
             return
         text = f"{fields.get('outcome', '')} {fields.get('code', '')}".strip()

@@ -102,7 +102,7 @@ class BridgePort:
             stream=self._stream,
         )
 
-    def parameter(self, frame: Frame) -> list[BridgeEffect]:
+    def parameter(self, frame: Frame, now_ns: int) -> list[BridgeEffect]:
         """PARAM_VALUE on a vehicle's link: what it says of what clients have written."""
         vehicle = self._vehicles.of_sysid(frame.sysid)
         telemetry = None if vehicle is None else vehicle.telemetry
@@ -111,7 +111,8 @@ class BridgePort:
         message = decode(frame) if self._shown else None
         if not isinstance(message, ParamValue):
             return []
-        return self.bridge.parameter(message, telemetry.autopilot.name, telemetry.sysid)
+        autopilot = telemetry.autopilot.name
+        return self.bridge.parameter(message, autopilot, telemetry.sysid, now_ns)
 
     def before_gate(self, given: Input, sysid: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle's own answer to a command is what the client is answered, too; and what one
@@ -183,7 +184,7 @@ class BridgePort:
             case Lost(client, reason):
                 return self._operators.lost(client, reason)
             case Says(client, command):
-                return [line(self._operators, self._vehicles, client, command, now_ns)]
+                return [line(self._operators, self._vehicles, self.bridge, client, command, now_ns)]
             case Refuses(client, ask, refusal):
                 return self._operators.refuse(client, ask, refusal)
             case AsksPlan():

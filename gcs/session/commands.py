@@ -82,6 +82,7 @@ class Commands:
         self._next_token = UNANSWERED_TOKEN + 1
         self._photo_seq = 0
         self._repeat: _Repeat | None = None
+        self._arming_denied = ""
 
     @property
     def deadline_ns(self) -> int | None:
@@ -111,6 +112,8 @@ class Commands:
         self._next_token += 1
         self._sent[token] = wanted, command
         work = self._end_repeating()
+        if wanted.kind is CommandKind.ARM:
+            self._arming_denied = ""
         if wanted.kind is CommandKind.ARM and telemetry.prearm_ok is False:
             self._repeat_later(token, Result.TEMPORARILY_REJECTED, now_ns)
             text = "the vehicle's pre-arm checks are not through: asking a little later"
@@ -136,6 +139,11 @@ class Commands:
                 self._repeat = None
             work += self._work(self._client.handle(Withdraw(token), now_ns), now_ns)
         return work
+
+    def deny_arming(self, text: str) -> None:
+        """The vehicle has asked the station whether it may arm, and may not, because of `text`:
+        its answer to the command that is under way ends that."""
+        self._arming_denied = text
 
     def heard(self, heard: Heard, now_ns: int) -> list[Work]:
         return self._work(self._client.handle(heard, now_ns), now_ns)
@@ -204,6 +212,8 @@ class Commands:
             return []
         wanted, _ = self._sent[token]
         in_time = now_ns + self._repeat_after_ns < wanted.deadline_ns
+        if wanted.kind is CommandKind.ARM and self._arming_denied and result != Result.ACCEPTED:
+            in_time, text = False, self._arming_denied
         if wanted.kind in REPEATED and result is not None and result in NOT_YET and in_time:
             work = self._end_repeating()
             self._repeat_later(token, result, now_ns)

@@ -45,13 +45,19 @@ class Ending:
         """The end of the session, where the start is refused or the vehicle may be left."""
         if self.finished:
             return []
+        policy = self._setup.config.policy_path or self._setup.policy.name
+        bad_home = self._vehicles.first.bad_home
+        if bad_home is not None and len(self._vehicles) == 1:
+            text = f"{policy}: fence: home is outside: {bad_home.sentence}"
+            hint = "the vehicle returns and lands there: a fence round it, or another --policy"
+            trouble = Emit(ipc.Trouble(text, hint, ExitCode.BAD_FILE))
+            return [trouble, *self.finish(ExitCode.BAD_FILE, text)]
         refusal = self._vehicles.first.bad_start
         if len(self._vehicles) > 1:
             outside = self._outside()
             if outside:
                 return outside
         elif refusal is not None:
-            policy = self._setup.config.policy_path or self._setup.policy.name
             text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
             hint = "fly from inside the fence, or give a policy for this place with --policy"
             trouble = Emit(ipc.Trouble(text, hint, ExitCode.REFUSED_BY_GATE))

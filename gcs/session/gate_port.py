@@ -37,6 +37,7 @@ class GatePort:
         self._shown = shown
         self.gate = Gate(self.policy, "", now_ns)
         self.bad_start: Refusal | None = None
+        self.bad_home: Refusal | None = None
         """Why the vehicle's place at the start is outside the fence, once that is known."""
         self._verifier: Verifier | None = None
         self._start_checked = False
@@ -151,6 +152,8 @@ class GatePort:
         if self._verifier is None or not self._verifier.zones:
             return
         self._start_checked = True
+        home_ned = self._verifier.home_ned
+        self.bad_home = None if home_ned is None else check_start(self._verifier, home_ned)
         self.bad_start = check_start(self._verifier, at.pos_ned)
 
 

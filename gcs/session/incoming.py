@@ -170,11 +170,12 @@ class Incoming:
         sysid, compid = self._own
         if frame.compid == compid and frame.sysid == sysid:
             self.other_station_ns = now_ns
-            text = f"another station on link {link} calls itself {sysid}/{compid}"
+            who = f"another station on link {link} calls itself {sysid}/{compid}"
+            text = f"{who}, as this one does: start one of the two with another --sysid"
             return [condition(Condition.OTHER_STATION, True, text)]
         work = self._vehicles.frame(link, frame, now_ns)
         if frame.msgid == MsgId.PARAM_VALUE:
-            work += self._bridge.parameter(frame)
+            work += self._bridge.parameter(frame, now_ns)
         if frame.sysid == self._vehicles.first.sysid:
             work += self._operators.heard(frame, now_ns)
         return work

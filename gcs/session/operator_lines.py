@@ -8,26 +8,59 @@ from typing import Final
 import msgspec
 
 from gcs import ipc
+from gcs.bridge.bridge import Bridge
+from gcs.bridge.judge import HEIGHT_WRITTEN
+from gcs.protocol.effects import Address
 from gcs.session.gate_port import NOT_FLYING
 from gcs.session.operators import Operators
 from gcs.session.vehicles import Vehicles
-from gcs.session.work import STATION, For
+from gcs.session.work import STATION, For, Work
 
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl"})
 """Where an operator names no vehicle, these are for every one that flies."""
 
 
 def line(
-    operators: Operators, vehicles: Vehicles, client: int, command: ipc.Command, now_ns: int
+    operators: Operators,
+    vehicles: Vehicles,
+    bridge: Bridge,
+    client: int,
+    command: ipc.Command,
+    now_ns: int,
 ) -> For:
-    """One command of the operator `client`; what is about no vehicle is the station's."""
+    """One command of the operator `client`; what is about no vehicle is the station's.
+
+    A climb is held back for a moment after a MAVLink client has written how high one is.
+    """
     if not isinstance(command, ipc.Ask | ipc.Stream):
         return For(STATION, tuple(operators.line(client, command, None, None, now_ns)))
     work = [
-        For(owner, tuple(operators.line(client, asked, *vehicles.known(owner, now_ns), now_ns)))
+        For(owner, tuple(_asked(operators, vehicles, bridge, client, asked, owner, now_ns)))
         for owner, asked in _for_each(operators, vehicles, command)
     ]
     return work[0] if len(work) == 1 else For(STATION, tuple(work))
+
+
+def _asked(
+    operators: Operators,
+    vehicles: Vehicles,
+    bridge: Bridge,
+    client: int,
+    command: ipc.Ask | ipc.Stream,
+    owner: int,
+    now_ns: int,
+) -> list[Work]:
+    """What is asked of one vehicle."""
+    autopilot, refusal = vehicles.known(owner, now_ns)
+    telemetry = None if owner == STATION else vehicles.of_owner(owner).telemetry
+    held = None
+    if telemetry is not None:
+        vehicle = Address(telemetry.sysid, telemetry.compid)
+        held = bridge.held_back(command, telemetry.autopilot, vehicle)
+    if held is None:
+        return operators.line(client, command, autopilot, refusal, now_ns)
+    told = operators.line(client, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)
+    return [held, *told]
 
 
 def _for_each(

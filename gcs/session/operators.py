@@ -16,7 +16,7 @@ from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, StreamVerdict
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import Abort, EndStream, SetMode
+from gcs.gate.requests import Abort, SetMode
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC, Autopilot
 from gcs.session import teller
@@ -37,6 +37,7 @@ from gcs.session.work import (
     EndSession,
     Log,
     StopTransfer,
+    StreamOver,
     Tell,
     ToGate,
     Work,
@@ -215,8 +216,11 @@ class Operators:
         """`client` is given control: the stream of whoever had it is over, and not only when it has
         been silent for a while."""
         others = self._streams.others(client, now_ns) if given else []
-        asks = [self._requests.open(ipc.Ask(0, "stream_end"), other) for other in others]
-        return [*(AskGate(request_id, EndStream()) for request_id in asks), *given]
+        ends = [
+            StreamOver(vehicle, self._requests.open(_end_of_stream(vehicle), other))
+            for other, vehicle in others
+        ]
+        return [*ends, *given]
 
     def _ask_station(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """What is asked of the station, not of the vehicle, is done at once."""
@@ -311,6 +315,10 @@ class Operators:
     def heard(self, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of the vehicle, for those who subscribed to such messages."""
         return [*self._subscriptions.heard(frame, now_ns)]
+
+
+def _end_of_stream(vehicle: int) -> ipc.Ask:
+    return ipc.Ask(0, "stream_end", vehicle=vehicle)
 
 
 def _done(request_id: int, sentence: str) -> list[Work]:

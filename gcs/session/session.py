@@ -31,6 +31,7 @@ from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.gate.inputs import PositionSeen
 from gcs.gate.machine.gate import Gate
+from gcs.gate.requests import EndStream
 from gcs.protocol.effects import Address, Send
 from gcs.session import teller
 from gcs.session.bridge_port import BridgePort
@@ -89,6 +90,7 @@ from gcs.session.work import (
     SecondDue,
     SnapshotDue,
     StopTransfer,
+    StreamOver,
     Tell,
     ToGate,
     Work,
@@ -250,7 +252,8 @@ class Session:
             case OperatorJoined():
                 return self._welcome(given, now_ns)
             case OperatorLine(client, command):
-                return [line(self._operators, self._vehicles, client, command, now_ns)]
+                vehicles, bridge = self._vehicles, self._bridge.bridge
+                return [line(self._operators, vehicles, bridge, client, command, now_ns)]
             case OperatorNoise(client, text):
                 return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
             case OperatorGone(client, reason):
@@ -326,6 +329,10 @@ class Session:
                 return vehicle.ask_mission(item, now_ns)
             case StopTransfer(request_id):
                 return self._vehicles.each(lambda each: each.stop_transfer(request_id))
+            case StreamOver(sysid, request_id):
+                slot = self._vehicles.slot_of(sysid)
+                ended = AskGate(request_id, EndStream())
+                return [For(FIRST_SLOT if slot is None else slot, (ended,))]
             case Decide():
                 return self._operators.verdict(item, vehicle.sysid, now_ns)
             case Tell():

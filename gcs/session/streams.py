@@ -37,8 +37,8 @@ class Streams:
     def __init__(self) -> None:
         self._first_ns: dict[int, int] = {}
         """The last sample of operators who are not in control."""
-        self._streamed_ns: dict[int, int] = {}
-        """The last sample that the gate was given."""
+        self._streamed_ns: dict[tuple[int, int], int] = {}
+        """The last sample that a gate was given, by operator and vehicle."""
         self._refused_ns: dict[int, int] = {}
 
     def goes_on(self, client: int, sample: ipc.Stream, now_ns: int) -> bool:
@@ -50,22 +50,22 @@ class Streams:
         self._first_ns[client] = now_ns
         return before_ns is not None and now_ns - before_ns <= BEGUN_WITHIN_NS
 
-    def others(self, client: int, now_ns: int) -> list[int]:
-        """Who else has a stream that may not be over yet; they are told of once."""
+    def others(self, client: int, now_ns: int) -> list[tuple[int, int]]:
+        """Who else has a stream that may not be over yet, and at which vehicle; told once."""
         found = [
-            other
-            for other, last_ns in self._streamed_ns.items()
-            if other != client and now_ns - last_ns <= EPISODE_NS
+            key
+            for key, last_ns in self._streamed_ns.items()
+            if key[0] != client and now_ns - last_ns <= EPISODE_NS
         ]
-        for other in found:
-            del self._streamed_ns[other]
+        for key in found:
+            del self._streamed_ns[key]
         return found
 
     def seen(self, client: int, sample: ipc.Stream, now_ns: int) -> StreamSeen:
         """The sample for the gate, in NED and as it is on the wire."""
         source = source_of(client)
         self._refused_ns.pop(client, None)
-        self._streamed_ns[client] = now_ns
+        self._streamed_ns[client, sample.vehicle] = now_ns
         yaw_deg, rate_deg_s = sample.yaw_deg, sample.yaw_rate_deg_s
         return StreamSeen(
             source,
@@ -94,8 +94,9 @@ class Streams:
 
     def forget(self, client: int) -> None:
         """It has left, and its number is never given again."""
-        for times in (self._first_ns, self._streamed_ns, self._refused_ns):
-            times.pop(client, None)
+        self._first_ns.pop(client, None)
+        self._refused_ns.pop(client, None)
+        self._streamed_ns = {key: at for key, at in self._streamed_ns.items() if key[0] != client}
 
 
 def _says_something(sample: ipc.Stream) -> bool:

@@ -145,6 +145,11 @@ class Vehicle:
         return self._port.gate
 
     @property
+    def bad_home(self) -> Refusal | None:
+        """Why its home is outside the fence, where its start was looked at."""
+        return self._port.bad_home
+
+    @property
     def bad_start(self) -> Refusal | None:
         """Why the place where it stands at the start is outside the fence."""
         return self._port.bad_start
@@ -289,6 +294,7 @@ class Vehicle:
         answer = arm_authorizer.answer(asked, asker, self._own, [each for each in troubles if each])
         if answer is None:
             return []
+        self._commands.deny_arming("" if answer.granted else answer.text)
         level = Level.INFO if answer.granted else Level.WARNING
         return [Send(answer.ack), Log(level, teller.NODE, answer.text)]
 

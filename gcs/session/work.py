@@ -97,6 +97,14 @@ class StopTransfer(msgspec.Struct, frozen=True, gc=False):
     request_id: int
 
 
+class StreamOver(msgspec.Struct, frozen=True, gc=False):
+    """Its operator is not in control any more: the stream at the vehicle with that system id (0:
+    the first) is ended by the request that was opened as `request_id`."""
+
+    vehicle: int
+    request_id: int
+
+
 class EndSession(msgspec.Struct, frozen=True, gc=False):
     """The station is to be left: the vehicle is seen safe first."""
 
@@ -133,6 +141,7 @@ Work: TypeAlias = (
     | Tell
     | AskMission
     | StopTransfer
+    | StreamOver
     | EndSession
     | SecondDue
     | SnapshotDue

@@ -19,6 +19,8 @@ from gcs.wire.signing import KEY_BYTES, SecretKey
 
 MODE: Final = 0o600
 LONGEST: Final = 4096
+SHORTEST_WORDS: Final = 12
+"""Of a passphrase: a shorter text is rather some other file, and a key that can be guessed."""
 _HEX: Final = re.compile(rb"[0-9A-Fa-f]+")
 
 
@@ -73,6 +75,9 @@ def _key_of(path: str, data: bytes) -> SecretKey:
     if len(line) > LONGEST or b"\n" in line:
         raise KeyFileError(path, "is no key: it has more than one line", hint)
     if not _HEX.fullmatch(line):
+        if len(line) < SHORTEST_WORDS:
+            why = f"is no key: {len(line)} bytes, and a passphrase has {SHORTEST_WORDS} at least"
+            raise KeyFileError(path, why, hint)
         return SecretKey(sha256(line).digest())
     if len(line) != 2 * KEY_BYTES:
         # Rather a key that was cut than a passphrase.

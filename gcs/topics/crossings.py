@@ -12,7 +12,9 @@ class Crossings:
     Of a component that is only sent, such as the station itself, all of them.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, each_topic: bool = False) -> None:
+        """`each_topic`: what is sent, or refused, and received of nobody counts for its topic."""
+        self._each_topic = each_topic
         self._received: set[str] = set()
 
     def counts(self, heard: Heard) -> bool:
@@ -20,8 +22,9 @@ class Crossings:
         direction = heard.direction
         if direction is None:
             return True
-        component = heard.topic.name.rpartition("/")[0]
+        name = heard.topic.name
+        source = name if self._each_topic else name.rpartition("/")[0]
         if direction == Direction.RECEIVED:
-            self._received.add(component)
+            self._received.add(source)
             return True
-        return component not in self._received
+        return source not in self._received

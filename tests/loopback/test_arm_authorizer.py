@@ -6,6 +6,7 @@ Source of what the vehicle does: PX4's ArmAuthorization.cpp, as vehicle-sim play
 from __future__ import annotations
 
 import itertools
+import struct
 from typing import Any
 
 from pymavlink.dialects.v20 import all as dialect
@@ -15,6 +16,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.states import State
 from gcs.session import inputs
 from tests.loopback import eyes
+from tests.loopback.bridged import BridgedFlight
 from tests.loopback.flight import MISSIONS, Flight
 from vehicle_sim.simulation.world import Datagram, Transmit
 
@@ -167,3 +169,33 @@ def test_without_a_request_nothing_is_answered() -> None:
     stranger_arms(flight)
     assert answers(flight) == []
     assert not flight.vehicle.armed
+
+
+def test_a_client_that_arms_in_vain_is_answered_once_and_at_once() -> None:
+    """It is not asked for again and again until its time is over: the station itself denied it."""
+    flight = BridgedFlight("px4")
+    for name, value in (GUARDED | {"GF_ACTION": 1.0}).items():
+        flight.vehicle.parameters.set(name, value)
+    client = flight.join()
+    flight.connected()
+    flight.run(2.0)
+    asked_ns = flight.now_ns
+    client.command(ARM, 1.0)
+    flight.beating(8.0)
+    assert not flight.vehicle.armed
+    acks = [heard for heard in client.heard if heard.message.get_type() == "COMMAND_ACK"]
+    (ack,) = [heard for heard in acks if heard.message.command == ARM]
+    assert ack.message.result != ACCEPTED
+    assert ack.time_ns - asked_ns < 1_000_000_000
+    assert len([line for line in flight.told() if "may not arm" in line]) == 1
+    assert client.texts().count("may not arm") == 1
+    assert client.texts().count("arm: aborted") == 1, "not once more as the gate's line"
+
+
+def test_after_a_denial_the_next_arming_is_asked_for_as_ever() -> None:
+    flight = guarded(GF_ACTION=1.0)
+    assert flight.done(flight.say("arm"), 1.0) == "aborted VEHICLE_REFUSED"
+    (two,) = struct.unpack("<f", struct.pack("<i", 2))
+    stranger(flight, dialect.MAVLink_param_set_message(1, 1, b"GF_ACTION", two, 6))
+    flight.run(2.0)
+    flight.do("arm")

@@ -8,10 +8,11 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs import ipc
+from gcs.gate.condition import Condition
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import STATION, VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.test_bridge_streams import VELOCITY_ONLY, flying
 
@@ -156,11 +157,61 @@ def test_who_takes_over_need_not_wait_for_the_end_of_a_stream(personality: Perso
     for _ in range(20):
         velocity(client)
         flight.run(0.1)
-    assert flight.state is State.STREAMING
+    assert flight.is_in(State.STREAMING)
     assert other.ask(32100, 1.0, 1.0) == ACCEPTED
     flight.run(0.1)
-    assert flight.state is State.HOVERING
+    assert flight.is_in(State.HOVERING)
     assert "The stream of operator 1000 is over" in flight.told()
     velocity(client)
     flight.run(0.1)
-    assert flight.state is State.HOVERING, "its samples are refused"
+    assert flight.is_in(State.HOVERING), "its samples are refused"
+
+
+def test_who_waits_for_the_reading_of_a_plan_is_told_so_by_the_protocol(
+    personality: Personality,
+) -> None:
+    flight, client = joined(personality)
+    other = flight.join(246)
+    flight.run(3.0)
+    for _ in range(4):
+        client.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+        other.send(dialect.MAVLink_mission_request_list_message(*VEHICLE, 0))
+        flight.run(0.5)
+    acks = other.messages("MISSION_ACK")
+    assert [(ack.type, ack.mission_type) for ack in acks] == [(1, 0)], "MAV_MISSION_ERROR"
+    assert "another client reads a plan" in other.texts()
+    assert client.messages("MISSION_ACK") == []
+
+
+def test_a_refused_plan_is_told_in_words_once_in_some_seconds(personality: Personality) -> None:
+    flight, client = joined(personality)
+    for _ in range(50):
+        client.send(dialect.MAVLink_mission_count_message(*VEHICLE, 3000, 0))
+        flight.run(0.02)
+    assert len(client.messages("MISSION_ACK")) == 50
+    assert client.texts().count("at most 2000") == 1
+
+
+def test_a_second_bridge_of_the_same_address_is_told_on_both_sides(
+    personality: Personality,
+) -> None:
+    """Two in a row, neither with --sysid: nothing that the outer one sends would arrive."""
+    flight = BridgedFlight(personality)
+    flight.connected()
+    outer = flight.join(*STATION)
+    for _ in range(6):
+        outer.beat()
+        flight.run(1.0)
+    (line,) = [line for line in flight.told() if "as this station does" in line]
+    assert "start one of the two with another --sysid" in line
+    heard = [one for one in outer.messages("STATUSTEXT") if one.get_srcComponent() == STATION[1]]
+    assert 3 <= len(heard) / 2 <= 4, "every two seconds, in two pieces"
+    assert all(one.get_srcSystem() == STATION[0] for one in heard)
+
+    inner = BridgedFlight(personality)
+    inner.connected()
+    for one in heard[:2]:
+        inner.feed(inputs.Datagram(0, bytes(one.get_msgbuf())))
+    inner.run(0.2)
+    assert Condition.OTHER_STATION in inner.conditions
+    assert any("another --sysid" in line for line in inner.told())

@@ -147,15 +147,15 @@ def test_a_fence_file_with_exclusion_zones_only(tmp_path: Path) -> None:
     assert "hint: yard.plan only says where it may not be" in told
 
 
-def test_a_start_position_outside_the_fence(tmp_path: Path) -> None:
+def test_a_home_outside_a_fence_in_the_local_frame(tmp_path: Path) -> None:
     policy = tmp_path / "elsewhere.toml"
     policy.write_text(FAR_FENCE)
     logs = str(tmp_path / "logs")
     code, told = refused("fly", "--sim", "--plain", "--policy", str(policy), "--log-dir", logs)
-    assert code == 6
-    assert "start position" in told
+    assert code == 4
+    assert f"{policy}: fence: home is outside" in told
     assert "outside inclusion circle 'there'" in told
-    assert "hint: fly from inside the fence" in told
+    assert "hint: the vehicle returns and lands there" in told
 
 
 def test_a_log_folder_that_cannot_be_written(tmp_path: Path) -> None:

@@ -93,6 +93,8 @@ def error(folder: Path, text: str | bytes, plan: object = None) -> PolicyFileErr
         (ON_EARTH + "corners = []", "5: fence[1].corners: ", "at least 3"),
         (HOLE, "1: fence: ", "no inclusion zone"),
         ("fence = []", "1: fence: ", "no inclusion zone"),
+        ("[bridge]\nmessage_hz = 0", "2: bridge.message_hz: ", "impossible"),
+        ('[bridge]\ndownloads = "on_grund"', "2: bridge.downloads: ", "is none of"),
         (ZONE + "radius_m = 9\ncentre = [20, 0]", "4: fence[1].centre: ", "home is outside"),
         (
             ZONE + 'kind = "box"\neast_m = [5, 50]\nnorth_m = [-9, 9]',
@@ -208,3 +210,17 @@ def test_an_odd_polygon_is_taken(corners: str, tmp_path: Path) -> None:
     path = tmp_path / "my.toml"
     path.write_text(f"{POLYGON}corners = {corners}\n")
     assert load_policy(str(path))[0].fence[0].name == "a"
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ('[battery]\nlow_v = "off"', "battery.low_v"),
+        ("[battery]\ncritical_v = false", "battery.critical_v"),
+        ('[arrival]\nspeed_m_s = "any"', "arrival.speed_m_s"),
+    ],
+)
+def test_where_none_is_a_value_the_hint_says_so(text: str, key: str, tmp_path: Path) -> None:
+    found = error(tmp_path, text)
+    assert f":2: {key}: " in str(found)
+    assert found.hint.endswith(', or "none"')

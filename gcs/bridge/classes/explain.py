@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from gcs.bridge.classes.row import Kind, Row
-from gcs.bridge.classes.tables import COMMAND_ROWS, MESSAGE_ROWS
+from gcs.bridge.classes.tables import command_rows, message_rows
 
 PREFIX: Final = "MAV_CMD_"
 
@@ -49,8 +49,8 @@ def _found(name: str) -> tuple[str, int, Row]:
     wanted = name.strip().upper()
     number = int(wanted) if wanted.isdecimal() else None
     tables: tuple[tuple[str, Mapping[int, Row]], ...] = (
-        ("command", COMMAND_ROWS),
-        ("message", MESSAGE_ROWS),
+        ("command", command_rows()),
+        ("message", message_rows()),
     )
     for word, table in tables:
         if number is not None and number in table:
@@ -66,7 +66,7 @@ def _found(name: str) -> tuple[str, int, Row]:
 def _unknown(name: str, bare: str) -> str:
     import difflib  # only a wrong name needs it
 
-    names = [row.name for table in (COMMAND_ROWS, MESSAGE_ROWS) for row in table.values()]
+    names = [row.name for table in (command_rows(), message_rows()) for row in table.values()]
     close = difflib.get_close_matches(bare, names, n=4)
     hint = f"; close to it: {', '.join(close)}" if close else ""
     return f"{name!r} is no message and no command of the dialect, so it is denied{hint}"

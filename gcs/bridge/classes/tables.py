@@ -1,33 +1,47 @@
-"""The whole classification: a row for every message and every MAV_CMD of the dialect."""
+"""The whole classification: a row for every message and every MAV_CMD of the dialect.
+
+The tables are read and put together when something is looked up for the first time: a station
+without MAVLink clients never does.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cache
 from typing import Final
 
-from gcs.bridge.classes.command_devices import DEVICES
-from gcs.bridge.classes.command_flight import FLIGHT
-from gcs.bridge.classes.command_items import ITEMS
-from gcs.bridge.classes.command_setup import SETUP
-from gcs.bridge.classes.message_dangers import DANGERS
-from gcs.bridge.classes.message_estimator import ESTIMATOR
-from gcs.bridge.classes.message_reports import REPORTS
-from gcs.bridge.classes.message_requests import REQUESTS
 from gcs.bridge.classes.row import Kind, Row, table_of
-
-MESSAGE_ROWS: Final = table_of((*REQUESTS, *ESTIMATOR, *DANGERS, *REPORTS))
-"""By message id, in order."""
-
-COMMAND_ROWS: Final = table_of((*FLIGHT, *DEVICES, *SETUP, *ITEMS))
-"""By MAV_CMD, in order."""
 
 UNKNOWN: Final = "What is not in the dialect cannot be judged."
 
 
+@cache
+def message_rows() -> Mapping[int, Row]:
+    """By message id, in order."""
+    from gcs.bridge.classes.message_dangers import DANGERS
+    from gcs.bridge.classes.message_estimator import ESTIMATOR
+    from gcs.bridge.classes.message_reports import REPORTS
+    from gcs.bridge.classes.message_requests import REQUESTS
+
+    return table_of((*REQUESTS, *ESTIMATOR, *DANGERS, *REPORTS))
+
+
+@cache
+def command_rows() -> Mapping[int, Row]:
+    """By MAV_CMD, in order."""
+    from gcs.bridge.classes.command_devices import DEVICES
+    from gcs.bridge.classes.command_flight import FLIGHT
+    from gcs.bridge.classes.command_items import ITEMS
+    from gcs.bridge.classes.command_setup import SETUP
+
+    return table_of((*FLIGHT, *DEVICES, *SETUP, *ITEMS))
+
+
 def message_row(msgid: int) -> Row:
     """The row of a message.  One that the dialect lacks is denied."""
-    return MESSAGE_ROWS.get(msgid) or Row(f"UNKNOWN_{msgid}", Kind.DENIED, UNKNOWN)
+    return message_rows().get(msgid) or Row(f"UNKNOWN_{msgid}", Kind.DENIED, UNKNOWN)
 
 
 def command_row(command: int) -> Row:
     """The row of a MAV_CMD.  One that the dialect lacks is denied."""
-    return COMMAND_ROWS.get(command) or Row(f"UNKNOWN_{command}", Kind.DENIED, UNKNOWN)
+    return command_rows().get(command) or Row(f"UNKNOWN_{command}", Kind.DENIED, UNKNOWN)

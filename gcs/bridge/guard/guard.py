@@ -116,9 +116,9 @@ class Guard:
         """A client has written the parameter, and the vehicle has not told its value since."""
         return self._parameters.awaits(name)
 
-    def heard(self, message: ParamValue) -> Changed | None:
+    def heard(self, message: ParamValue, now_ns: int) -> Changed | None:
         """PARAM_VALUE of the vehicle's autopilot: the news in it, for the log."""
-        return self._parameters.heard(message)
+        return self._parameters.heard(message, now_ns)
 
     def _command(self, message: CommandLong | CommandInt, seen: GuardSeen) -> Judgement:
         row = ROWS.get(message.command)

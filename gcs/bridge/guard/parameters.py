@@ -50,6 +50,20 @@ _TYPES: Final = frozenset(int(kind) for kind in ParamType)
 _LONGEST: Final = 16
 
 
+OVERTAKEN_NS: Final = 3_000_000_000
+"""So long after a write a value that is not the written one may have left the vehicle before it, as
+an answer to somebody who has read the parameter."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Write:
+    """One that was let through, and that the vehicle has not told the outcome of."""
+
+    by: str
+    value: float
+    until_ns: int
+
+
 @dataclass(frozen=True, slots=True)
 class Changed:
     """What the log says of a parameter whose value has changed."""
@@ -68,7 +82,7 @@ class ParameterGuard:
         self._allowed = pattern_of(rules.parameters_allowed)
         self._guarded = pattern_of(rules.parameters_guarded)
         self._values: dict[str, float] = {}
-        self._written_by: dict[str, str] = {}
+        self._writes: dict[str, _Write] = {}
 
     def judge(self, message: ParamSet, seen: GuardSeen) -> Judgement:
         """PARAM_SET."""
@@ -80,8 +94,10 @@ class ParameterGuard:
         if why is None and not finite:
             refusal = Refusal(Code.NON_FINITE, f"{name}: the value is not a finite number")
         elif why is None:
-            if len(self._written_by) < MOST_KEPT:
-                self._written_by[name.upper()] = f"{seen.client.sysid}/{seen.client.compid}"
+            if len(self._writes) < MOST_KEPT:
+                by = f"{seen.client.sysid}/{seen.client.compid}"
+                until_ns = seen.now_ns + OVERTAKEN_NS
+                self._writes[name.upper()] = _Write(by, float(value), until_ns)
             return Allowed("" if name == HASH_CHECK else self._told(name, value))
         else:
             refusal = Refusal(Code.POLICY, f"{why} ({KEY})", numbers)
@@ -148,10 +164,10 @@ class ParameterGuard:
         return None
 
     def awaits(self, name: str) -> bool:
-        """It was let through, and its PARAM_VALUE has not come yet."""
-        return name in self._written_by
+        """It was let through, and the vehicle has not told yet what it is now."""
+        return name in self._writes
 
-    def heard(self, message: ParamValue) -> Changed | None:
+    def heard(self, message: ParamValue, now_ns: int) -> Changed | None:
         """PARAM_VALUE of the vehicle: what is to be told of it."""
         name = message.param_id
         if not NAME.fullmatch(name) or name == HASH_CHECK:
@@ -161,12 +177,14 @@ class ParameterGuard:
         if known is None and len(self._values) >= MOST_KEPT:
             return None
         self._values[name] = value
-        writer = self._written_by.pop(name.upper(), None)
+        write = self._writes.get(name.upper())
+        if write is not None and (value == write.value or now_ns >= write.until_ns):
+            del self._writes[name.upper()]
         if known is None or known == value or math.isnan(value):
             return None
         change = f"{name} was {known:g} and is {value:g} now"
-        if writer is not None:
-            return Changed(Level.INFO, f"{change}: written by {writer}")
+        if write is not None:
+            return Changed(Level.INFO, f"{change}: written by {write.by}")
         group = group_of(self._autopilot, name)
         if group is None or not group.set_by_people:
             return None

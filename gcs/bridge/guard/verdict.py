@@ -23,6 +23,7 @@ class GuardSeen:
     """The policy's highest take-off; 0: its default height may not be set."""
     in_control: bool = True
     """The client is in control of the station, or nobody is."""
+    now_ns: int = 0
 
     @property
     def stands_disarmed(self) -> bool:

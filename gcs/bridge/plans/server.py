@@ -22,6 +22,7 @@ from gcs.bridge.answers import texts
 from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers
+from gcs.bridge.lately import Lately
 from gcs.bridge.plans.collecting import Collecting, ItemMessage, acknowledgement, question
 from gcs.bridge.plans.effects import (
     Clear,
@@ -162,6 +163,7 @@ class PlanServer:
         """Collected while the one before is still being stopped."""
         self._told: _Told | None = None
         self._text_id = 0
+        self._texts = Lately()
 
     @property
     def deadline_ns(self) -> int | None:
@@ -196,7 +198,7 @@ class PlanServer:
             case MissionWritePartialList():
                 text = "a part of a plan cannot be verified: send the whole plan"
                 return self._refuse(
-                    asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text
+                    asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text, now_ns
                 )
             case MissionSetCurrent(seq=seq):
                 return [SetCurrent(seq)]
@@ -214,13 +216,15 @@ class PlanServer:
     def _count(self, message: MissionCount, asked_by: From, now_ns: int) -> list[PlanEffect]:
         """An upload begins, or its first message comes again."""
         self._told = None
-        refused = self._cannot_take(message, asked_by)
+        refused = self._cannot_take(message, asked_by, now_ns)
         if refused is not None:
             return refused
         kind = MissionType(message.mission_type)
         if message.count > self._most_items[kind]:
             text = f"{NAMES[kind]} of {message.count} items: at most {self._most_items[kind]}"
-            return self._refuse(asked_by, message, MissionResult.NO_SPACE, Code.BAD_MISSION, text)
+            return self._refuse(
+                asked_by, message, MissionResult.NO_SPACE, Code.BAD_MISSION, text, now_ns
+            )
         if message.count == 0:
             return self._begin_clear(kind, asked_by)
         collecting = self._collecting
@@ -231,13 +235,13 @@ class PlanServer:
         return self._to(asked_by, self._collecting.start(now_ns))
 
     def _cannot_take(
-        self, message: MissionCount | MissionClearAll, asked_by: From
+        self, message: MissionCount | MissionClearAll, asked_by: From, now_ns: int
     ) -> list[PlanEffect] | None:
         """Why nothing like this can be taken now; None where it can."""
         if asked_by.addressed.compid not in (Component.AUTOPILOT1, MISSION_PLANNER):
             text = f"component {asked_by.addressed.compid} takes no plans through this station"
             return self._refuse(
-                asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text
+                asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text, now_ns
             )
         known = message.mission_type in NAMES
         if not known and not (
@@ -245,14 +249,14 @@ class PlanServer:
         ):
             text = f"mission type {message.mission_type} is not known here"
             return self._refuse(
-                asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text
+                asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text, now_ns
             )
         other = self._collecting_by if self._collecting else None
         other = other or (self._asked.asked_by if self._asked else None)
         if other is not None and other.source != asked_by.source:
             who = f"{other.source.sysid}/{other.source.compid}"
             text = f"a plan of {who}, on the same link, is still under way"
-            return self._refuse(asked_by, message, MissionResult.DENIED, Code.BUSY, text)
+            return self._refuse(asked_by, message, MissionResult.DENIED, Code.BUSY, text, now_ns)
         return None
 
     def _item(self, message: ItemMessage, asked_by: From, now_ns: int) -> list[PlanEffect]:
@@ -281,7 +285,7 @@ class PlanServer:
             self._collecting = None
             text = f"item {collecting.bad_item}: its place is no latitude and longitude"
             return self._refuse(
-                opened_by, collecting.opened, MissionResult.INVALID, Code.BAD_MISSION, text
+                opened_by, collecting.opened, MissionResult.INVALID, Code.BAD_MISSION, text, now_ns
             )
         if not collecting.whole:
             return []
@@ -338,7 +342,7 @@ class PlanServer:
     # ---------------------------------------------------------------------------- clear
 
     def _clear(self, message: MissionClearAll, asked_by: From, now_ns: int) -> list[PlanEffect]:
-        refused = self._cannot_take(message, asked_by)
+        refused = self._cannot_take(message, asked_by, now_ns)
         if refused is not None:
             return refused
         told = self._told
@@ -372,7 +376,7 @@ class PlanServer:
         if asked is None or asked.withdrawn or asked.told >= MOST_FINDINGS:
             return []
         asked.told += 1
-        return self._text(asked.asked_by, Level.WARNING, text)
+        return self._text(asked.asked_by, Level.WARNING, text, now_ns)
 
     def decided(self, event: ipc.VerdictEvent, now_ns: int) -> list[PlanEffect]:
         """The verdict on the `Upload` or `Clear` that was asked for last."""
@@ -406,7 +410,7 @@ class PlanServer:
         if asked.withdrawn:
             return self._go_on(now_ns)
         asked.result = result_of(code, sentence)
-        said = self._text(asked.asked_by, Level.WARNING, f"{code}: {sentence}")
+        said = self._text(asked.asked_by, Level.WARNING, f"{code}: {sentence}", now_ns)
         return [*said, *self._tell(asked, now_ns)]
 
     def _answer_if_ready(self, now_ns: int) -> list[PlanEffect]:
@@ -456,14 +460,14 @@ class PlanServer:
         if collecting is not None and opened_by is not None:
             effects += self._to(opened_by, collecting.wake(now_ns))
             if collecting.given_up:
-                effects += self._silent(collecting, opened_by)
+                effects += self._silent(collecting, opened_by, now_ns)
         asked = self._asked
         if asked is not None and asked.following is not None:
             effects += self._to(asked.asked_by, asked.following.wake(now_ns))
             effects += self._answer_if_ready(now_ns)
         return effects + self._probe(now_ns)
 
-    def _silent(self, collecting: Collecting, opened_by: From) -> list[PlanEffect]:
+    def _silent(self, collecting: Collecting, opened_by: From, now_ns: int) -> list[PlanEffect]:
         self._collecting = None
         if self._asked is not None:
             return []  # it was the first message of the plan that is on its way, once more
@@ -476,6 +480,7 @@ class PlanServer:
             MissionResult.OPERATION_CANCELLED,
             Code.NO_ANSWER,
             text,
+            now_ns,
         )
 
     def _late_item(self, message: ItemMessage, asked_by: From, now_ns: int) -> list[PlanEffect]:
@@ -514,17 +519,21 @@ class PlanServer:
         result: MissionResult,
         code: Code,
         text: str,
+        now_ns: int,
     ) -> list[PlanEffect]:
         """What is refused without the station's verdict."""
         ack = acknowledgement(asked_by.source, result, message.mission_type)
         name = type(message).MSG_ID.name
         return [
             Refused(name, Refusal(code, text)),
-            *self._text(asked_by, Level.WARNING, text),
+            *self._text(asked_by, Level.WARNING, text, now_ns),
             self._answer(asked_by, ack),
         ]
 
-    def _text(self, to: From, level: Level, text: str) -> list[PlanEffect]:
+    def _text(self, to: From, level: Level, text: str, now_ns: int) -> list[PlanEffect]:
+        """The same words not more often than every few seconds."""
+        if not self._texts.is_news(text, now_ns):
+            return []
         self._text_id = self._text_id % 0xFFFF + 1
         return [self._answer(to, message) for message in texts(level, text, self._text_id)]
 

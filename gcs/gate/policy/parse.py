@@ -81,7 +81,7 @@ def _build(
     table["battery"] = _without_none(table["battery"], "low_v", "critical_v")
     table["severities"] = _severities(doc, table["severities"])
     zones = _read_fence(doc, table["fence"], fence_file)
-    policy = doc.convert(Policy, {**table, "fence": [written.zone for written in zones]})
+    policy = _convert(doc, {**table, "fence": [written.zone for written in zones]})
     _check_limits(doc, policy)
     _check_bridge(doc, policy.bridge, check_names)
     _check_stream(doc, policy)
@@ -101,6 +101,20 @@ def _overlay(doc: toml.Document, defaults: Table, own: Table, at: KeyPath = ()) 
             value = _overlay(doc, default, value, (*at, key))
         merged[key] = value
     return merged
+
+
+_MAY_BE_NONE: Final = frozenset({"arrival.speed_m_s", "battery.low_v", "battery.critical_v"})
+
+
+def _convert(doc: toml.Document, table: Table) -> Policy:
+    """Raises TomlError; where "none" is a value, its hint says so."""
+    try:
+        return doc.convert(Policy, table)
+    except toml.TomlError as error:
+        if error.key not in _MAY_BE_NONE:
+            raise
+        hint = f'{error.hint}, or "none"'
+        raise toml.TomlError(error.file, error.line, error.key, error.what, hint) from None
 
 
 def _without_none(value: object, *keys: str) -> object:

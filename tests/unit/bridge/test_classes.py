@@ -12,7 +12,7 @@ import pytest
 
 from gcs.bridge.classes import Kind, Row, command_row, explain, explanation, message_row
 from gcs.bridge.classes.row import Group, table_of
-from gcs.bridge.classes.tables import COMMAND_ROWS, MESSAGE_ROWS
+from gcs.bridge.classes.tables import command_rows, message_rows
 from gcs.wire import dialect
 from tests.unit.bridge import client_traffic
 
@@ -48,24 +48,24 @@ def kinds(names: Iterable[str], rows: Mapping[int, Row]) -> dict[str, Kind]:
 
 class TestTheTableIsTotal:
     def test_every_message_has_a_row_and_nothing_else_has(self) -> None:
-        assert differences(MESSAGES, MESSAGE_ROWS) == []
+        assert differences(MESSAGES, message_rows()) == []
 
     def test_every_command_has_a_row_and_nothing_else_has(self) -> None:
-        assert differences(COMMANDS, COMMAND_ROWS) == []
+        assert differences(COMMANDS, command_rows()) == []
 
     def test_the_supplement_is_part_of_it(self) -> None:
-        assert {8, 299, 336, 361, 371, 372, 380} <= MESSAGE_ROWS.keys()  # of supplement.py
+        assert {8, 299, 336, 361, 371, 372, 380} <= message_rows().keys()  # of supplement.py
 
     def test_an_entry_that_the_dialect_gains_is_seen(self) -> None:
-        assert differences(MESSAGES | {54321: "NEW"}, MESSAGE_ROWS) == ["NEW (54321) has no row"]
-        assert differences(COMMANDS | {54321: "NEW"}, COMMAND_ROWS) == ["NEW (54321) has no row"]
+        assert differences(MESSAGES | {54321: "NEW"}, message_rows()) == ["NEW (54321) has no row"]
+        assert differences(COMMANDS | {54321: "NEW"}, command_rows()) == ["NEW (54321) has no row"]
 
     def test_an_entry_that_the_dialect_loses_or_renames_is_seen(self) -> None:
         fewer = {number: name for number, name in MESSAGES.items() if number != 33}
-        assert differences(fewer, MESSAGE_ROWS) == [
+        assert differences(fewer, message_rows()) == [
             "GLOBAL_POSITION_INT (33) is not in the dialect"
         ]
-        assert differences(MESSAGES | {33: "NEW"}, MESSAGE_ROWS) == [
+        assert differences(MESSAGES | {33: "NEW"}, message_rows()) == [
             "33 is NEW, not GLOBAL_POSITION_INT"
         ]
 
@@ -75,7 +75,7 @@ class TestTheTableIsTotal:
             table_of(twice)
 
     def test_every_row_says_why_in_one_sentence(self) -> None:
-        for row in (*MESSAGE_ROWS.values(), *COMMAND_ROWS.values()):
+        for row in (*message_rows().values(), *command_rows().values()):
             assert row.why.endswith("."), row
             assert row.why[0].isupper(), row
             assert ". " not in row.why, row
@@ -87,7 +87,7 @@ class TestTheTableIsTotal:
 
     def test_how_many_are_of_which_kind(self) -> None:
         """A change of any row shows here, so that it is meant."""
-        assert Counter(row.kind for row in MESSAGE_ROWS.values()) == {
+        assert Counter(row.kind for row in message_rows().values()) == {
             Kind.DENIED: 303,
             Kind.HARMLESS: 33,
             Kind.POINTING: 8,
@@ -96,7 +96,7 @@ class TestTheTableIsTotal:
             Kind.LOCAL: 6,
             Kind.CARRIER: 2,
         }
-        assert Counter(row.kind for row in COMMAND_ROWS.values()) == {
+        assert Counter(row.kind for row in command_rows().values()) == {
             Kind.DENIED: 121,
             Kind.HARMLESS: 45,
             Kind.POINTING: 11,
@@ -107,8 +107,8 @@ class TestTheTableIsTotal:
 
     def test_the_page_has_these_figures(self) -> None:
         page = (Path(__file__).parents[3] / "docs" / "bridge.md").read_text(encoding="utf-8")
-        of_messages = Counter(row.kind for row in MESSAGE_ROWS.values())
-        of_commands = Counter(row.kind for row in COMMAND_ROWS.values())
+        of_messages = Counter(row.kind for row in message_rows().values())
+        of_commands = Counter(row.kind for row in command_rows().values())
         for kind in Kind:
             commands = f"{of_commands[kind]} " if of_commands[kind] else ""
             assert f"| {kind} | {of_messages[kind]} | {commands}| " in page
@@ -136,7 +136,7 @@ class TestTheDesignsRules:
 
     @pytest.mark.parametrize("name", [*FEEDS_THE_ESTIMATOR, *TRAFFIC, *OTHERS])
     def test_denied_by_default(self, name: str) -> None:
-        assert kinds([name], MESSAGE_ROWS) == {name: Kind.DENIED}
+        assert kinds([name], message_rows()) == {name: Kind.DENIED}
 
     @pytest.mark.parametrize(
         "name",
@@ -153,7 +153,7 @@ class TestTheDesignsRules:
         ],
     )
     def test_actuators_are_denied(self, name: str) -> None:
-        assert kinds([name], COMMAND_ROWS) == {name: Kind.DENIED}
+        assert kinds([name], command_rows()) == {name: Kind.DENIED}
 
     @pytest.mark.parametrize(
         "name",
@@ -175,7 +175,7 @@ class TestTheDesignsRules:
     )
     def test_configuration_is_by_policy(self, name: str) -> None:
         """The last two are refused by default, and the policy has a key for each."""
-        assert kinds([name], MESSAGE_ROWS) == {name: Kind.CONFIGURATION}
+        assert kinds([name], message_rows()) == {name: Kind.CONFIGURATION}
 
     @pytest.mark.parametrize(
         "name",
@@ -191,7 +191,7 @@ class TestTheDesignsRules:
         ],
     )
     def test_commands_that_configure_are_by_policy(self, name: str) -> None:
-        assert kinds([name], COMMAND_ROWS) == {name: Kind.CONFIGURATION}
+        assert kinds([name], command_rows()) == {name: Kind.CONFIGURATION}
 
     def test_whatever_flies_at_once_is_motion(self) -> None:
         """The issue's list, item 3."""
@@ -201,13 +201,13 @@ class TestTheDesignsRules:
         commands = ["DO_REPOSITION", "NAV_TAKEOFF", "DO_ORBIT", "MISSION_START", "NAV_LAND"]
         commands += ["DO_SET_MISSION_CURRENT", "DO_CHANGE_SPEED", "DO_CHANGE_ALTITUDE"]
         commands += ["DO_SET_MODE", "COMPONENT_ARM_DISARM", "NAV_RETURN_TO_LAUNCH"]
-        found = kinds(messages, MESSAGE_ROWS) | kinds(commands, COMMAND_ROWS)
+        found = kinds(messages, message_rows()) | kinds(commands, command_rows())
         assert set(found.values()) == {Kind.MOTION}, found
 
     def test_what_carries_a_command_now_is_a_carrier_and_what_carries_one_for_later_is_not(
         self,
     ) -> None:
-        carriers = [row.name for row in MESSAGE_ROWS.values() if row.kind is Kind.CARRIER]
+        carriers = [row.name for row in message_rows().values() if row.kind is Kind.CARRIER]
         assert carriers == ["COMMAND_INT", "COMMAND_LONG"]
         assert message_row(223).kind is message_row(224).kind is Kind.DENIED  # _STAMPED
 
@@ -215,7 +215,7 @@ class TestTheDesignsRules:
         """ArduPilot flies to other vehicles' positions in FOLLOW; all believe reports."""
         reports = ["ATTITUDE", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "SYS_STATUS"]
         reports += ["GPS_RAW_INT", "HOME_POSITION", "BATTERY_STATUS", "PARAM_VALUE", "COMMAND_ACK"]
-        assert set(kinds(reports, MESSAGE_ROWS).values()) == {Kind.DENIED}
+        assert set(kinds(reports, message_rows()).values()) == {Kind.DENIED}
 
     def test_a_clients_heartbeat_stays_at_the_gate(self) -> None:
         assert message_row(0).kind is Kind.LOCAL
@@ -226,7 +226,7 @@ class TestTargets:
 
     def test_nothing_harmless_or_local_is_a_setpoint(self) -> None:
         setpoints = ("SET_POSITION", "SET_ATTITUDE", "SET_ACTUATOR", "HIL_", "MANUAL_SETPOINT")
-        for row in MESSAGE_ROWS.values():
+        for row in message_rows().values():
             if row.name.startswith(setpoints):
                 assert row.kind in (Kind.MOTION, Kind.DENIED), row
 
@@ -244,14 +244,14 @@ class TestWhatRealClientsSend:
         self, client: str
     ) -> None:
         found = kinds(
-            client_traffic.MESSAGES[client] - {"COMMAND_INT", "COMMAND_LONG"}, MESSAGE_ROWS
+            client_traffic.MESSAGES[client] - {"COMMAND_INT", "COMMAND_LONG"}, message_rows()
         )
         denied = {name for name, kind in found.items() if kind is Kind.DENIED}
         assert denied == self.DENIED_MESSAGES & client_traffic.MESSAGES[client]
 
     @pytest.mark.parametrize("client", sorted(client_traffic.COMMANDS))
     def test_no_command_is_denied_but_actuators(self, client: str) -> None:
-        found = kinds(client_traffic.COMMANDS[client], COMMAND_ROWS)
+        found = kinds(client_traffic.COMMANDS[client], command_rows())
         denied = {name for name, kind in found.items() if kind is Kind.DENIED}
         assert denied == self.DENIED_COMMANDS & client_traffic.COMMANDS[client]
 
@@ -267,7 +267,7 @@ class TestWhatRealClientsSend:
         messages += ["LOG_REQUEST_LIST", "LOG_REQUEST_END"]
         commands = ["REQUEST_MESSAGE", "SET_MESSAGE_INTERVAL", "GET_HOME_POSITION"]
         commands += ["IMAGE_START_CAPTURE", "SET_CAMERA_MODE", "REQUEST_AUTOPILOT_CAPABILITIES"]
-        found = kinds(messages, MESSAGE_ROWS) | kinds(commands, COMMAND_ROWS)
+        found = kinds(messages, message_rows()) | kinds(commands, command_rows())
         assert set(found.values()) == {Kind.HARMLESS}, found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs.bridge.classes.row import Kind
-from gcs.bridge.classes.tables import COMMAND_ROWS, MESSAGE_ROWS
+from gcs.bridge.classes.tables import command_rows, message_rows
 from gcs.bridge.meaning.commands import COMMANDS
 from gcs.bridge.meaning.meaning import Forward, Reject, Words
 from gcs.bridge.meaning.modes import for_mode
@@ -24,13 +24,13 @@ OF_A_PLAN = {MsgId.MISSION_ITEM, MsgId.MISSION_ITEM_INT}
 
 
 def test_every_command_that_is_motion_has_a_meaning_and_no_other() -> None:
-    motion = {number for number, row in COMMAND_ROWS.items() if row.kind is Kind.MOTION}
+    motion = {number for number, row in command_rows().items() if row.kind is Kind.MOTION}
     assert set(COMMANDS) == motion
 
 
 def test_every_message_that_is_motion_has_a_meaning_and_no_other() -> None:
-    motion = {number for number, row in MESSAGE_ROWS.items() if row.kind is Kind.MOTION}
-    carriers = {number for number, row in MESSAGE_ROWS.items() if row.kind is Kind.CARRIER}
+    motion = {number for number, row in message_rows().items() if row.kind is Kind.MOTION}
+    carriers = {number for number, row in message_rows().items() if row.kind is Kind.CARRIER}
     assert set(MESSAGES) == motion | carriers | OF_A_PLAN
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gcs.bridge.plans.downloads import SILENT_NS, Downloads
+from gcs.bridge.plans.downloads import ASKS_ON_NS, SILENT_NS, Downloads
 from gcs.protocol.effects import Address
 from gcs.wire.ids import MissionResult
 from gcs.wire.messages import MissionAck, MissionCount, MissionRequestInt, MissionRequestList
@@ -57,3 +57,60 @@ def test_what_is_no_download_is_not_held() -> None:
     count = MissionCount(count=1, **TO)
     assert Downloads().holds(count, ONE, True, 0) == ""
     assert Downloads().holds(DONE, ONE, True, 0) == ""
+
+
+def test_who_asks_on_and_on_gives_way_to_the_others_in_their_order() -> None:
+    """A client that is not in control had the turn for itself by asking once a second."""
+    downloads = Downloads()
+    third = (3, Address(9, 1))
+    began: list[tuple[int, tuple[int, Address]]] = []
+    turn: tuple[int, Address] | None = None
+    for second in range(200):
+        for offset, reader in enumerate((ONE, TWO, third)):
+            now_ns = (second * 1000 + offset) * MS
+            if downloads.holds(LIST, reader, False, now_ns) == "" and turn != reader:
+                turn = reader
+                began.append((second, reader))
+    assert [reader for _, reader in began] == [ONE, TWO, third, ONE]
+    assert [second for second, _ in began] == [0, 60, 120, 181], "after the third asked at 180"
+
+
+def test_alone_it_may_read_for_as_long_as_it_likes() -> None:
+    downloads = Downloads()
+    held = [downloads.holds(LIST, ONE, False, second * 1000 * MS) for second in range(200)]
+    assert set(held) == {""}
+
+
+def test_who_was_held_first_is_next() -> None:
+    downloads = Downloads()
+    third = (3, Address(9, 1))
+    assert downloads.holds(LIST, ONE, False, 0) == ""
+    assert downloads.holds(LIST, TWO, False, 10 * MS)
+    assert downloads.holds(LIST, third, False, 20 * MS)
+    assert downloads.holds(DONE, ONE, False, 30 * MS) == ""
+    assert downloads.holds(LIST, third, False, 40 * MS), "it came after the other"
+    assert downloads.holds(LIST, ONE, False, 45 * MS), "and who has just read, too"
+    assert downloads.holds(LIST, TWO, False, 50 * MS) == ""
+
+
+def test_who_has_gone_is_not_waited_for() -> None:
+    downloads = Downloads()
+    downloads.holds(LIST, ONE, False, 0)
+    downloads.holds(LIST, TWO, False, 10 * MS)
+    downloads.holds(DONE, ONE, False, 20 * MS)
+    third = (3, Address(9, 1))
+    assert downloads.holds(LIST, third, False, 30 * MS)
+    assert downloads.holds(LIST, third, False, 10 * MS + ASKS_ON_NS + MS) == ""
+
+
+def test_who_is_held_back_is_answered_before_it_gives_up() -> None:
+    """MAVSDK after 2 s, QGroundControl after 5 s."""
+    downloads = Downloads()
+    downloads.holds(LIST, ONE, False, 0)
+    due = []
+    for ms in (10, 510, 1010, 1510):
+        downloads.holds(ITEM, ONE, False, ms * MS)
+        assert downloads.holds(LIST, TWO, False, ms * MS)
+        due.append(downloads.answers(TWO, ms * MS))
+    assert due == [False, False, False, True]
+    assert not downloads.answers(ONE, 1510 * MS)

@@ -111,6 +111,12 @@ def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> N
         ("do_reposition", ("MAV_CMD_DO_REPOSITION, command 192: motion", "  why: ")),
         ("22", ("MAV_CMD_NAV_TAKEOFF, command 22: motion", "  why: ")),
         ("MANUAL_CONTROL", ("MANUAL_CONTROL, message 69: motion", "samples of a velocity stream")),
+        (
+            "MAV_CMD_DO_CHANGE_ALTITUDE",
+            ("command 186: motion", "  the gate makes of it: PX4: goto straight up or down"),
+        ),
+        ("SET_MODE", ("message 11: motion", "  the gate makes of it: by the mode")),
+        ("SDLOG_MODE", ("SDLOG_MODE, a parameter that a client may write", "  px4: it says")),
         ("PARAM_SET", ("PARAM_SET, message 23: configuration", "  why: ")),
         (
             "gf_action",
@@ -133,11 +139,13 @@ def test_explain_of_what_there_is_not_names_what_is_close(
     assert "DO_REPOSITION" in capsys.readouterr().err
 
 
-def test_explain_tells_that_a_parameter_is_not_guarded(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main.run(["bridge", "--explain", "SDLOG_MODE"]) == ExitCode.USAGE
+def test_explain_tells_that_an_unknown_parameter_is_guarded(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main.run(["bridge", "--explain", "NEW_IN_5_0"]) == ExitCode.USAGE
     said = capsys.readouterr().err
-    assert "'SDLOG_MODE' is no message and no command of the dialect" in said
-    assert "hint: a parameter of that name is not guarded" in said
+    assert "'NEW_IN_5_0' is no message and no command of the dialect" in said
+    assert "hint: if it is a parameter: no table here knows it" in said
 
 
 # ------------------------------------------------------------------------------------ words

@@ -12,11 +12,12 @@ from typing import Any
 import msgspec
 import pytest
 
+from gcs.bridge import bridge
 from gcs.exit_codes import ExitCode
 from gcs.graph.model import Edge, Flow, Graph, Kind, Node
 from gcs.graph.svg import as_svg
 from gcs.graph.text import as_dot, as_text
-from gcs.graph.traffic import Traffic
+from gcs.graph.traffic import FIRST_NUMBER, Traffic
 from gcs.report import DecisionItem, Direction, FrameItem, InputItem, RecordItem
 from gcs.topics.topic import Heard, live_topic, recorded_topic
 from gcs.wire.frame import Frame, split
@@ -247,3 +248,51 @@ def test_what_a_bridge_answers_goes_to_the_client_on_that_link(tmp_path: Path) -
     assert flows(graph, "hub", "1/1") == {"COMMAND_LONG": (1, None)}
     assert flows(graph, "hub", "254/190") == {"STATUSTEXT": (1, None)}
     assert flows(graph, "hub", "253/190") == {"STATUSTEXT": (2, None)}
+
+
+def test_what_mavlink_clients_are_answered_has_edges(tmp_path: Path) -> None:
+    """They are operators from 1000 up, and no line of an operator is theirs."""
+    assert FIRST_NUMBER == bridge.FIRST_NUMBER
+
+    def items() -> Iterator[RecordItem]:
+        yield FrameItem(0, Direction.RECEIVED, beat((1, 1), 2, 12))
+        for word, phase, outcome, code in (
+            ("goto", "verdict", "refused", "OUTSIDE_FENCE"),
+            ("arm", "verdict", "accepted", ""),
+            ("arm", "ending", "complete", ""),
+        ):
+            item = verdict(word, outcome, code)
+            yield msgspec.structs.replace(item, source="operator 1000", phase=phase)
+
+    graph = graph_of(record(tmp_path, items()))
+    assert flows(graph, "operator 1000", "hub") == {"goto": (1, None), "arm": (1, None)}
+    assert flows(graph, "hub", "operator 1000") == {
+        "refused OUTSIDE_FENCE": (1, None),
+        "accepted": (1, None),
+        "complete": (1, None),
+    }
+
+
+def test_topics_are_listed_with_each_frame_once(tmp_path: Path) -> None:
+    """A bridge has passed two of them on to a client, and refused one of the client's own."""
+    log = record(tmp_path, crossed())
+    told = json.loads(gcs("topic", "list", "--log", log, "--json").output)
+    assert {row["topic"]: row["messages"] for row in told if "mavlink" in row["topic"]} == {
+        "/mavlink/1/1/HEARTBEAT": 2,
+        "/mavlink/254/190/HEARTBEAT": 1,
+        "/mavlink/254/190/GPS_INPUT": 1,
+    }
+    told = json.loads(gcs("topic", "info", "HEARTBEAT", "--log", log, "--json").output)
+    assert [(row["topic"], row["messages"]) for row in told["topics"]] == [
+        ("/mavlink/1/1/HEARTBEAT", 2),
+        ("/mavlink/254/190/HEARTBEAT", 1),
+    ]
+
+
+def crossed() -> Iterator[RecordItem]:
+    beats = beat((1, 1), 2, 12)
+    yield FrameItem(1, Direction.RECEIVED, beat((254, 190), 6, 8))
+    for _ in range(2):
+        yield FrameItem(0, Direction.RECEIVED, beats)
+        yield FrameItem(1, Direction.SENT, beats)
+    yield FrameItem(1, Direction.REFUSED, frame_v2(232, bytes(63), source=(254, 190)))

@@ -73,6 +73,8 @@ def test_what_a_file_may_hold(tmp_path: Path, end: bytes) -> None:
         (b"ab" * 31 + b"a\n", "63 hexadecimal digits instead of 64"),
         (b"ab" * 33, "66 hexadecimal digits"),
         (b"one\ntwo\n", "more than one line"),
+        (b"hello\n", "5 bytes, and a passphrase has 12 at least"),
+        (b"password123", "11 bytes, and a passphrase has 12 at least"),
     ],
 )
 def test_what_is_no_key(tmp_path: Path, data: bytes, why: str) -> None:

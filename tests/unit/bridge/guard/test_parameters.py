@@ -33,6 +33,7 @@ from gcs.wire.messages import (
 from tests.unit.bridge.guard.wire import FLYING, PARKED, allowed, guard, refused, sent
 
 INT32, REAL32 = 6, 9
+NOW_NS = 10_000_000_000
 
 
 def bytewise(value: int) -> float:
@@ -48,7 +49,7 @@ def param_set(name: bytes, value: float = 0.0, kind: int = REAL32) -> ParamSet:
 
 
 def told(own: Guard, name: str, value: float, kind: int = REAL32) -> object:
-    return own.heard(ParamValue(value, 874, 65535, name, kind))
+    return own.heard(ParamValue(value, 874, 65535, name, kind), NOW_NS)
 
 
 def test_switching_the_fence_of_a_px4_off_is_refused_with_the_number_and_the_policys_key() -> None:
@@ -117,6 +118,24 @@ def test_a_policy_may_keep_the_height_of_a_take_off_too(rules: str) -> None:
     refused(guard(rules).judge(param_set(TAKEOFF_HEIGHT, 5.0), PARKED_BELOW_30_M))
 
 
+def test_after_a_write_the_height_is_awaited_until_the_vehicle_has_told_the_new_one() -> None:
+    """An answer to somebody who read it may have left the vehicle before the write came."""
+    own, seen = guard(), replace(PARKED_BELOW_30_M, now_ns=NOW_NS)
+    allowed(own.judge(param_set(TAKEOFF_HEIGHT, 20.0), seen))
+    assert own.awaits("MIS_TAKEOFF_ALT")
+    own.heard(ParamValue(2.5, 874, 400, "MIS_TAKEOFF_ALT", REAL32), NOW_NS + 100_000_000)
+    assert own.awaits("MIS_TAKEOFF_ALT"), "the old value"
+    own.heard(ParamValue(20.0, 874, 400, "MIS_TAKEOFF_ALT", REAL32), NOW_NS + 200_000_000)
+    assert not own.awaits("MIS_TAKEOFF_ALT")
+
+
+def test_a_write_that_the_vehicle_does_not_take_is_not_awaited_for_ever() -> None:
+    own, seen = guard(), replace(PARKED_BELOW_30_M, now_ns=NOW_NS)
+    allowed(own.judge(param_set(TAKEOFF_HEIGHT, 20.0), seen))
+    own.heard(ParamValue(2.5, 874, 400, "MIS_TAKEOFF_ALT", REAL32), NOW_NS + 3_000_000_000)
+    assert not own.awaits("MIS_TAKEOFF_ALT")
+
+
 def test_an_arducopter_has_no_such_height() -> None:
     own = guard(autopilot="ardupilot")
     refused(own.judge(param_set(TAKEOFF_HEIGHT, 5.0), PARKED_BELOW_30_M))
@@ -151,7 +170,7 @@ def test_a_parameter_that_nothing_stands_on_is_forwarded_and_told() -> None:
     assert told(own, "SDLOG_MODE", bytewise(0), INT32) is None
     note = allowed(own.judge(param_set(b"SDLOG_MODE", bytewise(1), INT32), FLYING)).note
     assert note == "SDLOG_MODE = 1 is forwarded; it is 0 now"
-    change = own.heard(ParamValue(bytewise(1), 874, 65535, "SDLOG_MODE", INT32))
+    change = own.heard(ParamValue(bytewise(1), 874, 65535, "SDLOG_MODE", INT32), NOW_NS)
     assert change is not None
     assert change.text == "SDLOG_MODE was 0 and is 1 now: written by 245/190"
     assert change.level is Level.INFO
@@ -164,9 +183,9 @@ def test_a_value_that_is_not_known_is_told_so() -> None:
 
 def test_a_fence_that_is_switched_off_past_the_bridge_is_told_as_a_warning() -> None:
     own = guard()
-    assert own.heard(ParamValue(bytewise(2), 874, 10, "GF_ACTION", INT32)) is None
-    assert own.heard(ParamValue(bytewise(2), 874, 10, "GF_ACTION", INT32)) is None
-    change = own.heard(ParamValue(bytewise(0), 874, 10, "GF_ACTION", INT32))
+    assert own.heard(ParamValue(bytewise(2), 874, 10, "GF_ACTION", INT32), NOW_NS) is None
+    assert own.heard(ParamValue(bytewise(2), 874, 10, "GF_ACTION", INT32), NOW_NS) is None
+    change = own.heard(ParamValue(bytewise(0), 874, 10, "GF_ACTION", INT32), NOW_NS)
     assert change is not None
     assert change.level is Level.WARNING
     assert change.text == "GF_ACTION was 2 and is 0 now, and no client of this bridge wrote it"

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs.bridge.classes.row import Kind
-from gcs.bridge.classes.tables import COMMAND_ROWS, MESSAGE_ROWS
+from gcs.bridge.classes.tables import command_rows, message_rows
 from gcs.bridge.guard.commands import ROWS
 from gcs.bridge.guard.guard import Guard
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Refused
@@ -171,7 +171,7 @@ PLANS = {"MISSION_ITEM", "MISSION_ITEM_INT"}
 
 
 def test_every_message_and_command_that_is_configuration_has_a_rule() -> None:
-    for msgid, row in MESSAGE_ROWS.items():
+    for msgid, row in message_rows().items():
         if row.kind is Kind.CONFIGURATION and row.name not in PLANS:
             message = decode(
                 Frame(b"", 0, CLIENT.sysid, CLIENT.compid, msgid, bytes(255), b"", True)
@@ -180,7 +180,7 @@ def test_every_message_and_command_that_is_configuration_has_a_rule() -> None:
             judgement = guard(LENIENT).judge(message, PARKED)
             if isinstance(judgement, Refused):
                 assert judgement.refusal.code is not Code.UNSUPPORTED, row.name
-    configuration = {n for n, row in COMMAND_ROWS.items() if row.kind is Kind.CONFIGURATION}
+    configuration = {n for n, row in command_rows().items() if row.kind is Kind.CONFIGURATION}
     assert configuration == set(ROWS)
 
 
