@@ -52,10 +52,19 @@ class Joystick:
         """How far outside the vehicle was at the most; negative: inside."""
         self._count = 0
 
-    def fly(self, seconds: float, x: int = 0, y: int = 0, z: int = MIDDLE, r: int = 0) -> None:
+    def fly(
+        self,
+        seconds: float,
+        x: int = 0,
+        y: int = 0,
+        z: int = MIDDLE,
+        r: int = 0,
+        buttons: int = 0,
+    ) -> None:
         """Hold the sticks so for a while; heartbeats go on."""
         for _ in range(round(seconds / PERIOD_S)):
-            self.client.send(dialect.MAVLink_manual_control_message(VEHICLE[0], x, y, z, r, 0))
+            sticks = dialect.MAVLink_manual_control_message(VEHICLE[0], x, y, z, r, buttons)
+            self.client.send(sticks)
             if self._count % 25 == 0:
                 self.client.beat()
             self._count += 1
@@ -207,6 +216,9 @@ def test_a_goto_flies_beside_sticks_in_the_middle(personality: Personality) -> N
     joystick.fly(20.0)
     assert flight.is_in(State.HOVERING)
     assert flight.truth_enu()[1] == pytest.approx(15.0, abs=1.0)
+    joystick.fly(8.0, buttons=4)
+    assert client.texts().count("buttons of a joystick are ignored") == 1
+    assert flight.is_in(State.HOVERING)
     assert masks(flight, since_ns) == {POSITION_ONLY}
     assert not flight.decisions("refused")
 
