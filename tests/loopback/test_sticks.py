@@ -345,6 +345,22 @@ def test_the_position_mode_is_flown_by_the_gate(personality: Personality) -> Non
     assert not flight.decisions("refused")
 
 
+def test_a_px4_set_to_posctl_on_the_ground_arms_and_takes_off() -> None:
+    """QGroundControl's joystick: Position first, then arm.  A PX4 that hears no sticks does not
+    arm in POSCTL (B4_posctl_mode_without_stream of scenarios_px4.json)."""
+    flight, client = ready("px4")
+    joystick = Joystick(flight, client)
+    joystick.fly(1.0)
+    assert client.ask(SET_MODE, *POSITION_MODE["px4"]) == ACCEPTED
+    joystick.fly(1.0)
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    assert client.ask(TAKE_OFF, 0, 0, 0, *[math.nan] * 4) == ACCEPTED
+    joystick.fly(12.0)
+    assert flight.is_in(State.HOVERING)
+    joystick.fly(2.0, z=1000)
+    assert flight.is_in(State.STREAMING)
+
+
 @both
 def test_a_stick_leaves_no_hold(personality: Personality) -> None:
     """Somebody has stopped the vehicle: a stick that is pushed on does not fly it again."""

@@ -394,6 +394,18 @@ def test_posctl_where_the_gate_hovers_already(message: Message) -> None:
     assert words(meaning_of(message, other)) == ["control"]
 
 
+def test_posctl_on_the_ground_is_a_mode_that_px4_arms_in() -> None:
+    """B4_posctl_mode_without_stream of scenarios_px4.json: arming in POSCTL is
+    TEMPORARILY_REJECTED while the vehicle hears no sticks, and it hears none of a client's."""
+    meaning = meaning_of(px4("POSCTL"), standing(PX4, has_sticks=True))
+    assert words(meaning) == ["hold"]
+    assert isinstance(meaning, Words)
+    assert "take off, then the sticks fly" in meaning.note
+    assert words(meaning_of(px4("POSCTL"), standing(PX4))) == ["mode"]
+    armed = standing(PX4, has_sticks=True, armed=True)
+    assert refusal(meaning_of(px4("POSCTL"), armed)).startswith("POLICY")
+
+
 def test_loiter_is_a_stop_for_everybody_else() -> None:
     """Never refused: who is not in control, who has no sticks, on the ground."""
     for changed in ({"in_control": False}, {"has_sticks": False}, {"on_ground": True}):
