@@ -16,6 +16,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.gate.states import Control, State
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.fleet import Fleet
 from tests.loopback.flight import PERSONALITIES, Personality
 from vehicle_sim.simulation.fault_script import fault_of
 
@@ -409,3 +410,19 @@ def test_no_stick_and_no_channel_of_a_client_reaches_the_vehicle(personality: Pe
     assert no_stick_was_forwarded(flight)
     refused = [item.code for item in flight.decisions("refused")]
     assert refused == ["UNSUPPORTED", "DEADLINE"], "the channels; the stick, silent since"
+
+
+def test_a_joystick_flies_the_vehicle_that_it_is_for() -> None:
+    flight = Fleet()
+    client = flight.all_flying()
+    before = {sysid: flight.place_enu(sysid) for sysid in (1, 2)}
+    for count in range(75):
+        x = 800 if count > 4 else 0
+        client.send(dialect.MAVLink_manual_control_message(2, x, 0, MIDDLE, 0, 0))
+        flight.run(PERIOD_S)
+    assert [flight.state_of(sysid) for sysid in (1, 2)] == [State.HOVERING, State.STREAMING]
+    assert math.dist(flight.place_enu(1), before[1]) < 0.5
+    assert math.dist(flight.place_enu(2), before[2]) > 3.0
+    client.send(dialect.MAVLink_manual_control_message(1, 800, 0, MIDDLE, 0, 0))
+    flight.run(0.2)
+    assert flight.state_of(1) is State.HOVERING, "its sticks were not in the middle yet"
