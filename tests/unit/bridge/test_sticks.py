@@ -322,6 +322,35 @@ def test_a_gap_in_a_flown_stream_needs_no_middle() -> None:
     assert isinstance(joystick.sends(x=1000)[0], Sample)
     joystick.is_in(State.STALE)
     assert isinstance(joystick.sends(x=1000)[0], Sample)
+    joystick.is_in(State.STREAMING)
+    assert isinstance(joystick.sends(x=1000)[0], Sample)
+
+
+def test_a_stream_that_a_position_too_old_interrupts_is_not_ended_meanwhile() -> None:
+    joystick = Joystick()
+    joystick.sends()
+    joystick.sends(x=1000)
+    joystick.is_in(State.STALE)
+    assert all(isinstance(each, Sample) for each in joystick.sends(2.0))
+    joystick.is_in(State.STREAMING)
+    assert words(joystick.sends()[0]) == ["stream_end"]
+
+
+def test_a_stick_that_was_held_through_a_hold_flies_nothing() -> None:
+    joystick = Joystick()
+    joystick.sends()
+    joystick.sends(x=1000)
+    joystick.is_in(State.HOLDING)
+    assert all(isinstance(each, Sample) for each in joystick.sends(1.0, x=1000)), "told HOLDING"
+    joystick.is_in(State.HOVERING)
+    assert refusal(joystick.sends(x=1000)[0]).startswith("POLICY")
+
+
+def test_in_the_air_a_throttle_at_its_bottom_asks_for_a_descent() -> None:
+    """Which a hold does not fly, and the gate says so."""
+    joystick = Joystick()
+    joystick.is_in(State.HOLDING)
+    assert isinstance(joystick.sends(z=0)[0], Sample)
 
 
 @BOTH
