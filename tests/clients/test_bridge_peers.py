@@ -62,6 +62,27 @@ def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_pa
 
 
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+def test_sticks_of_mavsdk_fly_and_cannot_leave(personality: Personality, tmp_path: Path) -> None:
+    """Its manual_control plugin: position control, then full stick at the fence for 25 s."""
+    with bridged(personality, tmp_path) as flight:
+        url = URLS["mavsdk"].format(flight.clients[0])
+        words = ("be_healthy", "take_off", "sticks", "land")
+        lines = end_peer(start_peer("mavsdk", url, flight, *words))
+    print(*lines, sep="\n")
+    in_order(
+        lines,
+        "^position control: accepted",
+        "^full stick: came",
+        "^full stick back True",
+        "^flew forward True",
+        "^goto: accepted",
+        "^landed and disarmed",
+    )
+    assert any("Stream refused (CANNOT_STOP)" in line for line in flight.said)
+    assert flight.truth.outside() == []
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
 def test_two_at_once_and_one_in_control(personality: Personality, tmp_path: Path) -> None:
     """Both on one port.  The other one reads everything, and is told who is in control."""
     with bridged(personality, tmp_path) as flight:

@@ -480,12 +480,26 @@ FLYING: Final[tuple[Act, ...]] = (
 """Of clients that want to get somewhere."""
 
 
-def flown(seed: int, seconds: float = 40.0) -> HostileFlight:
+PILOTS: Final[tuple[Act, ...]] = (
+    *[gets_going] * 4,
+    *[goes] * 3,
+    *[joystick_at_the_fence] * 16,
+    *[modes] * 2,
+    sticks,
+    velocity_at_the_fence,
+    *[random_frame] * 4,
+    *[waits] * 3,
+    *[beats] * 3,
+)
+"""Of clients with a joystick."""
+
+
+def flown(seed: int, seconds: float = 40.0, acts: tuple[Act, ...] | None = None) -> HostileFlight:
     """Hostile flight number `seed`, with a take-off at its beginning.  Raises AssertionError."""
     flight = HostileFlight(seed)
     flight.connected()
     arms_and_takes_off(flight, flight.hostile[0])
-    acts = flight.dice.choice((ACTS, FLYING, FLYING))
+    acts = acts or flight.dice.choice((ACTS, FLYING, FLYING))
     while flight.elapsed_s < seconds and flight.finish is None:
         client = flight.hostile[0] if flight.dice.random() < 0.7 else flight.hostile[1]
         for _ in range(flight.dice.choice((1, 1, 1, 5))):

@@ -17,6 +17,7 @@ from tests.loopback.looks import START_NS
 
 FLIGHTS = 200
 FLIGHTS_IN_EACH_RUN = 6
+PILOTS_IN_EACH_RUN = 2
 
 flights = pytest.mark.parametrize(
     "seed",
@@ -32,11 +33,33 @@ def test_no_client_gets_the_vehicle_out_of_the_fence(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Every one of these flights is recorded and audited, not a share of them."""
+    audited(seed, monkeypatch)
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(seed, marks=[pytest.mark.soak] if seed >= PILOTS_IN_EACH_RUN else [])
+        for seed in range(FLIGHTS)
+    ],
+)
+def test_no_joystick_gets_the_vehicle_out_of_the_fence(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    audited(seed, monkeypatch, bridge_clients.PILOTS)
+
+
+def audited(
+    seed: int,
+    monkeypatch: pytest.MonkeyPatch,
+    acts: tuple[bridge_clients.Act, ...] | None = None,
+) -> None:
+    """A hostile flight, and the audit of its record."""
     tape = Tape()
     recorder = Recorder.without_file(tape, START_NS)
     monkeypatch.setattr(Flight, "new_recorder", staticmethod(lambda: recorder))
     try:
-        flight = bridge_clients.flown(seed)
+        flight = bridge_clients.flown(seed, acts=acts)
     except AssertionError as broken:
         raise AssertionError(f"hostile flight {seed}: {broken}") from broken
     assert flight.decisions("refused"), "nothing that was sent was refused"

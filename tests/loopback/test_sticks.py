@@ -16,6 +16,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.gate.states import Control, State
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.fleet import Fleet
 from tests.loopback.flight import PERSONALITIES, Personality
 from vehicle_sim.simulation.fault_script import fault_of
 
@@ -52,10 +53,19 @@ class Joystick:
         """How far outside the vehicle was at the most; negative: inside."""
         self._count = 0
 
-    def fly(self, seconds: float, x: int = 0, y: int = 0, z: int = MIDDLE, r: int = 0) -> None:
+    def fly(
+        self,
+        seconds: float,
+        x: int = 0,
+        y: int = 0,
+        z: int = MIDDLE,
+        r: int = 0,
+        buttons: int = 0,
+    ) -> None:
         """Hold the sticks so for a while; heartbeats go on."""
         for _ in range(round(seconds / PERIOD_S)):
-            self.client.send(dialect.MAVLink_manual_control_message(VEHICLE[0], x, y, z, r, 0))
+            sticks = dialect.MAVLink_manual_control_message(VEHICLE[0], x, y, z, r, buttons)
+            self.client.send(sticks)
             if self._count % 25 == 0:
                 self.client.beat()
             self._count += 1
@@ -207,6 +217,9 @@ def test_a_goto_flies_beside_sticks_in_the_middle(personality: Personality) -> N
     joystick.fly(20.0)
     assert flight.is_in(State.HOVERING)
     assert flight.truth_enu()[1] == pytest.approx(15.0, abs=1.0)
+    joystick.fly(8.0, buttons=4)
+    assert client.texts().count("buttons of a joystick are ignored") == 1
+    assert flight.is_in(State.HOVERING)
     assert masks(flight, since_ns) == {POSITION_ONLY}
     assert not flight.decisions("refused")
 
@@ -234,10 +247,9 @@ def test_on_the_ground_no_stick_arms_or_takes_off(personality: Personality) -> N
     """Neither as PX4's stick gesture, nor as ArduPilot's: the throttle down and the yaw right."""
     flight, client = ready(personality)
     joystick = Joystick(flight, client)
-    told = client.texts()
     joystick.fly(5.0)
     joystick.fly(5.0, z=0)
-    assert client.texts() == told, "sticks at rest are no news"
+    assert "stream" not in client.texts(), "sticks at rest are no news"
     assert not flight.decisions()
     joystick.fly(5.0, z=0, r=1000)
     assert not flight.vehicle.armed
@@ -268,7 +280,7 @@ def test_a_joystick_that_is_lost_is_held_within_the_deadmans_time(
 ) -> None:
     flight, client, joystick = flying(personality)
     joystick.fly(0.2)
-    joystick.fly(3.0, y=1000)
+    joystick.fly(3.0, y=600)
     silent_ns = flight.now_ns
     flight.run(POLICY.stream.deadman_s - 0.1)
     assert flight.setpoints(silent_ns)[-1].type_mask == VELOCITY_AND_RATE
@@ -334,6 +346,22 @@ def test_the_position_mode_is_flown_by_the_gate(personality: Personality) -> Non
     assert not flight.decisions("refused")
 
 
+def test_a_px4_set_to_posctl_on_the_ground_arms_and_takes_off() -> None:
+    """QGroundControl's joystick: Position first, then arm.  A PX4 that hears no sticks does not
+    arm in POSCTL (B4_posctl_mode_without_stream of scenarios_px4.json)."""
+    flight, client = ready("px4")
+    joystick = Joystick(flight, client)
+    joystick.fly(1.0)
+    assert client.ask(SET_MODE, *POSITION_MODE["px4"]) == ACCEPTED
+    joystick.fly(1.0)
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    assert client.ask(TAKE_OFF, 0, 0, 0, *[math.nan] * 4) == ACCEPTED
+    joystick.fly(12.0)
+    assert flight.is_in(State.HOVERING)
+    joystick.fly(2.0, z=1000)
+    assert flight.is_in(State.STREAMING)
+
+
 @both
 def test_a_stick_leaves_no_hold(personality: Personality) -> None:
     """Somebody has stopped the vehicle: a stick that is pushed on does not fly it again."""
@@ -381,4 +409,20 @@ def test_no_stick_and_no_channel_of_a_client_reaches_the_vehicle(personality: Pe
     flight.run(1)
     assert no_stick_was_forwarded(flight)
     refused = [item.code for item in flight.decisions("refused")]
-    assert refused == ["UNSUPPORTED"], "released channels ask for nothing"
+    assert refused == ["UNSUPPORTED", "DEADLINE"], "the channels; the stick, silent since"
+
+
+def test_a_joystick_flies_the_vehicle_that_it_is_for() -> None:
+    flight = Fleet()
+    client = flight.all_flying()
+    before = {sysid: flight.place_enu(sysid) for sysid in (1, 2)}
+    for count in range(75):
+        x = 800 if count > 4 else 0
+        client.send(dialect.MAVLink_manual_control_message(2, x, 0, MIDDLE, 0, 0))
+        flight.run(PERIOD_S)
+    assert [flight.state_of(sysid) for sysid in (1, 2)] == [State.HOVERING, State.STREAMING]
+    assert math.dist(flight.place_enu(1), before[1]) < 0.5
+    assert math.dist(flight.place_enu(2), before[2]) > 3.0
+    client.send(dialect.MAVLink_manual_control_message(1, 800, 0, MIDDLE, 0, 0))
+    flight.run(0.2)
+    assert flight.state_of(1) is State.HOVERING, "its sticks were not in the middle yet"

@@ -69,7 +69,7 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
         case FlightMode.MISSION | FlightMode.RETURN | FlightMode.LAND:
             return _flown_by_itself(wanted, seen)
         case FlightMode.OTHER if seen.on_ground and not seen.armed:
-            return mode(wanted.name)
+            return _waits_for_take_off(wanted, seen) or mode(wanted.name)
         case FlightMode.OTHER if wanted.name in _POSITION_MODES and not seen.on_ground:
             return _position_mode(wanted, seen)
         case FlightMode.OTHER:
@@ -80,6 +80,14 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
 _POSITION_MODES = frozenset({"POSCTL", "POSHOLD"})
 """Modes in which the vehicle stays where it is until a stick is moved, and again after that."""
 _HOVER_AGAIN = (ipc.Ask(0, "hold"), ipc.Ask(0, "resume"))
+
+
+def _waits_for_take_off(wanted: Mode, seen: Seen) -> Words | None:
+    """PX4 does not arm in POSCTL while it hears no sticks (recorded), and it hears none here."""
+    if not (wanted.name == "POSCTL" and seen.has_sticks and seen.in_control):
+        return None
+    held = _sent(seen.autopilot, FlightMode.HOLD)
+    return ask("hold", f"{wanted.name}: {held} on the ground; take off, then the sticks fly")
 
 
 def _position_mode(wanted: Mode, seen: Seen) -> Meaning:

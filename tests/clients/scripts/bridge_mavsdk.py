@@ -16,6 +16,7 @@ from collections.abc import Callable
 from mavsdk.plugins import geofence as fences
 from mavsdk.plugins import mission_raw as raw
 from mavsdk.plugins.action import Action
+from mavsdk.plugins.manual_control import ManualControl
 from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
@@ -77,25 +78,14 @@ class Peer:
     # --------------------------------------------------------------------------- flying
 
     def fly(self) -> None:
-        if self.autopilot == "ardupilot":
-            ask_for_streams(self.telemetry)
-        until(self.telemetry.health_all_ok, "health all ok", 40.0)
-        print("healthy", flush=True)
-        until(lambda: math.isfinite(self.telemetry.home().latitude_deg), "home")
+        self.be_healthy()
         everything = Param(self.system).get_all_params()
         print("all parameters", len(everything.float_params) >= 30, flush=True)
         plan = self.mission((15, 0), (15, -15), (0, -15), last=21)
         self.done("upload", raw.MissionRaw(self.system).upload_mission, plan)
         back = raw.MissionRaw(self.system).download_mission()
         print("mission", [each.command for each in back] == [each.command for each in plan])
-        self.done("take-off height", self.action.set_takeoff_altitude, UP_M)
-        self.done("arm", self.action.arm)
-        self.done("take-off", self.action.takeoff)
-        until(lambda: self.here()[2] > UP_M - 1.0, "up", 30.0)
-        if self.autopilot == "px4":
-            until(lambda: self.telemetry.flight_mode() is FlightMode.HOLD, "taken off")
-        time.sleep(3.0)
-        print("took off", flush=True)
+        self.take_off()
         self.done("goto", self.goto, 12.0, 0.0, UP_M)
         self.come_to(12.0, 0.0, UP_M)
         self.done("hold", self.action.hold)
@@ -113,6 +103,23 @@ class Peer:
         until(lambda: self.telemetry.flight_mode() is FlightMode.RETURN_TO_LAUNCH, "returns", 20.0)
         print("returns", flush=True)
         self.done("hold", self.action.hold)
+
+    def be_healthy(self) -> None:
+        if self.autopilot == "ardupilot":
+            ask_for_streams(self.telemetry)
+        until(self.telemetry.health_all_ok, "health all ok", 40.0)
+        print("healthy", flush=True)
+        until(lambda: math.isfinite(self.telemetry.home().latitude_deg), "home")
+
+    def take_off(self) -> None:
+        self.done("take-off height", self.action.set_takeoff_altitude, UP_M)
+        self.done("arm", self.action.arm)
+        self.done("take-off", self.action.takeoff)
+        until(lambda: self.here()[2] > UP_M - 1.0, "up", 30.0)
+        if self.autopilot == "px4":
+            until(lambda: self.telemetry.flight_mode() is FlightMode.HOLD, "taken off")
+        time.sleep(3.0)
+        print("took off", flush=True)
 
     def mission(self, *places: tuple[float, float], last: int) -> list[raw.MissionItem]:
         """Take-off, waypoints north and east of home, and a last item: 20 return, 21 land."""
@@ -153,6 +160,32 @@ class Peer:
         print("offboard body velocity", flush=True)
         self.done("offboard ended", control.stop)
         time.sleep(2.0)
+
+    def sticks(self) -> None:
+        """A joystick, 25 times a second: forward at the fence of the yard, back, and let go of."""
+        control = ManualControl(self.system)
+        self.push(control, 0.5)
+        self.done("position control", control.start_position_control)
+        self.push(control, 1.0)
+        north_m = self.here()[0]
+        far_m = self.push(control, 25.0, x=1.0)
+        print(f"full stick: came {far_m:.0f} m", flush=True)
+        self.push(control, 3.0)
+        held_m = self.here()[0]
+        self.push(control, 4.0, x=-0.6)
+        print("full stick back", abs(self.here()[0] - held_m) > 4.0, flush=True)
+        print("flew forward", held_m - north_m > 20.0, flush=True)
+        self.push(control, 3.0)
+        self.done("goto", self.goto, 0.0, 0.0, UP_M)
+
+    def push(self, control: ManualControl, seconds: float, x: float = 0.0) -> float:
+        """Forward; the throttle is in its middle.  How far from home it came."""
+        end_s, far_m = time.monotonic() + seconds, 0.0
+        while time.monotonic() < end_s:
+            control.set_manual_control_input(x, 0.0, 0.5, 0.0)
+            far_m = max(far_m, *(abs(each) for each in self.here()[:2]))
+            time.sleep(0.04)
+        return far_m
 
     def land(self) -> None:
         self.done("land", self.action.land)

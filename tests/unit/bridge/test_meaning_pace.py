@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from gcs.bridge.meaning.meaning import Forward, Sample, Seen, Words
+from gcs.bridge.meaning.meaning import Forward, Sample, Seen, Sticks, Words
 from gcs.bridge.meaning.pace import Pace
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.frames import Vec3
@@ -29,7 +29,9 @@ class Client:
         message = SetPositionTargetLocalNed(
             0, *place, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3576, 1, 1, MavFrame.LOCAL_NED
         )
-        meaning = self.pace.settle(meaning_of(message, self.seen), self.now_ns)
+        meant = meaning_of(message, self.seen)
+        assert not isinstance(meant, Sticks)
+        meaning = self.pace.settle(meant, self.now_ns)
         if isinstance(meaning, Sample):
             return "sample"
         assert isinstance(meaning, Words)

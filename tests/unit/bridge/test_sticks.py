@@ -99,7 +99,7 @@ def test_manual_control_with_the_nose_north(
     assert asked.sample.v_ned == pytest.approx(v_ned, abs=1e-4)
     assert asked.sample.yaw_rate_rad_s == pytest.approx(math.radians(rate_deg_s), abs=1e-4)
     assert asked.sample.pos_ned is None
-    assert asked.centred == (v_ned == (0, 0, 0) and rate_deg_s == 0)
+    assert asked.centred is not any((*v_ned, rate_deg_s))
 
 
 @pytest.mark.parametrize(
@@ -322,6 +322,35 @@ def test_a_gap_in_a_flown_stream_needs_no_middle() -> None:
     assert isinstance(joystick.sends(x=1000)[0], Sample)
     joystick.is_in(State.STALE)
     assert isinstance(joystick.sends(x=1000)[0], Sample)
+    joystick.is_in(State.STREAMING)
+    assert isinstance(joystick.sends(x=1000)[0], Sample)
+
+
+def test_a_stream_that_a_position_too_old_interrupts_is_not_ended_meanwhile() -> None:
+    joystick = Joystick()
+    joystick.sends()
+    joystick.sends(x=1000)
+    joystick.is_in(State.STALE)
+    assert all(isinstance(each, Sample) for each in joystick.sends(2.0))
+    joystick.is_in(State.STREAMING)
+    assert words(joystick.sends()[0]) == ["stream_end"]
+
+
+def test_a_stick_that_was_held_through_a_hold_flies_nothing() -> None:
+    joystick = Joystick()
+    joystick.sends()
+    joystick.sends(x=1000)
+    joystick.is_in(State.HOLDING)
+    assert all(isinstance(each, Sample) for each in joystick.sends(1.0, x=1000)), "told HOLDING"
+    joystick.is_in(State.HOVERING)
+    assert refusal(joystick.sends(x=1000)[0]).startswith("POLICY")
+
+
+def test_in_the_air_a_throttle_at_its_bottom_asks_for_a_descent() -> None:
+    """Which a hold does not fly, and the gate says so."""
+    joystick = Joystick()
+    joystick.is_in(State.HOLDING)
+    assert isinstance(joystick.sends(z=0)[0], Sample)
 
 
 @BOTH
@@ -392,6 +421,18 @@ def test_posctl_where_the_gate_hovers_already(message: Message) -> None:
     assert words(meaning_of(message, taken)) == ["control"]
     other = hovering(has_sticks=True, in_control=False)
     assert words(meaning_of(message, other)) == ["control"]
+
+
+def test_posctl_on_the_ground_is_a_mode_that_px4_arms_in() -> None:
+    """B4_posctl_mode_without_stream of scenarios_px4.json: arming in POSCTL is
+    TEMPORARILY_REJECTED while the vehicle hears no sticks, and it hears none of a client's."""
+    meaning = meaning_of(px4("POSCTL"), standing(PX4, has_sticks=True))
+    assert words(meaning) == ["hold"]
+    assert isinstance(meaning, Words)
+    assert "take off, then the sticks fly" in meaning.note
+    assert words(meaning_of(px4("POSCTL"), standing(PX4))) == ["mode"]
+    armed = standing(PX4, has_sticks=True, armed=True)
+    assert refusal(meaning_of(px4("POSCTL"), armed)).startswith("POLICY")
 
 
 def test_loiter_is_a_stop_for_everybody_else() -> None:
