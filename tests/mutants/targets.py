@@ -67,6 +67,12 @@ class Target:
             if not any(path.relative_to(self.root).match(pattern) for pattern in skipped)
         )
 
+    def test_files(self) -> list[Path]:
+        """In the order of their names."""
+        paths = [self.root / test for test in self.tests]
+        files = [file for path in paths for file in path.rglob("*.py")]
+        return sorted({*files, *(path for path in paths if path.is_file())})
+
 
 TARGETS: Final = {
     target.name: target
