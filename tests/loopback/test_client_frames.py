@@ -14,7 +14,7 @@ from pymavlink.dialects.v10 import all as v10
 from pymavlink.dialects.v20 import all as v20
 
 from gcs.bridge.routing import target_of
-from gcs.report import Direction, FrameItem
+from gcs.report import Direction, FrameItem, FramesItem
 from gcs.session import inputs
 from gcs.session.client_frames import UPGRADES_NS
 from gcs.wire.frame import Frame, split
@@ -37,9 +37,11 @@ def loss_of(client: Client) -> Any:
 def frames(flight: BridgedFlight, direction: Direction, link: int) -> list[Frame]:
     """Of the record."""
     raws = [
-        item.raw
+        raw
         for _, item in flight.records
-        if isinstance(item, FrameItem) and (item.direction, item.link) == (direction, link)
+        if isinstance(item, FrameItem | FramesItem)
+        and (item.direction, item.link) == (direction, link)
+        for raw in (item.raws if isinstance(item, FramesItem) else (item.raw,))
     ]
     return [item for raw in raws for item in split(raw) if isinstance(item, Frame)]
 

@@ -96,8 +96,14 @@ TARGETS: Final = {
         Target(
             name="bridge",
             packages=("gcs/bridge",),
-            tests=("tests/unit/bridge", "tests/loopback/test_bridge.py"),
+            tests=(
+                "tests/unit/bridge",
+                "tests/unit/test_policy_file.py",
+                "tests/loopback/test_bridge.py",
+                "tests/loopback/test_operator_control.py",
+            ),
             nearest=(
+                ("gcs/bridge/guard/names.py", ("tests/unit/test_policy_file.py",)),
                 ("gcs/bridge/guard", ("tests/unit/bridge/guard",)),
                 ("gcs/bridge/meaning", ("tests/unit/bridge/test_meaning",)),
                 ("gcs/bridge/plans", ("tests/unit/bridge/test_plan",)),
