@@ -162,6 +162,7 @@ class Incoming:
 
     def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of a MAVLink client: judged first, because the record says how."""
+        self._links.client_spoke(link, frame.raw)
         judged = self._bridge.from_client(link, frame, now_ns)
         direction = Direction.REFUSED if judged.refused else Direction.RECEIVED
         return [Record(FrameItem(link, direction, frame.raw)), *judged.effects]

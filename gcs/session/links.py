@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem
+from gcs.session.client_frames import ClientFrames
 from gcs.session.effects import Effect, Record, Transmit
 from gcs.session.signatures import NO_KEYS, Signatures
 from gcs.wire.codec import FrameWriter
@@ -77,6 +78,7 @@ class Links:
         """Of the links that vehicles are on, since the start."""
         self._named: dict[tuple[int, int, int], FrameWriter] = {}
         """Who writes in the name of a component: by link, system and component."""
+        self._clients: dict[int, ClientFrames] = {}
 
     def split(self, link: int, data: bytes, frames: Sequence[Frame] = ()) -> Sequence[Item]:
         """Frames and garbage in `data`; `frames` where a datagram was split already.
@@ -101,25 +103,43 @@ class Links:
     def open(self, link: int, stream: bool) -> None:
         """A client's link is there; its number may have been another one's before."""
         self._splitters.pop(link, None)
+        self._clients[link] = ClientFrames()
         if stream:
             self._splitters[link] = StreamSplitter()
 
     def close(self, link: int) -> None:
         """A client's link is gone."""
         self._splitters.pop(link, None)
+        self._clients.pop(link, None)
         for key in [key for key in self._named if key[0] == link]:
             del self._named[key]
 
+    def client_spoke(self, link: int, raw: bytes) -> None:
+        """A good frame came in on a client's link: its MAVLink version is one that it knows.
+
+        A link with a key has MAVLink 2 alone, as version 1 has no signatures.
+        """
+        if not self._signatures.signed(link):
+            self._clients[link].spoke(raw)
+
     def pass_on(self, link: int, raw: bytes, now_ns: int) -> list[Effect]:
         """A frame on a link, and its record: signed where the link has a key, else unchanged."""
+        return self._and_records(self.unrecorded(link, raw, now_ns))
+
+    def _and_records(self, transmits: list[Transmit]) -> list[Effect]:
         return [
             effect
-            for sent in self.unrecorded(link, raw, now_ns)
-            for effect in (sent, Record(FrameItem(link, Direction.SENT, sent.data)))
+            for sent in transmits
+            for effect in (sent, Record(FrameItem(sent.link, Direction.SENT, sent.data)))
         ]
 
     def unrecorded(self, link: int, raw: bytes, now_ns: int) -> list[Transmit]:
         """The same without its record; nothing where it cannot be signed."""
+        client = self._clients.get(link)
+        passed = [raw] if client is None else client.passed([raw], now_ns)
+        return [sent for each in passed for sent in self._leaving(link, each, now_ns)]
+
+    def _leaving(self, link: int, raw: bytes, now_ns: int) -> list[Transmit]:
         try:
             sent = Transmit(link, self._signatures.outgoing(link, raw, now_ns))
         except UnsignableError:
@@ -130,8 +150,9 @@ class Links:
 
     def together(self, link: int, raws: Sequence[bytes], now_ns: int) -> list[Transmit]:
         """Frames that came together, unrecorded: on a client's link they leave together, too."""
+        raws = self._clients[link].passed(raws, now_ns)
         if self._signatures.signed(link):
-            signed = [sent for raw in raws for sent in self.unrecorded(link, raw, now_ns)]
+            signed = [sent for raw in raws for sent in self._leaving(link, raw, now_ns)]
             raws = [sent.data for sent in signed]
         return [Transmit(link, data) for data in datagrams(raws)]
 
@@ -143,7 +164,11 @@ class Links:
             if len(self._named) >= MOST_NAMES:
                 self._named.clear()
             writer = self._named[key] = FrameWriter(source.sysid, source.compid)
-        return self.pass_on(link, writer.write(message), now_ns)
+        raw: bytes | None = writer.write(message)
+        client = self._clients.get(link)
+        if raw is not None and client is not None:
+            raw = client.answer(raw)
+        return [] if raw is None else self._and_records(self._leaving(link, raw, now_ns))
 
     def send(self, link: int, message: Message, now_ns: int) -> list[Effect]:
         """One frame on one link, and its record; nothing where no peer is known."""

@@ -23,6 +23,7 @@ from gcs.protocol.autopilot import Autopilot, autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.protocol.transfer import PlanMessage
+from gcs.protocol.vehicle_control import VehicleControl
 from gcs.report import FenceShape, ParamItem, SetpointItem
 from gcs.session import recorded, settings, teller
 from gcs.session.commands import Commands
@@ -78,6 +79,7 @@ INTERPRETED: Final = frozenset(
         m.CommandLong,
         m.Statustext,
         m.AutopilotVersion,
+        m.ControlStatus,
     )
 )
 """Ids of the messages that `Vehicle` does something with; the others are only counted."""
@@ -119,6 +121,7 @@ class Vehicle:
         self._missions = Missions(own, times)
         self._words = Words(times)
         self._events = Events(own, self._words, times)
+        self._control = VehicleControl(own)
         self._roster = Roster(config.target_sysid, times, gone_ns)
         self._reasons = Reasons(self._words, times)
         self._met_ns = 0
@@ -267,6 +270,10 @@ class Vehicle:
             work += logged(self._words.text(heard.compid, message, now_ns))
         elif isinstance(message, m.AutopilotVersion):
             work.append(Record(recorded.vehicle(telemetry, message, self._of)))
+        elif isinstance(message, m.ControlStatus):
+            if text := self._control.heard(message):
+                level = Level.WARNING if self._control.another else Level.INFO
+                work.append(Log(level, NODE, text))
         elif type(message) in EVENT_MESSAGES and heard.compid == telemetry.compid:
             work += self._events.heard(heard, now_ns)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
@@ -453,7 +460,7 @@ class Vehicle:
     def ask_mission(self, asked: AskMission, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""
         state, policy = self.gate.state, self._port.policy
-        return self._missions.ask(
+        return self._ask_for_control(now_ns) + self._missions.ask(
             asked.request_id,
             asked.ask,
             self.telemetry,
@@ -463,6 +470,14 @@ class Vehicle:
             asked.plan,
             asked.kind,
         )
+
+    def _ask_for_control(self, now_ns: int) -> list[Work]:
+        """Of a vehicle that has operator control, and obeys another station or nobody yet."""
+        if self.telemetry is None:
+            return []
+        address = Address(self.telemetry.sysid, self.telemetry.compid)
+        command = self._control.before_command(address, now_ns)
+        return [] if command is None else self._commands.send_own(command, now_ns)
 
     def file(self, news: FileRead | FileWritten, now_ns: int) -> list[Work]:
         if self.telemetry is None:
@@ -476,8 +491,14 @@ class Vehicle:
     def leave(self) -> list[Work]:
         """The session ends: a mission job that is under way ends with it; what the flight stood on
         is attached to the record."""
+        released: list[Work] = []
+        if self.telemetry is not None:
+            address = Address(self.telemetry.sysid, self.telemetry.compid)
+            command = self._control.release(address)
+            released = [] if command is None else [Send(command)]
         return [
             *self._missions.leave(),
+            *released,
             *recorded.stood_on(self._parameters, self.fence_shapes, self._of),
         ]
 
@@ -505,7 +526,8 @@ class Vehicle:
             case effects.SendCommand():
                 assert self.telemetry is not None
                 self._reasons.asked(effect.kind, now_ns)
-                return self._commands.send(effect, self.telemetry, now_ns)
+                asked = self._ask_for_control(now_ns)
+                return asked + self._commands.send(effect, self.telemetry, now_ns)
             case effects.CancelCommand(request_id, kind):
                 return self._commands.cancel(request_id, kind, now_ns)
             case PlaceFence():

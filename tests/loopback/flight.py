@@ -87,6 +87,7 @@ class Flight(Looks):
         vehicle_key: bytes | None = None,
         station_key: bytes | None = None,
         client_key: bytes | None = None,
+        operator_control: bool = False,
     ) -> None:
         """`up` is the weather towards the vehicle, `down` towards the ground station; the keys are
         what either side signs with."""
@@ -100,7 +101,9 @@ class Flight(Looks):
             personality, HOMES[personality], seed, params=parameters, boot=boot, offboard=offboard
         )
         profile = profile_of(personality, parameters.firmware)
-        server = VehicleServer(self.vehicle, profile, parameters, 1)
+        server = VehicleServer(
+            self.vehicle, profile, parameters, 1, operator_control=operator_control
+        )
         signing = None if vehicle_key is None else SigningKey(vehicle_key)
         links = [LinkSpec((PEER,))]
         self.world = World(

@@ -37,7 +37,7 @@ from pathlib import Path
 
 from tests.mutants.equivalent import EQUIVALENT, UNREACHED
 from tests.mutants.mutant import Mutant, Result
-from tests.mutants.names import Uses
+from tests.mutants.names import Mentions, Uses
 from tests.mutants.report import Report
 from tests.mutants.run import BaselineError, Chooser, baseline, generate, judge, preload
 from tests.mutants.targets import TARGETS, Target
@@ -68,7 +68,8 @@ def _run(target: Target, options: argparse.Namespace) -> int:
         print(error, file=sys.stderr)
         return 2
     preload(base.imported)
-    chooser = Chooser(target, base, Uses(target.sources(), target.root))
+    uses = Uses(target.sources(), target.root)
+    chooser = Chooser(target, base, uses, Mentions(target.test_files(), target.root))
     print(f"{len(chosen)} of {len(mutants)} mutants, {len(base.seconds)} tests", flush=True)
     results: list[Result] = []
     for result in judge(target, enums, chosen, chooser, options.workers):

@@ -15,7 +15,7 @@ from tests.mutants.child import Answer, ask, ask_all
 from tests.mutants.coverage import Coverage, measure
 from tests.mutants.loading import load_altered
 from tests.mutants.mutant import Fate, Mutant, Result
-from tests.mutants.names import Uses
+from tests.mutants.names import Mentions, Uses
 from tests.mutants.run_tests import Outcome, run_tests
 from tests.mutants.settings import settings_mutants
 from tests.mutants.source import Enums, enums_of, mutants_of
@@ -118,8 +118,9 @@ def preload(names: Sequence[str]) -> None:
 class Chooser:
     """The tests that a mutant has to face, the quickest first."""
 
-    def __init__(self, target: Target, base: Baseline, uses: Uses) -> None:
+    def __init__(self, target: Target, base: Baseline, uses: Uses, mentions: Mentions) -> None:
         self._target, self._base, self._uses = target, base, uses
+        self._mentions = mentions
         self._quickest = sorted(base.seconds, key=lambda test: (base.seconds[test], test))
 
     def tests_for(self, mutant: Mutant) -> list[str]:
@@ -137,7 +138,10 @@ class Chooser:
                 return self._quickest
             places = [coverage.lines.get(line, set()) for line in lines]
         chosen = set().union(*places)
-        return [test for test in self._quickest if test in chosen]
+        files = self._mentions.of(self._uses.made_of(mutant.names))
+        return [
+            test for test in self._quickest if test in chosen or test.partition("::")[0] in files
+        ]
 
     def seconds_for(self, mutant: Mutant) -> float:
         return sum(self._base.seconds[test] for test in self.tests_for(mutant))

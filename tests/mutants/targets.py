@@ -67,6 +67,12 @@ class Target:
             if not any(path.relative_to(self.root).match(pattern) for pattern in skipped)
         )
 
+    def test_files(self) -> list[Path]:
+        """In the order of their names."""
+        paths = [self.root / test for test in self.tests]
+        files = [file for path in paths for file in path.rglob("*.py")]
+        return sorted({*files, *(path for path in paths if path.is_file())})
+
 
 TARGETS: Final = {
     target.name: target
@@ -90,8 +96,14 @@ TARGETS: Final = {
         Target(
             name="bridge",
             packages=("gcs/bridge",),
-            tests=("tests/unit/bridge", "tests/loopback/test_bridge.py"),
+            tests=(
+                "tests/unit/bridge",
+                "tests/unit/test_policy_file.py",
+                "tests/loopback/test_bridge.py",
+                "tests/loopback/test_operator_control.py",
+            ),
             nearest=(
+                ("gcs/bridge/guard/names.py", ("tests/unit/test_policy_file.py",)),
                 ("gcs/bridge/guard", ("tests/unit/bridge/guard",)),
                 ("gcs/bridge/meaning", ("tests/unit/bridge/test_meaning",)),
                 ("gcs/bridge/plans", ("tests/unit/bridge/test_plan",)),

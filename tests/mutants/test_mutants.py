@@ -42,10 +42,17 @@ def countdown(n: int) -> int:
 
 def untested(x: int) -> int:
     return x + 3
+
+
+MOST = 40
+
+
+def unused(x: int) -> int:
+    return min(x, MOST)
 """
 
 CHECKS = """
-from planted.rules import WARM, Colour, below, countdown
+from planted.rules import MOST, WARM, Colour, below, countdown
 
 
 def test_a_limit_on_both_sides() -> None:
@@ -59,6 +66,10 @@ def test_it_ends() -> None:
 
 def test_one_of_the_two() -> None:
     assert Colour.RED in WARM
+
+
+def test_a_constant_that_no_line_that_runs_reads() -> None:
+    assert MOST == 40
 """
 
 
@@ -93,6 +104,7 @@ FATES = {
     "module: with Colour.RED -> without": Fate.KILLED,
     "module: with Colour.BLUE -> without": Fate.SURVIVED,
     "untested: x + 3 -> x - 3": Fate.UNTESTED,
+    "module: 40 -> 60": Fate.KILLED,
 }
 
 
