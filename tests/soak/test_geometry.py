@@ -5,11 +5,16 @@
 
 from __future__ import annotations
 
+import random
+from typing import Final
+
 import pytest
 
 from gcs.gate.airspace import judge
-from gcs.gate.geometry import Point, Polygon
-from tests.soak import geometry_cases, zone_cases
+from gcs.gate.airspace.hulls import ground_track, hull_inside, hull_outside
+from gcs.gate.geometry import TOLERANCE_M, Point, Polygon, along
+from tests.soak import exact, geometry_cases, zone_cases
+from tests.soak.exact import Grid
 from tests.soak.seeds import SOAKING, base_seed
 
 CHUNKS = 50
@@ -37,6 +42,50 @@ def test_whatever_the_judge_clears_beside_a_zone_is_clear(chunk: int) -> None:
     print(f"seed {base_seed() + chunk}: {sorted(counts.items())}")
     for what in ("point", "leg", "hull", "stop"):
         assert counts[what, "cleared"] > 0.02 * ZONE_CASES_A_CHUNK, counts
+
+
+NEEDLE: Final = Polygon(
+    (
+        (0.0, -150.0),
+        (150.0, -150.0),
+        (150.0, 0.0),
+        (75.07533853701842, 0.0),
+        (75.0, -149.92466146298156),
+        (45.0, 0.0),
+        (0.0, 0.0),
+    )
+)
+
+
+def test_a_hull_that_is_almost_a_line_is_not_refused_for_a_corner_far_off_on_it() -> None:
+    """Found by seed 780771000048: the corner (0, -150) is on the line, 81 m behind the hull."""
+    places = (
+        (-7.686692506642456, 0.0),
+        (-6.099562740796934, -30.971638929370545),
+        (-4.158401062181505, -68.85194330484752),
+    )
+    found_m = hull_outside(NEEDLE, ground_track([(place, 0.0) for place in places]))
+    assert found_m == pytest.approx(4.158401062181505)  # the polygon's west side is at 0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_slivers_beside_a_polygon_are_judged_as_exact_arithmetic_does(seed: int) -> None:
+    """Three places almost on a line through a corner of the polygon, before it, on it or behind."""
+    dice, sure = random.Random(seed), 0
+    for _ in range(100):
+        corner = dice.choice(NEEDLE.corners_en)
+        start = (corner[0] + dice.uniform(-90, 90), corner[1] + dice.uniform(-90, 90))
+        places = [along(start, corner, dice.uniform(-0.5, 1.2)) for _ in range(3)]
+        track = ground_track([(place, 0.0) for place in places])
+        grid = Grid.of(x for place in (*NEEDLE.corners_en, *places) for x in place)
+        ring, hull = grid.ring(NEEDLE.corners_en), exact.hull(grid.ring(places))
+        outside_m, inside_m = hull_outside(NEEDLE, track), hull_inside(NEEDLE, track)
+        if abs(outside_m) > TOLERANCE_M:
+            assert exact.hull_outside_polygon(ring, hull, 0) == (outside_m > 0.0), places
+        if abs(inside_m) > TOLERANCE_M:
+            assert exact.hull_in_polygon(ring, hull, 0) == (inside_m > 0.0), places
+        sure += abs(outside_m) > TOLERANCE_M
+    assert sure > 30
 
 
 # ---------------------------------------------------------------- can these tests fail?

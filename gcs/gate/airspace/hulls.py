@@ -14,7 +14,7 @@ import math
 from collections.abc import Sequence
 from itertools import combinations
 
-from gcs.gate.geometry import Circle, Point, Shape, point_segment_distance
+from gcs.gate.geometry import TOLERANCE_M, Circle, Point, Shape, point_segment_distance
 
 UpPoint = tuple[Point, float]
 """(east, north) and up, metres."""
@@ -115,10 +115,17 @@ def _edges(corners: Sequence[Point]) -> list[tuple[Point, Point]]:
 
 
 def _depth(point: Point, corners: Sequence[Point]) -> float | None:
-    """Metres from a point inside the hull to its edge; None where it is not inside."""
-    if len(corners) < 3 or any(_turn(a, b, point) < 0.0 for a, b in _edges(corners)):
+    """Metres from a point inside the hull to its edge; None where it is not inside for certain.
+
+    Measured from the lines through the edges.  Of a hull that is almost a straight line, a point
+    far off on that line seems to be on the inner side of every edge, by rounding; but none of the
+    lines is far from it.  A point that is inside by less than the tolerance is as near to an edge,
+    and the edges are looked at by themselves.
+    """
+    if len(corners) < 3:
         return None
-    return min(point_segment_distance(point, a, b) for a, b in _edges(corners))
+    depth_m = min(_turn(a, b, point) / math.dist(a, b) for a, b in _edges(corners))
+    return depth_m if depth_m > TOLERANCE_M else None
 
 
 def _deepest(points: Sequence[Point], corners: Sequence[Point]) -> float:
