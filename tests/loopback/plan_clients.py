@@ -83,7 +83,7 @@ class PlanFlight(BridgedFlight):
 
     def _step(self, limit_ns: int) -> bool:
         due = [air.next_ns for air in (*self.to_bridge.values(), *self.from_bridge.values())]
-        due += [upload.deadline_ns for upload in self.uploads]
+        due += [up.deadline_ns for up in self.uploads if up.deadline_ns is not None]
         next_ns = min(due, default=limit_ns + 1)
         before_ns = max(self.now_ns, min(limit_ns, next_ns - 1))
         if super()._step(before_ns):
