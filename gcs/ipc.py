@@ -39,8 +39,8 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     """One request.  `id` is the client's own number and comes back in every answer.
 
     `word` is one of: control arm disarm takeoff goto land rtl hold abort resume photo mode
-    fence mission_start mission_upload mission_download mission_clear stream_begin stream_end
-    station_take station_release station_end.
+    fence mission_start mission_upload mission_download mission_clear mission_set_current
+    stream_begin stream_end station_take station_release station_end.
     Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
     for every one that flies, and the first of them answers.
     """
@@ -54,6 +54,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     force: bool = False  # disarm
     on: bool = True  # fence
     path: str = ""  # mission_upload: file to read; mission_download: where to write
+    item: int = 0  # mission_set_current: where the next start begins, as MAVLink counts (seq)
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
     vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
 

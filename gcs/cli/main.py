@@ -59,11 +59,12 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Files": {
         "mission": Entry(
             "gcs.cli.mission:mission",
-            "Mission files: check, show, upload, download, fly, clear.",
+            "Mission files: check, show, upload, download, fly, set-current, clear.",
             more=(
                 "gcs.cli.mission_live:upload",
                 "gcs.cli.mission_live:download",
                 "gcs.cli.mission_live:fly",
+                "gcs.cli.mission_live:set_current",
                 "gcs.cli.mission_live:clear",
             ),
         ),

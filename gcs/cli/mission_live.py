@@ -1,4 +1,4 @@
-"""The `gcs mission` commands that need a vehicle: upload, download, fly, clear."""
+"""The `gcs mission` commands that need a vehicle: upload, download, fly, set-current, clear."""
 
 from __future__ import annotations
 
@@ -121,6 +121,32 @@ def fly(
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
+    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
+
+
+@click.command("set-current", epilog=f"Example: gcs mission set-current 3\n\n{EXITS}")
+@click.argument("item", type=click.IntRange(min=0))
+@with_options(*LINK_OPTIONS)
+def set_current(
+    item: int,
+    links: tuple[str, ...],
+    vehicle: int | None,
+    policy: str,
+    sign_key: str,
+    log_dir: str,
+    timeout: float,
+    wait: float,
+    as_json: bool,
+    take: bool,
+) -> None:
+    """Let the next start of the mission begin at ITEM, as MAVLink counts: 0 is the first item of a
+    PX4, 1 that of an ArduPilot.
+
+    In the air only, and while no mission is flown; the start itself verifies the way there.
+    """
+    from gcs.ipc import Ask
+
+    requests = (Ask(0, "mission_set_current", item=item),)
     _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
 
 

@@ -59,6 +59,7 @@ class SendCommand:
     permit: Permit | None = None
     up_m: float = 0.0  # TAKE_OFF: metres above the take-off point
     mode_name: str = ""  # SET_MODE
+    seq: int | None = None  # START_MISSION: the item to begin at; None: the first
 
 
 @dataclass(frozen=True, slots=True)

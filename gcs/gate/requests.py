@@ -79,7 +79,10 @@ class TakePhoto:
 
 @dataclass(frozen=True, slots=True)
 class StartMission:
-    """Start the verified mission that is on board."""
+    """Start the verified mission that is on board, at its item number `seq` (MAVLink's count), from
+    which it was verified; None: at its first one."""
+
+    seq: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,7 +95,12 @@ def parse_arguments(word: Word, typed: Sequence[str]) -> Action:
     name, switch, flagged = "", True, False
     for argument, text in zip(word.arguments, typed, strict=False):
         match argument.kind:
-            case ArgumentKind.NUMBER | ArgumentKind.DEGREES | ArgumentKind.SECONDS:
+            case (
+                ArgumentKind.NUMBER
+                | ArgumentKind.DEGREES
+                | ArgumentKind.SECONDS
+                | ArgumentKind.COUNT
+            ):
                 numbers.append(_number(word, argument, text))
             case ArgumentKind.NAME | ArgumentKind.FILE:
                 name = text
@@ -150,6 +155,8 @@ def _number(word: Word, argument: Argument, text: str) -> float:
         hint = " (the decimal mark is a point)" if "," in text else ""
         raise _wrong(word, wrong + hint) from None
     if argument.kind is ArgumentKind.SECONDS and number < 0:
+        raise _wrong(word, wrong)
+    if argument.kind is ArgumentKind.COUNT and not (number >= 0 and number.is_integer()):
         raise _wrong(word, wrong)
     if argument.kind is ArgumentKind.DEGREES and abs(number) > 360.0:
         raise _wrong(word, wrong)

@@ -25,6 +25,7 @@ class ArgumentKind(Enum):
     NUMBER = "number"
     DEGREES = "number of degrees from -360 to 360"
     SECONDS = "number of seconds, not negative"
+    COUNT = "whole number, not negative"
     NAME = "name"
     FILE = "file"
     SWITCH = "on or off"
@@ -138,6 +139,10 @@ def _goto(values: Values) -> Action:
 def _velocity(values: Values) -> Action:
     east, north, up, *seconds = values.numbers
     return FlyVelocity((east, north, up), seconds[0] if seconds else VELOCITY_S)
+
+
+def _mission_set_current(values: Values) -> Action:
+    return SendRequests((Ask(0, "mission_set_current", item=int(values.numbers[0])),))
 
 
 def _mission_fly(values: Values) -> Action:
@@ -272,6 +277,13 @@ WORDS: tuple[Word, ...] = (
         "mission start",
         _send("mission_start"),
         moves=True,
+    ),
+    Word(
+        "mission set-current",
+        (Argument("ITEM", ArgumentKind.COUNT),),
+        "in the air: where the next start of the mission begins, as MAVLink counts its items",
+        "mission set-current 3",
+        _mission_set_current,
     ),
     Word(
         "mission fly",

@@ -171,6 +171,8 @@ class Ground:
     settings: FlightSettings = FlightSettings()
     rally: tuple[LandingPlace, ...] = ()
     on_ground: bool = False
+    begin_item: int = 0
+    """Where the mission begins, counting into `Plan.items`: in the air it need not be the first."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -110,7 +110,10 @@ class PathWalk:
 
     def steps(self) -> Iterator[None]:
         """One item a step; after the last one `path` is whole."""
-        self._branches.append((0, self._begin(), self._motion))
+        begin = self._ground.begin_item
+        for item in self._plan.items[:begin]:
+            self._change_speed(item, faster_only=True)
+        self._branches.append((begin, self._begin(), self._motion))
         while self._branches:
             index, here, self._motion = self._branches.pop()
             try:
@@ -233,12 +236,18 @@ class PathWalk:
             raise self._problem(index, ProblemKind.JUMP_NOWHERE)
         self._branches.append((target, here, self._motion))
 
-    def _change_speed(self, item: Item) -> None:
-        """DO_CHANGE_SPEED over ground or through the air; below zero: its own speed again."""
+    def _change_speed(self, item: Item, *, faster_only: bool = False) -> None:
+        """DO_CHANGE_SPEED over ground or through the air; below zero: its own speed again.
+
+        `faster_only`: of an item that was flown before, or was not: nobody knows which.
+        """
         kind, speed_m_s, *_ = item.params
         if item.command == Cmd.DO_CHANGE_SPEED and kind in (0.0, 1.0) and not math.isnan(speed_m_s):
             own_m_s = self._ground.settings.speed_m_s
-            changed_m_s = speed_m_s if speed_m_s > 0.0 else max(own_m_s, self._motion.speed_m_s)
+            least_m_s = self._motion.speed_m_s if faster_only else 0.0
+            changed_m_s = max(speed_m_s, least_m_s)
+            if speed_m_s <= 0.0:
+                changed_m_s = max(own_m_s, self._motion.speed_m_s)
             self._motion = replace(self._motion, speed_m_s=changed_m_s)
 
     def _move(self, index: int, item: Item, here: _Here) -> _Here:

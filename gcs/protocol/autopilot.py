@@ -59,6 +59,8 @@ class WantedCommand:
     """SET_MODE: in any case of letters."""
     photo_seq: int = 1
     """PHOTO: counts up, so that a repeated command takes no second picture."""
+    mission_seq: int | None = None
+    """START_MISSION: the item to begin at; None: the first."""
 
 
 def _px4(main: int, sub: int = 0) -> int:
@@ -284,7 +286,9 @@ def command_long_for(autopilot: Autopilot, wanted: WantedCommand, target: Addres
         case CommandKind.RETURN:
             return _command(target, Cmd.NAV_RETURN_TO_LAUNCH)
         case CommandKind.START_MISSION:
-            return _command(target, Cmd.MISSION_START)
+            # ArduCopter denies a start with an item, and begins at the one it was set to.
+            named = wanted.mission_seq if autopilot.mode_in_two_parts else None
+            return _command(target, Cmd.MISSION_START, float(named or 0))
         case CommandKind.PHOTO:
             camera, interval_s, count = 0.0, 0.0, 1.0
             shot = (camera, interval_s, count, float(wanted.photo_seq))

@@ -1,7 +1,8 @@
-"""Make the first item of the mission on board the current one, before the mission is started.
+"""Make an item of the mission on board the current one, before the mission is started.
 
 An autopilot flies a mission on from its current item: ArduPilot where it was left, PX4 too where it
-gets there by its mode.  A mission is verified from its first item, so it is to be flown from there.
+gets there by its mode.  A mission is verified from its first item, or from the one that was asked
+for, so it is to be flown from there.
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ from gcs.wire.messages import MissionCurrent, MissionSetCurrent
 class MissionRewind(Transfer):
     """MISSION_SET_CURRENT, until MISSION_CURRENT shows it.
 
-    `first` is the item to begin at, `up_to` the last one that may be shown for it: ArduPilot goes
-    on to the first item that is flown to.
+    `begin` is the item to begin at, `shown` are those that may be shown for it: ArduPilot goes on
+    to the next item that is flown to.
     """
 
     def __init__(
-        self, own: Address, target: Address, first: int, up_to: int, timing: Timing = SPEC_TIMING
+        self, own: Address, target: Address, begin: int, shown: range, timing: Timing = SPEC_TIMING
     ) -> None:
         super().__init__(Parties(own, target, MissionType.MISSION), timing)
-        self._first = first
-        self._up_to = up_to
+        self._begin = begin
+        self._shown = shown
 
     def start(self, now_ns: int) -> list[TransferEffect]:
         to = self._parties.target
-        back = MissionSetCurrent(self._first, to.sysid, to.compid)
+        back = MissionSetCurrent(self._begin, to.sysid, to.compid)
         return self._pending.put(Send(back), now_ns)
 
     def handle(self, event: Input, now_ns: int) -> list[TransferEffect]:
@@ -38,12 +39,12 @@ class MissionRewind(Transfer):
             return []
         match event:
             case Heard(sysid, compid, MissionCurrent(seq=seq)):
-                shown = self._parties.target.includes(sysid, compid) and seq <= self._up_to
+                shown = self._parties.target.includes(sysid, compid) and seq in self._shown
                 return self._done(()) if shown else []
             case Heard():
                 return []
             case Wake():
-                silence = "the vehicle does not go back to the first item"
+                silence = f"the vehicle does not go to item {self._begin} of its mission"
                 repeated = self._pending.wake(now_ns)
                 return self._failed(None, silence) if repeated is None else repeated
             case Cancel(why):

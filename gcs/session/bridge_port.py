@@ -100,6 +100,7 @@ class BridgePort:
             plan_transfer=vehicle.plan_transfer,
             mission_paused=vehicle.mission_paused,
             stream=self._stream,
+            mission_items=vehicle.mission_items,
         )
 
     def parameter(self, frame: Frame, now_ns: int) -> list[BridgeEffect]:

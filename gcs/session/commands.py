@@ -102,6 +102,7 @@ class Commands:
             ground_amsl_m=_ground_amsl_m(telemetry),
             mode_name=wanted.mode_name,
             photo_seq=self._photo_seq,
+            mission_seq=wanted.seq,
         )
         try:
             target = Address(telemetry.sysid, telemetry.compid)

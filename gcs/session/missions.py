@@ -21,8 +21,17 @@ from gcs.session.jobs.adopt import Adopt
 from gcs.session.jobs.clear import Clear
 from gcs.session.jobs.client_upload import ClientUpload
 from gcs.session.jobs.download import Download
-from gcs.session.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView, refused
+from gcs.session.jobs.job import (
+    Asked,
+    BeginsAt,
+    Job,
+    JobWork,
+    OnBoardChanged,
+    VehicleView,
+    refused,
+)
 from gcs.session.jobs.relay import RelayPlan
+from gcs.session.jobs.set_current import SetCurrent
 from gcs.session.jobs.start import Start
 from gcs.session.jobs.upload import Upload
 from gcs.session.plans import OnBoard
@@ -32,7 +41,9 @@ from gcs.session.work import AskGate, ToGate, Work
 from gcs.wire.ids import MissionState, MissionType
 from gcs.wire.messages import MissionCurrent, MissionItemReached
 
-TRANSFER_WORDS = frozenset({"mission_upload", "mission_download", "mission_clear"})
+TRANSFER_WORDS = frozenset(
+    {"mission_upload", "mission_download", "mission_clear", "mission_set_current"}
+)
 MISSION_WORDS = TRANSFER_WORDS | {"mission_start"}
 KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
 
@@ -75,6 +86,8 @@ class Missions:
         self._timing = timing_of(times)
         self._job: Job | None = None
         self._on_board: OnBoard | None = None
+        self._begin_seq: int | None = None
+        """The item at which the next start in the air begins, where one was asked for."""
         self._left = False
         self._was_active = False
         """Whether the vehicle was seen flying the mission that was started last."""
@@ -95,6 +108,11 @@ class Missions:
     def busy(self) -> bool:
         """A job is under way."""
         return self._job is not None
+
+    @property
+    def items(self) -> int:
+        """Of the verified mission on board; 0 where there is none."""
+        return 0 if self._on_board is None else len(self._on_board.sent)
 
     # ----------------------------------------------------------------------------- requests
 
@@ -146,10 +164,15 @@ class Missions:
                 return Download(asked, ask.path)
             case "mission_clear":
                 return Clear(asked, KINDS if kind is MissionType.ALL else (kind,))
+            case "mission_set_current":
+                return SetCurrent(asked, ask.item, self._on_board)
         if state not in (State.HOVERING, State.GROUNDED):
             return None
+        begin_seq, self._begin_seq = self._begin_seq, None
+        if state is State.GROUNDED:
+            begin_seq = None
         if self._on_board is not None:
-            return Start(asked, self._on_board)
+            return Start(asked, self._on_board, begin_seq)
         return Adopt(asked) if policy.bridge.on_board == "verify" else None
 
     def _cannot_begin(
@@ -236,6 +259,7 @@ class Missions:
     def forget(self) -> list[Work]:
         """The vehicle restarted or was away: nothing is known of what it has on board."""
         self._told = None
+        self._begin_seq = None
         if self._on_board is None:
             return []
         self._on_board = None
@@ -269,10 +293,12 @@ class Missions:
         work: list[Work] = []
         for item in job_work:
             if isinstance(item, OnBoardChanged):
-                self._on_board = item.on_board
+                self._on_board, self._begin_seq = item.on_board, None
                 self._verified_id, self._verified_ns = 0, None
                 if item.on_board is not None:
                     self.total = len(item.on_board.sent)
+            elif isinstance(item, BeginsAt):
+                self._begin_seq = item.seq
             else:
                 if isinstance(item, AskGate):
                     self._was_active = False

@@ -55,8 +55,10 @@ def verifying(
     return_up_m: float | None,
     rally: tuple[LandingPlace, ...],
     now_ns: int,
+    begin_item: int = 0,
 ) -> Verifying | Refusal:
-    """The whole mission, from where the vehicle is now, against the policy's fence and its own."""
+    """The whole mission, or all that may follow from `begin_item` on, from where the vehicle is
+    now, against the policy's fence and its own."""
     if now_ns - telemetry.position_ns > round(policy.position_age_s * 1e9):
         return Refusal(Code.STALE, "the vehicle's position is too old")
     if telemetry.origin is None or telemetry.home_ned is None or telemetry.pos_ned is None:
@@ -71,6 +73,7 @@ def verifying(
         settings,
         rally,
         on_ground=telemetry.landed is LandedState.ON_GROUND,
+        begin_item=begin_item,
     )
     verifier = verifier_for(
         policy,

@@ -196,6 +196,11 @@ class Vehicle:
         """The station reads or writes a plan of the vehicle, or is about to."""
         return self._missions.busy
 
+    @property
+    def mission_items(self) -> int:
+        """Items of the verified mission on board; 0 where there is none."""
+        return self._missions.items
+
     def _view(self, telemetry: Telemetry) -> VehicleView:
         return VehicleView(telemetry, self.gate.state, self._port.policy)
 

@@ -90,12 +90,13 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
     Cmd.MISSION_START: CommandRow(
         mission.mission_start_px4,
         mission.mission_start_ardupilot,
-        "mission start, from the first item; another first item is refused. PX4, disarmed: arm, "
-        "then start",
+        "mission start, from the first item or where it was set to begin. PX4: p1 above 0 sets "
+        "that, in the air; disarmed: arm, then start",
     ),
     Cmd.DO_SET_MISSION_CURRENT: _same(
         mission.do_set_mission_current,
-        "the first item, while no mission is flown: forwarded; any other is refused",
+        "`mission_set_current`: the next start in the air begins there, verified from where it "
+        "is. While the mission is flown: hold, resume, `mission_set_current`, mission start",
     ),
     Cmd.DO_CHANGE_SPEED: _same(
         mission.change_speed,

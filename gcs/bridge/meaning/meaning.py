@@ -54,6 +54,8 @@ class Seen:
     0: none, as it is not known."""
     max_takeoff_up_m: float = 0.0
     """A client may set the default height of a take-off up to this; 0: not at all."""
+    mission_items: int = 0
+    """Items of the mission on board, as they were read back last; 0: not known."""
     plan_transfer: bool = False
     """The station reads or writes a plan of the vehicle."""
     stream: StreamRules | None = None

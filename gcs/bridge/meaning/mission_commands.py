@@ -15,17 +15,22 @@ from gcs.gate.states import FlightMode, State
 from gcs.protocol.autopilot import mode_named
 from gcs.wire.messages import MissionSetCurrent
 
-FROM_THE_FIRST: Final = "a mission is verified from its first item, and flown from there"
+ON_GROUND: Final = "on the ground a mission begins with its first item"
+LAST_SEQ: Final = 0xFFFF
+STOPPED_FIRST: Final = "it is stopped first, and its way from there to that item verified"
 
 
 def mission_start_px4(command: Command, seen: Seen) -> Meaning:
     """p1 is the first item; the last one is ignored.  On the ground it arms, too (Commander.cpp).
 
-    -1 would fly on where it stopped, which the gate's own start decides.
+    0 and -1: where it was set to begin, or the first one.
     """
-    if command.p1 not in (0.0, -1.0):
-        return unsupported(f"a start at item {command.p1:g}: {FROM_THE_FIRST}")
+    number = command.whole(command.p1)
+    if number is None or number < -1 or (number > 0 and seen.on_ground):
+        return unsupported(f"a start at item {command.p1:g}: {ON_GROUND}")
     start = meaning_named(seen, FlightMode.MISSION)
+    if number > 0:
+        return _set_current(number, seen, start)
     if isinstance(start, Words) and start.asks and seen.on_ground and not seen.armed:
         return Words((ipc.Ask(0, "arm"), *start.asks))
     return start
@@ -34,7 +39,7 @@ def mission_start_px4(command: Command, seen: Seen) -> Meaning:
 def mission_start_ardupilot(command: Command, seen: Seen) -> Meaning:
     """With a first or last item it is denied (GCS_Mavlink.cpp)."""
     if (command.p1, command.p2) != (0.0, 0.0):
-        return unsupported(f"a start at item {command.p1:g}: {FROM_THE_FIRST}")
+        return unsupported(f"ArduCopter takes no items in MISSION_START ({command.p1:g})")
     return meaning_named(seen, FlightMode.MISSION)
 
 
@@ -49,15 +54,26 @@ def mission_set_current(message: MissionSetCurrent, seen: Seen) -> Meaning:
     return _set_current(message.seq, seen)
 
 
-def _set_current(number: int, seen: Seen) -> Meaning:
-    """Back to the first item, while no mission is flown, moves nothing and is where it is verified
-    from.  Item 0 of ardupilot is home, so its first is 1."""
-    first = 0 if seen.autopilot.mode_in_two_parts else 1
-    flown = mode_named(seen.autopilot, seen.mode_name)
-    in_mission = flown is not None and flown.meaning is FlightMode.MISSION
-    if 0 <= number <= first and not in_mission and seen.state is not State.FLYING_MISSION:
-        return forward(seen)
-    return unsupported(f"a jump to item {number}: {FROM_THE_FIRST}")
+def _set_current(number: int, seen: Seen, start: Meaning | None = None) -> Meaning:
+    """While no mission is flown it moves nothing: the next start begins there.
+
+    A mission that is flown is stopped, set to the item and started again: so the way from where the
+    vehicle stands still to that item is verified, with all that follows.  `start`: it is to be
+    started in any case.
+    """
+    if not 0 <= number <= LAST_SEQ:
+        return unsupported(f"item {number} of a mission")
+    if 0 < seen.mission_items <= number:
+        last = seen.mission_items - 1
+        return refuse(Code.BAD_MISSION, f"there is no item {number}: the last one is {last}")
+    words = (ipc.Ask(0, "mission_set_current", item=number),)
+    if seen.state is State.FLYING_MISSION and seen.in_control:
+        stop = (ipc.Ask(0, "hold"), ipc.Ask(0, "resume"))
+        return Words((*stop, *words, ipc.Ask(0, "mission_start")), STOPPED_FIRST)
+    if isinstance(start, Words):
+        *before, last_word = start.asks or (ipc.Ask(0, "mission_start"),)
+        return Words((*before, *words, last_word), start.note)
+    return Words(words)
 
 
 def change_speed(command: Command, seen: Seen) -> Meaning:

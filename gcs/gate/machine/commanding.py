@@ -11,7 +11,7 @@ from gcs.frames import as_on_the_wire
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.holding import repeat_hold
 from gcs.gate.machine.turn import Turn
-from gcs.gate.requests import TakeOff
+from gcs.gate.requests import StartMission, TakeOff
 from gcs.gate.states import Control, FlightMode
 
 ARM_FROM: Final[Mapping[str, tuple[frozenset[FlightMode], CommandKind]]] = MappingProxyType(
@@ -110,10 +110,12 @@ def _climb(turn: Turn) -> None:
         turn.await_mode(FlightMode.TAKEOFF)
 
 
-def _fly_by_itself(turn: Turn, kind: CommandKind, reason: str, seconds: float | None) -> None:
+def _fly_by_itself(
+    turn: Turn, kind: CommandKind, reason: str, seconds: float | None, seq: int | None = None
+) -> None:
     """Command a mode in which the vehicle flies by itself; no setpoints are sent meanwhile.
 
-    `seconds` is the deadline of the request; None: it has none.
+    `seconds` is the deadline of the request; None: it has none.  `seq` is where a mission begins.
     """
     memory = turn.memory
     turn.cancel_commands()
@@ -121,7 +123,7 @@ def _fly_by_itself(turn: Turn, kind: CommandKind, reason: str, seconds: float | 
     memory.hold = memory.goal = None
     memory.ask_control_ns = None
     turn.set_deadline(seconds)
-    turn.command(kind, reason)
+    turn.command(kind, reason, seq=seq)
 
 
 def land(turn: Turn) -> None:
@@ -147,7 +149,10 @@ def start_mission(turn: Turn) -> None:
     memory = turn.memory
     memory.lifted = memory.airborne
     memory.mission_over = False
-    _fly_by_itself(turn, CommandKind.START_MISSION, "the mission on board is verified", None)
+    request = turn.requested.request if turn.requested is not None else None
+    seq = request.seq if isinstance(request, StartMission) else None
+    reason = "the mission on board is verified"
+    _fly_by_itself(turn, CommandKind.START_MISSION, reason, None, seq)
 
 
 def photo(turn: Turn) -> None:

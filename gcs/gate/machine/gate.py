@@ -332,6 +332,7 @@ class Gate:
                 permit.issue(None, None, now_ns, draft.reason) if moves else None,
                 draft.up_m,
                 draft.mode_name,
+                draft.seq,
             )
         return draft
 

@@ -63,6 +63,7 @@ class CommandDraft:
     reason: str
     up_m: float
     mode_name: str = ""
+    seq: int | None = None
 
 
 Draft: TypeAlias = Effect | SetpointDraft | SampleDraft | CommandDraft
@@ -303,7 +304,13 @@ class Turn:
     # -------------------------------------------------------------------------- commands
 
     def command(
-        self, kind: CommandKind, reason: str, *, up_m: float = 0.0, own: bool = False
+        self,
+        kind: CommandKind,
+        reason: str,
+        *,
+        up_m: float = 0.0,
+        seq: int | None = None,
+        own: bool = False,
     ) -> None:
         """Send a command in the name of the request under way, or of the gate itself (`own`).
 
@@ -313,7 +320,8 @@ class Turn:
         task = None if own else memory.task
         request_id = GATE if task is None else task.requested.request_id
         seconds = self.policy.control.hold_every_s if kind is CommandKind.HOLD else timeout_s
-        self.out.append(CommandDraft(request_id, kind, self.after_ns(seconds), reason, up_m=up_m))
+        deadline_ns = self.after_ns(seconds)
+        self.out.append(CommandDraft(request_id, kind, deadline_ns, reason, up_m=up_m, seq=seq))
         if (request_id, kind) not in memory.outstanding:
             memory.outstanding = (*memory.outstanding, (request_id, kind))
         mode = MODE_OF.get(kind)

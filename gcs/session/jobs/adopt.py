@@ -62,5 +62,5 @@ class Adopt(PreparedJob, StartingJob):
             OnBoardChanged(on_board(plan, self._received)),
             Record(MissionItem(plan.name, points)),
             ToGate(MissionLoaded(plan.name, len(plan.items))),
-            *self.begin_at_first(self._received, view, now_ns),
+            *self.begin_at(None, self._received, view, now_ns),
         ]

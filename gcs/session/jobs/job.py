@@ -5,6 +5,7 @@ Upload    READING -> LEARNING -> VERIFYING -> (verdict) -> UPLOADING -> READING 
 Start     LEARNING -> READING BACK -> VERIFYING -> AT THE FIRST ITEM -> (verdict: the gate's)
 Download  (verdict) -> DOWNLOADING -> WRITING -> done
 Clear     (verdict) -> CLEARING -> done
+SetCurrent  (verdict) -> TOLD -> done
 """
 
 from __future__ import annotations
@@ -66,6 +67,13 @@ class OnBoardChanged:
 
 
 @dataclass(frozen=True, slots=True)
+class BeginsAt:
+    """In the air the next start of the mission begins at this item; None: at the first."""
+
+    seq: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class Asked:
     """Whose request a job is, and between whom its transfers run."""
 
@@ -77,7 +85,7 @@ class Asked:
     times: Times
 
 
-JobWork: TypeAlias = Work | OnBoardChanged
+JobWork: TypeAlias = Work | OnBoardChanged | BeginsAt
 
 
 class Job(ABC):

@@ -27,11 +27,17 @@ AGAIN = "ask once more and that one is verified"
 
 
 class Start(StartingJob):
-    """The mission on board, read back and verified once more; then the gate decides."""
+    """The mission on board, read back and verified once more; then the gate decides.
 
-    def __init__(self, asked: Asked, on_board: OnBoard) -> None:
+    `begin_seq` is the item to begin at, in the air; None: the first.
+    """
+
+    def __init__(self, asked: Asked, on_board: OnBoard, begin_seq: int | None = None) -> None:
         super().__init__(asked)
         self._on_board = on_board
+        self._wanted_seq = begin_seq
+        self._to_verify = _begin_items(on_board, begin_seq)
+        """The items that it may begin at, counting into the plan."""
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         return self.learn(view, now_ns)
@@ -53,11 +59,24 @@ class Start(StartingJob):
             text = f"another mission is on board than was verified: {differences[0]}; {AGAIN}"
             forget: list[JobWork] = [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
             return forget + self.refuse(Refusal(Code.BAD_MISSION, text))
-        return self.verify(self._on_board.plan, view, now_ns)
+        if autopilot_name(view.telemetry) == "px4":
+            self._to_verify = self._to_verify[:1]
+        return self.verify(self._on_board.plan, view, now_ns, self._to_verify[0])
 
     def verified(self, found: Verification, view: VehicleView, now_ns: int) -> list[JobWork]:
         """Where its path still clears, it is the gate's turn."""
         answer = cleared(found)
         if isinstance(answer, Refusal):
             return self.refuse(answer)
-        return self.begin_at_first(self._on_board.sent, view, now_ns)
+        self._to_verify = self._to_verify[1:]
+        if self._to_verify:
+            return self.verify(self._on_board.plan, view, now_ns, self._to_verify[0])
+        return self.begin_at(self._wanted_seq, self._on_board.sent, view, now_ns)
+
+
+def _begin_items(on_board: OnBoard, begin_seq: int | None) -> tuple[int, ...]:
+    """The item asked for, and the first one: an ArduCopter whose MIS_RESTART is 1 begins there
+    whatever it was set to (from memory of AP_Mission::start_or_resume; vehicle-sim does so)."""
+    home_items = len(on_board.sent) - len(on_board.plan.items)
+    wanted = 0 if begin_seq is None else max(0, begin_seq - home_items)
+    return (wanted, 0) if wanted else (0,)

@@ -1,5 +1,5 @@
-"""A job that ends with the start of a mission: verified, brought back to its first item, then the
-gate decides."""
+"""A job that ends with the start of a mission: verified, brought to the item where it is to begin,
+then the gate decides."""
 
 from __future__ import annotations
 
@@ -29,12 +29,14 @@ STOPPED: Final = "an operator stopped the vehicle before it began"
 
 
 class StartingJob(VerifiedJob):
-    """What is on board is read: `read_back`; once it is verified, `begin_at_first`."""
+    """What is on board is read: `read_back`; once it is verified, `begin_at`."""
 
     def __init__(self, asked: Asked) -> None:
         super().__init__(asked)
         self._rewinding = False
-        """The vehicle is to go back to the first item."""
+        """The vehicle is to go to the item that it begins at."""
+        self._begin_seq: int | None = None
+        """That item; None: the first."""
 
     @abstractmethod
     def read_back(
@@ -52,32 +54,28 @@ class StartingJob(VerifiedJob):
             return self.ask_gate()
         return self.read_back(tuple(item_of(message) for message in items), view, now_ns)
 
-    def begin_at_first(
-        self, items: Sequence[WireItem], view: VehicleView, now_ns: int
+    def begin_at(
+        self, seq: int | None, items: Sequence[WireItem], view: VehicleView, now_ns: int
     ) -> list[JobWork]:
-        """Ask the gate for the start, once the vehicle is at the first of `items`.
+        """Ask the gate for the start, once the vehicle is at item `seq`; None: the first.
 
         From there the mission was verified; the vehicle itself would go on where it was left.
         """
-        first = first_item(view.telemetry)
-        flown = (
-            seq
-            for seq, item in enumerate(items)
-            if seq >= first and item.command <= NAV_LAST and item.command != Cmd.NAV_ROI
-        )
-        up_to = next(flown, first)
+        self._begin_seq = seq
+        begin = first_item(view.telemetry) if seq is None else seq
+        shown = shown_for(begin, items, view.telemetry)
         current = view.telemetry.mission_seq
-        if current is None or current <= up_to:
+        if current in shown or (current is None and seq is None):
             return self.ask_gate()
         self._rewinding = True
         target = Address(view.telemetry.sysid, view.telemetry.compid)
-        rewind = MissionRewind(self.asked.own, target, first, up_to, self.asked.timing)
+        rewind = MissionRewind(self.asked.own, target, begin, shown, self.asked.timing)
         return self.begin(rewind, 0, view, now_ns)
 
     def ask_gate(self) -> list[JobWork]:
         """All that is known of the mission is: the start is the gate's to decide."""
         self.over = True
-        return [AskGate(self.asked.request_id, StartMission())]
+        return [AskGate(self.asked.request_id, StartMission(self._begin_seq))]
 
     def failed(
         self, result: int | None, text: str, view: VehicleView, now_ns: int
@@ -97,3 +95,15 @@ class StartingJob(VerifiedJob):
 def first_item(telemetry: Telemetry) -> int:
     """The first item that is flown; ardupilot keeps home as item 0."""
     return 1 if autopilot_name(telemetry) == "ardupilot" else 0
+
+
+def shown_for(begin: int, items: Sequence[WireItem], telemetry: Telemetry) -> range:
+    """What MISSION_CURRENT may show of a vehicle that is to begin at item `begin`: that one, up to
+    the next one that is flown to.  Before the first it is at the start as well."""
+    flown = (
+        seq
+        for seq, item in enumerate(items)
+        if seq >= begin and item.command <= NAV_LAST and item.command != Cmd.NAV_ROI
+    )
+    least = 0 if begin <= first_item(telemetry) else begin
+    return range(least, next(flown, begin) + 1)

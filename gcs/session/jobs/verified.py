@@ -49,8 +49,11 @@ class VerifiedJob(Job):
         self._learning = Learning(asked.own, view.telemetry, asked.timing, asked.times)
         return [*self._learning.start(now_ns), *self._learn_on(view, now_ns)]
 
-    def verify(self, plan: Plan, view: VehicleView, now_ns: int) -> list[JobWork]:
-        """The whole mission, with the plan's own rally points or those on board."""
+    def verify(
+        self, plan: Plan, view: VehicleView, now_ns: int, begin_item: int = 0
+    ) -> list[JobWork]:
+        """The whole mission, or what follows from `begin_item` on, with the plan's own rally points
+        or those on board."""
         assert self.facts is not None
         begun = verifying(
             plan,
@@ -60,6 +63,7 @@ class VerifiedJob(Job):
             self.facts.return_up_m,
             self._rally(plan, view),
             now_ns,
+            begin_item,
         )
         if isinstance(begun, Refusal):
             return self.refuse(begun)

@@ -371,7 +371,7 @@ def test_looking_somewhere_is_forwarded(autopilot: Autopilot, command: int) -> N
 
 @BOTH
 @pytest.mark.parametrize(
-    "message", [command_long(195), command_long(178, 1.0, 2.0), command_long(224, 0.0)]
+    "message", [command_long(195), command_long(178, 1.0, 2.0), command_long(178, 1.0, -1.0)]
 )
 def test_what_is_forwarded_is_so_for_the_client_in_control_only(
     autopilot: Autopilot, message: Message
@@ -388,8 +388,18 @@ def test_what_is_forwarded_is_so_for_the_client_in_control_only(
 @BOTH
 def test_mission_start(autopilot: Autopilot) -> None:
     assert words(meaning_of(command_long(300), flying(autopilot))) == ["mission_start"]
-    from_the_third = meaning_of(command_long(300, 3.0), flying(autopilot))
-    assert "first item" in refusal(from_the_third)
+    assert refusal(meaning_of(command_long(300, 3.0), standing(autopilot)))
+
+
+def test_a_mission_start_in_the_air_names_its_first_item_on_px4_alone() -> None:
+    """C10_mission_start_px4, recorded: MISSION_START 1, 1 ACCEPTED.  ArduCopter denies it."""
+    hold = flying(PX4, state=State.HOLDING, mode_name="AUTO.LOITER")
+    for seen, before in ((flying(PX4), []), (hold, ["resume"])):
+        start = meaning_of(command_long(300, 3.0), seen)
+        assert words(start) == [*before, "mission_set_current", "mission_start"]
+        assert isinstance(start, Words)
+        assert start.asks[-2].item == 3
+    assert "no items" in refusal(meaning_of(command_long(300, 3.0), flying(ARDUPILOT)))
 
 
 def test_px4_arms_for_a_mission_ardupilot_does_not() -> None:
@@ -403,35 +413,32 @@ def test_px4_arms_for_a_mission_ardupilot_does_not() -> None:
     assert refusal(last).startswith("UNSUPPORTED")  # GCS_Mavlink.cpp: DENIED
 
 
-@pytest.mark.parametrize(
-    ("autopilot", "item", "first"),
-    [
-        (PX4, 0, True),
-        (PX4, 1, False),
-        (ARDUPILOT, 0, True),
-        (ARDUPILOT, 1, True),
-        (ARDUPILOT, 2, False),
-    ],
-)
-def test_only_the_first_item_may_be_made_the_current_one(
-    autopilot: Autopilot, item: int, first: bool
+@BOTH
+def test_the_current_item_is_set_where_no_mission_is_flown(autopilot: Autopilot) -> None:
+    """Whether there is such an item, and whether the vehicle stands, the station says."""
+    for seen in (standing(autopilot), flying(autopilot, mission_items=5)):
+        for item in (0, 4):
+            meaning = meaning_of(command_long(224, float(item)), seen)
+            assert words(meaning) == ["mission_set_current"]
+            assert isinstance(meaning, Words)
+            assert meaning.asks[0].item == item
+
+
+@BOTH
+def test_a_mission_that_is_flown_is_stopped_before_it_goes_on_elsewhere(
+    autopilot: Autopilot,
 ) -> None:
-    meaning = meaning_of(command_long(224, float(item)), standing(autopilot))
-    assert isinstance(meaning, Forward) if first else "first item" in refusal(meaning)
+    ours = flying(autopilot, state=State.FLYING_MISSION, mission_items=5)
+    jump = meaning_of(command_long(224, 2.0), ours)
+    assert words(jump) == ["hold", "resume", "mission_set_current", "mission_start"]
+    beyond = meaning_of(command_long(224, 5.0), ours)
+    assert refusal(beyond) == "BAD_MISSION: there is no item 5: the last one is 4"
+    others = replace(ours, in_control=False)
+    assert words(meaning_of(command_long(224, 2.0), others)) == ["mission_set_current"]
 
 
 @BOTH
-def test_no_jump_in_a_mission(autopilot: Autopilot) -> None:
-    """The way from here to the first item was not verified."""
-    ours = flying(autopilot, state=State.FLYING_MISSION)
-    mission = "AUTO.MISSION" if autopilot is PX4 else "AUTO"
-    others = flying(autopilot, state=State.EXTERNAL, mode_name=mission)
-    for seen in (ours, others):
-        assert refusal(meaning_of(command_long(224, 0.0), seen)).startswith("UNSUPPORTED")
-
-
-@BOTH
-@pytest.mark.parametrize("item", [-1.0, 0.5, NAN])
+@pytest.mark.parametrize("item", [-1.0, 0.5, NAN, 65536.0, 1e38])
 def test_no_item_at_all(autopilot: Autopilot, item: float) -> None:
     assert refusal(meaning_of(command_long(224, item), standing(autopilot)))
 

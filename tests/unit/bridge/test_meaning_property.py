@@ -43,6 +43,7 @@ WORDS_OF_ASKS = frozenset(
         "resume",
         "mode",
         "mission_start",
+        "mission_set_current",
     ]
 )
 
@@ -70,6 +71,7 @@ seen = st.builds(
     max_speed_m_s=st.floats(0.0, 20.0),
     stream=st.none() | st.just(DEFAULT.stream),
     has_sticks=st.booleans(),
+    mission_items=st.integers(0, 5),
 )
 
 
@@ -111,7 +113,10 @@ def check(message: Message, vehicle: Seen) -> None:
             case Words(asks, _, sample):
                 assert {ask.word for ask in asks} <= WORDS_OF_ASKS
                 for ask in asks:  # each is a request that the session understands
-                    request_of(ask, vehicle.autopilot)
+                    if ask.word == "mission_set_current":
+                        assert 0 <= ask.item <= 0xFFFF
+                    else:
+                        request_of(ask, vehicle.autopilot)
                 if sample is not None:
                     check_sample(sample)
             case Sample():

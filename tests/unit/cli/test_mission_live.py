@@ -36,6 +36,7 @@ def connection(monkeypatch: pytest.MonkeyPatch) -> FakeConnection:
         ("download", ["-o", "NEW"], ["mission_download"]),
         ("download", ["NEW"], ["mission_download"]),
         ("clear", [], ["mission_clear"]),
+        ("set-current", ["3"], ["mission_set_current"]),
     ],
 )
 def test_each_sends_its_requests_and_is_done(

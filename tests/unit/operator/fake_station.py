@@ -120,7 +120,13 @@ class FakeStation:
                 self.upload, self.upload_until_s = ask, now_s + UPLOAD_S
                 return [ipc.VerdictEvent(ask.id, ask.word, "accepted")]
             return self._quick(ask, self.state, ipc.ProgressEvent(ask.id, "upload", 3, 3, "items"))
-        if ask.word in ("mission_download", "mission_clear", "mode", "fence"):
+        if ask.word in (
+            "mission_download",
+            "mission_clear",
+            "mission_set_current",
+            "mode",
+            "fence",
+        ):
             return self._quick(ask, self.state)
         return self._motion(ask, now_s)
 

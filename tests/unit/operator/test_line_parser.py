@@ -44,6 +44,7 @@ def test_every_example_is_understood_and_is_of_its_word(word: request_words.Word
         ("mission download x.plan", ipc.Ask(0, "mission_download", path="x.plan")),
         ("mission start", ipc.Ask(0, "mission_start")),
         ("mission clear", ipc.Ask(0, "mission_clear")),
+        ("mission set-current 3", ipc.Ask(0, "mission_set_current", item=3)),
     ],
 )
 def test_a_line_becomes_a_request_to_the_station(line: str, expected: ipc.Ask) -> None:

@@ -33,9 +33,11 @@ from gcs.wire.messages import (
     MissionAck,
     MissionClearAll,
     MissionCount,
+    MissionCurrent,
     MissionItemInt,
     MissionRequestInt,
     MissionRequestList,
+    MissionSetCurrent,
     ParamError,
     ParamRequestRead,
     ParamValue,
@@ -125,6 +127,8 @@ class Board:
             case MissionRequestInt(seq=seq, mission_type=kind):
                 item = self._list(kind)[seq]
                 return [msgspec.structs.replace(item, seq=seq, mission_type=kind, **self._to())]
+            case MissionSetCurrent(seq=seq):
+                return [MissionCurrent(seq, 0, 0, 0, 0, 0, 0)]
             case MissionClearAll(mission_type=kind):
                 self._list(kind).clear()
                 return self._acked(kind)
