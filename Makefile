@@ -76,4 +76,6 @@ $(RUN): pyproject.toml
 
 $(TEST): pyproject.toml
 	@sh .ci/install $(VENV) '.[test]' 110
+	@echo "compiling the tests (once, else each worker of the first run does it)"
+	-@$(BIN)/python -m pytest --collect-only -qq >/dev/null 2>&1
 	@touch $@ $(RUN)

@@ -109,7 +109,7 @@ class Outcome:
     def objections(self, vector: Vector) -> Iterator[Objection]:
         """Every invariant that is broken on the way from `vector`."""
         if self._bug is not None:
-            yield Objection(0, f"a cell that cannot be entered: {self._bug}")
+            yield Objection(0, f"a cell that cannot be entered: {self._bug!r}")
         for check in self._checks:
             yield from check(vector).result
 

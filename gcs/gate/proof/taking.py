@@ -49,7 +49,7 @@ class Taken:
     now_ns: int
     cells: set[tuple[State, Event]]
     steps: list[Edge] = field(default_factory=list)
-    bug: ImpossibleError | None = None
+    bug: ImpossibleError | AssertionError | None = None
 
 
 def take(letter: Letter, world: World, table: Table, memory: Memory, now_ns: int) -> Taken | None:
@@ -66,7 +66,7 @@ def take(letter: Letter, world: World, table: Table, memory: Memory, now_ns: int
         before = taken.memory.copy()
         try:
             effects = gate.handle(given, taken.now_ns)
-        except ImpossibleError as bug:
+        except (ImpossibleError, AssertionError) as bug:
             taken.bug = bug
             return taken
         after = taken.memory.copy()

@@ -31,6 +31,8 @@ Combination: TypeAlias = tuple[State, Severity, Control, Condition | None]
 
 BATCH: Final = 8_192
 """So many nodes at once: fewer cost more calls, more cost memory."""
+FIRST_BATCH: Final = 16
+"""The first is small, each other one twice as large: a planted fault is often met at once."""
 EDGES: Final = 100_000
 """What so many edges reach is looked at together."""
 PART_BITS: Final = 9
@@ -124,7 +126,8 @@ class Walk:
     """
 
     def __init__(self, letters: Letters, judge: Judge, begun: Begun, batch: int = BATCH) -> None:
-        self._letters, self._judge, self._batch = letters, judge, batch
+        self._letters, self._judge, self._most = letters, judge, batch
+        self._size = min(FIRST_BATCH, batch)
         self.first_met: dict[tuple[State, Event], int] = {}
         self._nodes = Growing(begun.nodes)
         self._edge_to = list(begun.edges)
@@ -148,7 +151,7 @@ class Walk:
     def run(self) -> Explored:
         """To the end, once."""
         while self._over is None:
-            fault = self._take_batch(self._at, min(self._at + self._batch, self._nodes.count))
+            fault = self._take_batch(self._at, min(self._at + self._size, self._nodes.count))
             if fault is not None or self._at == self._nodes.count:
                 self._over = self._explored(fault)
         return self._over
@@ -175,6 +178,7 @@ class Walk:
                 groups.append(_Group(outcome, rows, edges))
         new = self._look_at_all(before, groups, objected)
         self._at = end
+        self._size = min(2 * self._size, self._most)
         if objected:
             return self._fault(min(objected))
         self._enter(new)

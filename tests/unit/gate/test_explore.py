@@ -145,12 +145,12 @@ def test_the_trace_is_the_shortest_there_is() -> None:
 
 
 @pytest.mark.parametrize("name", WORLDS)
-def test_edge_by_edge_and_in_batches_the_walk_is_the_same(name: str) -> None:
+def test_in_small_and_large_batches_the_walk_is_the_same(name: str) -> None:
     """A fault that is some letters away is met in many batches of few situations, or in one."""
     table = {**TABLE, (State.HOVERING, Event.GOTO): ()}
     learnt = explorer(name)
     faults = []
-    for batch in (1, 7, 100, 10_000):
+    for batch in (7, 10_000):
         begun = Begun.from_starts(learnt.starts(table))
         walk = Walk(learnt.letters(table), learnt.judge, begun, batch)
         fault = walk.run().fault
