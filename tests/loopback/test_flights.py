@@ -11,6 +11,7 @@ from gcs.gate.states import State
 from gcs.session import inputs
 from tests.loopback.air import Weather
 from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality
+from vehicle_sim.autopilot.interface import Result
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 HOLDS = {"px4": "AUTO.LOITER", "ardupilot": "BRAKE"}
@@ -155,3 +156,17 @@ def test_no_vehicle_is_told_with_a_hint() -> None:
     assert "no vehicle" in trouble.text
     assert trouble.hint
     assert flight.done(flight.goto(0.0, 0.0, 1.0)) == f"refused {Code.NO_VEHICLE}"
+
+
+def test_arming_a_px4_that_was_told_to_take_off_is_no_take_off() -> None:
+    """PX4 takes NAV_TAKEOFF disarmed (D2_calibration_wrong_state, recorded) and climbs once it is
+    armed; past the gate somebody has told it so."""
+    flight = Flight("px4").connected()
+    assert flight.vehicle.take_off(5.0) is Result.ACCEPTED
+    flight.run(2.0)
+    flight.do("arm")
+    flight.run(5.0)
+    assert flight.state is State.GROUNDED
+    assert flight.truth_enu()[2] < 0.1
+    flight.do("takeoff", up_m=2.0)
+    assert flight.state is State.HOVERING

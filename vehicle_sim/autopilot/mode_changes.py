@@ -99,10 +99,14 @@ class ModeChanges:
         return needed and self._radio.sticks(state.sense().wall_ns) is None
 
     def _goes_on_up(self, mode: Mode) -> Hold | None:
-        """PX4's HOLD, asked for before the take-off has left the ground: up to its height."""
+        """PX4's HOLD, asked for before the take-off has left the ground: up to its height.
+
+        Armed, that is recorded (A5_takeoff_hold_only); disarmed it stays where it stands (from
+        memory of Loiter::set_loiter_position).
+        """
         state = self._state
         task = state.task
-        if state.rules.hold_ends_take_off or not isinstance(task, TakeOff):
+        if state.rules.hold_ends_take_off or not isinstance(task, TakeOff) or not state.armed:
             return None
         home_d = state.home_ned[2] if state.home_ned is not None else 0.0
         if state.control.flying and home_d - state.est.pos_d > _CLEAR_M:

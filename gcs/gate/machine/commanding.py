@@ -17,8 +17,7 @@ from gcs.gate.states import Control, FlightMode
 ARM_FROM: Final[Mapping[str, tuple[frozenset[FlightMode], CommandKind]]] = MappingProxyType(
     {
         "px4": (
-            frozenset(FlightMode)
-            - {FlightMode.GUIDED, FlightMode.LAND, FlightMode.RETURN, FlightMode.MISSION},
+            frozenset({FlightMode.HOLD, FlightMode.OTHER}),
             CommandKind.HOLD,
         ),
         "ardupilot": (frozenset({FlightMode.GUIDED}), CommandKind.GUIDED),
@@ -27,7 +26,8 @@ ARM_FROM: Final[Mapping[str, tuple[frozenset[FlightMode], CommandKind]]] = Mappi
 """For each autopilot the modes that it arms in, and the command that leads there from another.
 
 px4 is in OFFBOARD again once it disarms after a flight in it, and does not arm there without
-setpoints (recorded from PX4 1.14.3).
+setpoints.  It takes NAV_TAKEOFF and the mode of a mission disarmed, and flies as soon as it is
+armed (all recorded from PX4 1.14.3): such an arming would be a take-off that nobody has judged.
 """
 
 

@@ -76,7 +76,9 @@ class TestCommands:
         assert self.sent(script).permit is None
 
     @pytest.mark.parametrize("mode", list(FlightMode))
-    def test_px4_arms_in_every_mode_but_four(self, mode: FlightMode) -> None:
+    def test_px4_arms_in_no_mode_in_which_it_would_fly_at_once(self, mode: FlightMode) -> None:
+        """scenarios_px4.json, D2_calibration_wrong_state: NAV_TAKEOFF ACCEPTED disarmed; C6: mode
+        MISSION disarmed, then arm: flown."""
         script = Script(policy("default"))
         script.mode = mode
         script.connect()
@@ -86,6 +88,7 @@ class TestCommands:
             FlightMode.LAND,
             FlightMode.RETURN,
             FlightMode.MISSION,
+            FlightMode.TAKEOFF,
         )
         assert script.commands() == [CommandKind.HOLD if waits else CommandKind.ARM]
 
