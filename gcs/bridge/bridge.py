@@ -246,6 +246,14 @@ class Bridge:
         """PARAM_VALUE of a vehicle's autopilot."""
         return self._judges.of(vehicle).parameter(message, autopilot, now_ns)
 
+    def armed(self, vehicle: Address) -> list[BridgeEffect]:
+        """Once a second, of every vehicle that is armed."""
+        return [
+            OfVehicle(
+                vehicle.sysid, tuple(self._judges.of(vehicle.sysid).armed(self._own, vehicle))
+            )
+        ]
+
     def held_back(
         self, command: ipc.Command, autopilot: Autopilot, vehicle: Address
     ) -> AsksVehicle | None:

@@ -56,6 +56,8 @@ from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
+    LogRequestData,
+    LogRequestEnd,
     Message,
     MissionClearAll,
     MissionCount,
@@ -118,6 +120,8 @@ class Judge:
         self._asked_rates = AskedRates(rules, needed_hz)
         self._guard: Guard | None = None
         self._downloads = Downloads()
+        self._log_read = False
+        """A client has begun to read a log, since the vehicle was armed last."""
         self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
         self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
         """What the policy says of messages and commands by name."""
@@ -239,6 +243,7 @@ class Judge:
         judged = self._guarded(message, given.by, seen, given.now_ns)
         match judged:
             case Allowed(note):
+                self._log_read |= isinstance(message, LogRequestData)
                 notes = [Notes(Level.INFO, f"{given.client.name}: {note}")] if note else []
                 return Judged(False, [*notes, ToVehicle(given.frame.raw)])
             case guard_verdict.Refused(refusal, answers, ask_vehicle):
@@ -247,6 +252,16 @@ class Judge:
                 to_client = [Answers(by.link, by.addressed, each) for each in answers]
                 to_vehicle = [AsksVehicle(by.source, each) for each in ask_vehicle]
                 return Judged(True, [*refused.effects, *to_client, *to_vehicle])
+
+    def armed(self, own: Address, vehicle: Address) -> list[BridgeEffect]:
+        """The vehicle is armed: a log that a client began to read on the ground is not read on,
+        where the policy has it so."""
+        if not self._log_read or self._rules.downloads == "forward":
+            return []
+        self._log_read = False
+        end = LogRequestEnd(target_system=vehicle.sysid, target_component=vehicle.compid)
+        text = "the vehicle is armed: the reading of its log is ended (policy: bridge.downloads)"
+        return [AsksVehicle(own, end), Notes(Level.INFO, text)]
 
     def parameter(self, message: ParamValue, autopilot: str, now_ns: int) -> list[BridgeEffect]:
         """PARAM_VALUE of the vehicle's autopilot: what has changed, for the log."""

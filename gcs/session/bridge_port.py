@@ -133,6 +133,9 @@ class BridgePort:
         """
         done: list[BridgeEffect | Emit] = [*self.bridge.second(now_ns)]
         done += self.bridge.control_status(self._vehicles.addresses)
+        for each in self._vehicles:
+            if each.telemetry is not None and each.telemetry.armed:
+                done += self.bridge.armed(Address(each.telemetry.sysid, each.telemetry.compid))
         if self._shown:
             links = self._link_rows(now_ns, counts)
             clients = [

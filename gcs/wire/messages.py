@@ -566,6 +566,14 @@ class LogRequestData(Message, frozen=True, gc=False):
     target_component: int
 
 
+class LogRequestEnd(Message, frozen=True, gc=False):
+    """LOG_REQUEST_END (122): 2 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.LOG_REQUEST_END
+    target_system: int
+    target_component: int
+
+
 class BatteryStatus(Message, frozen=True, gc=False):
     """BATTERY_STATUS (147): 36 bytes, 54 with extensions."""
 

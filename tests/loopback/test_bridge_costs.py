@@ -64,6 +64,17 @@ def test_logs_and_files_are_read_on_the_ground_only(personality: Personality) ->
     assert client.ask(LOGGING_START) == TEMPORARILY_REJECTED
 
 
+def test_a_log_that_is_being_read_is_not_read_on_in_the_air(personality: Personality) -> None:
+    flight, client = joined(personality)
+    log_data(client)
+    flight.run(2.0)
+    assert flight.to_vehicle("LOG_REQUEST_END") == []
+    armed(flight, client)
+    flight.run(3.0)
+    assert len(flight.to_vehicle("LOG_REQUEST_END")) == 1
+    assert any("the reading of its log is ended" in line for line in flight.told())
+
+
 def test_the_policy_may_let_them_be_read_in_the_air(personality: Personality) -> None:
     flight, client = joined(personality, 'downloads = "forward"')
     armed(flight, client)
@@ -71,7 +82,9 @@ def test_the_policy_may_let_them_be_read_in_the_air(personality: Personality) ->
     burst(client)
     flight.run(0.5)
     read = ("LOG_REQUEST_DATA", "FILE_TRANSFER_PROTOCOL")
+    flight.run(2.0)
     assert [len(flight.to_vehicle(name)) for name in read] == [1, 1]
+    assert flight.to_vehicle("LOG_REQUEST_END") == []
 
 
 def test_a_client_s_rates_are_bounded(personality: Personality) -> None:
