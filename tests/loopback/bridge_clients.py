@@ -331,7 +331,7 @@ def joystick_at_the_fence(flight: HostileFlight, client: Client) -> None:
         if by_channels:
             raw = (1500 + y // 2, 1500 - x // 2, 1000 + z, 1500 + turned // 2)
             message = dialect.MAVLink_rc_channels_override_message(
-                *VEHICLE, *(each if each < 2500 else 0xFFFF for each in raw), *(0,) * 4
+                *VEHICLE, *(each if 900 < each < 2500 else 0xFFFF for each in raw), *(0,) * 4
             )
         else:
             message = dialect.MAVLink_manual_control_message(1, x, y, z, turned * (count > 2), 0)
