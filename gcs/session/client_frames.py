@@ -6,9 +6,9 @@ QGroundControl from memory, modulo 256).  What the bridge answers in a vehicle's
 the vehicle's own frames; so from the first answer on, these are given numbers that count on over
 it.  A frame that was lost before the bridge still leaves its gap.  Until then nothing is altered.
 
-A client that speaks MAVLink 1 only is answered in it.  If it goes on so while it is sent MAVLink 2,
-it cannot read that: then it is sent the vehicle's frames in MAVLink 1, too, as far as they can be
-said there.  One that can read MAVLink 2 answers with it, as both sides do who begin with version 1.
+A client that speaks MAVLink 1 only, and goes on so while it is sent MAVLink 2, cannot read that:
+then it is sent MAVLink 1, as far as that can say it.  Not before: many begin with version 1 and go
+over with the first frame of version 2 that they hear, and pymavlink stays with what it heard first.
 """
 
 from __future__ import annotations
@@ -46,23 +46,23 @@ class ClientFrames:
 
     def passed(self, raws: Sequence[bytes], now_ns: int) -> Sequence[bytes]:
         """Frames of others, as they are to leave."""
-        if self._since_ns is None:
-            self._since_ns = now_ns
         self._batches.append(raws)
-        old = self.answered_in_v1 and now_ns - self._since_ns >= UPGRADES_NS
+        old = self._reads_v1_alone(now_ns)
         if not old and not self._shift:
             return raws
         return list(self._altered(raws, old=old))
 
-    @property
-    def answered_in_v1(self) -> bool:
-        """Whether answers are to be MAVLink 1: it has spoken nothing else."""
-        return self._speaks_v1 and not self._speaks_v2
+    def _reads_v1_alone(self, now_ns: int) -> bool:
+        """As far as it has shown by now, when it is sent something."""
+        if self._since_ns is None:
+            self._since_ns = now_ns
+        late = now_ns - self._since_ns >= UPGRADES_NS
+        return late and self._speaks_v1 and not self._speaks_v2
 
-    def answer(self, raw: bytes) -> bytes | None:
+    def answer(self, raw: bytes, now_ns: int) -> bytes | None:
         """A frame of the bridge's in the name of a component; None where the client's version of
         MAVLink cannot say it."""
-        made = as_mavlink1(raw) if self.answered_in_v1 else raw
+        made = as_mavlink1(raw) if self._reads_v1_alone(now_ns) else raw
         if made is None:
             return None
         source = source_of(raw)

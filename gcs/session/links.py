@@ -167,7 +167,7 @@ class Links:
         raw: bytes | None = writer.write(message)
         client = self._clients.get(link)
         if raw is not None and client is not None:
-            raw = client.answer(raw)
+            raw = client.answer(raw, now_ns)
         return [] if raw is None else self._and_records(self._leaving(link, raw, now_ns))
 
     def send(self, link: int, message: Message, now_ns: int) -> list[Effect]:

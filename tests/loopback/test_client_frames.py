@@ -154,6 +154,7 @@ def test_a_client_that_begins_with_mavlink_1_and_knows_2_is_sent_2_at_once() -> 
     flight = BridgedFlight()
     flight.connected()
     client = join_old(flight)
+    client.command(ORBIT)
     client.mav = v20.MAVLink(None, srcSystem=245, srcComponent=190)
     flight.run(2.0)
     assert {m.get_msgbuf()[0] for m in read(client)} == {0xFD}

@@ -65,6 +65,11 @@ class Table:
         return self.bridge.from_client(link, frame, vehicles, lambda _: self.seen, self.now_ns)
 
 
+def due_ns(table: Table) -> int | None:
+    """A call: a type checker must not remember it."""
+    return table.bridge.deadline_ns
+
+
 def of(kind: type, effects: Any) -> list[Any]:
     """Those of one kind, also where they are a vehicle's."""
     each_one = [
@@ -184,13 +189,13 @@ def test_a_request_of_anybody_else_makes_an_old_answer_void() -> None:
 
 def test_the_soonest_wait_of_any_client_is_the_bridges() -> None:
     table = Table(clients=2)
-    assert table.bridge.deadline_ns is None
+    assert due_ns(table) is None
     table.says(mavlink.MAVLink_mission_count_message(1, 1, 3, 0), 1)
-    first_ns = table.bridge.deadline_ns
+    first_ns = due_ns(table)
     assert first_ns is not None
     table.now_ns += S // 10
     table.says(mavlink.MAVLink_mission_count_message(1, 1, 3, 0), 2)
-    assert table.bridge.deadline_ns == first_ns
+    assert due_ns(table) == first_ns
     assert table.bridge.wake(first_ns - 1) == []
     asked = table.bridge.wake(first_ns)
     assert {each.link for each in of(Answers, asked)} == {1}

@@ -63,7 +63,7 @@ def test_a_message_that_the_dialect_lacks_has_a_right_checksum_as_well(
         body = bytes((len(payload), 0, 0, number, 3, 4, 0x50, 0xC3, 0)) + payload
         crc = v20.x25crc(body)
         crc.accumulate(bytes((crc_extra,)))
-        return b"\xfd" + body + crc.crc.to_bytes(2, "little")
+        return b"\xfd" + body + int(crc.crc).to_bytes(2, "little")
 
     assert with_seq(frame(7), seq) == frame(seq)
 
