@@ -10,11 +10,10 @@ import pytest
 from gcs.audit.audit import audit
 from gcs.audit.messages import Tape
 from gcs.record.writer import Recorder
-from tests.conftest import SOAKING
 from tests.loopback.flight import Flight
 from tests.loopback.looks import START_NS
 
-AUDITED_OF = 1 if SOAKING else 12
+AUDITED_OF = 6
 """One test in so many, by its name; the flights of the others are not recorded."""
 
 
