@@ -72,12 +72,20 @@ def _for_each(
     """
     sysid = operators.vehicle_of(command)
     stops = isinstance(command, ipc.Ask) and command.word in STOPS and not command.operation
-    flying = [
-        slot
-        for slot, vehicle in enumerate(vehicles)
-        if stops and not sysid and vehicle.gate.state not in NOT_FLYING
-    ]
+    flying = _in_the_air(vehicles) if stops and not sysid else []
     if not flying:
         yield vehicles.owner_for(sysid), command
     for number, slot in enumerate(flying):
         yield slot, command if number == 0 else msgspec.structs.replace(command, id=0)
+
+
+def _in_the_air(vehicles: Vehicles) -> list[int]:
+    """The slots of all that were not last seen on the ground; those that are lost or stale, whose
+    answer may not come, at the end: the link to a vehicle may be there while the one from it is
+    not."""
+    known = [
+        (vehicle.gate.state in NOT_FLYING, slot)
+        for slot, vehicle in enumerate(vehicles)
+        if vehicle.telemetry is not None and not vehicle.gate.memory.on_ground
+    ]
+    return [slot for _, slot in sorted(known)]

@@ -13,6 +13,8 @@ from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.report import FsaItem
 from gcs.session import inputs
+from gcs.wire.codec import decode
+from gcs.wire.messages import CommandLong
 from tests.loopback.bridged import Client
 from tests.loopback.fleet import ACCEPTED, ARM, LAND, Fleet
 from tests.loopback.flight import Flight
@@ -95,6 +97,21 @@ def test_a_stop_is_not_asked_of_a_vehicle_on_the_ground() -> None:
     (verdict,) = say(flight, ipc.Ask(7, "hold"))
     assert (verdict.id, verdict.outcome) == (7, "accepted")
     assert [flight.state_of(n) for n in (1, 2)] == [State.GROUNDED, State.HOLDING]
+
+
+def test_a_stop_is_sent_to_a_lost_vehicle_too_and_the_other_one_answers() -> None:
+    flight = with_operator()
+    flight.silent = {1}
+    flight.beating(3)
+    assert flight.state_of(1) is State.STALE
+    sent = len(flight.to_vehicle())
+    verdicts = say(flight, ipc.Ask(7, "abort"))
+    assert [told.id for told in verdicts] == [7, 0]
+    assert verdicts[0].outcome == "accepted"
+    assert flight.state_of(2) is State.HOLDING
+    commands = [decode(each) for each in flight.to_vehicle()[sent:]]
+    targets = {each.target_system for each in commands if isinstance(each, CommandLong)}
+    assert targets == {1, 2}
 
 
 def test_an_operator_s_stop_of_one_vehicle_leaves_the_other() -> None:
