@@ -174,6 +174,14 @@ WORDS: Final[tuple[tuple[str, ...], ...]] = (
     ("guided mode", "ask: hold", "wait: vehicle lost", "position"),
     (*_LANDS_UNHEARD, "position", "wait: sample too old"),
     (*_RETURNS_HELD, "first answer: accepted", "hold mode", "position"),
+    (*_RETURNS_HELD, "first answer: accepted", "hold mode", "return mode", "position"),
+    (*_RETURNS_HELD, "first answer: accepted", "hold mode", "land mode", "position"),
+    (*_HOVERS, "wait: control due", "wait: landed too old", "ask: photo"),
+    (*_CONTROLS, "ask: goto inside", "tick", "armed or disarmed"),
+    (*_CONTROLS, "ask: goto inside", "tick", "wait: landed too old"),
+    (*_LANDS_UNHEARD, "armed or disarmed", "position"),
+    (*_CONTROLS, "ask: mission", "ask: goto inside"),
+    (*_ARMED, "on the ground", "ask: mission", "return mode", "guided mode"),
 )
 """Into states that a flight seldom is in, mostly the shortest ones that the explorer finds."""
 

@@ -52,6 +52,19 @@ NOT_THE_GATES: Final = frozenset(
 )
 """Reasons that no run of the gate alone can meet."""
 
+NOT_MET: Final = frozenset(
+    {
+        "FLYING_MISSION / mission mode",  # that mode is there, or awaited
+        "MOVING / command refused",  # the request that leads there cancels what was outstanding
+        "MOVING / command unanswered",
+        "RETURNING / hold refused",  # the vehicle's own return, seen, cancels a hold of ours
+        "RETURNING / hold unanswered",
+        "LANDING / hold refused",
+        "LANDING / hold unanswered",
+    }
+)
+"""Cells that the explorer enters by longer words than these, and no run here has yet."""
+
 
 def flown(first: int, count: int) -> Seen:
     seen = Seen()
@@ -68,6 +81,7 @@ def flown(first: int, count: int) -> Seen:
 def test_no_hostile_run_breaks_a_promise() -> None:
     seen = flown(base_seed(), A_SHARE)
     assert seen.runs == A_SHARE
+    assert not [line for line in too_seldom(seen) if line.endswith("is listed as not met")]
     assert seen.under_promise > 10 * A_SHARE
     print(told(seen))
 
@@ -149,8 +163,12 @@ def too_seldom(seen: Seen) -> Iterator[str]:
     unreached = {entry for listed in UNREACHED for entry in listed.entries}
     for (state, event), cell in TABLE.items():
         name = f"{state.name} / {event.value}"
-        if cell and name not in unreached and seen.cells[state, event] < AT_LEAST:
-            yield f"{name} {seen.cells[state, event]}"
+        met = seen.cells[state, event]
+        if name in NOT_MET:
+            if met:
+                yield f"{name} {met}, and is listed as not met"
+        elif cell and name not in unreached and met < AT_LEAST:
+            yield f"{name} {met}"
     for code in Code:
         if code not in NOT_THE_GATES and seen.codes[code.value] < AT_LEAST:
             yield f"{code.value} {seen.codes[code.value]}"
