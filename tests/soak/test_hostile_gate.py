@@ -163,11 +163,12 @@ def too_seldom(seen: Seen) -> Iterator[str]:
     unreached = {entry for listed in UNREACHED for entry in listed.entries}
     for (state, event), cell in TABLE.items():
         name = f"{state.name} / {event.value}"
-        if cell and name not in unreached and seen.cells[state, event] < AT_LEAST:
-            if name not in NOT_MET:
-                yield f"{name} {seen.cells[state, event]}"
-        if name in NOT_MET and seen.cells[state, event]:
-            yield f"{name} {seen.cells[state, event]}, and is listed as not met"
+        met = seen.cells[state, event]
+        if name in NOT_MET:
+            if met:
+                yield f"{name} {met}, and is listed as not met"
+        elif cell and name not in unreached and met < AT_LEAST:
+            yield f"{name} {met}"
     for code in Code:
         if code not in NOT_THE_GATES and seen.codes[code.value] < AT_LEAST:
             yield f"{code.value} {seen.codes[code.value]}"
