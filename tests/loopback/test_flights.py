@@ -166,7 +166,8 @@ def test_arming_a_px4_that_was_told_to_take_off_is_no_take_off() -> None:
     flight.run(2.0)
     flight.do("arm")
     flight.run(5.0)
-    assert flight.state is State.GROUNDED
+    stays = flight.state is State.GROUNDED
+    assert stays
     assert flight.truth_enu()[2] < 0.1
     flight.do("takeoff", up_m=2.0)
     assert flight.state is State.HOVERING
