@@ -67,15 +67,13 @@ def fly(flight: BridgedFlight, client: Client) -> None:
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
-@pytest.mark.parametrize(
-    "keys", [{}, {"vehicle_key": KEY, "station_key": KEY}], ids=["plain", "vehicle signs"]
-)
+@pytest.mark.parametrize("key", [None, KEY], ids=["plain", "vehicle signs"])
 def test_answers_of_the_bridge_do_not_look_like_lost_frames(
-    personality: Personality, keys: dict[str, bytes]
+    personality: Personality, key: bytes | None
 ) -> None:
     """But for the vehicle's frames for the bridge alone, and those of messages that pymavlink does
     not know (EVENT), which it does not count, nothing is missing."""
-    flight = BridgedFlight(personality, **keys)
+    flight = BridgedFlight(personality, vehicle_key=key, station_key=key)
     client = flight.join()
     fly(flight, client)
     assert len(answers(flight)) > 6
