@@ -51,6 +51,10 @@ class Flown:
     code: str = ""
 
 
+class StartRefusedError(Exception):
+    """What was cleared at its upload does not clear from where the vehicle is when it starts."""
+
+
 def fly(
     seed: int,
     personality: Personality,
@@ -66,7 +70,10 @@ def fly(
     else:
         found, flight, moments = _by_the_operator(seed, personality, mission, alone)
     if found.refusal is None:
-        return _flown(found, mission, flight, moments)
+        try:
+            return _flown(found, mission, flight, moments)
+        except StartRefusedError as error:
+            return replace(found, refusal=str(error), code="AT_START")
     if price:
         return _flown(found, mission, flight, _past_the_gate(flight, mission))
     return found
@@ -132,7 +139,8 @@ def _through_bridge(
 def _with_script(flight: ScriptFlight, script: VirtualLink, alone: bool) -> Iterator[str]:
     """Armed and started by the script, which from then on sends its heartbeat only."""
     assert script.arm() == ACCEPTED
-    assert script.start_mission() == ACCEPTED
+    if script.start_mission() != ACCEPTED:
+        raise StartRefusedError(flight.decisions("refused")[-1].sentence)
     script.deaf = True
     if alone:
         yield from _until_still(flight)
