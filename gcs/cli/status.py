@@ -55,8 +55,10 @@ def rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str]]:
     """What is shown to the operator `client`, top to bottom; unknown values are a dash."""
     armed = {None: "-", True: "armed", False: "disarmed"}[seen.armed]
     conditions = f" ({', '.join(seen.conditions)})" if seen.conditions else ""
+    others = [name for name in seen.vehicles if name != seen.vehicle]
     return [
         ("vehicle", seen.vehicle),
+        *([("also heard", ", ".join(others))] if others else []),
         ("state", f"{seen.state}, control {seen.control}"),
         ("control", control_words(seen, client)),
         ("severity", f"{seen.severity}{conditions}"),

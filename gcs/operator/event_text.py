@@ -103,4 +103,6 @@ def operation_line(operation: ipc.Operation, now_ns: int) -> str:
     lasted_s = max(0.0, (until_ns - operation.since_ns) / 1e9)
     told = "for" if operation.ended_ns is None else "after"
     label = request_words.label(operation.asked)
+    if operation.asked.vehicle:
+        label += f" of vehicle {operation.asked.vehicle}"
     return f"{operation.id:>3}  {label}: {text}, {told} {lasted_s:.0f} s, asked by {who}"

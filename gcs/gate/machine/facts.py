@@ -266,7 +266,10 @@ def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
     asked_for = ASKED_FOR[ended.kind]
     said = f": {ended.text}" if ended.text else ""
     if key not in memory.outstanding:
-        turn.say(Level.INFO, f"A late answer to {name}, not acted on{said}")
+        if ended.result is None:
+            turn.say(Level.INFO, f"No answer to {name}, which is waited for no longer{said}")
+        else:
+            turn.say(Level.INFO, f"A late answer to {name}, not acted on{said}")
         yield Occurrence(Event.LATE_ANSWER)
         return
     memory.outstanding = tuple(other for other in memory.outstanding if other != key)

@@ -208,3 +208,8 @@ def test_an_operation_is_one_line(
     expected = line or "aborted OPERATOR: stopped by the operator, after 3 s"
     who = "asked by operator 2 (gcs fly, pid 1)"
     assert operation_line(operation, 12 * 10**9) == f"  7  goto 3 0 2: {expected}, {who}"
+
+
+def test_an_operation_of_one_of_several_vehicles_names_it() -> None:
+    operation = ipc.Operation(7, ipc.Ask(1, "land", vehicle=2), 2, "gcs fly, pid 1", 0)
+    assert operation_line(operation, 0).startswith("  7  land of vehicle 2: running")

@@ -19,6 +19,14 @@ def test_a_heading_goes_round_and_a_rate_not_measured_is_left_out() -> None:
     assert shown["link"] == "0.0 % lost"
 
 
+def test_other_vehicles_that_are_heard_are_named() -> None:
+    seen = FakeStation().snapshot()
+    two = msgspec.structs.replace(seen, vehicles=[seen.vehicle, "2/1 ardupilot quadrotor"])
+    assert dict(rows(two, 1))["also heard"] == "2/1 ardupilot quadrotor"
+    alone = msgspec.structs.replace(seen, vehicles=[seen.vehicle])
+    assert "also heard" not in dict(rows(alone, 1))
+
+
 def test_unknown_values_are_dashes() -> None:
     shown = dict(rows(FakeStation("silent").snapshot(), 1))
     assert shown["position"].startswith("E - N - U -")

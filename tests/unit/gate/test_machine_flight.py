@@ -222,6 +222,21 @@ class TestTakeOff:
         assert script.gate.memory == before
         assert all(isinstance(effect, Say) for effect in effects)
 
+    @pytest.mark.parametrize(
+        ("result", "said"),
+        [
+            (0, "A late answer to arm, not acted on"),
+            (None, "No answer to arm, which is waited for no longer: no answer to 2 tries"),
+        ],
+    )
+    def test_silence_is_not_told_as_a_late_answer(self, result: int | None, said: str) -> None:
+        script = Script(policy("default")).connect()
+        requested = script.ask(Arm())
+        script.wait(5.1)
+        why = "no answer to 2 tries" if result is None else ""
+        effects = script.feed(CommandEnded(requested, CommandKind.ARM, result, why))
+        assert [effect.text for effect in effects if isinstance(effect, Say)] == [said]
+
     def test_abort_before_it_lifts_off_disarms(self) -> None:
         script = self.script()
         take_off = script.ask(TakeOff(2.0))
