@@ -138,11 +138,11 @@ def echo(
     started = Started(where.heard(seconds))
     with ended_by_hand():
         for heard, fields, paths in decoded(started.heards(), wanted, keep):
+            printed += 1  # first: Ctrl-C may come while it is printed
             for line in _echoed(
                 heard, fields, paths, started.at_ns, as_json, several=len(wanted) > 1
             ):
                 print_now(line)
-            printed += 1
             if count is not None and printed >= count:
                 return
     if not printed and keep is None:

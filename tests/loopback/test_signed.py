@@ -13,7 +13,7 @@ from gcs.audit.messages import Tape
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.record.writer import Recorder
-from gcs.report import FrameItem
+from gcs.report import FramesItem
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
 from tests.loopback import eyes
@@ -239,7 +239,7 @@ def test_a_record_holds_no_key() -> None:
     flight.feed(inputs.Datagram(0, raw[:-20]))  # and broken off: garbage with half a key
     flight.feed(inputs.Datagram(0, b"\xfd" + raw))
     messages = list(tape.take())
-    assert [item.raw for item in flight.recorded(FrameItem) if item.raw == raw]
+    assert raw in [raw for item in flight.recorded(FramesItem) for raw in item.raws]
     assert not [m for m in messages if KEY[1:9] in m.data or KEY[1:9].hex().encode() in m.data]
     (kept,) = [m for m in messages if m.topic.endswith("SETUP_SIGNING")][:1]
     told = eyes.read(kept.raw)
