@@ -19,6 +19,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
+from gcs.session.presence import LINK_SILENT_NS
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle, is_autopilot
 from gcs.session.work import STATION, For, Log, ToGate, Work
@@ -48,6 +49,8 @@ class Vehicles:
         self._all = [self.first]
         self._slots: dict[int, int] = {}
         self._told_too_many = False
+        self._told_twice: set[int] = set()
+        """System ids that were heard on two links at once, which was told."""
         self.closed = False
         """The station is being left: no other vehicle is met any more."""
 
@@ -133,8 +136,26 @@ class Vehicles:
                 lambda each: each.frame(link, frame, now_ns) if link in each.links else ()
             )
         owner = slot or FIRST
-        work = self._all[owner].frame(link, frame, now_ns)
+        twice = self._twice(self._all[owner], link, frame, now_ns) if slot is not None else []
+        work = [*twice, *self._all[owner].frame(link, frame, now_ns)]
         return [For(owner, tuple(work))] if work else []
+
+    def _twice(self, vehicle: Vehicle, link: int, frame: Frame, now_ns: int) -> Sequence[Work]:
+        """A vehicle has two links, or two vehicles have one number, and then nothing that is told
+        of them is right: it is said once."""
+        telemetry = vehicle.telemetry
+        if frame.msgid != MsgId.HEARTBEAT or telemetry is None or telemetry.link == link:
+            return ()
+        silent = now_ns - telemetry.link_ns > self._times.real_ns(LINK_SILENT_NS)
+        if silent or frame.sysid in self._told_twice or not is_autopilot(frame):
+            return ()
+        self._told_twice.add(frame.sysid)
+        text = (
+            f"vehicle {frame.sysid} is heard on link {telemetry.link} and on link {link}: if these "
+            "are two vehicles, give each a system id of its own (PX4: MAV_SYS_ID, "
+            "ArduPilot: MAV_SYSID or SYSID_THISMAV), for here they are one"
+        )
+        return (Log(Level.WARNING, NODE, text),)
 
     def _is_another(self, frame: Frame) -> bool:
         """A heartbeat of a second vehicle, or of one more, where there may be several."""

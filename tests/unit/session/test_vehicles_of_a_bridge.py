@@ -182,3 +182,24 @@ def test_what_is_said_of_one_of_several_names_it() -> None:
         "vehicle 3: ",
         "",
     ]
+
+
+def test_one_number_on_two_links_at_once_is_told_once() -> None:
+    """It may be one vehicle with two radios, or two vehicles with the same system id."""
+    fleet = Fleet()
+    fleet.hear(heartbeat(5), link=0, now_ns=1)
+    assert "two vehicles" not in told(fleet)
+    fleet.hear(heartbeat(5), link=1, now_ns=500_000_000)
+    fleet.hear(heartbeat(5), link=1, now_ns=600_000_000)
+    assert told(fleet).count("vehicle 5 is heard on link 0 and on link 1") == 1
+
+
+def test_a_link_that_takes_over_from_a_silent_one_is_not_told_as_a_second_vehicle() -> None:
+    fleet = Fleet()
+    fleet.hear(heartbeat(5), link=0, now_ns=1)
+    fleet.hear(heartbeat(5), link=1, now_ns=3_000_000_000)
+    assert "two vehicles" not in told(fleet)
+
+
+def told(fleet: Fleet) -> str:
+    return "\n".join(item.text for item, _ in fleet.asked if isinstance(item, Log))
