@@ -201,6 +201,7 @@ class Bridge:
     def deadline_ns(self) -> int | None:
         """When `wake` is due."""
         times = [each.plans.deadline_ns for each in self._exchanges()]
+        times += [each.chosen_until_ns for each in self._exchanges()]
         return min((time for time in times if time is not None), default=None)
 
     def wake(self, now_ns: int) -> list[BridgeEffect]:
@@ -210,6 +211,9 @@ class Bridge:
             due_ns = each.plans.deadline_ns
             if due_ns is not None and due_ns <= now_ns:
                 done += _of(each, of_plan(each, each.plans.wake(now_ns)))
+            until_ns = each.chosen_until_ns
+            if until_ns is not None and until_ns <= now_ns:
+                done += _of(each, each.forget_choice("not armed in time", now_ns))
         return done
 
     def _exchanges(self, vehicle: int | None = None) -> list[Exchange]:
@@ -289,11 +293,22 @@ class Bridge:
             case _:
                 return client.dialogue.told(event, now_ns)
 
-    def asked(self, number: int, vehicle: int) -> None:
+    def asked(self, number: int, vehicle: int, now_ns: int) -> list[BridgeEffect]:
         """The operator `number`, a client or not, asks the gate of a vehicle for something."""
+        done: list[BridgeEffect] = []
         for each in self._exchanges(vehicle):
             if each.number != number:
                 each.dialogue.forget()
+                done += _of(each, each.forget_choice("another one asks for something", now_ns))
+        return done
+
+    def not_standing(self, vehicle: int, why: str, now_ns: int) -> list[BridgeEffect]:
+        """It is armed, or not on the ground: no take-off that was chosen before is flown."""
+        return [
+            done
+            for each in self._exchanges(vehicle)
+            for done in _of(each, each.forget_choice(why, now_ns))
+        ]
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent; `operation` is the request's."""
@@ -314,6 +329,9 @@ class Bridge:
         self._control.changed(number, self._sysid_of(number))
         who = f"in control: {name}" if number else "nobody is in control"
         effects: list[BridgeEffect] = []
+        for each in self._exchanges():
+            if each.number != number:
+                effects += _of(each, each.forget_choice(who, now_ns))
         for vehicle in vehicles:
             effects += self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
         return effects

@@ -6,11 +6,20 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import count
 
-from gcs.bridge.dialogue import Dialogue
-from gcs.bridge.meaning.meaning import Meaning, Seen, Settled, Sticks
+from gcs.bridge.dialogue import Dialogue, From
+from gcs.bridge.effects import BridgeEffect, Notes
+from gcs.bridge.meaning.chosen_takeoff import (
+    KEPT_NS,
+    Chosen,
+    ends_choice,
+    may_be_chosen,
+    with_takeoff,
+)
+from gcs.bridge.meaning.meaning import Meaning, Seen, Settled, Sticks, Words
 from gcs.bridge.meaning.pace import Pace
 from gcs.bridge.meaning.stick_stream import StickStream
 from gcs.bridge.plans.server import PlanServer
+from gcs.gate.effects import Level
 from gcs.protocol.transfer import Timing
 
 SPAN_NS = 2_000_000_000
@@ -84,6 +93,8 @@ class Exchange:
         self.plans = PlanServer(client.timing)
         self.pace = Pace(client.deadman_ns)
         self.sticks = StickStream()
+        self._chosen: Chosen | None = None
+        self._chosen_by: From | None = None
         self.plan_ask = 0
         """The number of the plan request that is not over; 0: none."""
 
@@ -92,3 +103,46 @@ class Exchange:
         if isinstance(meaning, Sticks):
             return self.sticks.settle(meaning, seen, now_ns)
         return self.pace.settle(meaning, now_ns)
+
+    # ------------------------------------------------------------------ take-off, then arming
+
+    @property
+    def chosen_until_ns(self) -> int | None:
+        """When the take-off that was chosen is forgotten; None: there is none."""
+        return None if self._chosen is None else self._chosen.until_ns
+
+    def chooses(
+        self, meaning: Settled, seen: Seen, by: From, now_ns: int
+    ) -> list[BridgeEffect] | None:
+        """Keep a take-off until this client arms; None where it cannot be chosen."""
+        if self.dialogue.arming or not may_be_chosen(meaning, seen):
+            return None
+        assert isinstance(meaning, Words)
+        (ask,) = meaning.asks
+        self._chosen = Chosen(ask, seen.takeoff_up_m, now_ns + KEPT_NS)
+        self._chosen_by = by
+        text = f"takeoff: to {ask.up_m:.1f} m when you arm, within {KEPT_NS / 1e9:.0f} s"
+        note = Notes(Level.INFO, f"{self.name}: {text}")
+        return [note, *self.dialogue.text(by, Level.INFO, text, now_ns)]
+
+    def joined_with_choice(
+        self, meaning: Settled, seen: Seen, now_ns: int
+    ) -> tuple[Settled, list[BridgeEffect]]:
+        """An arming with the take-off that was chosen; anything else ends the choice."""
+        chosen = self._chosen
+        if chosen is None or not ends_choice(meaning):
+            return meaning, []
+        both = with_takeoff(chosen, meaning, seen, now_ns)
+        if both is None:
+            return meaning, self.forget_choice("something else was asked for", now_ns)
+        self._chosen = None
+        return both, []
+
+    def forget_choice(self, why: str, now_ns: int) -> list[BridgeEffect]:
+        """The take-off that was chosen is not flown; told once."""
+        if self._chosen is None or self._chosen_by is None:
+            return []
+        self._chosen = None
+        text = f"takeoff: forgotten: {why}"
+        note = Notes(Level.INFO, f"{self.name}: {text}")
+        return [note, *self.dialogue.text(self._chosen_by, Level.INFO, text, now_ns)]

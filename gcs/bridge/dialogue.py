@@ -68,6 +68,8 @@ class _Pending:
     answered: int | None = None
     """MAV_RESULT that the client was told."""
     vehicle_result: int | None = None
+    first_answers: bool = False
+    """The first of what was asked for answers the command; the end of the last is told as text."""
 
 
 @dataclass(slots=True)
@@ -104,7 +106,13 @@ class Dialogue:
     # ----------------------------------------------------------------------------- asking
 
     def ask(
-        self, asked_by: From, message: Message, asks: Sequence[ipc.Ask], now_ns: int
+        self,
+        asked_by: From,
+        message: Message,
+        asks: Sequence[ipc.Ask],
+        now_ns: int,
+        *,
+        first_answers: bool = False,
     ) -> list[BridgeEffect]:
         """Ask for `asks`, one after the other, because of a message; none: it is so already."""
         key, command = _key(message), _command(message)
@@ -119,6 +127,7 @@ class Dialogue:
         if not asks:
             return [self._acknowledge(asked_by, command, Result.ACCEPTED)]
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
+        pending.first_answers = first_answers
         arming = self._arming() if pending.rest and pending.word == "arm" else None
         if arming is not None:
             number = self.number()
@@ -148,6 +157,11 @@ class Dialogue:
     def forget(self) -> None:
         """Somebody else has asked for something: what was accepted may hold no more."""
         self._told = None
+
+    @property
+    def arming(self) -> bool:
+        """This client has asked for an arming that has not ended."""
+        return self._arming() is not None
 
     def _arming(self) -> int | None:
         """The arming that this client has asked for, and that has not ended."""
@@ -257,11 +271,18 @@ class Dialogue:
         if event.ended == "complete":
             if pending.rest:
                 ask, rest = pending.rest[0], pending.rest[1:]
+                answered: list[BridgeEffect] = []
+                if pending.first_answers:
+                    answered = self._answer(pending, Result.ACCEPTED, None, now_ns)
                 following = replace(
                     pending, rest=rest, name=ask.word, word=ask.word, vehicle_result=None
                 )
-                return [Says(self.client, self._open(following, ask))]
-            return self._answer(pending, Result.ACCEPTED, None, now_ns)
+                return [*answered, Says(self.client, self._open(following, ask))]
+            done = self._answer(pending, Result.ACCEPTED, None, now_ns)
+            if pending.first_answers:
+                text = f"{pending.name}: {event.ended}"
+                done += self.text(pending.asked_by, Level.INFO, text, now_ns)
+            return done
         if self._told is not None and self._told.key == pending.key:
             self._told = None
         code = _code(event.code)

@@ -205,7 +205,17 @@ class Judge:
         meant = meaning_of(message, seen)
         ignored = client.sticks.news(meant) if isinstance(meant, Sticks) else ""
         told = client.dialogue.text(given.by, Level.INFO, ignored, now_ns) if ignored else []
-        judged = self._meant(given, message, row, client.settle(meant, seen, now_ns), seen)
+        settled = client.settle(meant, seen, now_ns)
+        if not isinstance(meant, Sticks) or not isinstance(settled, Reject):
+            chosen = (
+                None if self.height_awaited else client.chooses(settled, seen, given.by, now_ns)
+            )
+            if chosen is not None:
+                chosen += client.dialogue.ask(given.by, message, (), now_ns)
+                return Judged(False, [*told, *chosen])
+            settled, forgotten = client.joined_with_choice(settled, seen, now_ns)
+            told += forgotten
+        judged = self._meant(given, message, row, settled, seen)
         return Judged(judged.refused, [*told, *judged.effects])
 
     def _meant(
@@ -213,13 +223,15 @@ class Judge:
     ) -> Judged:
         client, now_ns = given.client, given.now_ns
         match meaning:
-            case Words(asks, note):
+            case Words(asks, note, _, first_answers):
                 if self.height_awaited and any(climbs(each, seen.autopilot) for each in asks):
                     unknown = _refuse(given, message, row, HEIGHT_WRITTEN)
                     asks_for_it = asks_for_height(given.by.source, given.by.addressed)
                     return Judged(True, [*unknown.effects, asks_for_it])
                 told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
-                asked = client.dialogue.ask(given.by, message, asks, now_ns)
+                asked = client.dialogue.ask(
+                    given.by, message, asks, now_ns, first_answers=first_answers
+                )
                 return Judged(False, [*told, *asked])
             case Sample():
                 return Judged(False, client.dialogue.stream(given.by, _stream(meaning)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import msgspec
 
@@ -26,11 +27,14 @@ from gcs.bridge.effects import (
 from gcs.bridge.judge import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
+from gcs.gate.condition import Severity
 from gcs.gate.effects import Level
-from gcs.gate.inputs import CommandEnded, Input, Requested
+from gcs.gate.inputs import CommandEnded, HeartbeatSeen, Input, LandedSeen, Requested
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.turn import REFUSED_LINE, REFUSED_STREAM_LINE
 from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Refusal
+from gcs.gate.states import LandedState
 from gcs.protocol.effects import Address
 from gcs.protocol.parameter_names import names_of
 from gcs.session import teller
@@ -101,6 +105,7 @@ class BridgePort:
             mission_paused=vehicle.mission_paused,
             stream=self._stream,
             mission_items=vehicle.mission_items,
+            clears_takeoff=partial(_clears_takeoff, vehicle.gate),
         )
 
     def parameter(self, frame: Frame, now_ns: int) -> list[BridgeEffect]:
@@ -119,7 +124,11 @@ class BridgePort:
         """The vehicle's own answer to a command is what the client is answered, too; and what one
         asks for, the answers to the others are older than."""
         if isinstance(given, Requested):
-            self.bridge.asked(self._operators.client_of(given.request_id), sysid)
+            return self.bridge.asked(self._operators.client_of(given.request_id), sysid, now_ns)
+        if isinstance(given, HeartbeatSeen) and given.armed:
+            return self.bridge.not_standing(sysid, "the vehicle is armed", now_ns)
+        if isinstance(given, LandedSeen) and given.landed is not LandedState.ON_GROUND:
+            return self.bridge.not_standing(sysid, "it does not stand on the ground", now_ns)
         if isinstance(given, CommandEnded) and given.result is not None:
             return self.bridge.command_answered(given.request_id, given.result, now_ns)
         return []
@@ -254,6 +263,14 @@ def _vehicle_row(vehicle: Vehicle, telemetry: Telemetry, now_ns: int) -> ipc.Bri
         lost_pct=lost_pct(vehicle.losses),
         silent_s=(now_ns - telemetry.heard_ns) / 1e9,
     )
+
+
+def _clears_takeoff(gate: Gate, up_m: float) -> bool:
+    """Whether the gate would let it climb, if it were armed; asked on the ground."""
+    memory = gate.memory
+    if gate.severity >= Severity.HOLD or memory.verifier is None or memory.pos_ned is None:
+        return False
+    return not isinstance(memory.verifier.takeoff(up_m, memory.pos_ned), Refusal)
 
 
 TAKEOFF_UP_M = 2.5

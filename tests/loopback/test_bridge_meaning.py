@@ -287,15 +287,14 @@ def test_qgroundcontrols_pause() -> None:
     assert flight.truth_enu()[1] < 30
 
 
-@pytest.mark.parametrize("order", [TAKE_OFF, SET_MODE])
-def test_what_was_refused_before_arming_is_not_flown_after_it(order: int) -> None:
-    """QGroundControl (from memory) asks a PX4 for the take-off, or the mission mode, and arms then.
-    Nothing is kept: the client reads what to do."""
+def test_a_mission_mode_that_was_refused_before_arming_is_not_flown_after_it() -> None:
+    """QGroundControl (from memory) asks a PX4 for the mission mode, and arms then: nothing is kept,
+    and the client reads what to do.  The take-off is kept: see `test_takeoff_then_arm.py`."""
     flight = BridgedFlight("px4")
     client = flight.join()
     flight.connected()
-    params = (0, 0, 0, NAN, NAN, NAN, NAN) if order == TAKE_OFF else (29.0, 4.0, 4.0)
-    assert client.ask(order, *params, within_s=10) == dialect.MAV_RESULT_TEMPORARILY_REJECTED
+    mission_mode = client.ask(SET_MODE, 29.0, 4.0, 4.0, within_s=10)
+    assert mission_mode == dialect.MAV_RESULT_TEMPORARILY_REJECTED
     assert "arm it first" in client.texts()
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
     flight.beating(5.0)

@@ -48,7 +48,8 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
         motion.take_off_px4,
         motion.take_off_ardupilot,
         "take-off where it stands. PX4: p7 above sea level, NaN or too low: its own default "
-        "height; a place more than 5 m away is refused. ArduPilot: p7 above home, places ignored",
+        "height; a place more than 5 m away is refused; disarmed: kept for 10 s, flown when the "
+        "same client arms. ArduPilot: p7 above home, places ignored",
     ),
     Cmd.NAV_LAND: _same(motion.land, "land where it is; a place is ignored, as both do"),
     Cmd.NAV_RETURN_TO_LAUNCH: _same(motion.return_home, "rtl, if the way home is clear"),

@@ -6,6 +6,7 @@ clockwise from north, speeds are metres per second.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -16,6 +17,10 @@ from gcs.gate.policy.policy import StreamRules
 from gcs.gate.refusal import Refusal
 from gcs.gate.states import State
 from gcs.protocol.autopilot import Autopilot
+
+
+def _clears_nothing(up_m: float) -> bool:
+    return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +67,8 @@ class Seen:
     """What full stick asks for; None: sticks are refused."""
     has_sticks: bool = False
     """The client who asks has sent sticks lately."""
+    clears_takeoff: Callable[[float], bool] = _clears_nothing
+    """Whether a climb from here, by so many metres, would be cleared if the vehicle were armed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +112,8 @@ class Words:
     """What will not be flown as the message says, for the client to read; empty: nothing."""
     if_repeated: Sample | None = None
     """The same message as a sample, where its sender turns out to be streaming: `pace.Pace`."""
+    first_answers: bool = False
+    """The message is answered when the first request is complete, not the last."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -181,9 +181,9 @@ def test_a_request_of_anybody_else_makes_an_old_answer_void() -> None:
 
     assert len(arms()) == 1
     assert arms() == []
-    table.bridge.asked(1000, 1)
+    table.bridge.asked(1000, 1, table.now_ns)
     assert arms() == [], "its own request changes nothing"
-    table.bridge.asked(7, 1)
+    table.bridge.asked(7, 1, table.now_ns)
     assert len(arms()) == 1
 
 
