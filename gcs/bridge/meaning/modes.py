@@ -146,7 +146,7 @@ def guided(wanted: Mode, seen: Seen) -> Meaning:
         # The heartbeat may still show the mode before: `mode_name` counts for nothing here.
         stop_first = Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume")))
         return stop_first if seen.in_control else ask("control")
-    if seen.mode_name == wanted.name:
+    if seen.mode_name == wanted.name and seen.in_control:
         return DONE
     return ask("control")
 

@@ -150,6 +150,15 @@ def test_guided_stops_nothing_for_a_client_who_is_not_in_control(
 
 
 @GUIDED
+def test_guided_that_is_flown_for_another_client_is_no_success(
+    autopilot: Autopilot, guided: Message
+) -> None:
+    """It would read ACCEPTED, and then each of its setpoints would be refused."""
+    seen = flying(autopilot, state=State.HOVERING, in_control=False)
+    assert words(meaning_of(guided, seen)) == ["control"]
+
+
+@GUIDED
 def test_guided_on_the_ground_waits_for_a_take_off_and_offboard_is_for_the_gate_to_decide(
     autopilot: Autopilot, guided: Message
 ) -> None:
