@@ -52,7 +52,7 @@ from gcs.protocol.effects import Address
 from gcs.protocol.parameters import BY_NAME
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
-from gcs.wire.ids import MissionResult, MissionType
+from gcs.wire.ids import Cmd, MissionResult, MissionType
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
@@ -207,8 +207,13 @@ class Judge:
         told = client.dialogue.text(given.by, Level.INFO, ignored, now_ns) if ignored else []
         settled = client.settle(meant, seen, now_ns)
         if not isinstance(meant, Sticks) or not isinstance(settled, Reject):
+            takes_off = isinstance(message, CommandLong | CommandInt) and (
+                message.command == Cmd.NAV_TAKEOFF  # a mode that is not shown would be a lie
+            )
             chosen = (
-                None if self.height_awaited else client.chooses(settled, seen, given.by, now_ns)
+                client.chooses(settled, seen, given.by, now_ns)
+                if takes_off and not self.height_awaited
+                else None
             )
             if chosen is not None:
                 chosen += client.dialogue.ask(given.by, message, (), now_ns)

@@ -22,6 +22,7 @@ from tests.loopback.looks import START_NS
 
 ACCEPTED, TEMPORARILY_REJECTED = 0, 1
 ARM, TAKE_OFF, PAUSE, REQUEST_CONTROL = 400, 22, 193, 32100
+SET_MODE = 176
 NAN = math.nan
 
 
@@ -155,3 +156,11 @@ def test_the_audit_finds_the_same(tmp_path: Path) -> None:
     result = audited(*read(recorder.path))
     assert result.good, result.first
     assert result.inputs
+
+
+def test_the_take_off_mode_before_the_arming_is_no_choice() -> None:
+    """A heartbeat would have to show that mode, and nothing is sent to the vehicle."""
+    flight, client = standing()
+    assert client.ask(SET_MODE, 1, 4, 2) != ACCEPTED
+    assert client.ask(ARM, 1) == ACCEPTED
+    stays_down(flight)

@@ -19,14 +19,16 @@ from gcs.gate.requests import (
     GoTo,
     Hold,
     Land,
+    Request,
     Resume,
     ReturnHome,
+    SetMode,
     StartMission,
     TakeControl,
     TakeOff,
     TakePhoto,
 )
-from gcs.gate.states import Control, State
+from gcs.gate.states import Control, FlightMode, State
 
 FLIES: Final = (GoTo, TakeControl, Resume, TakeOff, StartMission, BeginStream)
 MOVES: Final = (*FLIES, Arm, TakePhoto)
@@ -157,9 +159,16 @@ def accepts_what_is_known_to_be_safe(edge: Edge) -> Iterator[str]:
         yield f"{edge.request} is accepted at severity {edge.severity.name}"
 
 
+def _stops(request: Request | None) -> bool:
+    """What invariant 10 has heard in any state, by its own name or as the mode that means it."""
+    if isinstance(request, SetMode):
+        return request.meaning in (FlightMode.HOLD, FlightMode.LAND)
+    return isinstance(request, Abort | Hold | Land | Disarm)
+
+
 def hears_an_operator_that_is_there(edge: Edge) -> Iterator[str]:
     """7: once the operator is lost, nobody withdraws the hold that followed."""
-    if isinstance(edge.request, Abort | Hold | Land | Disarm) or not edge.before.operator_lost:
+    if _stops(edge.request) or not edge.before.operator_lost:
         return
     refusal = None if edge.verdict is None else edge.verdict.refusal
     if refusal is None or refusal.code is not Code.OPERATOR_LOST:
