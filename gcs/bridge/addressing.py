@@ -59,6 +59,16 @@ class Judges:
             self._by_sysid[sysid] = found
         return found
 
+    def client_lost(self, client: int, own: Address) -> list[OfVehicle]:
+        """What a client had the vehicles send is taken back."""
+        done = []
+        for sysid, judge in self._by_sysid.items():
+            vehicle = Address(sysid, Component.AUTOPILOT1)
+            effects = judge.client_lost(client, own, vehicle)
+            if effects:
+                done.append(OfVehicle(sysid, tuple(effects)))
+        return done
+
     def judge(self, given: Given, vehicles: Sequence[Address]) -> Judged:
         """A frame that reaches these vehicles; none: no vehicle is heard yet.
 
@@ -66,9 +76,13 @@ class Judges:
         alone; where the message has no target, one refusal is for all.
         """
         first = vehicles[0] if vehicles else NO_VEHICLE
+        for_all = target_of(given.frame)[0] == 0 and self.of(first.sysid).concerns_each(given.frame)
         if len(vehicles) <= 1:
-            return _at(first, self._for_one(given, given.frame, first))
-        if not self.of(first.sysid).concerns_each(given.frame):
+            # Not to whoever else hears the link, and was not judged.
+            alone = bool(vehicles) and for_all
+            frame = readdressed(given.frame, first.sysid) if alone else given.frame
+            return _at(first, self._for_one(given, frame, first))
+        if not for_all:
             return self._for_one(given, given.frame, first)
         done = [
             (each, self._for_one(given, readdressed(given.frame, each.sysid), each))

@@ -16,6 +16,7 @@ import msgspec
 from gcs.bridge.needed_rates import Rates
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
+from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import CommandInt, CommandLong, RequestDataStream
 
@@ -29,6 +30,8 @@ KINDS_OF_ALL: Final = 25
 """An ArduCopter that was asked for all at 4 Hz sent 101 messages a second (recorded)."""
 KINDS_OF_GROUP: Final = 5
 """Messages of one group, about: the other numbers of MAV_DATA_STREAM (from memory)."""
+MODEST_HZ: Final = 4
+"""As MAVProxy and DroneKit ask for groups."""
 TEXT_OF_KEY: Final = "policy: bridge.messages_hz"
 
 
@@ -44,9 +47,13 @@ class AskedRates:
         """Message id -> Hz."""
         self._groups: dict[int, float] = {}
         """MAV_DATA_STREAM -> messages a second, about."""
+        self._asked_by: dict[tuple[str, int], int] = {}
+        """The number of the client that asked last, of each message and group."""
 
-    def command(self, command: Command) -> Command | Refusal:
-        """The same; of SET_MESSAGE_INTERVAL with an interval that is long enough."""
+    def command(self, command: Command, client: int = 0) -> Command | Refusal:
+        """The same; of SET_MESSAGE_INTERVAL with an interval that is long enough.
+
+        `client` is the number of the one who asks."""
         if command.command != Cmd.SET_MESSAGE_INTERVAL:
             return command
         msgid = int(command.param1) if 0.0 <= command.param1 < 1e8 else 0
@@ -59,11 +66,12 @@ class AskedRates:
         self._messages.pop(msgid, None)
         if hz >= SLOWEST_HZ:
             self._messages[msgid] = hz
+            self._asked_by["message", msgid] = client
         if hz == wanted_hz:
             return command
         return msgspec.structs.replace(command, param2=float(math.ceil(1e6 / hz)))
 
-    def group(self, request: RequestDataStream) -> RequestDataStream | Refusal:
+    def group(self, request: RequestDataStream, client: int = 0) -> RequestDataStream | Refusal:
         """The same, with a rate that is low enough."""
         rate_hz = min(request.req_message_rate, math.floor(self._message_hz))
         stream = request.req_stream_id
@@ -78,9 +86,30 @@ class AskedRates:
             self._messages.clear()
             self._groups.clear()
         self._groups[stream] = hz
+        self._asked_by["group", stream] = client
         if rate_hz == request.req_message_rate:
             return request
         return msgspec.structs.replace(request, req_message_rate=rate_hz)
+
+    def client_lost(self, client: int, vehicle: Address) -> list[CommandLong | RequestDataStream]:
+        """What to send so that nothing comes any more that only this client had asked for faster.
+
+        A message goes back to the vehicle's own rate, a group to a modest one: other clients may
+        look at the same.  What the gate needs goes on.
+        """
+        sent: list[CommandLong | RequestDataStream] = []
+        mine = [key for key, number in self._asked_by.items() if number == client]
+        for what, number in mine:
+            del self._asked_by[what, number]
+            if what == "message":
+                if self._messages.pop(number, None) and number not in self._needed_hz:
+                    sent.append(_at_its_own_rate(number, vehicle))
+                continue
+            kinds = KINDS_OF_ALL if number == ALL_STREAMS else KINDS_OF_GROUP
+            if self._groups.get(number, 0.0) > MODEST_HZ * kinds:
+                self._groups[number] = float(MODEST_HZ * kinds)
+                sent.append(RequestDataStream(MODEST_HZ, vehicle.sysid, vehicle.compid, number, 1))
+        return sent
 
     def _sum(self) -> float:
         return sum(self._messages.values()) + sum(self._groups.values())
@@ -92,3 +121,11 @@ class AskedRates:
             f"{self._messages_hz:.0f} that they share ({TEXT_OF_KEY})",
             (("asked_hz", hz), ("others_hz", others_hz), ("max_hz", self._messages_hz)),
         )
+
+
+def _at_its_own_rate(msgid: int, vehicle: Address) -> CommandLong:
+    """SET_MESSAGE_INTERVAL with 0: the vehicle's default (common.xml)."""
+    unused = (0.0,) * 5
+    return CommandLong(
+        float(msgid), 0.0, *unused, Cmd.SET_MESSAGE_INTERVAL, vehicle.sysid, vehicle.compid, 0
+    )

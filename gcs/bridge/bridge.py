@@ -118,7 +118,8 @@ class Bridge:
         client.joined = False
         del self._by_number[client.number]
         self._control.forget(client.number)
-        return [Lost(client.number, reason)]
+        taken_back = self._judges.client_lost(client.number, self._own)
+        return [Lost(client.number, reason), *taken_back]
 
     def _meet(self, client: Client, frame: Frame) -> list[BridgeEffect]:
         client.begin(self._next_number)

@@ -175,11 +175,12 @@ class Judge:
         instead: Message | Refusal
         again: list[BridgeEffect] = []
         if isinstance(message, RequestDataStream):
-            instead = self._asked_rates.group(message)
+            instead = self._asked_rates.group(message, given.client.number)
             if isinstance(instead, RequestDataStream):
                 again = [AsksForStreams(tuple(asked_anew(instead, self._needed_hz)))]
         else:
-            instead = self._asked_rates.command(not_slower(message, self._needed_hz) or message)
+            slowest = not_slower(message, self._needed_hz) or message
+            instead = self._asked_rates.command(slowest, given.client.number)
         if isinstance(instead, Refusal):
             return _refuse(given, message, row, instead)
         if instead is message:
@@ -279,6 +280,15 @@ class Judge:
         end = LogRequestEnd(target_system=vehicle.sysid, target_component=vehicle.compid)
         text = "the vehicle is armed: the reading of its log is ended (policy: bridge.downloads)"
         return [AsksVehicle(own, end), Notes(Level.INFO, text)]
+
+    def client_lost(self, client: int, own: Address, vehicle: Address) -> list[BridgeEffect]:
+        """What it had the vehicle send is taken back."""
+        done: list[BridgeEffect] = []
+        for message in self._asked_rates.client_lost(client, vehicle):
+            done.append(AsksVehicle(own, message))
+            if isinstance(message, RequestDataStream):
+                done.append(AsksForStreams(tuple(asked_anew(message, self._needed_hz))))
+        return done
 
     def parameter(self, message: ParamValue, autopilot: str, now_ns: int) -> list[BridgeEffect]:
         """PARAM_VALUE of the vehicle's autopilot: what has changed, for the log."""

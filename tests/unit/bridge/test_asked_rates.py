@@ -9,6 +9,7 @@ import pytest
 from gcs.bridge.asked_rates import AskedRates
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.refusal import Code, Refusal
+from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, MsgId
 from gcs.wire.messages import CommandLong, RequestDataStream
 
@@ -98,3 +99,36 @@ def test_a_stream_that_is_stopped_makes_room() -> None:
 def test_another_command_is_none_of_this() -> None:
     other = CommandLong(30.0, 1.0, *(0.0,) * 5, Cmd.REQUEST_MESSAGE, 1, 1, 0)
     assert rates().command(other) is other
+
+
+AT = Address(1, 1)
+
+
+def test_what_a_client_that_has_gone_asked_for_is_taken_back() -> None:
+    """Or one that asks for all that there is, and leaves, would deny it to all others."""
+    own = rates()
+    for msgid in range(100, 110):
+        own.command(interval(msgid, 20_000.0), client=1000)
+    assert isinstance(own.command(interval(110, 20_000.0), client=1001), Refusal)
+    back = own.client_lost(1000, AT)
+    assert [each for each in back if isinstance(each, CommandLong)] == back
+    assert {(each.param1, each.param2) for each in back if isinstance(each, CommandLong)} == {
+        (float(msgid), 0.0) for msgid in range(100, 110)
+    }
+    assert own.command(interval(110, 20_000.0), client=1001) == interval(110, 20_000.0)
+    assert own.client_lost(1000, AT) == []
+
+
+def test_what_another_client_asked_for_since_or_the_gate_needs_goes_on() -> None:
+    own = rates()
+    own.command(interval(100, 20_000.0), client=1000)
+    own.command(interval(100, 40_000.0), client=1001)
+    own.command(interval(32, 20_000.0), client=1000)
+    assert own.client_lost(1000, AT) == []
+
+
+def test_a_group_of_a_client_that_has_gone_goes_on_slowly() -> None:
+    own = rates()
+    own.group(stream(20), client=1000)
+    assert own.client_lost(1000, AT) == [stream(4)]
+    assert own.group(stream(10, 6), client=1001) == stream(10, 6)

@@ -12,6 +12,7 @@ from gcs.bridge.bridge import Bridge
 from gcs.bridge.effects import (
     Answers,
     AsksPlan,
+    AsksVehicle,
     BridgeEffect,
     Joined,
     Lost,
@@ -31,7 +32,7 @@ from gcs.protocol.effects import Address
 from gcs.protocol.transfer import SPEC_TIMING
 from gcs.wire.frame import Frame, split
 from gcs.wire.ids import Cmd, Result
-from gcs.wire.messages import CommandAck, MissionRequestInt, Statustext
+from gcs.wire.messages import CommandAck, CommandLong, MissionRequestInt, Statustext
 from tests.unit.bridge.vehicles import flying, standing
 
 S = 1_000_000_000
@@ -268,3 +269,31 @@ def test_a_client_that_has_gone_is_no_client() -> None:
     assert table.bridge.gone(1, "again") == []
     assert table.bridge.told(1000, ipc.EndingEvent(1, "arm", "complete"), 1, table.now_ns) == []
     assert table.bridge.status(table.now_ns) == []
+
+
+def test_what_is_for_all_and_changes_a_vehicle_goes_to_the_one_that_it_was_judged_for() -> None:
+    """Who else hears the same radio, and is no vehicle of this bridge, was not judged."""
+    table = Table(seen=standing(PX4))
+    table.says(HEARTBEAT)
+    write = mavlink.MAVLink_param_set_message(0, 1, b"SDLOG_MODE", 1.0, 6)
+    (sent,) = of(ToVehicle, table.says(write).effects)
+    (frame,) = split(sent.raw)
+    assert isinstance(frame, Frame)
+    assert (frame.sysid, frame.payload[4]) == (245, VEHICLE.sysid), "PARAM_SET.target_system"
+    harmless = mavlink.MAVLink_param_request_list_message(0, 1)
+    (passed,) = of(ToVehicle, table.says(harmless).effects)
+    assert passed.raw == frame_of(harmless).raw
+
+
+def test_what_a_lost_client_had_the_vehicle_send_is_taken_back() -> None:
+    table = Table()
+    faster = mavlink.MAVLink_command_long_message(
+        1, 1, Cmd.SET_MESSAGE_INTERVAL, 0, 105, 20_000, 0, 0, 0, 0, 0
+    )
+    table.says(faster)
+    effects = table.bridge.second(table.now_ns + 11 * S)
+    (asked,) = of(AsksVehicle, effects)
+    told = asked.message
+    assert isinstance(told, CommandLong)
+    assert (told.command, told.param1, told.param2) == (Cmd.SET_MESSAGE_INTERVAL, 105.0, 0.0)
+    assert (asked.source, told.target_system) == (OWN, 1)
