@@ -9,7 +9,7 @@ that is asked for anew counts with its new rate; what the vehicle sends unasked 
 from __future__ import annotations
 
 import math
-from typing import Final, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import msgspec
 
@@ -35,6 +35,16 @@ MODEST_HZ: Final = 4
 TEXT_OF_KEY: Final = "policy: bridge.messages_hz"
 
 
+class _Asked(NamedTuple):
+    """How many a second, and which client asked for it last."""
+
+    hz: float
+    client: int = 0
+
+
+NOT_ASKED: Final = _Asked(0.0)
+
+
 class AskedRates:
     """Of one vehicle, by all clients."""
 
@@ -43,12 +53,10 @@ class AskedRates:
         self._message_hz = rules.message_hz
         self._messages_hz = rules.messages_hz
         self._needed_hz = needed_hz
-        self._messages: dict[int, float] = {}
-        """Message id -> Hz."""
-        self._groups: dict[int, float] = {}
-        """MAV_DATA_STREAM -> messages a second, about."""
-        self._asked_by: dict[tuple[str, int], int] = {}
-        """The number of the client that asked last, of each message and group."""
+        self._messages: dict[int, _Asked] = {}
+        """By message id."""
+        self._groups: dict[int, _Asked] = {}
+        """By MAV_DATA_STREAM; how many messages a second that is, about."""
 
     def command(self, command: Command, client: int = 0) -> Command | Refusal:
         """The same; of SET_MESSAGE_INTERVAL with an interval that is long enough.
@@ -60,13 +68,12 @@ class AskedRates:
         most_hz = max(self._message_hz, self._needed_hz.get(msgid, 0.0))
         wanted_hz = 1e6 / command.param2 if command.param2 > 0.0 else 0.0
         hz = min(wanted_hz, most_hz)
-        others_hz = self._sum() - self._messages.get(msgid, 0.0)
+        others_hz = self._sum() - self._messages.get(msgid, NOT_ASKED).hz
         if others_hz + hz > self._messages_hz:
             return self._too_much(others_hz, hz)
         self._messages.pop(msgid, None)
         if hz >= SLOWEST_HZ:
-            self._messages[msgid] = hz
-            self._asked_by["message", msgid] = client
+            self._messages[msgid] = _Asked(hz, client)
         if hz == wanted_hz:
             return command
         return msgspec.structs.replace(command, param2=float(math.ceil(1e6 / hz)))
@@ -75,9 +82,8 @@ class AskedRates:
         """The same, with a rate that is low enough."""
         rate_hz = min(request.req_message_rate, math.floor(self._message_hz))
         stream = request.req_stream_id
-        kinds = KINDS_OF_ALL if stream == ALL_STREAMS else KINDS_OF_GROUP
-        hz = float(rate_hz * kinds) if request.start_stop else 0.0
-        others_hz = self._sum() - self._groups.get(stream, 0.0)
+        hz = float(rate_hz * _kinds(stream)) if request.start_stop else 0.0
+        others_hz = self._sum() - self._groups.get(stream, NOT_ASKED).hz
         if stream == ALL_STREAMS:
             others_hz = 0.0  # it sets the rate of everything
         if others_hz + hz > self._messages_hz:
@@ -85,8 +91,7 @@ class AskedRates:
         if stream == ALL_STREAMS:
             self._messages.clear()
             self._groups.clear()
-        self._groups[stream] = hz
-        self._asked_by["group", stream] = client
+        self._groups[stream] = _Asked(hz, client)
         if rate_hz == request.req_message_rate:
             return request
         return msgspec.structs.replace(request, req_message_rate=rate_hz)
@@ -98,21 +103,19 @@ class AskedRates:
         look at the same.  What the gate needs goes on.
         """
         sent: list[CommandLong | RequestDataStream] = []
-        mine = [key for key, number in self._asked_by.items() if number == client]
-        for what, number in mine:
-            del self._asked_by[what, number]
-            if what == "message":
-                if self._messages.pop(number, None) and number not in self._needed_hz:
-                    sent.append(_at_its_own_rate(number, vehicle))
-                continue
-            kinds = KINDS_OF_ALL if number == ALL_STREAMS else KINDS_OF_GROUP
-            if self._groups.get(number, 0.0) > MODEST_HZ * kinds:
-                self._groups[number] = float(MODEST_HZ * kinds)
-                sent.append(RequestDataStream(MODEST_HZ, vehicle.sysid, vehicle.compid, number, 1))
+        for msgid in [of for of, asked in self._messages.items() if asked.client == client]:
+            del self._messages[msgid]
+            if msgid not in self._needed_hz:
+                sent.append(_at_its_own_rate(msgid, vehicle))
+        for stream in [of for of, asked in self._groups.items() if asked.client == client]:
+            modest_hz = float(MODEST_HZ * _kinds(stream))
+            if self._groups[stream].hz > modest_hz:
+                self._groups[stream] = _Asked(modest_hz)
+                sent.append(RequestDataStream(MODEST_HZ, vehicle.sysid, vehicle.compid, stream, 1))
         return sent
 
     def _sum(self) -> float:
-        return sum(self._messages.values()) + sum(self._groups.values())
+        return sum(asked.hz for kept in (self._messages, self._groups) for asked in kept.values())
 
     def _too_much(self, others_hz: float, hz: float) -> Refusal:
         return Refusal(
@@ -121,6 +124,10 @@ class AskedRates:
             f"{self._messages_hz:.0f} that they share ({TEXT_OF_KEY})",
             (("asked_hz", hz), ("others_hz", others_hz), ("max_hz", self._messages_hz)),
         )
+
+
+def _kinds(stream: int) -> int:
+    return KINDS_OF_ALL if stream == ALL_STREAMS else KINDS_OF_GROUP
 
 
 def _at_its_own_rate(msgid: int, vehicle: Address) -> CommandLong:

@@ -18,7 +18,7 @@ import msgspec
 from gcs import ipc
 from gcs.bridge.answers import acknowledgement, item_acknowledgement, result_of, texts
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
-from gcs.bridge.lately import Lately
+from gcs.bridge.recent_texts import RecentTexts
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
@@ -97,8 +97,8 @@ class Dialogue:
     """The message that was asked for last."""
     _told: _Told | None = None
     """Its answer, if it was accepted."""
-    _texts: Lately = field(default_factory=Lately)
-    _refusals: Lately = field(default_factory=Lately)
+    _texts: RecentTexts = field(default_factory=RecentTexts)
+    _refusals: RecentTexts = field(default_factory=RecentTexts)
     """Of messages that are not acknowledged."""
     _streams_from: From | None = None
     """Who of this client sent the last sample of a stream."""

@@ -207,22 +207,30 @@ class Judge:
         ignored = client.sticks.news(meant) if isinstance(meant, Sticks) else ""
         told = client.dialogue.text(given.by, Level.INFO, ignored, now_ns) if ignored else []
         settled = client.settle(meant, seen, now_ns)
-        if not isinstance(meant, Sticks) or not isinstance(settled, Reject):
-            takes_off = isinstance(message, CommandLong | CommandInt) and (
-                message.command == Cmd.NAV_TAKEOFF  # a mode that is not shown would be a lie
-            )
-            chosen = (
-                client.chooses(settled, seen, given.by, now_ns)
-                if takes_off and not self.height_awaited
-                else None
-            )
-            if chosen is not None:
-                chosen += client.dialogue.ask(given.by, message, (), now_ns)
+        if not (isinstance(meant, Sticks) and isinstance(settled, Reject)):
+            chosen = self._chooses_takeoff(given, message, settled, seen)
+            if chosen:
                 return Judged(False, [*told, *chosen])
             settled, forgotten = client.joined_with_choice(settled, seen, now_ns)
             told += forgotten
         judged = self._meant(given, message, row, settled, seen)
         return Judged(judged.refused, [*told, *judged.effects])
+
+    def _chooses_takeoff(
+        self, given: Received, message: Message, settled: Settled, seen: Seen
+    ) -> list[BridgeEffect]:
+        """A take-off that is kept until this client arms; nothing where it is not for that.
+
+        A take-off *mode* is not kept: its client waits for a heartbeat that shows it.
+        """
+        if not isinstance(message, CommandLong | CommandInt):
+            return []
+        if message.command != Cmd.NAV_TAKEOFF or self.height_awaited:
+            return []
+        chosen = given.client.chooses(settled, seen, given.by, given.now_ns)
+        if chosen is None:
+            return []
+        return [*chosen, *given.client.dialogue.ask(given.by, message, (), given.now_ns)]
 
     def _meant(
         self, given: Received, message: Message, row: Row, meaning: Settled, seen: Seen

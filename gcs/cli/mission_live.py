@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict, Unpack
 
 import click
 
@@ -42,26 +42,32 @@ WAIT = click.Option(
 LINK_OPTIONS = (LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
 
 
+class ToVehicle(TypedDict):
+    """What `LINK_OPTIONS` come to."""
+
+    links: tuple[str, ...]
+    vehicle: int | None
+    policy: str
+    sign_key: str
+    log_dir: str
+    timeout: float
+    wait: float
+    as_json: bool
+    take: bool
+
+
 @click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
 @click.argument("file")
 @with_options(*LINK_OPTIONS)
 def upload(
     file: str,
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    wait: float,
-    as_json: bool,
-    take: bool,
+    **to: Unpack[ToVehicle],
 ) -> None:
     """Verify a mission file, send it to the vehicle, read it back and compare."""
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)),)
-    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
+    _run(requests, **to)
 
 
 @click.command(epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
@@ -78,15 +84,7 @@ def download(
     file: str | None,
     output: str | None,
     force: bool,
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    wait: float,
-    as_json: bool,
-    take: bool,
+    **to: Unpack[ToVehicle],
 ) -> None:
     """Read the mission on board into FILE, mission.plan if none is named.
 
@@ -96,10 +94,10 @@ def download(
 
     if file is not None and output is not None:
         raise ExitError(ExitCode.USAGE, f"one file, not two: {file} and {output}")
-    to = file or output or "mission.plan"
-    _check_output(to, force)
-    requests = (Ask(0, "mission_download", path=to),)
-    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
+    path = file or output or "mission.plan"
+    _check_output(path, force)
+    requests = (Ask(0, "mission_download", path=path),)
+    _run(requests, **to)
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -107,21 +105,13 @@ def download(
 @with_options(*LINK_OPTIONS)
 def fly(
     file: str,
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    wait: float,
-    as_json: bool,
-    take: bool,
+    **to: Unpack[ToVehicle],
 ) -> None:
     """Upload a mission file, then start it and wait for its end."""
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
-    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
+    _run(requests, **to)
 
 
 @click.command("set-current", epilog=f"Example: gcs mission set-current 3\n\n{EXITS}")
@@ -129,15 +119,7 @@ def fly(
 @with_options(*LINK_OPTIONS)
 def set_current(
     item: int,
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    wait: float,
-    as_json: bool,
-    take: bool,
+    **to: Unpack[ToVehicle],
 ) -> None:
     """Let the next start of the mission begin at ITEM, as MAVLink counts: 0 is the first item of a
     PX4, 1 that of an ArduPilot.
@@ -147,37 +129,18 @@ def set_current(
     from gcs.ipc import Ask
 
     requests = (Ask(0, "mission_set_current", item=item),)
-    _run(requests, links, vehicle, policy, sign_key, log_dir, timeout, wait, as_json, take)
+    _run(requests, **to)
 
 
 @click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
 @with_options(*LINK_OPTIONS)
 def clear(
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    wait: float,
-    as_json: bool,
-    take: bool,
+    **to: Unpack[ToVehicle],
 ) -> None:
     """Remove the mission on board."""
     from gcs.ipc import Ask
 
-    _run(
-        (Ask(0, "mission_clear"),),
-        links,
-        vehicle,
-        policy,
-        sign_key,
-        log_dir,
-        timeout,
-        wait,
-        as_json,
-        take,
-    )
+    _run((Ask(0, "mission_clear"),), **to)
 
 
 def _check_output(output: str, force: bool) -> None:
@@ -210,34 +173,25 @@ def _readable(file: str) -> str:
     return str(resources.find(file))
 
 
-def _run(
-    requests: tuple[Ask, ...],
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    wait: float,
-    as_json: bool,
-    take: bool,
-) -> None:
+def _run(requests: tuple[Ask, ...], **to: Unpack[ToVehicle]) -> None:
     from gcs.cli import oneshot_session
     from gcs.operator.request_words import SendRequests, label
 
     for request in requests:
         UTF8.convert(request.path, None, None)
     setup = station_config(
-        links,
-        policy,
-        log_dir,
+        to["links"],
+        to["policy"],
+        to["log_dir"],
         name="mission",
-        timeout_s=timeout,
-        vehicle=vehicle,
-        sign_key=sign_key,
+        timeout_s=to["timeout"],
+        vehicle=to["vehicle"],
+        sign_key=to["sign_key"],
     )
     what = label(requests[0])
-    how = oneshot_session.OneShotConfig(timeout, wait, as_json, what, take=take, wanted=asked_for())
-    task = oneshot_session.sending(SendRequests(requests), wait)
+    how = oneshot_session.OneShotConfig(
+        to["timeout"], to["wait"], to["as_json"], what, take=to["take"], wanted=asked_for()
+    )
+    task = oneshot_session.sending(SendRequests(requests), to["wait"])
     code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

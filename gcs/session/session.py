@@ -76,7 +76,7 @@ from gcs.session.ticks import Ticks
 from gcs.session.times import Times
 from gcs.session.vehicles import FIRST as FIRST_SLOT
 from gcs.session.vehicles import Vehicles
-from gcs.session.waiting import WaitingForVehicle
+from gcs.session.waiting_for_vehicle import WaitingForVehicle
 from gcs.session.work import (
     STATION,
     AskGate,

@@ -22,7 +22,6 @@ from gcs.bridge.answers import texts
 from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers
-from gcs.bridge.lately import Lately
 from gcs.bridge.plans.collecting import Collecting, ItemMessage, acknowledgement, question
 from gcs.bridge.plans.effects import (
     Clear,
@@ -35,6 +34,7 @@ from gcs.bridge.plans.effects import (
 )
 from gcs.bridge.plans.following import Following
 from gcs.bridge.plans.results import result_of
+from gcs.bridge.recent_texts import RecentTexts
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
@@ -163,7 +163,7 @@ class PlanServer:
         """Collected while the one before is still being stopped."""
         self._told: _Told | None = None
         self._text_id = 0
-        self._texts = Lately()
+        self._texts = RecentTexts()
 
     @property
     def deadline_ns(self) -> int | None:

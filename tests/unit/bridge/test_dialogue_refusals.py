@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.bridge.dialogue import Dialogue, From
 from gcs.bridge.effects import Refuses
-from gcs.bridge.lately import MOST_TEXTS
+from gcs.bridge.recent_texts import MOST_TEXTS
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd

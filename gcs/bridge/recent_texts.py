@@ -12,7 +12,7 @@ MOST_TEXTS: Final = 50
 
 
 @dataclass(slots=True)
-class Lately:
+class RecentTexts:
     """What was said in the last seconds, and is not said again so soon."""
 
     _until_ns: dict[str, int] = field(default_factory=dict)
