@@ -10,15 +10,15 @@ CLIENTS := .clients
 TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
 SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
 OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
-# Two of them begin with the tests that wait for real time: see tests/lanes.py.
-WORKERS ?= 4
+# Four of them begin with the tests that wait for real time: see tests/lanes.py.
+WORKERS ?= 6
 FEWER   := --hypothesis-profile quick
 
 # Without its bytecode files every worker and every program under test compiles the same again.
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo quick test check lint types contracts clients soak mutants bench messages wheel clean
+.PHONY: help demo quick test thorough check lint types contracts clients soak mutants bench messages wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -26,11 +26,14 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (under a minute)
+quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (1 to 2 minutes)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 $(FEWER)'
 
-test: $(TEST) $(TESTED) ## run every test (about 15 minutes on 2 cores)
-	$(BIN)/python -m pytest -n $(WORKERS) $(SLOWER:%=--ignore=%)
+test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (about 10 minutes on 2 cores)
+	$(BIN)/python -m pytest -m "not thorough" -n $(WORKERS) $(FEWER) $(SLOWER:%=--ignore=%)
+
+thorough: $(TEST) $(TESTED) ## run the long tests: exhaustive, or one thing many times over; as .ci/run does
+	$(BIN)/python -m pytest -m "thorough or hypothesis" -n $(WORKERS) $(SLOWER:%=--ignore=%)
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests
 
@@ -47,7 +50,7 @@ contracts: $(TEST) ## import contracts
 clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVSDK 4 and 3, pymavlink, MAVProxy, DroneKit
 	$(BIN)/python -m pytest tests/clients -v
 
-soak: $(TEST) ## the properties on new random examples, and what `test` has a share of as a whole
+soak: $(TEST) ## the properties on new random examples, and the random runs as a whole (about 2 hours on 2 cores)
 	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios tests/soak -n $(WORKERS)
 
 mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? ARGS="vehicle --share 1/20" another part

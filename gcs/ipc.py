@@ -40,7 +40,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
 
     `word` is one of: control arm disarm takeoff goto land rtl hold abort resume photo mode
     fence mission_start mission_upload mission_download mission_clear mission_set_current
-    stream_begin stream_end station_take station_release station_end.
+    mission_check stream_begin stream_end station_take station_release station_end.
     Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
     for every one that flies, and the first of them answers.
     """
@@ -50,7 +50,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     goal_enu: Maybe3 | None = None  # goto: metres east, north, up of the local origin
     yaw_deg: float | None = None
     up_m: float | None = None  # takeoff: metres above the take-off point
-    mode: str = ""  # mode: the autopilot's own name for it
+    mode: str = ""  # mode: the autopilot's own name; mission_check: wait until it is shown
     force: bool = False  # disarm
     on: bool = True  # fence
     path: str = ""  # mission_upload: file to read; mission_download: where to write
@@ -60,7 +60,8 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
 
 
 class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_defaults=True):
-    """One sample of a setpoint stream, of the operator in control: at least one of the first three.
+    """One sample of a setpoint stream, of the operator in control: at least one of the first three,
+    or an attitude: `roll_deg`, `pitch_deg`, `yaw_deg` and `thrust`.
 
     The vehicle flies it until the next one comes, and no longer than the policy's dead-man's time;
     it is sent on at most 20 times a second.  The first sample that clears begins the stream, where
@@ -74,6 +75,9 @@ class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_d
     a_enu: Maybe3 | None = None  # metres per second squared
     yaw_deg: float | None = None
     yaw_rate_deg_s: float | None = None  # clockwise
+    roll_deg: float | None = None  # to the right
+    pitch_deg: float | None = None  # nose up
+    thrust: float | None = None  # 0 to 1; what it does is the vehicle's: `gcs/gate/attitude.py`
     vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
 
 
@@ -363,6 +367,9 @@ class BridgeVehicle(msgspec.Struct, frozen=True):
     link: int = 0  # that it is answered on
     lost_pct: float = 0.0  # of its frames, by their sequence numbers
     silent_s: float = 0.0  # since anything was heard of it
+    pos_enu: Vec3 | None = None  # metres east, north, up of its own local origin
+    v_enu: Vec3 | None = None  # metres per second
+    battery_pct: float | None = None
 
 
 class BridgeStatus(msgspec.Struct, frozen=True, tag="bridge", tag_field="type"):

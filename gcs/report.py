@@ -189,7 +189,8 @@ class DecisionItem(msgspec.Struct, frozen=True):
 
     `outcome` of a verdict: accepted, refused, superseded; of an ending: complete, aborted,
     superseded, timed out, taken over.  `numbers` are what a verdict was decided on.  A stream's
-    samples have no request (0); their verdict, accepted or refused, is told where it changes.
+    samples have no request (0); their verdict, accepted or refused, is told where it changes, with
+    what the sample asked for, and "ended" where refused ones stop without being flown again.
     """
 
     vehicle: int

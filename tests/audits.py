@@ -13,6 +13,7 @@ from gcs.audit.files import SessionFiles
 from gcs.audit.messages import INPUT_TOPIC, Attachments, Stored
 from gcs.record.writer import Recorder
 from gcs.session.effects import Effect, Record
+from gcs.session.incoming import FramesRaisedError
 from gcs.session.inputs import Input, Wake
 from gcs.session.session import Session
 from gcs.session.setup import Setup
@@ -77,6 +78,11 @@ class RecordedSession:
         effects: list[Effect] = []
         try:
             effects = self.session.handle(given, now_ns)
+        except FramesRaisedError as raised:
+            self._record([*raised.effects])
+            for frame, error in raised.dropped:
+                self.now_ns = self.recorder.input_ns(self.now_ns)
+                self.fault(frame, "".join(traceback.format_exception(error)))
         except Exception:  # noqa: BLE001 - as in the loop
             self.fault(given, traceback.format_exc())
         self._record(effects)

@@ -1,9 +1,11 @@
-"""What all tests share: how many examples, which are for `make soak`, and what is said of skips.
+"""What all tests share: how many examples, which are for `make thorough` and for `make soak`, and
+what is said of those that were left out.
 
 `make test` looks at the same examples each time: a run that must pass before a change lands must
-not fail for another change's sake.  `make quick` looks at a quarter as many.  New examples are for
-`make soak`, which draws them at random, draws more of them, and flies the tests that are marked
-`soak` as well.
+not fail for another change's sake.  What is exhaustive, or one thing many times over, is marked
+`thorough`: `make test` has a share of it, `make thorough` the rest, and four times as many examples
+of each property.  New examples are for `make soak`, which draws them at random, draws more of them,
+and flies the tests that are marked `soak` as well.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ import gc
 import os
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,10 +22,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.lanes import in_real_time, share, turn
+from tests.lanes import lane, share, turn
 from tests.sample_files import ELSEWHERE, NOT_HERE
+from tests.shares import other_flights
+from tests.soaking import SOAKING, counts, left_out
 
-SOAKING = "MAVGATE_SOAK" in os.environ
 UNIT = Path(__file__).parent / "unit"
 FLOWN = tuple(
     UNIT / folder
@@ -52,14 +55,18 @@ def is_slow(path: Path) -> bool:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark what is slow, before `-m` looks at it; leave to `make soak` what is its own."""
-    for item in items:
-        if is_slow(item.path):
-            item.add_marker(pytest.mark.slow)
-    left = [] if SOAKING else [item for item in items if item.get_closest_marker("soak")]
+    """Leave to `make soak` what is its own; mark what is slow and what is `thorough`, before `-m`
+    looks at it."""
+    left = left_out(items)
     if left:
         config.hook.pytest_deselected(items=left)
-    flown = [item for item in items if item not in left]
+    out = set(left)
+    flown = [item for item in items if item not in out]
+    for item in other_flights(flown):
+        item.add_marker(pytest.mark.thorough)
+    for item in flown:
+        if is_slow(item.path) or item.get_closest_marker("thorough"):
+            item.add_marker(pytest.mark.slow)
     items[:] = sorted(flown, key=lambda item: turn(item.nodeid))
 
 
@@ -101,7 +108,7 @@ def _give_way() -> None:
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Whoever computes takes nothing from the programs that others wait for in real time."""
-    if "PYTEST_XDIST_WORKER" in os.environ and not in_real_time(item.nodeid):
+    if "PYTEST_XDIST_WORKER" in os.environ and lane(item.nodeid) is None:
         _give_way()
 
 
@@ -127,8 +134,39 @@ def _watch(event: str, _details: tuple[object, ...]) -> None:
 sys.addaudithook(_watch)
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Says how many tests had no data to look at, so that nobody takes silence for a pass."""
+LEFT_OUT = pytest.StashKey[int]()
+"""How many tests that are marked `thorough` this run leaves out."""
+
+
+def pytest_deselected(items: Sequence[pytest.Item]) -> None:
+    for item in items:
+        asked = "thorough" in item.config.getoption("markexpr")
+        rarer = item.get_closest_marker("soak")
+        if asked and item.get_closest_marker("thorough") and not rarer:
+            item.config.stash[LEFT_OUT] = item.config.stash.get(LEFT_OUT, 0) + 1
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """A worker tells the process that sums up; each worker left out the same ones."""
+    worker: dict[str, object] | None = getattr(session.config, "workeroutput", None)
+    if worker is not None:
+        worker["left_out"] = session.config.stash.get(LEFT_OUT, 0)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    node.config.stash[LEFT_OUT] = getattr(node, "workeroutput", {}).get("left_out", 0)
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    """Says what a soak counted, and how many tests were left out or had no data to look at, so that
+    nobody takes silence for a pass."""
+    for line in counts(terminalreporter.stats.get("passed", [])):
+        terminalreporter.write_line(line)
+    if left_out := config.stash.get(LEFT_OUT, 0):
+        terminalreporter.write_line(f"{left_out} longer tests are left to `make thorough`")
     reasons = [str(report.longrepr) for report in terminalreporter.stats.get("skipped", [])]
     count = sum(NOT_HERE in reason for reason in reasons)
     if count:

@@ -1,34 +1,44 @@
 """How the tests of a run are shared out among its workers, so that all of them end together.
 
-Two workers begin with a lane each, in which programs wait for real time, and the others compute
+Some workers begin with a lane each, in which programs wait for real time, and the others compute
 meanwhile.  All else goes out by file, so that what a file prepares is prepared once, but for the
 files of which single tests are long.
 """
 
 from __future__ import annotations
 
-LANES = ("tests/system/", "tests/clients/")
-"""Separate processes over real sockets, which mostly wait."""
+from tests.soaking import SOAKING
+
+LANES = {
+    "other stations through the bridge": ("tests/clients/test_bridge_peers.py",),
+    "other stations": ("tests/clients/",),
+    "programs, a to k": tuple(f"tests/system/test_{letter}" for letter in "abcdefghijk"),
+    "programs, l to z": ("tests/system/",),
+}
+"""Separate processes over real sockets, which mostly wait: the first lane that a test fits in.
+They last about as long, and not longer than two workers compute."""
 EARLY = ("tests/unit/gate/test_explore",)
 """Files that take as long as many others together; what their first test prepares, all share."""
-LONG = ("tests/loopback/test_random_flights.py",)
+LONG = ("tests/loopback/test_random_flights.py", "tests/soak/test_hostile_gate.py")
 """Files of which a single test takes as long as others as a whole."""
 
 
-def in_real_time(nodeid: str) -> bool:
-    return nodeid.startswith(LANES)
+def lane(nodeid: str) -> str | None:
+    return next((name for name, tests in LANES.items() if nodeid.startswith(tests)), None)
 
 
 def share(nodeid: str) -> str:
-    """What one worker does in a row: a whole lane, one long test, or a file."""
-    if nodeid.startswith(LONG):
+    """What one worker does in a row: a whole lane, one long test, or a file.
+
+    In a soak single tests are long, but for those that share an exploration.
+    """
+    if nodeid.startswith(LONG) or (SOAKING and not nodeid.startswith(EARLY)):
         return nodeid
-    lane = next((lane for lane in LANES if nodeid.startswith(lane)), None)
-    return lane or nodeid.partition("::")[0]
+    return lane(nodeid) or nodeid.partition("::")[0]
 
 
 def turn(nodeid: str) -> int:
     """What begins first is what ends last."""
-    if in_real_time(nodeid):
+    if lane(nodeid):
         return 0
     return 1 if nodeid.startswith((*EARLY, *LONG)) else 2

@@ -1,7 +1,8 @@
 """The vehicles that a client's frame reaches, and what each makes of it.
 
 A frame for one system is judged for that vehicle; one for all (target system 0, or no target) is
-judged for each vehicle where it would move or change them, and else goes out once on each link.
+judged for each vehicle where it would move or change them, or have them send more, and else goes
+out once on each link.
 """
 
 from __future__ import annotations
@@ -59,12 +60,12 @@ class Judges:
             self._by_sysid[sysid] = found
         return found
 
-    def client_lost(self, client: int, own: Address) -> list[OfVehicle]:
-        """What a client had the vehicles send is taken back."""
+    def client_lost(self, client: Client, own: Address) -> list[OfVehicle]:
+        """What a client had the vehicles send is taken back, and its turn to read is over."""
         done = []
         for sysid, judge in self._by_sysid.items():
             vehicle = Address(sysid, Component.AUTOPILOT1)
-            effects = judge.client_lost(client, own, vehicle)
+            effects = judge.client_lost(client.number, client.link, own, vehicle)
             if effects:
                 done.append(OfVehicle(sysid, tuple(effects)))
         return done
@@ -84,15 +85,26 @@ class Judges:
             return _at(first, self._for_one(given, frame, first))
         if not for_all:
             return self._for_one(given, given.frame, first)
+        if given.frame.msgid not in TARGETS:
+            return self._for_all_or_none(given, vehicles)
         done = [
             (each, self._for_one(given, readdressed(given.frame, each.sysid), each))
             for each in vehicles
         ]
-        if given.frame.msgid not in TARGETS:
-            refused = [(each, judged) for each, judged in done if judged.refused]
-            return _at(*refused[0]) if refused else done[0][1]
         effects = [effect for each, judged in done for effect in _at(each, judged).effects]
         return Judged(all(judged.refused for _, judged in done), effects)
+
+    def _for_all_or_none(self, given: Given, vehicles: Sequence[Address]) -> Judged:
+        """A frame that cannot name a vehicle: the first refusal is for all, and nobody is asked
+        after it, as whoever refuses expects to be told what became of that."""
+        judged = None
+        for each in vehicles:
+            for_this = self._for_one(given, given.frame, each)
+            if for_this.refused:
+                return _at(each, for_this)
+            judged = judged or for_this
+        assert judged is not None
+        return judged
 
     def _for_one(self, given: Given, frame: Frame, vehicle: Address) -> Judged:
         client = given.client

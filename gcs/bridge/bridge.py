@@ -31,6 +31,7 @@ from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
+from gcs.gate.refusal import Refusal
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import Timing
@@ -118,8 +119,9 @@ class Bridge:
         client.joined = False
         del self._by_number[client.number]
         self._control.forget(client.number)
-        taken_back = self._judges.client_lost(client.number, self._own)
-        return [Lost(client.number, reason), *taken_back]
+        taken_back = self._judges.client_lost(client, self._own)
+        held = [done for each in client.exchanges for done in _of(each, each.take_mode_back())]
+        return [*held, Lost(client.number, reason), *taken_back]
 
     def _meet(self, client: Client, frame: Frame) -> list[BridgeEffect]:
         client.begin(self._next_number)
@@ -148,11 +150,10 @@ class Bridge:
         client.heard_ns = now_ns
         effects: list[BridgeEffect] = [] if client.joined else self._meet(client, frame)
         self._routes.heard(link, frame.sysid, frame.compid)
-        sysid, compid = target_of(frame)
+        sysid, _ = target_of(frame)
         addressed = [each for each in vehicles if sysid in (0, each.sysid)]
         if sysid and not addressed:
-            asked_by = From(link, Address(frame.sysid, frame.compid), Address(sysid, compid))
-            judged = self._elsewhere(client, asked_by, frame, sysid)
+            judged = self._elsewhere(client, frame, sysid, vehicles)
         else:
             given = Given(client, frame, look, self._in_control, now_ns)
             judged = self._judges.judge(given, addressed)
@@ -189,14 +190,29 @@ class Bridge:
         text = f"refused: {own.sysid}/{own.compid} is this station's address, too: use --sysid"
         return [Answers(link, own, message) for message in texts(Level.ERROR, text, 1)]
 
-    def _elsewhere(self, client: Client, asked_by: From, frame: Frame, sysid: int) -> Judged:
-        """A frame for a system that is no vehicle of ours: another client, or nobody."""
-        links = self._routes.between_clients(frame, asked_by.link)
+    def _elsewhere(
+        self, client: Client, frame: Frame, sysid: int, vehicles: Sequence[Address]
+    ) -> Judged:
+        """A frame for a system that is no vehicle of ours: another client, or nobody.
+
+        Nobody's: whoever sent it is told which vehicles there are, once.  It gets no answer of the
+        protocol's, because that would be in the name of a component that is not there.
+        """
+        links = self._routes.between_clients(frame, client.link)
         if links and message_row(frame.msgid).kind is not Kind.DENIED:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
             return Judged(False, [])
-        return Judged(True, self._once(client, f"there is no system {sysid} here"))
+        here = " ".join(str(each.sysid) for each in vehicles)
+        heard = f"vehicles: {here}" if here else "no vehicle is heard yet"
+        reason = f"there is no system {sysid} here ({heard})"
+        told = self._once(client, reason)
+        if told:
+            # In a vehicle's name: QGroundControl shows no text of anybody else (from memory).
+            speaker = vehicles[0] if vehicles else self._own
+            messages = texts(Level.WARNING, f"refused: {reason}", sysid)
+            told += [Answers(client.link, speaker, message) for message in messages]
+        return Judged(True, told)
 
     @property
     def deadline_ns(self) -> int | None:
@@ -214,7 +230,7 @@ class Bridge:
                 done += _of(each, of_plan(each, each.plans.wake(now_ns)))
             until_ns = each.chosen_until_ns
             if until_ns is not None and until_ns <= now_ns:
-                done += _of(each, each.forget_choice("not armed in time", now_ns))
+                done += _of(each, each.wake(now_ns))
         return done
 
     def _exchanges(self, vehicle: int | None = None) -> list[Exchange]:
@@ -303,13 +319,55 @@ class Bridge:
                 done += _of(each, each.forget_choice("another one asks for something", now_ns))
         return done
 
+    def armed_seen(self, vehicle: int, now_ns: int) -> list[BridgeEffect]:
+        """A heartbeat shows it armed: nothing that was chosen before is flown.  A mode that may
+        have come after the arming is taken back at once.  Otherwise it is not any more: who arms a
+        vehicle that shows it wants it."""
+        mode = self._judges.of(vehicle).mission_mode
+        late = mode.may_have_come_late()
+        mode.arm_ended()
+        held: list[BridgeEffect] = []
+        for each in self._exchanges(vehicle):
+            if late:
+                held += _of(each, each.take_mode_back())
+            each.keep_mode()
+        return [*held, *self.not_standing(vehicle, "the vehicle is armed", now_ns)]
+
     def not_standing(self, vehicle: int, why: str, now_ns: int) -> list[BridgeEffect]:
-        """It is armed, or not on the ground: no take-off that was chosen before is flown."""
+        """Nothing that was chosen before is flown.  Disarmed, it may be said to fly for a moment;
+        a mode that a client has set is taken back all the same."""
         return [
             done
             for each in self._exchanges(vehicle)
             for done in _of(each, each.forget_choice(why, now_ns))
         ]
+
+    def leave(self) -> list[BridgeEffect]:
+        """The session ends: the mode of a mission that a client has set is taken back now."""
+        return [done for each in self._exchanges() for done in _of(each, each.take_mode_back())]
+
+    def arm_asked(self, vehicle: int, now_ns: int) -> None:
+        """Somebody's arming goes to that vehicle's gate, which sets hold first."""
+        for each in self._exchanges(vehicle):
+            each.keep_mode_for_now(now_ns)
+
+    def arm_sent(self, vehicle: int, now_ns: int) -> None:
+        """The gate has that vehicle armed, whoever asked for it."""
+        self._judges.of(vehicle).mission_mode.arm_sent(now_ns)
+
+    def arm_refused(self, vehicle: int) -> None:
+        """The vehicle has refused an arming.  Of one that it accepts a heartbeat is to tell."""
+        self._judges.of(vehicle).mission_mode.arm_ended()
+
+    def mode_shown(self, mode_name: str, vehicle: int, now_ns: int) -> None:
+        """A heartbeat of that vehicle shows this mode."""
+        self._judges.of(vehicle).mission_mode.shown(mode_name, now_ns)
+
+    def why_not_arm(self, command: ipc.Command, vehicle: int) -> Refusal | None:
+        """Why an arming of any operator cannot be judged now."""
+        if not isinstance(command, ipc.Ask) or command.word != "arm":
+            return None
+        return self._judges.of(vehicle).mission_mode.why_not_arm()
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent; `operation` is the request's."""

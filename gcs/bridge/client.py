@@ -6,14 +6,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import count
 
+from gcs import ipc
 from gcs.bridge.dialogue import Dialogue, From
-from gcs.bridge.effects import BridgeEffect, Notes
-from gcs.bridge.meaning.chosen_takeoff import (
+from gcs.bridge.effects import BridgeEffect, Notes, Says
+from gcs.bridge.meaning.chosen_before_arming import (
     KEPT_NS,
+    MISSION_MODE,
     Chosen,
+    ChosenMission,
+    ChosenTakeoff,
     ends_choice,
-    may_be_chosen,
-    with_takeoff,
+    mission_may_be_chosen,
+    takeoff_may_be_chosen,
+    with_chosen,
 )
 from gcs.bridge.meaning.meaning import Meaning, Seen, Settled, Sticks, Words
 from gcs.bridge.meaning.pace import Pace
@@ -95,6 +100,10 @@ class Exchange:
         self.sticks = StickStream()
         self._chosen: Chosen | None = None
         self._chosen_by: From | None = None
+        self._back_ns: int | None = None
+        """When the mode of a mission that this client set is taken back."""
+        self._back_latest_ns = 0
+        """The same, however many armings are asked for meanwhile."""
         self.plan_ask = 0
         """The number of the plan request that is not over; 0: none."""
 
@@ -104,45 +113,88 @@ class Exchange:
             return self.sticks.settle(meaning, seen, now_ns)
         return self.pace.settle(meaning, now_ns)
 
-    # ------------------------------------------------------------------ take-off, then arming
+    # ------------------------------------------------------- take-off or mission, then arming
 
     @property
     def chosen_until_ns(self) -> int | None:
-        """When the take-off that was chosen is forgotten; None: there is none."""
-        return None if self._chosen is None else self._chosen.until_ns
+        """When `wake` is due: what was chosen is forgotten, or its mode is taken back; None: there
+        is nothing."""
+        times = [self._back_ns, None if self._chosen is None else self._chosen.until_ns]
+        return min((time for time in times if time is not None), default=None)
 
-    def chooses(
+    def wake(self, now_ns: int) -> list[BridgeEffect]:
+        """`chosen_until_ns` has passed."""
+        done: list[BridgeEffect] = []
+        if self._chosen is not None and self._chosen.until_ns <= now_ns:
+            done += self.forget_choice("not armed in time", now_ns)
+        if self._back_ns is not None and self._back_ns <= now_ns:
+            done += self.take_mode_back()
+        return done
+
+    def chooses_takeoff(
         self, meaning: Settled, seen: Seen, by: From, now_ns: int
     ) -> list[BridgeEffect] | None:
         """Keep a take-off until this client arms; None where it cannot be chosen."""
-        if self.dialogue.arming or not may_be_chosen(meaning, seen):
+        if self.dialogue.arming or not takeoff_may_be_chosen(meaning, seen):
             return None
         assert isinstance(meaning, Words)
         (ask,) = meaning.asks
-        self._chosen = Chosen(ask, seen.takeoff_up_m, now_ns + KEPT_NS)
-        self._chosen_by = by
-        text = f"takeoff: to {ask.up_m:.1f} m when you arm, within {KEPT_NS / 1e9:.0f} s"
+        chosen = ChosenTakeoff(ask, seen.takeoff_up_m, now_ns + KEPT_NS)
+        return self._choose(chosen, f"to {ask.up_m:.1f} m", by, now_ns)
+
+    def chooses_mission(
+        self, meaning: Settled, seen: Seen, by: From, now_ns: int
+    ) -> list[BridgeEffect] | None:
+        """Start the mission when this client arms; None where that cannot be chosen."""
+        if self.dialogue.arming or not mission_may_be_chosen(meaning, seen):
+            return None
+        self._back_ns, self._back_latest_ns = now_ns + KEPT_NS, now_ns + 2 * KEPT_NS
+        return self._choose(ChosenMission(now_ns + KEPT_NS), "begins", by, now_ns)
+
+    def _choose(self, chosen: Chosen, what: str, by: From, now_ns: int) -> list[BridgeEffect]:
+        self._chosen, self._chosen_by = chosen, by
+        text = f"{chosen.name}: {what} when you arm, within {KEPT_NS / 1e9:.0f} s"
         note = Notes(Level.INFO, f"{self.name}: {text}")
         return [note, *self.dialogue.text(by, Level.INFO, text, now_ns)]
 
     def joined_with_choice(
         self, meaning: Settled, seen: Seen, now_ns: int
     ) -> tuple[Settled, list[BridgeEffect]]:
-        """An arming with the take-off that was chosen; anything else ends the choice."""
+        """An arming with what was chosen; anything else ends the choice."""
         chosen = self._chosen
         if chosen is None or not ends_choice(meaning):
             return meaning, []
-        both = with_takeoff(chosen, meaning, seen, now_ns)
+        both = with_chosen(chosen, meaning, seen, now_ns)
         if both is None:
             return meaning, self.forget_choice("something else was asked for", now_ns)
         self._chosen = None
+        self.keep_mode_for_now(now_ns)
         return both, []
 
     def forget_choice(self, why: str, now_ns: int) -> list[BridgeEffect]:
-        """The take-off that was chosen is not flown; told once."""
+        """What was chosen is not flown; told once."""
         if self._chosen is None or self._chosen_by is None:
             return []
+        text = f"{self._chosen.name}: forgotten: {why}"
         self._chosen = None
-        text = f"takeoff: forgotten: {why}"
         note = Notes(Level.INFO, f"{self.name}: {text}")
         return [note, *self.dialogue.text(self._chosen_by, Level.INFO, text, now_ns)]
+
+    def keep_mode_for_now(self, now_ns: int) -> None:
+        """An arming is asked for: if it is refused, the mode is taken back later."""
+        if self._back_ns is not None:
+            self._back_ns = min(now_ns + KEPT_NS, self._back_latest_ns)
+
+    def keep_mode(self) -> None:
+        """The vehicle is armed: its mode is not taken back any more."""
+        self._back_ns = None
+
+    def take_mode_back(self) -> list[BridgeEffect]:
+        """The mode of a mission that was set, and not followed by a start, gives way to hold:
+        whoever arms the vehicle past this station would start the mission."""
+        if self._back_ns is None:
+            return []
+        self._back_ns = None
+        hold = ipc.Ask(self.dialogue.number(), "hold", vehicle=self.vehicle)
+        text = f"{self.name}: {MISSION_MODE} is taken back: the mission was not started"
+        return [Notes(Level.INFO, text), Says(self.number, hold)]

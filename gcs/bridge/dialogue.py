@@ -68,8 +68,9 @@ class _Pending:
     answered: int | None = None
     """MAV_RESULT that the client was told."""
     vehicle_result: int | None = None
-    first_answers: bool = False
-    """The first of what was asked for answers the command; the end of the last is told as text."""
+    answered_by: str = ""
+    """The word whose completion answers the command, the end of the last being told as text; empty:
+    the last answers it."""
 
 
 @dataclass(slots=True)
@@ -112,7 +113,7 @@ class Dialogue:
         asks: Sequence[ipc.Ask],
         now_ns: int,
         *,
-        first_answers: bool = False,
+        answered_by: str = "",
     ) -> list[BridgeEffect]:
         """Ask for `asks`, one after the other, because of a message; none: it is so already."""
         key, command = _key(message), _command(message)
@@ -127,7 +128,7 @@ class Dialogue:
         if not asks:
             return [self._acknowledge(asked_by, command, Result.ACCEPTED)]
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
-        pending.first_answers = first_answers
+        pending.answered_by = answered_by
         arming = self._arming() if pending.rest and pending.word == "arm" else None
         if arming is not None:
             number = self.number()
@@ -160,8 +161,9 @@ class Dialogue:
 
     @property
     def arming(self) -> bool:
-        """This client has asked for an arming that has not ended."""
-        return self._arming() is not None
+        """This client has asked for an arming that has not ended, or waits for a check first."""
+        waiting = (ask.word for each in self._pending.values() for ask in each.rest)
+        return self._arming() is not None or "arm" in waiting
 
     def _arming(self) -> int | None:
         """The arming that this client has asked for, and that has not ended."""
@@ -272,14 +274,14 @@ class Dialogue:
             if pending.rest:
                 ask, rest = pending.rest[0], pending.rest[1:]
                 answered: list[BridgeEffect] = []
-                if pending.first_answers:
+                if pending.word == pending.answered_by:
                     answered = self._answer(pending, Result.ACCEPTED, None, now_ns)
                 following = replace(
                     pending, rest=rest, name=ask.word, word=ask.word, vehicle_result=None
                 )
                 return [*answered, Says(self.client, self._open(following, ask))]
             done = self._answer(pending, Result.ACCEPTED, None, now_ns)
-            if pending.first_answers:
+            if pending.answered_by:
                 text = f"{pending.name}: {event.ended}"
                 done += self.text(pending.asked_by, Level.INFO, text, now_ns)
             return done

@@ -36,6 +36,7 @@ from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement
 from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Settled, Sticks, Words
 from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.mission_mode import MissionMode
 from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans import effects as plan_effects
 from gcs.bridge.plans.collecting import acknowledgement as mission_acknowledgement
@@ -43,16 +44,17 @@ from gcs.bridge.plans.downloads import Downloads
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.server import PLAN_MESSAGES
 from gcs.frames import Vec3, enu_from_ned
+from gcs.gate.attitude import roll_pitch_yaw
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import FlightMode
-from gcs.protocol.autopilot import Autopilot, mode_named
+from gcs.protocol.autopilot import ARDUPILOT, Autopilot, mode_named
 from gcs.protocol.effects import Address
 from gcs.protocol.parameters import BY_NAME
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
-from gcs.wire.ids import Cmd, MissionResult, MissionType
+from gcs.wire.ids import Cmd, MissionResult, MissionType, ModeFlag
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
@@ -67,11 +69,13 @@ from gcs.wire.messages import (
     ParamRequestRead,
     ParamValue,
     RequestDataStream,
+    SetMode,
 )
 
 _LOOKED_INTO: tuple[type[Message], ...] = (*PLAN_MESSAGES, RequestDataStream)
 DECODED_IDS: Final = frozenset(kind.MSG_ID for kind in _LOOKED_INTO)
 """Messages that are looked into although they may be harmless."""
+SET_MODES: Final = frozenset({Cmd.DO_SET_MODE, Cmd.DO_SET_STANDARD_MODE})
 GUIDED_CURRENT: Final = frozenset({2, 3})
 """MISSION_ITEM.current of an item that ArduPilot flies to at once, or whose height it takes."""
 
@@ -122,16 +126,19 @@ class Judge:
         self._downloads = Downloads()
         self._log_read = False
         """A client has begun to read a log, since the vehicle was armed last."""
+        self.mission_mode = MissionMode()
         self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
         self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
         """What the policy says of messages and commands by name."""
 
     def concerns_each(self, frame: Frame) -> bool:
         """Of a frame for all vehicles: whether each is to be judged by itself, because it would
-        move them, or change what they have on board."""
+        move them, change what they have on board, or have them send more."""
         _, message, kind = self._classified(frame)
-        plan = message is not None and kind is not Kind.DENIED and _is_of_plan(message)
-        return plan or kind in (Kind.MOTION, Kind.CONFIGURATION)
+        looked_into = message is not None and kind is not Kind.DENIED
+        if looked_into and (_is_of_plan(message) or _asks_for_rate(message)):
+            return True
+        return kind in (Kind.MOTION, Kind.CONFIGURATION)
 
     def _classified(self, frame: Frame) -> tuple[Row, Message | None, Kind]:
         """Its row in the tables, the message where it is looked into, and its kind by policy."""
@@ -175,7 +182,9 @@ class Judge:
         instead: Message | Refusal
         again: list[BridgeEffect] = []
         if isinstance(message, RequestDataStream):
-            instead = self._asked_rates.group(message, given.client.number)
+            seen = given.look()
+            obeyed = seen is not None and seen.autopilot is ARDUPILOT
+            instead = self._asked_rates.group(message, given.client.number, obeyed=obeyed)
             if isinstance(instead, RequestDataStream):
                 again = [AsksForStreams(tuple(asked_anew(instead, self._needed_hz)))]
         else:
@@ -209,6 +218,7 @@ class Judge:
         settled = client.settle(meant, seen, now_ns)
         if not (isinstance(meant, Sticks) and isinstance(settled, Reject)):
             chosen = self._chooses_takeoff(given, message, settled, seen)
+            chosen = chosen or self._chooses_mission(given, message, settled, seen)
             if chosen:
                 return Judged(False, [*told, *chosen])
             settled, forgotten = client.joined_with_choice(settled, seen, now_ns)
@@ -227,24 +237,40 @@ class Judge:
             return []
         if message.command != Cmd.NAV_TAKEOFF or self.height_awaited:
             return []
-        chosen = given.client.chooses(settled, seen, given.by, given.now_ns)
+        chosen = given.client.chooses_takeoff(settled, seen, given.by, given.now_ns)
         if chosen is None:
             return []
         return [*chosen, *given.client.dialogue.ask(given.by, message, (), given.now_ns)]
+
+    def _chooses_mission(
+        self, given: Received, message: Message, settled: Settled, seen: Seen
+    ) -> list[BridgeEffect]:
+        """The mode of a mission is forwarded, and its start waits for this client's arming;
+        nothing where it is not for that."""
+        sets_mode = isinstance(message, SetMode) or (
+            isinstance(message, CommandLong | CommandInt) and message.command in SET_MODES
+        )
+        if not sets_mode or _arms_too(message) or not self.mission_mode.may_be_sent(given.now_ns):
+            return []
+        chosen = given.client.chooses_mission(settled, seen, given.by, given.now_ns)
+        if chosen is None:
+            return []
+        self.mission_mode.sent(given.now_ns)
+        return [*chosen, ToVehicle(given.frame.raw)]
 
     def _meant(
         self, given: Received, message: Message, row: Row, meaning: Settled, seen: Seen
     ) -> Judged:
         client, now_ns = given.client, given.now_ns
         match meaning:
-            case Words(asks, note, _, first_answers):
+            case Words(asks, note, _, answered_by):
                 if self.height_awaited and any(climbs(each, seen.autopilot) for each in asks):
                     unknown = _refuse(given, message, row, HEIGHT_WRITTEN)
                     asks_for_it = asks_for_height(given.by.source, given.by.addressed)
                     return Judged(True, [*unknown.effects, asks_for_it])
                 told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
                 asked = client.dialogue.ask(
-                    given.by, message, asks, now_ns, first_answers=first_answers
+                    given.by, message, asks, now_ns, answered_by=answered_by
                 )
                 return Judged(False, [*told, *asked])
             case Sample():
@@ -289,8 +315,11 @@ class Judge:
         text = "the vehicle is armed: the reading of its log is ended (policy: bridge.downloads)"
         return [AsksVehicle(own, end), Notes(Level.INFO, text)]
 
-    def client_lost(self, client: int, own: Address, vehicle: Address) -> list[BridgeEffect]:
-        """What it had the vehicle send is taken back."""
+    def client_lost(
+        self, client: int, link: int, own: Address, vehicle: Address
+    ) -> list[BridgeEffect]:
+        """What it had the vehicle send is taken back, and its turn to read a plan is over."""
+        self._downloads.gone(link)
         done: list[BridgeEffect] = []
         for message in self._asked_rates.client_lost(client, vehicle):
             done.append(AsksVehicle(own, message))
@@ -391,7 +420,23 @@ def _ask_plan(
     return AsksPlan(client.number, ask, kind, plan)
 
 
-def _is_of_plan(message: Message) -> bool:
+def _arms_too(message: Message) -> bool:
+    """A mode with MAV_MODE_FLAG_SAFETY_ARMED: MAVLink's old way to arm in the same message."""
+    if isinstance(message, SetMode):
+        return bool(message.base_mode & ModeFlag.SAFETY_ARMED)
+    if not isinstance(message, CommandLong | CommandInt) or message.command != Cmd.DO_SET_MODE:
+        return False
+    return math.isfinite(message.param1) and bool(int(message.param1) & ModeFlag.SAFETY_ARMED)
+
+
+def _asks_for_rate(message: Message | None) -> bool:
+    """Whether it is counted in `AskedRates`, of which every vehicle has its own."""
+    if isinstance(message, CommandLong | CommandInt):
+        return message.command == Cmd.SET_MESSAGE_INTERVAL
+    return isinstance(message, RequestDataStream)
+
+
+def _is_of_plan(message: Message | None) -> bool:
     """An item that is to be flown to at once is no part of a plan, and neither is a jump to one."""
     if _is_flown_to_at_once(message):
         return False
@@ -410,6 +455,15 @@ def _refuse(given: Received, message: Message | None, row: Row, refusal: Refusal
 
 def _stream(sample: Sample) -> ipc.Stream:
     """A sample in the operator's frame."""
+    if sample.attitude is not None:
+        roll, pitch, yaw = map(math.degrees, roll_pitch_yaw(sample.attitude.q_ned_from_frd))
+        return ipc.Stream(
+            roll_deg=roll,
+            pitch_deg=pitch,
+            yaw_deg=yaw,
+            yaw_rate_deg_s=_degrees(sample.yaw_rate_rad_s),
+            thrust=sample.attitude.thrust,
+        )
     return ipc.Stream(
         pos_enu=_enu(sample.pos_ned),
         v_enu=_enu(sample.v_ned),

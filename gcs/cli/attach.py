@@ -13,16 +13,26 @@ Examples:
   gcs attach
   gcs attach --take
   echo abort | gcs attach --plain
+  gcs attach --plain --vehicle 2
 
 Without --take it looks on, and may abort, hold, land and return home; everything else is refused
 with the name of the operator who is in control. `station take` takes over later. Leaving it does
 not end the station.
+
+Of a bridge with several vehicles the screen shows the first that was heard; with --plain, --vehicle
+chooses one.
 """
 
 
 @click.command(epilog=EPILOG)
 @with_options(LINK, TAKE, TIMEOUT)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
+@click.option(
+    "--vehicle",
+    type=click.IntRange(1, 255),
+    metavar="SYSID",
+    help="--plain: this vehicle of a bridge, by its MAVLink system id.  [default: the first heard]",
+)
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
 @click.pass_context
@@ -32,6 +42,7 @@ def attach(
     take: bool,
     timeout: float,
     plain: bool,
+    vehicle: int | None,
     as_json: bool,
     strict: bool,
 ) -> None:
@@ -39,6 +50,8 @@ def attach(
     from gcs.cli.running import joined_station, the_station
     from gcs.ipc import Ask
 
+    if vehicle is not None and not plain:
+        raise click.UsageError("--vehicle goes with --plain: the screen shows the first vehicle")
     found = the_station(links)
     if not plain:
         from gcs.cli.fly import needs_a_terminal
@@ -49,11 +62,13 @@ def attach(
         station.send(Ask(0, "station_take"))
     if plain:
         from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
+        from gcs.operator.chosen_vehicle import ChosenVehicle
         from gcs.operator.interrupts import Interrupts
 
+        connection = station if vehicle is None else ChosenVehicle(station, vehicle)
         how = PlainConfig(timeout, 2, as_json, strict)
         with Interrupts() as interrupts:
-            console = Plain(station, interrupts, how, to_stdout, to_stderr)
+            console = Plain(connection, interrupts, how, to_stdout, to_stderr)
             ctx.exit(console.run(stdin_input()))
     from gcs.tui.app import FlyApp
     from gcs.tui.result import print_result, until_hello

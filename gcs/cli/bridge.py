@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from gcs.cli.options import (
-    CLIENT_KEY,
-    LOG_DIR,
-    POLICY,
-    SIGN_KEY,
-    UTF8,
-    RecordName,
-    Seconds,
-    with_options,
-)
-from gcs.cli.record_options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
-from gcs.cli.sim_options import CLIENT, SIM_OPTIONS, refuse_options_of_the_sim
+from gcs.cli.options import UTF8, RecordName, Seconds, with_options
+from gcs.cli.station_options import STATION_OPTIONS, OfStation, new_station
 
 if TYPE_CHECKING:
     from gcs.config import StationConfig
@@ -43,7 +33,7 @@ a keyboard station on it.
 
 
 def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> None:
-    """Print the row of the classification, or why a parameter is guarded.
+    """Print the row of the classification, what a mode means, or why a parameter is guarded.
 
     Raises ExitError where there is none.
     """
@@ -52,6 +42,7 @@ def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> N
     from gcs.bridge.classes.explain import explain, explanation
     from gcs.bridge.guard.explain import parameter_explanation
     from gcs.bridge.meaning.explain import meaning_explanation
+    from gcs.bridge.meaning.explain_modes import mode_explanation
     from gcs.exit_codes import ExitCode
     from gcs.operator.errors import ExitError
 
@@ -59,11 +50,12 @@ def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> N
         meaning = meaning_explanation(explain(name).name)
         told = "\n".join(line for line in (explanation(name), meaning) if line)
     except KeyError as error:
-        guarded = parameter_explanation(name)
-        if guarded is None:
-            hint = "if it is a parameter: no table here knows it, so a client may not write it"
+        found = mode_explanation(name) or parameter_explanation(name)
+        if found is None:
+            hint = "if it is a parameter: no table here knows it, so a client may not write it; "
+            hint += "flight modes are called as the autopilot calls them: POSCTL, AUTO.RTL, LOITER"
             raise ExitError(ExitCode.USAGE, str(error.args[0]), hint) from None
-        told = guarded
+        told = found
     click.echo(told)
     ctx.exit()
 
@@ -82,7 +74,7 @@ OWN_COMPID = 191
     help="Where the vehicle is: udpin:// udpout:// tcpin:// tcpout:// serial://. May be given more "
     "than once.",
 )
-@with_options(CLIENT, SIGN_KEY, CLIENT_KEY, POLICY, LOG_DIR)
+@with_options(*STATION_OPTIONS)
 @click.option(
     "--name",
     type=RecordName(),
@@ -113,9 +105,9 @@ OWN_COMPID = 191
 @click.option(
     "--lock",
     is_flag=True,
-    help="First give the vehicle the key of --sign-key, and make it ask the bridge before it arms "
-    "(PX4). Without --sign-key the latter alone. Says what it changes. The vehicle must be "
-    "disarmed.",
+    help="First give the vehicle on each link (with --target that one) the key of --sign-key, and "
+    "make it ask the bridge before it arms (PX4). Without --sign-key the latter alone. Says what "
+    "it changes. The vehicle must be disarmed.",
 )
 @click.option(
     "--set-fence",
@@ -129,21 +121,20 @@ OWN_COMPID = 191
     help="With --lock: an ArduPilot hears the bridge's system id alone. Clients need the same one "
     "(--sysid) to read anything from it.",
 )
-@with_options(*SIM_OPTIONS)
 @click.option(
     "--timeout",
     type=Seconds(),
     metavar="S",
-    help="Exit 3 when no vehicle is heard for so many seconds.  [default: wait]",
+    help="Exit 3 when no vehicle is heard for so many seconds.  [default: wait; with --lock: 10]",
 )
-@with_options(ROTATE_SIZE, ROTATE_AGE, COMPACT)
 @click.option(
     "--explain",
     metavar="NAME",
     is_eager=True,
     expose_value=False,
     callback=_explain,
-    help="Say what becomes of a message, a command or a parameter of a client, and why; then end.",
+    help="Say what becomes of a client's message, command, flight mode or parameter, and why; then "
+    "end.",
 )
 @click.option("--plain", is_flag=True, help="Lines on a terminal, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print the events as JSON, a line each.")
@@ -153,11 +144,6 @@ OWN_COMPID = 191
 def bridge(
     ctx: click.Context,
     vehicles: tuple[str, ...],
-    clients: tuple[str, ...],
-    sign_key: str,
-    client_key: str,
-    policy: str,
-    log_dir: str,
     name: str,
     target: int | None,
     sysid: int,
@@ -165,74 +151,41 @@ def bridge(
     lock: bool,
     set_fence: bool,
     enforce_sysid: bool,
-    sim: bool,
-    autopilot: str,
-    home: str,
-    seed: int,
-    speedup: float,
     timeout: float | None,
-    rotate_size: int,
-    rotate_age: float,
-    compact: bool,
     plain: bool,
     as_json: bool,
     verbose: bool,
     quiet: bool,
+    **of: Unpack[OfStation],
 ) -> None:
     """MAVLink clients fly the vehicle, and the gate is in between."""
-    import os
-
     import msgspec
 
-    from gcs.cli.bridge_places import refuse_shared_places
-    from gcs.cli.options import station_config
-    from gcs.config import SimConfig
-
-    if sim and vehicles:
-        raise click.UsageError("--sim starts a vehicle of its own: leave out --vehicle")
-    if not sim:
-        refuse_options_of_the_sim(ctx)
-        if not vehicles:
-            hint = "such as --vehicle udpin://127.0.0.1:14540, or --sim for one of our own"
-            raise click.UsageError(f"where is the vehicle? {hint}")
-    if not clients:
+    if not (of["sim"] or vehicles):
+        hint = "such as --vehicle udpin://127.0.0.1:14540, or --sim for one of our own"
+        raise click.UsageError(f"where is the vehicle? {hint}")
+    if not of["clients"]:
         hint = "such as --client udpin://127.0.0.1:14551 or --client udpout://127.0.0.1:14550"
         raise click.UsageError(f"where do clients reach it? {hint}")
-    refuse_shared_places(vehicles, clients, vehicle_option="--vehicle")
-    if lock and sim:
+    if lock and of["sim"]:
         raise click.UsageError("--lock is for a vehicle of yours: leave out --sim")
     if not lock and (set_fence or enforce_sysid):
         raise click.UsageError("--set-fence and --enforce-sysid are parts of --lock")
-    if sim and sign_key:
-        raise click.UsageError("--sim starts a vehicle without a key: leave out --sign-key")
-    config = station_config(
+    config = new_station(
+        ctx,
         vehicles,
-        policy,
-        log_dir,
+        of,
+        link_option="--vehicle",
         name=name,
         timeout_s=timeout or 10.0,
         vehicle=target,
-        sign_key=sign_key,
-        client_key=client_key,
     )
-    if sim:
-        simulated = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
-        config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
-    config = msgspec.structs.replace(
-        config,
-        clients=list(clients),
-        bridge=True,
-        sysid=sysid,
-        compid=compid,
-        speedup=speedup,
-        operator=f"gcs bridge, pid {os.getpid()}",
-    )
-    config = with_files(config, rotate_size, rotate_age, compact)
+    config = msgspec.structs.replace(config, bridge=True, sysid=sysid, compid=compid)
     if lock:
-        from gcs.cli.bridge_lock import LockOptions, lock_vehicle
+        from gcs.cli.bridge_lock import LockOptions, lock_vehicles
 
-        options = LockOptions(sysid, policy, set_fence, enforce_sysid)
-        lock_vehicle(vehicles[0], sign_key, options, target, timeout or 10.0)
+        options = LockOptions(sysid, of["policy"], set_fence, enforce_sysid)
+        lock_vehicles(vehicles, of["sign_key"], options, target, timeout or 10.0)
     level = 1 if verbose else 3 if quiet else 2
     ctx.exit(_run(config, timeout, page=not (plain or as_json), as_json=as_json, min_level=level))
 

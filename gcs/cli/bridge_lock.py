@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,6 +37,16 @@ class LockOptions:
     enforce_sysid: bool
 
 
+def lock_vehicles(
+    urls: Sequence[str], key_file: str, options: LockOptions, vehicle: int | None, timeout_s: float
+) -> None:
+    """The vehicle on each link, one after the other; `vehicle` alone, on the first, where it is
+    chosen.  Raises ExitError at the first that cannot be locked: what was told before it is done.
+    """
+    for url in urls if vehicle is None else urls[:1]:
+        lock_vehicle(url, key_file, options, vehicle, timeout_s)
+
+
 def lock_vehicle(
     url: str, key_file: str, options: LockOptions, vehicle: int | None, timeout_s: float
 ) -> None:
@@ -67,8 +78,20 @@ def lock_vehicle(
     for line in lines:
         click.echo(f"lock: vehicle {setup.vehicle}: {line}", err=True)
     trouble = _trouble(setup, url, timeout_s, signs=key is not None)
+    if trouble is None and vehicle is None:
+        trouble = _not_locked(setup, url)
     if trouble is not None:
         raise trouble
+
+
+def _not_locked(setup: LockSetup, url: str) -> ExitError | None:
+    """Nobody chose one, and there were several."""
+    if not setup.others:
+        return None
+    others = ", ".join(str(sysid) for sysid in sorted(setup.others))
+    text = f"vehicle {setup.vehicle} is locked, and {others} on the same link is not ({url})"
+    hint = "lock each with --target SYSID, then start the bridge for all without --lock"
+    return ExitError(ExitCode.USAGE, text, hint)
 
 
 def fence_of(policy: str, own_sysid: int) -> FenceSize:

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Sequence
 from types import TracebackType
 
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, Group, JustifyMethod, RenderableType
 from rich.live import Live
 from rich.table import Table
 from rich.text import Text
@@ -23,7 +23,9 @@ DECISIONS = 8
 OTHER_LINES = 12
 """Lines of the page that are no decisions and no clients."""
 OUTCOME_STYLES = {"refused": "yellow", "accepted": "green"}
-NUMBERS = ("in/s", "out/s", "lost", "refused", "dropped")
+WIDE = 110
+"""Letters that a row of every column of a vehicle takes, about."""
+NUMBERS = ("in/s", "out/s", "lost", "refused", "dropped", "m/s", "battery")
 
 
 class BridgePage:
@@ -71,14 +73,14 @@ class BridgePage:
 
     def draw(self) -> None:
         if self._hello is not None:
-            self._live.update(self.page(self._console.height), refresh=True)
+            self._live.update(self.page(self._console.height, self._console.width), refresh=True)
 
-    def page(self, height: int) -> RenderableType:
+    def page(self, height: int, width: int) -> RenderableType:
         """The whole of it, in at most so many lines."""
         seen = self._seen
         wrong = bridge_text.conditions_line(seen)
         clients = bridge_text.client_rows(self._status)
-        vehicles = bridge_text.vehicle_rows(self._status)
+        vehicles = bridge_text.vehicle_rows(self._status, narrow=width < WIDE)
         room = height - OTHER_LINES - min(DECISIONS, len(self._decisions)) - len(vehicles)
         room = max(3, room)
         hidden = len(clients) - 1 - room
@@ -88,7 +90,7 @@ class BridgePage:
         ]
         if wrong:
             parts.append(Text(f"wrong: {wrong}", style="yellow"))
-        parts += [_table(vehicles)] if vehicles else []
+        parts += [_table(vehicles, whole=True)] if vehicles else []
         parts += [_table(bridge_text.link_rows(self._status)), _table(clients[: room + 1])]
         if len(clients) == 1:
             parts += [Text(f"nobody yet; {where}", style="dim") for where in self._where]
@@ -116,11 +118,15 @@ class BridgePage:
         return f"policy {policy}; log: {log or 'none'}{size}; Ctrl-C ends it, holding first"
 
 
-def _table(rows: Sequence[bridge_text.Row]) -> Table:
+def _table(rows: Sequence[bridge_text.Row], *, whole: bool = False) -> Table:
+    """`whole`: where there is no room, only the last column is cut."""
     head, *rest = rows
     drawn = Table.grid(padding=(0, 2))
-    for name in head:
-        drawn.add_column(justify="right" if name in NUMBERS else "left", no_wrap=True)
+    for number, name in enumerate(head):
+        justify: JustifyMethod = "right" if name in NUMBERS else "left"
+        longest = max(len(row[number]) for row in rows)
+        least = longest if whole and number < len(head) - 1 else None
+        drawn.add_column(justify=justify, no_wrap=True, min_width=least)
     drawn.add_row(*(Text(name, style="dim") for name in head))
     for row in rest:
         in_control = "IN CONTROL" in row[-1]

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import time
 
 from gcs import ipc
+from gcs.enu_text import fixed
 from gcs.operator import event_text
 
 Row = tuple[str, ...]
 
-LINKS_HEAD: Row = ("vehicle link", "in/s", "out/s", "lost")
+LINKS_HEAD: Row = ("vehicle link", "in/s", "out/s", "lost", "")
 CLIENTS_HEAD: Row = ("client", "where", "calls itself", "in/s", "out/s", "refused", "dropped", "")
-VEHICLES_HEAD: Row = ("vehicle", "state", "control", "severity", "mode", "lost", "")
+VEHICLES_HEAD: Row = (
+    *("vehicle", "state", "control", "severity", "mode"),
+    *("east north up", "m/s", "battery", "lost", ""),
+)
+NARROW: Row = ("control", "severity", "lost")
+"""Columns of vehicles that a narrow terminal has no room for."""
 LONG_SILENCE_S = 3.0
 
 
@@ -40,23 +47,35 @@ def link_rows(status: ipc.BridgeStatus | None) -> list[Row]:
     return [
         LINKS_HEAD,
         *(
-            (each.name, f"{each.rx_hz:.0f}", f"{each.tx_hz:.0f}", f"{each.lost_pct:.1f} %")
+            (
+                each.name,
+                f"{each.rx_hz:.0f}",
+                f"{each.tx_hz:.0f}",
+                f"{each.lost_pct:.1f} %",
+                "" if each.rx_hz else "nothing is heard here",
+            )
             for each in links
         ),
     ]
 
 
-def vehicle_rows(status: ipc.BridgeStatus | None) -> list[Row]:
-    """One a vehicle where there are several, the head first; else empty."""
+def vehicle_rows(status: ipc.BridgeStatus | None, *, narrow: bool = False) -> list[Row]:
+    """One a vehicle where there are several, the head first; else empty.  Places are metres of each
+    vehicle's own local origin."""
     vehicles = status.vehicles if status else []
-    return [VEHICLES_HEAD, *map(_vehicle_row, vehicles)] if len(vehicles) > 1 else []
+    if len(vehicles) < 2:
+        return []
+    shown = [not (narrow and name in NARROW) for name in VEHICLES_HEAD]
+    return [
+        tuple(word for word, wanted in zip(row, shown, strict=True) if wanted)
+        for row in (VEHICLES_HEAD, *map(_vehicle_row, vehicles))
+    ]
 
 
 def _vehicle_row(each: ipc.BridgeVehicle) -> Row:
     notes = ["armed"] if each.armed else []
     if each.silent_s >= LONG_SILENCE_S:
         notes.append(f"silent for {each.silent_s:.0f} s")
-    lost = f"{each.lost_pct:.1f} %"
     notes += each.conditions
     return (
         each.name,
@@ -64,7 +83,10 @@ def _vehicle_row(each: ipc.BridgeVehicle) -> Row:
         each.control,
         each.severity,
         each.mode,
-        lost,
+        "-" if each.pos_enu is None else " ".join(fixed(x, 1) for x in each.pos_enu),
+        "-" if each.v_enu is None else f"{math.hypot(*each.v_enu):.1f}",
+        "-" if each.battery_pct is None else f"{each.battery_pct:.0f} %",
+        f"{each.lost_pct:.1f} %",
         ", ".join(notes),
     )
 

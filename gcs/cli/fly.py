@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import click
 
 from gcs.cli.live_option import LIVE, open_beside
-from gcs.cli.options import (
-    CLIENT_KEY,
-    LINK,
-    LOG_DIR,
-    POLICY,
-    SIGN_KEY,
-    UTF8,
-    VEHICLE,
-    RecordName,
-    Seconds,
-    with_options,
-)
-from gcs.cli.record_options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
-from gcs.cli.sim_options import CLIENT, SIM_OPTIONS, refuse_options_of_the_sim
+from gcs.cli.options import LINK, UTF8, VEHICLE, RecordName, Seconds, with_options
+from gcs.cli.station_options import STATION_OPTIONS, OfStation, new_station
 
 if TYPE_CHECKING:
     from gcs.config import StationConfig
@@ -51,8 +39,7 @@ PLAIN_TIMEOUT_S = 10.0
 
 @click.command(epilog=EPILOG)
 @with_options(LINK, VEHICLE)
-@with_options(*SIM_OPTIONS, CLIENT)
-@with_options(CLIENT_KEY, POLICY, SIGN_KEY, LOG_DIR)
+@with_options(*STATION_OPTIONS)
 @click.option(
     "--timeout",
     type=Seconds(),
@@ -77,7 +64,7 @@ PLAIN_TIMEOUT_S = 10.0
 @click.option(
     "--keep", is_flag=True, help="The link lives on when this operator leaves; see gcs stations."
 )
-@with_options(ROTATE_SIZE, ROTATE_AGE, COMPACT, LIVE)
+@with_options(LIVE)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
@@ -88,67 +75,33 @@ def fly(
     ctx: click.Context,
     links: tuple[str, ...],
     vehicle: int | None,
-    sim: bool,
-    autopilot: str,
-    home: str,
-    seed: int,
-    speedup: float,
-    clients: tuple[str, ...],
-    client_key: str,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
     timeout: float | None,
     name: str,
     keep: bool,
     mission: str,
-    rotate_size: int,
-    rotate_age: float,
-    compact: bool,
     live: tuple[str, int] | None,
     plain: bool,
     as_json: bool,
     strict: bool,
     verbose: bool,
     quiet: bool,
+    **of: Unpack[OfStation],
 ) -> None:
     """Fly by keyboard: keys change a pending goal, Enter sends it through the gate."""
-    import os
-
     import msgspec
 
-    from gcs.cli.bridge_places import refuse_shared_places
-    from gcs.cli.options import station_config
-    from gcs.config import SimConfig
-
-    if sim and links:
-        raise click.UsageError("--sim starts a vehicle of its own: leave out --link")
-    if sim and vehicle is not None:
+    if of["sim"] and vehicle is not None:
         raise click.UsageError("--sim starts a vehicle of its own: leave out --vehicle")
-    if sim and sign_key:
-        raise click.UsageError("--sim starts a vehicle without a key: leave out --sign-key")
-    if not sim:
-        refuse_options_of_the_sim(ctx)
-    connect_s = timeout or PLAIN_TIMEOUT_S
-    config = station_config(
+    config = new_station(
+        ctx,
         links,
-        policy,
-        log_dir,
+        of,
+        link_option="--link",
         name=name,
-        timeout_s=connect_s,
+        timeout_s=timeout or PLAIN_TIMEOUT_S,
         vehicle=vehicle,
-        sign_key=sign_key,
-        client_key=client_key,
     )
-    if sim:
-        simulated = SimConfig(autopilot=autopilot, home=home, seed=seed, speedup=speedup)
-        config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
-    operator = f"gcs fly, pid {os.getpid()}"
-    config = msgspec.structs.replace(config, speedup=speedup, keep=keep, operator=operator)
-    if clients:
-        refuse_shared_places(config.endpoints, clients)
-        config = msgspec.structs.replace(config, clients=list(clients))
-    config = with_files(config, rotate_size, rotate_age, compact)
+    config = msgspec.structs.replace(config, keep=keep)
     if plain and mission:
         raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
     mission_path = _mission(mission) if mission else ""

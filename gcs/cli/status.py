@@ -1,4 +1,4 @@
-"""`gcs status`: the latest snapshot as a table, or as JSON."""
+"""`gcs status`: the latest snapshot as a table, or as JSON; of a bridge its other vehicles, too."""
 
 from __future__ import annotations
 
@@ -21,16 +21,26 @@ SLOW_VALUES_WAIT_S = 1.5
 
 def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> ExitCode:
     """Give the slower values a moment to arrive, then print."""
-    dialogue.wait_until(
-        lambda: dialogue.snapshot is not None and dialogue.snapshot.battery_pct is not None,
-        SLOW_VALUES_WAIT_S,
-    )
+
+    def whole() -> bool:
+        seen = dialogue.snapshot
+        if seen is None or seen.battery_pct is None:
+            return False
+        return len(seen.vehicles) < 2 or dialogue.bridge is not None
+
+    dialogue.wait_until(whole, SLOW_VALUES_WAIT_S)
     display.clear()
     client = dialogue.hello.client if dialogue.hello else 0
-    return show(dialogue.snapshot, client, as_json=as_json)
+    return show(dialogue.snapshot, client, as_json=as_json, bridge=dialogue.bridge)
 
 
-def show(seen: ipc.Snapshot | None, client: int, *, as_json: bool) -> ExitCode:
+def show(
+    seen: ipc.Snapshot | None,
+    client: int,
+    *,
+    as_json: bool,
+    bridge: ipc.BridgeStatus | None = None,
+) -> ExitCode:
     """Print it; NO_VEHICLE if nothing was heard."""
     if seen is None:
         return ExitCode.NO_VEHICLE
@@ -45,17 +55,23 @@ def show(seen: ipc.Snapshot | None, client: int, *, as_json: bool) -> ExitCode:
     table = Table(box=box.SIMPLE, show_header=False, pad_edge=False)
     table.add_column(style="dim")
     table.add_column()
-    for name, value in rows(seen, client):
+    for name, value in rows(seen, client, bridge):
         table.add_row(name, value)
     Console(highlight=False, markup=False).print(table)
     return ExitCode.DONE
 
 
-def rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str]]:
-    """What is shown to the operator `client`, top to bottom; unknown values are a dash."""
+def rows(
+    seen: ipc.Snapshot, client: int, bridge: ipc.BridgeStatus | None = None
+) -> list[tuple[str, str]]:
+    """What is shown to the operator `client`, top to bottom; unknown values are a dash.
+
+    `bridge` has the vehicles of a bridge, of which `seen` is the first one.
+    """
     armed = {None: "-", True: "armed", False: "disarmed"}[seen.armed]
     conditions = f" ({', '.join(seen.conditions)})" if seen.conditions else ""
-    others = [name for name in seen.vehicles if name != seen.vehicle]
+    flown = {each.name: each for each in bridge.vehicles} if bridge else {}
+    others = [name for name in seen.vehicles if name != seen.vehicle and name not in flown]
     return [
         ("vehicle", seen.vehicle),
         *([("also heard", ", ".join(others))] if others else []),
@@ -73,7 +89,20 @@ def rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str]]:
         ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),
         ("log", seen.log_path or "not recorded"),
+        *((f"vehicle {x.vehicle}", _other(x)) for x in flown.values() if x.name != seen.vehicle),
     ]
+
+
+def _other(each: ipc.BridgeVehicle) -> str:
+    """A vehicle of a bridge that is not the first, in three lines."""
+    conditions = f" ({', '.join(each.conditions)})" if each.conditions else ""
+    armed = {None: "-", True: "armed", False: "disarmed"}[each.armed]
+    return (
+        f"{each.name}: {each.state}, control {each.control}, {each.severity}{conditions}\n"
+        f"{each.mode or '-'}, {armed}, battery {_fixed(each.battery_pct, '%', 0)}, "
+        f"heard {each.silent_s:.1f} s ago, {each.lost_pct:.1f} % lost\n"
+        f"{signed_enu(each.pos_enu)} m, {_speed(each.v_enu)}"
+    )
 
 
 def _link(seen: ipc.Snapshot) -> str:

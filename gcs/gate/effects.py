@@ -38,7 +38,7 @@ class CommandKind(Enum):
 @dataclass(frozen=True, slots=True)
 class SendSetpoint:
     """Send SET_POSITION_TARGET_LOCAL_NED with what the permit has: position, velocity,
-    acceleration, yaw, yaw rate."""
+    acceleration, yaw, yaw rate; or SET_ATTITUDE_TARGET, where it has an attitude."""
 
     permit: Permit
 

@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Verifier
+from gcs.gate.attitude import Attitude
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
 from gcs.gate.requests import Request
@@ -32,7 +33,7 @@ class StreamSeen:
     """One sample of a client's setpoint stream; `source` names the client.
 
     Position, velocity (m/s) and acceleration (m/s^2) are local NED; None is what the sample does
-    not ask for, and at least one of the three is asked for.
+    not ask for, and at least one of the three is asked for, or an attitude.
     """
 
     source: str
@@ -41,6 +42,7 @@ class StreamSeen:
     a_ned: Vec3 | None
     yaw_rad: float | None
     yaw_rate_rad_s: float | None
+    attitude: Attitude | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
+from gcs.gate.attitude import Attitude
 
 _SEAL = object()
 
@@ -19,8 +20,9 @@ class Permit:
     """Permits one frame with this verified setpoint, and nothing else.
 
     Local NED: `pos_ned` in metres, `v_ned` in metres per second, `a_ned` in metres per second
-    squared, and all three None for a command.  Velocity, acceleration and yaw rate are of a
-    client's stream only.  `yaw_rad` and `yaw_rate_rad_s` None leave the heading to the autopilot.
+    squared, and all three None for a command and for an attitude.  Velocity, acceleration, yaw
+    rate and attitude are of a client's stream only.  `yaw_rad` and `yaw_rate_rad_s` None leave the
+    heading to the autopilot.
     """
 
     pos_ned: Vec3 | None
@@ -30,6 +32,7 @@ class Permit:
     v_ned: Vec3 | None
     a_ned: Vec3 | None
     yaw_rate_rad_s: float | None
+    attitude: Attitude | None
 
     def __init__(
         self,
@@ -41,6 +44,7 @@ class Permit:
         v_ned: Vec3 | None = None,
         a_ned: Vec3 | None = None,
         yaw_rate_rad_s: float | None = None,
+        attitude: Attitude | None = None,
     ) -> None:
         if seal is not _SEAL:
             raise PermissionError("a permit is issued by the gate only")
@@ -51,6 +55,7 @@ class Permit:
         object.__setattr__(self, "v_ned", v_ned)
         object.__setattr__(self, "a_ned", a_ned)
         object.__setattr__(self, "yaw_rate_rad_s", yaw_rate_rad_s)
+        object.__setattr__(self, "attitude", attitude)
 
 
 def issue(
@@ -62,6 +67,7 @@ def issue(
     v_ned: Vec3 | None = None,
     a_ned: Vec3 | None = None,
     yaw_rate_rad_s: float | None = None,
+    attitude: Attitude | None = None,
 ) -> Permit:
     """Issue a permit.  To be called by `gcs.gate.machine.gate` only."""
-    return Permit(_SEAL, pos_ned, yaw_rad, now_ns, reason, v_ned, a_ned, yaw_rate_rad_s)
+    return Permit(_SEAL, pos_ned, yaw_rad, now_ns, reason, v_ned, a_ned, yaw_rate_rad_s, attitude)

@@ -121,6 +121,7 @@ class Dialogue:
         self._requests: dict[int, TrackedRequest] = {}
         self.hello: ipc.Hello | None = None
         self.snapshot: ipc.Snapshot | None = None
+        self.bridge: ipc.BridgeStatus | None = None
         self.trouble: ipc.Trouble | None = None
         self.ended: StationEnded | None = None
 
@@ -285,6 +286,8 @@ class Dialogue:
                 self.hello = event
             case ipc.Snapshot():
                 self.snapshot = event
+            case ipc.BridgeStatus():
+                self.bridge = event
             case ipc.VerdictEvent():
                 tracked = self._requests.get(event.id)
                 if tracked is not None:

@@ -78,6 +78,29 @@ class Stream:
         """Fly there until the next sample comes.  Raises NotCompleted, Disconnected."""
         self.send(ipc.Stream(pos_enu=_vector(east_m, north_m, up_m), yaw_deg=yaw_deg))
 
+    def attitude(
+        self,
+        roll_deg: float,
+        pitch_deg: float,
+        yaw_deg: float,
+        thrust: float,
+        *,
+        yaw_rate_deg_s: float | None = None,
+    ) -> None:
+        """Lean so until the next sample comes: roll to the right, nose up, heading clockwise from
+        north.  `thrust` is 0 to 1: of a PX4's full thrust, or an ArduCopter's climb rate with 0.5
+        for none.  Refused unless the policy's `[stream] tilt_deg` lets it.  Raises NotCompleted,
+        Disconnected."""
+        self.send(
+            ipc.Stream(
+                roll_deg=_number(roll_deg),
+                pitch_deg=_number(pitch_deg),
+                yaw_deg=_number(yaw_deg),
+                yaw_rate_deg_s=yaw_rate_deg_s,
+                thrust=_number(thrust),
+            )
+        )
+
     def send(self, sample: ipc.Stream) -> None:
         """Any sample.  Raises NotCompleted, Disconnected."""
         self.check()
@@ -104,6 +127,9 @@ class Stream:
 
 
 def _vector(east: float, north: float, up: float) -> ipc.Maybe3:
+    return (_number(east), _number(north), _number(up))
+
+
+def _number(value: float) -> float | None:
     """JSON has no NaN: null stands for it, and the gate refuses it by name."""
-    a, b, c = (float(x) if math.isfinite(x) else None for x in (east, north, up))
-    return (a, b, c)
+    return float(value) if math.isfinite(value) else None

@@ -143,10 +143,10 @@ def prism(points: Sequence[Vec3], wider_m: float) -> tuple[Vec3, ...]:
     """The corners of the points' outline on the ground, so much wider, at their lowest and their
     highest."""
     low, high = max(d for _, _, d in points), min(d for _, _, d in points)
-    outline = ground_track([((e, n), 0.0) for n, e, _ in points])
+    outline = ground_track([(e, n) for n, e, _ in points])
     if wider_m > 0.0:
         reach_m = wider_m / math.cos(math.pi / len(_ROUND))
-        spread = [((e + reach_m * x, n + reach_m * y), 0.0) for e, n in outline for x, y in _ROUND]
+        spread = [(e + reach_m * x, n + reach_m * y) for e, n in outline for x, y in _ROUND]
         outline = ground_track(spread)
     return tuple((n, e, d) for e, n in outline for d in dict.fromkeys((low, high)))
 

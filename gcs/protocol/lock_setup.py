@@ -69,6 +69,8 @@ class LockSetup:
         self._next_ns = 0
         self.vehicle = ""
         """`1/1` once it is heard."""
+        self.others: set[int] = set()
+        """System ids of other vehicles that were heard meanwhile, and are as they were."""
         self.changes: list[Change] = []
         self.missing = ""
         """The parameter at which it ended INCOMPLETE."""
@@ -79,6 +81,7 @@ class LockSetup:
         if self.ending is not None or frame.compid != Component.AUTOPILOT1:
             return []
         if self._sysid not in (0, frame.sysid):
+            self.others.add(frame.sysid)
             return []
         if self._checker is not None and self._checker.check(frame, now_ns) != GOOD:
             return []

@@ -66,14 +66,17 @@ _OWN_NAMES = ("frame", "tail")
 class Codec:
     """Between frames and messages of one full payload length."""
 
-    __slots__ = ("_plain", "_v1", "_v2", "payload_length")
+    __slots__ = ("_v1", "_v2", "pack_plain", "payload_length", "plain_end")
 
     def __init__(self, payload_length: int) -> None:
         self.payload_length = payload_length
         # `s` cuts what is too long and zero-extends what is too short.
         self._v1 = Struct(f"<BB2sxx4sxxx{payload_length}sI")
         self._v2 = Struct(f"<BB10sx{payload_length}sI")
-        self._plain = Struct(f"<BB10sx{payload_length}sI2s").pack
+        self.pack_plain = Struct(f"<BB10sx{payload_length}sI2s").pack
+        """Of link, direction, frame, payload, 2 and checksum: the message of a plain frame."""
+        self.plain_end = payload_length + 10
+        """Where the payload of the longest such frame ends."""
 
     def encode(self, raw: bytes, link: int, direction: int) -> bytes:
         """The message of one whole frame, magic to signature; `direction` as in `Direction`."""
@@ -81,7 +84,7 @@ class Codec:
         if raw[0] == MAGIC_V2 and known <= self.payload_length and len(raw) == known + 12:
             # Unsigned, and of the length that the dialect knows: nearly all frames.
             end = known + 10
-            return self._plain(link, direction, raw, raw[10:end], 2, raw[end:])
+            return self.pack_plain(link, direction, raw, raw[10:end], 2, raw[end:])
         if known > self.payload_length:
             known = self.payload_length
         if raw[0] == MAGIC_V2:

@@ -35,12 +35,16 @@ from gcs.report import (
     RecordItem,
 )
 from gcs.wire.blanking import SETUP_SIGNING, blanked, without_key
+from gcs.wire.signing import Reason
 
 FLUSH_NS = 800_000_000
 """With a turn of the loop, a kill loses less than a second."""
 RETRY_NS = 5_000_000_000
 MAX_FRAME_CHANNELS = 4096
 """An MCAP numbers channels with 16 bits; forged system ids must not use them up."""
+
+REFUSED = frozenset(reason.value for reason in Reason)
+"""Why a frame came to be garbage: it is a good one, and must stay one, or no audit finds it."""
 
 _SAME_SECOND_NAMES = 100
 """Names that are tried for a session."""
@@ -56,6 +60,10 @@ class RecorderError(Exception):
         self.path = path
         self.reason = reason
 
+
+_FrameLog: TypeAlias = tuple[Log, ros1.Encode, Callable[..., bytes], int]
+"""Of one kind of message: its channel, how a frame becomes a message of it, and the same without a
+call for unsigned MAVLink 2 frames whose payload ends by that byte (0: for none)."""
 
 Watch: TypeAlias = Callable[[Channel, bytes, int, str], None]
 """(channel, message, log_time in ns, latch): is told of every message; see `Out` for `latch`."""
@@ -84,7 +92,7 @@ class Recorder:
         self._opener = opener
         self._derived = Derived()
         self._logs: dict[str, Log] = {}
-        self._frame_logs: dict[bytes, tuple[Log, ros1.Encode]] = {}
+        self._frame_logs: dict[bytes, _FrameLog] = {}
         self._channels: dict[str, Channel] = {}
         self._watch: Watch | None = None
         self._latched: dict[tuple[str, str], Out] = {}
@@ -218,9 +226,14 @@ class Recorder:
             now_ns = last_ns + 1
         for raw in raws:
             try:
-                key = raw[5:10] if raw[0] == ros1.MAGIC_V2 else raw[3:6]
-                log, encode = logs(key) or self._new_frame_log(key, raw)
-                message = encode(raw, link, direction)
+                v2 = raw[0] == ros1.MAGIC_V2
+                key = raw[5:10] if v2 else raw[3:6]
+                log, encode, pack, most = logs(key) or self._new_frame_log(key, raw)
+                end = raw[1] + 10
+                if v2 and end <= most and len(raw) == end + 2:  # as `Codec.encode` does it
+                    message = pack(link, direction, raw, raw[10:end], 2, raw[end:])
+                else:
+                    message = encode(raw, link, direction)
             except (struct.error, IndexError):
                 # Not a whole frame, whatever the sender of the item believes: kept all the same.
                 self._write_other(GarbageItem(link, raw, "malformed"), now_ns)
@@ -311,7 +324,8 @@ class Recorder:
         match item:
             case GarbageItem(link, raw, reason):
                 log = self._watched_log(ros1.garbage_channel(link))
-                message = ros1.encode_garbage(reason, blanked(raw, mend=False))
+                kept = without_key(raw) if reason in REFUSED else blanked(raw, mend=False)
+                message = ros1.encode_garbage(reason, kept)
                 self._log_message(log, message, now_ns)
             case AttachmentItem(name):
                 self._keep_once(f"attachment {name}", item, now_ns)
@@ -324,15 +338,18 @@ class Recorder:
             case _:
                 self._emit(self._derived.handle(item, now_ns), now_ns)
 
-    def _new_frame_log(self, key: bytes, raw: bytes) -> tuple[Log, ros1.Encode]:
+    def _new_frame_log(self, key: bytes, raw: bytes) -> _FrameLog:
         if len(self._frame_logs) >= MAX_FRAME_CHANNELS:
-            return self._watched_log(ros1.crowd_channel()), ros1.codec(0).encode
+            crowd = ros1.codec(0)
+            return self._watched_log(ros1.crowd_channel()), crowd.encode, crowd.pack_plain, 0
         msgid = ros1.msgid_of(raw)
         log = self._watched_log(ros1.frame_channel(*ros1.source_of(raw), msgid))
-        encode: ros1.Encode = ros1.codec(ros1.full_length(msgid)).encode
+        codec = ros1.codec(ros1.full_length(msgid))
         if msgid == SETUP_SIGNING:
-            encode = _without_key(encode)
-        known = self._frame_logs[key] = log, encode
+            known = log, _without_key(codec.encode), codec.pack_plain, 0
+        else:
+            known = log, codec.encode, codec.pack_plain, codec.plain_end
+        self._frame_logs[key] = known
         return known
 
     def _log(self, channel: Channel) -> Log:

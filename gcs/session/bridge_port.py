@@ -27,13 +27,15 @@ from gcs.bridge.effects import (
 from gcs.bridge.judge import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
+from gcs.frames import enu_from_ned
 from gcs.gate.condition import Severity
-from gcs.gate.effects import Level
+from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import CommandEnded, HeartbeatSeen, Input, LandedSeen, Requested
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.turn import REFUSED_LINE, REFUSED_STREAM_LINE
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
+from gcs.gate.requests import Arm
 from gcs.gate.states import LandedState
 from gcs.protocol.effects import Address
 from gcs.protocol.parameter_names import names_of
@@ -53,6 +55,7 @@ from gcs.session.vehicles import Vehicles
 from gcs.session.work import Log, Work
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
+from gcs.wire.ids import Result
 from gcs.wire.messages import ParamValue
 
 NODE = "link"
@@ -105,6 +108,7 @@ class BridgePort:
             mission_paused=vehicle.mission_paused,
             stream=self._stream,
             mission_items=vehicle.mission_items,
+            land_starts=vehicle.land_starts,
             clears_takeoff=partial(_clears_takeoff, vehicle.gate),
         )
 
@@ -124,12 +128,18 @@ class BridgePort:
         """The vehicle's own answer to a command is what the client is answered, too; and what one
         asks for, the answers to the others are older than."""
         if isinstance(given, Requested):
+            if isinstance(given.request, Arm):
+                self.bridge.arm_asked(sysid, now_ns)
             return self.bridge.asked(self._operators.client_of(given.request_id), sysid, now_ns)
-        if isinstance(given, HeartbeatSeen) and given.armed:
-            return self.bridge.not_standing(sysid, "the vehicle is armed", now_ns)
+        if isinstance(given, HeartbeatSeen):
+            done = self.bridge.armed_seen(sysid, now_ns) if given.armed else []
+            self.bridge.mode_shown(given.mode_name, sysid, now_ns)
+            return done
         if isinstance(given, LandedSeen) and given.landed is not LandedState.ON_GROUND:
             return self.bridge.not_standing(sysid, "it does not stand on the ground", now_ns)
         if isinstance(given, CommandEnded) and given.result is not None:
+            if given.kind is CommandKind.ARM and given.result != Result.ACCEPTED:
+                self.bridge.arm_refused(sysid)
             return self.bridge.command_answered(given.request_id, given.result, now_ns)
         return []
 
@@ -262,6 +272,9 @@ def _vehicle_row(vehicle: Vehicle, telemetry: Telemetry, now_ns: int) -> ipc.Bri
         link=telemetry.link,
         lost_pct=lost_pct(vehicle.losses),
         silent_s=(now_ns - telemetry.heard_ns) / 1e9,
+        pos_enu=None if telemetry.pos_ned is None else enu_from_ned(telemetry.pos_ned),
+        v_enu=None if telemetry.v_ned is None else enu_from_ned(telemetry.v_ned),
+        battery_pct=telemetry.battery_pct,
     )
 
 
@@ -297,6 +310,7 @@ def seen_of(
         goal_ned=gate.active_goal_ned,
         takeoff_up_m=parameters.get(TAKEOFF_HEIGHT["px4"], TAKEOFF_UP_M),
         state=gate.state,
+        awaited=memory.task is not None or bool(memory.outstanding),
         goal_yaw_rad=goal.yaw_rad if goal else None,
         max_takeoff_up_m=max_takeoff_up_m,
         max_speed_m_s=_own_speed_m_s(telemetry, parameters),

@@ -140,10 +140,12 @@ class Clients:
         if self._in_control in (client, NOBODY) or (ask.word in ALWAYS_HEARD and not ask.force):
             return None
         other = self._there[self._in_control].label
-        take = "MAV_CMD_REQUEST_OPERATOR_CONTROL" if client >= FIRST_NUMBER else "`station take`"
+        how = "take it over with --take, or by the words `station take`"
+        if client >= FIRST_NUMBER:
+            how = "MAV_CMD_REQUEST_OPERATOR_CONTROL takes it over"
         return Refusal(
             Code.OTHER_OPERATOR,
-            f"{other} is in control of this station; {take} takes it over",
+            f"{other} is in control of this station; {how}",
             (("in_control", float(self._in_control)),),
         )
 

@@ -41,6 +41,11 @@ class Ending:
         lost = gate_inputs.OperatorLost(reason)
         return [Log(Level.INFO, NODE, f"leaving: {reason}"), ToGate(lost)]
 
+    @property
+    def under_way(self) -> bool:
+        """Somebody leaves, and waits for the vehicle or until a time: every datagram may tell."""
+        return self._leaving_since_ns is not None or self._operators.anyone_leaves
+
     def if_due(self, log_path: str, now_ns: int) -> list[Work]:
         """The end of the session, where the start is refused or the vehicle may be left."""
         if self.finished:

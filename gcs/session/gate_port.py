@@ -63,7 +63,7 @@ class GatePort:
         elif isinstance(given, inputs.PositionSeen):
             if given.reset:
                 work.append(PlaceFence())
-            if not self._start_checked:
+            if self._checks_start:
                 work.append(CheckStart(given.pos_ned))
             work += self._breached(given.pos_ned)
         return work
@@ -141,15 +141,19 @@ class GatePort:
         """For drawing; empty before it is placed."""
         return [] if self._verifier is None else teller.shapes(self._verifier.zones)
 
+    @property
+    def _checks_start(self) -> bool:
+        """It stands on the ground, there is a fence, and it was not looked at yet."""
+        if self._start_checked or self._verifier is None or not self._verifier.zones:
+            return False
+        return self.gate.state is State.GROUNDED
+
     def check_start(self, at: CheckStart) -> None:
         """Once, on the ground: is the vehicle inside?  If not, the policy is for elsewhere.
 
         A vehicle that is met in the air is judged request by request: it must not be left alone.
         """
-        grounded = self.gate.state is State.GROUNDED
-        if self._start_checked or not grounded:
-            return
-        if self._verifier is None or not self._verifier.zones:
+        if self._verifier is None or not self._checks_start:
             return
         self._start_checked = True
         home_ned = self._verifier.home_ned

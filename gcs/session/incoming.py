@@ -8,29 +8,43 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gcs.gate import inputs as gate_inputs
 from gcs.gate.condition import Condition
 from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem, FramesItem, GarbageItem
 from gcs.session.bridge_port import BridgePort
-from gcs.session.effects import Record
+from gcs.session.effects import Effect, Record
 from gcs.session.gate_port import condition
 from gcs.session.inputs import Datagram
+from gcs.session.interpreted_messages import INTERPRETED, PLACES
 from gcs.session.links import Links
 from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
 from gcs.session.recorded import pieces
 from gcs.session.signatures import Signatures
-from gcs.session.vehicle import INTERPRETED
+from gcs.session.vehicle import ALIVE
 from gcs.session.vehicles import Vehicles
-from gcs.session.work import ToGate, Work
+from gcs.session.work import Work
 from gcs.wire.blanking import without_key
 from gcs.wire.frame import Frame, Garbage, Item
 from gcs.wire.ids import MsgId
 from gcs.wire.signing import Reason
 
-_ALIVE: Sequence[Work] = (ToGate(gate_inputs.MessageSeen()),)
 _RECEIVED = Direction.RECEIVED  # looking it up costs more than what it is used for
+
+
+class FramesRaisedError(Exception):
+    """Some frames of a run raised, which is a bug of ours; all others are handled.
+
+    `effects` are those of the others; `dropped` has the input that each frame which raised would
+    have been, and what it raised.
+    """
+
+    def __init__(
+        self, effects: Sequence[Effect], dropped: Sequence[tuple[Datagram, Exception]]
+    ) -> None:
+        super().__init__(f"{len(dropped)} inputs raised")
+        self.effects = effects
+        self.dropped = dropped
 
 
 class Incoming:
@@ -58,6 +72,9 @@ class Incoming:
         self._bridge = bridge
         self.other_station_ns = 0
         """When a frame of another station that calls itself as this one came last."""
+        self._in_run = False
+        """What is being handled is a run: one frame that raises does not take the others along."""
+        self._dropped: list[tuple[Datagram, Exception]] = []
 
     def of_client(self, given: Datagram) -> bool:
         """Whether it came from a MAVLink client, not from the vehicle's side."""
@@ -67,6 +84,7 @@ class Incoming:
         """Frame by frame: what one leads to is done before the next is looked at.
 
         False: nothing was in it but what only passes through, so nothing else has changed."""
+        self._in_run = len(given.frames) > 1
         link, run = given.link, self._queue.run
         items = self._links.split(link, given.data, given.frames)
         if (
@@ -88,6 +106,18 @@ class Incoming:
             else:
                 run(self._client_frame(link, item, now_ns), now_ns)
         return True
+
+    def take_dropped(self) -> list[tuple[Datagram, Exception]]:
+        """The frames of the run that raised, and what they raised."""
+        dropped, self._dropped = self._dropped, []
+        return dropped
+
+    def _drop(self, link: int, frame: Frame, error: Exception, mark: int) -> bool:
+        """Leave out a frame that raised; False where that is the whole input."""
+        if self._in_run:
+            self._queue.back_to(mark)
+            self._dropped.append((Datagram(link, frame.raw), error))
+        return self._in_run
 
     def _taken(self, link: int, items: Sequence[Item], now_ns: int) -> list[Frame | GarbageItem]:
         """The frames that are taken, and the rest as the record has it."""
@@ -118,12 +148,27 @@ class Incoming:
         """What came on a vehicle's link, and the frames of it: they are first of all sent on to the
         clients, together as they came.  Nearly all of them are only recorded and counted, in runs
         and not one by one, which is no work for the queue."""
-        put = self._queue.put
-        for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
-            for sent in self._links.together(to, raws, now_ns):
-                put(sent)
+        put, mark = self._queue.put, self._queue.mark
+        try:
+            for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
+                for sent in self._links.together(to, raws, now_ns):
+                    put(sent)
+        except Exception as error:
+            if len(frames) > 1 and self._in_run:
+                self._queue.back_to(mark)
+                for item in taken:
+                    of_it = [item] if type(item) is Frame else []
+                    self._from_vehicles(link, [item], of_it, now_ns)
+                return True
+            if not frames or not self._drop(link, frames[0], error, mark):
+                raise
+            return True
         if frames:
             self._links.peer_known(link)
+            if len(frames) == len(taken):
+                found = self._counted_together(link, frames, now_ns)
+                if found is not None:
+                    return self._in_turn(link, frames, *found, now_ns)
         worked = False
         special, own_compid = self._operators.subscribed, self._own[1]
         passing: list[Frame] = []
@@ -139,26 +184,79 @@ class Incoming:
             if isinstance(item, GarbageItem):
                 put(Record(item))
                 continue
-            put(Record(FrameItem(link, _RECEIVED, item.raw)))
-            worked |= self._work(self._vehicle_frame(link, item, now_ns), now_ns)
+            mark = self._queue.mark
+            try:
+                put(Record(FrameItem(link, _RECEIVED, item.raw)))
+                worked |= self._work(self._vehicle_frame(link, item, now_ns), now_ns)
+                worked |= msgid not in PLACES
+            except Exception as error:
+                if not self._drop(link, item, error, mark):
+                    raise
+                worked = True
         return self._pass(link, passing, now_ns) or worked
+
+    def _counted_together(
+        self, link: int, frames: Sequence[Frame], now_ns: int
+    ) -> tuple[int, Sequence[Work]] | None:
+        """See `Vehicles.in_turn`; None, too, where one of them raises, which is then looked for one
+        by one."""
+        try:
+            return self._vehicles.in_turn(link, frames, now_ns)
+        except Exception:
+            if not self._in_run:
+                raise
+            return None
+
+    def _in_turn(
+        self, link: int, frames: Sequence[Frame], slot: int, alive: Sequence[Work], now_ns: int
+    ) -> bool:
+        """Frames of one autopilot that were counted together: recorded together, and those that
+        somebody interprets looked at; whether they lead to anything."""
+        queue, kept_at = self._queue, self._queue.mark
+        raws = tuple([frame.raw for frame in frames])
+        queue.put(Record(FramesItem(link, _RECEIVED, raws)))
+        worked = bool(alive) and queue.run(alive, now_ns, slot)
+        special = self._operators.subscribed
+        wanted = [each for each in frames if each.msgid in INTERPRETED or each.msgid in special]
+        for frame in wanted:
+            mark = queue.mark
+            try:
+                work = self._vehicles.counted(slot, link, frame, now_ns)
+                if frame.msgid not in PLACES or frame.msgid in special:
+                    worked, work = True, self._also(frame, work, now_ns)
+                worked |= self._work(work, now_ns)
+            except Exception as error:
+                if not self._drop(link, frame, error, mark):
+                    raise
+                raws = tuple([raw for raw in raws if raw is not frame.raw])
+                queue.put_at(kept_at, Record(FramesItem(link, _RECEIVED, raws)))
+                worked = True
+        return worked
 
     def _pass(self, link: int, frames: Sequence[Frame], now_ns: int) -> bool:
         """Frames in a row that only pass through; whether they lead to anything."""
         if not frames:
             return False
-        raws = tuple([frame.raw for frame in frames])
-        self._queue.put(Record(FramesItem(link, _RECEIVED, raws)))
-        alive = self._vehicles.passes(link, frames, now_ns)
-        for owner in alive:
-            self._queue.run(_ALIVE, now_ns, owner)
-        return bool(alive)
+        mark, worked = self._queue.mark, False
+        try:
+            raws = tuple([frame.raw for frame in frames])
+            self._queue.put(Record(FramesItem(link, _RECEIVED, raws)))
+            for owner in self._vehicles.passes(link, frames, now_ns):
+                worked |= self._queue.run(ALIVE, now_ns, owner)
+        except Exception as error:
+            if len(frames) > 1 and self._in_run:
+                self._queue.back_to(mark)
+                for frame in frames:
+                    self._pass(link, [frame], now_ns)
+                return True
+            if not self._drop(link, frames[0], error, mark):
+                raise
+            return True
+        return worked
 
     def _work(self, work: Sequence[Work], now_ns: int) -> bool:
-        """Do it; whether there is any."""
-        if work:
-            self._queue.run(work, now_ns)
-        return bool(work)
+        """Do it; whether anything has changed by it."""
+        return bool(work) and self._queue.run(work, now_ns)
 
     def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of a MAVLink client: judged first, because the record says how."""
@@ -174,7 +272,10 @@ class Incoming:
             who = f"another station on link {link} calls itself {sysid}/{compid}"
             text = f"{who}, as this one does: start one of the two with another --sysid"
             return [condition(Condition.OTHER_STATION, True, text)]
-        work = self._vehicles.frame(link, frame, now_ns)
+        return self._also(frame, self._vehicles.frame(link, frame, now_ns), now_ns)
+
+    def _also(self, frame: Frame, work: list[Work], now_ns: int) -> list[Work]:
+        """What a vehicle's frame is to the vehicle, and to clients and operators."""
         if frame.msgid == MsgId.PARAM_VALUE:
             work += self._bridge.parameter(frame, now_ns)
         if frame.sysid == self._vehicles.first.sysid:

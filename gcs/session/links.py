@@ -6,7 +6,7 @@ serial line.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from gcs.protocol.effects import Address
@@ -32,19 +32,21 @@ MOST_NAMES = 1024
 """Components in whose names frames are written; of more, all begin to count anew."""
 
 
+def groups(raws: Sequence[bytes]) -> Iterator[Sequence[bytes]]:
+    """Frames in their order, a group for a datagram, as few as may be; none is cut."""
+    begin = size = 0
+    for number, raw in enumerate(raws):
+        size += len(raw)
+        if size > MAX_DATAGRAM and number > begin:
+            yield raws[begin:number]
+            begin, size = number, len(raw)
+    if size:
+        yield raws[begin:]
+
+
 def datagrams(raws: Sequence[bytes]) -> list[bytes]:
-    """Frames put together, as few datagrams as may be; none is cut."""
-    together = raws[0] if len(raws) == 1 else b"".join(raws)
-    if len(together) <= MAX_DATAGRAM:
-        return [together] if together else []
-    made: list[bytes] = []
-    begun = b""
-    for raw in raws:
-        if begun and len(begun) + len(raw) > MAX_DATAGRAM:
-            made.append(begun)
-            begun = b""
-        begun += raw
-    return [*made, begun]
+    """Frames put together so."""
+    return [b"".join(group) for group in groups(raws)]
 
 
 @dataclass(slots=True)
@@ -150,11 +152,17 @@ class Links:
 
     def together(self, link: int, raws: Sequence[bytes], now_ns: int) -> list[Transmit]:
         """Frames that came together, unrecorded: on a client's link they leave together, too."""
-        raws = self._clients[link].passed(raws, now_ns)
+        client = self._clients[link]
         if self._signatures.signed(link):
-            signed = [sent for raw in raws for sent in self._leaving(link, raw, now_ns)]
-            raws = [sent.data for sent in signed]
-        return [Transmit(link, data) for data in datagrams(raws)]
+            passed = client.passed(raws, now_ns)
+            signed = [sent for raw in passed for sent in self._leaving(link, raw, now_ns)]
+            made = datagrams([sent.data for sent in signed])
+        elif client.alters(now_ns):
+            made = [client.joined(group, now_ns) for group in groups(raws)]
+        else:
+            client.keep(raws)
+            made = datagrams(raws)
+        return [Transmit(link, data) for data in made if data]
 
     def send_as(self, source: Address, link: int, message: Message, now_ns: int) -> list[Effect]:
         """One frame on one link in the name of a component (`source`), and its record."""

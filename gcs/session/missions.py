@@ -18,6 +18,7 @@ from gcs.protocol.effects import Address, Heard
 from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.adopt import Adopt
+from gcs.session.jobs.check import NO_MISSION, Check, CheckUnknown
 from gcs.session.jobs.clear import Clear
 from gcs.session.jobs.client_upload import ClientUpload
 from gcs.session.jobs.download import Download
@@ -38,13 +39,13 @@ from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, ToGate, Work
-from gcs.wire.ids import MissionState, MissionType
+from gcs.wire.ids import Cmd, MissionState, MissionType
 from gcs.wire.messages import MissionCurrent, MissionItemReached
 
 TRANSFER_WORDS = frozenset(
     {"mission_upload", "mission_download", "mission_clear", "mission_set_current"}
 )
-MISSION_WORDS = TRANSFER_WORDS | {"mission_start"}
+MISSION_WORDS = TRANSFER_WORDS | {"mission_start", "mission_check"}
 KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
 
 NO_ITEMS = (0, 0xFFFF)
@@ -114,6 +115,12 @@ class Missions:
         """Of the verified mission on board; 0 where there is none."""
         return 0 if self._on_board is None else len(self._on_board.sent)
 
+    @property
+    def land_starts(self) -> tuple[int, ...]:
+        """Where the landing of the verified mission on board begins, as MAVLink counts (seq)."""
+        items = () if self._on_board is None else self._on_board.sent
+        return tuple(seq for seq, item in enumerate(items) if item.command == Cmd.DO_LAND_START)
+
     # ----------------------------------------------------------------------------- requests
 
     def ask(
@@ -131,7 +138,7 @@ class Missions:
 
         `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about.
         """
-        refusal = self._cannot_begin(ask, state, plan, kind)
+        refusal = self._cannot_begin(ask, state, policy, plan, kind)
         if refusal is None and telemetry is None:
             refusal = Refusal(Code.NO_VEHICLE, "no vehicle is heard")
         if refusal is not None:
@@ -166,6 +173,10 @@ class Missions:
                 return Clear(asked, KINDS if kind is MissionType.ALL else (kind,))
             case "mission_set_current":
                 return SetCurrent(asked, ask.item, self._on_board)
+            case "mission_check" if self._on_board is not None:
+                return Check(asked, self._on_board, ask.mode)
+            case "mission_check":
+                return CheckUnknown(asked, ask.mode)
         if state not in (State.HOVERING, State.GROUNDED):
             return None
         begin_seq, self._begin_seq = self._begin_seq, None
@@ -176,7 +187,12 @@ class Missions:
         return Adopt(asked) if policy.bridge.on_board == "verify" else None
 
     def _cannot_begin(
-        self, ask: ipc.Ask, state: State, plan: ClientPlan | None, kind: MissionType
+        self,
+        ask: ipc.Ask,
+        state: State,
+        policy: Policy,
+        plan: ClientPlan | None,
+        kind: MissionType,
     ) -> Refusal | None:
         """What refuses any job before it begins."""
         if self._left:
@@ -185,6 +201,8 @@ class Missions:
             return Refusal(Code.NO_VEHICLE, "no vehicle is heard")
         if self._job is not None:
             return Refusal(Code.BUSY, f"{self._job.asked.word} is still under way")
+        if ask.word == "mission_check":
+            return self._cannot_check(state, policy)
         if ask.word == "mission_upload" and plan is None and not ask.path:
             return Refusal(Code.BAD_MISSION, "which file?")
         of_mission = kind in (MissionType.MISSION, MissionType.ALL)
@@ -193,6 +211,16 @@ class Missions:
                 return Refusal(Code.STALE, "the vehicle's position is too old")
             if state is State.FLYING_MISSION:
                 return Refusal(Code.BUSY, "the mission on board is being flown")
+        return None
+
+    def _cannot_check(self, state: State, policy: Policy) -> Refusal | None:
+        """A mission is checked on the ground; in the air its start does that."""
+        if state is State.STALE:
+            return Refusal(Code.STALE, "the vehicle's position is too old")
+        if state is not State.GROUNDED:
+            return Refusal(Code.ALREADY_FLYING, "in the air the start of a mission verifies it")
+        if self._on_board is None and policy.bridge.on_board != "verify":
+            return NO_MISSION
         return None
 
     # -------------------------------------------------------------------------------- input
@@ -273,7 +301,7 @@ class Missions:
 
     def overruled(self, given: Input) -> list[Work]:
         """Whatever stops the vehicle stops a mission start, too, that is still being prepared."""
-        if not isinstance(self._job, Start | Adopt):
+        if self._job is None or not isinstance(self._job, Start | Adopt):
             return []
         match given:
             case Requested(request=request) if event_of(request) in STOPS:

@@ -30,7 +30,8 @@ def line(
 ) -> For:
     """One command of the operator `client`; what is about no vehicle is the station's.
 
-    A climb is held back for a moment after a MAVLink client has written how high one is.
+    A climb is held back for a moment after a MAVLink client has written how high one is, and an
+    arming after one has set the mode of a mission.
     """
     if not isinstance(command, ipc.Ask | ipc.Stream):
         return For(STATION, tuple(operators.line(client, command, None, None, now_ns)))
@@ -57,6 +58,8 @@ def _asked(
     if telemetry is not None:
         vehicle = Address(telemetry.sysid, telemetry.compid)
         held = bridge.held_back(command, telemetry.autopilot, vehicle)
+        not_now = bridge.why_not_arm(command, telemetry.sysid)
+        refusal = refusal or not_now
     if held is None:
         return operators.line(client, command, autopilot, refusal, now_ns)
     told = operators.line(client, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)

@@ -24,7 +24,7 @@ from gcs.session.clients import FIRST, NOBODY, Clients
 from gcs.session.effects import Emit, ShowTopics
 from gcs.session.missions import MISSION_WORDS, TRANSFER_WORDS
 from gcs.session.operations import Operations
-from gcs.session.requests import BadAskError, Requests, request_of
+from gcs.session.requests import BadAskError, Requests, client_of, request_of
 from gcs.session.setup import Setup
 from gcs.session.streams import BEGIN, Streams
 from gcs.session.subscriptions import Subscriptions
@@ -81,10 +81,10 @@ class Operators:
         """Its connection has ended.  The station lives as long as its first operator, unless it
         is to be kept."""
         self._subscriptions.forget(client)
-        self._streams.forget(client)
+        ended = self._streams.forget(client)
         if client == FIRST and not self._keep:
-            return [EndSession(reason)]
-        return self._clients.lost(client, reason)
+            return [*ended, EndSession(reason)]
+        return [*ended, *self._clients.lost(client, reason)]
 
     def signalled(self, name: str) -> list[Work]:
         """A kept station outlives the terminal of its first operator."""
@@ -199,14 +199,24 @@ class Operators:
         """One sample: for the gate, if this operator is in control or nobody is."""
         refusal = self._clients.refusal(client, BEGIN)
         if refusal is not None:
-            return self._streams.refuse(client, refusal, 0, now_ns)
+            return self._refuse_sample(client, sample, refusal, now_ns)
         if no_vehicle is not None:
-            return self._streams.refuse(client, no_vehicle, 0, now_ns)
+            return self._refuse_sample(client, sample, no_vehicle, now_ns)
         free = self._clients.in_control == NOBODY
         if free and not self._streams.goes_on(client, sample, now_ns):
             return []
-        given = self._give_where_free(client, BEGIN, now_ns)
-        return [*given, ToGate(self._streams.seen(client, sample, now_ns))]
+        # Who is free to take control has it when the gate has let the sample through.
+        return [ToGate(self._streams.seen(client, sample, now_ns))]
+
+    def _refuse_sample(
+        self, client: int, sample: ipc.Stream, refusal: Refusal, now_ns: int
+    ) -> list[Work]:
+        """One that reaches no gate: told where that is news."""
+        told = self._streams.refuse(client, sample, refusal, now_ns)
+        if told is None:
+            return []
+        text = f"stream of {told.source}: refused {refusal.code.value}: {refusal.sentence}"
+        return [*self._tell_stream(told, 0, now_ns), Log(Level.WARNING, NODE, text)]
 
     def _give_where_free(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """Control, to the first who asks for something that needs it."""
@@ -296,9 +306,27 @@ class Operators:
         ended = self._operations.end(told, now_ns)
         return [*teller.outcome(told, asked, sysid), Emit(ended)]
 
-    def stream_verdict(self, told: StreamVerdict, sysid: int) -> list[Work]:
-        """What the gate makes of somebody's setpoint stream, where that changes."""
-        return self._streams.verdict(told, sysid)
+    def stream_verdict(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
+        """What the gate makes of somebody's setpoint stream, where that changes.
+
+        Where nobody is in control, whose samples are flown gets it; a refused one takes none."""
+        client = client_of(told.source)
+        given = [] if told.refusal else self._give_where_free(client, BEGIN, now_ns)
+        verdict = self._streams.verdict(told, sysid, now_ns)
+        return [*given, *self._tell_stream(verdict, sysid, now_ns)]
+
+    def _tell_stream(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
+        """To the operator, and where it is a MAVLink client to whoever watches the bridge."""
+        client = client_of(told.source)
+        work: list[Work] = [*teller.stream_verdict(told, client, sysid)]
+        if client >= FIRST_NUMBER:
+            name = self._clients.name(client)
+            work.append(teller.bridge_stream_decision(told, client, name, sysid, now_ns))
+        return work
+
+    def second(self, now_ns: int) -> list[Work]:
+        """Once a second: what has ended because nothing more came."""
+        return self._streams.second(now_ns)
 
     def tell(self, told: Tell) -> list[Work]:
         return [Emit(told.event, self._requests.get(told.request_id).client)]

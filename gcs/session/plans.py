@@ -22,7 +22,6 @@ from gcs.session.paths import autopilot_name, on_earth
 from gcs.session.telemetry import Telemetry
 from gcs.steps import Steps
 from gcs.wire.ids import Cmd
-from gcs.wire.messages import MissionItemInt
 
 MAX_ITEMS = 2_000
 """More would keep the 20 Hz tick waiting while they are checked."""
@@ -134,41 +133,3 @@ def _lands(plan: Plan) -> bool:
     if not stops:
         return False
     return stops[-1].command == Cmd.NAV_LAND or KINDS.get(stops[-1].command) is Kind.RETURN
-
-
-def message_of(item: WireItem) -> MissionItemInt:
-    """Target and type are the transfer's to set."""
-    return MissionItemInt(
-        param1=item.param1,
-        param2=item.param2,
-        param3=item.param3,
-        param4=item.param4,
-        x=item.x,
-        y=item.y,
-        z=item.z,
-        seq=item.seq,
-        command=item.command,
-        target_system=0,
-        target_component=0,
-        frame=item.frame,
-        current=item.current,
-        autocontinue=item.autocontinue,
-    )
-
-
-def item_of(message: MissionItemInt) -> WireItem:
-    return WireItem(
-        seq=message.seq,
-        frame=message.frame,
-        command=message.command,
-        current=message.current,
-        autocontinue=message.autocontinue,
-        param1=message.param1,
-        param2=message.param2,
-        param3=message.param3,
-        param4=message.param4,
-        x=message.x,
-        y=message.y,
-        z=message.z,
-        mission_type=message.mission_type,
-    )

@@ -44,6 +44,20 @@ class Presence:
         number = self.losses.in_turn(sender, frame.seq)
         return self._out_of_turn(sender, frame.seq, now_ns - heard_ns) if number is None else number
 
+    def all_in_turn(self, sender: tuple[int, int], frames: Sequence[Frame], now_ns: int) -> bool:
+        """Count frames that came together, where all of them are the next ones of `sender`; where
+        one is any other, nothing is counted."""
+        sysid, compid = sender
+        seqs = [frame.seq for frame in frames if frame.compid == compid and frame.sysid == sysid]
+        in_turn = len(seqs) == len(frames) and self.losses.all_in_turn(sender, bytes(seqs))
+        if in_turn:
+            self._heard_ns[sender] = now_ns
+        return in_turn
+
+    def number_of(self, frame: Frame) -> int:
+        """The same as `number` says, of one of the last 100 that were counted in turn."""
+        return self.losses.number(frame.sysid, frame.compid, frame.seq)
+
     def number_all(self, frames: Sequence[Frame], now_ns: int) -> None:
         """The same for frames of one system that came together."""
         compid = frames[0].compid

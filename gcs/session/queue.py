@@ -17,8 +17,13 @@ from typing import Final, TypeAlias, cast, get_args
 import msgspec
 
 from gcs.bridge.bridge import FIRST_NUMBER
+from gcs.gate.inputs import ConditionChanged, MessageSeen, PositionSeen
 from gcs.session.effects import Effect, Emit
-from gcs.session.work import STATION, For, GateAnswered, ToGate, Work
+from gcs.session.work import GATE_ANSWERED, STATION, For, GateAnswered, ToGate, Work
+
+NOTICED: Final[list[Work]] = [GATE_ANSWERED]
+NOTICE_ONLY: Final = frozenset({PositionSeen, MessageSeen, ConditionChanged})
+"""What the gate hears over and over, and nearly always has no answer to."""
 
 EFFECT_TYPES: Final = frozenset(get_args(Effect))
 """Looked up by type: `isinstance` costs more than the rest of a turn."""
@@ -42,11 +47,14 @@ class WorkQueue:
         self._postponed: list[For] = []
         self._effects: list[Work] = []
 
-    def run(self, work: Sequence[Work], now_ns: int, owner: int = STATION) -> None:
+    def run(self, work: Sequence[Work], now_ns: int, owner: int = STATION) -> bool:
         """Do all of it, which is of `owner`, and all that it leads to.
 
         What a MAVLink client is told is work, too: the bridge puts it in MAVLink's words.
+        False: it was nothing but effects and what the gate only takes notice of, such as one more
+        position, so that nobody waits for anything else than before.
         """
+        worked = False
         agenda: list[Work | _OwnedAgain] = list(reversed(work))  # the next item last
         step, effects, postponed = self._step, self._effects, self._postponed
         gate_answers = False
@@ -57,6 +65,7 @@ class WorkQueue:
                 continue
             kind = type(item)
             if kind is Emit and cast("Emit", item).client >= FIRST_NUMBER:
+                worked = True
                 agenda += reversed(step(item, owner, now_ns))
             elif kind in EFFECT_TYPES:
                 effects.append(item)
@@ -72,15 +81,34 @@ class WorkQueue:
                 if gate_answers:
                     postponed.append(For(owner, (item,)))
                 else:
-                    gate_answers = True
-                    agenda += reversed(step(item, owner, now_ns))
+                    answer = step(item, owner, now_ns)
+                    if answer == NOTICED and type(cast("ToGate", item).given) in NOTICE_ONLY:
+                        continue
+                    worked = gate_answers = True
+                    agenda += reversed(answer)
             else:
+                worked = True
                 agenda += reversed(step(item, owner, now_ns))
+        return worked
 
     @property
     def put(self) -> Callable[[Effect], None]:
         """Takes an effect that leads to nothing, between two calls of `run`; good until `take`."""
         return self._effects.append
+
+    @property
+    def mark(self) -> int:
+        """Where the effects so far end: for `back_to`, between two calls of `run`."""
+        return len(self._effects)
+
+    def back_to(self, mark: int) -> None:
+        """Nothing of what came after that: a part has failed in the middle of it."""
+        self._postponed.clear()
+        del self._effects[mark:]
+
+    def put_at(self, mark: int, effect: Effect) -> None:
+        """Instead of the effect that was put there."""
+        self._effects[mark] = effect
 
     def take(self) -> list[Effect]:
         """The effects so far, in the order in which the shell is to perform them."""

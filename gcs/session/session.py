@@ -28,7 +28,7 @@ from gcs.bridge.effects import (
 from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate.condition import Condition
-from gcs.gate.effects import Level
+from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import PositionSeen
 from gcs.gate.machine.gate import Gate
 from gcs.gate.requests import EndStream
@@ -39,7 +39,7 @@ from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Finish
 from gcs.session.ending import Ending
 from gcs.session.gate_port import condition
-from gcs.session.incoming import Incoming
+from gcs.session.incoming import FramesRaisedError, Incoming
 from gcs.session.inputs import (
     ClientCame,
     ClientFlooded,
@@ -136,6 +136,8 @@ class Session:
         )
         self._deadline_ns: int | None = None
         """As it was last looked up; None once something may have changed it."""
+        self._parts_ns: int | None = None
+        """The same without ticks."""
         self._queue = WorkQueue(self._step)
         self._incoming = Incoming(
             Address(config.sysid, config.compid),
@@ -155,6 +157,8 @@ class Session:
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
         self._faults = 0
+        self._frames_raised = 0
+        """Frames of a run that have raised, of which `fault` was not told yet."""
         self._introduced = False
         self._unfinished: Input | None = None
         """The input that is being handled: none of its effects has left yet."""
@@ -163,12 +167,17 @@ class Session:
     def deadline_ns(self) -> int:
         """When `Wake` is due; no side effects."""
         if self._deadline_ns is None:
-            self._deadline_ns = self._next_deadline_ns()
+            waits = (self._vehicles.deadline_ns, self._bridge.bridge.deadline_ns)
+            parts_ns = self._parts_ns = min((ns for ns in waits if ns is not None), default=None)
+            tick_ns = self._ticks.next_ns
+            self._deadline_ns = tick_ns if parts_ns is None else min(tick_ns, parts_ns)
         return self._deadline_ns
 
-    def _next_deadline_ns(self) -> int:
-        waits = (self._ticks.next_ns, self._vehicles.deadline_ns, self._bridge.bridge.deadline_ns)
-        return min(time_ns for time_ns in waits if time_ns is not None)
+    def _waited(self, now_ns: int) -> bool:
+        """Whether some part's wait is over, or a job goes on: at most ticks none does."""
+        if self.deadline_ns <= now_ns and self._parts_ns is not None and self._parts_ns <= now_ns:
+            return True
+        return any(vehicle.plan_transfer for vehicle in self._vehicles)
 
     @property
     def gate(self) -> Gate:
@@ -191,7 +200,9 @@ class Session:
         return self._vehicles
 
     def handle(self, given: Input, now_ns: int) -> list[Effect]:
-        """Everything that follows from `given` at `now_ns`, in order."""
+        """Everything that follows from `given` at `now_ns`, in order.
+
+        Raises FramesRaisedError where single frames of a run have raised, with all the rest."""
         queue = self._queue
         self._unfinished = given
         if not self._introduced:
@@ -199,7 +210,7 @@ class Session:
             begin = [*introduction(self._setup, self._start_ns), *self._remind()]
             queue.run(begin, now_ns)
         if isinstance(given, Datagram):
-            if not self._incoming.datagram(given, now_ns):
+            if not self._incoming.datagram(given, now_ns) and not self._ending.under_way:
                 self._unfinished = None
                 return queue.take()
         else:
@@ -207,6 +218,10 @@ class Session:
         queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
         queue.run(self._ending.if_due(self._log_path, now_ns), now_ns)
         self._unfinished = self._deadline_ns = None
+        dropped = self._incoming.take_dropped()
+        if dropped:
+            self._frames_raised = len(dropped)
+            raise FramesRaisedError(queue.take(), dropped)
         return queue.take()
 
     def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
@@ -218,8 +233,11 @@ class Session:
         no MAVLink client's either.
         """
         self._queue.drop()
+        self._incoming.take_dropped()
         self._deadline_ns = None
         handled, self._unfinished = self._unfinished is None, None
+        if self._frames_raised:
+            handled, self._frames_raised = False, self._frames_raised - 1
         visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
         of_client = isinstance(given, Datagram) and self._incoming.of_client(given)
         self._faults += not (visitor or of_client)
@@ -246,6 +264,8 @@ class Session:
         """What an input means first; `_step` does the rest."""
         match given:
             case Wake():
+                if not self._waited(now_ns):
+                    return self._ticks.wake(now_ns)
                 of_clients = self._bridge.bridge.wake(now_ns)
                 of_vehicles = self._vehicles.each(lambda each: each.wake(now_ns))
                 return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
@@ -306,7 +326,10 @@ class Session:
             case gate_effects.Outcome():
                 return self._operators.outcome(item, vehicle.sysid, now_ns)
             case gate_effects.StreamVerdict():
-                return self._operators.stream_verdict(item, vehicle.sysid)
+                return self._operators.stream_verdict(item, vehicle.sysid, now_ns)
+            case gate_effects.SendCommand(kind=CommandKind.ARM):
+                self._bridge.bridge.arm_sent(vehicle.sysid, now_ns)
+                return vehicle.carry_out(item, now_ns)
             case (
                 gate_effects.SendSetpoint()
                 | gate_effects.SendCommand()
@@ -338,7 +361,9 @@ class Session:
             case Tell():
                 return self._operators.tell(item)
             case EndSession(reason):
-                return [For(STATION, tuple(self._ending.begin(reason, now_ns)))]
+                # After it, as the lost operators' requests end there.
+                held = self._bridge.bridge.leave()
+                return [For(STATION, (*self._ending.begin(reason, now_ns), *held))]
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
@@ -369,6 +394,7 @@ class Session:
         work: list[Work] = [*self._links.heartbeat(now_ns), *self._remind()]
         work += self._bridge.second(now_ns, self._links.counts, self._signatures.told)
         work += self._signatures.second(now_ns)
+        work += self._operators.second(now_ns)
         if first.telemetry is None:
             return work + self._waiting.second(now_ns)
         if now_ns - self._incoming.other_station_ns > self._times.real_ns(OTHER_STATION_NS):

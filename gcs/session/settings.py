@@ -16,6 +16,7 @@ from gcs.protocol.parameters import decode_value
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
 from gcs.session.failsafes import CASES, FENCE, FENCE_ACTION, Limits, findings, parameters_of
 from gcs.session.telemetry import Telemetry
+from gcs.session.thrust_meaning import NAMES_OF_THRUST
 from gcs.session.times import Times
 from gcs.wire.ids import ParamType
 from gcs.wire.messages import ParamValue
@@ -93,8 +94,12 @@ Found: TypeAlias = (
 class Settings:
     """Reads them once for each time that a vehicle appears, and follows what changes later."""
 
-    def __init__(self, own: Address, times: Times, limits: Limits) -> None:
+    def __init__(
+        self, own: Address, times: Times, limits: Limits, *, reads_thrust: bool = False
+    ) -> None:
+        """`reads_thrust`: what a thrust means to the vehicle, too (`thrust_meaning.py`)."""
         self._own = own
+        self._reads_thrust = reads_thrust
         self._limits = limits
         self._times = times
         self._reader: SettingsReader | None = None
@@ -116,6 +121,7 @@ class Settings:
         wanted = [table[who] for table in READ_FIRST if who in table]
         wanted += [name for name in parameters_of(who) if name not in wanted]
         wanted += [table[who] for table in READ_LAST if who in table]
+        wanted += NAMES_OF_THRUST.get(who, ()) if self._reads_thrust else ()
         names = [(newest, name) for newest in wanted for name in names_of(newest)]
         self._scales = {name.name: (newest, name.scale) for newest, name in names}
         self._values, self._told = {}, None

@@ -95,6 +95,25 @@ def bridge_decision(told: Decide, asked: Asked, name: str, sysid: int, now_ns: i
     )
 
 
+def bridge_stream_decision(
+    told: effects.StreamVerdict, client: int, name: str, sysid: int, now_ns: int
+) -> Emit:
+    """What becomes of a MAVLink client's stream from now on, for whoever watches the bridge."""
+    refusal = told.refusal
+    return Emit(
+        ipc.BridgeDecision(
+            time_ns=now_ns,
+            client=client,
+            name=name,
+            what="stream",
+            outcome="refused" if refusal else "accepted",
+            code=refusal.code.value if refusal else "",
+            sentence=refusal.sentence if refusal else "",
+            vehicle=sysid,
+        )
+    )
+
+
 def stream_verdict(told: effects.StreamVerdict, client: int, sysid: int) -> list[Effect]:
     """Samples of a stream are refused from now on, or flown."""
     refusal = told.refusal
@@ -115,6 +134,25 @@ def stream_verdict(told: effects.StreamVerdict, client: int, sysid: int) -> list
         item.outcome, item.code, item.sentence, item.zone, item.numbers, sysid
     )
     return [Emit(event, client), Record(item)]
+
+
+def stream_ended(source: str, sysid: int, code: str, sentence: str, samples: float) -> Record:
+    """Samples of a stream were refused until it ended; `code` is the last reason."""
+    return Record(
+        DecisionItem(
+            vehicle=sysid,
+            request_id=0,
+            source=source,
+            word="stream",
+            phase="stream",
+            outcome="ended",
+            code=code,
+            sentence=sentence,
+            zone="",
+            goal=None,
+            numbers={"refused_samples": samples},
+        )
+    )
 
 
 def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:

@@ -30,6 +30,8 @@ class Ticks:
         self._ticks_a_snapshot = max(1, round(TICKS_A_SNAPSHOT * times.speedup))
         self._number = 0
         self._late_until_ns = 0
+        self._told_late = False
+        self._late_ns = times.real_ns(LATE_NS)
 
     def wake(self, now_ns: int) -> list[Work]:
         """Nothing before `next_ns`; then one tick, however many were missed."""
@@ -38,7 +40,8 @@ class Ticks:
         lateness_ns = now_ns - self.next_ns
         self.next_ns += TICK_NS * (lateness_ns // TICK_NS + 1)
         work: list[Work] = [ToGate(inputs.Tick(lateness_ns))]
-        work += self._judge_lateness(lateness_ns, now_ns)
+        if lateness_ns > self._late_ns or self._told_late or self._number % TICKS_A_SECOND == 0:
+            work += self._judge_lateness(lateness_ns, now_ns)
         if self._number % TICKS_A_SECOND == 0:
             work.append(SecondDue())
         if self._number % self._ticks_a_snapshot == 0:
@@ -50,9 +53,9 @@ class Ticks:
         """A late tick is logged; one so late that the stream had a gap is a condition for 10 s."""
         text = f"a tick came {self._times.real_s(lateness_ns) * 1e3:.0f} ms late"
         work: list[Work] = []
-        if lateness_ns > self._times.real_ns(LATE_NS):
+        if lateness_ns > self._late_ns:
             work.append(Log(Level.DEBUG, NODE, text))
         if lateness_ns > self._times.real_ns(VERY_LATE_NS):
             self._late_until_ns = now_ns + LATE_SHOWN_NS
-        late = now_ns < self._late_until_ns
-        return [*work, condition(Condition.TICK_LATE, late, text)]
+        self._told_late = now_ns < self._late_until_ns
+        return [*work, condition(Condition.TICK_LATE, self._told_late, text)]

@@ -7,7 +7,7 @@ All that is per vehicle is here and in the parts that this composes; what is per
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Final, get_args
+from typing import Final
 
 from gcs.config import StationConfig
 from gcs.gate import effects, inputs
@@ -22,7 +22,6 @@ from gcs.protocol import arm_authorizer
 from gcs.protocol.autopilot import Autopilot, autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.sequence import SequenceTracker
-from gcs.protocol.transfer import PlanMessage
 from gcs.protocol.vehicle_control import VehicleControl
 from gcs.report import FenceShape, ParamItem, SetpointItem
 from gcs.session import recorded, settings, teller
@@ -34,6 +33,14 @@ from gcs.session.events import EVENT_MESSAGES, Events
 from gcs.session.failsafes import limits_of
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.inputs import FileRead, FileWritten
+from gcs.session.interpreted_messages import (
+    CAMERA_MESSAGES,
+    INTERPRETED,
+    MISSION_MESSAGES,
+    PARAMETER_MESSAGES,
+    PLACE_MESSAGES,
+    of_autopilot,
+)
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions, still_paused
 from gcs.session.position_health import GPS_SILENT_NS
@@ -41,18 +48,19 @@ from gcs.session.presence import STATE_MESSAGES, Presence
 from gcs.session.reasons import Reasons
 from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
-from gcs.session.setpoints import setpoint
+from gcs.session.setpoints import attitude_target, setpoint
 from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
+from gcs.session.thrust_meaning import with_thrust_meaning
 from gcs.session.times import Times
-from gcs.session.updates import UPDATE_MESSAGES, updates
-from gcs.session.watch import WATCH_MESSAGES, Watch
+from gcs.session.updates import updates
+from gcs.session.watch import Watch
 from gcs.session.words import Words, logged
 from gcs.session.work import AskMission, CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
-from gcs.wire.ids import Component, MavAutopilot, MavType
+from gcs.wire.ids import Component
 from gcs.wire.messages import CommandLong
 
 ORIGIN_PATIENCE_NS = 10_000_000_000
@@ -60,39 +68,10 @@ ORIGIN_PATIENCE_NS = 10_000_000_000
 
 NODE = "link"
 
-CAMERA_MESSAGES: Final = frozenset({m.CameraImageCaptured, m.CameraFeedback})
-PARAMETER_MESSAGES: Final = frozenset({m.ParamValue, m.ParamError})
-MISSION_MESSAGES: Final = frozenset(
-    {m.MissionCurrent, m.MissionItemReached, *get_args(PlanMessage)}
-)
-
-INTERPRETED: Final = frozenset(
-    kind.MSG_ID
-    for kind in (
-        *UPDATE_MESSAGES,
-        *PARAMETER_MESSAGES,
-        *MISSION_MESSAGES,
-        *EVENT_MESSAGES,
-        *STATE_MESSAGES,
-        *WATCH_MESSAGES,
-        m.CommandAck,
-        m.CommandLong,
-        m.Statustext,
-        m.AutopilotVersion,
-        m.ControlStatus,
-    )
-)
-"""Ids of the messages that `Vehicle` does something with; the others are only counted."""
-
-
-def is_autopilot(frame: Frame) -> bool:
-    """A HEARTBEAT of an autopilot, not of a ground station, a camera or a radio."""
-    beat = decode(frame) if frame.compid == Component.AUTOPILOT1 else None
-    return isinstance(beat, m.Heartbeat) and _of_autopilot(beat)
-
-
-def _of_autopilot(beat: m.Heartbeat) -> bool:
-    return beat.type != MavType.GCS and beat.autopilot != MavAutopilot.INVALID
+ALIVE: Final[Sequence[Work]] = (ToGate(inputs.MessageSeen()),)
+"""What the gate is to hear of any frame of the autopilot, now and then."""
+MOST_IN_TURN: Final = 100
+"""Frames that are counted as one: fewer than half of the ring of sequence numbers."""
 
 
 class Vehicle:
@@ -117,7 +96,12 @@ class Vehicle:
         self._port = GatePort(times.policy(policy), now_ns, shown=shown)
         self._commands = Commands(own, times)
         self._discovery = Discovery(times)
-        self._settings = Settings(own, times, limits_of(policy, own.sysid))
+        self._settings = Settings(
+            own,
+            times,
+            limits_of(policy, own.sysid),
+            reads_thrust=policy.stream.tilt_deg > 0.0,
+        )
         self._missions = Missions(own, times)
         self._words = Words(times)
         self._events = Events(own, self._words, times)
@@ -201,6 +185,11 @@ class Vehicle:
         """Items of the verified mission on board; 0 where there is none."""
         return self._missions.items
 
+    @property
+    def land_starts(self) -> tuple[int, ...]:
+        """The DO_LAND_START items of that mission."""
+        return self._missions.land_starts
+
     def _view(self, telemetry: Telemetry) -> VehicleView:
         return VehicleView(telemetry, self.gate.state, self._port.policy)
 
@@ -229,6 +218,39 @@ class Vehicle:
         self._presence.choose_link(telemetry, link, now_ns)
         return self._presence.alive(telemetry, now_ns)
 
+    def in_turn(self, link: int, frames: Sequence[Frame], now_ns: int) -> Sequence[Work] | None:
+        """Good frames that came together, all of its autopilot and each the next one: counted.
+
+        What the gate is to hear of that.  None where they are any others, or very many: then
+        nothing was counted.
+        """
+        telemetry = self.telemetry
+        if telemetry is None or len(frames) > MOST_IN_TURN:
+            return None
+        if not self._presence.all_in_turn((telemetry.sysid, telemetry.compid), frames, now_ns):
+            return None
+        telemetry.count_frames(len(frames), now_ns)
+        return ALIVE if self._alive(telemetry, link, now_ns) else ()
+
+    def counted(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        """One of those that `in_turn` has counted, of this vehicle or of another that has a radio
+        of its own: that tells of the link."""
+        work: list[Work] = []
+        message = decode(frame) if frame.msgid in INTERPRETED else None
+        telemetry = self.telemetry
+        if message is None or telemetry is None:
+            return work
+        if isinstance(message, m.Heartbeat):
+            work += self._discover(link, frame, message, now_ns)
+        elif isinstance(message, m.RadioStatus):
+            work += self._watch.radio(message, now_ns)
+        if frame.sysid != telemetry.sysid:
+            return work
+        state = type(message) in STATE_MESSAGES
+        if state and self._presence.overtaken(frame, message, self._presence.number_of(frame)):
+            return work
+        return work + self._interpreted(telemetry, frame, message, now_ns)
+
     def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of anybody on `link`; what is not our vehicle's changes nothing."""
         work: list[Work] = []
@@ -243,7 +265,7 @@ class Vehicle:
         number = self._presence.number(frame, now_ns)
         telemetry.count_frames(1, now_ns)
         if frame.compid == telemetry.compid and self._alive(telemetry, link, now_ns):
-            work.append(ToGate(inputs.MessageSeen()))
+            work += ALIVE
         if message is not None and not self._presence.overtaken(frame, message, number):
             work += self._interpreted(telemetry, frame, message, now_ns)
         return work
@@ -261,6 +283,8 @@ class Vehicle:
     def _heard(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
         work: list[Work] = []
         message = heard.message
+        if type(message) in PLACE_MESSAGES:
+            return self._updated(telemetry, heard, now_ns)
         if isinstance(message, m.CommandAck):
             answered = self._commands.heard(heard, now_ns)
             work += self._reasons.explained(answered, telemetry.custom_mode, now_ns)
@@ -285,12 +309,20 @@ class Vehicle:
             return work
         if heard.compid == telemetry.compid:
             work += self._watch.heard(message, now_ns)
+        return [*work, *self._updated(telemetry, heard, now_ns), *_accuracy(telemetry)]
+
+    def _updated(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
+        """What the vehicle reports of itself, into `telemetry`."""
+        work: list[Work] = []
+        message = heard.message
+        if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
+            return work
         for update in updates(message, telemetry, now_ns):
+            work.append(update)
             match update:
                 case ToGate(inputs.PositionSeen(reset=True)):
-                    work += self._missions.forget()
-            work.append(update)
-        return work + _accuracy(telemetry)
+                    work = [*self._missions.forget(), *work, *_accuracy(telemetry)]
+        return work
 
     def _authorized(
         self, telemetry: Telemetry, heard: Heard, asked: m.CommandLong, now_ns: int
@@ -314,7 +346,7 @@ class Vehicle:
 
     def _discover(self, link: int, frame: Frame, beat: m.Heartbeat, now_ns: int) -> list[Work]:
         """Choose our vehicle: the first autopilot that is heard, or the one that was named."""
-        if not _of_autopilot(beat) or frame.compid != Component.AUTOPILOT1:
+        if not of_autopilot(beat) or frame.compid != Component.AUTOPILOT1:
             return []
         work: list[Work] = []
         if self._roster.heard(frame.sysid, frame.compid, beat, now_ns):
@@ -511,6 +543,8 @@ class Vehicle:
 
     def ask_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
         before = self.gate.state
+        if isinstance(given, inputs.StreamSeen) and self.telemetry is not None:
+            given = with_thrust_meaning(given, self.telemetry.autopilot, self._parameters)
         work = [*self._port.handle(given, now_ns), *self._missions.overruled(given)]
         self.mission_paused = still_paused(self.mission_paused, before, self.gate.state)
         return work
@@ -522,10 +556,11 @@ class Vehicle:
         match effect:
             case effects.SendSetpoint(permit):
                 assert self.telemetry is not None
-                message = setpoint(self.telemetry, permit, self._start_ns, now_ns)
+                made = setpoint if permit.attitude is None else attitude_target
+                message = made(self.telemetry, permit, self._start_ns, now_ns)
                 self.telemetry.count_setpoint(now_ns)
                 if permit.pos_ned is None:
-                    return [Send(message)]  # a velocity: there is no place to draw
+                    return [Send(message)]  # a velocity or an attitude: there is no place to draw
                 sent = SetpointItem(self.telemetry.sysid, permit.pos_ned, permit.yaw_rad)
                 return [Send(message), Record(sent)]
             case effects.SendCommand():

@@ -19,9 +19,10 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
+from gcs.session.interpreted_messages import is_autopilot
 from gcs.session.presence import LINK_SILENT_NS
 from gcs.session.times import Times
-from gcs.session.vehicle import Vehicle, is_autopilot
+from gcs.session.vehicle import Vehicle
 from gcs.session.work import STATION, For, Log, ToGate, Work
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MsgId
@@ -125,6 +126,26 @@ class Vehicles:
         """See `Vehicle.passes`; the slots of those whose gate is to hear that they live."""
         vehicles = enumerate(self._all)
         return [slot for slot, vehicle in vehicles if vehicle.passes(link, frames, now_ns)]
+
+    def in_turn(
+        self, link: int, frames: Sequence[Frame], now_ns: int
+    ) -> tuple[int, Sequence[Work]] | None:
+        """See `Vehicle.in_turn`; with the slot of the vehicle whose they are."""
+        slot = self.slot_of(frames[0].sysid)
+        work = None if slot is None else self._all[slot].in_turn(link, frames, now_ns)
+        return None if slot is None or work is None else (slot, work)
+
+    def counted(self, slot: int, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        """One of the frames that `in_turn` has counted."""
+        vehicle = self._all[slot]
+        if frame.msgid == MsgId.RADIO_STATUS and len(self._all) > 1:
+            return self.each(
+                lambda each: each.counted(link, frame, now_ns) if link in each.links else ()
+            )
+        work = vehicle.counted(link, frame, now_ns)
+        if frame.msgid == MsgId.HEARTBEAT:
+            work = [*self._twice(vehicle, link, frame, now_ns), *work]
+        return [For(slot, tuple(work))] if work else []
 
     def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of anybody on a vehicle's link."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gcs.shell.client_port_kinds import LinkPort, Port, Source, open_port
+from gcs.shell.client_port_kinds import LinkPort, Port, Source, UdpPort, open_port
 from gcs.shell.client_table import Arrival, ClientLimits, ClientTable
 from gcs.shell.endpoints import Endpoint
 
@@ -18,27 +18,46 @@ class ClientPorts:
         """None yet; `open` adds one.  Their clients have link numbers from `first_link` up."""
         self._table = ClientTable(first_link, limits or ClientLimits())
         self._ports: list[Port] = []
+        self._waiting: list[Source] = []
+        """Of the ports that only wait for datagrams: always the same."""
+        self._others: list[Port] = []
+        self._links: list[LinkPort] = []
         self._first_read = 0
         self._sweep_ns = 0
 
     def open(self, endpoint: Endpoint) -> None:
         """Raises AddressInUse, SerialUnavailable, or another OSError."""
-        self._ports.append(open_port(endpoint, self._table))
+        port = open_port(endpoint, self._table)
+        self._ports.append(port)
+        if isinstance(port, UdpPort):
+            self._waiting.append(port.socket)
+        else:
+            self._others.append(port)
+        if isinstance(port, LinkPort):
+            self._links.append(port)
 
     def sources(self, now_ns: int) -> list[Source]:
         """What `select` is to wait for; a client that has sent too much is not among them."""
-        return [source for port in self._ports for source in port.sources(now_ns)]
+        if not self._others:
+            return self._waiting
+        others = [source for port in self._others for source in port.sources(now_ns)]
+        return self._waiting + others
 
     @property
     def sinks(self) -> list[Source]:
         """Connections that have something queued."""
-        return [sink for port in self._ports for sink in port.sinks]
+        others = self._others
+        return [sink for port in others for sink in port.sinks] if others else []
 
     @property
     def deadline_ns(self) -> int:
         """When `turn` has something to do although nothing can be read."""
-        due = [port.link.deadline_ns for port in self._ports if isinstance(port, LinkPort)]
-        return min([self._sweep_ns, *(each for each in due if each is not None)])
+        deadline_ns = self._sweep_ns
+        for port in self._links:
+            due_ns = port.deadline_ns
+            if due_ns is not None and due_ns < deadline_ns:
+                deadline_ns = due_ns
+        return deadline_ns
 
     def turn(
         self, readable: Sequence[Source], writable: Sequence[Source], now_ns: int

@@ -173,6 +173,11 @@ class ClientSockets:
         return self._listener.fileno()
 
     @property
+    def alone(self) -> bool:
+        """Nobody is connected: this is all that there is to watch."""
+        return not self._connections
+
+    @property
     def sources(self) -> list[ClientSockets | Connection]:
         """What `select` should watch for reading."""
         ready = (each for each in self._connections if not each.closing and not each.lines)

@@ -3,6 +3,8 @@
 A vehicle that sends a frame a datagram, hundreds of times a second, and a loop that was away for a
 few milliseconds: what came meanwhile is split here, datagram by datagram, and handed on as one run.
 So it is routed, sent on, recorded and counted as one, at a fraction of the cost.
+
+Of vehicles only: a client's datagrams are counted against its rate one by one (`client_table.py`).
 """
 
 from __future__ import annotations
@@ -10,10 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from gcs.session.inputs import Datagram
+from gcs.session.vehicle import MOST_IN_TURN
 from gcs.wire.frame import Frame, plain_frames
 
-MAX_RUN = 4096
+MAX_RUN = 8192
 """Bytes: clients are not to wait for the first frame until hundreds of others are split."""
+MAX_FRAMES = MOST_IN_TURN
+"""More of them would be counted one by one."""
 
 
 def runs(link: int, datagrams: Iterable[bytes]) -> Iterator[Datagram]:
@@ -23,25 +28,24 @@ def runs(link: int, datagrams: Iterable[bytes]) -> Iterator[Datagram]:
     ends matters for what its garbage is.
     """
     frames: list[Frame] = []
+    together: list[bytes] = []
     size = 0
     for data in datagrams:
         found = plain_frames(data)
-        if frames and (not found or size + len(data) > MAX_RUN):
-            yield _run(link, frames)
-            frames, size = [], 0
+        many = size + len(data) > MAX_RUN or len(frames) + len(found) > MAX_FRAMES
+        if frames and (many or not found):
+            yield Datagram(link, b"".join(together), tuple(frames))
+            frames, together, size = [], [], 0
         if found:
             frames += found
+            together.append(data)
             size += len(data)
         else:
             yield Datagram(link, data)
     if frames:
-        yield _run(link, frames)
+        yield Datagram(link, b"".join(together), tuple(frames))
 
 
 def pieces(link: int, reads: Iterable[bytes]) -> Iterator[Datagram]:
     """The same for a byte stream, where only the session knows how one read goes on."""
     return (Datagram(link, data) for data in reads)
-
-
-def _run(link: int, frames: list[Frame]) -> Datagram:
-    return Datagram(link, b"".join([frame.raw for frame in frames]), tuple(frames))

@@ -517,3 +517,13 @@ class TypeMask(IntEnum):
     FORCE_SET = 512
     YAW_IGNORE = 1024
     YAW_RATE_IGNORE = 2048
+
+
+class AttitudeMask(IntEnum):
+    """ATTITUDE_TARGET_TYPEMASK: a set bit means that the field is ignored."""
+
+    BODY_ROLL_RATE_IGNORE = 1
+    BODY_PITCH_RATE_IGNORE = 2
+    BODY_YAW_RATE_IGNORE = 4
+    THROTTLE_IGNORE = 64
+    ATTITUDE_IGNORE = 128

@@ -5,6 +5,7 @@ What is signed loses its signature: that was of the bytes as they were.
 
 from __future__ import annotations
 
+from functools import cache
 from struct import Struct
 
 from gcs.wire.crc import CRC_EXTRA, mcrf4xx
@@ -22,6 +23,9 @@ from gcs.wire.frame import (
 MOST_IN_V1 = 0xFF
 """The largest message id that MAVLink 1 has room for."""
 
+SEQ_V2 = 4
+"""Where the sequence number stands in a MAVLink 2 frame."""
+_BYTES = [bytes((number,)) for number in range(256)]
 _V1, _V2 = bytes((MAGIC_V1,)), bytes((MAGIC_V2,))
 _checksum = Struct("<H").pack
 
@@ -39,8 +43,22 @@ def seq_of(raw: bytes) -> int:
     return raw[2] if raw[0] == MAGIC_V1 else raw[4]
 
 
+@cache
+def crc_change(length: int, changed: int) -> int:
+    """How the checksum of a MAVLink 2 frame with a payload of that length changes where the bits
+    `changed` of its sequence number do."""
+    behind = bytes(HEADER_V2 - SEQ_V2 - 1 + length + 1)  # and the CRC extra
+    return mcrf4xx(bytes((changed,)) + behind) ^ mcrf4xx(b"\0" + behind)
+
+
 def with_seq(raw: bytes, seq: int) -> bytes:
     """The same frame with that sequence number, 0 to 255, unsigned."""
+    if raw[0] == MAGIC_V2 and not raw[2]:
+        # Nearly all frames.  A CRC is linear, so that no byte behind the number need be looked at
+        # again: 1.8 us in place of 3.0, on a loaded machine.
+        end = len(raw) - CHECKSUM_SIZE
+        checksum = (raw[end] | raw[end + 1] << 8) ^ crc_change(raw[1], raw[SEQ_V2] ^ seq)
+        return raw[:SEQ_V2] + _BYTES[seq] + raw[SEQ_V2 + 1 : end] + _checksum(checksum)
     if raw[0] == MAGIC_V1:
         old, body = raw[1:-CHECKSUM_SIZE], raw[1:2] + bytes((seq,)) + raw[3:-CHECKSUM_SIZE]
         return _V1 + body + _checksum(_crc(old, body, raw[-CHECKSUM_SIZE:], raw[5]))

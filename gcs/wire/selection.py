@@ -285,5 +285,11 @@ ENUMS = (
         "POSITION_TARGET_TYPEMASK_",
         "a set bit means that the field is ignored",
     ),
+    EnumChoice(
+        "AttitudeMask",
+        "ATTITUDE_TARGET_TYPEMASK",
+        "ATTITUDE_TARGET_TYPEMASK_",
+        "a set bit means that the field is ignored",
+    ),
 )
 """The classes in `ids.py`, in their order there."""

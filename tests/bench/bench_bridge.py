@@ -20,12 +20,15 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 WARM_S = 3.0
+DRAIN_S = 1.0
+"""After a stream: what stands in a queue still comes."""
 SETTLE_S = 2.0
 TRIES = 5
 VERDICTS = (sys.executable, "-m", "tests.bench.verdict_times")
@@ -96,7 +99,34 @@ def started(command: list[str], folder: str) -> Iterator[subprocess.Popen[bytes]
 
 def end(*words: object) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "tests.bench.bridge_ends", *map(str, words)]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, cwd=Path(__file__).parents[2])
+    folder = Path(__file__).parents[2]
+    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=folder)
+
+
+def send(port: int, rate_hz: int, seconds: float) -> dict[str, float]:
+    """The vehicle, from its beginning to its end."""
+    return cast(
+        "dict[str, float]", json.loads(end("send", port, rate_hz, seconds).communicate()[0])
+    )
+
+
+@contextmanager
+def client_at(port: int, how: str) -> Iterator[Callable[[], dict[str, float]]]:
+    """One client; what is called tells what it has received since the last call."""
+    client = end("receive", how, port)
+    assert client.stdin is not None
+    assert client.stdout is not None
+    given, told = client.stdin, client.stdout
+
+    def heard() -> dict[str, float]:
+        given.write(b"\n")
+        given.flush()
+        return cast("dict[str, float]", json.loads(told.readline()))
+
+    try:
+        yield heard
+    finally:
+        client.communicate()
 
 
 def measure(program: str, rate_hz: int, seconds: float, mavproxy: str) -> Measured:
@@ -126,24 +156,24 @@ def _stream(
     seconds: float,
 ) -> Measured:
     """A short stream, so that the parameters and settings of the start are behind; then one that
-    is measured."""
-    for _ in range(TRIES):
-        warm = end("receive", how, client, WARM_S + 1.0)
-        end("send", vehicle, 1000, WARM_S).communicate()
-        if json.loads(warm.communicate()[0])["received"]:
-            break
-    else:
-        raise SystemExit("nothing comes through: see what the program says when it is started")
-    counting = end("receive", how, client, seconds + 2.5)
-    time.sleep(0.5)
-    pids = family(process.pid)
-    before_s = cpu_s(pids)
-    said = json.loads(end("send", vehicle, rate_hz, seconds).communicate()[0])
-    used_s = cpu_s(pids) - before_s
-    heard = json.loads(counting.communicate()[0])
+    is measured.  One client hears both: one that has just gone would still be sent everything."""
+    with client_at(client, how) as heard_since:
+        for _ in range(TRIES):
+            send(vehicle, 1000, WARM_S)
+            time.sleep(DRAIN_S)
+            if heard_since()["received"]:
+                break
+        else:
+            raise SystemExit("nothing comes through: see what the program says when it is started")
+        pids = family(process.pid)
+        before_s = cpu_s(pids)
+        said = send(vehicle, rate_hz, seconds)
+        used_s = cpu_s(pids) - before_s
+        time.sleep(DRAIN_S)
+        heard = heard_since()
     return Measured(
-        said["sent"],
-        heard["received"],
+        int(said["sent"]),
+        int(heard["received"]),
         used_s / max(1, heard["received"]) * 1e6,
         heard["p50_us"],
         heard["p99_us"],

@@ -13,8 +13,8 @@ import os
 import statistics
 import time
 
-from tests.loopback.air import CLEAR, Weather
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.loopback.lossy_link import CLEAR, Weather
 
 ROUGH = Weather(loss=0.1, duplicate=0.1, corrupt=0.05, delay_s=(0.001, 0.1))
 CORNERS_ENU = ((3.0, 0.0, 2.0), (3.0, 3.0, 2.0), (0.0, 3.0, 2.0), (0.0, 0.0, 2.0))

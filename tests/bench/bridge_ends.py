@@ -1,12 +1,14 @@
 """The two ends of `bench_bridge`: a vehicle that sends at a steady rate, a client that counts.
 
     python -m tests.bench.bridge_ends send PORT RATE SECONDS [FRAMES]
-    python -m tests.bench.bridge_ends receive listen PORT SECONDS
-    python -m tests.bench.bridge_ends receive connect PORT SECONDS
+    python -m tests.bench.bridge_ends receive listen PORT
+    python -m tests.bench.bridge_ends receive connect PORT
 
-Each prints one line of JSON at its end.  The vehicle sends what a flying PX4 sends of the messages
-that a ground station interprets (117 a second); the rest of the rate are messages that only pass
-through.  SYSTEM_TIME, 20 times a second, carries the clock, so that the client sees the latency.
+The vehicle prints one line of JSON at its end; the client one for each line that it reads, with
+what came since the last, until its input ends.  The vehicle sends what a flying PX4 sends of the
+messages that a ground station interprets (117 a second); the rest of the rate are messages that
+only pass through.  SYSTEM_TIME, 20 times a second, carries the clock, so that the client sees the
+latency.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ import statistics
 import struct
 import sys
 import time
+from contextlib import suppress
 
 from gcs.wire import messages as m
 from gcs.wire.codec import FrameWriter, encode
@@ -107,7 +110,7 @@ def send(port: int, rate_hz: int, seconds: float, frames: int) -> None:
     print(json.dumps({"sent": sent, "seconds": time.monotonic() - begin}))
 
 
-def receive(how: str, port: int, seconds: float) -> None:
+def receive(how: str, port: int) -> None:
     """Counts frames of 1/1; says HEARTBEAT once a second where it connects."""
     sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 8 << 20)
@@ -119,22 +122,29 @@ def receive(how: str, port: int, seconds: float) -> None:
     writer = FrameWriter(255, 190)
     received = 0
     late_us: list[float] = []
-    begin = time.monotonic()
-    beat_s = begin
-    while (now := time.monotonic()) < begin + seconds:
-        if how == "connect" and now >= beat_s:
-            beat_s += 1.0
-            sock.send(writer.write(m.Heartbeat(0, 6, 8, 0, 4, 3)))
-        if not select.select([sock], [], [], 0.05)[0]:
-            continue
-        try:
-            while True:
+    beat_s = time.monotonic()
+    while True:
+        if how == "connect" and (now := time.monotonic()) >= beat_s:
+            beat_s = now + 1.0
+            with suppress(ConnectionRefusedError):  # nobody listens there yet
+                sock.send(writer.write(m.Heartbeat(0, 6, 8, 0, 4, 3)))
+        readable = select.select([sock, sys.stdin], [], [], 0.05)[0]
+        with suppress(BlockingIOError, ConnectionRefusedError):
+            while sock in readable:
                 received += _frames(sock.recv(65_536), late_us)
-        except (BlockingIOError, ConnectionRefusedError):  # the latter: nobody listens there yet
-            pass
-    p50 = statistics.median(late_us) if late_us else float("nan")
-    p99 = sorted(late_us)[int(len(late_us) * 0.99)] if late_us else float("nan")
-    print(json.dumps({"received": received, "p50_us": p50, "p99_us": p99}))
+        if sys.stdin in readable:
+            if not sys.stdin.readline():
+                return
+            print(json.dumps({"received": received, **_latency(late_us)}), flush=True)
+            received = 0
+            late_us.clear()
+
+
+def _latency(late_us: list[float]) -> dict[str, float]:
+    if not late_us:
+        return {"p50_us": float("nan"), "p99_us": float("nan")}
+    p99 = sorted(late_us)[int(len(late_us) * 0.99)]
+    return {"p50_us": statistics.median(late_us), "p99_us": p99}
 
 
 _CLOCK = bytes((SYSTEM_TIME & 0xFF, SYSTEM_TIME >> 8, 0))
@@ -167,4 +177,4 @@ if __name__ == "__main__":
         _, _, port, rate_hz, seconds, *frames = sys.argv
         send(int(port), int(rate_hz), float(seconds), int(frames[0]) if frames else 8)
     else:
-        receive(sys.argv[2], int(sys.argv[3]), float(sys.argv[4]))
+        receive(sys.argv[2], int(sys.argv[3]))

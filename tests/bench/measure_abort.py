@@ -3,7 +3,7 @@
 Run: python -m tests.bench.measure_abort
 
 50 times each: resume, wait a moment of random length, abort, and see when the hold command
-passes an independent ear on the wire.
+passes an independent listener on the wire.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Run: python -m tests.bench.measure_console_abort [TIMES]
 
 Each time a new vehicle and `gcs fly --plain` on a pipe: arm, takeoff 3, goto 60 0 3 at once, and
-`abort` while it climbs.  An independent ear on the wire notes when the hold command passes.
+`abort` while it climbs.  An independent listener on the wire notes when the hold command passes.
 """
 
 from __future__ import annotations

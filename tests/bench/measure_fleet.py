@@ -14,7 +14,7 @@ import sys
 import time
 from dataclasses import dataclass
 
-from tests.bench.fleet_ear import Fleet, fleet
+from tests.bench.fleet_listener import Fleet, fleet
 
 
 @dataclass(frozen=True)
@@ -39,27 +39,28 @@ GIVE_UP_S = 120.0
 
 
 def measure(case: Case, flying: Fleet, seconds: float) -> str:
-    ear = flying.ear
-    ear.listen(3.0)
+    listener = flying.listener
+    listener.listen(3.0)
     on_ground_mib = flying.resident_mib
     flying.take_off()
     end_s = time.monotonic() + GIVE_UP_S
-    while ear.height_m < HOVER_M and time.monotonic() < end_s:
-        ear.listen(1.0)
-    if ear.height_m < HOVER_M:
-        return f"{case.name}: did not take off ({ear.height_m:.1f} m)"
-    ear.forget()
-    cpu_s, boot_ms, start_s = flying.cpu_s, ear.boot_ms, time.monotonic()
-    ear.listen(seconds)
+    while listener.height_m < HOVER_M and time.monotonic() < end_s:
+        listener.listen(1.0)
+    if listener.height_m < HOVER_M:
+        return f"{case.name}: did not take off ({listener.height_m:.1f} m)"
+    listener.forget()
+    cpu_s, boot_ms, start_s = flying.cpu_s, listener.boot_ms, time.monotonic()
+    listener.listen(seconds)
     wall_s = time.monotonic() - start_s
     cpu = (flying.cpu_s - cpu_s) / wall_s
-    pace = (ear.boot_ms - boot_ms) / 1e3 / wall_s
-    heard = len(ear.positions) if case.own else case.count
-    rate = sum(ear.positions.values()) / wall_s / case.count
+    pace = (listener.boot_ms - boot_ms) / 1e3 / wall_s
+    heard = len(listener.positions) if case.own else case.count
+    rate = sum(listener.positions.values()) / wall_s / case.count
     return (
         f"{case.name}:\n"
         f"  CPU {cpu / pace:.3f} s per simulated second, of which {pace:.3f} a second; "
-        f"{ear.datagrams / wall_s:,.0f} datagrams/s, {ear.data_bytes / wall_s / 1e6:.2f} MB/s, "
+        f"{listener.datagrams / wall_s:,.0f} datagrams/s, "
+        f"{listener.data_bytes / wall_s / 1e6:.2f} MB/s, "
         f"{rate:.1f} positions/s from each of {heard}\n"
         f"  resident {flying.resident_mib:.0f} MiB ({on_ground_mib:.0f} at the start)"
     )

@@ -3,7 +3,7 @@
 Run: python -m tests.bench.measure_hostile_clients [COUNT]
 
 Garbage, floods, half lines and clients that never read, 24 at a time, 1,000 in all; the intervals
-between setpoints from an independent ear on the wire, before and during.
+between setpoints from an independent listener on the wire, before and during.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from mcap.reader import make_reader
 from gcs.record.compact import compact
 from gcs.record.writer import Recorder
 from tests.loopback.flight import Flight
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 
 HOUR_S = 3600.0
 BACKFILLED = 12

@@ -1,4 +1,4 @@
-"""kill -9 of the link in mid-recording, 20 times: what is lost, by an independent ear on the wire.
+"""kill -9 of the link in mid-recording, 20 times: what is lost, by a listener on the wire.
 
 Run: python -m tests.bench.measure_kills
 """

@@ -2,7 +2,7 @@
 
 Run: python -m tests.bench.measure_live_view [COUNT]
 
-The intervals between setpoints from an independent ear on the wire: without a live view, with one
+The intervals between setpoints by a listener on the wire: without a live view, with one
 and a viewer that reads one message in a while, with a hundred hostile viewers at a time, COUNT in
 all; and how long an abort takes meanwhile from a viewer's call to the bytes on the wire.
 """

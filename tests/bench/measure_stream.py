@@ -2,7 +2,7 @@
 
 Run: python -m tests.bench.measure_stream
 
-Real keys in a pty; intervals once from the record's log times, once from an ear on the wire.
+Real keys in a pty; intervals once from the record's log times, once from an listener on the wire.
 """
 
 from __future__ import annotations

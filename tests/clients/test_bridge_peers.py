@@ -13,6 +13,7 @@ from gcs.bridge.answers import NUMBER_OF
 from gcs.gate.refusal import Code
 from tests.clients.bridged_flight import bridged, end_peer, start_peer
 from tests.clients.mavutil_client import in_order
+from tests.shares import one_in
 from vehicle_sim.testing.process import Personality
 
 pytestmark = pytest.mark.system
@@ -45,7 +46,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
-@pytest.mark.parametrize("client", list(URLS))
+@pytest.mark.parametrize("client", one_in(2, ["pymavlink", "mavproxy", "mavsdk", "mavsdk3"]))
 def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_path: Path) -> None:
     with bridged(personality, tmp_path) as flight:
         url = URLS[client].format(flight.clients[0])
@@ -61,6 +62,20 @@ def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_pa
     assert flight.truth.outside() == []
 
 
+@pytest.mark.thorough
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+def test_qgroundcontrols_start_of_a_mission(personality: Personality, tmp_path: Path) -> None:
+    """Its order of messages, sent by pymavlink."""
+    with bridged(personality, tmp_path) as flight:
+        url = URLS["pymavlink"].format(flight.clients[0])
+        words = ("start_as_qgroundcontrol", "land")
+        lines = end_peer(start_peer("pymavlink", url, flight, *words))
+    print(*lines, sep="\n")
+    in_order(lines, "^shows", "^armed within 3 s", "^mission item 2", "^landed and disarmed")
+    assert flight.truth.outside() == []
+
+
+@pytest.mark.thorough
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
 def test_sticks_of_mavsdk_fly_and_cannot_leave(personality: Personality, tmp_path: Path) -> None:
     """Its manual_control plugin: position control, then full stick at the fence for 25 s."""
@@ -76,6 +91,26 @@ def test_sticks_of_mavsdk_fly_and_cannot_leave(personality: Personality, tmp_pat
         "^full stick back True",
         "^flew forward True",
         "^goto: accepted",
+        "^landed and disarmed",
+    )
+    assert any("Stream refused (CANNOT_STOP)" in line for line in flight.said)
+    assert flight.truth.outside() == []
+
+
+@pytest.mark.thorough
+def test_attitudes_of_mavsdk_fly_and_cannot_leave(tmp_path: Path) -> None:
+    """Its offboard plugin's `set_attitude`, for a PX4: leaning at the fence, held, and back."""
+    with bridged("px4", tmp_path) as flight:
+        url = URLS["mavsdk"].format(flight.clients[0])
+        words = ("be_healthy", "take_off", "attitudes", "land")
+        lines = end_peer(start_peer("mavsdk", url, flight, *words))
+    print(*lines, sep="\n")
+    in_order(
+        lines,
+        "^attitude: accepted",
+        "^flies where it leans",
+        "^held",
+        "^flies back",
         "^landed and disarmed",
     )
     assert any("Stream refused (CANNOT_STOP)" in line for line in flight.said)

@@ -20,7 +20,7 @@ def test_px4_flies_to_places_on_an_orbit_and_by_every_kind_of_offboard_setpoint(
         "healthy True",
         "version 1 14 3",
         "legacy uid True",
-        "speed factor about ten True",
+        "faster than real time",
         "origin 47.3977 8.5456",
         "home 47.3977 8.5456",
         "streams",
@@ -55,6 +55,7 @@ def test_px4_flies_to_places_on_an_orbit_and_by_every_kind_of_offboard_setpoint(
     ]
 
 
+@pytest.mark.thorough
 def test_ardupilot_flies_to_places_and_by_every_kind_of_offboard_setpoint() -> None:
     flown = fly("mavsdk", "mavsdk_flight.py", "ardupilot", vehicle=FAST)
     assert "version 4 5 7" in flown.said
@@ -76,8 +77,9 @@ def test_ardupilot_flies_to_places_and_by_every_kind_of_offboard_setpoint() -> N
     assert flown.modes() == ["GUIDED", "BRAKE", "GUIDED", "BRAKE", "RTL", "LAND"]
 
 
+@pytest.mark.thorough
 def test_px4_follows_fails_breaches_a_fence_reboots_and_falls_as_it_is_told() -> None:
-    flown = fly("mavsdk", "mavsdk_troubles.py", "px4", vehicle=FAST)
+    flown = fly("mavsdk", "mavsdk_faults.py", "px4", vehicle=FAST)
     assert flown.said == [
         "followed",
         "breached the fence, and holds True",

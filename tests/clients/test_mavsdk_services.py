@@ -87,6 +87,7 @@ def test_px4_carries_plans_and_flies_a_mission_with_photos_a_pause_and_a_return(
     assert reached == list(range(15)), "px4 counts what is done at once too"
 
 
+@pytest.mark.thorough
 def test_ardupilot_carries_plans_and_flies_a_raw_mission() -> None:
     flown = fly("mavsdk", "mavsdk_mission.py", "ardupilot", *PLANS, vehicle=FAST)
     assert flown.said == [
@@ -98,6 +99,7 @@ def test_ardupilot_carries_plans_and_flies_a_raw_mission() -> None:
     assert reached == [1, 2, 3, 4]
 
 
+@pytest.mark.thorough
 def test_px4_serves_parameters_files_logs_camera_and_metadata(tmp_path: Path) -> None:
     flown = fly("mavsdk", "mavsdk_services.py", "px4", str(tmp_path), vehicle=FAST)
     assert flown.said == [

@@ -27,9 +27,9 @@ from gcs.bridge.routing import TARGETS
 from gcs.gate.policy.parse import parse_policy
 from gcs.session import effects, inputs
 from gcs.wire.frame import Frame, split
-from tests.loopback.air import Air, Weather
 from tests.loopback.bridged import STATION, VEHICLE, Client
 from tests.loopback.flight import PERSONALITIES
+from tests.loopback.lossy_link import Air, Weather
 from tests.loopback.plan_clients import UPLOADS, PlanFlight, PlanItem, mission
 
 HALF_M: Final = 30.0
@@ -38,6 +38,10 @@ TOWER: Final = (12.0, 20.0, -5.0, 5.0)
 """West, east, south, north of an exclusion zone."""
 POLICY: Final = parse_policy(
     f"""
+[stream]
+tilt_deg = 10.0
+hover_thrust_error = 0.02
+attitude_error_m_s2 = 0.5
 [[fence]]
 name = "box"
 kind = "box"
@@ -343,6 +347,31 @@ def joystick_at_the_fence(flight: HostileFlight, client: Client) -> None:
             flight.flies(0.04)
 
 
+def attitudes_at_the_fence(flight: HostileFlight, client: Client) -> None:
+    """Leans one way for long, or changes all the time; a thrust near the one that keeps the height
+    (vehicle-sim's MPC_THR_HOVER, the middle of a climb rate), or any."""
+    dice, hover = flight.dice, {"px4": 0.43, "ardupilot": 0.5}[flight.personality]
+    if dice.random() < 0.4:
+        gets_going(flight, client)
+        north, east = dice.uniform(-8.0, 8.0), dice.uniform(-15.0, 0.0)
+        for _ in range(50):
+            flight.say_as(client, local_target(north, east, -dice.choice((10.0, 12.0)), 3576))
+            flight.flies(0.1)
+    changes, mask = dice.random() < 0.3, dice.choice((7, 7, 7, 0, 3, 0x87))
+    tilt, way, thrust = 0.0, 0.0, hover
+    for count in range(dice.choice((10, 60, 150))):
+        if changes or not count:
+            tilt, way = dice.choice((0.0, 5.0, 9.9, 9.9, 20.0)), dice.uniform(0.0, math.tau)
+            thrust = dice.choice((hover, hover, 1.03 * hover, 0.97 * hover, 1.0, 0.0))
+        half = math.radians(tilt) / 2.0
+        q = (math.cos(half), math.sin(half) * math.cos(way), math.sin(half) * math.sin(way), 0.0)
+        flight.say_as(
+            client,
+            dialect.MAVLink_set_attitude_target_message(0, *VEHICLE, mask, q, 0, 0, 0.2, thrust),
+        )
+        flight.flies(0.05)
+
+
 def modes(flight: HostileFlight, client: Client) -> None:
     dice = flight.dice
     main, sub = dice.randrange(12), dice.randrange(10)
@@ -454,6 +483,7 @@ ACTS: Final[tuple[Act, ...]] = (
     *[velocity_at_the_fence] * 8,
     sticks,
     *[joystick_at_the_fence] * 4,
+    *[attitudes_at_the_fence] * 2,
     *[modes] * 3,
     *[words] * 5,
     *[parameters] * 4,
@@ -470,6 +500,7 @@ FLYING: Final[tuple[Act, ...]] = (
     *[goes] * 20,
     *[velocity_at_the_fence] * 12,
     *[joystick_at_the_fence] * 8,
+    *[attitudes_at_the_fence] * 6,
     *[uploads] * 3,
     *[lies] * 3,
     *[random_frame] * 6,
@@ -492,6 +523,19 @@ PILOTS: Final[tuple[Act, ...]] = (
     *[beats] * 3,
 )
 """Of clients with a joystick."""
+
+
+LEANERS: Final[tuple[Act, ...]] = (
+    *[gets_going] * 2,
+    *[goes] * 2,
+    *[attitudes_at_the_fence] * 16,
+    velocity_at_the_fence,
+    joystick_at_the_fence,
+    *[random_frame] * 2,
+    *[waits] * 2,
+    *[beats] * 2,
+)
+"""Of clients that fly attitudes."""
 
 
 def flown(seed: int, seconds: float = 40.0, acts: tuple[Act, ...] | None = None) -> HostileFlight:

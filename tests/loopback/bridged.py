@@ -17,8 +17,9 @@ from gcs.gate.policy.policy import Policy
 from gcs.report import DecisionItem
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
-from tests.loopback.air import CLEAR, Weather
 from tests.loopback.flight import Flight, Personality
+from tests.loopback.lossy_link import CLEAR, Weather
+from vehicle_sim.autopilot.tasks.guided import Offboard
 
 VEHICLE = (1, 1)
 STATION = (255, 191)
@@ -142,6 +143,8 @@ class BridgedFlight(Flight):
         policy: Policy = DEFAULT,
         up: Weather = CLEAR,
         down: Weather = CLEAR,
+        params: dict[str, float] | None = None,
+        offboard: Offboard = "smooth",
         config: StationConfig = BRIDGE,
         vehicle_key: bytes | None = None,
         station_key: bytes | None = None,
@@ -154,6 +157,8 @@ class BridgedFlight(Flight):
             policy=policy,
             up=up,
             down=down,
+            params=params,
+            offboard=offboard,
             config=config,
             vehicle_key=vehicle_key,
             station_key=station_key,

@@ -23,10 +23,11 @@ from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.session.vehicle import Vehicle
 from gcs.wire.frame import Frame, split
-from tests.loopback.air import CLEAR, Air
-from tests.loopback.bridged import BRIDGE, BridgedFlight, Client
+from tests.loopback.bridged import BRIDGE, BridgedFlight, Client, Heard
+from tests.loopback.copies import fly_or_copy, never_copied
 from tests.loopback.flight import HOMES, PEER, Personality
-from tests.loopback.looks import START_NS, Sent
+from tests.loopback.lossy_link import CLEAR, Air
+from tests.loopback.observed import START_NS, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.parameters.parameters import Parameters
@@ -35,6 +36,8 @@ from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram as Inbound
 from vehicle_sim.simulation.world import LinkSpec, Transmit, World
 from vehicle_sim.simulation.world import Wake as WorldWake
+
+never_copied(Heard)
 
 METRES_PER_DEGREE = 111_194.93
 """Of latitude, on a sphere of 6,371 km."""
@@ -77,6 +80,7 @@ class Fleet(BridgedFlight):
             servers.append(VehicleServer(vehicle, profile, parameters, sysid))
             self.vehicles[sysid] = vehicle
         self.vehicle = self.vehicles[1]
+        self._made_of = (personalities, policy, config, links, apart_m)
         self.link_count = links
         self.apart_m = apart_m
         specs = [LinkSpec((PEER,))]
@@ -229,12 +233,16 @@ class Fleet(BridgedFlight):
 
     def all_flying(self) -> Client:
         """A client has taken all of them off; it has sent its heartbeat just now."""
+        assert self.now_ns == START_NS, "it is the beginning of a flight"
+        fly_or_copy(self, self._made_of, self._all_take_off)
+        return self.clients[self.link_count]
+
+    def _all_take_off(self) -> None:
         client = self.join()
         self.all_connected()
         for sysid in self.vehicles:
             self.take_off(client, sysid)
             client.beat()
-        return client
 
     def send_to(
         self, client: Client, sysid: int, east_m: float, north_m: float, up_m: float

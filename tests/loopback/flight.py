@@ -28,9 +28,9 @@ from gcs.session.setup import Setup
 from gcs.session.signatures import Keys
 from gcs.wire.frame import Frame, split
 from gcs.wire.signing import SecretKey
-from tests.loopback import eyes
-from tests.loopback.air import CLEAR, Air, Weather
-from tests.loopback.looks import START_NS, Looks, Sent
+from tests.loopback import pymavlink_decoder
+from tests.loopback.lossy_link import CLEAR, Air, Weather
+from tests.loopback.observed import START_NS, Looks, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.firmware import Firmware
@@ -125,6 +125,7 @@ class Flight(Looks):
         self.files: dict[str, bytes] = {}
         self.vehicle_silent = False
         self.positions_lost = False
+        self.heartbeats_lost = False
         self.last_id = 0
         self._forged = 0
 
@@ -176,16 +177,18 @@ class Flight(Looks):
         for output in self.world.handle(given, self.now_ns):
             ours = isinstance(output, Transmit) and output.peer == PEER
             if isinstance(output, Transmit) and ours and not self.vehicle_silent:
-                data = self._without_positions(output.data)
+                data = self._without_lost(output.data)
                 if data:
                     self.received.append(Sent(self.now_ns, data))
                     self.down.send(data, self.now_ns)
 
-    def _without_positions(self, data: bytes) -> bytes:
-        if not self.positions_lost:
+    def _without_lost(self, data: bytes) -> bytes:
+        lost = {"LOCAL_POSITION_NED"} if self.positions_lost else set()
+        lost |= {"HEARTBEAT"} if self.heartbeats_lost else set()
+        if not lost:
             return data
         frames = (item for item in split(data) if isinstance(item, Frame))
-        return b"".join(frame.raw for frame in frames if frame.name != "LOCAL_POSITION_NED")
+        return b"".join(frame.raw for frame in frames if frame.name not in lost)
 
     def feed(self, given: inputs.Input) -> None:
         """Hand the session an input, now; then what its effects lead back to.
@@ -327,7 +330,7 @@ class Flight(Looks):
         v_east, v_north, v_up = v_enu
         self._forged += 1
         boot_ms = (self.now_ns - START_NS) // 1_000_000 + 1
-        data = eyes.local_position(
+        data = pymavlink_decoder.local_position(
             boot_ms, (north, east, -up), (v_north, v_east, -v_up), self._forged
         )
         self.feed(inputs.Datagram(0, data))

@@ -18,9 +18,9 @@ from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.session import inputs
-from tests.loopback.air import CLEAR, Air, Weather
 from tests.loopback.bridged import BRIDGE, VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import HOMES, Personality
+from tests.loopback.lossy_link import CLEAR, Air, Weather
 
 MS = 1_000_000
 S = 1_000 * MS

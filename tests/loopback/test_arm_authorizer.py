@@ -15,7 +15,7 @@ from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback import eyes
+from tests.loopback import pymavlink_decoder
 from tests.loopback.bridged import BridgedFlight
 from tests.loopback.flight import MISSIONS, Flight
 from vehicle_sim.simulation.world import Datagram, Transmit
@@ -74,7 +74,7 @@ def stranger_uploads(flight: Flight, items: int) -> None:
 
 def answers(flight: Flight) -> list[tuple[int, int, int]]:
     """Result, progress and result_param2 of what we answered, as pymavlink reads them."""
-    seen = [eyes.read(sent.data) for sent in flight.sent]
+    seen = [pymavlink_decoder.read(sent.data) for sent in flight.sent]
     acks = [m for m in seen if m.get_type() == "COMMAND_ACK" and m.command == AUTHORIZATION]
     assert all((m.target_system, m.target_component) == (1, 1) for m in acks)
     return [(m.result, m.progress, m.result_param2) for m in acks]

@@ -18,7 +18,7 @@ from gcs.record.writer import Recorder
 from gcs.session import inputs
 from tests.audits import audited, kind_of, read, resealed, with_data
 from tests.loopback.flight import MISSIONS, Flight
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 from tests.unit.cli.command_line import Ended, gcs
 
 

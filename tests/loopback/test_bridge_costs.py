@@ -136,9 +136,9 @@ def velocity(client: Client, v_n: float = 1.0) -> None:
     )
 
 
-def test_one_sample_of_a_stream_takes_no_control_and_a_stream_does(
-    personality: Personality,
-) -> None:
+def test_no_sample_that_is_not_flown_takes_control(personality: Personality) -> None:
+    """One alone, one without numbers, and one that is refused; a stream that is flown does
+    (test_bridge_streams)."""
     flight, client = joined(personality)
     for _ in range(3):
         velocity(client)
@@ -151,7 +151,8 @@ def test_one_sample_of_a_stream_takes_no_control_and_a_stream_does(
     for _ in range(3):
         velocity(client)
         flight.run(0.1)
-    assert in_control(flight) == 1000
+    assert in_control(flight) == 0, "it stands on the ground"
+    assert "NOT_FLYING" in client.texts()
 
 
 def test_what_cannot_be_read_takes_no_control(personality: Personality) -> None:

@@ -1,6 +1,6 @@
 """Whatever MAVLink clients send, the vehicle stays inside, and the record of it is sound.
 
-`make test` flies a share, `make soak` all; a failure names its seed.
+`make test` and `make thorough` fly a share, `make soak` all; a failure names its seed.
 """
 
 from __future__ import annotations
@@ -13,19 +13,15 @@ from gcs.bridge.classes import Kind, Row
 from gcs.record.writer import Recorder
 from tests.loopback import bridge_clients
 from tests.loopback.flight import Flight
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
+from tests.shares import seeds
 
 FLIGHTS = 200
 FLIGHTS_IN_EACH_RUN = 6
 PILOTS_IN_EACH_RUN = 2
+LEANERS_IN_EACH_RUN = 2
 
-flights = pytest.mark.parametrize(
-    "seed",
-    [
-        pytest.param(seed, marks=[pytest.mark.soak] if seed >= FLIGHTS_IN_EACH_RUN else [])
-        for seed in range(FLIGHTS)
-    ],
-)
+flights = pytest.mark.parametrize("seed", seeds(6, FLIGHTS_IN_EACH_RUN, FLIGHTS))
 
 
 @flights
@@ -36,17 +32,25 @@ def test_no_client_gets_the_vehicle_out_of_the_fence(
     audited(seed, monkeypatch)
 
 
-@pytest.mark.parametrize(
-    "seed",
-    [
-        pytest.param(seed, marks=[pytest.mark.soak] if seed >= PILOTS_IN_EACH_RUN else [])
-        for seed in range(FLIGHTS)
-    ],
-)
+@pytest.mark.parametrize("seed", seeds(2, PILOTS_IN_EACH_RUN, FLIGHTS))
+@pytest.mark.thorough
 def test_no_joystick_gets_the_vehicle_out_of_the_fence(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     audited(seed, monkeypatch, bridge_clients.PILOTS)
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(seed, marks=[pytest.mark.soak] if number >= LEANERS_IN_EACH_RUN else [])
+        for number, seed in enumerate(range(4, 4 + FLIGHTS))
+    ],
+)
+def test_no_attitude_gets_the_vehicle_out_of_the_fence(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    audited(seed, monkeypatch, bridge_clients.LEANERS)
 
 
 def audited(

@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import Control, State
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.copies import fly_or_copy
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import PlanFlight, Pymavlink, mission
 
@@ -30,7 +31,12 @@ both = pytest.mark.parametrize("personality", PERSONALITIES)
 def flying(personality: Personality) -> tuple[PlanFlight, Client]:
     """Armed and taken off by a client, hovering at home."""
     flight = PlanFlight(personality)
-    client = flight.join()
+    fly_or_copy(flight, (PlanFlight, personality), lambda: take_off(flight))
+    return flight, flight.clients[1]
+
+
+def take_off(flight: PlanFlight) -> None:
+    personality, client = flight.personality, flight.join()
     flight.connected()
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
     up_m = NAN if personality == "px4" else 5.0
@@ -38,7 +44,6 @@ def flying(personality: Personality) -> tuple[PlanFlight, Client]:
     flight.until(
         lambda: flight.is_in(State.HOVERING) and flight.session.gate.control is Control.OURS
     )
-    return flight, client
 
 
 def north_of_home(flight: BridgedFlight, metres: float) -> tuple[float, float, float]:

@@ -7,12 +7,14 @@ import math
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs import ipc
 from gcs.gate.states import Control, State
+from gcs.report import DecisionItem
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 
 ACCEPTED = 0
-ARM, TAKE_OFF, SET_MODE = 400, 22, 176
+ARM, TAKE_OFF, SET_MODE, RELEASE = 400, 22, 176, 32100
 VELOCITY_ONLY = 0xDC7
 FENCE_M = 150.0
 
@@ -56,3 +58,54 @@ def test_full_speed_at_the_fence_is_held_inside_and_flown_back(personality: Pers
     assert back <= farthest + 0.5
     assert "stream: flown" in client.texts()
     assert "gate: Stream refused" not in client.texts(), "its own sentence has told it"
+
+
+def in_control(flight: BridgedFlight) -> int:
+    return flight.of(ipc.Operators)[-1].in_control
+
+
+def velocity(client: Client, v_n: float, times: int) -> None:
+    for _ in range(times):
+        client.send(
+            dialect.MAVLink_set_position_target_local_ned_message(
+                0, *VEHICLE, 1, VELOCITY_ONLY, 0, 0, 0, v_n, 0, 0, 0, 0, 0, 0, 0
+            )
+        )
+        client.flight.run(0.05)
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_stream_that_is_refused_takes_no_control(personality: Personality) -> None:
+    """On the ground, as a PX4's client does before it asks for OFFBOARD; and in the air."""
+    flight = BridgedFlight(personality)
+    client = flight.join()
+    flight.connected()
+    velocity(client, 1.0, 20)
+    assert "NOT_FLYING" in client.texts()
+    assert in_control(flight) == 0
+    flight, client = flying(personality)
+    assert client.ask(RELEASE, 0.0) == ACCEPTED
+    assert in_control(flight) == 0
+    velocity(client, 100.0, 20)
+    assert "stream: refused POLICY" in client.texts()
+    assert in_control(flight) == 0
+    velocity(client, 1.0, 30)
+    assert in_control(flight) == 1000, "its samples are flown"
+    assert flight.is_in(State.STREAMING)
+
+
+def test_a_refused_stream_of_a_client_is_a_decision_on_the_record_and_on_the_page() -> None:
+    flight, client = flying("px4")
+    velocity(client, 100.0, 20)
+    flight.run(7.0)
+    kept = [item for item in flight.recorded(DecisionItem) if item.phase == "stream"]
+    assert [(item.source, item.outcome, item.code) for item in kept] == [
+        ("operator 1000", "refused", "POLICY"),
+        ("operator 1000", "ended", "POLICY"),
+    ]
+    assert kept[0].numbers["asked_v_north_m_s"] == 100.0
+    assert kept[1].numbers == {"refused_samples": 20.0}
+    shown = [each for each in flight.of(ipc.BridgeDecision) if each.what == "stream"]
+    assert [(each.client, each.outcome, each.code) for each in shown] == [
+        (1000, "refused", "POLICY")
+    ]

@@ -12,9 +12,9 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
-from tests.loopback.air import Weather
 from tests.loopback.bridged import VEHICLE
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
+from tests.loopback.lossy_link import Weather
 from tests.loopback.plan_clients import (
     ACCEPTED,
     AMSL,
@@ -171,6 +171,7 @@ def long_mission(personality: Personality) -> list[PlanItem]:
 @pytest.mark.parametrize(
     "seed", [pytest.param(n, marks=[] if n == 1 else [pytest.mark.soak]) for n in SEEDS]
 )
+@pytest.mark.thorough
 def test_five_hundred_items_cross_two_links_that_lose_a_quarter(
     seed: int, personality: Personality
 ) -> None:

@@ -22,7 +22,7 @@ from gcs.report import AttachmentItem, FsaItem, MetadataItem
 from gcs.resources import find
 from gcs.session.inputs import OperatorLine
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 
 MOST_HZ = 60.0
 """Above it a viewer warns of a topic."""

@@ -7,9 +7,12 @@ from fractions import Fraction
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.air import Weather
+from tests.loopback.bridged import Client
+from tests.loopback.copies import each_flies_itself, fly_or_copy
+from tests.loopback.fleet import Fleet
 from tests.loopback.flight import HOMES, PEER, PERSONALITIES, Flight, Personality
-from tests.loopback.looks import START_NS, Sent
+from tests.loopback.lossy_link import Weather
+from tests.loopback.observed import START_NS, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import PROFILES
@@ -79,3 +82,43 @@ def test_two_flights_of_one_seed_are_one_record(personality: Personality) -> Non
     assert one.sent == two.sent
     assert one.events == two.events
     assert one.records != other.records
+
+
+def further(flight: Flight) -> tuple[object, ...]:
+    flight.goto(3.0, 1.0, 2.0)
+    flight.run(4.0)
+    flight.say("land")
+    flight.run(2.0)
+    return flight.sent, flight.received, flight.events, flight.state, flight.truth_enu()
+
+
+def in_the_air(personality: Personality) -> Flight:
+    flight = Flight(personality, seed=3)
+    fly_or_copy(flight, (Flight, personality), lambda: flight.hovering(2.0))
+    return flight
+
+
+@both_personalities
+def test_a_copy_goes_on_as_the_flight_that_it_is_a_copy_of(personality: Personality) -> None:
+    """What tests that begin in the air rest on (`copies.py`)."""
+    with each_flies_itself():
+        itself = further(in_the_air(personality))
+    assert len(itself) > 0
+    for _ in range(3):  # the first one flies, and nobody's way is seen by the next copy
+        assert further(in_the_air(personality)) == itself
+
+
+def test_a_copy_of_a_fleet_goes_on_as_the_fleet() -> None:
+    def heard(fleet: Fleet, client: Client) -> list[bytes]:
+        fleet.send_to(client, 1, 8, 0, 5)
+        fleet.send_to(client, 2, 0, 12, 7)
+        fleet.run(5.0)
+        return [one.message.get_msgbuf() for one in client.heard]
+
+    with each_flies_itself():
+        fleet = Fleet()
+        itself = heard(fleet, fleet.all_flying())
+    for _ in range(3):
+        copied = Fleet()
+        assert heard(copied, copied.all_flying()) == itself
+        assert copied.sent == fleet.sent

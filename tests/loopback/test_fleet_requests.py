@@ -18,7 +18,7 @@ from gcs.wire.messages import CommandLong
 from tests.loopback.bridged import Client
 from tests.loopback.fleet import ACCEPTED, ARM, LAND, Fleet
 from tests.loopback.flight import Flight
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 from tests.loopback.plan_clients import PlanItem, mission
 
 ASKS = ("MISSION_REQUEST", "MISSION_REQUEST_INT")

@@ -9,8 +9,8 @@ import pytest
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.air import Weather
 from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality
+from tests.loopback.lossy_link import Weather
 from vehicle_sim.autopilot.interface import Result
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)

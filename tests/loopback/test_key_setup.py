@@ -7,8 +7,8 @@ import pytest
 from gcs.protocol.signing_setup import Ending, SigningSetup
 from gcs.wire.frame import Frame, split
 from gcs.wire.signing import SecretKey
-from tests.loopback.air import CLEAR, Air, Weather
 from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.lossy_link import CLEAR, Air, Weather
 from vehicle_sim.simulation.world import Datagram, Transmit, Wake
 
 KEY, OTHER = SecretKey(bytes(range(32))), SecretKey(bytes(32 * [7]))

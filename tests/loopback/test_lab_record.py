@@ -13,7 +13,7 @@ from mcap_ros1.decoder import DecoderFactory
 
 from gcs.record.writer import Recorder
 from tests.loopback.flight import Flight, lab_policy
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 
 
 class Rebuilt(NamedTuple):

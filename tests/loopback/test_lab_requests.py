@@ -11,7 +11,7 @@ from gcs import ipc
 from gcs.gate.states import State
 from gcs.report import DecisionItem, FsaItem
 from gcs.session import inputs
-from tests.loopback import eyes
+from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality, lab_policy
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
@@ -38,8 +38,8 @@ def test_L01_hovering_streams_setpoints_at_20_hz_with_down_as_minus_up(
     assert {b - a for a, b in pairwise(times_ns)} == {TICK_NS}
     hold_ned = flight.session.gate.hold_goal_ned
     assert {setpoint.pos_ned for setpoint in stream} == {hold_ned}
-    assert {setpoint.type_mask for setpoint in stream} == {eyes.POSITION_ONLY}
-    assert {setpoint.frame for setpoint in stream} == {eyes.LOCAL_NED}
+    assert {setpoint.type_mask for setpoint in stream} == {pymavlink_decoder.POSITION_ONLY}
+    assert {setpoint.frame for setpoint in stream} == {pymavlink_decoder.LOCAL_NED}
     # PX4 hovers up to NAV_MC_ALT_RAD, 0.8 m, below the height of its take-off.
     low_m = {"px4": 0.8, "ardupilot": 0.3}[personality]
     assert stream[0].pos_ned[2] == pytest.approx(-1.0, abs=low_m)

@@ -18,9 +18,10 @@ from gcs.protocol.command import CommandClient, Input
 from gcs.protocol.effects import CommandEffect, Submit, Withdraw
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
-from tests.conftest import SOAKING
-from tests.loopback import eyes
+from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.shares import examples
+from tests.soaking import SOAKING
 
 ARM, TAKE_OFF = 400, 22
 ON_ITS_WAY_S = 0.1
@@ -101,7 +102,7 @@ class LateFlight(Flight):
         """Commands that left after the last request for them had ended."""
         found = []
         for sent in self.sent:
-            message = eyes.read(sent.data)
+            message = pymavlink_decoder.read(sent.data)
             for word, command in (("arm", ARM), ("takeoff", TAKE_OFF)):
                 if message.get_type() != "COMMAND_LONG" or message.command != command:
                     continue
@@ -143,7 +144,9 @@ def fly(personality: Personality, seed: int, how: Answers, script: list[tuple[st
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
 @settings(
-    max_examples=300 if SOAKING else 12, deadline=None, suppress_health_check=list(HealthCheck)
+    max_examples=300 if SOAKING else examples(12),
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
 )
 @given(seed=st.integers(0, 1000), how=answers, script=steps)
 def test_what_is_not_answered_in_time_takes_no_effect_later(

@@ -14,9 +14,9 @@ from gcs.protocol.signing_setup import SigningSetup
 from gcs.session.failsafes import FENCE, FENCE_ACTION, findings, limits_of
 from gcs.wire.frame import Frame, split
 from gcs.wire.signing import SecretKey
-from tests.loopback.air import CLEAR, Air, Weather
 from tests.loopback.bridged import STATION, BridgedFlight
 from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.lossy_link import CLEAR, Air, Weather
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.simulation.world import Datagram, Transmit, Wake
 

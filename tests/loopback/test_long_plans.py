@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, PERSONALITIES, Flight, Personality
+from tests.loopback.lossy_link import Weather
 from vehicle_sim.autopilot.firmware import Firmware
 
 ITEMS = 500

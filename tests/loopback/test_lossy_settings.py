@@ -8,8 +8,8 @@ import pytest
 
 from gcs import ipc
 from gcs.gate.states import State
-from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, PERSONALITIES, Flight, Personality
+from tests.loopback.lossy_link import Weather
 
 LOSSY = Weather(loss=0.25)
 RETURNS = """\

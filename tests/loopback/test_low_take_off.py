@@ -12,15 +12,11 @@ import pytest
 
 from gcs.gate.states import State
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.shares import seeds
 
 ASKED_WITHIN_M = 0.2
 TAKE_OFFS = 24
 TAKE_OFFS_IN_EACH_RUN = 6
-
-seeds = [
-    pytest.param(seed, marks=[pytest.mark.soak] if seed >= TAKE_OFFS_IN_EACH_RUN else [])
-    for seed in range(TAKE_OFFS)
-]
 
 
 def takes_off(flight: Flight, up_m: float) -> float:
@@ -31,7 +27,7 @@ def takes_off(flight: Flight, up_m: float) -> float:
     return up_m - flight.truth_enu()[2]
 
 
-@pytest.mark.parametrize("seed", seeds)
+@pytest.mark.parametrize("seed", seeds(3, TAKE_OFFS_IN_EACH_RUN, TAKE_OFFS))
 def test_a_climb_that_ends_low_by_chance_hovers_at_the_height_that_was_asked_for(seed: int) -> None:
     chance = random.Random(seed)
     up_m, low_m = chance.uniform(1.5, 6.0), chance.uniform(0.05, 0.8)

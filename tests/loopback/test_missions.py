@@ -16,8 +16,8 @@ from gcs import ipc
 from gcs.gate.effects import Level
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
-from tests.loopback.air import Weather
 from tests.loopback.flight import HOMES, MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
+from tests.loopback.lossy_link import Weather
 from tests.sample_files import SAMPLES, elsewhere
 
 Enu = tuple[float, float, float]

@@ -11,9 +11,9 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from gcs.session.session import Session
 from gcs.session.setup import Setup
-from tests.loopback import eyes
+from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import HOMES, PEER, Flight
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.services.profile import profile_of
@@ -47,7 +47,7 @@ class TwoVehicles(Flight):
         """The targets of all that is no part of meeting a vehicle."""
         targets = set()
         for sent in self.sent:
-            message = eyes.read(sent.data)
+            message = pymavlink_decoder.read(sent.data)
             asks = message.get_type() == "COMMAND_LONG" and message.command in ASKING
             if message.get_type() not in DISCOVERY and not asks:
                 targets.add(int(message.target_system))

@@ -16,10 +16,10 @@ from gcs.record.writer import Recorder
 from gcs.report import FramesItem
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
-from tests.loopback import eyes
-from tests.loopback.air import CLEAR, Weather
+from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
-from tests.loopback.looks import START_NS
+from tests.loopback.lossy_link import CLEAR, Weather
+from tests.loopback.observed import START_NS
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram as Inbound
@@ -228,6 +228,25 @@ def test_the_audit_reproduces_a_signed_flight_and_sees_what_was_altered(
     assert not audit(messages, tape.attachments, "test", "").good
 
 
+@pytest.mark.parametrize("wrong", [None, OTHER], ids=["unsigned", "wrong key"])
+@pytest.mark.parametrize("secret", [bytes(32), KEY, KEY[::-1]], ids=["no key", "KEY", "backwards"])
+def test_a_refused_set_up_of_signing_is_recorded_as_the_frame_it_was(
+    wrong: bytes | None, secret: bytes
+) -> None:
+    """MAVLink 2 cuts the last zeros of a payload: of a key, none or all of it."""
+    tape = Tape()
+    flight = signed("px4").connected()
+    flight.recorder = Recorder.without_file(tape, START_NS)
+    setup = upstream.MAVLink_setup_signing_message(1, 1, secret, 12345)
+    flight.feed(inputs.Datagram(0, bytes(setup.pack(forged(wrong)))))
+    (kept,) = [m for m in tape.take() if m.is_garbage]
+    (frame,) = split(kept.raw)
+    assert isinstance(frame, Frame)
+    assert frame.msgid == upstream.MAVLINK_MSG_ID_SETUP_SIGNING
+    assert bool(frame.signature) == (wrong is not None)
+    assert secret == bytes(32) or secret[1:9] not in kept.data
+
+
 def test_a_record_holds_no_key() -> None:
     """A SETUP_SIGNING that passes is recorded with zeros for its key, a good frame all the same."""
     tape = Tape()
@@ -242,7 +261,7 @@ def test_a_record_holds_no_key() -> None:
     assert raw in [raw for item in flight.recorded(FramesItem) for raw in item.raws]
     assert not [m for m in messages if KEY[1:9] in m.data or KEY[1:9].hex().encode() in m.data]
     (kept,) = [m for m in messages if m.topic.endswith("SETUP_SIGNING")][:1]
-    told = eyes.read(kept.raw)
+    told = pymavlink_decoder.read(kept.raw)
     assert (told.get_type(), told.initial_timestamp) == ("SETUP_SIGNING", 12345)
     assert bytes(told.secret_key) == bytes(32)
     assert audit(messages, tape.attachments, "test", "").good

@@ -13,10 +13,10 @@ from gcs.audit.messages import Tape
 from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.wire.frame import split
-from tests.loopback import eyes
+from tests.loopback import pymavlink_decoder
 from tests.loopback.bridged import BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 from vehicle_sim.simulation.world import Datagram
 
 VEHICLE_KEY, CLIENT_KEY, OTHER = bytes(range(32)), bytes(32 * [5]), bytes(32 * [7])
@@ -144,5 +144,5 @@ def test_a_key_that_a_client_sends_is_in_no_record(monkeypatch: pytest.MonkeyPat
     flight.run(1.0)
     kept = [m for m in tape.take() if m.topic.endswith("SETUP_SIGNING")]
     assert kept
-    assert all(bytes(eyes.read(m.raw).secret_key) == bytes(32) for m in kept)
+    assert all(bytes(pymavlink_decoder.read(m.raw).secret_key) == bytes(32) for m in kept)
     assert "signing is on" not in flight.told()

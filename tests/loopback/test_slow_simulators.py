@@ -7,9 +7,9 @@ from fractions import Fraction
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.air import Weather
 from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
-from tests.loopback.looks import START_NS
+from tests.loopback.lossy_link import Weather
+from tests.loopback.observed import START_NS
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import LinkSpec, World

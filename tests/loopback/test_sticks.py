@@ -14,7 +14,8 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
-from gcs.gate.states import Control, State
+from gcs.gate.states import State
+from tests.loopback.boxed_stream import BoxedStream, box_fence, taken_off
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.fleet import Fleet
 from tests.loopback.flight import PERSONALITIES, Personality
@@ -25,15 +26,7 @@ ARM, TAKE_OFF, SET_MODE, PAUSE = 400, 22, 176, 193
 MIDDLE = 500
 PERIOD_S = 0.04
 HALF_M, CEILING_M = 30.0, 25.0
-FENCE = f"""
-[[fence]]
-name = "box"
-kind = "box"
-east_m = [-{HALF_M}, {HALF_M}]
-north_m = [-{HALF_M}, {HALF_M}]
-floor_up_m = 0.0
-ceiling_up_m = {CEILING_M}
-"""
+FENCE = box_fence(HALF_M, CEILING_M)
 POLICY = parse_policy(FENCE, "box.toml")
 REPLACE = parse_policy('retarget = "replace"\n' + FENCE, "replace.toml")
 POSITION_ONLY, VELOCITY_AND_RATE = 3576, 1479
@@ -44,14 +37,11 @@ POSITION_MODE = {"px4": (1.0, 3.0), "ardupilot": (1.0, 5.0)}
 both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
-class Joystick:
+class Joystick(BoxedStream):
     """A client's, whose sticks are as they were moved last."""
 
     def __init__(self, flight: BridgedFlight, client: Client) -> None:
-        self.flight, self.client = flight, client
-        self.outside_m = -math.inf
-        """How far outside the vehicle was at the most; negative: inside."""
-        self._count = 0
+        super().__init__(flight, client, HALF_M, CEILING_M, PERIOD_S)
 
     def fly(
         self,
@@ -66,13 +56,7 @@ class Joystick:
         for _ in range(round(seconds / PERIOD_S)):
             sticks = dialect.MAVLink_manual_control_message(VEHICLE[0], x, y, z, r, buttons)
             self.client.send(sticks)
-            if self._count % 25 == 0:
-                self.client.beat()
-            self._count += 1
-            self.flight.run(PERIOD_S)
-            east_m, north_m, up_m = self.flight.truth_enu()
-            beside_m = max(abs(east_m), abs(north_m)) - HALF_M
-            self.outside_m = max(self.outside_m, beside_m, up_m - CEILING_M, -up_m)
+            self.passes(PERIOD_S)
 
 
 def ready(personality: Personality, policy: Policy = POLICY) -> tuple[BridgedFlight, Client]:
@@ -87,20 +71,8 @@ def flying(
 ) -> tuple[BridgedFlight, Client, Joystick]:
     """Armed and taken off by the client, hovering above home."""
     flight, client = ready(personality, policy)
-    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
-    amsl_m = math.nan
-    if personality == "px4":
-        telemetry = flight.session.telemetry
-        assert telemetry is not None
-        assert telemetry.home is not None
-        amsl_m = telemetry.home[2] + up_m
-    height_m = amsl_m if personality == "px4" else up_m
-    assert client.ask(TAKE_OFF, 0, 0, 0, math.nan, math.nan, math.nan, height_m) == ACCEPTED
-    for _ in range(30):
-        flight.beating(1.0)
-        if flight.is_in(State.HOVERING) and flight.session.gate.control is Control.OURS:
-            return flight, client, Joystick(flight, client)
-    raise AssertionError(flight.told())
+    taken_off(flight, client, up_m)
+    return flight, client, Joystick(flight, client)
 
 
 def masks(flight: BridgedFlight, since_ns: int) -> set[int]:

@@ -8,11 +8,12 @@ import pytest
 
 from gcs import ipc
 from gcs.gate.states import State
+from gcs.report import LogEvent
 from gcs.session import inputs
 from gcs.session.clients import FIRST
 from gcs.wire.frame import Frame, split
-from tests.loopback.air import Weather
 from tests.loopback.flight import PERSONALITIES, Flight, Personality, lab_policy
+from tests.loopback.lossy_link import Weather
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 
@@ -191,3 +192,18 @@ def test_outside_a_fence_that_is_on_again_it_is_said_what_is_possible() -> None:
     assert flight.done(flight.goto(0.0, 0.0, 1.0)) == "complete"
     flight.run(3.0)
     assert math.dist(flight.truth_enu(), (0.0, 0.0, 1.0)) < 0.5
+
+
+@pytest.mark.parametrize("lost_first", [False, True])
+def test_a_hold_of_a_vehicle_that_is_lost_is_told_to_be_unanswered_once(lost_first: bool) -> None:
+    """It is commanded on, once a second for as long as the vehicle is away."""
+    flight = Flight("px4").hovering(5.0)
+    since_ns = flight.now_ns
+    flight.vehicle_silent = True
+    flight.run(8.0 if lost_first else 0.1)
+    flight.say("hold")
+    flight.run(60.0)
+    flight.say("hold")
+    flight.run(20.0)
+    told = [line.text for line in flight.recorded(LogEvent, since_ns) if "No answer" in line.text]
+    assert told == ["No answer to the request for hold mode"]

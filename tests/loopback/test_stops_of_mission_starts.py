@@ -7,8 +7,8 @@ import pytest
 from gcs import ipc
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.air import Weather
 from tests.loopback.flight import MISSIONS, PERSONALITIES, Flight, Personality
+from tests.loopback.lossy_link import Weather
 
 SLOW = Weather(delay_s=(0.1, 0.1))
 MISSION_START = 300

@@ -15,7 +15,7 @@ from gcs.frames import Vec3
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.report import DecisionItem
-from gcs.session.inputs import OperatorJoined, OperatorLine
+from gcs.session.inputs import OperatorGone, OperatorJoined, OperatorLine
 from tests.loopback.flight import Flight
 from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.simulation.fault_script import fault_of
@@ -160,4 +160,36 @@ def test_verdicts_are_on_the_record() -> None:
         ("stream", "accepted", ""),
         ("stream", "refused", "POLICY"),
     ]
-    assert kept[1].numbers == {"asked": 11.0, "max_speed_h_m_s": 10.0}
+    asked = {"asked_v_east_m_s": 11.0, "asked_v_north_m_s": 0.0, "asked_v_up_m_s": 0.0}
+    assert kept[1].numbers == {**asked, "asked": 11.0, "max_speed_h_m_s": 10.0}
+
+
+def decisions(flight: Flight) -> list[DecisionItem]:
+    return [item for item in flight.recorded(DecisionItem) if item.phase == "stream"]
+
+
+def test_the_end_of_refused_samples_is_on_the_record_too() -> None:
+    """One decision where they begin, one where they stop; not one a sample."""
+    flight = flight_of("px4")
+    stream(flight, (11.0, 0.0, 0.0), 2.0)
+    flight.run(7.0)
+    kept = decisions(flight)
+    assert [(item.outcome, item.code) for item in kept] == [
+        ("refused", "POLICY"),
+        ("ended", "POLICY"),
+    ]
+    assert kept[1].numbers == {"refused_samples": 40.0}
+    assert kept[1].sentence == "40 samples were refused, none for 5 s"
+
+
+def test_samples_of_one_who_is_not_in_control_are_on_the_record_too() -> None:
+    flight = flight_of("px4")
+    flight.feed(OperatorJoined(2, "another"))
+    for _ in range(40):
+        sample(flight, (1.0, 0.0, 0.0), client=2)
+        flight.run(PERIOD_S)
+    flight.feed(OperatorGone(2, "the connection was closed"))
+    begun, ended = decisions(flight)
+    assert (begun.source, begun.outcome, begun.code) == ("operator 2", "refused", "OTHER_OPERATOR")
+    assert begun.numbers["asked_v_east_m_s"] == 1.0
+    assert (ended.outcome, ended.numbers) == ("ended", {"refused_samples": 40.0})

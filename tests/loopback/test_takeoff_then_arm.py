@@ -18,7 +18,7 @@ from gcs.session import inputs
 from tests.audits import audited, read
 from tests.loopback.bridged import BridgedFlight, Client
 from tests.loopback.flight import Personality
-from tests.loopback.looks import START_NS
+from tests.loopback.observed import START_NS
 
 ACCEPTED, TEMPORARILY_REJECTED = 0, 1
 ARM, TAKE_OFF, PAUSE, REQUEST_CONTROL = 400, 22, 193, 32100

@@ -17,8 +17,8 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import Control, State
+from tests.loopback.checked_flight import CheckedFlight
 from tests.loopback.flight import PERSONALITIES, Personality
-from tests.loopback.watched import WatchedFlight
 from vehicle_sim.plant.sensors import SensorGrade
 from vehicle_sim.simulation.fault_script import AnyFault, ended, fault_of
 
@@ -33,9 +33,9 @@ def under_way(
     seed: int = 1,
     params: dict[str, float] | None = None,
     policy: Policy = DEFAULT,
-) -> Iterator[tuple[WatchedFlight, int]]:
+) -> Iterator[tuple[CheckedFlight, int]]:
     """On its way to a goal twelve metres to the east; the number of that request."""
-    flight = WatchedFlight(personality, seed=seed, params=params, policy=policy)
+    flight = CheckedFlight(personality, seed=seed, params=params, policy=policy)
     with flight.witness.listening(flight.policy):
         flight.hovering(6.0)
         flight.run(5.0)
@@ -45,19 +45,19 @@ def under_way(
         yield flight, goal
 
 
-def strike(flight: WatchedFlight, kind: str, **keys: object) -> AnyFault:
+def strike(flight: CheckedFlight, kind: str, **keys: object) -> AnyFault:
     fault = fault_of(kind, keys, "script")
     assert flight.world.inject(fault, 1)
     return fault
 
 
-def mend(flight: WatchedFlight, fault: AnyFault) -> None:
+def mend(flight: CheckedFlight, fault: AnyFault) -> None:
     end = ended(fault)
     assert end is not None
     assert flight.world.inject(end, 1)
 
 
-def severities(flight: WatchedFlight, since_ns: int) -> set[str]:
+def severities(flight: CheckedFlight, since_ns: int) -> set[str]:
     return {
         event.severity
         for event, time_ns in zip(flight.events, flight.event_times_ns, strict=True)

@@ -89,7 +89,7 @@ TARGETS: Final = {
                 ("gcs/gate/machine/sentences.py", "sentences only"),
             ),
             deselect=("test_the_printed_copy_is_the_table",),
-            slow=("tests/unit/gate/test_explore.py",),
+            slow=("tests/unit/gate/test_explore",),
             settings=("gcs/gate/policy/default.toml", "gcs/gate/policy/lab.toml"),
             tables=(ValueTable("gcs.gate.machine.table", "TABLE", "tests.mutants.gate_table"),),
         ),

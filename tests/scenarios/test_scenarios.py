@@ -1,11 +1,10 @@
 """Our vehicle beside the real ones, step by step: no difference but those that are listed.
 
-A sample in `make test`, all of them in `make soak`.
+A sample in `make test` and `make thorough`, all of them in `make soak`.
 """
 
 from __future__ import annotations
 
-import os
 from typing import get_args
 
 import pytest
@@ -15,18 +14,22 @@ from tests.scenarios.facts import recorded
 from tests.scenarios.judged import JUDGED, judged
 from tests.scenarios.known import known
 from tests.scenarios.play import play, playable
+from tests.shares import one_in
+from tests.soaking import SOAKING
 from vehicle_sim.autopilot.modes import Personality
 
 SHORT_S = 22.0
-"""Scenarios that are no longer than this are in `make test`."""
-SOAKING = "MAVGATE_SOAK" in os.environ
+"""Scenarios that are no longer than this are in `make test` and `make thorough`."""
 
-SCENARIOS = [
-    pytest.param(personality, name, id=f"{personality}-{name}")
-    for personality in get_args(Personality)
-    for name, scenario in recorded(personality).items()
-    if playable(personality, scenario) and (SOAKING or scenario.end_s <= SHORT_S)
-]
+SCENARIOS = one_in(
+    2,
+    [
+        pytest.param(personality, name, id=f"{personality}-{name}")
+        for personality in get_args(Personality)
+        for name, scenario in recorded(personality).items()
+        if playable(personality, scenario) and (SOAKING or scenario.end_s <= SHORT_S)
+    ],
+)
 
 
 def test_the_sample_is_large_enough() -> None:

@@ -174,7 +174,7 @@ def _hull(dice: random.Random, polygon: Polygon) -> Question:
     corners = polygon.corners_en
     places = _places(dice, corners)
     theirs, region = shapely.Polygon(corners), shapely.MultiPoint(places).convex_hull
-    track = ground_track([(place, 0.0) for place in places])
+    track = ground_track(places)
     inside = _mostly(dice, polygon, places[0])
     keeps = exact.hull_in_polygon if inside else exact.hull_outside_polygon
     return Question(
@@ -225,7 +225,7 @@ def _about_a_disc(dice: random.Random, corners: tuple[Point, ...]) -> Question:
     most = dice.choice((0.9, 1.0, 3.0))
     places = [_place_by_disc(dice, centre, r_m, most) for _ in range(3)]
     a, b, _ = places
-    track = ground_track([(place, 0.0) for place in places])
+    track = ground_track(places)
     asked: tuple[tuple[str, float, Exactly], ...] = (
         (
             "leg in disc",

@@ -49,8 +49,9 @@ from gcs.gate.requests import (
     TakePhoto,
 )
 from gcs.gate.states import Control, FlightMode, LandedState, State
+from tests.soak.hostile_counts import Seen
 from tests.soak.hostile_letters import is_told_anything
-from tests.soak.hostile_run import MS_NS, SECOND_NS, HostileRun, Seen
+from tests.soak.hostile_run import MS_NS, SECOND_NS, HostileRun
 from tests.soak.point_mass import STILL
 
 Act = Callable[[HostileRun], None]
@@ -194,7 +195,7 @@ def sensible(run: HostileRun) -> None:
         case State.HOLDING | State.EXTERNAL:
             run.ask(dice.choice((Resume(), TakeControl())))
         case State.HOVERING:
-            run.ask(dice.choice((GoTo(_goal(run)), TakePhoto(), StartMission(), Land())))
+            ask_station(run, dice.choice((GoTo(_goal(run)), TakePhoto(), StartMission(), Land())))
         case _:
             run.run(0.5)
 
@@ -246,7 +247,7 @@ def streams(run: HostileRun) -> None:
 
 def asks(run: HostileRun) -> None:
     dice = run.dice
-    requests: tuple[Request, ...] = (
+    anything: tuple[Request, ...] = (
         Abort(),
         Hold(),
         Land(),
@@ -265,7 +266,7 @@ def asks(run: HostileRun) -> None:
         SetMode("X", dice.choice(list(FlightMode))),
         SetMode("ALT_HOLD", FlightMode.OTHER, "LOITER"),
     )
-    run.ask(dice.choice(requests), dice.choice(("operator", "another")))
+    ask_station(run, dice.choice(anything), dice.choice(("operator", "another")))
 
 
 def waits(run: HostileRun) -> None:
@@ -373,7 +374,22 @@ def mission(run: HostileRun, *, starts: bool = False) -> None:
         run.vehicle.path = path
     run.feed(MissionLoaded("hostile", len(path)))
     if starts or dice.random() < 0.5:
-        run.ask(StartMission())
+        ask_station(run, StartMission())
+
+
+def ask_station(run: HostileRun, request: Request, source: str = "operator") -> None:
+    """A mission is begun as the station begins one: where its path still clears from here."""
+    if not isinstance(request, StartMission) or _mission_clears(run):
+        run.ask(request, source)
+
+
+def _mission_clears(run: HostileRun) -> bool:
+    verifier, at = run.verifier(), run.vehicle.reported()
+    for goal in run.vehicle.path:
+        if verifier.mission_leg(at, goal, floor_applies=True) is not None:
+            return False
+        at = goal
+    return True
 
 
 def mission_report(run: HostileRun) -> None:

@@ -15,8 +15,10 @@ from types import MappingProxyType
 from typing import Final
 
 from gcs.frames import Vec3
+from gcs.gate.condition import Condition
 from gcs.gate.inputs import (
     CommandEnded,
+    ConditionChanged,
     HomeSeen,
     Input,
     MissionLoaded,
@@ -29,14 +31,19 @@ from gcs.gate.inputs import (
 from gcs.gate.machine.memory import Memory
 from gcs.gate.proof.alphabet import ALPHABET, Letter, Step
 from gcs.gate.proof.world import SPOT, STILL, World
-from tests.soak.hostile_run import MS_NS, SECOND_NS, HostileRun, Seen
+from gcs.gate.states import State
+from tests.soak.hostile_counts import Seen
+from tests.soak.hostile_run import MS_NS, SECOND_NS, HostileRun
 from tests.soak.point_mass import TO_RETURN_UP_M
 
 DASH_M_S: Final = 40.0
+A_WHILE_S: Final = 0.4
+"""Between two letters of a word so much time passes at the most, now and then."""
 
 
 def _moves_to(goal_ned: Callable[[Memory], Vec3 | None], v_ned: Vec3 = STILL) -> Letter:
-    """A position there, after as long as it takes to fly to it at 20 m/s; the first is anywhere."""
+    """A position there, after as long as it takes to fly to it at 20 m/s.  The first that is told
+    is where the vehicle is."""
 
     def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
         there_ned = goal_ned(memory)
@@ -56,10 +63,14 @@ def _goal(memory: Memory) -> Vec3 | None:
     return None if goal is None else goal.pos_ned
 
 
-def _above_goal(up_m: float) -> Callable[[Memory], Vec3 | None]:
+def _top(memory: Memory) -> Vec3 | None:
+    return memory.top_ned if memory.state is State.TAKING_OFF else _goal(memory)
+
+
+def _above_top(up_m: float) -> Callable[[Memory], Vec3 | None]:
     def place(memory: Memory) -> Vec3 | None:
-        goal_ned = _goal(memory)
-        return None if goal_ned is None else (*goal_ned[:2], goal_ned[2] - up_m)
+        top_ned = _top(memory)
+        return None if top_ned is None else (*top_ned[:2], top_ned[2] - up_m)
 
     return place
 
@@ -79,14 +90,19 @@ def _reset(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
         yield 1, PositionSeen(memory.pos_ned, STILL, 0, reset=True)
 
 
+def _recorder_fails(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+    yield 1, ConditionChanged(Condition.RECORDER_FAILED, True, "hostile")
+
+
 LETTERS: Final[Mapping[str, Letter]] = MappingProxyType(
     {
         **ALPHABET,
+        "recorder fails": _recorder_fails,
         "position": _moves_to(_here),
         "position at the goal": _moves_to(_goal),
-        "position at the top": _moves_to(_goal),
-        "position short of the top": _moves_to(_above_goal(-0.75)),
-        "position above the top": _moves_to(_above_goal(4.0)),
+        "position at the top": _moves_to(_top),
+        "position short of the top": _moves_to(_above_top(-0.75)),
+        "position above the top": _moves_to(_above_top(4.0)),
         "position dashing for the fence": _dashes,
         "position after a reset": _reset,
     }
@@ -108,6 +124,38 @@ _RETURNS_HELD: Final = (
     "ask: hold",
     "ask: disarm",
     "armed or disarmed",
+)
+_ARMED_IN_AIR: Final = (*_STANDS, "ask: arm", "in the air", "hold mode")
+"""It arms and flies before it has answered."""
+_HOLD_UNANSWERED: Final = (
+    "position",
+    "ask: hold",
+    *["armed or disarmed"] * 3,
+    "wait: position too old",
+    "position",
+)
+"""In a mode that the vehicle chose, its state comes back with a hold that nobody answered yet."""
+_CLIMBED: Final = (
+    *_ARMED,
+    "on the ground",
+    "ask: take off",
+    "position at the top",
+    "in the air",
+    "tick",
+    "wait: control due",
+    "tick",
+    "guided mode",
+)
+"""It flies to its top before it is known how the command for guided mode was answered."""
+_MISSION_AGAIN: Final = (
+    *_ARMED,
+    "on the ground",
+    "ask: mission",
+    "mission mode",
+    "wait: position too old",
+    "return mode",
+    "position",
+    "mission mode",
 )
 
 WORDS: Final[tuple[tuple[str, ...], ...]] = (
@@ -140,7 +188,7 @@ WORDS: Final[tuple[tuple[str, ...], ...]] = (
     ("guided mode", "in the air", "land mode"),
     (*_ARMED, "ask: hold"),
     (*_ARMED, "ask: return"),
-    (*_STANDS, "ask: arm", "in the air", "hold mode"),
+    _ARMED_IN_AIR,
     (*_FLIES, "ask: hold"),
     ("guided mode", "in the air", "return mode", "ask: return"),
     ("guided mode", "in the air", "return mode"),
@@ -182,19 +230,36 @@ WORDS: Final[tuple[tuple[str, ...], ...]] = (
     (*_LANDS_UNHEARD, "armed or disarmed", "position"),
     (*_CONTROLS, "ask: mission", "ask: goto inside"),
     (*_ARMED, "on the ground", "ask: mission", "return mode", "guided mode"),
+    (*_STANDS, "recorder fails", "ask: arm"),
+    (*_ARMED_IN_AIR, "answer: refused"),
+    (*_ARMED_IN_AIR, "answer: none"),
+    _CLIMBED,
+    (*_CLIMBED, "answer: refused"),
+    (*_CLIMBED, "answer: none"),
+    *[
+        (mode, *_HOLD_UNANSWERED, answer)
+        for mode in ("return mode", "land mode")
+        for answer in ("tick", "answer: refused", "answer: none")
+    ],
+    _MISSION_AGAIN,
 )
 """Into states that a flight seldom is in, mostly the shortest ones that the explorer finds."""
 
 
 def lettered(run: HostileRun) -> Seen:
     """A new gate, into some state by a word, and then a few letters.  Raises Broken."""
+    dice = run.dice
     run.feed(ReturnHeightSeen(TO_RETURN_UP_M))
-    if run.dice.random() < 0.9:
+    if dice.random() < 0.9:
         run.feed(HomeSeen(run.home_ned))
         run.feed(VerifierChanged(run.verifier()))
         run.feed(MissionLoaded("square", 4))
-    _tell_word(run, run.dice.choice(WORDS))
-    is_told_anything(run, run.dice.choice((1, 2, 3, 5)))
+    run.vehicle.pos = [dice.uniform(-5.0, 5.0), dice.uniform(-5.0, 5.0), dice.uniform(-8.0, -2.0)]
+    for name in dice.choice(WORDS):
+        if dice.random() < 0.1:
+            run.passes(round(dice.random() * A_WHILE_S * SECOND_NS))
+        _tell_word(run, (name,))
+    is_told_anything(run, dice.choice((1, 2, 3, 5)))
     run.all_answered()
     run.seen.runs, run.seen.cells = 0, run.gate.met
     return run.seen
@@ -232,7 +297,9 @@ def _tell(run: HostileRun, given: Input) -> None:
         case MissionLoaded():
             run.vehicle.has_no_mission()
             run.feed(given)
-        case PositionSeen():
-            run.feed(replace(given, time_boot_ms=run.now_ns // MS_NS))
+        case PositionSeen(pos_ned):
+            first = run.gate.pos_ned is None
+            at_ned = run.vehicle.at if first else pos_ned
+            run.feed(replace(given, pos_ned=at_ned, time_boot_ms=run.now_ns // MS_NS))
         case _:
             run.feed(given)

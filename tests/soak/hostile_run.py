@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import random
 from collections import Counter, deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 from gcs.frames import Vec3
@@ -46,9 +46,7 @@ from gcs.gate.inputs import (
     Tick,
     VerifierChanged,
 )
-from gcs.gate.machine.events import Event
-from gcs.gate.machine.gate import MOTION, Gate
-from gcs.gate.machine.rules import Branch
+from gcs.gate.machine.gate import MOTION
 from gcs.gate.permit import Permit
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge
@@ -57,6 +55,7 @@ from gcs.gate.requests import (
     Request,
 )
 from gcs.gate.states import Control, FlightMode, State
+from tests.soak.hostile_counts import CountingGate, Seen
 from tests.soak.point_mass import STEP_NS, STILL, TO_RETURN_UP_M, PointMass
 
 TICK_NS: Final = 50_000_000
@@ -65,7 +64,6 @@ SECOND_NS: Final = 1_000_000_000
 SETTLED_S: Final = 3.0
 """So long after an outage of the link its effects may last."""
 
-Cell = tuple[State, Event]
 Told = tuple[int, State, object]
 """When, in which state, and what: a line of the trace."""
 
@@ -83,42 +81,8 @@ class Broken(AssertionError):  # noqa: N818 - it is what a test raises
     """A promise of the gate was broken."""
 
 
-class CountingGate(Gate):
-    """Counts the cells of the table that are entered."""
-
-    met: Counter[Cell]
-
-    @property
-    def moving(self) -> bool:
-        return self.state is State.MOVING
-
-    def _branch(self, event: Event) -> Branch:
-        self.met[self._turn.memory.state, event] += 1
-        return super()._branch(event)
-
-
 @dataclass(slots=True)
-class Seen:
-    """What all runs have met, and the worst clearance of the truth."""
-
-    runs: int = 0
-    steps: int = 0
-    cells: Counter[Cell] = field(default_factory=Counter)
-    codes: Counter[str] = field(default_factory=Counter)
-    under_promise: int = 0
-    worst_m: float = math.inf
-
-    def add(self, other: Seen) -> None:
-        self.runs += other.runs
-        self.steps += other.steps
-        self.cells += other.cells
-        self.codes += other.codes
-        self.under_promise += other.under_promise
-        self.worst_m = min(self.worst_m, other.worst_m)
-
-
-@dataclass(slots=True)
-class _Awaited:
+class Awaited:
     """A command on its way, which is sent again until it is answered or too late."""
 
     sent: SendCommand
@@ -147,12 +111,13 @@ class HostileRun:
         self.loss = dice.choice((0.0, 0.0, 0.1, 0.3))
         self.home_ned: Vec3 = (0.0, 0.0, 0.0)
         self.fence_on = True
+        self._verifiers: dict[tuple[Vec3, bool], Verifier] = {}
         self.promised = False
         self._stoppable = False
         self.deaf_until_ns = self.mute_until_ns = self.unanswered_until_ns = 0
         self._down: deque[tuple[int, Input]] = deque()
         self._up: deque[tuple[int, SendSetpoint | SendCommand]] = deque()
-        self._awaited: dict[tuple[int, CommandKind], _Awaited] = {}
+        self._awaited: dict[tuple[int, CommandKind], Awaited] = {}
         self._next_id = 0
         self._rulings: dict[int, Ruling] = {}
         self._ended: set[int] = set()
@@ -195,7 +160,7 @@ class HostileRun:
                 if effect.kind in MOTION and not isinstance(effect.permit, Permit):
                     self._fail(f"without a permit: {effect}")
                 self.trace.append((self.now_ns, self.gate.state, effect.kind))
-                self._awaited[effect.request_id, effect.kind] = _Awaited(effect, self.now_ns)
+                self._awaited[effect.request_id, effect.kind] = Awaited(effect, self.now_ns)
             case CancelCommand(request_id, kind):
                 self._awaited.pop((request_id, kind), None)
             case SwitchedFence(on):
@@ -256,9 +221,13 @@ class HostileRun:
     # --------------------------------------------------------------------------- fence
 
     def verifier(self) -> Verifier:
-        return verifier_for(
-            self.policy, self.autopilot, self.home_ned, None, fence_on=self.fence_on
-        )
+        """Placed once for each home: that costs as much as twenty steps of a flight."""
+        key = (self.home_ned, self.fence_on)
+        if key not in self._verifiers:
+            self._verifiers[key] = verifier_for(
+                self.policy, self.autopilot, self.home_ned, None, fence_on=self.fence_on
+            )
+        return self._verifiers[key]
 
     def clearance(self, pos_ned: Vec3) -> float:
         """The least of all faces, in metres; floors are the ground's business."""
@@ -352,6 +321,8 @@ class HostileRun:
 
     def _send_again(self) -> None:
         for key, awaited in list(self._awaited.items()):
+            if key not in self._awaited:
+                continue  # the end of the one before has cancelled it
             if self.now_ns >= awaited.sent.deadline_ns:
                 del self._awaited[key]
                 self.feed(CommandEnded(*key, None))

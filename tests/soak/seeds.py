@@ -10,7 +10,7 @@ import os
 import random
 from functools import cache
 
-SOAKING = "MAVGATE_SOAK" in os.environ
+from tests.soaking import SOAKING
 
 
 @cache

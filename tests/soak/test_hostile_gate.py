@@ -10,23 +10,27 @@ import os
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from itertools import repeat
+from multiprocessing import get_context
 from typing import Final
 
 import pytest
 
 from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, SendCommand
+from gcs.gate.inputs import CommandEnded, Input, MissionLoaded, PositionSeen
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.table import TABLE
 from gcs.gate.refusal import Code
-from gcs.gate.requests import Abort, GoTo, Hold, Land, Request, TakeControl
+from gcs.gate.requests import Abort, GoTo, Hold, Land, Request, StartMission, TakeControl
 from gcs.gate.states import FlightMode, State
-from tests.soak.hostile_acts import fly, hovers_at
+from tests.soak.hostile_acts import ask_station, fly, hovers_at
+from tests.soak.hostile_counts import Seen
 from tests.soak.hostile_letters import lettered
 from tests.soak.hostile_policies import POLICIES, policy_of
-from tests.soak.hostile_run import Broken, HostileRun, Seen
+from tests.soak.hostile_run import MS_NS, Awaited, Broken, HostileRun
 from tests.soak.point_mass import PointMass
 from tests.soak.seeds import base_seed
+from tests.soaking import Counted
 from tests.unit.gate.unreached import UNREACHED
 
 RUNS: Final = 100_000
@@ -52,19 +56,6 @@ NOT_THE_GATES: Final = frozenset(
 )
 """Reasons that no run of the gate alone can meet."""
 
-NOT_MET: Final = frozenset(
-    {
-        "FLYING_MISSION / mission mode",  # that mode is there, or awaited
-        "MOVING / command refused",  # the request that leads there cancels what was outstanding
-        "MOVING / command unanswered",
-        "RETURNING / hold refused",  # the vehicle's own return, seen, cancels a hold of ours
-        "RETURNING / hold unanswered",
-        "LANDING / hold refused",
-        "LANDING / hold unanswered",
-    }
-)
-"""Cells that the explorer enters by longer words than these, and no run here has yet."""
-
 
 def flown(first: int, count: int) -> Seen:
     seen = Seen()
@@ -81,7 +72,6 @@ def flown(first: int, count: int) -> Seen:
 def test_no_hostile_run_breaks_a_promise() -> None:
     seen = flown(base_seed(), A_SHARE)
     assert seen.runs == A_SHARE
-    assert not [line for line in too_seldom(seen) if line.endswith("is listed as not met")]
     assert seen.under_promise > 10 * A_SHARE
     print(told(seen))
 
@@ -102,14 +92,18 @@ def begun(autopilot: str, place_ned: Vec3) -> HostileRun:
 
 
 @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
-def test_below_a_leg_over_a_tower_it_is_braked_before_that(autopilot: str) -> None:
-    """The straight leg is above the tower.  The vehicle flies 12 m/s and climbs with 0.7."""
+@pytest.mark.parametrize(("cruise_m_s", "climb_m_s"), [(12.0, 0.7), (10.0, 1.5)])
+def test_a_steep_leg_over_a_tower_is_refused(
+    autopilot: str, cruise_m_s: float, climb_m_s: float
+) -> None:
+    """The straight leg is above the tower, a vehicle that climbs as slowly is not.  Climbing first,
+    it flies over."""
     run = begun(autopilot, (-27.0, -34.0, -3.0))
+    run.vehicle.cruise_m_s, run.vehicle.climb_m_s = cruise_m_s, climb_m_s
     run.ask(GoTo((23.0, -17.0, -39.0)))
-    run.run(12.0)
-    assert run.seen.under_promise > 500
-    assert run.gate.state is State.HOLDING
-    run.all_answered()
+    run.run(2.0)
+    assert run.gate.state is State.HOVERING
+    assert run.gate.memory.goal is None
 
 
 @pytest.mark.parametrize("stop", [Land(), Hold(), Abort()])
@@ -138,14 +132,57 @@ def test_nothing_is_promised_of_a_vehicle_that_is_taken_over_when_no_hold_could_
     assert not run.promised
 
 
+def test_a_command_that_the_end_of_another_cancels_is_not_sent_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Both are overdue at once.  (Seed 30009212 looked for the second where it was no more.)"""
+    run = begun("px4", (-10.0, 20.0, -20.0))
+    first, second = (1, CommandKind.ARM), (0, CommandKind.HOLD)
+    for key in (first, second):
+        run._awaited[key] = Awaited(SendCommand(*key, run.now_ns), run.now_ns)
+    told: list[object] = []
+
+    def feed(given: Input) -> None:
+        told.append(given)
+        run._awaited.pop(second, None)
+
+    monkeypatch.setattr(run, "feed", feed)
+    run._send_again()
+    assert told == [CommandEnded(*first, None)]
+    assert not run._awaited
+
+
+@pytest.mark.parametrize(("to_north_m", "state"), [(60.0, "HOVERING"), (-5.0, "FLYING_MISSION")])
+def test_a_mission_is_begun_only_where_it_clears_from_here(to_north_m: float, state: str) -> None:
+    """The station verifies it anew before it begins.  A run that began one which had been verified
+    about another home flew 2.03 m out at 12 m/s, where 2 are allowed (seed 30015956)."""
+    run = begun("px4", (-10.0, 20.0, -20.0))
+    run.feed(MissionLoaded("square", 2))
+    run.vehicle.path = [(10.0, 20.0, -20.0), (to_north_m, 20.0, -20.0)]
+    ask_station(run, StartMission())
+    assert run.gate.state.name == state
+
+
+def test_no_brake_point_is_asked_for_where_the_position_has_jumped() -> None:
+    """Far at once, to 0.3 m from the edge, and not told as a reset: it is held, in no place that a
+    setpoint could name (seed 30022010)."""
+    run = begun("px4", (-20.0, 20.0, -20.0))
+    run.judged = True
+    run.run(0.1)
+    run.feed(PositionSeen((29.7, 20.0, -20.0), (0.5, 0.0, 0.0), run.now_ns // MS_NS))
+    assert run.gate.state is State.HOLDING
+
+
 @pytest.mark.soak
-def test_a_hundred_thousand_hostile_runs_break_no_promise() -> None:
+def test_a_hundred_thousand_hostile_runs_break_no_promise(record_property: Counted) -> None:
     seen = Seen()
     firsts = range(base_seed(), base_seed() + RUNS, 250)
-    with ProcessPoolExecutor(os.cpu_count()) as workers:
+    with ProcessPoolExecutor(os.cpu_count(), get_context("spawn")) as workers:
         for part in workers.map(flown, firsts, repeat(250)):
             seen.add(part)
     print(told(seen))
+    record_property("hostile runs", seen.runs)
+    record_property("hostile runs, cells of the table met", len(seen.cells))
     assert not list(too_seldom(seen)), told(seen)
 
 
@@ -164,10 +201,7 @@ def too_seldom(seen: Seen) -> Iterator[str]:
     for (state, event), cell in TABLE.items():
         name = f"{state.name} / {event.value}"
         met = seen.cells[state, event]
-        if name in NOT_MET:
-            if met:
-                yield f"{name} {met}, and is listed as not met"
-        elif cell and name not in unreached and met < AT_LEAST:
+        if cell and name not in unreached and met < AT_LEAST:
             yield f"{name} {met}"
     for code in Code:
         if code not in NOT_THE_GATES and seen.codes[code.value] < AT_LEAST:

@@ -13,7 +13,6 @@ import random
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
-from itertools import combinations
 
 from msgspec.structs import replace
 
@@ -116,30 +115,16 @@ def _clearances(zone: Zone, place: Vec3) -> tuple[float, float]:
 
 
 def keeps(zone: Zone, places: Sequence[Place], h: Fraction, v: Fraction) -> bool:
-    """Does the convex hull of the places keep the margins, exactly?"""
+    """Does all that is above or below the convex hull of the places on the ground, from the lowest
+    of them to the highest, keep the margins, exactly?"""
     low = -math.inf if math.isinf(zone.floor_up_m) else Fraction(zone.floor_up_m)
     high = math.inf if math.isinf(zone.ceiling_up_m) else Fraction(zone.ceiling_up_m)
     ups = [up for *_, up in places]
+    track = [(east, north) for east, north, _ in places]
     if zone.inclusion:
         stacked = min(ups) >= low + v and max(ups) <= high - v
-        return stacked and _beside(zone, [(east, north) for east, north, _ in places], h)
-    part = _between(places, low - v, high + v)
-    return not part or _beside(zone, part, h)
-
-
-def _between(
-    places: Sequence[Place], low: Fraction | float, high: Fraction | float
-) -> list[tuple[Fraction, Fraction]]:
-    """The corners of that part of the hull that is above `low` and below `high`, from above."""
-    found = [(east, north) for east, north, up in places if low < up < high]
-    if max(up for *_, up in places) <= low or min(up for *_, up in places) >= high:
-        return []
-    for a, b in combinations(places, 2):
-        for level in (low, high):
-            if isinstance(level, Fraction) and min(a[2], b[2]) < level < max(a[2], b[2]):
-                t = (level - a[2]) / (b[2] - a[2])
-                found.append((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
-    return found
+        return stacked and _beside(zone, track, h)
+    return max(ups) <= low - v or min(ups) >= high + v or _beside(zone, track, h)
 
 
 def _beside(zone: Zone, places: Sequence[tuple[Fraction, Fraction]], m: Fraction) -> bool:

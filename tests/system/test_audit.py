@@ -34,6 +34,7 @@ def audited(*logs: Path) -> str:
     return ended.stdout
 
 
+@pytest.mark.thorough
 def test_a_script_of_gcs_fly_is_reproduced(tmp_path: Path) -> None:
     ended = gcs("fly", "--sim", "--plain", "--log-dir", str(tmp_path), stdin=SCRIPT)
     assert "goto 500 0 3: refused OUTSIDE_FENCE" in ended.stdout, ended.stdout + ended.stderr
@@ -42,6 +43,7 @@ def test_a_script_of_gcs_fly_is_reproduced(tmp_path: Path) -> None:
     assert "note:" not in told
 
 
+@pytest.mark.thorough
 def test_one_shot_commands_are_reproduced(tmp_path: Path) -> None:
     port = free_port()
     link = ("--link", f"udpin://127.0.0.1:{port}", "--log-dir", str(tmp_path))
@@ -56,6 +58,7 @@ def test_one_shot_commands_are_reproduced(tmp_path: Path) -> None:
     assert ended.stdout.count("no difference: every decision") == 4
 
 
+@pytest.mark.thorough
 def test_a_link_that_is_a_stream_is_reproduced(tmp_path: Path) -> None:
     port = free_port()
     with vehicle_sim("--link", f"tcpin://127.0.0.1:{port}"):
@@ -84,6 +87,7 @@ def test_two_operators_are_reproduced(
     assert "operators that came and went" in audited(log)
 
 
+@pytest.mark.thorough
 def test_a_killed_station_s_record_is_audited_as_far_as_it_goes(tmp_path: Path) -> None:
     with tapped(tmp_path) as (operator, _):
         operator.fly("arm", "takeoff 2")

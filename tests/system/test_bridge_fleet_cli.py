@@ -148,6 +148,7 @@ def take_off(client: Client, sysid: int) -> None:
     client.until(lambda: client.place(sysid)[1] > 2.2, f"{sysid} up")
 
 
+@pytest.mark.thorough
 def test_one_client_flies_a_px4_and_an_ardupilot(tmp_path: Path, where: tuple[str, str]) -> None:
     words = ["--vehicle", where[0], "--vehicle", where[1], "--client", "udpin://127.0.0.1:0"]
     with running(GCS, "bridge", "--log-dir", str(tmp_path), "--no-compact", *words) as program:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.shares import one_in
 from tests.system.flight_log import whole
 from tests.system.programs import gcs
 from tests.unit.record.flights import MS, a_flight, messages_of, record
@@ -29,6 +30,7 @@ def within(seconds: float, true: Callable[[], bool]) -> bool:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.thorough
 def test_a_process_that_is_told_to_end_leaves_a_whole_file_and_no_other(tmp_path: Path) -> None:
     flight = record(tmp_path / "logs", a_flight() * 3000, step_ns=5 * MS // 2)
     messages = messages_of(flight)
@@ -42,7 +44,7 @@ def test_a_process_that_is_told_to_end_leaves_a_whole_file_and_no_other(tmp_path
     assert whole(flight).damaged == 0
 
 
-@pytest.mark.parametrize("option", ["--compact", "--no-compact"])
+@pytest.mark.parametrize("option", one_in(2, ["--compact", "--no-compact"]))
 def test_a_station_ends_at_once_and_its_record_is_compacted_unless_told_not_to(
     tmp_path: Path, option: str
 ) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.shares import one_in
 from tests.system.flight_log import assert_held, only_log
 from tests.system.killed_station import kill_and_recover
 from tests.system.programs import GCS, Running, all_gone, children, descendants, running
@@ -16,7 +17,7 @@ from tests.system.vehicle_program import until
 pytestmark = pytest.mark.system
 
 
-@pytest.mark.parametrize("recorded_s", [1.0, 1.3, 1.7])
+@pytest.mark.parametrize("recorded_s", one_in(3, [1.0, 1.3, 1.7]))
 def test_a_killed_station_loses_at_most_a_second_and_recover_makes_its_record_whole(
     recorded_s: float, tmp_path: Path
 ) -> None:
@@ -39,8 +40,15 @@ def take_off_and_go(program: Running) -> tuple[int, int]:
 
 @pytest.mark.parametrize(
     ("number", "exit_code"),
-    [(signal.SIGKILL, -9), (signal.SIGINT, 130), (signal.SIGTERM, 130), (signal.SIGHUP, 130)],
-    ids=lambda value: getattr(value, "name", ""),
+    one_in(
+        2,
+        [
+            pytest.param(signal.SIGKILL, -9, id="SIGKILL"),
+            pytest.param(signal.SIGINT, 130, id="SIGINT"),
+            pytest.param(signal.SIGTERM, 130, id="SIGTERM"),
+            pytest.param(signal.SIGHUP, 130, id="SIGHUP"),
+        ],
+    ),
 )
 def test_when_the_operators_program_goes_the_station_holds_the_vehicle_and_closes_the_log(
     number: signal.Signals, exit_code: int, tmp_path: Path

@@ -33,6 +33,7 @@ VIEWERS = 80
 SLOW_S = 4.0
 
 
+@pytest.mark.thorough
 def test_they_delay_no_setpoint_and_no_abort_and_cost_the_station_no_memory(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.shares import one_in
 from tests.system.flight_log import assert_held, only_log, readings
 from tests.system.programs import GCS, all_gone, descendants
 from tests.system.terminal import COLUMNS, ROWS, Terminal, environment, terminal
@@ -56,7 +57,7 @@ def test_ctrl_c_in_mid_flight_holds_closes_the_log_and_restores_the_terminal(
 
 
 @pytest.mark.parametrize(
-    "number", [signal.SIGKILL, signal.SIGTERM, signal.SIGHUP], ids=lambda n: n.name
+    "number", one_in(3, [signal.SIGKILL, signal.SIGTERM, signal.SIGHUP]), ids=lambda n: n.name
 )
 def test_when_the_station_goes_the_link_holds_the_vehicle_and_closes_the_log(
     number: signal.Signals, tmp_path: Path
@@ -73,7 +74,12 @@ def test_when_the_station_goes_the_link_holds_the_vehicle_and_closes_the_log(
     assert_held(only_log(tmp_path))
 
 
-@pytest.mark.parametrize("told", [True, False], ids=["told by a signal", "told by nobody"])
+@pytest.mark.parametrize(
+    "told",
+    one_in(
+        2, [pytest.param(True, id="told by a signal"), pytest.param(False, id="told by nobody")]
+    ),
+)
 def test_a_terminal_that_closes_in_mid_flight_leaves_a_held_vehicle_and_no_process(
     told: bool, tmp_path: Path
 ) -> None:

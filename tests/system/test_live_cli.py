@@ -64,6 +64,7 @@ def climbed(looker: Viewer) -> bool:
     return any(state.json.get("up_m", 0.0) > 1.0 for state in looker.of(STATE))
 
 
+@pytest.mark.thorough
 def test_live_of_a_new_station_flies_by_services_alone(tmp_path: Path) -> None:
     with running(GCS, "live", "--sim", "--log-dir", str(tmp_path)) as live:
         live.until_out("take_control")
@@ -92,6 +93,7 @@ def test_fly_with_a_live_view_tells_the_address_and_ends_with_it(tmp_path: Path)
         pass
 
 
+@pytest.mark.thorough
 def test_a_live_view_that_cannot_be_opened_ends_what_was_started(tmp_path: Path) -> None:
     with simulated(tmp_path / "first") as operator, running(GCS, "live") as live:
         live.until_out("take_control")

@@ -150,6 +150,7 @@ def test_when_the_viewer_in_control_goes_the_vehicle_holds_and_control_returns(
     assert kinds == ["OperatorJoined", "OperatorLine", "OperatorLine", "OperatorGone"]
 
 
+@pytest.mark.thorough
 def test_a_late_viewer_sees_what_was_said_only_once(tmp_path: Path) -> None:
     once = ("/geofence", "/tf_static", "/vehicle/1/model")
     with simulated(tmp_path) as operator:
@@ -168,6 +169,7 @@ def test_a_late_viewer_sees_what_was_said_only_once(tmp_path: Path) -> None:
         assert first.of(topic)[-1].data in recorded
 
 
+@pytest.mark.thorough
 def test_a_viewer_is_told_what_is_in_the_record(tmp_path: Path) -> None:
     topic = "/mavlink/1/1/LOCAL_POSITION_NED"
     with watched(tmp_path) as (operator, looker, _):
@@ -188,6 +190,7 @@ def test_a_viewer_is_told_what_is_in_the_record(tmp_path: Path) -> None:
     assert seen | told <= recorded
 
 
+@pytest.mark.thorough
 def test_a_pose_in_ros_1_encoding_is_a_goal_with_a_heading(tmp_path: Path) -> None:
     with watched(tmp_path) as (operator, looker, live):
         operator.fly("arm", "takeoff 2")

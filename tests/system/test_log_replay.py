@@ -76,6 +76,7 @@ def test_pymavlink_receives_the_frames_in_order_at_their_times(
     assert middle_s == pytest.approx(COUNT // 2 * STEP_NS / 1e9 / speed, abs=0.25)
 
 
+@pytest.mark.thorough
 def test_status_shows_the_vehicle_and_commands_are_not_answered(tmp_path: Path) -> None:
     file, _ = recorded(tmp_path, 400)
     port = free_port()

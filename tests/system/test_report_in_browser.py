@@ -133,6 +133,7 @@ def test_on_paper_it_is_light_and_no_wider(browser: Browser, tmp_path: Path) -> 
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
 
 
+@pytest.mark.thorough
 def test_a_record_of_one_message_is_a_page_too(browser: Browser, tmp_path: Path) -> None:
     page = opened(browser, written(tmp_path, [heartbeat()]))
     assert page.evaluate("document.querySelector('.lead').textContent.length") > 20

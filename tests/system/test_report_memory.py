@@ -33,6 +33,7 @@ print(flight.messages, peak[1])
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/proc is of Linux")
+@pytest.mark.thorough
 def test_the_file_is_not_held_in_memory(tmp_path: Path) -> None:
     noise = random.Random(1).randbytes(1_000_000)
     items: list[RecordItem] = [GarbageItem(0, noise, "garbage")] * FILE_MB

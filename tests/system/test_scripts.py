@@ -39,6 +39,7 @@ def test_each_script_has_its_test_and_its_line_in_the_table() -> None:
     assert all(f"| [{name}]({name}) |" in table for name in TESTED)
 
 
+@pytest.mark.thorough
 def test_the_readmes_example_of_the_library_runs_as_it_stands(tmp_path: Path) -> None:
     readme = (SCRIPTS.parents[1] / "README.md").read_text(encoding="utf-8")
     _, begin, rest = readme.partition("<!-- example: library -->\n```python\n")
@@ -59,6 +60,7 @@ def test_the_square_flies_its_corners_and_is_refused_the_fifth(tmp_path: Path) -
     assert whole(only_log(tmp_path / "logs")).states[-1].state == "GROUNDED"
 
 
+@pytest.mark.thorough
 def test_the_square_flies_on_a_vehicle_of_others(tmp_path: Path) -> None:
     port = free_port()
     with vehicle_sim("--link", f"udpout://127.0.0.1:{port}"):
@@ -66,10 +68,12 @@ def test_the_square_flies_on_a_vehicle_of_others(tmp_path: Path) -> None:
     assert end.startswith("GROUNDED ")
 
 
+@pytest.mark.thorough
 def test_velocities_are_flown_refused_and_streamed(tmp_path: Path) -> None:
     """2 s at 1 m/s are 2 m; a circle of 1 m about the place north of where it began takes 6.3 s."""
     after, refusal, round_, end = run("velocity.py", folder=tmp_path)
-    assert refusal == "POLICY {'asked': 50.0, 'max_speed_h_m_s': 10.0}"
+    asked = "'asked_v_east_m_s': 50.0, 'asked_v_north_m_s': 0.0, 'asked_v_up_m_s': 0.0"
+    assert refusal == f"POLICY {{{asked}, 'asked': 50.0, 'max_speed_h_m_s': 10.0}}"
     east_m, north_m, _ = place_of(after)
     assert east_m == pytest.approx(2.0, abs=1.0)
     assert north_m == pytest.approx(0.0, abs=0.7)
@@ -84,6 +88,7 @@ def place_of(line: str) -> tuple[float, ...]:
     return tuple(float(metres) for metres in line.removeprefix("at (").rstrip(")").split(", "))
 
 
+@pytest.mark.thorough
 def test_a_plan_is_flown_with_its_events(tmp_path: Path) -> None:
     lines = run("fly_plan.py", "square", folder=tmp_path)
     assert "state GROUNDED -> FLYING_MISSION" in lines
@@ -91,12 +96,14 @@ def test_a_plan_is_flown_with_its_events(tmp_path: Path) -> None:
     assert whole(only_log(tmp_path / "logs")).states[-1].state == "GROUNDED"
 
 
+@pytest.mark.thorough
 def test_a_goto_is_stopped_by_what_telemetry_says(tmp_path: Path) -> None:
     lines = run("watch_battery.py", "101", folder=tmp_path)
     assert lines[0].startswith("100 % left at ")
     assert lines[-1] == "turning round"
 
 
+@pytest.mark.thorough
 def test_another_program_stops_what_a_station_flies(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator:
         operator.fly("arm", "takeoff 3")

@@ -73,7 +73,7 @@ def test_others_look_and_stop_and_leave_no_trace(tmp_path: Path) -> None:
         refused = gcs("goto", "1", "0", "2", *link)
         assert refused.returncode == ExitCode.REFUSED_BY_GATE
         assert "refused OTHER_OPERATOR: operator 1 (" in refused.stdout
-        assert "`station take` takes it over" in refused.stdout
+        assert "take it over with --take, or by the words `station take`" in refused.stdout
         operator.fly("goto 1 0 2")
         assert listed("operations")[-1]["asked"]["word"] == "goto"
         number = listed("operations")[-1]["id"]
@@ -104,6 +104,7 @@ def test_a_one_shot_that_takes_over_moves_the_vehicle_and_gives_the_station_back
         operator.leave()
 
 
+@pytest.mark.thorough
 def test_lines_of_a_second_operator_stop_an_operation_of_the_first(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator, running(GCS, "attach", "--plain") as other:
         operator.fly("arm", "takeoff 3")
@@ -121,6 +122,7 @@ def test_lines_of_a_second_operator_stop_an_operation_of_the_first(tmp_path: Pat
         operator.leave()
 
 
+@pytest.mark.thorough
 def test_a_second_screen_shows_the_flight_and_may_stop_it(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator:
         operator.fly("arm", "takeoff 3")
@@ -137,6 +139,7 @@ def test_a_second_screen_shows_the_flight_and_may_stop_it(tmp_path: Path) -> Non
         operator.leave()
 
 
+@pytest.mark.thorough
 def test_a_screen_says_who_is_in_control_and_who_took_it(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator, terminal(GCS, "attach") as screen:
         screen.until_text("control: operator 1", "ctrl operator 1")

@@ -56,6 +56,7 @@ def test_a_stopped_operators_program_leaves_the_setpoint_stream_alone(tmp_path: 
 
 
 @pytest.mark.skipif(not hasattr(fcntl, "F_SETPIPE_SZ"), reason="needs a pipe of chosen size")
+@pytest.mark.thorough
 def test_a_pipe_that_is_full_costs_snapshots_and_nothing_else(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator:
         process = operator.client._process

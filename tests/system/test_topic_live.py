@@ -55,6 +55,7 @@ def test_the_rate_is_the_configured_one_live_and_in_the_record(tmp_path: Path) -
     assert whole["hz"] == pytest.approx(configured_hz, rel=CLOSE)
 
 
+@pytest.mark.thorough
 def test_a_link_without_a_station_is_listened_to_and_left_alone() -> None:
     """The vehicle is not asked for anything: it has no peer but the one that it was given."""
     port = free_port()

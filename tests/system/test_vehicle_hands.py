@@ -76,6 +76,7 @@ def test_mavsdk_orbits_round_where_it_took_off() -> None:
             assert on_circle()
 
 
+@pytest.mark.thorough
 def test_mavsdk_follow_me_configures_and_follows() -> None:
     with flying() as (system, telemetry, _):
         follow = FollowMe(system)
@@ -103,6 +104,7 @@ def test_mavsdk_follow_me_configures_and_follows() -> None:
         until(lambda: telemetry.flight_mode() is FlightMode.HOLD, "holding again")
 
 
+@pytest.mark.thorough
 def test_mavsdk_flies_by_hand() -> None:
     with flying() as (system, telemetry, _):
         manual = ManualControl(system)

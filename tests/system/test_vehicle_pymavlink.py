@@ -141,6 +141,7 @@ def test_a_script_flies_px4_offboard() -> None:
         script.land_and_disarm()
 
 
+@pytest.mark.thorough
 def test_a_script_flies_ardupilot_guided_over_tcp() -> None:
     port = free_port(socket.SOCK_STREAM)
     with (

@@ -70,6 +70,7 @@ FLIGHT: tuple[Group, ...] = (
         Kind.MOTION,
         "It flies the mission on board, or sends it to another item.",
         {
+            189: "DO_LAND_START",
             191: "DO_GO_AROUND",
             224: "DO_SET_MISSION_CURRENT",
             300: "MISSION_START",
@@ -126,7 +127,6 @@ FLIGHT: tuple[Group, ...] = (
         {
             177: "DO_JUMP",
             188: "DO_RETURN_PATH_START",
-            189: "DO_LAND_START",
             190: "DO_RALLY_LAND",
             601: "DO_JUMP_TAG",
         },

@@ -53,7 +53,11 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
     ),
     Cmd.NAV_LAND: _same(motion.land, "land where it is; a place is ignored, as both do"),
     Cmd.NAV_RETURN_TO_LAUNCH: _same(motion.return_home, "rtl, if the way home is clear"),
-    Cmd.DO_SET_MODE: _same(modes.do_set_mode, "by the mode: see the table of modes"),
+    Cmd.DO_SET_MODE: _same(
+        modes.do_set_mode,
+        "by the mode: see the table of modes. PX4, disarmed: the mode of a verified mission is "
+        "forwarded, and flown when the same client arms within 10 s",
+    ),
     Cmd.DO_SET_STANDARD_MODE: _same(
         motion.standard_mode,
         "safe recovery: rtl; mission, land, take-off: as those modes; the others are refused",
@@ -98,6 +102,10 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
         mission.do_set_mission_current,
         "`mission_set_current`: the next start in the air begins there, verified from where it "
         "is. While the mission is flown: hold, resume, `mission_set_current`, mission start",
+    ),
+    Cmd.DO_LAND_START: _same(
+        mission.do_land_start,
+        "DO_SET_MISSION_CURRENT to the mission's one DO_LAND_START item, then mission start",
     ),
     Cmd.DO_CHANGE_SPEED: _same(
         mission.change_speed,

@@ -13,6 +13,7 @@ from typing import TypeAlias
 from gcs import ipc
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
+from gcs.gate.attitude import Attitude
 from gcs.gate.policy.policy import StreamRules
 from gcs.gate.refusal import Refusal
 from gcs.gate.states import State
@@ -61,6 +62,10 @@ class Seen:
     """A client may set the default height of a take-off up to this; 0: not at all."""
     mission_items: int = 0
     """Items of the mission on board, as they were read back last; 0: not known."""
+    land_starts: tuple[int, ...] = ()
+    """MAVLink's numbers of the DO_LAND_START items of that mission."""
+    awaited: bool = False
+    """The gate waits for something that it has asked of the vehicle."""
     plan_transfer: bool = False
     """The station reads or writes a plan of the vehicle."""
     stream: StreamRules | None = None
@@ -83,6 +88,7 @@ class Sample:
     a_ned: Vec3 | None = None
     yaw_rad: float | None = None
     yaw_rate_rad_s: float | None = None
+    attitude: Attitude | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +118,8 @@ class Words:
     """What will not be flown as the message says, for the client to read; empty: nothing."""
     if_repeated: Sample | None = None
     """The same message as a sample, where its sender turns out to be streaming: `pace.Pace`."""
-    first_answers: bool = False
-    """The message is answered when the first request is complete, not the last."""
+    answered_by: str = ""
+    """The word whose completion answers the message; empty: the last one's."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -76,6 +76,28 @@ def _set_current(number: int, seen: Seen, start: Meaning | None = None) -> Meani
     return Words(words)
 
 
+def do_land_start(command: Command, seen: Seen) -> Meaning:
+    """Land by the mission: it is set to its DO_LAND_START item, and flown from there.
+
+    MAVLink's command has no parameters.  An ArduCopter flies it in AUTO_RTL from the nearest
+    marker, and a PX4 1.14 starts its mission there (both from memory of the sources: `ModeAuto`,
+    `navigator_main.cpp`); neither is sent it here, as nobody verified the way to the marker.
+    """
+    if seen.mission_items == 0:
+        return refuse(Code.NO_MISSION, "no verified mission is on board: upload one first")
+    if seen.on_ground:
+        return refuse(Code.NOT_FLYING, ON_GROUND)
+    match seen.land_starts:
+        case ():
+            return refuse(Code.BAD_MISSION, "the mission on board has no DO_LAND_START item")
+        case (only,):
+            return _set_current(only, seen, meaning_named(seen, FlightMode.MISSION))
+        case several:
+            numbers = ", ".join(map(str, several))
+            sentence = f"DO_LAND_START is at items {numbers}: name one, by DO_SET_MISSION_CURRENT"
+            return unsupported(sentence)
+
+
 def change_speed(command: Command, seen: Seen) -> Meaning:
     """Slower is let through, also "as before" (0, -1, -2); a mission is verified with its own.
 

@@ -1,14 +1,10 @@
-"""A pilot's sticks and attitudes from a client: MANUAL_CONTROL, RC_CHANNELS_OVERRIDE,
-SET_ATTITUDE_TARGET.
+"""A pilot's sticks from a client: MANUAL_CONTROL, RC_CHANNELS_OVERRIDE.
 
 Sticks are never forwarded.  They are read as a velocity, forward and beside the vehicle's nose, up
 and down, and a yaw rate, which the gate verifies as it does any sample of a stream; what the pilot
 feels is the autopilot's own position mode.  Where a raw stick leads has no bound, and both
 autopilots act on the loss of sticks that they have seen once (recorded: ArduCopter returns home
 0.96 s after the last override).
-
-Where an attitude with a thrust leads has no bound either, and no velocity stands for it; it is
-refused.
 """
 
 from __future__ import annotations
@@ -22,7 +18,7 @@ from gcs.bridge.meaning.says import DONE, refuse, unsupported
 from gcs.frames import as_on_the_wire
 from gcs.gate.policy.policy import StreamRules
 from gcs.gate.refusal import Code
-from gcs.wire.messages import ManualControl, RcChannelsOverride, SetAttitudeTarget
+from gcs.wire.messages import ManualControl, RcChannelsOverride
 
 NOT_GIVEN: Final = 0x7FFF
 """MANUAL_CONTROL: this axis does not exist."""
@@ -95,14 +91,6 @@ def rc_override(message: RcChannelsOverride, seen: Seen) -> Meaning:
         0.0 if raw in free else max(-1.0, min(1.0, (raw - MIDDLE_US) / FULL_US)) for raw in sticks
     )
     return _sticks(-pitch, roll, throttle, yaw, seen, "")
-
-
-def attitude_target(message: SetAttitudeTarget, seen: Seen) -> Meaning:
-    """Attitudes, body rates and thrust, in whatever mask."""
-    return unsupported(
-        "attitudes and thrust from a client: where they take the vehicle cannot be verified; "
-        "send positions, velocities or MANUAL_CONTROL"
-    )
 
 
 def _sticks(

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
+from gcs.bridge.meaning.attitudes import attitude_target
 from gcs.bridge.meaning.command import command_of
 from gcs.bridge.meaning.commands import meaning_of_command
 from gcs.bridge.meaning.guided_items import guided_item
@@ -18,7 +19,7 @@ from gcs.bridge.meaning.meaning import Meaning, Seen
 from gcs.bridge.meaning.mission_commands import mission_set_current
 from gcs.bridge.meaning.modes import set_mode
 from gcs.bridge.meaning.says import refuse, unsupported
-from gcs.bridge.meaning.sticks import attitude_target, manual_control, rc_override
+from gcs.bridge.meaning.sticks import manual_control, rc_override
 from gcs.bridge.meaning.targets import global_target, local_target
 from gcs.gate.refusal import Code
 from gcs.wire import messages as m
@@ -58,7 +59,7 @@ MESSAGES: Final[Mapping[int, MessageRow]] = dict(
     (
         _row(m.CommandLong, _command, _COMMAND),
         _row(m.CommandInt, _command, _COMMAND),
-        _row(m.SetMode, set_mode, "by the mode: see the table of modes"),
+        _row(m.SetMode, set_mode, "as DO_SET_MODE"),
         _row(
             m.SetPositionTargetLocalNed,
             local_target,
@@ -84,7 +85,12 @@ MESSAGES: Final[Mapping[int, MessageRow]] = dict(
             "ArduPilot: channels 1 to 4 are sticks, if all others are released or left alone. PX4: "
             "refused. Released channels ask for nothing. Never forwarded",
         ),
-        _row(m.SetAttitudeTarget, attitude_target, "refused in every mask"),
+        _row(
+            m.SetAttitudeTarget,
+            attitude_target,
+            "a sample of a stream, where the policy allows a tilt (`[stream] tilt_deg`) and the "
+            "mask leaves an attitude and a thrust; body rates alone are refused: see attitudes",
+        ),
     )
 )
 """By message id."""

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-from gcs.plan import commands
+from gcs.plan.item_messages import item_of, item_of_degrees
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import RoundTrip, Timing
-from gcs.wire.ids import MavFrame, MissionResult, MissionType
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     MissionAck,
     MissionCount,
@@ -34,8 +34,6 @@ QUICK_REPEATS: Final = 2
 """After so many repeats of a question each pause is twice the one before."""
 SILENCE_NS: Final = 10_000_000_000
 """A client that sends nothing that was asked for is given up after so long (ArduPilot: 8 s)."""
-_DEGREES: Final = 1e7
-_INT32: Final = 2**31 - 1
 
 
 class Collecting:
@@ -87,7 +85,7 @@ class Collecting:
             self._round_trip.measured(now_ns - self._asked_ns)
         if isinstance(message, MissionItem) and not self.items:
             self._as_int = False
-        item = wire_item(message)
+        item = item_of_degrees(message) if isinstance(message, MissionItem) else item_of(message)
         if item is None:
             self.bad_item, self.deadline_ns = message.seq, None
             return []
@@ -149,35 +147,4 @@ def acknowledgement(
         type=result,
         mission_type=kind,
         opaque_id=opaque_id,
-    )
-
-
-def wire_item(message: ItemMessage) -> WireItem | None:
-    """As MISSION_ITEM_INT has it; None for a MISSION_ITEM whose place no such item can hold.
-
-    A MISSION_ITEM has degrees in float32: what it says to the nearest metre is verified and sent
-    on as the integers that it becomes here.
-    """
-    if isinstance(message, MissionItem):
-        placed = commands.has_place(message.command, message.frame)
-        scale = _DEGREES if placed and message.frame != MavFrame.MISSION else 1.0
-        x, y = message.x * scale, message.y * scale
-        if not (abs(x) <= _INT32 and abs(y) <= _INT32):  # NaN too
-            return None
-    else:
-        x, y = message.x, message.y
-    return WireItem(
-        seq=message.seq,
-        frame=message.frame,
-        command=message.command,
-        current=message.current,
-        autocontinue=message.autocontinue,
-        param1=message.param1,
-        param2=message.param2,
-        param3=message.param3,
-        param4=message.param4,
-        x=round(x),
-        y=round(y),
-        z=message.z,
-        mission_type=message.mission_type,
     )

@@ -6,6 +6,11 @@ client's list is held back while the station's own transfer or another client's 
 way; clients ask for it again by themselves, and are served in the order in which they began to.
 One that asks on and on keeps its turn for `TURN_NS` at the most where others wait, and the client
 in control waits for none that is not.
+
+A reader is known by link and address.  Two programs behind one link have addresses of their own;
+two programs with one address have links of their own, and so has a client that comes back from
+another port: it waits `SILENT_NS` for its own last question at the most, as nobody can tell it from
+a second program with that address.
 """
 
 from __future__ import annotations
@@ -95,6 +100,12 @@ class Downloads:
             if isinstance(message, MissionAck):
                 self._reader = None
         return ""
+
+    def gone(self, link: int) -> None:
+        """Nobody who was heard on that link is there any more; its number may be another's soon."""
+        if self._reader is not None and self._reader[0] == link:
+            self._reader = None
+        self._waiting = {who: waits for who, waits in self._waiting.items() if who[0] != link}
 
     def answers(self, reader: Reader, now_ns: int) -> bool:
         """A reader that is held back has waited for so long that it is to be told no."""

@@ -1,10 +1,11 @@
 """The clearance of a straight motion from a zone, which three rules compare with their limits.
 
-A motion is a straight line; a point is a line of length zero.  Clearances are metres, negative on
-the forbidden side, and are measured for each face of the zone.  An inclusion zone has three faces:
-its sides, its ceiling and its floor.  An exclusion zone has one, its body: a point that is beside
-it *or* above it *or* below it is clear of it.  A `Measure` has the clearance at the start of the
-motion and the least one along it:
+A motion is straight over the ground, and at each place of that at any height between those of its
+ends; a point is a motion of length zero.  Clearances are metres, negative on the forbidden side,
+and are measured for each face of the zone.  An inclusion zone has three faces: its sides, its
+ceiling and its floor.  An exclusion zone has one, its body: a point that is beside it *or* above it
+*or* below it is clear of it.  A `Measure` has the clearance at the start of the motion and the
+least one along it:
 
 point   the least must be at least the margin;
 leg     the same, but a leg that starts closer than the margin may be as close as at its start;
@@ -20,7 +21,7 @@ from enum import Enum
 
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.zones import Zone
-from gcs.gate.geometry import TOLERANCE_M, Point, along
+from gcs.gate.geometry import TOLERANCE_M, Point
 
 
 class Face(Enum):
@@ -58,7 +59,8 @@ NO_MARGINS = Margins(0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """A straight line from `a` to `b`: each (east, north) and up, metres from the local origin."""
+    """A straight way over the ground from `a` to `b`: each (east, north) and up, in metres from the
+    local origin."""
 
     a_en: Point
     a_up_m: float
@@ -91,33 +93,13 @@ def body_clearance(zone: Zone, en: Point, up_m: float) -> float:
     return max(-zone.shape.clearance(en), zone.floor_up_m - up_m, up_m - zone.ceiling_up_m)
 
 
-def leg_body_clearance(zone: Zone, motion: Motion, beside_m: float) -> float | None:
-    """The horizontal clearance of a leg from an exclusion zone.
-
-    Only that part of the leg counts which is less than `beside_m` above or below the zone; None
-    if no part is.
-    """
-    m = motion
-    low, high = zone.floor_up_m - beside_m, zone.ceiling_up_m + beside_m
-    climb = m.b_up_m - m.a_up_m
-    if climb == 0.0:
-        part = (0.0, 1.0) if low < m.a_up_m < high else None
-    else:
-        s, t = sorted(((low - m.a_up_m) / climb, (high - m.a_up_m) / climb))
-        part = (max(0.0, s), min(1.0, t))
-        part = part if part[0] < part[1] else None
-    if part is None:
-        return None
-    return zone.shape.outer_clearance(
-        along(m.a_en, m.b_en, part[0]), along(m.a_en, m.b_en, part[1])
-    )
-
-
 def swept_body_measure(zone: Zone, motion: Motion, beside_m: float) -> Measure | None:
-    """As `leg_body_clearance`, for a motion that is not a straight line in height.
+    """The horizontal clearance of a motion from an exclusion zone; None where it passes only
+    heights that are `beside_m` and more above or below the zone.
 
-    A vehicle that brakes stops at different times horizontally and vertically.  So if any height
-    that it passes is too close to the zone, its whole ground track has to be beside the zone.
+    Only the ground track of a motion is straight.  A vehicle climbs and brakes at speeds of its own
+    vertically and horizontally, so if any height that it passes is too close to the zone, its whole
+    ground track has to be beside the zone.
     """
     m = motion
     lowest, highest = min(m.a_up_m, m.b_up_m), max(m.a_up_m, m.b_up_m)

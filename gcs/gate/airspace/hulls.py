@@ -1,8 +1,8 @@
 """The clearance of regions that are no straight line: convex hulls of points, and rings.
 
-A *hull* is every point of the convex hull of a few points in space.  Beside zones only its ground
-track counts, or that of the part of it between two heights.  A *ring* is the line of a circle,
-without its inside.  Clearances are as in `clearance.py`: metres, negative on the forbidden side.
+A *hull* is every place of the convex hull of a few points' ground tracks, at any height between
+the lowest and the highest of them.  A *ring* is the line of a circle, without its inside.
+Clearances are as in `clearance.py`: metres, negative on the forbidden side.
 
 The distance between a hull and a shape is taken edge by edge with the leg's own functions, whose
 error is below `TOLERANCE_M`; a corner of the shape inside the hull is on the forbidden side.
@@ -12,37 +12,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import combinations
 
 from gcs.gate.geometry import TOLERANCE_M, Circle, Point, Shape, point_segment_distance
 
-UpPoint = tuple[Point, float]
-"""(east, north) and up, metres."""
 
-
-def ground_track(points: Sequence[UpPoint]) -> tuple[Point, ...]:
-    """The corners of the hull's ground track, anticlockwise; one or two where it has no area."""
-    return _convex_hull([en for en, _ in points])
-
-
-def ground_track_between(
-    points: Sequence[UpPoint], low_up_m: float, high_up_m: float
-) -> tuple[Point, ...]:
-    """The ground track of that part of the hull that is above `low` and below `high`; () if none.
-
-    The corners of that part are points between the two heights or at one of them, and places where
-    a line between two points passes one of them.
-    """
-    lowest, highest = min(up for _, up in points), max(up for _, up in points)
-    if highest <= low_up_m or lowest >= high_up_m:
-        return ()
-    found = [en for en, up_m in points if low_up_m <= up_m <= high_up_m]
-    for (a, a_up_m), (b, b_up_m) in combinations(points, 2):
-        for level in (low_up_m, high_up_m):
-            if (a_up_m - level) * (b_up_m - level) < 0.0:
-                t = (level - a_up_m) / (b_up_m - a_up_m)
-                found.append((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
-    return _convex_hull(found)
+def ground_track(points: Sequence[Point]) -> tuple[Point, ...]:
+    """The corners of the hull of places, anticlockwise and without points on its edges (A. M.
+    Andrew's monotone chain, 1979); one or two where it has no area."""
+    ordered = sorted(set(points))
+    if len(ordered) <= 2:
+        return tuple(ordered)
+    lower, upper = _chain(ordered), _chain(ordered[::-1])
+    return tuple(lower[:-1] + upper[:-1])
 
 
 def hull_inside(shape: Shape, corners: Sequence[Point]) -> float:
@@ -88,15 +69,6 @@ def _ring_gap(centre: Point, radius_m: float, a: Point, b: Point) -> float:
     near_m = point_segment_distance(centre, a, b)
     far_m = max(math.dist(centre, a), math.dist(centre, b))
     return max(near_m - radius_m, radius_m - far_m)
-
-
-def _convex_hull(points: Sequence[Point]) -> tuple[Point, ...]:
-    """Anticlockwise, without points on its edges (A. M. Andrew's monotone chain, 1979)."""
-    ordered = sorted(set(points))
-    if len(ordered) <= 2:
-        return tuple(ordered)
-    lower, upper = _chain(ordered), _chain(ordered[::-1])
-    return tuple(lower[:-1] + upper[:-1])
 
 
 def _chain(ordered: Sequence[Point]) -> list[Point]:

@@ -20,13 +20,11 @@ from gcs.gate.airspace.clearance import (
     StopLimit,
     body_clearance,
     inclusion_measures,
-    leg_body_clearance,
     swept_body_measure,
 )
 from gcs.gate.airspace.explain import zone_refusal
 from gcs.gate.airspace.hulls import (
     ground_track,
-    ground_track_between,
     hull_inside,
     hull_outside,
     ring_inside,
@@ -71,6 +69,10 @@ class FenceJudge:
     ) -> Refusal | None:
         """Refuses a leg that does not keep the margin all along.
 
+        Its ground track is straight.  Its height at each place may be any between those of its
+        ends: a vehicle that climbs slower than it would have to is below the straight line, and a
+        PX4 climbs at a speed of its own however long the leg is.
+
         A leg that starts closer than the margin must not come closer than at its start.
         """
         motion = Motion.between(a_ned, b_ned)
@@ -92,7 +94,8 @@ class FenceJudge:
         floor_applies: bool,
         margins: Margins | None = None,
     ) -> Refusal | None:
-        """Refuses the convex hull of the points if any of it does not keep the margin.
+        """Refuses the region over the convex hull of the points' ground track, from the lowest of
+        them to the highest, if any of it does not keep the margin.
 
         A hull that starts closer than the margin must not come closer than its starts are; one
         without starts keeps the margin.
@@ -162,8 +165,8 @@ class FenceJudge:
         beside, stacked = [math.inf], [math.inf]
         for zone in self.zones:
             if not zone.inclusion:
-                clear_m = leg_body_clearance(zone, motion, self.policy.margin_v_m)
-                beside.append(math.inf if clear_m is None else clear_m)
+                measure = swept_body_measure(zone, motion, self.policy.margin_v_m)
+                beside.append(math.inf if measure is None else measure.least_m)
                 continue
             for measure in inclusion_measures(zone, motion, floor_applies=True):
                 (beside if measure.face is Face.SIDES else stacked).append(measure.least_m)
@@ -216,25 +219,23 @@ class FenceJudge:
         margins: Margins,
     ) -> Iterator[Measure]:
         starts = [Motion.between(start, start) for start in starts_ned]
-        points = [(m.a_en, m.a_up_m) for m in starts]
-        points += [(end[:2], end[2]) for end in map(enu_from_ned, ends_ned)]
+        points_enu = [enu_from_ned(pos_ned) for pos_ned in (*starts_ned, *ends_ned)]
+        low, high = min(up for _, _, up in points_enu), max(up for _, _, up in points_enu)
+        track = ground_track([(east, north) for east, north, _ in points_enu])
         if not zone.inclusion:
             near = (body_clearance(zone, m.a_en, m.a_up_m) for m in starts)
             start_m = min(near, default=math.inf)
             if not start_m >= TOLERANCE_M:
                 yield Measure(zone, Face.BODY, start_m, start_m)
                 return
-            beside_m = self._no_nearer(Face.BODY, margins.v_m, start_m)
-            low, high = zone.floor_up_m - beside_m, zone.ceiling_up_m + beside_m
-            track = ground_track_between(points, low, high)
-            if track:
+            stacked_m = self._no_nearer(Face.BODY, margins.v_m, start_m)
+            if low < zone.ceiling_up_m + stacked_m and high > zone.floor_up_m - stacked_m:
                 yield Measure(zone, Face.BODY, start_m, hull_outside(zone.shape, track))
             return
-        low, high = min(up for _, up in points), max(up for _, up in points)
         start_low = min((m.a_up_m for m in starts), default=math.inf)
         start_high = max((m.a_up_m for m in starts), default=-math.inf)
         start_m = min((zone.shape.clearance(m.a_en) for m in starts), default=math.inf)
-        yield Measure(zone, Face.SIDES, start_m, hull_inside(zone.shape, ground_track(points)))
+        yield Measure(zone, Face.SIDES, start_m, hull_inside(zone.shape, track))
         top = zone.ceiling_up_m
         yield Measure(zone, Face.CEILING, top - start_high, top - high)
         if floor_applies:
@@ -260,12 +261,10 @@ class FenceJudge:
                 subject, Measure(zone, Face.BODY, start_m, start_m), margins.h_m, leg=True
             )
         stacked_m = self._no_nearer(Face.BODY, margins.v_m, start_m)
-        beside_m = leg_body_clearance(zone, motion, stacked_m)
-        if beside_m is None or beside_m >= self._no_nearer(Face.BODY, margins.h_m, start_m):
+        measure = swept_body_measure(zone, motion, stacked_m)
+        if measure is None or measure.least_m >= self._no_nearer(Face.BODY, margins.h_m, start_m):
             return None
-        return zone_refusal(
-            subject, Measure(zone, Face.BODY, start_m, beside_m), margins.h_m, leg=True
-        )
+        return zone_refusal(subject, measure, margins.h_m, leg=True)
 
     def _stop_measures(self, motion: Motion, floor_applies: bool) -> Iterator[Measure]:
         for zone in self.zones:

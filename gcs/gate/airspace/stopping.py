@@ -7,9 +7,9 @@ direction.
 Two sets of figures: the policy's braking, what a hold takes from the command on, and its approach,
 what a vehicle takes that slows down by itself for a goal it was sent.  `predicted_stop` chooses.
 
-What a vehicle slows down for is its goal and nothing that stands before it.  A straight leg passes
-clear of everything; but a vehicle that flies faster than it climbs is below its leg, and what it
-flies towards there is judged by its braking.
+What a vehicle slows down for is its goal and nothing that stands before it.  A leg is clear of
+everything at all heights between those of its ends; what the vehicle flies towards above or below
+those is judged by its braking.
 """
 
 from __future__ import annotations
@@ -102,8 +102,8 @@ def overshoot_point(pos_ned: Vec3, goal_ned: Vec3, overshoot: Overshoot) -> Vec3
 
 def predicted_stop(pos_ned: Vec3, v_ned: Vec3, path: Path, stops: Stops) -> Vec3:
     """Where the vehicle comes to rest: by its approach where it slows down for a goal of its own,
-    else by its braking.  On a leg, horizontal and vertical are decided apart.  Above or below the
-    leg it is braked for what is before the goal, but not for what is behind it."""
+    else by its braking.  On a leg, horizontal and vertical are decided apart.  Above or below both
+    ends of the leg it is braked for what is before the goal, but not for what is behind it."""
     held_ned = stop_point(pos_ned, v_ned, stops.braking)
     own_ned = stop_point(pos_ned, v_ned, stops.approach)
     match path:
@@ -115,7 +115,7 @@ def predicted_stop(pos_ned: Vec3, v_ned: Vec3, path: Path, stops: Stops) -> Vec3
             north, east, _ = held_ned
             if _along_leg(own_ned, v_ned, path, stops):
                 north, east, _ = own_ned
-                if not _at_height_of_leg(own_ned, path, stops):
+                if not _at_a_height_of_leg(own_ned, path, stops):
                     north, east = _no_farther_than_goal(pos_ned, own_ned, held_ned, path)
             down = (own_ned if _between_heights(own_ned, v_ned, path, stops) else held_ned)[2]
             return (north, east, down)
@@ -123,23 +123,18 @@ def predicted_stop(pos_ned: Vec3, v_ned: Vec3, path: Path, stops: Stops) -> Vec3
             assert_never(path)
 
 
-def _at_height_of_leg(stop_ned: Vec3, leg: Leg, stops: Stops) -> bool:
-    """Is the stop on the straight leg in height, too, but for the error of its position?"""
-    leg_n, leg_e, leg_d = (b - a for a, b in zip(leg.from_ned, leg.goal_ned, strict=True))
-    length2 = leg_n * leg_n + leg_e * leg_e
-    if length2 == 0.0:
-        return True
-    along = (stop_ned[0] - leg.from_ned[0]) * leg_n + (stop_ned[1] - leg.from_ned[1]) * leg_e
-    part = min(1.0, max(0.0, along / length2))
-    off_m = abs(stop_ned[2] - leg.from_ned[2] - part * leg_d)
-    return off_m <= stops.braking.position_error_v_m
+def _at_a_height_of_leg(stop_ned: Vec3, leg: Leg, stops: Stops) -> bool:
+    """Is the stop between the heights of the leg's ends, but for the error of its position?"""
+    error_m = stops.braking.position_error_v_m
+    low, high = sorted((leg.from_ned[2], leg.goal_ned[2]))
+    return low - error_m <= stop_ned[2] <= high + error_m
 
 
 def _no_farther_than_goal(pos: Vec3, own: Vec3, held: Vec3, leg: Leg) -> tuple[float, float]:
     """The own stop, and on from there along the leg: as far as a hold takes, or to the goal."""
     leg_n, leg_e = leg.goal_ned[0] - leg.from_ned[0], leg.goal_ned[1] - leg.from_ned[1]
     leg_m = math.hypot(leg_n, leg_e)
-    n, e = leg_n / leg_m, leg_e / leg_m
+    n, e = (leg_n / leg_m, leg_e / leg_m) if leg_m > 0.0 else (0.0, 0.0)
     left_m = (leg.goal_ned[0] - own[0]) * n + (leg.goal_ned[1] - own[1]) * e
     more_m = math.dist(pos[:2], held[:2]) - math.dist(pos[:2], own[:2])
     on_m = max(0.0, min(left_m, more_m))

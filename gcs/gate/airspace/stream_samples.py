@@ -9,7 +9,8 @@ is old, it comes to rest within
 
 which the convex hull of the vehicle's position and of this place for both velocities, with the
 larger |w| for both, contains.  An acceleration leads to velocities of its own: what it adds in
-T + react to the present velocity and to the one asked for.  Horizontal and vertical are apart.
+T + react to the present velocity and to the one asked for.  What an attitude leads to is in
+`attitude_samples.py`.  Horizontal and vertical are apart.
 """
 
 from __future__ import annotations
@@ -22,6 +23,14 @@ from typing import Final
 
 from gcs.enu_text import fixed
 from gcs.frames import Vec3
+from gcs.gate.airspace.attitude_samples import (
+    BeforeThis,
+    attitude_asks,
+    attitude_beyond_rules,
+    attitude_velocities,
+    leaning_velocities,
+)
+from gcs.gate.attitude import Attitude
 from gcs.gate.policy.policy import Braking, StreamRules
 from gcs.gate.refusal import Code, Refusal
 
@@ -31,13 +40,17 @@ TICK_S: Final = 0.05
 
 @dataclass(frozen=True, slots=True)
 class StreamSample:
-    """One sample: metres, m/s and m/s^2 in local NED, radians; None is not asked for."""
+    """One sample: metres, m/s and m/s^2 in local NED, radians; None is not asked for.
+
+    An attitude stands alone, or has a yaw rate beside it.
+    """
 
     pos_ned: Vec3 | None = None
     v_ned: Vec3 | None = None
     a_ned: Vec3 | None = None
     yaw_rad: float | None = None
     yaw_rate_rad_s: float | None = None
+    attitude: Attitude | None = None
 
     @property
     def numbers(self) -> dict[str, Sequence[float]]:
@@ -48,6 +61,7 @@ class StreamSample:
             "acceleration asked for": self.a_ned or (),
             "yaw asked for": () if self.yaw_rad is None else (self.yaw_rad,),
             "yaw rate asked for": () if self.yaw_rate_rad_s is None else (self.yaw_rate_rad_s,),
+            "attitude asked for": () if self.attitude is None else self.attitude.numbers,
         }
 
 
@@ -55,13 +69,23 @@ def beyond_rules(sample: StreamSample, rules: StreamRules) -> Refusal | None:
     """Refuses a sample that asks for nothing that can be judged, or for more than the policy's
     most."""
     moves = (sample.pos_ned, sample.v_ned, sample.a_ned)
-    if all(part is None for part in moves) or (
+    if sample.attitude is not None:
+        if (*moves, sample.yaw_rad) != (None, None, None, None):
+            return Refusal(
+                Code.UNSUPPORTED,
+                "an attitude leaves no room for a position, a velocity,"
+                " an acceleration or a yaw beside it",
+            )
+        refusal = attitude_beyond_rules(sample.attitude, rules)
+        if refusal is not None:
+            return refusal
+    elif all(part is None for part in moves) or (
         sample.pos_ned is not None and sample.a_ned is not None and sample.v_ned is None
     ):
         return Refusal(
             Code.UNSUPPORTED,
-            "a sample has a position, a velocity or an acceleration; a position and an acceleration"
-            " need a velocity between them",
+            "a sample has a position, a velocity, an acceleration or an attitude; a position and an"
+            " acceleration need a velocity between them",
         )
     for value, most, key, unit in _asked(sample, rules):
         if value > most:
@@ -83,16 +107,33 @@ def _asked(sample: StreamSample, rules: StreamRules) -> Iterator[tuple[float, fl
         yield down, rules.max_speed_down_m_s, "max_speed_down_m_s", "m/s down"
     if sample.a_ned is not None:
         yield math.hypot(*sample.a_ned), rules.max_a_m_s2, "max_a_m_s2", "m/s2"
+    if sample.attitude is not None:
+        yield from attitude_asks(sample.attitude, rules)
     if sample.yaw_rate_rad_s is not None:
         rate_deg_s = abs(math.degrees(sample.yaw_rate_rad_s))
         yield rate_deg_s, rules.max_yaw_rate_deg_s, "max_yaw_rate_deg_s", "degrees/s"
 
 
 def velocities(
-    sample: StreamSample, v_ned: Vec3, counts_s: float, braking: Braking
+    sample: StreamSample,
+    v_ned: Vec3,
+    age_s: float,
+    before: Sequence[BeforeThis],
+    braking: Braking,
+    rules: StreamRules,
 ) -> tuple[Vec3, ...]:
-    """The vehicle's velocity and what the sample may lead to; the present one is the first."""
-    found = [v_ned]
+    """The vehicle's velocity, `age_s` ago, and what the sample may lead to; that one is the first.
+
+    `before` is how the vehicle leant for the samples before this one.
+    """
+    counts_s = sample_counts_s(age_s, rules)
+    if sample.attitude is not None:
+        react_s = braking.react_s
+        led_to = attitude_velocities(
+            sample.attitude, before, v_ned, age_s, counts_s, react_s, rules
+        )
+        return (v_ned, *led_to)
+    found = [v_ned, *leaning_velocities(before, v_ned, age_s, rules)]
     if sample.v_ned is not None:
         found.append(sample.v_ned)
     if sample.a_ned is not None:
@@ -100,6 +141,12 @@ def velocities(
         for n, e, d in tuple(found):
             found.append((n + gained[0], e + gained[1], d + gained[2]))
     return tuple(found)
+
+
+def sample_counts_s(age_s: float, rules: StreamRules) -> float:
+    """How long the vehicle flies by a sample before it is told to hold, from the position on that
+    is `age_s` old when the sample comes."""
+    return rules.deadman_s + TICK_S + age_s
 
 
 def places_of_rest(

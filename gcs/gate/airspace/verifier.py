@@ -16,6 +16,7 @@ from typing import Final
 
 from gcs.enu_text import place
 from gcs.frames import Vec3
+from gcs.gate.airspace.attitude_samples import BeforeThis, flies_too_fast
 from gcs.gate.airspace.clearance import NO_MARGINS, Margins
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
@@ -24,10 +25,10 @@ from gcs.gate.airspace.prediction import BadStop, bad_overshoot, bad_stop, stopp
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.stopping import Path, predicted_stop, stops_of
 from gcs.gate.airspace.stream_samples import (
-    TICK_S,
     StreamSample,
     beyond_rules,
     places_of_rest,
+    sample_counts_s,
     velocities,
 )
 from gcs.gate.airspace.zones import Zone, build_zones
@@ -162,18 +163,26 @@ class Verifier:
         )
 
     def stream_sample(
-        self, sample: StreamSample, pos_ned: Vec3, v_ned: Vec3, age_s: float
+        self,
+        sample: StreamSample,
+        pos_ned: Vec3,
+        v_ned: Vec3,
+        age_s: float,
+        before: Sequence[BeforeThis] = (),
     ) -> Cleared | Refusal:
         """May a sample of a client's stream be flown, by a position that is `age_s` old?
 
-        Its position is judged as a goal is.  For a velocity or an acceleration the vehicle must be
-        able to stop inside by the margin after it has flown that, or gone on as it flies now, for
-        as long as the sample counts; see `stream_samples.py`.
+        Its position is judged as a goal is.  For a velocity, an acceleration or an attitude the
+        vehicle must be able to stop inside by the margin after it has flown that, or gone on as it
+        flies now, for as long as the sample counts; see `stream_samples.py`.  `before` is how it
+        leant for the attitudes that the sample follows.
         """
         refusal = self._unusable(position=pos_ned, velocity=v_ned, **sample.numbers)
         refusal = (
             refusal or beyond_rules(sample, self.policy.stream) or beyond_reach(pos_ned, v_ned)
         )
+        if refusal is None and sample.attitude is not None:
+            refusal = flies_too_fast(v_ned, self.policy.stream)
         if refusal is not None:
             return refusal
         evidence: tuple[tuple[str, float], ...] = ()
@@ -182,19 +191,30 @@ class Verifier:
             if isinstance(goal, Refusal):
                 return goal
             evidence = goal.evidence
-            if sample.v_ned is None:
+            if sample.v_ned is None and not before:
                 return goal
-        return self._stream_velocity(sample, pos_ned, v_ned, age_s) or Cleared(
-            (*evidence, *stopping_numbers(self._judge, sample.v_ned or v_ned), ("age_s", age_s))
+        asked = () if sample.attitude is None else (("tilt_deg", sample.attitude.tilt_deg),)
+        return self._stream_velocity(sample, pos_ned, v_ned, age_s, before) or Cleared(
+            (
+                *evidence,
+                *asked,
+                *stopping_numbers(self._judge, sample.v_ned or v_ned),
+                ("age_s", age_s),
+            )
         )
 
     def _stream_velocity(
-        self, sample: StreamSample, pos_ned: Vec3, v_ned: Vec3, age_s: float
+        self,
+        sample: StreamSample,
+        pos_ned: Vec3,
+        v_ned: Vec3,
+        age_s: float,
+        before: Sequence[BeforeThis],
     ) -> Refusal | None:
-        """Refuses velocities and accelerations that the vehicle could not stop from inside."""
-        braking = self.policy.braking_of(self.autopilot)
-        counts_s = self.policy.stream.deadman_s + TICK_S + age_s
-        flown = velocities(sample, v_ned, counts_s, braking)
+        """Refuses what leads to velocities that the vehicle could not stop from inside."""
+        rules, braking = self.policy.stream, self.policy.braking_of(self.autopilot)
+        counts_s = sample_counts_s(age_s, rules)
+        flown = velocities(sample, v_ned, age_s, before, braking, rules)
         # With a position too, the vehicle may come to rest as far beyond that as beyond its own.
         begins = (pos_ned,) if sample.pos_ned is None else (pos_ned, sample.pos_ned)
         rest = [p for begin in begins for p in places_of_rest(begin, flown, counts_s, braking)]

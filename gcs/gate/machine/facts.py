@@ -266,9 +266,9 @@ def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
     asked_for = ASKED_FOR[ended.kind]
     said = f": {ended.text}" if ended.text else ""
     if key not in memory.outstanding:
-        if ended.result is None:
+        if ended.result is None and memory.silence_reported is not ended.kind:
             turn.say(Level.INFO, f"No answer to {name}, which is waited for no longer{said}")
-        else:
+        elif ended.result is not None:
             turn.say(Level.INFO, f"A late answer to {name}, not acted on{said}")
         yield Occurrence(Event.LATE_ANSWER)
         return

@@ -321,6 +321,7 @@ class Gate:
                     v_ned=asked.v_ned,
                     a_ned=asked.a_ned,
                     yaw_rate_rad_s=asked.yaw_rate_rad_s,
+                    attitude=asked.attitude,
                 )
             )
         if isinstance(draft, CommandDraft):

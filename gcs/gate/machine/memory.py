@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.attitude_samples import BeforeThis
 from gcs.gate.airspace.stopping import Leg, OwnPath, Path
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Verifier
@@ -127,6 +128,7 @@ class Memory:
     flown: FlownSample | None = None  # None: the vehicle is held at `hold` in its place
     sample_ns: int = 0  # when the sample that is flown came
     streamed_ns: int = 0  # when the last sample came, good or not
+    leant: tuple[tuple[int, BeforeThis], ...] = ()  # when attitudes came that were flown, and which
     stream_refused: bool = False  # and the client was told
     good_since_ns: int | None = None  # refused before, its samples would be good since then
     refused_elsewhere: tuple[tuple[str, Code], ...] = ()  # by source, told once; see `Turn.refuse`

@@ -87,6 +87,8 @@ def begin(turn: Turn) -> None:
     memory.refused_elsewhere = ()
     if memory.goal is not None:
         memory.goal = None
+        if turn.policy.stream.tilt_deg > 0.0:
+            memory.leant = ((turn.now_ns, None),)
         _hold_ahead(turn)
 
 
@@ -99,6 +101,8 @@ def fly(turn: Turn) -> None:
         turn.out.append(StreamVerdict(memory.streamer, None, turn.evidence))
         turn.say(Level.INFO, f"The stream of {memory.streamer} is flown")
     sample = verifying.sample_of(turn.streamed)
+    if sample.attitude is not None:
+        memory.leant = verifying.leaning_on(turn, sample.attitude)
     memory.flown = FlownSample(sample, memory.pos_ned, turn.evidence)
     memory.sample_ns = memory.streamed_ns = turn.now_ns
     memory.stream_refused, memory.good_since_ns = False, None

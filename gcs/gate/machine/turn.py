@@ -36,6 +36,9 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import BeginStream
 from gcs.gate.states import Control, FlightMode, State
 
+NOT_HEARD: Final = frozenset({State.STALE, State.NO_VEHICLE})
+"""States in which the vehicle may not hear us either."""
+
 
 @dataclass(frozen=True, slots=True)
 class SetpointDraft:
@@ -343,4 +346,6 @@ class Turn:
         self.memory.outstanding = ()
         self.memory.asked_mode = None
         self.memory.hold_again_ns = None
-        self.memory.silence_reported = None
+        if self.memory.state not in NOT_HEARD:
+            # Of one that is not heard, once is enough until it answers again.
+            self.memory.silence_reported = None

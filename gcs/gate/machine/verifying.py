@@ -11,10 +11,12 @@ from dataclasses import replace
 from typing import Final
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.attitude_samples import BeforeThis, lean_of
 from gcs.gate.airspace.limits import STANDING
-from gcs.gate.airspace.stream_samples import StreamSample
+from gcs.gate.airspace.stream_samples import TICK_S, StreamSample
 from gcs.gate.airspace.verifier import Cleared, Verifier
 from gcs.gate.airspace.zones import Zone
+from gcs.gate.attitude import Attitude
 from gcs.gate.geometry import Circle
 from gcs.gate.inputs import StreamSeen
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS, Memory
@@ -86,7 +88,9 @@ AGES: Final = 4
 
 
 def sample_of(seen: StreamSeen) -> StreamSample:
-    return StreamSample(seen.pos_ned, seen.v_ned, seen.a_ned, seen.yaw_rad, seen.yaw_rate_rad_s)
+    return StreamSample(
+        seen.pos_ned, seen.v_ned, seen.a_ned, seen.yaw_rad, seen.yaw_rate_rad_s, seen.attitude
+    )
 
 
 def given_sample(turn: Turn) -> Refusal | None:
@@ -107,8 +111,46 @@ def _sample(turn: Turn, sample: StreamSample) -> Refusal | None:
         return _keep(turn, home_or_fence_unknown())
     if age_s is None or turn.stale or memory.pos_ned is None or memory.v_ned is None:
         return _keep(turn, no_fresh_position(memory))
-    judged = memory.verifier.stream_sample(sample, memory.pos_ned, memory.v_ned, age_s)
+    before = leans_before(turn, sample, age_s)
+    judged = memory.verifier.stream_sample(sample, memory.pos_ned, memory.v_ned, age_s, before)
     return _keep(turn, judged)
+
+
+def leans_before(turn: Turn, sample: StreamSample, age_s: float) -> tuple[BeforeThis, ...]:
+    """How the vehicle leant for what it flew since its position, and just before that.
+
+    Of attitudes also the one that was flown on until then and had come earlier.  A vehicle that
+    flies to a position or at a velocity when an attitude comes leans as it may.
+    """
+    otherwise = sample.attitude is not None and _flies_otherwise(turn.memory)
+    found: list[BeforeThis] = [None] if otherwise else []
+    if not turn.memory.leant:
+        return tuple(found)
+    rules = turn.policy.stream
+    since_ns = turn.now_ns - round((age_s + rules.attitude_settle_s) * SECOND_NS)
+    for came_ns, lean in reversed(turn.memory.leant):
+        if came_ns <= since_ns - round((rules.deadman_s + TICK_S) * SECOND_NS):
+            break
+        found.append(lean)
+        if came_ns <= since_ns:
+            break
+    return tuple(found)
+
+
+def leaning_on(turn: Turn, attitude: Attitude) -> tuple[tuple[int, BeforeThis], ...]:
+    """What of the vehicle's leans may still count from now on, when this one is flown."""
+    memory, rules, now_ns = turn.memory, turn.policy.stream, turn.now_ns
+    longest_s = rules.position_age_s + rules.attitude_settle_s + rules.deadman_s + TICK_S
+    kept = [each for each in memory.leant if each[0] > now_ns - round(longest_s * SECOND_NS)]
+    if _flies_otherwise(memory):
+        kept.append((now_ns, None))
+    return (*kept, (now_ns, lean_of(attitude, rules)))
+
+
+def _flies_otherwise(memory: Memory) -> bool:
+    """To a goal, or by samples that are no attitudes."""
+    flown = memory.flown
+    return memory.goal is not None or (flown is not None and flown.sample.attitude is None)
 
 
 def hold_ahead(turn: Turn) -> Vec3 | None:

@@ -246,6 +246,10 @@ def _check_stream(doc: toml.Document, p: Policy) -> None:
         if doc.has(("stream", f"stick_{key}")) and full > most:
             what = f"{full:g} is more than max_{key} of {most:g}"
             raise doc.error(("stream", f"stick_{key}"), what)
+    # While it is held for refused samples the vehicle must have come out of its lean.
+    if p.stream.tilt_deg > 0.0 and p.stream.good_again_s < p.stream.attitude_settle_s:
+        what = f"attitude_settle_s of {p.stream.attitude_settle_s:g} is more than good_again_s of"
+        raise doc.error(("stream", "tilt_deg"), f"{what} {p.stream.good_again_s:g}")
 
 
 def _check_slack(doc: toml.Document, p: Policy) -> None:

@@ -28,6 +28,8 @@ FromTwentieth: TypeAlias = Annotated[float, Meta(ge=0.05, le=MOST)]
 FromTenth: TypeAlias = Annotated[float, Meta(ge=0.1, le=MOST)]
 FromOne: TypeAlias = Annotated[float, Meta(ge=1.0, le=MOST)]
 Deceleration: TypeAlias = Annotated[float, Meta(ge=0.1, le=50.0)]
+Tilt: TypeAlias = Annotated[float, Meta(ge=0.0, le=45.0)]
+ThrustError: TypeAlias = Annotated[float, Meta(ge=0.0, le=0.5)]
 DeadBand: TypeAlias = Annotated[float, Meta(ge=0.0, le=0.9)]
 
 
@@ -205,6 +207,10 @@ class StreamRules(_Section, frozen=True):
     again once they were good for `good_again_s`; a stream without a sample for `ends_after_s` is
     over.  `stick_*` is what a client's full stick asks for, and never more than the most that a
     stream may ask for; `stick_dead_band` is the share of a stick's way that counts as the middle.
+
+    An attitude tilts by at most `tilt_deg`, and none is flown where that is 0.  A vehicle hovers at
+    the thrust that it says, but for a share of `hover_thrust_error`; it has an attitude after
+    `attitude_settle_s`, and accelerates by up to `attitude_error_m_s2` otherwise than that says.
     """
 
     deadman_s: FromTenth
@@ -216,6 +222,10 @@ class StreamRules(_Section, frozen=True):
     max_speed_down_m_s: FromZero
     max_a_m_s2: FromZero
     max_yaw_rate_deg_s: FromZero
+    tilt_deg: Tilt
+    hover_thrust_error: ThrustError
+    attitude_error_m_s2: FromZero
+    attitude_settle_s: FromZero
     stick_speed_h_m_s: FromZero
     stick_speed_up_m_s: FromZero
     stick_speed_down_m_s: FromZero

@@ -199,8 +199,21 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
         yield f"a breach is predicted in {before.state.name} and not held"
     if edge.after.state is not State.HOLDING:
         yield f"a breach is predicted and {edge.after.state.name} goes on"
-    if breach.brake_pos_ned is not None and not edge.setpoints and not given.reset:
+    if breach.brake_pos_ned is not None and not edge.setpoints and not _jumped(edge, given):
         yield f"a breach is predicted in {before.state.name} and not braked"
+
+
+def _jumped(edge: Edge, given: PositionSeen) -> bool:
+    """Told so, or farther from the last position than the policy believes that it flew: what frame
+    a setpoint would be in is not known, so a hold is all that can be asked for."""
+    before = edge.before
+    if given.reset or before.pos_ned is None or before.pos_ns is None:
+        return given.reset
+    least_s = math.dist(given.pos_ned, before.pos_ned) / edge.policy.jump_speed_m_s
+    stamped_ms = given.time_boot_ms - before.boot_ms
+    if stamped_ms:
+        return stamped_ms / 1000 < least_s
+    return (edge.now_ns - before.pos_ns) / SECOND_NS < least_s
 
 
 def _flown(memory: Memory) -> Path:

@@ -31,7 +31,12 @@ def is_sample(edge: Edge, sent: SendSetpoint) -> bool:
 
 def _asks(permit: Permit) -> StreamSample:
     return StreamSample(
-        permit.pos_ned, permit.v_ned, permit.a_ned, permit.yaw_rad, permit.yaw_rate_rad_s
+        permit.pos_ned,
+        permit.v_ned,
+        permit.a_ned,
+        permit.yaw_rad,
+        permit.yaw_rate_rad_s,
+        permit.attitude,
     )
 
 
@@ -42,7 +47,8 @@ def sends_samples_that_clear(edge: Edge) -> Iterator[str]:
     for sent in edge.setpoints:
         permit = sent.permit
         if not is_sample(edge, sent):
-            if (permit.v_ned, permit.a_ned, permit.yaw_rate_rad_s) != (None, None, None):
+            moves = (permit.v_ned, permit.a_ned, permit.yaw_rate_rad_s, permit.attitude)
+            if moves != (None, None, None, None):
                 yield f"a velocity leaves in {after.state.name}, which is no sample that is flown"
             continue
         if not isinstance(edge.given, Tick):
@@ -74,7 +80,12 @@ def takes_samples_of_one_client(edge: Edge) -> Iterator[str]:
     if same(before, after, "flown") or after.flown is None:
         return
     came = StreamSample(
-        given.pos_ned, given.v_ned, given.a_ned, given.yaw_rad, given.yaw_rate_rad_s
+        given.pos_ned,
+        given.v_ned,
+        given.a_ned,
+        given.yaw_rad,
+        given.yaw_rate_rad_s,
+        given.attitude,
     )
     if after.flown.sample != came or after.sample_ns != edge.now_ns:
         yield "a sample is flown that did not come"

@@ -148,9 +148,11 @@ class Walk:
         met = bisect_left(self._edge_to, at * len(self._letters.names))
         return Begun(self._nodes.some(0, met), self._edge_to[:met], at)
 
-    def run(self) -> Explored:
-        """To the end, once."""
+    def run(self, most: int | None = None) -> Explored:
+        """To the end, once; or until at least `most` nodes have had their turn."""
         while self._over is None:
+            if most is not None and self._at >= most:
+                return self._explored(None)
             fault = self._take_batch(self._at, min(self._at + self._size, self._nodes.count))
             if fault is not None or self._at == self._nodes.count:
                 self._over = self._explored(fault)

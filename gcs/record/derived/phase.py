@@ -18,6 +18,9 @@ from gcs.report import FsaItem, InputItem, PoseItem, RecordItem, StatusItem
 
 SHORTEST_NS = 400_000_000
 PERIOD_NS = 1_000_000_000
+NEVER_NS = 1 << 62
+_CLOCKS = frozenset({PoseItem, InputItem})
+"""Items that only tell that time passes."""
 
 
 class Phase(msgspec.Struct, frozen=True):
@@ -47,6 +50,11 @@ class Debounced:
         self.value = self.newest
         return True
 
+    @property
+    def due_ns(self) -> int:
+        """When the newest value counts, if it stays."""
+        return NEVER_NS if self.newest == self.value else self.since_ns + SHORTEST_NS
+
 
 @dataclass(slots=True)
 class _Vehicle:
@@ -55,11 +63,19 @@ class _Vehicle:
     shown: dict[str, Debounced] = field(default_factory=dict)
     sent_ns: int = 0
 
+    @property
+    def due_ns(self) -> int:
+        """When the next value will have stood long enough, if it stays."""
+        return min((each.due_ns for each in self.shown.values()), default=NEVER_NS)
+
     def settle(self, now_ns: int) -> bool:
         """Whether a value has stood long enough to be told."""
         changed = False
         for name, value in self.newest.items():
-            changed |= self.shown.setdefault(name, Debounced()).see(value, now_ns)
+            shown = self.shown.get(name)
+            if shown is None:
+                shown = self.shown[name] = Debounced()
+            changed |= shown.see(value, now_ns)
         return changed
 
     def out(self, now_ns: int) -> Out:
@@ -74,8 +90,12 @@ class Phases(Deriver):
 
     def __init__(self) -> None:
         self._vehicles: dict[int, _Vehicle] = {}
+        self._due_ns = NEVER_NS
+        """Before this nothing comes to count by time alone."""
 
     def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
+        if type(item) in _CLOCKS and now_ns < self._due_ns:
+            return []
         match item:
             case FsaItem(sysid):
                 seen = {"state": item.state, "control": item.control, "severity": item.severity}
@@ -84,7 +104,13 @@ class Phases(Deriver):
                 self._vehicle(sysid).newest.update(mode=item.mode, landed=item.landed)
             case _:
                 pass
-        return [v.out(now_ns) for v in self._vehicles.values() if v.settle(now_ns)]
+        return self._settled(now_ns)
+
+    def _settled(self, now_ns: int) -> list[Out]:
+        vehicles = self._vehicles.values()
+        outs = [vehicle.out(now_ns) for vehicle in vehicles if vehicle.settle(now_ns)]
+        self._due_ns = min((vehicle.due_ns for vehicle in vehicles), default=NEVER_NS)
+        return outs
 
     def tick(self, now_ns: int) -> list[Out]:
         return [

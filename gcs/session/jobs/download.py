@@ -7,6 +7,7 @@ from gcs.exit_codes import ExitCode
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code
 from gcs.plan.errors import PlanError
+from gcs.plan.item_messages import item_of
 from gcs.plan.wire import from_wire
 from gcs.plan.writer import write
 from gcs.protocol.mission import MissionDownload
@@ -19,7 +20,6 @@ from gcs.session.jobs.job import (
     VehicleView,
 )
 from gcs.session.paths import autopilot_name
-from gcs.session.plans import item_of
 from gcs.session.work import Tell
 from gcs.wire.messages import MissionItemInt
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from gcs.gate.airspace.projection import Projection
 from gcs.gate.refusal import Code, Refusal
+from gcs.plan.item_messages import item_of
 from gcs.plan.legs import FlightSettings, LandingPlace
 from gcs.plan.model import AutopilotName
 from gcs.plan.settings import USUAL
@@ -19,7 +20,6 @@ from gcs.protocol.mission import MissionDownload
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
 from gcs.protocol.transfer import Timing
 from gcs.session.paths import autopilot_name
-from gcs.session.plans import item_of
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.wire.ids import MavFrame, MissionType

@@ -9,6 +9,7 @@ from typing import Final
 
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import StartMission
+from gcs.plan.item_messages import item_of
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address
 from gcs.protocol.mission_rewind import MissionRewind
@@ -16,7 +17,6 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import Asked, JobWork, VehicleView, code_of
 from gcs.session.jobs.verified import VerifiedJob
 from gcs.session.paths import autopilot_name
-from gcs.session.plans import item_of
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import AskGate
 from gcs.wire.ids import Cmd

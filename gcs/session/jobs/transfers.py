@@ -7,11 +7,11 @@ from abc import abstractmethod
 from gcs.gate.effects import Level, OutcomeKind
 from gcs.gate.refusal import Code
 from gcs.plan import compare
+from gcs.plan.item_messages import item_of, message_of
 from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload, MissionUpload
 from gcs.session.jobs.job import NODE, Asked, Job, JobWork, VehicleView
 from gcs.session.paths import autopilot_name
-from gcs.session.plans import item_of, message_of
 from gcs.session.work import Log
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt

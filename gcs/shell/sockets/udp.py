@@ -84,7 +84,7 @@ class UdpIn(_Udp):
     def describe(self) -> str:
         buffer = f"receive buffer {self.rcvbuf >> 10} KiB"
         host = self.endpoint.host
-        return f"waiting for datagrams on udp {host}:{self._port}, {buffer}"
+        return f"listening on udp {host}:{self._port}, {buffer}"
 
 
 class UdpOut(_Udp):
@@ -121,4 +121,4 @@ class UdpOut(_Udp):
 
     def describe(self) -> str:
         to = f"{self._address}:{self.endpoint.port}"
-        return f"sending datagrams to udp {to}, receive buffer {self.rcvbuf >> 10} KiB"
+        return f"sending to and hearing from udp {to}, receive buffer {self.rcvbuf >> 10} KiB"

@@ -17,7 +17,13 @@ from mavsdk.plugins import geofence as fences
 from mavsdk.plugins import mission_raw as raw
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.manual_control import ManualControl
-from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
+from mavsdk.plugins.offboard import (
+    Attitude,
+    Offboard,
+    PositionNedYaw,
+    VelocityBodyYawspeed,
+    VelocityNedYaw,
+)
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 from mavsdk_station import EARTH_M_PER_DEG, Station, ask_for_streams, ned_m, refusal, until
@@ -186,6 +192,27 @@ class Peer:
             far_m = max(far_m, *(abs(each) for each in self.here()[:2]))
             time.sleep(0.04)
         return far_m
+
+    def attitudes(self) -> None:
+        """Leaning at the fence of the yard, 20 m up, by 5 degrees; and back."""
+        hover = Param(self.system).get_param_float("MPC_THR_HOVER")
+        self.done("goto", self.goto, 0.0, 0.0, 20.0)
+        self.come_to(0.0, 0.0, 20.0)
+        control = Offboard(self.system)
+        control.set_attitude(Attitude(0.0, 0.0, 0.0, hover))
+        self.done("attitude", control.start)
+        control.set_attitude(Attitude(0.0, -5.0, 0.0, hover))
+        until(lambda: self.telemetry.velocity_ned().north_m_s > 1.0, "leans to the north")
+        print("flies where it leans", flush=True)
+        until(lambda: self.here()[0] > 15.0, "15 m north", 40.0)
+        until(lambda: abs(self.telemetry.velocity_ned().north_m_s) < 0.3, "held", 40.0)
+        held_m = self.here()[0]
+        print(f"held {held_m:.0f} m north", flush=True)
+        control.set_attitude(Attitude(0.0, 5.0, 0.0, hover))
+        until(lambda: self.here()[0] < held_m - 5.0, "leans back", 40.0)
+        print("flies back", flush=True)
+        self.done("offboard ended", control.stop)
+        time.sleep(4.0)
 
     def land(self) -> None:
         self.done("land", self.action.land)

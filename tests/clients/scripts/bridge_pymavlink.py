@@ -263,6 +263,31 @@ class Peer:
         print("returns", flush=True)
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
 
+    def start_as_qgroundcontrol(self):
+        """Its "start mission", from memory of its startMission: PX4's mode until a heartbeat shows
+        it (three tries of 1.3 s), then one arming, which is to be seen within 3 s; ArduPilot:
+        GUIDED, the arming, MISSION_START.  All by mavutil's own words."""
+        self.connect()
+        items = self.mission((15, 0, UP_M, 1), (15, -15, UP_M, 1), last=21)
+        assert self.upload(items) == 0, self.texts[-6:]
+        mode = "MISSION" if self.autopilot == "px4" else "GUIDED"
+        for _ in range(3):
+            self.link.set_mode(mode)
+            shown = self.wait(
+                "HEARTBEAT", lambda m: self.link.flightmode == mode, 1.3, needed=False
+            )
+            if shown is not None:
+                break
+        assert shown is not None, self.texts[-6:]
+        print(f"shows {mode}", flush=True)
+        self.link.arducopter_arm()
+        self.wait("HEARTBEAT", lambda m: self.link.motors_armed(), 3.0)
+        print("armed within 3 s", flush=True)
+        if self.autopilot == "ardupilot":
+            self.done("start of the mission", self.long(M.MAV_CMD_MISSION_START))
+        self.wait("MISSION_ITEM_REACHED", lambda m: m.seq >= 2, seconds=60.0)
+        print("mission item 2 reached", flush=True)
+
     def look_on(self):
         """While another one flies: it reads all, and moves nothing."""
         self.connect()

@@ -32,7 +32,10 @@ from gcs.session.inputs import (
 )
 from gcs.session.session import Session
 from gcs.session.setup import Setup
+from gcs.session.vehicles import Vehicles
+from gcs.session.work import Work
 from gcs.wire.codec import FrameWriter
+from gcs.wire.frame import Frame, plain_frames
 from gcs.wire.messages import Heartbeat
 from tests.audits import RecordedSession, audited, kind_of, read, resealed, with_data
 from tests.unit.cli.command_line import gcs
@@ -94,6 +97,28 @@ def test_an_exception_while_an_input_was_handled_happens_again(beats: FrameWrite
     result = audited(messages, tape.attachments)
     assert (result.first, result.good) == ([], True)
     assert result.inputs["exceptions"] == 1
+
+
+def test_a_frame_that_raised_within_a_run_raises_again_and_the_rest_is_as_it_was(
+    beats: FrameWriter, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    raws = [beats.write(BEAT) for _ in range(3)]
+    real = Vehicles.frame
+
+    def failing(self: Vehicles, link: int, frame: Frame, now_ns: int) -> list[Work]:
+        if frame.raw == raws[1]:
+            raise ZeroDivisionError("planted")
+        return real(self, link, frame, now_ns)
+
+    monkeypatch.setattr(Vehicles, "frame", failing)
+    session, tape = on_tape()
+    data = b"".join(raws)
+    session.feed(Datagram(0, data, tuple(plain_frames(data))))
+    session.feed(LinkEvent(0, "open"))
+    result = audited(close(session, tape), tape.attachments)
+    assert (result.first, result.good) == ([], True)
+    assert (result.inputs["datagrams"], result.inputs["exceptions"]) == (1, 1)
+    assert result.compared["frame received"] == 2
 
 
 def test_an_exception_that_does_not_happen_again_is_a_difference(beats: FrameWriter) -> None:

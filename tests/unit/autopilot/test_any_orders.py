@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.shares import examples
 from tests.unit.autopilot.flight import Flight, item
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Result, Setpoint, SpeedType
@@ -56,7 +57,7 @@ ORDERS: tuple[Order, ...] = (
 
 
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(ORDERS), st.floats(0.0, 3.0)), max_size=25))
 def test_any_orders_leave_a_vehicle_that_can_be_landed(
     personality: Personality, script: list[tuple[Order, float]]

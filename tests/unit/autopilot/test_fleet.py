@@ -139,7 +139,11 @@ def fly(engine: Engine, count: int, nap_ns: int, end_ns: int) -> tuple[list[byte
 
 @pytest.mark.parametrize(
     ("count", "end_ns"),
-    [(1, 12 * S), (8, 12 * S), pytest.param(40, 9 * S, marks=pytest.mark.soak)],
+    [
+        (1, 12 * S),
+        pytest.param(8, 12 * S, marks=pytest.mark.thorough),
+        pytest.param(40, 9 * S, marks=pytest.mark.soak),
+    ],
 )
 def test_few_and_many_fly_and_say_the_same_bytes(count: int, end_ns: int) -> None:
     few, said_few = fly(ScalarEngine(specs(count), load()), count, 20 * MS, end_ns)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from tests.shares import one_in
 from tests.unit.autopilot.mismatch import CASES, flown
 from vehicle_sim.autopilot.modes import Personality
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", one_in(3, CASES))
 def test_it_takes_off_hovers_flies_the_square_lands_and_disarms(
     case: str, personality: Personality
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
@@ -422,6 +423,34 @@ def test_the_current_item_is_set_where_no_mission_is_flown(autopilot: Autopilot)
             assert words(meaning) == ["mission_set_current"]
             assert isinstance(meaning, Words)
             assert meaning.asks[0].item == item
+
+
+@BOTH
+def test_a_landing_by_the_mission_begins_at_its_marker(autopilot: Autopilot) -> None:
+    """MAVLink common: DO_LAND_START as a command lands with the mission's landing pattern."""
+    jump = ["mission_set_current", "mission_start"]
+    for state, before in (
+        (State.HOVERING, []),
+        (State.HOLDING, ["resume"]),
+        (State.FLYING_MISSION, ["hold", "resume"]),
+    ):
+        seen = flying(autopilot, state=state, mission_items=9, land_starts=(6,))
+        meaning = meaning_of(command_long(189), seen)
+        assert words(meaning) == [*before, *jump]
+        assert isinstance(meaning, Words)
+        assert meaning.asks[-2].item == 6
+
+
+@BOTH
+def test_without_one_marker_there_is_no_landing_by_the_mission(autopilot: Autopilot) -> None:
+    def refused(**changed: Any) -> str:
+        seen = flying(autopilot, **{"mission_items": 9, "land_starts": (6,), **changed})
+        return refusal(meaning_of(command_long(189), seen))
+
+    assert refused(mission_items=0).startswith("NO_MISSION")
+    assert refused(land_starts=()).startswith("BAD_MISSION")
+    assert "items 3, 6" in refused(land_starts=(3, 6))
+    assert refused(on_ground=True).startswith("NOT_FLYING")
 
 
 @BOTH

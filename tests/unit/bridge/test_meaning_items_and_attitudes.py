@@ -1,4 +1,4 @@
-"""Single mission items and attitudes of clients; their sticks: `test_sticks.py`."""
+"""Single mission items of clients."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.gate.states import State
-from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
+from gcs.protocol.autopilot import ARDUPILOT, PX4
 from gcs.wire.messages import Message
 from tests.unit.bridge.vehicles import NAN, flying, goal, refusal, sent, words
 
@@ -54,16 +54,6 @@ def test_items_that_are_no_go_to() -> None:
     assert refusal(meaning_of(item(2, alt=NAN), flying(ARDUPILOT))).startswith("NON_FINITE")
     land = mavlink.MAVLink_mission_item_message(1, 1, 0, 3, 21, 2, 0, 0, 0, 0, 0, 47.3, 8.5, 5.0)
     assert refusal(meaning_of(sent(land), flying(ARDUPILOT))).startswith("UNSUPPORTED")
-
-
-@BOTH
-@pytest.mark.parametrize("mask", [0, 0b111, 0b10000000, 0b11000111])
-def test_attitudes_are_refused_in_every_mask(autopilot: Autopilot, mask: int) -> None:
-    level = [1.0, 0.0, 0.0, 0.0]
-    message = mavlink.MAVLink_set_attitude_target_message(0, 1, 1, mask, level, 0, 0, 0, 0.5)
-    text = refusal(meaning_of(sent(message), flying(autopilot)))
-    assert text.startswith("UNSUPPORTED")
-    assert "cannot be verified" in text
 
 
 def test_what_moves_nothing_has_no_meaning() -> None:

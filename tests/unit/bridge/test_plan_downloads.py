@@ -114,3 +114,44 @@ def test_who_is_held_back_is_answered_before_it_gives_up() -> None:
         due.append(downloads.answers(TWO, ms * MS))
     assert due == [False, False, False, True]
     assert not downloads.answers(ONE, 1510 * MS)
+
+
+def test_a_reader_whose_connection_has_ended_is_waited_for_no_longer() -> None:
+    downloads = Downloads()
+    downloads.holds(LIST, ONE, False, 0)
+    assert downloads.holds(LIST, TWO, False, 10 * MS)
+    downloads.gone(ONE[0])
+    assert downloads.holds(LIST, TWO, False, 20 * MS) == ""
+
+
+def test_who_gets_the_number_of_a_link_that_was_another_s_has_nothing_of_its_turn() -> None:
+    """Ground stations have the same address, 255/190, and the lowest free link is given again."""
+    downloads = Downloads()
+    third = (3, Address(250, 190))
+    downloads.holds(LIST, ONE, False, 0)
+    assert downloads.holds(LIST, TWO, False, 10 * MS)
+    assert downloads.holds(LIST, third, False, 20 * MS)
+    downloads.gone(TWO[0])
+    downloads.holds(DONE, ONE, False, 30 * MS)
+    assert downloads.holds(LIST, TWO, False, 40 * MS), "another one, that came after the third"
+    assert downloads.holds(LIST, third, False, 50 * MS) == ""
+
+
+def test_two_behind_one_link_are_two_readers() -> None:
+    downloads = Downloads()
+    behind_it = (ONE[0], Address(246, 190))
+    downloads.holds(LIST, ONE, False, 0)
+    assert "another client" in downloads.holds(LIST, behind_it, False, 10 * MS)
+    downloads.holds(DONE, behind_it, False, 15 * MS)
+    assert downloads.holds(LIST, TWO, False, 20 * MS), "the first reads on"
+    downloads.holds(DONE, ONE, False, 30 * MS)
+    assert downloads.holds(LIST, TWO, False, 40 * MS), "it asked later"
+    assert downloads.holds(LIST, behind_it, False, 50 * MS) == ""
+
+
+def test_a_client_that_comes_back_from_another_port_waits_for_itself_for_two_seconds() -> None:
+    downloads = Downloads()
+    moved = (4, ONE[1])
+    downloads.holds(LIST, ONE, False, 0)
+    assert downloads.holds(LIST, moved, False, SILENT_NS - MS)
+    assert downloads.holds(LIST, moved, False, SILENT_NS) == ""

@@ -9,12 +9,14 @@ import pytest
 from rich.console import Console
 
 from gcs import ipc
+from gcs.bridge.meaning.explain_modes import mode_explanation
 from gcs.cli import bridge_text, main
 from gcs.cli.bridge_lines import STATUS_EVERY_NS, BridgeLines
 from gcs.cli.bridge_page import BridgePage
 from gcs.cli.bridge_watch import watch
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
+from gcs.protocol.autopilot import ARDUPILOT, PX4
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 
 VEHICLE = ("--vehicle", "udpin://127.0.0.1:14540")
@@ -115,7 +117,7 @@ def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> N
             "MAV_CMD_DO_CHANGE_ALTITUDE",
             ("command 186: motion", "  the gate makes of it: PX4: goto straight up or down"),
         ),
-        ("SET_MODE", ("message 11: motion", "  the gate makes of it: by the mode")),
+        ("SET_MODE", ("message 11: motion", "  the gate makes of it: as DO_SET_MODE")),
         ("SDLOG_MODE", ("SDLOG_MODE, a parameter that a client may write", "  px4: it says")),
         ("PARAM_SET", ("PARAM_SET, message 23: configuration", "  why: ")),
         (
@@ -130,6 +132,45 @@ def test_explain_needs_nothing_else(
     assert main.run(["bridge", "--explain", name]) == ExitCode.DONE
     said = capsys.readouterr().out
     assert all(each in said for each in told), said
+
+
+@pytest.mark.parametrize(
+    ("name", "lines"),
+    [
+        (
+            "posctl",
+            (
+                "POSCTL, a mode of px4: a pilot flies it with sticks",
+                "    hovering, the client sends sticks: nothing, it is so already",
+                "refused POLICY: POSCTL: no MANUAL_CONTROL comes from this client",
+            ),
+        ),
+        (
+            "LOITER",
+            (
+                "AUTO.LOITER, a mode of px4: it holds its place",
+                "LOITER, a mode of ardupilot: it holds its place",
+                "hold (LOITER: held in BRAKE instead, as LOITER obeys the sticks)",
+            ),
+        ),
+        ("GUIDED", ("    on hold: resume", "    returning: hold, then resume")),
+        ("AUTO", ("AUTO, a mode of ardupilot", "    on hold: resume, then mission start")),
+    ],
+)
+def test_explain_knows_the_modes_of_both_autopilots(
+    name: str, lines: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main.run(["bridge", "--explain", name]) == ExitCode.DONE
+    told = capsys.readouterr().out
+    for line in lines:
+        assert line in told
+
+
+def test_every_mode_of_both_autopilots_can_be_explained() -> None:
+    for autopilot in (PX4, ARDUPILOT):
+        for mode in autopilot.modes:
+            assert f"{mode.name}, a mode of {autopilot.name}" in (mode_explanation(mode.name) or "")
+    assert mode_explanation("NO_SUCH") is None
 
 
 def test_explain_of_what_there_is_not_names_what_is_close(
@@ -161,7 +202,7 @@ def test_the_vehicle_in_a_line() -> None:
 
 
 def test_links_and_clients_in_rows() -> None:
-    assert bridge_text.link_rows(STATUS)[1:] == [("udp 127.0.0.1:14540", "212", "4", "0.1 %")]
+    assert bridge_text.link_rows(STATUS)[1:] == [("udp 127.0.0.1:14540", "212", "4", "0.1 %", "")]
     assert bridge_text.client_rows(STATUS)[1:] == [
         ("1000", "udp 127.0.0.1:5001", "255/190", "1", "212", "0", "0", "IN CONTROL"),
         ("1001", "tcp 127.0.0.1:5002", "-", "0", "212", "3", "40", "silent for 4 s"),
@@ -230,12 +271,12 @@ def test_json_is_every_event_as_it_came() -> None:
 # ------------------------------------------------------------------------------------- page
 
 
-def drawn(*events: ipc.Event, height: int = 40) -> str:
+def drawn(*events: ipc.Event, height: int = 40, width: int = 150) -> str:
     with BridgePage(2) as page:
         for event in (HELLO, *events):
             page.event(event)
     out = io.StringIO()
-    Console(file=out, width=150).print(page.page(height))
+    Console(file=out, width=width).print(page.page(height, width))
     return out.getvalue()
 
 
@@ -261,7 +302,8 @@ FLEET = [
     ipc.BridgeVehicle(1, "1/1 px4 quadrotor", "HOVERING", "OURS", "NOMINAL", [], "OFFBOARD", True),
     ipc.BridgeVehicle(
         2, "2/1 ardupilot quadrotor", "STALE", "OURS", "CAUTION", ["too_close"], "GUIDED", True,
-        lost_pct=1.25, silent_s=4.1,
+        lost_pct=1.25, silent_s=4.1, pos_enu=(1.04, -20.0, 10.06), v_enu=(3.0, 4.0, 0.0),
+        battery_pct=71.4,
     ),
 ]  # fmt: skip
 
@@ -271,7 +313,25 @@ def test_the_page_shows_several_vehicles_in_rows() -> None:
     for row in bridge_text.vehicle_rows(ipc.BridgeStatus(0, [LINK], [ONE], FLEET)):
         assert all(word in text for word in row)
     assert "armed, silent for 4 s, too_close" in text
+    assert bridge_text.vehicle_rows(ipc.BridgeStatus(0, [LINK], [ONE], FLEET))[2][5:8] == (
+        *("1.0 -20.0 10.1", "5.0", "71 %"),
+    )
     assert bridge_text.vehicle_rows(ipc.BridgeStatus(0, [LINK], [ONE], FLEET[:1])) == []
+
+
+def test_a_link_on_which_nothing_is_heard_says_so() -> None:
+    """It may be one of several, or one that only sends: a vehicle is answered where it is heard."""
+    silent = ipc.BridgeLink(1, "listening on udp 127.0.0.1:14541", 0.0, 1.0, 0.0)
+    rows = bridge_text.link_rows(ipc.BridgeStatus(0, [LINK, silent], []))
+    assert [row[-1] for row in rows[1:]] == ["", "nothing is heard here"]
+
+
+def test_on_80_columns_where_each_vehicle_is_can_be_read() -> None:
+    lines = drawn(snapshot(), ipc.BridgeStatus(0, [LINK], [ONE], FLEET), width=80).splitlines()
+    head, _, second = lines[lines.index(next(x for x in lines if x.startswith("vehicle  "))) :][:3]
+    assert head.split() == ["vehicle", "state", "mode", "east", "north", "up", "m/s", "battery"]
+    for word in ("2/1 ardupilot quadrotor", "STALE", "GUIDED", "1.0 -20.0 10.1", "5.0", "71 %"):
+        assert word in second
 
 
 def test_a_decision_names_its_vehicle_where_there_are_several() -> None:

@@ -27,6 +27,25 @@ def test_other_vehicles_that_are_heard_are_named() -> None:
     assert "also heard" not in dict(rows(alone, 1))
 
 
+def test_every_vehicle_of_a_bridge_is_shown() -> None:
+    seen = FakeStation().snapshot()
+    name = "2/1 ardupilot quadrotor"
+    two = msgspec.structs.replace(seen, vehicles=[seen.vehicle, name, "3/1 px4 quadrotor"])
+    first = ipc.BridgeVehicle(1, seen.vehicle, "HOVERING", "OURS", "NOMINAL")
+    second = ipc.BridgeVehicle(
+        2, name, "MOVING", "OURS", "CAUTION", ["too_close"], "GUIDED", True, lost_pct=1.2,
+        silent_s=0.14, pos_enu=(1.0, -2.0, 10.0), v_enu=(3.0, 4.0, 0.0), battery_pct=71.0,
+    )  # fmt: skip
+    shown = dict(rows(two, 1, ipc.BridgeStatus(0, [], [], [first, second])))
+    assert shown["vehicle 2"].splitlines() == [
+        "2/1 ardupilot quadrotor: MOVING, control OURS, CAUTION (too_close)",
+        "GUIDED, armed, battery 71 %, heard 0.1 s ago, 1.2 % lost",
+        "E +1.00 N -2.00 U +10.00 m, 5.00 m/s",
+    ]
+    assert shown["also heard"] == "3/1 px4 quadrotor", "heard, and not met yet"
+    assert "vehicle 1" not in shown
+
+
 def test_unknown_values_are_dashes() -> None:
     shown = dict(rows(FakeStation("silent").snapshot(), 1))
     assert shown["position"].startswith("E - N - U -")

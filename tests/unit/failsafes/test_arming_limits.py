@@ -10,7 +10,7 @@ from math import radians
 
 import pytest
 
-from tests.unit.failsafes.looks import FULL, WELL, S, parameters_of
+from tests.unit.failsafes.failsafe_inputs import FULL, WELL, S, parameters_of
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm, Readiness, reasons
 from vehicle_sim.autopilot.fence.geofence import Geofence
 from vehicle_sim.autopilot.interface import Power

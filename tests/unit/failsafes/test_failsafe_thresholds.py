@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.unit.failsafes.looks import (
+from tests.unit.failsafes.failsafe_inputs import (
     CHARGES,
     FULL,
     LOW_V,

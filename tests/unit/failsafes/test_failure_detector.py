@@ -14,7 +14,7 @@ from typing import Final
 
 import pytest
 
-from tests.unit.failsafes.looks import MS, S, parameters_of
+from tests.unit.failsafes.failsafe_inputs import MS, S, parameters_of
 from vehicle_sim.autopilot.failsafes.failsafe import Action, Failsafe
 from vehicle_sim.autopilot.failsafes.failure_detector import (
     FAILURE_DETECTORS,

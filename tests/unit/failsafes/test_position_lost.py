@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.unit.failsafes.looks import (
+from tests.unit.failsafes.failsafe_inputs import (
     BAD,
     EKF_LIMIT,
     WELL,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.failsafes.looks import (
+from tests.unit.failsafes.failsafe_inputs import (
     BAD,
     CHARGES,
     EKF_LIMIT,

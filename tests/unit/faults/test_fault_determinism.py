@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import nan
 
+import pytest
+
 from tests.unit.faults.stage import BEAT, HOMES, MS, S, Stage, aloft
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.modes import Personality
@@ -109,6 +111,7 @@ def test_batches_do_not_matter() -> None:
     assert fly(ScalarEngine(specs(2), load()), 2, 700 * MS) == once
 
 
+@pytest.mark.thorough
 def test_many_fail_as_few_do() -> None:
     few = fly(ScalarEngine(specs(4), load()), 4, 20 * MS)
     assert fly(BatchEngine(specs(4), load()), 4, 700 * MS) == few

@@ -1,15 +1,17 @@
-"""The explorer finds nothing in the real table, and finds what is planted."""
+"""The explorer finds nothing in the real table, and finds what is planted.
+
+All of it takes minutes: `make test` walks what is near the usual flights
+(`test_explore_flights.py`), `make thorough` this.
+"""
 
 from __future__ import annotations
 
 import gc
-import os
 import random
 from collections.abc import Iterator
 from functools import cache
 
 import pytest
-from msgspec.structs import replace
 
 from gcs.gate.condition import Severity
 from gcs.gate.machine.events import Event
@@ -21,28 +23,15 @@ from gcs.gate.proof.explorer import Explorer
 from gcs.gate.proof.invariants import objections
 from gcs.gate.proof.taking import take
 from gcs.gate.proof.walk import Begun, Explored, Walk
-from gcs.gate.proof.world import CONDITIONS, YARD, World, world
+from gcs.gate.proof.world import CONDITIONS, World
 from gcs.gate.refusal import Code
 from gcs.gate.states import Control, State
+from tests.soaking import SOAKING
+from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS, Planted
 from tests.unit.gate.unreached import UNREACHED
 
-PX4 = world(YARD, "px4", return_up_m=10.0, climb_ends_within_m=0.8)
-ARDUPILOT = world(
-    replace(
-        YARD,
-        retarget="replace",
-        rtl_blocked="land",
-        fence_switchable=False,
-        allow_force_disarm=False,
-    ),
-    "ardupilot",
-    return_up_m=90.0,
-)
-"""The other autopilot, under the other choices of the policy."""
-
-WORLDS = {"px4": PX4, "ardupilot": ARDUPILOT}
-SOAK = "MAVGATE_SOAK" in os.environ
+pytestmark = pytest.mark.thorough
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -103,7 +92,7 @@ def test_every_cell_is_entered_but_those_that_are_listed() -> None:
 def test_an_outcome_that_was_learnt_is_the_outcome_of_a_run(name: str) -> None:
     """Random walks: each step is looked up in what the exploration learnt, and run as well."""
     assert explored(name).fault is None
-    for seed in range(2_000 if SOAK else 40):
+    for seed in range(2_000 if SOAKING else 40):
         follow(explorer(name), WORLDS[name], random.Random(seed), 100)
 
 

@@ -21,6 +21,7 @@ from gcs.gate.geometry import (
     segment_distance,
     side,
 )
+from tests.shares import examples
 
 SQUARE = Polygon(((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)))
 NOTCHED = Polygon(
@@ -131,7 +132,7 @@ def test_distance_of_two_segments_agrees_with_shapely(
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(stars(), spots, spots)
 def test_a_leg_is_inside_only_if_shapely_says_so(polygon: Polygon, a: Point, b: Point) -> None:
     theirs = shapely.Polygon(polygon.corners_en)
@@ -148,7 +149,7 @@ def test_a_leg_is_inside_only_if_shapely_says_so(polygon: Polygon, a: Point, b: 
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(stars(), spots, spots)
 def test_a_leg_is_outside_only_if_shapely_says_so(polygon: Polygon, a: Point, b: Point) -> None:
     theirs = shapely.Polygon(polygon.corners_en)

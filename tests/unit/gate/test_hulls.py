@@ -10,7 +10,6 @@ import shapely
 
 from gcs.gate.airspace.hulls import (
     ground_track,
-    ground_track_between,
     hull_inside,
     hull_outside,
     ring_inside,
@@ -27,14 +26,10 @@ def points_of(dice: random.Random, count: int) -> list[Point]:
     return [(dice.uniform(-10, 50), dice.uniform(-20, 50)) for _ in range(count)]
 
 
-def up(points: list[Point]) -> list[tuple[Point, float]]:
-    return [(point, 10.0) for point in points]
-
-
 @pytest.mark.parametrize("seed", range(200))
 def test_the_ground_track_is_the_convex_hull(seed: int) -> None:
     points = points_of(random.Random(seed), 1 + seed % 7)
-    corners = ground_track(up(points))
+    corners = ground_track(points)
     hull = shapely.MultiPoint(points).convex_hull
     ours = shapely.MultiPoint(corners).convex_hull
     assert hull.symmetric_difference(ours).area < 1e-9
@@ -44,7 +39,7 @@ def test_the_ground_track_is_the_convex_hull(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(300))
 def test_a_hull_beside_a_zone_is_as_far_off_as_shapely_says(seed: int) -> None:
     points = points_of(random.Random(seed), 1 + seed % 6)
-    track = ground_track(up(points))
+    track = ground_track(points)
     hull = shapely.MultiPoint(points).convex_hull
     for shape in (TOWER, NOTCHED):
         zone = shapely.Polygon(shape.corners_en)
@@ -64,7 +59,7 @@ def test_a_hull_beside_a_zone_is_as_far_off_as_shapely_says(seed: int) -> None:
 
 
 def test_a_zone_wholly_inside_a_hull_is_not_clear_of_it() -> None:
-    track = ground_track(up([(0.0, -30.0), (60.0, -30.0), (25.0, 60.0)]))
+    track = ground_track([(0.0, -30.0), (60.0, -30.0), (25.0, 60.0)])
     assert hull_outside(TOWER, track) < 0.0
     assert hull_outside(MAST, track) < -MAST.radius_m
     assert hull_inside(TOWER, track) < 0.0
@@ -72,23 +67,8 @@ def test_a_zone_wholly_inside_a_hull_is_not_clear_of_it() -> None:
 
 def test_a_notch_that_reaches_into_a_hull_leaves_the_zone() -> None:
     """All corners are inside the zone, and its notch is among them."""
-    track = ground_track(up([(5.0, 25.0), (35.0, 35.0), (20.0, 3.0)]))
+    track = ground_track([(5.0, 25.0), (35.0, 35.0), (20.0, 3.0)])
     assert hull_inside(NOTCHED, track) < 0.0
-
-
-def test_only_the_part_between_the_heights_counts() -> None:
-    points = [((0.0, 0.0), 0.0), ((10.0, 0.0), 10.0), ((0.0, 10.0), 0.0)]
-    assert ground_track_between(points, 20.0, 30.0) == ()
-    assert ground_track_between(points, -5.0, 0.0) == ()
-    part = shapely.Polygon(ground_track_between(points, 4.0, 6.0))
-    assert part.bounds == pytest.approx((4.0, 0.0, 6.0, 6.0))
-
-
-@pytest.mark.parametrize("level", [4.0, 6.0])
-def test_a_point_at_one_of_the_heights_bounds_the_part_between_them(level: float) -> None:
-    """The line goes all the way to that point: without it, it would end where it begins."""
-    points = [((0.0, 0.0), 5.0), ((30.0, 0.0), level)]
-    assert ground_track_between(points, 4.0, 6.0) == ((0.0, 0.0), (30.0, 0.0))
 
 
 @pytest.mark.parametrize("seed", range(300))

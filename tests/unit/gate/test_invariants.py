@@ -41,6 +41,7 @@ from gcs.gate.proof.invariants import objections
 from gcs.gate.proof.world import YARD, World
 from gcs.gate.requests import GoTo, TakeControl
 from gcs.gate.states import FlightMode, LandedState, State
+from tests.shares import examples
 
 HOME = (0.0, 0.0, 0.0)
 RADIUS_M, CEILING_M = 20.0, 30.0
@@ -200,7 +201,7 @@ steps = st.lists(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(150), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(word=words)
 def test_L17_any_interleaving_from_nothing(autopilot: str, word: list[str]) -> None:
     run = Run(autopilot=autopilot)
@@ -211,7 +212,7 @@ def test_L17_any_interleaving_from_nothing(autopilot: str, word: list[str]) -> N
 
 @pytest.mark.slow
 @pytest.mark.parametrize("retarget", ["refuse", "replace"])
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(150), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(steps=steps)
 def test_L17_any_interleaving_with_any_numbers_from_hovering(
     retarget: str, steps: list[str | GoTo | PositionSeen | StreamSeen | int]

@@ -358,6 +358,16 @@ class TestWords:
         told = [s.text for s in script.all(Say) if s.text.startswith("No answer")]
         assert told == ["No answer to the request for hold mode"]
 
+    def test_one_that_is_answered_neither_now_nor_later_is_told_once_too(self) -> None:
+        """The command's last try may end after the hold was commanded anew."""
+        script = in_state(State.MOVING)
+        script.ask(Hold())
+        for _ in range(3):
+            script.answer(CommandKind.HOLD, None)
+            script.answer(CommandKind.HOLD, None)
+            script.wait(1.0)
+        assert len([s for s in script.all(Say) if s.text.startswith("No answer")]) == 1
+
 
 def test_a_mission_waits_for_a_vehicle_that_is_known_to_stand() -> None:
     script = armed()

@@ -18,16 +18,15 @@ from gcs.gate.effects import (
     OutcomeKind,
     Ruling,
     Say,
-    SendSetpoint,
     StreamVerdict,
 )
 from gcs.gate.inputs import StreamSeen, Tick
-from gcs.gate.permit import Permit
 from gcs.gate.refusal import Code
 from gcs.gate.requests import Abort, BeginStream, EndStream, GoTo, Hold, Land
 from gcs.gate.states import FlightMode, State
 from tests.unit.gate.reactions import default_policy, state_of
 from tests.unit.gate.script import MS, SECOND, Script, policy
+from tests.unit.gate.stream_effects import sent, told
 
 UP = 10.0
 CLIENT = "keyboard"
@@ -56,15 +55,6 @@ def streaming(v_enu: Vec3 = (1.0, 0.0, 0.0)) -> Script:
     script.feed(velocity(*v_enu))
     script.forget()
     return script
-
-
-def sent(script: Script) -> list[Permit]:
-    return [effect.permit for effect in script.all(SendSetpoint)]
-
-
-def told(script: Script) -> list[Code | None]:
-    """What the client was told of its stream: the codes of refusals, None for flown."""
-    return [v.refusal.code if v.refusal else None for v in script.all(StreamVerdict)]
 
 
 def fly(script: Script, seconds: float, sample: StreamSeen | None) -> None:

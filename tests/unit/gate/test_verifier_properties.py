@@ -17,6 +17,7 @@ from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon, polygon_fault
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code, Refusal
+from tests.shares import examples
 
 STILL: Vec3 = (0.0, 0.0, 0.0)
 
@@ -71,7 +72,7 @@ def changed(verifier: Verifier, **keys: float) -> Verifier:
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(verifiers(), places, places, velocities, wider, wider)
 def test_a_wider_margin_never_accepts_what_a_narrower_refuses(
     narrow: Verifier, goal: Vec3, start: Vec3, v: Vec3, more_h: float, more_v: float
@@ -91,7 +92,7 @@ def test_a_wider_margin_never_accepts_what_a_narrower_refuses(
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(verifiers(), places, places)
 def test_a_leg_that_is_cleared_leaves_no_zone_to_shapely_either(
     verifier: Verifier, goal: Vec3, start: Vec3
@@ -159,7 +160,7 @@ def test_an_unknown_fence_never_permits_anything(
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(verifiers(), st.tuples(*[anything] * 3), st.tuples(*[anything] * 3), anything, anything)
 def test_whatever_the_numbers_there_is_an_answer_and_never_yes_to_nonsense(
     verifier: Verifier, pos: Vec3, v: Vec3, yaw: float, up_m: float
@@ -187,7 +188,7 @@ def test_whatever_the_numbers_there_is_an_answer_and_never_yes_to_nonsense(
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(verifiers(), places, velocities, st.booleans())
 def test_a_brake_is_always_a_place_that_may_be_held(
     verifier: Verifier, pos: Vec3, v: Vec3, floor_applies: bool
@@ -199,7 +200,7 @@ def test_a_brake_is_always_a_place_that_may_be_held(
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(verifiers(), places, places)
 def test_what_is_verified_as_a_goal_can_be_hovered_at(
     verifier: Verifier, goal: Vec3, start: Vec3

@@ -21,7 +21,6 @@ from gcs.gate.airspace.clearance import (
     StopLimit,
     body_clearance,
     inclusion_measures,
-    leg_body_clearance,
     swept_body_measure,
 )
 from gcs.gate.airspace.judge import FenceJudge
@@ -103,10 +102,9 @@ class TestFaces:
 class TestLegsPastATower:
     """2 m above and below count as beside it: from 8 m to 22 m up."""
 
-    BESIDE_M = 2.0
-
     def clearance(self, a: Vec3, b: Vec3) -> float | None:
-        return leg_body_clearance(TOWER, motion(a, b), self.BESIDE_M)
+        measure = swept_body_measure(TOWER, motion(a, b), 2.0)
+        return None if measure is None else measure.least_m
 
     @pytest.mark.parametrize(
         ("up", "clear"), [(8.0, None), (8.25, 3.0), (15.0, 3.0), (21.75, 3.0), (22.0, None)]
@@ -115,29 +113,19 @@ class TestLegsPastATower:
         assert self.clearance((0, 8, up), (50, 8, up)) == clear
 
     @pytest.mark.parametrize(
-        ("a", "b", "clear"),
+        ("a", "b"),
         [
-            # 22 m is reached at 36 m east, beyond the tower's corner at (30, 5)
-            ((0, 8, 40), (80, 8, 0), math.hypot(6.0, 3.0)),
-            ((80, 8, 0), (0, 8, 40), math.hypot(6.0, 3.0)),
-            # 8 m is reached at 16 m east and 22 m at 44 m: along its whole northern side
-            ((80, 8, 40), (0, 8, 0), 3.0),
-            ((0, 8, 0), (80, 8, 40), 3.0),
+            # the straight line is at 22 m up at 36 m east only, beyond the tower's corner
+            ((0, 8, 40), (80, 8, 0)),
+            ((80, 8, 40), (0, 8, 0)),
+            # it leaves 22 m up at 7 m east, before the tower
+            ((0, 8, 15), (40, 8, 55)),
+            ((0, 8, 15), (40, 8, -25)),
         ],
     )
-    def test_of_a_climbing_leg_only_the_part_between_them(
-        self, a: Vec3, b: Vec3, clear: float
-    ) -> None:
-        assert self.clearance(a, b) == pytest.approx(clear)
-
-    def test_a_part_that_ends_before_the_tower(self) -> None:
-        """From 15 m up at the start to 22 m at 7 m east: 13 m before the corner."""
-        assert self.clearance((0, 8, 15), (40, 8, 55)) == pytest.approx(math.hypot(13.0, 3.0))
-        assert self.clearance((40, 8, 55), (0, 8, 15)) == pytest.approx(math.hypot(13.0, 3.0))
-
-    def test_a_part_that_begins_behind_the_tower(self) -> None:
-        """Down to 8 m at 7 m east, coming from 15 m up."""
-        assert self.clearance((0, 8, 15), (40, 8, -25)) == pytest.approx(math.hypot(13.0, 3.0))
+    def test_a_climbing_leg_counts_as_a_whole_either_way(self, a: Vec3, b: Vec3) -> None:
+        """A vehicle climbs at a speed of its own: it may be at any of its heights anywhere."""
+        assert self.clearance(a, b) == self.clearance(b, a) == 3.0
 
     @pytest.mark.parametrize(
         ("a_up", "b_up"), [(22.0, 30.0), (30.0, 22.0), (8.0, 1.0), (1.0, 8.0), (25.0, 40.0)]
@@ -145,9 +133,24 @@ class TestLegsPastATower:
     def test_one_that_keeps_above_or_below_does_not_count(self, a_up: float, b_up: float) -> None:
         assert self.clearance((0, 8, a_up), (50, 8, b_up)) is None
 
-    def test_a_climb_of_a_metre_is_a_climb(self) -> None:
-        """From 21.5 m up at the start to 22 m at 20 m east, 22.5 m at 40 m."""
-        assert self.clearance((-20, 8, 21.5), (20, 8, 22.5)) == pytest.approx(math.hypot(20.0, 3.0))
+    @pytest.mark.parametrize("b_up", [22.0, 30.0, 60.0])
+    def test_who_would_fly_over_it_climbs_first(self, b_up: float) -> None:
+        """The straight line to 60 m up passes 40 m over it."""
+        judged = judge(TOWER)
+        start, over, behind = at(-20, 0, 12), at(-20, 0, b_up), at(80, 0, b_up)
+        refusal = judged.leg("leg", start, behind, MARGINS, floor_applies=True)
+        assert code(refusal) is Code.LEG_LEAVES_FENCE
+        assert judged.leg("leg", start, over, MARGINS, floor_applies=True) is None
+        assert judged.leg("leg", over, behind, MARGINS, floor_applies=True) is None
+
+    @pytest.mark.parametrize(("low", "high"), [(12.0, 60.0), (-20.0, 30.0)])
+    def test_so_does_a_region_of_a_mission(self, low: float, high: float) -> None:
+        """Its straight sides are above or below the tower where they pass it."""
+        judged = judge(TOWER)
+        starts, ends = [at(-20, 0, low)], [at(80, 1, high), at(80, -1, high)]
+        assert code(judged.hull("hull", starts, ends, floor_applies=True)) is Code.LEG_LEAVES_FENCE
+        level = [at(80, 1, 30), at(80, -1, 30)]
+        assert judged.hull("hull", [at(-20, 0, 40)], level, floor_applies=True) is None
 
 
 class TestStopsPastATower:

@@ -16,6 +16,7 @@ from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem
 from gcs.wire.dialect import MESSAGES_BY_NAME
 from tests.sample_files import elsewhere
+from tests.shares import one_in
 from tests.unit.logfile.tlogs import START_US, flight, read_by_pymavlink, write
 
 HEAD = 4
@@ -40,11 +41,13 @@ def same(ours: object, theirs: object) -> bool:
     return ours == theirs
 
 
+REAL_FLIGHTS = ("arducopter_sitl.tlog", "quad_2015.tlog")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "parts",
-    [("logs", "quad_2015.tlog"), ("logs", "arducopter_sitl.tlog")],
-    ids=lambda parts: str(parts[1]),
+    one_in(2, [pytest.param(("logs", name), id=name) for name in REAL_FLIGHTS]),
 )
 def test_every_message_of_a_real_flight_is_as_pymavlink_decodes_it(parts: tuple[str, str]) -> None:
     path = elsewhere(*parts)

@@ -17,6 +17,7 @@ from mcap_ros1.decoder import DecoderFactory
 from pymavlink.DFReader import DFReader_binary
 
 from tests.sample_files import elsewhere
+from tests.shares import examples
 from tests.unit.cli.command_line import gcs as run_gcs
 from tests.unit.logfile.test_import_tlog import imported
 from tests.unit.record.flights import messages_of
@@ -207,7 +208,7 @@ def test_a_ulog_format_that_would_fill_the_memory_is_refused(
 
 
 @pytest.mark.slow
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.data(), st.sampled_from(["ardupilot", "px4"]))
 def test_a_damaged_log_is_read_as_far_as_it_goes_or_refused(
     data: st.DataObject, personality: Personality

@@ -42,7 +42,7 @@ def commands(k: int) -> Motors:
     return (lift + wave, lift, lift - 0.01, lift + 0.02 - wave)
 
 
-@pytest.mark.parametrize("count", [1, 7, 100])
+@pytest.mark.parametrize("count", [1, 7, pytest.param(100, marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("plant", PLANTS.values(), ids=PLANTS)
 def test_a_batch_flies_as_each_by_itself(plant: Plant, count: int) -> None:
     alone = [standing(plant) for _ in range(count)]

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.shares import examples
 from tests.unit.model.bodies import (
     DT_S,
     OFF,
@@ -223,7 +224,7 @@ def test_a_weak_motor_turns_as_it_is_told_and_lifts_its_share(plant: Plant) -> N
 
 
 @EVERY
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(u=st.tuples(UNIT, UNIT, UNIT, UNIT), up_m=st.sampled_from([0.0, 0.2, 500.0]))
 def test_mirror_images_fly_mirrored_to_the_bit(plant: Plant, u: Motors, up_m: float) -> None:
     """Left and right swap motors 1 with 3 and 2 with 4; front and back 1 with 4 and 2 with 3."""

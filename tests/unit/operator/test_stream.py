@@ -68,6 +68,18 @@ def test_a_block_streams_what_it_wants_and_sees_a_refusal_come_and_go() -> None:
     assert words(way)[-1] == "stream_end"
 
 
+def test_an_attitude_is_a_sample_too() -> None:
+    station, way = flying()
+    with station.stream() as stream:
+        stream.attitude(1.0, -5.0, 90.0, 0.5, yaw_rate_deg_s=10.0)
+        stream.attitude(float("inf"), 0.0, 0.0, 0.5)
+    samples = [sent for sent in way.sent if isinstance(sent, ipc.Stream)]
+    assert samples == [
+        ipc.Stream(roll_deg=1.0, pitch_deg=-5.0, yaw_deg=90.0, yaw_rate_deg_s=10.0, thrust=0.5),
+        ipc.Stream(roll_deg=None, pitch_deg=0.0, yaw_deg=0.0, thrust=0.5),
+    ]
+
+
 def test_a_hold_ends_it_and_the_next_sample_says_so() -> None:
     station, way = flying()
     with station.stream() as stream:

@@ -21,6 +21,7 @@ from gcs.protocol.effects import (
 )
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong
+from tests.shares import examples
 
 OWN = Address(255, 190)
 MS = 1_000_000
@@ -281,7 +282,7 @@ STEPS = st.lists(
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(STEPS)
 def test_every_command_ends_exactly_once_and_none_leaves_late(
     steps: list[tuple[str | Result, Cmd | int]],

@@ -27,6 +27,7 @@ from gcs.wire.messages import (
     RequestEvent,
     ResponseEventError,
 )
+from tests.shares import examples
 
 OWN, VEHICLE = Address(255, 190), Address(1, 1)
 RING = 1 << 16
@@ -205,7 +206,7 @@ def flown(seed: int, loss: float) -> Station:
 
 
 @given(seed=st.integers(0, 1 << 32), loss=st.floats(0.0, 0.9))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_each_is_told_once_and_in_order_whatever_is_lost(seed: int, loss: float) -> None:
     station = flown(seed, loss)
     orders = [(number - 65526) % RING for number in station.told]

@@ -35,6 +35,7 @@ from gcs.wire.messages import (
     MissionRequestInt,
     MissionRequestList,
 )
+from tests.shares import examples
 
 OWN = Address(255, 190)
 VEHICLE = Address(1, 1)
@@ -515,7 +516,7 @@ def test_a_plan_survives_a_bad_link_both_ways(seed: int, old: bool) -> None:
     assert down == TransferDone(PLAN, board.plan)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.integers(0, 2**32), st.integers(1, 30), st.booleans())
 def test_on_any_bad_link_a_transfer_is_whole_or_was_given_up(
     seed: int, items: int, old: bool
@@ -536,7 +537,7 @@ def test_on_any_bad_link_a_transfer_is_whole_or_was_given_up(
         assert down.result is None
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.integers(0, 2**32), st.integers(1, 10))
 def test_on_a_hopeless_link_every_transfer_still_ends(seed: int, items: int) -> None:
     dice = random.Random(seed)

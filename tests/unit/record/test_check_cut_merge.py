@@ -19,6 +19,7 @@ from gcs.record.reading import BadRecordError, Reading
 from gcs.record.rotation import Rotation
 from gcs.record.writer import Recorder
 from gcs.report import ParamItem, PoseItem
+from tests.shares import examples
 from tests.unit.cli.command_line import Ended, gcs
 from tests.unit.record.flights import (
     MS,
@@ -152,7 +153,7 @@ def test_what_is_no_record_is_a_clear_error(
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(data=st.data())
 def test_garbage_in_a_file_is_found_or_harmless_and_never_a_crash(data: st.DataObject) -> None:
     with TemporaryDirectory() as name:

@@ -37,6 +37,7 @@ from gcs.report import (
     PoseItem,
     RecordItem,
 )
+from tests.shares import examples
 from tests.unit.record.flights import (
     MS,
     SECOND,
@@ -127,7 +128,7 @@ def test_an_unwritable_folder_is_an_error_at_start(tmp_path: Path) -> None:
         Recorder.open(blocked, "flight", "20260101-000000", START_NS)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(steps=st.lists(st.sampled_from([0, 0, 1, -5, 1_000_000]), min_size=1, max_size=40))
 def test_log_time_is_strictly_increasing_whatever_the_clock_does(
     tmp_path_factory: pytest.TempPathFactory, steps: list[int]

@@ -24,6 +24,7 @@ from gcs.record.reading import BadRecordError, Reading
 from gcs.record.recover import recover
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem
+from tests.shares import examples, one_in
 from tests.unit.record.flights import MS, START_NS, a_flight, frame_v2, messages_of, record
 
 
@@ -62,7 +63,7 @@ def recovered_frames(path: Path) -> list[bytes]:
         return [ros1.rebuild(message.data) for *_, message in make_reader(file).iter_messages()]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(offset=st.integers(8, len(killed().data)))
 def test_a_file_cut_anywhere_gives_back_all_that_was_flushed(offset: int) -> None:
     with TemporaryDirectory() as name:
@@ -192,7 +193,7 @@ def test_recovering_does_not_overwrite(tmp_path: Path) -> None:
     assert target.read_text() == "precious"
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     offset=st.integers(8, len(killed().data) - 1),
     garbage=st.binary(min_size=1, max_size=40),
@@ -210,9 +211,14 @@ def test_garbage_in_the_file_is_never_a_crash(offset: int, garbage: bytes) -> No
         assert reading.condition.position == reading.condition.size
 
 
+PARTS = 4
+"""Every fourth record in each of so many tests."""
+
+
 @pytest.mark.slow
+@pytest.mark.parametrize("part", one_in(PARTS, range(PARTS)))
 def test_a_cut_at_every_kind_of_record_gives_back_all_before_it_and_a_good_file(
-    tmp_path: Path,
+    tmp_path: Path, part: int
 ) -> None:
     """At the beginning, in the head and in the middle of each record that the recorder writes."""
     data = record(tmp_path, a_flight() * 8, step_ns=50 * MS).read_bytes()
@@ -234,7 +240,7 @@ def test_a_cut_at_every_kind_of_record_gives_back_all_before_it_and_a_good_file(
         Opcode.SUMMARY_OFFSET,
         footer,
     }
-    for at, opcode, size in found:
+    for at, opcode, size in found[part::PARTS]:
         whole = sum(1 for start, kind, length in found if kind == chunk and start + length <= at)
         before = messages_of_prefix(tmp_path, data[:at])
         for cut in {at, at + 1, at + 9, at + size // 2}:

@@ -100,7 +100,7 @@ class TestControl:
         assert (verdict.id, verdict.outcome, verdict.code) == (number, "refused", "OTHER_OPERATOR")
         assert verdict.sentence == (
             "operator 1 (first operator) is in control of this station; "
-            "`station take` takes it over"
+            "take it over with --take, or by the words `station take`"
         )
         assert verdict.numbers == {"in_control": 1.0}
         assert wire.sent(script.told[-3:], "COMMAND_LONG") == []

@@ -11,8 +11,8 @@ from gcs.report import Direction
 from gcs.session import incoming, vehicle
 from gcs.session.effects import Effect, Transmit
 from gcs.session.inputs import ClientCame, Datagram
+from gcs.session.interpreted_messages import INTERPRETED
 from gcs.session.links import MAX_DATAGRAM, datagrams
-from gcs.session.vehicle import INTERPRETED
 from gcs.wire.codec import FrameWriter
 from gcs.wire.dialect import MESSAGES, MESSAGES_BY_NAME
 from gcs.wire.frame import plain_frames

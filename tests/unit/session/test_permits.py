@@ -36,6 +36,7 @@ def calls_of(name: str) -> set[str]:
 def test_setpoints_are_made_in_one_file() -> None:
     assert calls_of("SetPositionTargetLocalNed") == {"session/setpoints.py"}
     assert calls_of("SetPositionTargetGlobalInt") == set()
+    assert calls_of("SetAttitudeTarget") == {"session/setpoints.py"}
 
 
 def test_permits_are_issued_in_one_file() -> None:

@@ -10,9 +10,10 @@ import pytest
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import PlanError
+from gcs.plan.item_messages import item_of, message_of
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.links import Links
-from gcs.session.plans import OnBoard, Prepared, item_of, message_of, on_board, prepare
+from gcs.session.plans import OnBoard, Prepared, on_board, prepare
 from gcs.steps import drained
 from gcs.wire.messages import MissionItemInt
 from tests.unit.plan import samples

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
+from gcs.gate.attitude import Attitude, HoverThrust
 from gcs.gate.permit import Permit, issue
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.links import Links
-from gcs.session.setpoints import setpoint
+from gcs.session.setpoints import attitude_target, setpoint
 from tests.unit.session import wire
 from tests.unit.session.vehicles import SECOND_NS, vehicle
 
@@ -119,3 +122,51 @@ def test_a_permit_of_another_moment_moves_nothing(off_ns: int) -> None:
 def test_a_permit_for_a_command_is_none_for_a_place() -> None:
     with pytest.raises(PermissionError):
         setpoint(vehicle(), issue(None, None, START_NS, "a test"), START_NS, START_NS)
+
+
+LEANS = Attitude((0.6, 0.0, -0.8, 0.0), 0.25, HoverThrust(0.5))
+
+
+def attitude_on_the_wire(autopilot: Autopilot, permit: Permit) -> wire.Message:
+    message = attitude_target(vehicle(autopilot), permit, START_NS, START_NS + 1_500_000_000)
+    (sent,) = wire.sent(Links(255, 190, count=1).send(0, message, permit.issued_ns))
+    return sent
+
+
+@pytest.mark.parametrize("autopilot", [PX4, ARDUPILOT], ids=lambda a: a.name)
+@pytest.mark.parametrize("rate_rad_s", [None, 0.25])
+def test_an_attitude_on_the_wire(autopilot: Autopilot, rate_rad_s: float | None) -> None:
+    """ATTITUDE_TARGET_TYPEMASK: 1, 2, 4 ignore the rates of roll, pitch and yaw.  PX4 takes a yaw
+    rate alone, ArduCopter all three or none (from memory)."""
+    now_ns = START_NS + 1_500_000_000
+    permit = issue(None, None, now_ns, "a test", yaw_rate_rad_s=rate_rad_s, attitude=LEANS)
+    sent = attitude_on_the_wire(autopilot, permit)
+    assert sent.q == pytest.approx([0.6, 0.0, -0.8, 0.0])
+    assert (sent.thrust, sent.time_boot_ms) == (0.25, 1500)
+    assert (sent.body_roll_rate, sent.body_pitch_rate) == (0.0, 0.0)
+    assert sent.body_yaw_rate == (rate_rad_s or 0.0)
+    with_rate = 3 if autopilot is PX4 else 0
+    assert sent.type_mask == (7 if rate_rad_s is None else with_rate)
+
+
+@pytest.mark.parametrize(
+    "permit",
+    [
+        issue(None, None, START_NS, "a test"),
+        issue(None, None, START_NS + 1, "a test", attitude=LEANS),
+        issue((0.0, 0.0, 0.0), None, START_NS, "a test", attitude=LEANS),
+        issue(None, 0.0, START_NS, "a test", attitude=LEANS),
+        issue(None, None, START_NS, "a test", v_ned=(0.0, 0.0, 0.0), attitude=LEANS),
+        issue(None, None, START_NS, "a test", yaw_rate_rad_s=math.nan, attitude=LEANS),
+        issue(None, None, START_NS, "a test", attitude=replace(LEANS, thrust=math.nan)),
+    ],
+)
+def test_an_attitude_leaves_by_a_permit_of_now_for_it_alone(permit: Permit) -> None:
+    with pytest.raises(PermissionError):
+        attitude_target(vehicle(), permit, START_NS, START_NS)
+
+
+def test_an_attitude_is_no_setpoint_of_a_position() -> None:
+    permit = issue(None, None, START_NS, "a test", attitude=LEANS)
+    with pytest.raises(PermissionError):
+        setpoint(vehicle(), permit, START_NS, START_NS)

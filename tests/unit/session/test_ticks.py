@@ -24,12 +24,16 @@ def gate_ticks(work: list[Work]) -> list[int]:
     return [tick.lateness_ns for tick in given if isinstance(tick, Tick)]
 
 
-def late(work: list[Work]) -> bool:
-    """Whether lateness is a condition."""
-    given = [item.given for item in work if isinstance(item, ToGate)]
-    (told,) = [change for change in given if isinstance(change, ConditionChanged)]
-    assert told.condition is Condition.TICK_LATE
-    return told.active
+def late(works: list[list[Work]], *, before: bool = False) -> list[bool]:
+    """Whether lateness is a condition after each tick: as was told last."""
+    stands = []
+    for work in works:
+        given = [item.given for item in work if isinstance(item, ToGate)]
+        told = [change for change in given if isinstance(change, ConditionChanged)]
+        assert all(each.condition is Condition.TICK_LATE for each in told)
+        before = told[-1].active if told else before
+        stands.append(before)
+    return stands
 
 
 def on_time(ticks: Ticks, count: int) -> list[list[Work]]:
@@ -77,15 +81,20 @@ def test_what_is_later_than_a_good_kernel_makes_it_is_logged(late_ms: int, told:
 
 def test_a_gap_in_the_stream_is_a_condition_for_ten_seconds_after_the_last_one() -> None:
     ticks = Ticks(START_NS, Times(1.0))
-    assert late(ticks.wake(ticks.next_ns + 300 * MS_NS))
+    assert late([ticks.wake(ticks.next_ns + 300 * MS_NS)]) == [True]
     on_time(ticks, 100)
-    assert late(ticks.wake(ticks.next_ns + 300 * MS_NS))
-    works = on_time(ticks, 210)
-    assert [late(work) for work in works].count(True) == 199  # at 10 s it is over
-    assert not late(works[-1])
+    assert late([ticks.wake(ticks.next_ns + 300 * MS_NS)]) == [True]
+    stands = late(on_time(ticks, 210), before=True)
+    assert stands == [True] * 199 + [False] * 11  # at 10 s it is over
+
+
+def test_that_ticks_are_on_time_is_told_once_a_second() -> None:
+    works = on_time(Ticks(START_NS, Times(1.0)), 40)
+    told = [number for number, work in enumerate(works) if late([work], before=True) == [False]]
+    assert told == [0, 20]
 
 
 def test_sped_up_a_tick_is_late_after_as_much_real_time() -> None:
     ticks = Ticks(START_NS, Times(10.0))
-    assert not late(ticks.wake(ticks.next_ns + 2_400 * MS_NS))
-    assert late(ticks.wake(ticks.next_ns + 2_600 * MS_NS))
+    assert late([ticks.wake(ticks.next_ns + 2_400 * MS_NS)]) == [False]
+    assert late([ticks.wake(ticks.next_ns + 2_600 * MS_NS)]) == [True]

@@ -143,6 +143,18 @@ def test_a_vehicle_that_is_met_is_asked_for_its_origin_its_home_and_its_version(
     assert set(names) == wanted
 
 
+def test_what_a_thrust_means_is_asked_for_where_attitudes_may_be_flown() -> None:
+    stream = structs.replace(DEFAULT.stream, tilt_deg=5.0)
+    script = Script(policy=structs.replace(DEFAULT, stream=stream))
+    names = [
+        item.message.param_id
+        for item in script.hear(wire.heartbeat())
+        if isinstance(item, Send) and hasattr(item.message, "param_id")
+    ]
+    assert names[-1] == "MPC_THR_HOVER"
+    assert len(names) == len(set(names))
+
+
 def test_several_vehicles_are_named_and_none_is_meant() -> None:
     """newcomer.md, 7: it flew the first one silently."""
     script = Script()

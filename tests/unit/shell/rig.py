@@ -41,11 +41,15 @@ class PaperClock(Clock):
         super().__init__()
         self.time_ns = START_NS
         self.waits_s: list[float] = []
+        self.pauses_ns: list[int] = []
         self.steps: Iterator[Step] = iter(())
         self.after_last: Step = lambda: None
 
     def now_ns(self) -> int:
         return self.time_ns
+
+    def pause_until(self, time_ns: int) -> None:
+        self.pauses_ns.append(time_ns)
 
     def seconds_until(self, deadline_ns: int) -> float:
         self.waits_s.append(max(0.0, (deadline_ns - self.time_ns) / 1e9))
@@ -61,6 +65,7 @@ class PaperCore:
         self.given: list[tuple[int, Input]] = []
         self.answers: dict[Input, Sequence[Effect]] = {}
         self.fails_at: set[Input] = set()
+        self.raises: dict[Input, Exception] = {}
         self.does: dict[Input, Step] = {}
         self.faults: list[tuple[Input, str]] = []
         self.answer_to_fault: Sequence[Effect] = ()
@@ -75,6 +80,8 @@ class PaperCore:
         self.does.get(given, lambda: None)()
         if given in self.fails_at:
             raise ZeroDivisionError("planted")
+        if given in self.raises:
+            raise self.raises[given]
         if isinstance(given, Wake):
             self.deadline_ns += TICK_NS * (1 + (now_ns - self.deadline_ns) // TICK_NS)
             if self.last_wake:

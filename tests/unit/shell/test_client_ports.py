@@ -342,15 +342,20 @@ def test_what_a_tcp_client_could_not_take_at_once_comes_when_it_reads(bench: Mak
     here.turns()
     number = 0
     while not here.ports.sinks:
-        here.ports.send(2, struct.pack("<I", number))
+        here.ports.send(2, numbered(number))
         number += 1
-    wanted = 4 * number
+    wanted = 200 * number
     got = b""
     while len(got) < wanted:
         got += slow.recv(1 << 20)
         here.turn()
-    assert got == b"".join(struct.pack("<I", each) for each in range(number))
+    assert got == b"".join(map(numbered, range(number)))
     assert here.ports.sinks == []
+
+
+def numbered(number: int) -> bytes:
+    """As long as a large message."""
+    return struct.pack("<I", number) * 50
 
 
 def test_a_flooding_connection_is_read_later_and_loses_nothing(bench: Make) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 from gcs.session.inputs import Datagram
-from gcs.shell.datagram_runs import MAX_RUN, pieces, runs
+from gcs.shell.datagram_runs import MAX_FRAMES, MAX_RUN, pieces, runs
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import MAX_DATAGRAM, Frame, plain_frames, split
 from gcs.wire.messages import Attitude, Heartbeat, Message
@@ -40,11 +40,20 @@ def test_one_with_anything_else_in_it_is_an_input_of_its_own_and_in_its_turn() -
 def test_no_run_is_longer_than_it_may_be_and_no_byte_is_lost() -> None:
     dice = random.Random(5)
     came = [b"".join(frame() for _ in range(dice.randint(1, 30))) for _ in range(60)]
-    came.insert(20, frame() * 150)
+    came.insert(20, frame() * 250)
     made = list(runs(0, came))
     assert b"".join(each.data for each in made) == b"".join(came)
-    assert max(len(each.data) for each in made if each.data != came[20]) <= MAX_RUN < len(came[20])
+    assert all(b"".join(item.raw for item in each.frames) == each.data for each in made)
+    shorter = [each for each in made if each.data != came[20]]
+    assert max(len(each.data) for each in shorter) <= MAX_RUN < len(came[20])
+    assert max(len(each.frames) for each in shorter) <= MAX_FRAMES
     assert len(made) < len(came) / 2
+
+
+def test_short_frames_in_a_run_are_no_more_than_are_counted_together() -> None:
+    beat = frame(Heartbeat(0, 2, 12, 0, 4, 3))
+    made = list(runs(0, [beat] * (2 * MAX_FRAMES + 1)))
+    assert [len(each.frames) for each in made] == [MAX_FRAMES, MAX_FRAMES, 1]
 
 
 def test_a_datagram_that_is_too_long_is_left_to_the_session() -> None:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import os
 import socket
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
 
 from gcs import ipc
 from gcs.record.writer import Recorder
-from gcs.report import LogEvent
+from gcs.report import LogEvent, PoseItem, RecordItem
 from gcs.session.effects import Emit, Finish, ReadFile, Record, ShowTopics, Transmit, WriteFile
+from gcs.session.incoming import FramesRaisedError
 from gcs.session.inputs import (
     ClientCame,
     Datagram,
@@ -34,7 +35,7 @@ from gcs.session.inputs import (
 from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets, Connection
 from gcs.shell.client_table import Arrival
-from gcs.shell.loop import MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
+from gcs.shell.loop import GATHER_NS, MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
 from gcs.shell.recording import Recording
 from tests.unit.shell.rig import DONE, EXIT_BUG, MS, START_NS, TICK_NS, Rig, recorded
 
@@ -213,6 +214,21 @@ def test_an_effect_that_fails_on_the_clock_ends_the_link_after_the_hold_has_left
     assert rig.links[0].sent == [b"hold"]
 
 
+def test_frames_that_raise_within_a_run_are_faults_and_the_rest_of_it_is_performed(
+    rig: Rig,
+) -> None:
+    bad = Datagram(0, b"bad")
+    rest = [Transmit(0, b"of the rest")]
+    rig.core.raises[FIRST] = FramesRaisedError(rest, [(bad, ZeroDivisionError("planted"))])
+    rig.core.answer_to_fault = [HOLD]
+    rig.run(lambda: rig.links[0].bring(b"first", b"second"))
+    ((given, report),) = rig.core.faults
+    assert given == bad
+    assert report.splitlines()[-1] == "ZeroDivisionError: planted"
+    assert rig.links[0].sent == [b"of the rest", b"hold"]
+    assert Datagram(0, b"second") in rig.core.inputs
+
+
 def test_an_answer_to_a_fault_that_fails_too_keeps_no_other_from_leaving(rig: Rig) -> None:
     rig.links[1].send_fails = True
     rig.recording.fails_at.append("the fault")
@@ -383,6 +399,10 @@ class PaperClients(ClientSockets):
         return self._near.fileno()
 
     @property
+    def alone(self) -> bool:
+        return False
+
+    @property
     def sources(self) -> list[ClientSockets | Connection]:
         return [self]
 
@@ -475,6 +495,31 @@ def test_every_snapshot_is_shown_to_whoever_describes_the_station(clients: Paper
     rig.close()
 
 
+def test_what_cannot_be_recorded_is_a_fault_of_the_datagram_that_it_was_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Though it is recorded later, by the clock: on that a fault would end the station."""
+    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
+    pose = PoseItem(1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+    write = Recorder.write
+
+    def refuse_poses(self: Recorder, item: RecordItem, now_ns: int) -> None:
+        if item == pose:
+            raise ZeroDivisionError("planted")
+        write(self, item, now_ns)
+
+    monkeypatch.setattr(Recorder, "write", refuse_poses)
+    rig = Rig(recording=Recording(recorder))
+    rig.core.answers[FIRST] = [Record(pose)]
+    rig.core.answers[Wake()] = [Record(LogEvent(START_NS, 2, "gate", "a tick"))]
+    rig.run(lambda: rig.links[0].bring(b"first"), lambda: rig.advance(50), lambda: None)
+    ((given, report),) = rig.core.faults
+    assert given == FIRST
+    assert "planted" in report
+    assert recorder.close(START_NS)
+    rig.close()
+
+
 def test_who_watches_topics_is_told_of_them_until_it_has_gone(
     clients: PaperClients, tmp_path: Path
 ) -> None:
@@ -523,6 +568,39 @@ class PaperPorts(ClientPorts):
 
     def send(self, link: int, data: bytes) -> None:
         self.sent.append((link, data))
+
+
+def test_turns_are_apart_where_datagrams_are_dense_and_nowhere_else(rig: Rig) -> None:
+    link = rig.links[0]
+
+    def bring(after_ms: float, count: int) -> Callable[[], None]:
+        def step() -> None:
+            rig.advance(after_ms)
+            link.bring(*[b"x"] * count)
+
+        return step
+
+    rig.run(
+        bring(8.0, 1), bring(8.0, 2), bring(1.0, 1), bring(0.4, 1), bring(8.0, 3), bring(8.0, 1)
+    )
+    dense_ns = [START_NS + round(at_ms * MS) for at_ms in (17.4, 25.4)]
+    assert rig.clock.pauses_ns == [time_ns + GATHER_NS for time_ns in dense_ns]
+
+
+def test_two_vehicles_at_once_are_not_dense(rig: Rig) -> None:
+
+    def bring() -> None:
+        rig.advance(8.0)
+        for link in rig.links:
+            link.bring(b"x")
+
+    rig.run(bring, bring)
+    assert rig.clock.pauses_ns == []
+
+
+def test_no_tick_waits_for_datagrams(rig: Rig) -> None:
+    rig.run(lambda: rig.advance(49), lambda: rig.links[0].bring(b"1", b"2", b"3"))
+    assert rig.clock.pauses_ns == [START_NS + TICK_NS]
 
 
 def test_while_vehicles_send_all_else_is_looked_at_every_tick_and_at_once_where_it_has_come() -> (

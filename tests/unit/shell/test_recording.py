@@ -8,12 +8,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from mcap.reader import make_reader
 
 from gcs.record.guarded_file import RawFile, open_exclusive
 from gcs.record.writer import Recorder
-from gcs.report import AttachmentItem, InputItem
-from gcs.session.inputs import RecorderChanged, RecorderGrew
-from gcs.shell.recording import GREW_STEP_BYTES, Recording
+from gcs.report import AttachmentItem, Direction, FramesItem, InputItem, PoseItem, RecordItem
+from gcs.session.inputs import Datagram, RecorderChanged, RecorderGrew
+from gcs.shell.recording import GREW_STEP_BYTES, MOST_WAITING, Recording
+from gcs.wire import messages as m
+from gcs.wire.codec import FrameWriter
 
 SECOND_NS = 1_000_000_000
 START_NS = 1_000 * SECOND_NS
@@ -179,3 +182,105 @@ def test_a_record_of_nothing_leaves_no_file(recording: Recording, tmp_path: Path
     assert list(tmp_path.glob("*.mcap")) == []
     assert recording.path == ""
     assert recording.close(START_NS + 2)
+
+
+# ------------------------------------------------------------------- what waits to be recorded
+
+RAW = FrameWriter(1, 1).write(m.Attitude(1, 0.1, 0.2, 0.3, 0.0, 0.0, 0.0))
+FRAMES = FramesItem(0, Direction.RECEIVED, (RAW, RAW, RAW))
+POSE = PoseItem(1, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+CAME = Datagram(0, RAW)
+MS = 1_000_000
+
+
+def told(recording: Recording) -> list[tuple[str, int]]:
+    """Topic and log_time of every message from now on, as a watcher is told them."""
+    recording.write(
+        InputItem.of("Wake", {}), START_NS
+    )  # behind it comes what every record begins with
+    heard: list[tuple[str, int]] = []
+    assert recording.recorder is not None
+    recording.recorder.watch(lambda channel, _, time_ns, __: heard.append((channel.topic, time_ns)))
+    return heard
+
+
+def test_frames_of_a_vehicle_wait_for_the_next_word_of_the_session(recording: Recording) -> None:
+    heard = told(recording)
+    recording.write_of(CAME, FRAMES, START_NS + 1 * MS)
+    recording.write_of(CAME, FRAMES, START_NS + 9 * MS)
+    assert heard == []
+    recording.write(InputItem.of("Wake", {}), START_NS + 50 * MS)
+    frames = [time_ns for topic, time_ns in heard if topic == "/mavlink/1/1/ATTITUDE"]
+    assert frames == [START_NS + at * MS + n for at in (1, 9) for n in range(3)]
+    assert ("/session/input", START_NS + 50 * MS) in heard
+    assert [time_ns for _, time_ns in heard] == sorted(time_ns for _, time_ns in heard)
+
+
+def test_no_input_is_handled_at_a_time_that_waiting_messages_will_have(
+    recording: Recording,
+) -> None:
+    heard = told(recording)
+    given_ns = []
+    for items in ((FRAMES, POSE, FRAMES), (FRAMES,), (FRAMES, POSE)):
+        given_ns.append(recording.time_ns(START_NS))
+        for item in items:
+            recording.write_of(CAME, item, given_ns[-1])
+    given_ns.append(recording.time_ns(START_NS))
+    recording.write(InputItem.of("Wake", {}), given_ns[-1])
+    # Where a nanosecond is left free, an input begins.
+    times_ns = [time_ns for _, time_ns in heard]
+    begins = [at for at, before in zip(times_ns[1:], times_ns, strict=False) if at > before + 1]
+    assert [times_ns[0], *begins] == given_ns
+    assert times_ns == sorted({*times_ns})
+
+
+@pytest.mark.parametrize("count", [MOST_WAITING // 3, MOST_WAITING // 3 + 1])
+def test_only_so_many_frames_wait(recording: Recording, count: int) -> None:
+    heard = told(recording)
+    for _ in range(count):
+        recording.write_of(CAME, FRAMES, recording.time_ns(START_NS))
+    assert len(heard) == (3 * count if 3 * count >= MOST_WAITING else 0)
+
+
+def test_nothing_that_waits_is_left_out_of_the_file(tmp_path: Path) -> None:
+    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS)
+    recording = Recording(recorder)
+    recording.write_of(CAME, FRAMES, START_NS)
+    assert recording.close(START_NS + MS)
+    with recorder.path.open("rb") as file:
+        topics = [channel.topic for _, channel, _ in make_reader(file).iter_messages()]
+    assert topics.count("/mavlink/1/1/ATTITUDE") == 3
+
+
+def test_a_full_disk_is_told_right_after_the_write_that_met_it(
+    recording: Recording, disk: Disk
+) -> None:
+    recording.write_of(CAME, FRAMES, START_NS)
+    disk.full = True
+    (lost,) = recording.upkeep(recording.deadline_ns)
+    assert isinstance(lost, RecorderChanged)
+    assert not lost.recording
+
+
+def test_what_raises_later_is_told_with_what_came_and_the_rest_is_recorded(
+    recording: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert recording.recorder is not None
+    write = Recorder.write
+
+    def refuse_poses(self: Recorder, item: RecordItem, now_ns: int) -> None:
+        if item == POSE:
+            raise ZeroDivisionError("planted")
+        write(self, item, now_ns)
+
+    monkeypatch.setattr(Recorder, "write", refuse_poses)
+    heard = told(recording)
+    other = Datagram(1, RAW)
+    recording.write_of(other, POSE, START_NS)
+    recording.write_of(CAME, FRAMES, START_NS + MS)
+    recording.write(InputItem.of("Wake", {}), START_NS + 50 * MS)
+    assert [topic for topic, _ in heard].count("/mavlink/1/1/ATTITUDE") == 3
+    ((given, report),) = recording.faults()
+    assert given is other
+    assert "planted" in report
+    assert recording.faults() == []

@@ -16,6 +16,7 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.exit_codes import ExitCode
 from gcs.report import Direction, FrameItem, RecordItem
+from tests.shares import examples
 from tests.unit.cli.command_line import Ended, gcs
 from tests.unit.record.flights import MS, a_flight, frame_v1, frame_v2, record
 
@@ -175,7 +176,7 @@ def test_broken_files_end_with_exit_4_or_what_is_whole_in_them(
 
 
 @pytest.mark.slow
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_any_damage_is_told_or_passed_over(
     flight: Path, tmp_path: Path, data: st.DataObject

@@ -17,6 +17,8 @@ from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd, DataStream, Sensor
 
+pytestmark = pytest.mark.slow  # a vehicle flies
+
 Kind = TypeVar("Kind")
 
 

@@ -14,6 +14,8 @@ from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.plant.faults import GyroBias
 from vehicle_sim.wire import messages as m
 
+pytestmark = pytest.mark.slow  # a vehicle flies
+
 CALIBRATE = 241
 ARM = long(400, 1)
 CALIBRATING, STANDBY = 2, 3  # MAV_STATE

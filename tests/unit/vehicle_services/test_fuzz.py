@@ -1,18 +1,18 @@
 """Everything that can come over the wire, right checksums included, and a vehicle that bears it.
 
-`FUZZ` datagrams by default; `MAVGATE_SOAK` sends a million, and watches the memory.
+`FUZZ` datagrams by default; `make soak` sends a million, and watches the memory.
 """
 
 from __future__ import annotations
 
 import math
-import os
 import random
 import struct
 import sys
 
 import pytest
 
+from tests.soaking import SOAKING
 from tests.unit.vehicle_services.fake_vehicle import MS, S, long
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic
@@ -41,7 +41,6 @@ pytestmark = pytest.mark.slow
 
 FUZZ = 20_000
 SOAK = 1_000_000
-SOAKING = "MAVGATE_SOAK" in os.environ
 GROWTH_MAX_BYTES = 8_000_000
 SEEDS: dict[Personality, int] = {"px4": 20, "ardupilot": 21}
 HOME = Geodetic(47.397742, 8.545594, 488.0)

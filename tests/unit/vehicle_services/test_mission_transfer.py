@@ -25,6 +25,8 @@ from vehicle_sim.simulation.impairment import Impairment
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MissionResult, MissionType
 
+pytestmark = pytest.mark.slow  # a vehicle flies
+
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 either = pytest.mark.parametrize("personality", BOTH)
 OLD = tuple(PlanItem(seq, 6, 16, 0.0, 0.0, 0.0, 0.0, 1, 1, 5.0, 1) for seq in range(3))

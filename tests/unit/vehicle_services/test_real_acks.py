@@ -20,6 +20,8 @@ from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
 
+pytestmark = pytest.mark.slow  # a vehicle flies
+
 Asked = m.CommandLong | m.CommandInt
 Row = tuple[Personality, str, str, str]
 

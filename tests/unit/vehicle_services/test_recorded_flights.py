@@ -23,6 +23,8 @@ from vehicle_sim.services.stream_sets import POSITION_ONLY
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd
 
+pytestmark = pytest.mark.slow  # a vehicle flies
+
 ARM, DISARM = long(Cmd.COMPONENT_ARM_DISARM, 1), long(Cmd.COMPONENT_ARM_DISARM, 0)
 E7_PER_M = 90.0  # of latitude
 

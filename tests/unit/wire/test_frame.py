@@ -21,6 +21,7 @@ from gcs.wire.frame import (
     split,
 )
 from gcs.wire.messages import LocalPositionNed, MissionItemReached, Statustext
+from tests.shares import examples
 
 POSITION = LocalPositionNed(time_boot_ms=1234, x=1.0, y=2.0, z=-3.0, vx=0.5, vy=0.25, vz=0.125)
 UNKNOWN_ID = 59_999
@@ -204,7 +205,7 @@ MAGICLESS = st.binary(max_size=60).map(lambda b: b.replace(b"\xfd", b"").replace
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.lists(PIECES, max_size=8).map(b"".join))
 def test_no_bytes_raise_and_none_are_lost(data: bytes) -> None:
     items = split(data)
@@ -213,7 +214,7 @@ def test_no_bytes_raise_and_none_are_lost(data: bytes) -> None:
         decode(frame)
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.lists(PIECES, max_size=8), st.lists(st.integers(1, 50), min_size=1))
 def test_no_stream_raises_loses_bytes_or_grows(pieces: list[bytes], steps: list[int]) -> None:
     data = b"".join(pieces)
@@ -230,14 +231,14 @@ def test_no_stream_raises_loses_bytes_or_grows(pieces: list[bytes], steps: list[
     assert known == [frame.raw for frame in frames(split(data)) if frame.known]
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.lists(st.tuples(st.booleans(), st.integers(0, 255), MAGICLESS), max_size=8))
 def test_every_good_frame_is_found_after_garbage(parts: list[tuple[bool, int, bytes]]) -> None:
     data = b"".join(noise + position(seq, mavlink1) for mavlink1, seq, noise in parts)
     assert [frame.seq for frame in frames(split(data))] == [seq for _, seq, _ in parts]
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.integers(0, len(position()) - 1), st.integers(1, 255))
 def test_a_damaged_byte_costs_one_frame_and_not_the_next(at: int, flip: int) -> None:
     damaged = bytearray(position(1))

@@ -22,41 +22,44 @@ def test_a_generated_file_is_up_to_date(path: Path) -> None:
     assert current == generate.files()[path], "run `make messages`"
 
 
+Nodes = list[ast.AST]
+
+
 @cache
-def trees() -> list[tuple[Path, ast.Module]]:
-    """Every file of the program, parsed."""
+def nodes() -> list[tuple[Path, Nodes]]:
+    """Every file of the program, parsed, as all nodes of its tree."""
     sources = ((path, path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py"))
-    return [(path, ast.parse(source)) for path, source in sources]
+    return [(path, [*ast.walk(ast.parse(source))]) for path, source in sources]
 
 
 def names_from(module: str) -> set[str]:
     """What the program outside gcs/wire uses of a module of gcs/wire."""
-    outside = (tree for path, tree in trees() if path.parent != PACKAGE / "wire")
+    outside = (tree for path, tree in nodes() if path.parent != PACKAGE / "wire")
     return {name for tree in outside for name in _imported(tree, module) | _via_alias(tree, module)}
 
 
-def _imported(tree: ast.Module, module: str) -> set[str]:
+def _imported(tree: Nodes, module: str) -> set[str]:
     """The X of `from gcs.wire.module import X`."""
     return {
         alias.name
-        for node in ast.walk(tree)
+        for node in tree
         if isinstance(node, ast.ImportFrom) and node.module == f"gcs.wire.{module}"
         for alias in node.names
     }
 
 
-def _via_alias(tree: ast.Module, module: str) -> set[str]:
+def _via_alias(tree: Nodes, module: str) -> set[str]:
     """The X of `m.X` after `from gcs.wire import module as m`."""
     aliases = {
         alias.asname or alias.name
-        for node in ast.walk(tree)
+        for node in tree
         if isinstance(node, ast.ImportFrom) and node.module == "gcs.wire"
         for alias in node.names
         if alias.name == module
     }
     return {
         node.attr
-        for node in ast.walk(tree)
+        for node in tree
         if isinstance(node, ast.Attribute)
         and isinstance(node.value, ast.Name)
         and node.value.id in aliases
@@ -75,17 +78,14 @@ def test_the_program_uses_every_enum() -> None:
 
 def test_the_program_asks_for_every_message_that_has_an_id_only() -> None:
     asked = {
-        ast.unparse(node)
-        for _, tree in trees()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Attribute)
+        ast.unparse(node) for _, tree in nodes() for node in tree if isinstance(node, ast.Attribute)
     }
     assert {f"MsgId.{name}" for name in selection.IDS_ONLY} - asked == set()
 
 
 def test_the_program_does_not_need_the_generator() -> None:
-    for path, tree in trees():
-        loaded = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    for path, tree in nodes():
+        loaded = {node.module for node in tree if isinstance(node, ast.ImportFrom)}
         loaded -= {"gcs.wire.selection"} if path.name == "generate.py" else set()
         assert not loaded & {"gcs.wire.selection", "gcs.wire.generate"}, path
 

@@ -13,6 +13,7 @@ from gcs.wire.codec import FrameWriter, Layout, decode, encode
 from gcs.wire.dialect import MESSAGES, FieldDef, MessageDef
 from gcs.wire.frame import Frame, split
 from gcs.wire.messages import CLASSES, Message
+from tests.shares import examples
 
 BITS = {"int8": 8, "int16": 16, "int32": 32, "int64": 64}
 BITS |= {f"u{name}": bits for name, bits in BITS.items()}
@@ -87,7 +88,7 @@ def zero_frame(definition: MessageDef) -> Frame:
 
 
 @pytest.mark.parametrize("cls", CLASSES.values(), ids=lambda cls: cls.__name__)
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(data=st.data())
 def test_what_we_write_pymavlink_reads(cls: type[Message], data: st.DataObject) -> None:
     definition = MESSAGES[cls.MSG_ID]
@@ -105,7 +106,7 @@ def test_what_we_write_pymavlink_reads(cls: type[Message], data: st.DataObject) 
 
 @pytest.mark.parametrize("cls", CLASSES.values(), ids=lambda cls: cls.__name__)
 @pytest.mark.parametrize("mavlink1", [False, True], ids=["mavlink2", "mavlink1"])
-@settings(max_examples=10)
+@settings(max_examples=examples(10))
 @given(data=st.data())
 def test_what_pymavlink_writes_we_read(
     cls: type[Message], mavlink1: bool, data: st.DataObject

@@ -20,6 +20,7 @@ from gcs.plan.model import AutopilotName
 from gcs.protocol.parameter_names import names_of
 from gcs.session import failsafes, settings
 from gcs.session.jobs import facts
+from gcs.session.thrust_meaning import NAMES_OF_THRUST
 from gcs.wire.ids import ParamExtResult, ParamFault
 from gcs.wire.messages import (
     Message,
@@ -266,6 +267,7 @@ def test_every_parameter_that_the_station_stands_on_is_guarded_by_every_name(
     wanted = {table[autopilot] for table in settings.READ_FIRST if autopilot in table}
     wanted |= {*failsafes.parameters_of(autopilot)}
     wanted |= {quantity.parameter for quantity in facts.QUANTITIES[autopilot]}
+    wanted |= {*NAMES_OF_THRUST[autopilot]}
     for newest in wanted:
         for name in names_of(newest):
             assert group_of(autopilot, name.name) is not None, name.name

@@ -16,13 +16,14 @@ from gcs.gate.inputs import MissionLoaded
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
+from gcs.plan.item_messages import message_of
 from gcs.protocol.autopilot import PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.transfer import SPEC_TIMING
 from gcs.session.effects import ReadFile, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView
-from gcs.session.plans import OnBoard, Prepared, message_of, on_board, prepare
+from gcs.session.plans import OnBoard, Prepared, on_board, prepare
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, Decide, ToGate

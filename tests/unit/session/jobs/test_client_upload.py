@@ -10,13 +10,13 @@ from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code
+from gcs.plan.item_messages import message_of
 from gcs.plan.wire import WireItem
 from gcs.plan.wpl import read_wpl
 from gcs.protocol.autopilot import ARDUPILOT
 from gcs.session.jobs.clear import Clear
 from gcs.session.jobs.client_upload import ClientUpload
 from gcs.session.jobs.relay import RelayPlan
-from gcs.session.plans import message_of
 from gcs.session.telemetry import Telemetry
 from gcs.steps import drained
 from gcs.wire.ids import Cmd, MavFrame, MissionResult, MissionType

@@ -10,8 +10,8 @@ from gcs.gate.condition import Condition
 from gcs.gate.states import State
 from gcs.report import GarbageItem, RecordItem
 from gcs.session.session import Session
-from tests.loopback import eyes
-from tests.loopback.eyes import SeenSetpoint
+from tests.loopback import pymavlink_decoder
+from tests.loopback.pymavlink_decoder import SeenSetpoint
 
 E = TypeVar("E", bound=ipc.Event)
 R = TypeVar("R", bound=RecordItem)
@@ -53,7 +53,7 @@ class Looks:
         return self.session.gate.conditions
 
     @property
-    def home_ned(self) -> eyes.Vec3 | None:
+    def home_ned(self) -> pymavlink_decoder.Vec3 | None:
         """Home in the local frame, as the session knows it."""
         return self.session.telemetry.home_ned if self.session.telemetry else None
 
@@ -109,7 +109,9 @@ class Looks:
         seen = []
         for sent in self.sent:
             if sent.time_ns >= since_ns:
-                setpoint = eyes.setpoint_of(eyes.read(sent.data), sent.time_ns)
+                setpoint = pymavlink_decoder.setpoint_of(
+                    pymavlink_decoder.read(sent.data), sent.time_ns
+                )
                 if setpoint is not None:
                     seen.append(setpoint)
         return seen
@@ -117,7 +119,9 @@ class Looks:
     def sent_types(self, since_ns: int = 0) -> list[str]:
         """MAVLink names of what left, in order."""
         return [
-            str(eyes.read(sent.data).get_type()) for sent in self.sent if sent.time_ns >= since_ns
+            str(pymavlink_decoder.read(sent.data).get_type())
+            for sent in self.sent
+            if sent.time_ns >= since_ns
         ]
 
     def sent_commands(self, command: int, since_ns: int = 0) -> list[Sent]:
@@ -126,7 +130,7 @@ class Looks:
             sent
             for sent in self.sent
             if sent.time_ns >= since_ns
-            and (m := eyes.read(sent.data)).get_type() == "COMMAND_LONG"
+            and (m := pymavlink_decoder.read(sent.data)).get_type() == "COMMAND_LONG"
             and m.command == command
         ]
 

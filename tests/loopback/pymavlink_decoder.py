@@ -1,4 +1,4 @@
-"""An independent pair of eyes on the wire: pymavlink decodes what the ground station sent.
+"""What the ground station sent, decoded by pymavlink.
 
 Nothing here touches our own codec, frames or tables, so that a mistake in them is seen.
 """

@@ -1,4 +1,4 @@
-"""A flight under suspicion: the gate's promises are checked while it flies, on the wire's bytes.
+"""A flight during which the gate's promises are checked, on the bytes that were sent.
 
 What was verified is learnt by listening to the verifier itself, what was accepted from the
 verdicts; what was sent is read by pymavlink.  None of the three looks at the gate's state.
@@ -23,7 +23,7 @@ from gcs.gate.proof.edge import Edge
 from gcs.gate.proof.invariants import objections
 from gcs.gate.states import LandedState
 from gcs.session import effects, inputs
-from tests.loopback import eyes
+from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import Flight
 
 Vec3 = tuple[float, float, float]
@@ -113,7 +113,7 @@ class Witness:
         return answer
 
 
-class WatchedFlight(Flight):
+class CheckedFlight(Flight):
     """Raises AssertionError in the very moment in which a promise is broken."""
 
     witness: Witness
@@ -140,7 +140,7 @@ class WatchedFlight(Flight):
     def _carry_out(self, effect: effects.Effect) -> list[inputs.Input]:
         match effect:
             case effects.Transmit(_, data):
-                self._sends(eyes.read(data))
+                self._sends(pymavlink_decoder.read(data))
             case effects.Emit(ipc.VerdictEvent() as verdict):
                 self._judges(verdict)
             case effects.Emit(ipc.EndingEvent() as ending):
@@ -169,7 +169,7 @@ class WatchedFlight(Flight):
             self.abandoned.add(goal_ned)
 
     def _sends(self, message: Any) -> None:
-        setpoint = eyes.setpoint_of(message, self.now_ns)
+        setpoint = pymavlink_decoder.setpoint_of(message, self.now_ns)
         if setpoint is not None:
             self.setpoint_count += 1
             self._streams(setpoint)
@@ -178,11 +178,14 @@ class WatchedFlight(Flight):
         else:
             assert "SET_" not in message.get_type(), message
 
-    def _streams(self, setpoint: eyes.SeenSetpoint) -> None:
+    def _streams(self, setpoint: pymavlink_decoder.SeenSetpoint) -> None:
         pos_ned = setpoint.pos_ned
         assert setpoint.finite, setpoint
-        assert setpoint.frame == eyes.LOCAL_NED
-        assert setpoint.type_mask in (eyes.POSITION_ONLY, eyes.POSITION_AND_YAW)
+        assert setpoint.frame == pymavlink_decoder.LOCAL_NED
+        assert setpoint.type_mask in (
+            pymavlink_decoder.POSITION_ONLY,
+            pymavlink_decoder.POSITION_AND_YAW,
+        )
         held = pos_ned in self.witness.stops
         goes_to = self.goals | self.witness.tops
         assert held or pos_ned in goes_to, f"nobody verified {pos_ned}"

@@ -1,4 +1,4 @@
-"""What failsafes look at, made by hand: a good flight, and what a test changes of it."""
+"""Inputs of failsafes, made by hand: a good flight, and what a test changes of it."""
 
 from __future__ import annotations
 

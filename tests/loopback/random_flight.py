@@ -1,4 +1,4 @@
-"""Random flights: an operator without a plan, a link in bad weather, a vehicle with a will.
+"""Random flights: an operator who asks for anything, a link that loses frames, a faulty vehicle.
 
 Everything follows from one number, so that a flight that breaks a promise can be flown again.
 """
@@ -12,9 +12,9 @@ from collections.abc import Callable
 from gcs import ipc
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.air import Weather
+from tests.loopback.checked_flight import CheckedFlight
 from tests.loopback.flight import MISSIONS, PERSONALITIES, POLICIES
-from tests.loopback.watched import WatchedFlight
+from tests.loopback.lossy_link import Weather
 from vehicle_sim.simulation.world import Datagram
 
 NONSENSE = (math.nan, math.inf, -math.inf, 1e39, -1e308)
@@ -32,14 +32,14 @@ MODES = (
 )
 KINDS = ("hold", "brake", "position", "manual", "guided", "mission", "return", "land")
 
-Act = Callable[[WatchedFlight, random.Random], None]
+Act = Callable[[CheckedFlight, random.Random], None]
 
 
-def _near(flight: WatchedFlight, dice: random.Random) -> None:
+def _near(flight: CheckedFlight, dice: random.Random) -> None:
     flight.goto(dice.uniform(-4.8, 4.8), dice.uniform(-4.8, 4.8), dice.uniform(0.4, 1.9))
 
 
-def _sensible(flight: WatchedFlight, dice: random.Random) -> None:
+def _sensible(flight: CheckedFlight, dice: random.Random) -> None:
     """What an operator who wants to get on would do."""
     match flight.state:
         case State.GROUNDED:
@@ -55,18 +55,18 @@ def _sensible(flight: WatchedFlight, dice: random.Random) -> None:
             flight.run(1.0)
 
 
-def _far(flight: WatchedFlight, dice: random.Random) -> None:
+def _far(flight: CheckedFlight, dice: random.Random) -> None:
     reach_m = dice.choice((6.0, 200.0, 2000.0))
     flight.goto(*(dice.uniform(-reach_m, reach_m) for _ in range(3)))
 
 
-def _nonsense(flight: WatchedFlight, dice: random.Random) -> None:
+def _nonsense(flight: CheckedFlight, dice: random.Random) -> None:
     goal = [dice.uniform(-4.0, 4.0), dice.uniform(-4.0, 4.0), 1.0]
     goal[dice.randrange(3)] = dice.choice(NONSENSE)
     flight.goto(*goal)
 
 
-def _twice(flight: WatchedFlight, dice: random.Random) -> None:
+def _twice(flight: CheckedFlight, dice: random.Random) -> None:
     _near(flight, dice)
     _near(flight, dice)
     if dice.random() < 0.5:
@@ -77,65 +77,65 @@ def _word(word: str) -> Act:
     return lambda flight, dice: _forget(flight.say(word))
 
 
-def _take_off(flight: WatchedFlight, dice: random.Random) -> None:
+def _take_off(flight: CheckedFlight, dice: random.Random) -> None:
     flight.say("arm")
     up_m = dice.choice((1.0, 1.5, 1.9, 0.0, -3.0, 1e6, None))
     flight.run(dice.choice((0.0, 0.5, 1.5)))
     flight.say("takeoff", up_m=up_m)
 
 
-def _disarm(flight: WatchedFlight, dice: random.Random) -> None:
+def _disarm(flight: CheckedFlight, dice: random.Random) -> None:
     flight.say("disarm", force=dice.random() < 0.5)
 
 
-def _mode(flight: WatchedFlight, dice: random.Random) -> None:
+def _mode(flight: CheckedFlight, dice: random.Random) -> None:
     flight.say("mode", mode=dice.choice(MODES))
 
 
-def _fence(flight: WatchedFlight, dice: random.Random) -> None:
+def _fence(flight: CheckedFlight, dice: random.Random) -> None:
     flight.say("fence", on=dice.random() < 0.6)
 
 
-def _upload(flight: WatchedFlight, dice: random.Random) -> None:
+def _upload(flight: CheckedFlight, dice: random.Random) -> None:
     flight.say("mission_upload", path=str(MISSIONS / dice.choice(FILES)))
 
 
-def _unknown(flight: WatchedFlight, dice: random.Random) -> None:
+def _unknown(flight: CheckedFlight, dice: random.Random) -> None:
     flight.say(dice.choice(("dance", "goto", "", "mission_download")))
 
 
-def _pending(flight: WatchedFlight, dice: random.Random) -> None:
+def _pending(flight: CheckedFlight, dice: random.Random) -> None:
     flight.feed(inputs.OperatorLine(1, ipc.Pending((dice.uniform(-9.0, 9.0), 0.0, 0.5))))
     flight.feed(inputs.OperatorNoise(1, "{"))
 
 
-def _dropout(flight: WatchedFlight, dice: random.Random) -> None:
+def _dropout(flight: CheckedFlight, dice: random.Random) -> None:
     flight.positions_lost = True
     flight.run(dice.uniform(0.2, 3.0))
     flight.positions_lost = False
 
 
-def _silence(flight: WatchedFlight, dice: random.Random) -> None:
+def _silence(flight: CheckedFlight, dice: random.Random) -> None:
     flight.vehicle_silent = True
     flight.run(dice.uniform(0.5, 5.0))
     flight.vehicle_silent = False
 
 
-def _somebody_else(flight: WatchedFlight, dice: random.Random) -> None:
+def _somebody_else(flight: CheckedFlight, dice: random.Random) -> None:
     flight.vehicle.set_mode_kind(dice.choice(KINDS))
 
 
-def _gust(flight: WatchedFlight, dice: random.Random) -> None:
+def _gust(flight: CheckedFlight, dice: random.Random) -> None:
     flight.push((dice.uniform(-6.0, 6.0), dice.uniform(-6.0, 6.0), dice.uniform(-1.0, 2.0)))
 
 
-def _garbage(flight: WatchedFlight, dice: random.Random) -> None:
+def _garbage(flight: CheckedFlight, dice: random.Random) -> None:
     noise = dice.randbytes(dice.choice((1, 40, 300, 70_000)))
     flight.feed(inputs.Datagram(0, noise))
     flight.world.handle(Datagram(0, "somebody", noise), flight.now_ns)
 
 
-def _recorder(flight: WatchedFlight, dice: random.Random) -> None:
+def _recorder(flight: CheckedFlight, dice: random.Random) -> None:
     flight.feed(inputs.RecorderChanged(dice.random() < 0.5, "flight.mcap", "the disk"))
 
 
@@ -182,10 +182,10 @@ def weather(dice: random.Random) -> Weather:
     )
 
 
-def flown(index: int, seconds: float = 20.0) -> WatchedFlight:
+def flown(index: int, seconds: float = 20.0) -> CheckedFlight:
     """Random flight number `index`, flown to its end and left in good order."""
     dice = random.Random(index)
-    flight = WatchedFlight(
+    flight = CheckedFlight(
         PERSONALITIES[index % 2],
         policy=POLICIES[("lab", "default")[index // 2 % 2]],
         seed=index + 1,

@@ -10,9 +10,9 @@ import pytest
 from gcs.gate.condition import Condition
 from gcs.gate.states import Control, State
 from gcs.session import inputs
-from tests.loopback import eyes
-from tests.loopback.air import Weather
+from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import PEER, PERSONALITIES, POLICIES, Flight, Personality
+from tests.loopback.lossy_link import Weather
 from vehicle_sim.simulation.world import Datagram
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
@@ -203,7 +203,7 @@ def test_after_an_abort_no_further_try_of_an_arm_leaves(personality: Personality
     flight.say("abort")
     assert flight.outcome(arm) == "aborted OPERATOR"
     flight.run(5.0)
-    tries = [eyes.read(sent.data) for sent in flight.sent_commands(400, aborted_ns)]
+    tries = [pymavlink_decoder.read(sent.data) for sent in flight.sent_commands(400, aborted_ns)]
     assert tries
     assert {m.param1 for m in tries} == {0.0}
     flight.up.weather = Weather()

@@ -1,7 +1,7 @@
-"""A fleet over real sockets, and an ear at the other end: for the measurements of fleets.
+"""A fleet over real sockets, and who listens at the other end: for the measurements of fleets.
 
 The vehicles are a program of their own, whose CPU time is the system's own account of it.
-Ports are the ear's choice, so nothing else on the machine hears or disturbs the fleet.
+Ports are the listener's choice, so nothing else on the machine hears or disturbs the fleet.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ BUFFER_BYTES: Final = 1 << 23
 
 
 def _udp() -> socket.socket:
-    ear = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    ear.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
-    ear.bind(("127.0.0.1", 0))
-    ear.setblocking(False)
-    return ear
+    listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
+    listener.bind(("127.0.0.1", 0))
+    listener.setblocking(False)
+    return listener
 
 
 @dataclass
-class Ear:
+class Listener:
     """Counts what comes in; `own` has an entry a vehicle, or none."""
 
     own: list[socket.socket]
@@ -61,8 +61,8 @@ class Ear:
 
     def __post_init__(self) -> None:
         self.watch = selectors.DefaultSelector()
-        for ear in (*self.own, *([self.shared] if self.shared is not None else [])):
-            self.watch.register(ear, selectors.EVENT_READ)
+        for listener in (*self.own, *([self.shared] if self.shared is not None else [])):
+            self.watch.register(listener, selectors.EVENT_READ)
 
     def listen(self, seconds: float) -> None:
         end = time.monotonic() + seconds
@@ -70,11 +70,11 @@ class Ear:
             for key, _ in self.watch.select(left):
                 self._drain(key.fd, key.fileobj)
 
-    def _drain(self, number: int, ear: object) -> None:
-        assert isinstance(ear, socket.socket)
+    def _drain(self, number: int, listener: object) -> None:
+        assert isinstance(listener, socket.socket)
         for _ in range(200):
             try:
-                data, source = ear.recvfrom(65536)
+                data, source = listener.recvfrom(65536)
             except BlockingIOError:
                 return
             self.talkers[number] = source
@@ -95,8 +95,8 @@ class Ear:
 
     def close(self) -> None:
         self.watch.close()
-        for ear in (*self.own, *([self.shared] if self.shared is not None else [])):
-            ear.close()
+        for listener in (*self.own, *([self.shared] if self.shared is not None else [])):
+            listener.close()
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class Fleet:
     """What was started, and how to talk to it."""
 
     process: subprocess.Popen[str]
-    ear: Ear
+    listener: Listener
     count: int
     personality: Personality
 
@@ -119,11 +119,11 @@ class Fleet:
             up_m = UP_M if copter else HOMES["px4"][2] + UP_M
             orders.append(_long(system, ARM, 1.0, FORCE))
             orders.append(_long(system, TAKE_OFF, 0.0, 0.0, 0.0, nan, nan, nan, up_m))
-            ear = self.ear.own[index] if self.ear.own else self.ear.shared
-            assert ear is not None
-            talker = self.ear.talkers[ear.fileno()]
+            listener = self.listener.own[index] if self.listener.own else self.listener.shared
+            assert listener is not None
+            talker = self.listener.talkers[listener.fileno()]
             for number, order in enumerate(orders):
-                ear.sendto(encode(order, number, 255, 190), talker)
+                listener.sendto(encode(order, number, 255, 190), talker)
 
     @property
     def cpu_s(self) -> float:
@@ -148,10 +148,10 @@ def fleet(
     count: int, *, own: bool, shared: bool, sparse: bool, personality: Personality = "px4"
 ) -> Iterator[Fleet]:
     """Started, heard and on the ground."""
-    ear = Ear([_udp() for _ in range(count)] if own else [], _udp() if shared else None)
-    ports = [each.getsockname()[1] for each in ear.own]
-    common = [] if ear.shared is None else [ear.shared.getsockname()[1]]
-    words = [sys.executable, "-m", "tests.bench.fleet_ear", personality, str(count)]
+    listener = Listener([_udp() for _ in range(count)] if own else [], _udp() if shared else None)
+    ports = [each.getsockname()[1] for each in listener.own]
+    common = [] if listener.shared is None else [listener.shared.getsockname()[1]]
+    words = [sys.executable, "-m", "tests.bench.fleet_listener", personality, str(count)]
     words += ["--own", ",".join(map(str, ports)), "--shared", ",".join(map(str, common))]
     words += ["--sparse"] if sparse else []
     process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -159,12 +159,12 @@ def fleet(
     assert process.stdout is not None
     try:
         process.stdout.readline()
-        yield Fleet(process, ear, count, personality)
+        yield Fleet(process, listener, count, personality)
     finally:
         process.stdin.close()
         process.stdout.close()
         process.wait(20.0)
-        ear.close()
+        listener.close()
 
 
 def plan(personality: Personality, count: int, own: Sequence[int], shared: Sequence[int],

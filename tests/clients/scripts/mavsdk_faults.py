@@ -1,6 +1,6 @@
-"""MAVSDK 4 in rougher air: sticks, following, a fence, failures, a reboot, the end of a flight.
+"""MAVSDK 4 beside the usual flight: sticks, following, fence, failures, reboot, end of a flight.
 
-Run: python mavsdk_troubles.py udpin://127.0.0.1:14540 px4
+Run: python mavsdk_faults.py udpin://127.0.0.1:14540 px4
 """
 
 from __future__ import annotations
