@@ -371,7 +371,7 @@ def mission(run: HostileRun, *, starts: bool = False) -> None:
             path.append(goal)
             at = goal
     if run.vehicle.mode is not FlightMode.MISSION:
-        run.vehicle.path = path
+        run.vehicle.mission = path
     run.feed(MissionLoaded("hostile", len(path)))
     if starts or dice.random() < 0.5:
         ask_station(run, StartMission())
@@ -385,7 +385,7 @@ def ask_station(run: HostileRun, request: Request, source: str = "operator") -> 
 
 def _mission_clears(run: HostileRun) -> bool:
     verifier, at = run.verifier(), run.vehicle.reported()
-    for goal in run.vehicle.path:
+    for goal in run.vehicle.mission:
         if verifier.mission_leg(at, goal, floor_applies=True) is not None:
             return False
         at = goal

@@ -59,6 +59,8 @@ class PointMass:
         self.setpoint: Vec3 | None = None
         self.velocity: Vec3 | None = None
         self.setpoint_s = -9.0
+        self.mission: list[Vec3] = []
+        """What is on board; `path` is what is left of what it flies by itself."""
         self.path: list[Vec3] = []
         self.items_flown = 0
         self.pilot_v: Vec3 = (0.0, 0.0, 0.0)
@@ -161,8 +163,10 @@ class PointMass:
                 self.path = [(north, east, -up_m), (0.0, 0.0, -up_m)]
                 self._enter(FlightMode.RETURN)
             case CommandKind.START_MISSION:
-                if not self.path:
+                if not self.mission:
                     return DENIED
+                if self.mode is not FlightMode.MISSION:
+                    self.path = list(self.mission)
                 self._enter(FlightMode.MISSION)
             case CommandKind.PHOTO | CommandKind.SET_MODE:
                 pass
@@ -241,8 +245,7 @@ class PointMass:
 
     def has_no_mission(self) -> None:
         """But one that it flies, it flies on."""
-        if self.mode is not FlightMode.MISSION:
-            self.path = []
+        self.mission = []
 
     # ------------------------------------------------------------------------------ motion
 

@@ -21,9 +21,18 @@ from gcs.gate.inputs import CommandEnded, Input, MissionLoaded, PositionSeen
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.table import TABLE
 from gcs.gate.refusal import Code
-from gcs.gate.requests import Abort, GoTo, Hold, Land, Request, StartMission, TakeControl
+from gcs.gate.requests import (
+    Abort,
+    GoTo,
+    Hold,
+    Land,
+    Request,
+    ReturnHome,
+    StartMission,
+    TakeControl,
+)
 from gcs.gate.states import FlightMode, State
-from tests.soak.hostile_acts import ask_station, fly, hovers_at
+from tests.soak.hostile_acts import ask_station, fly, hovers_at, mission
 from tests.soak.hostile_counts import Seen
 from tests.soak.hostile_letters import lettered
 from tests.soak.hostile_policies import POLICIES, policy_of
@@ -158,9 +167,21 @@ def test_a_mission_is_begun_only_where_it_clears_from_here(to_north_m: float, st
     about another home flew 2.03 m out at 12 m/s, where 2 are allowed (seed 30015956)."""
     run = begun("px4", (-10.0, 20.0, -20.0))
     run.feed(MissionLoaded("square", 2))
-    run.vehicle.path = [(10.0, 20.0, -20.0), (to_north_m, 20.0, -20.0)]
+    run.vehicle.mission = [(10.0, 20.0, -20.0), (to_north_m, 20.0, -20.0)]
     ask_station(run, StartMission())
     assert run.gate.state.name == state
+
+
+def test_a_mission_that_is_put_on_board_changes_no_return() -> None:
+    """A run in which the vehicle returned along its new mission was 2.07 m out (seed 41032621)."""
+    run = begun("ardupilot", (-10.0, 20.0, -20.0))
+    run.ask(ReturnHome())
+    run.run(0.5)
+    returns = list(run.vehicle.path)
+    mission(run)
+    assert run.gate.state is State.RETURNING
+    assert run.vehicle.mission
+    assert run.vehicle.path == returns != []
 
 
 def test_no_brake_point_is_asked_for_where_the_position_has_jumped() -> None:
