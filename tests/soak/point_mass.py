@@ -1,8 +1,9 @@
 """A vehicle that is a point: it does what the policy trusts its kind to do, at the worst.
 
-It gains speed far faster than any real one, brakes no harder than `[braking]` and `[approach]`
-promise and begins no earlier, flies past its goals by most of `[overshoot]`, and is wrong about
-where it is by all the error that the policy allows.  NED, metres, seconds; one step is 20 ms.
+It gains speed on its way to a goal as fast as `[approach]` says, else far faster than any real one,
+brakes no harder than `[braking]` and `[approach]` promise and begins no earlier, flies past its
+goals by most of `[overshoot]`, and is wrong about where it is by all the error that the policy
+allows.  NED, metres, seconds; one step is 20 ms.
 
 It knows where it is from its estimate alone: what it reports is also what its guidance flies by, as
 in every autopilot.  `[approach]` and `[overshoot]` were recorded in such positions.
@@ -28,7 +29,7 @@ from gcs.gate.states import FlightMode, LandedState
 STEP_NS: Final = 20_000_000
 STEP_S: Final = 0.02
 GAIN_M_S2: Final = 12.0
-"""How fast it gains speed."""
+"""How fast it gains speed that a pilot or a client's velocities fly."""
 TO_RETURN_UP_M: Final = 10.0
 STILL: Final = 0.15
 FORGOTTEN_S: Final = 3.0
@@ -333,7 +334,7 @@ class PointMass:
         wanted = (n * v, e * v, math.copysign(w, down))
         faster = math.hypot(*self.vel[:2]) < v
         self._towards_velocity(
-            wanted, GAIN_M_S2 if faster else a.a_brake_h_m_s2, max(a.a_brake_v_m_s2, 0.1)
+            wanted, a.a_gain_h_m_s2 if faster else a.a_brake_h_m_s2, max(a.a_brake_v_m_s2, 0.1)
         )
 
     def _towards_velocity(self, wanted: Vec3, a_h: float, a_v: float) -> None:

@@ -109,11 +109,18 @@ class Verifier:
     # ------------------------------------------------------------------------ questions
 
     def goal(
-        self, goal_ned: Vec3, yaw_rad: float | None, pos_ned: Vec3, v_ned: Vec3, path: Path = None
+        self,
+        goal_ned: Vec3,
+        yaw_rad: float | None,
+        pos_ned: Vec3,
+        v_ned: Vec3,
+        path: Path = None,
+        gained_ned: Sequence[Vec3] = (),
     ) -> Cleared | Refusal:
         """May the vehicle at `pos_ned`, moving at `v_ned`, fly straight to `goal_ned`?
 
-        `path` is the leg to that goal, where it is flown already.
+        `path` is the leg to that goal, where it is flown already; `gained_ned` are velocities that
+        the vehicle may have as well, on its way to somewhere else.
 
         In this order: finite, altitude, distance, zones, leg, overshoot, stopping distance.
         """
@@ -132,6 +139,7 @@ class Verifier:
             )
             or bad_overshoot(judge, f"goal {there}", pos_ned, goal_ned, overshoot)
             or self._cannot_stop(pos_ned, v_ned, path, floor_applies=True)
+            or self._cannot_stop_gained(pos_ned, gained_ned, floor_applies=True)
         )
         return refusal or Cleared(
             (
@@ -142,7 +150,14 @@ class Verifier:
             )
         )
 
-    def hold_point(self, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Cleared | Refusal:
+    def hold_point(
+        self,
+        pos_ned: Vec3,
+        v_ned: Vec3,
+        gained_ned: Sequence[Vec3] = (),
+        *,
+        floor_applies: bool,
+    ) -> Cleared | Refusal:
         """May the vehicle stay where it is?
 
         The margin is not asked for, because a hold leads nowhere: the position must be inside the
@@ -157,6 +172,7 @@ class Verifier:
             or beyond_reach(pos_ned, v_ned)
             or judge.outside(subject, pos_ned, floor_applies=floor_applies)
             or self._cannot_stop(pos_ned, v_ned, None, floor_applies=floor_applies)
+            or self._cannot_stop_gained(pos_ned, gained_ned, floor_applies=floor_applies)
         )
         return refusal or Cleared(
             (*self._nearest("hold", pos_ned, pos_ned), *stopping_numbers(judge, v_ned))
@@ -169,13 +185,15 @@ class Verifier:
         v_ned: Vec3,
         age_s: float,
         before: Sequence[BeforeThis] = (),
+        gained_ned: Sequence[Vec3] = (),
     ) -> Cleared | Refusal:
         """May a sample of a client's stream be flown, by a position that is `age_s` old?
 
         Its position is judged as a goal is.  For a velocity, an acceleration or an attitude the
         vehicle must be able to stop inside by the margin after it has flown that, or gone on as it
         flies now, for as long as the sample counts; see `stream_samples.py`.  `before` is how it
-        leant for the attitudes that the sample follows.
+        leant for the attitudes that the sample follows, `gained_ned` the velocities that it may
+        have as well, on its way to somewhere else.
         """
         refusal = self._unusable(position=pos_ned, velocity=v_ned, **sample.numbers)
         refusal = (
@@ -187,14 +205,15 @@ class Verifier:
             return refusal
         evidence: tuple[tuple[str, float], ...] = ()
         if sample.pos_ned is not None:
-            goal = self.goal(sample.pos_ned, sample.yaw_rad, pos_ned, v_ned)
+            goal = self.goal(sample.pos_ned, sample.yaw_rad, pos_ned, v_ned, gained_ned=gained_ned)
             if isinstance(goal, Refusal):
                 return goal
             evidence = goal.evidence
             if sample.v_ned is None and not before:
                 return goal
         asked = () if sample.attitude is None else (("tilt_deg", sample.attitude.tilt_deg),)
-        return self._stream_velocity(sample, pos_ned, v_ned, age_s, before) or Cleared(
+        flown = self._stream_velocity(sample, pos_ned, v_ned, age_s, before, gained_ned)
+        return flown or Cleared(
             (
                 *evidence,
                 *asked,
@@ -210,11 +229,12 @@ class Verifier:
         v_ned: Vec3,
         age_s: float,
         before: Sequence[BeforeThis],
+        gained_ned: Sequence[Vec3],
     ) -> Refusal | None:
         """Refuses what leads to velocities that the vehicle could not stop from inside."""
         rules, braking = self.policy.stream, self.policy.braking_of(self.autopilot)
         counts_s = sample_counts_s(age_s, rules)
-        flown = velocities(sample, v_ned, age_s, before, braking, rules)
+        flown = (*velocities(sample, v_ned, age_s, before, braking, rules), *gained_ned)
         # With a position too, the vehicle may come to rest as far beyond that as beyond its own.
         begins = (pos_ned,) if sample.pos_ned is None else (pos_ned, sample.pos_ned)
         rest = [p for begin in begins for p in places_of_rest(begin, flown, counts_s, braking)]
@@ -451,6 +471,17 @@ class Verifier:
         if bad is None:
             return None
         return Refusal(Code.CANNOT_STOP, bad.sentence, bad.numbers, bad.measure.zone.name)
+
+    def _cannot_stop_gained(
+        self, pos_ned: Vec3, gained_ned: Sequence[Vec3], *, floor_applies: bool
+    ) -> Refusal | None:
+        """As `_cannot_stop`, by velocities that are not reported yet."""
+        for v_ned in gained_ned:
+            refusal = self._cannot_stop(pos_ned, v_ned, None, floor_applies=floor_applies)
+            if refusal is not None:
+                sentence = f"it gains speed on its way: {refusal.sentence}"
+                return replace(refusal, sentence=sentence)
+        return None
 
     def _nearest(self, what: str, a_ned: Vec3, b_ned: Vec3) -> tuple[tuple[str, float], ...]:
         """The distances of a-b to the nearest boundary, as evidence; infinite ones are left out."""

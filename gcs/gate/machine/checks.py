@@ -8,6 +8,7 @@ from typing import Final
 
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.machine import verifying
+from gcs.gate.machine.gaining import may_have_gained
 from gcs.gate.machine.rules import Check
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
@@ -49,13 +50,17 @@ def _home_and_fence(turn: Turn) -> Refusal | None:
     return verifying.home_or_fence_unknown() if turn.memory.verifier is None else None
 
 
+def _position(turn: Turn) -> Refusal | None:
+    return verifying.position(turn, may_have_gained(turn, None))
+
+
 CHECKS: Final[Mapping[Check, Callable[[Turn], Refusal | None]]] = MappingProxyType(
     {
         Check.SEVERITY: _severity,
         Check.RECORDER: _recorder,
         Check.ARMED: _armed,
         Check.ON_GROUND: _on_ground,
-        Check.POSITION: verifying.position,
+        Check.POSITION: _position,
         Check.CLIMB: verifying.climb,
         Check.MISSION: _mission,
         Check.HOME_AND_FENCE: _home_and_fence,

@@ -35,6 +35,7 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.events import SAW, Event, event_of
+from gcs.gate.machine.gaining import velocity_seen
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS
 from gcs.gate.machine.progress import arrival_radius_h_m, within_arrival
 from gcs.gate.machine.sentences import ASKED_FOR, result_word
@@ -213,6 +214,7 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
         memory.ground_down_m = None
     memory.pos_ned, memory.v_ned = seen.pos_ned, seen.v_ned
     memory.pos_ns, memory.boot_ms = turn.now_ns, seen.time_boot_ms
+    velocity_seen(turn)
     if memory.goal is None or not within_arrival(turn, memory.goal.pos_ned):
         memory.within_since_ns = None
     elif memory.within_since_ns is None:

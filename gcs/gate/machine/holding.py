@@ -11,6 +11,7 @@ from gcs.enu_text import place
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.gaining import leg_left
 from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.turn import SetpointDraft, Turn
 from gcs.gate.refusal import Code, Refusal
@@ -25,6 +26,7 @@ def hold(turn: Turn) -> None:
     memory = turn.memory
     turn.cancel_commands()
     memory.ask_control_ns = None
+    leg_left(turn)
     memory.goal = None
     braking = turn.breach is not None and turn.breach.brake_pos_ned is not None
     if not braking:

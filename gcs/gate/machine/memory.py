@@ -122,6 +122,10 @@ class Memory:
     hold: Goal | None = None  # where the vehicle hovers
     goal: Goal | None = None  # where the vehicle flies to
     within_since_ns: int | None = None  # inside the arrival radius of `goal` since then
+    leg_fastest_m_s: float = 0.0  # horizontally, of what was reported since it flies there
+    gains_ns: int = 0  # when it was sent there, or was reported faster than before
+    gained_ned: Vec3 | None = None  # the velocity that it may have had when another leg was left
+    gained_until_ns: int = 0  # until then that counts
 
     # a client's setpoint stream
     streamer: str = ""  # whose it is; it means nothing but in STREAMING

@@ -12,6 +12,7 @@ import math
 from gcs.gate.effects import Level, OutcomeKind, StreamVerdict
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.gaining import leg_begins, leg_left
 from gcs.gate.machine.memory import SECOND_NS, FlownSample, Goal
 from gcs.gate.machine.rules import End
 from gcs.gate.machine.sentences import no_fresh_position
@@ -86,6 +87,7 @@ def begin(turn: Turn) -> None:
     memory.flown, memory.stream_refused, memory.good_since_ns = None, False, None
     memory.refused_elsewhere = ()
     if memory.goal is not None:
+        leg_left(turn)
         memory.goal = None
         if turn.policy.stream.tilt_deg > 0.0:
             memory.leant = ((turn.now_ns, None),)
@@ -103,7 +105,12 @@ def fly(turn: Turn) -> None:
     sample = verifying.sample_of(turn.streamed)
     if sample.attitude is not None:
         memory.leant = verifying.leaning_on(turn, sample.attitude)
+    elsewhere = memory.flown is None or memory.flown.sample.pos_ned != sample.pos_ned
+    if elsewhere:
+        leg_left(turn)
     memory.flown = FlownSample(sample, memory.pos_ned, turn.evidence)
+    if elsewhere:
+        leg_begins(turn)
     memory.sample_ns = memory.streamed_ns = turn.now_ns
     memory.stream_refused, memory.good_since_ns = False, None
     memory.hold = None

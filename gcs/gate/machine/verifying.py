@@ -19,6 +19,7 @@ from gcs.gate.airspace.zones import Zone
 from gcs.gate.attitude import Attitude
 from gcs.gate.geometry import Circle
 from gcs.gate.inputs import StreamSeen
+from gcs.gate.machine.gaining import may_have_gained
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS, Memory
 from gcs.gate.machine.sentences import no_fresh_position
 from gcs.gate.machine.turn import Turn
@@ -27,14 +28,19 @@ from gcs.gate.requests import GoTo, TakeOff
 from gcs.gate.states import State
 
 
-def position(turn: Turn) -> Refusal | None:
-    """May the vehicle stay where it is?  Refused where the position is too old."""
+def position(turn: Turn, gained_ned: tuple[Vec3, ...] = ()) -> Refusal | None:
+    """May the vehicle stay where it is?  Refused where the position is too old.
+
+    `gained_ned`: velocities that it may have beside the reported one.
+    """
     memory = turn.memory
     if memory.verifier is None:
         return _keep(turn, home_or_fence_unknown())
     if turn.stale or memory.pos_ned is None or memory.v_ned is None:
         return _keep(turn, no_fresh_position(memory))
-    judged = memory.verifier.hold_point(memory.pos_ned, memory.v_ned, floor_applies=True)
+    judged = memory.verifier.hold_point(
+        memory.pos_ned, memory.v_ned, gained_ned, floor_applies=True
+    )
     if isinstance(judged, Refusal) and memory.state in (State.HOLDING, State.EXTERNAL):
         judged = replace(judged, sentence=f"{judged.sentence}; {_ways_out(turn, memory.pos_ned)}")
     return _keep(turn, judged)
@@ -79,7 +85,13 @@ def goal(turn: Turn, request: GoTo) -> Refusal | None:
         return _keep(turn, home_or_fence_unknown())
     return _keep(
         turn,
-        memory.verifier.goal(request.goal_ned, request.yaw_rad, memory.pos_ned, memory.v_ned),
+        memory.verifier.goal(
+            request.goal_ned,
+            request.yaw_rad,
+            memory.pos_ned,
+            memory.v_ned,
+            gained_ned=may_have_gained(turn, request.goal_ned),
+        ),
     )
 
 
@@ -112,7 +124,10 @@ def _sample(turn: Turn, sample: StreamSample) -> Refusal | None:
     if age_s is None or turn.stale or memory.pos_ned is None or memory.v_ned is None:
         return _keep(turn, no_fresh_position(memory))
     before = leans_before(turn, sample, age_s)
-    judged = memory.verifier.stream_sample(sample, memory.pos_ned, memory.v_ned, age_s, before)
+    gained = may_have_gained(turn, sample.pos_ned)
+    judged = memory.verifier.stream_sample(
+        sample, memory.pos_ned, memory.v_ned, age_s, before, gained
+    )
     return _keep(turn, judged)
 
 

@@ -65,7 +65,8 @@ class Approach(_Section, frozen=True):
     """How an autopilot is trusted to slow down for its own goal; see `stopping.py`.
 
     It is on the leg to its goal while it would stop within `cross_track_m` of it and moves across
-    it, or back, no faster than `cross_track_m_s`.
+    it, or back, no faster than `cross_track_m_s`.  It gains speed on its way there by
+    `a_gain_h_m_s2` at the most; see `gaining.py`.
     """
 
     react_s: Annotated[float, Meta(ge=0.0, le=10.0)]
@@ -73,6 +74,7 @@ class Approach(_Section, frozen=True):
     a_brake_v_m_s2: Deceleration
     cross_track_m: FromZero
     cross_track_m_s: FromZero
+    a_gain_h_m_s2: FromZero
 
 
 class Overshoot(_Section, frozen=True):
@@ -315,6 +317,7 @@ class Policy(_Section, frozen=True):
             a_brake_v_m_s2=min(a.a_brake_v_m_s2 for a in every),
             cross_track_m=min(a.cross_track_m for a in every),
             cross_track_m_s=min(a.cross_track_m_s for a in every),
+            a_gain_h_m_s2=max(a.a_gain_h_m_s2 for a in every),
         )
 
     def overshoot_of(self, autopilot: str) -> Overshoot:

@@ -129,6 +129,16 @@ def clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         state in (State.GROUNDED, State.STALE) and now_ns < memory.takeoff_until_ns,
         force_ns is not None and now_ns - force_ns <= FORCE_WINDOW_NS,
         _stream_clocks(policy, memory, now_ns) if state is State.STREAMING else None,
+        _gains_clocks(policy, memory, now_ns),
+    )
+
+
+def _gains_clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    """May it be faster than it is reported, on its leg or on the one that was left?"""
+    react_ns = round(policy.braking_of(memory.autopilot).react_s * SECOND_NS)
+    return (
+        memory.goal is not None and now_ns < memory.gains_ns + react_ns,
+        memory.gained_ned is not None and now_ns < memory.gained_until_ns,
     )
 
 

@@ -19,7 +19,7 @@ from tests.unit.gate.airspace import LAB, at
 
 STOPS = Stops(
     Braking(1.0, 1.0, 1.0, 0.5, 0.2),
-    Approach(0.0, 2.0, 2.0, cross_track_m=1.0, cross_track_m_s=1.0),
+    Approach(0.0, 2.0, 2.0, cross_track_m=1.0, cross_track_m_s=1.0, a_gain_h_m_s2=9.81),
     Overshoot(0.1, 0.5, 0.1, 0.5),
 )
 """A hold from v takes v + v^2 / 2; the approach at v takes v^2 / 4, half of it behind 2 m/s."""

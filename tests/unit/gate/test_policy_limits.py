@@ -156,6 +156,7 @@ class TestInUse:
         ("a_brake_v_m_s2", 0.1, 50.0, 0.09, 50.5),
         ("cross_track_m", 0.0, MOST, -0.01, MOST + 1),
         ("cross_track_m_s", 0.0, MOST, -0.01, MOST + 1),
+        ("a_gain_h_m_s2", 0.0, MOST, -0.01, MOST + 1),
     ],
 )
 def test_approach(key: str, least: float, most: float, below: float, above: float) -> None:
@@ -176,16 +177,18 @@ def test_another_autopilot_approaches_with_the_worst_of_each_number() -> None:
         a_brake_v_m_s2 = 2.0
         cross_track_m = 0.5
         cross_track_m_s = 0.7
+        a_gain_h_m_s2 = 9.0
         [approach.ardupilot]
         react_s = 0.4
         a_brake_h_m_s2 = 4.0
         a_brake_v_m_s2 = 3.0
         cross_track_m = 0.6
         cross_track_m_s = 0.3
+        a_gain_h_m_s2 = 4.0
         """,
         "my.toml",
     )
-    assert policy.approach_of("betaflight") == Approach(0.4, 4.0, 2.0, 0.5, 0.3)
+    assert policy.approach_of("betaflight") == Approach(0.4, 4.0, 2.0, 0.5, 0.3, 9.0)
 
 
 def test_another_autopilot_brakes_with_the_worst_of_each_number() -> None:
