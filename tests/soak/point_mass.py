@@ -9,9 +9,10 @@ It knows where it is from its estimate alone: what it reports is also what its g
 in every autopilot.  `[approach]` and `[overshoot]` were recorded in such positions.
 
 Its own guidance brakes as `[approach]` says.  Told to stop, by hold mode or by a landing, it
-brakes as `[braking]` says, but for one case: on its way to a goal it flies no farther past that
-than it would have by itself, or than real ones were recorded to (`RECORDED_HOLDS`).  That a vehicle
-does not brake worse when it is told to stop than it was going to by itself is an assumption of the
+brakes as `[braking]` says, but for two cases: on its way to a goal it flies no farther past that
+than it would have by itself, or than real ones were recorded to (`RECORDED_HOLDS`); and one that
+flies away from its goal, sent back at speed, brakes already, and goes on so.  That a vehicle does
+not brake worse when it is told to stop than it was going to by itself is an assumption of the
 policy; it is recorded up to 3 m/s.
 """
 
@@ -208,10 +209,12 @@ class PointMass:
         here = self.reported()
         away = (goal[0] - here[0], goal[1] - here[1])
         ahead_m = (away[0] * self.vel[0] + away[1] * self.vel[1]) / v if v > STILL else 0.0
+        own_m = v * a.react_s + v * v / 2.0 / a.a_brake_h_m_s2
+        if ahead_m <= 0.0:  # away from its goal: it brakes already
+            return max(own_m, self._recorded_m(v))
         aside_m = math.sqrt(max(0.0, math.hypot(*away) ** 2 - ahead_m**2))
         if aside_m > a.cross_track_m and v * aside_m > a.cross_track_m_s * math.hypot(*away):
             return math.inf
-        own_m = v * a.react_s + v * v / 2.0 / a.a_brake_h_m_s2
         return max(own_m, ahead_m + 0.9 * self._past_m(goal), self._recorded_m(v))
 
     def _recorded_m(self, v: float) -> float:

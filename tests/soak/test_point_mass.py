@@ -107,3 +107,14 @@ def test_its_guidance_flies_by_the_position_that_it_reports(autopilot: str) -> N
         vehicle.step()
     assert math.dist(vehicle.reported()[:2], (GOAL_M, 0.0)) < 0.2
     assert math.dist(vehicle.pos[:2], (GOAL_M, 0.0)) > 0.3
+
+
+@BOTH
+def test_sent_back_at_speed_it_brakes_already_when_it_is_told_to_hold(autopilot: str) -> None:
+    vehicle = flying(autopilot, FAST_M_S)
+    flies_until(vehicle, 15.0)
+    vehicle.hears_command(SendCommand(1, CommandKind.RETURN, 0))
+    a, braking = vehicle.approach, vehicle.braking
+    expected_m = travel_m(vehicle.vel[0], a.react_s, a.a_brake_h_m_s2)
+    assert stops(vehicle, "hold") == pytest.approx(expected_m, abs=1.0)
+    assert expected_m < 0.6 * travel_m(FAST_M_S, braking.react_s, braking.a_brake_h_m_s2)
