@@ -9,6 +9,7 @@ from gcs.gate.effects import OutcomeKind
 from gcs.gate.machine.cells import (
     COMPLETE,
     LIFTED_OFF,
+    SEVERITY,
     STOPPED_BY_OPERATOR,
     TAKEN_OVER,
     cannot_happen,
@@ -75,7 +76,12 @@ lifted_off_from_ground: Final[Cell] = (
         to=HOLDING,
     ),
     hold_if_awaited,
-    Branch(when=(Guard.MISSION_GOES_ON,), do=(Action.DROP_DEADLINE,), to=FLYING_MISSION),
+    Branch(
+        when=(Guard.MISSION_GOES_ON, Guard.SEVERITY_PERMITS),
+        do=(Action.DROP_DEADLINE, Action.GAIN_CONTROL),
+        to=FLYING_MISSION,
+    ),
+    Branch(when=(Guard.MISSION_GOES_ON,), ends=SEVERITY, do=(Action.HOLD,), to=HOLDING),
     Branch(when=(Guard.MODE_LAND, Guard.TASK_ENDS_LANDED), do=(Action.AWAIT_LANDING,), to=LANDING),
     Branch(when=(Guard.MODE_LAND,), ends=LIFTED_OFF, to=LANDING),
     Branch(

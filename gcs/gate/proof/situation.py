@@ -20,7 +20,7 @@ from gcs.gate.proof.world import ABOVE, EDGE, LOW, TOP
 from gcs.gate.states import FlightMode, State
 
 MODES_THAT_MATTER: Final = {
-    State.GROUNDED: frozenset({FlightMode.RETURN, FlightMode.LAND}),
+    State.GROUNDED: frozenset({FlightMode.RETURN, FlightMode.LAND, FlightMode.MISSION}),
     State.STALE: frozenset({FlightMode.RETURN, FlightMode.LAND}),
     State.TAKING_OFF: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),
     State.HOVERING: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
 from gcs.gate.inputs import (
+    ConditionChanged,
     MissionLoaded,
 )
 from gcs.gate.requests import Abort, Disarm, Hold, Land, Request, ReturnHome, StartMission
@@ -267,3 +269,24 @@ class TestLandedAndAirborne:
         script.land_state(self.AIR)
         assert state_of(script) is State.FLYING_MISSION
         assert not script.ended(request_id)
+
+    def test_a_mission_that_lifts_off_again_is_ours_so_that_it_is_braked(self) -> None:
+        script, _ = flight(State.FLYING_MISSION)
+        remember(script, lifted=True)
+        script.land_state(self.ON)
+        script.land_state(self.AIR)
+        assert script.gate.control is Control.OURS
+
+    def test_a_mission_that_lifts_off_again_is_held_where_nothing_may_fly(self) -> None:
+        """(Hostile run 43013300: it flew on, and the explorer took it for a mission that had been
+        taken over.)"""
+        script, request_id = flight(State.FLYING_MISSION)
+        remember(script, lifted=True)
+        script.land_state(self.ON)
+        script.feed(ConditionChanged(Condition.GPS_LOST, True, "no fix"))
+        assert state_of(script) is State.GROUNDED
+        script.forget()
+        script.land_state(self.AIR)
+        assert state_of(script) is State.HOLDING
+        assert script.commands() == [CommandKind.HOLD]
+        assert ended(script, request_id) == "aborted SEVERITY"
