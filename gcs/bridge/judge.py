@@ -124,8 +124,9 @@ class Judge:
         self._asked_rates = AskedRates(rules, needed_hz)
         self._guard: Guard | None = None
         self._downloads = Downloads()
-        self._log_read = False
-        """A client has begun to read a log, since the vehicle was armed last."""
+        self._log_read = self._log_sent = False
+        """A client has begun to read a log, or had it sent as it is written, since the vehicle was
+        armed last."""
         self.mission_mode = MissionMode()
         self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
         self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
@@ -296,6 +297,7 @@ class Judge:
         match judged:
             case Allowed(note):
                 self._log_read |= isinstance(message, LogRequestData)
+                self._log_sent |= _is_command(message, Cmd.LOGGING_START)
                 notes = [Notes(Level.INFO, f"{given.client.name}: {note}")] if note else []
                 return Judged(False, [*notes, ToVehicle(given.frame.raw)])
             case guard_verdict.Refused(refusal, answers, ask_vehicle):
@@ -307,13 +309,18 @@ class Judge:
 
     def armed(self, own: Address, vehicle: Address) -> list[BridgeEffect]:
         """The vehicle is armed: a log that a client began to read on the ground is not read on,
-        where the policy has it so."""
-        if not self._log_read or self._rules.downloads == "forward":
+        where the policy has it so, nor is one sent on that was sent as it is written."""
+        read, sent = self._log_read, self._log_sent
+        if not (read or sent) or self._rules.downloads == "forward":
             return []
-        self._log_read = False
-        end = LogRequestEnd(target_system=vehicle.sysid, target_component=vehicle.compid)
+        self._log_read = self._log_sent = False
+        ends: list[Message] = []
+        if read:
+            ends.append(LogRequestEnd(vehicle.sysid, vehicle.compid))
+        if sent:
+            ends.append(_command(Cmd.LOGGING_STOP, vehicle))
         text = "the vehicle is armed: the reading of its log is ended (policy: bridge.downloads)"
-        return [AsksVehicle(own, end), Notes(Level.INFO, text)]
+        return [*(AsksVehicle(own, end) for end in ends), Notes(Level.INFO, text)]
 
     def client_lost(
         self, client: int, link: int, own: Address, vehicle: Address
@@ -418,6 +425,15 @@ def _ask_plan(
     client.plan_ask = client.dialogue.number()
     ask = ipc.Ask(client.plan_ask, word, path=source, vehicle=client.vehicle)
     return AsksPlan(client.number, ask, kind, plan)
+
+
+def _is_command(message: Message, command: Cmd) -> bool:
+    return isinstance(message, CommandLong | CommandInt) and message.command == command
+
+
+def _command(command: Cmd, vehicle: Address) -> CommandLong:
+    """Without parameters."""
+    return CommandLong(*(0.0,) * 7, command, vehicle.sysid, vehicle.compid, 0)
 
 
 def _arms_too(message: Message) -> bool:

@@ -32,7 +32,7 @@ from gcs.session.jobs.job import (
     refused,
 )
 from gcs.session.jobs.relay import RelayPlan
-from gcs.session.jobs.set_current import SetCurrent
+from gcs.session.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.session.jobs.start import Start
 from gcs.session.jobs.upload import Upload
 from gcs.session.plans import OnBoard
@@ -138,7 +138,7 @@ class Missions:
 
         `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about.
         """
-        refusal = self._cannot_begin(ask, state, policy, plan, kind)
+        refusal = self._cannot_begin(ask, telemetry, state, policy, plan, kind)
         if refusal is None and telemetry is None:
             refusal = Refusal(Code.NO_VEHICLE, "no vehicle is heard")
         if refusal is not None:
@@ -189,6 +189,7 @@ class Missions:
     def _cannot_begin(
         self,
         ask: ipc.Ask,
+        telemetry: Telemetry | None,
         state: State,
         policy: Policy,
         plan: ClientPlan | None,
@@ -209,7 +210,7 @@ class Missions:
         if ask.word in ("mission_upload", "mission_clear") and of_mission:
             if state is State.STALE:
                 return Refusal(Code.STALE, "the vehicle's position is too old")
-            if state is State.FLYING_MISSION:
+            if state is State.FLYING_MISSION or flown_by_mode(telemetry):
                 return Refusal(Code.BUSY, "the mission on board is being flown")
         return None
 

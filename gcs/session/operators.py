@@ -16,7 +16,7 @@ from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, StreamVerdict
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import Abort, SetMode
+from gcs.gate.requests import Abort, SetMode, StartMission
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC, Autopilot
 from gcs.session import teller
@@ -281,8 +281,15 @@ class Operators:
     # ---------------------------------------------------------------------------- answers
 
     def asked_of_gate(self, asked: AskGate) -> list[Work]:
-        """The gate's input for a request, and the line that says so."""
+        """The gate's input for a request, and the line that says so.
+
+        The start of a mission is prepared before: whoever has lost control meanwhile starts none.
+        """
         made = self._requests.get(asked.request_id)
+        if isinstance(asked.request, StartMission):
+            refusal = self._clients.refusal(made.client, made.ask)
+            if refusal is not None:
+                return self._refuse(asked.request_id, made.ask, refusal)
         given = gate_inputs.Requested(asked.request_id, made.source, asked.request)
         return [teller.requested(made, asked.request), ToGate(given)]
 

@@ -12,12 +12,13 @@ from gcs.gate.condition import Condition
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.session import inputs
+from tests.loopback.bridge_clients import command_of
 from tests.loopback.bridged import STATION, VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.test_bridge_streams import VELOCITY_ONLY, flying
 
 ACCEPTED, TEMPORARILY_REJECTED, DENIED = 0, 1, 2
-ARM, INTERVAL, MOUNT, LOGGING_START = 400, 511, 205, 2510
+ARM, INTERVAL, MOUNT, LOGGING_START, LOGGING_STOP = 400, 511, 205, 2510, 2511
 NAN = float("nan")
 
 pytestmark = pytest.mark.parametrize("personality", PERSONALITIES)
@@ -35,6 +36,12 @@ def armed(flight: BridgedFlight, client: Client) -> None:
     if flight.personality == "ardupilot":
         client.ask(176, 1.0, 4.0)
     assert client.ask(ARM, 1.0) == ACCEPTED
+
+
+def logging_commands(flight: BridgedFlight) -> list[int]:
+    """To begin or end the sending of a log, on the vehicle's link."""
+    sent = (command_of(frame) for frame in flight.to_vehicle("COMMAND_LONG"))
+    return [command for command in sent if command in (LOGGING_START, LOGGING_STOP)]
 
 
 def log_data(client: Client) -> None:
@@ -73,6 +80,16 @@ def test_a_log_that_is_being_read_is_not_read_on_in_the_air(personality: Persona
     flight.run(3.0)
     assert len(flight.to_vehicle("LOG_REQUEST_END")) == 1
     assert any("the reading of its log is ended" in line for line in flight.told())
+
+
+def test_a_log_is_not_sent_on_in_the_air_as_it_is_written(personality: Personality) -> None:
+    flight, client = joined(personality)
+    client.command(LOGGING_START)
+    flight.run(0.5)
+    assert logging_commands(flight) == [LOGGING_START]
+    armed(flight, client)
+    flight.run(3.0)
+    assert logging_commands(flight) == [LOGGING_START, LOGGING_STOP]
 
 
 def test_the_policy_may_let_them_be_read_in_the_air(personality: Personality) -> None:

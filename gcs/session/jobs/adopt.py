@@ -52,6 +52,9 @@ class Adopt(PreparedJob, StartingJob):
     def bad_plan(self, error: PlanError) -> list[JobWork]:
         return self.refuse(Refusal(Code.BAD_MISSION, str(error)))
 
+    def verify_anew(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        return self.verify(self.prepared.plan, view, now_ns)
+
     def verified(self, found: Verification, view: VehicleView, now_ns: int) -> list[JobWork]:
         answer = cleared(found)
         if isinstance(answer, Refusal):

@@ -16,6 +16,7 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import Asked, BeginsAt, Job, JobWork, VehicleView
 from gcs.session.jobs.starting import first_item, shown_for
 from gcs.session.plans import OnBoard
+from gcs.session.telemetry import Telemetry
 from gcs.wire.messages import MissionItemInt
 
 UNKNOWN = "no mission is on board that this station has verified: upload it, or start it once"
@@ -76,7 +77,14 @@ class SetCurrent(Job):
 
 
 def flies_mission(view: VehicleView) -> bool:
-    """By the gate's state, or by the vehicle's mode while it is in the air."""
-    mode = mode_named(view.telemetry.autopilot, view.telemetry.mode_name)
-    in_mode = mode is not None and mode.meaning is FlightMode.MISSION
-    return view.state is State.FLYING_MISSION or (in_mode and bool(view.telemetry.armed))
+    """By the gate's state, or by the vehicle's mode while it is armed."""
+    return view.state is State.FLYING_MISSION or flown_by_mode(view.telemetry)
+
+
+def flown_by_mode(telemetry: Telemetry | None) -> bool:
+    """Whether the vehicle is armed in the mode of a mission, whoever has set that, a pilot as well:
+    it flies what is on board."""
+    if telemetry is None or not telemetry.armed:
+        return False
+    mode = mode_named(telemetry.autopilot, telemetry.mode_name)
+    return mode is not None and mode.meaning is FlightMode.MISSION

@@ -36,7 +36,7 @@ class Start(StartingJob):
         super().__init__(asked)
         self._on_board = on_board
         self._wanted_seq = begin_seq
-        self._to_verify = _begin_items(on_board, begin_seq)
+        self._to_verify: tuple[int, ...] = ()
         """The items that it may begin at, counting into the plan."""
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
@@ -59,6 +59,10 @@ class Start(StartingJob):
             text = f"another mission is on board than was verified: {differences[0]}; {AGAIN}"
             forget: list[JobWork] = [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
             return forget + self.refuse(Refusal(Code.BAD_MISSION, text))
+        return self.verify_anew(view, now_ns)
+
+    def verify_anew(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        self._to_verify = _begin_items(self._on_board, self._wanted_seq)
         if autopilot_name(view.telemetry) == "px4":
             self._to_verify = self._to_verify[:1]
         return self.verify(self._on_board.plan, view, now_ns, self._to_verify[0])
