@@ -1,8 +1,9 @@
 """How the tests of a run are shared out among its workers, so that all of them end together.
 
-Some workers begin with a lane each, in which programs wait for real time, and the others compute
+Some workers have a lane each, in which programs wait for real time, and the others compute
 meanwhile.  All else goes out by file, so that what a file prepares is prepared once, but for the
-files of which single tests are long.
+files of which single tests are long.  To collect all tests costs a worker seven seconds of
+computing, so in a run of all tests each collects only those that it may be given.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ LANES = {
 }
 """Separate processes over real sockets, which mostly wait: the first lane that a test fits in.
 They last about as long, and not longer than two workers compute."""
+COMPUTING = "what computes"
+"""The part of the workers that have no lane."""
 EARLY = ("tests/unit/gate/test_explore",)
 """Files that take as long as many others together; what their first test prepares, all share."""
 LONG = ("tests/loopback/test_random_flights.py", "tests/soak/test_hostile_gate.py")
@@ -25,6 +28,26 @@ LONG = ("tests/loopback/test_random_flights.py", "tests/soak/test_hostile_gate.p
 
 def lane(nodeid: str) -> str | None:
     return next((name for name, tests in LANES.items() if nodeid.startswith(tests)), None)
+
+
+def part(worker: str, count: int) -> str | None:
+    """What one of so many workers (gw0, gw1 and so on) collects: a lane, what computes, or all.
+
+    All with fewer workers than lanes and two that compute, or in the place of one that died.
+    """
+    number = int(worker.removeprefix("gw"))
+    if count < len(LANES) + 2 or number >= count:
+        return None
+    return list(LANES)[number] if number < len(LANES) else COMPUTING
+
+
+def looks_into(path: str, own: str) -> bool:
+    """Whether a worker with this part collects a file, or looks into a folder (it ends with /)."""
+    if own == COMPUTING:
+        return lane(path) is None
+    if path.endswith("/"):
+        return any(path.startswith(tests) or tests.startswith(path) for tests in LANES[own])
+    return lane(path) == own
 
 
 def share(nodeid: str) -> str:
