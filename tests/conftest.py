@@ -113,6 +113,9 @@ def own_part(config: pytest.Config) -> str | None:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Collecting is a good part of a run: no file is looked into of which no test is wanted."""
+    if config.getoption("markexpr") == "not slow" and collection_path.name.startswith("test_"):
+        return is_slow(collection_path) or None
     own = own_part(config)
     if own is None or not collection_path.is_relative_to(config.rootpath):
         return None
