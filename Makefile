@@ -10,7 +10,7 @@ CLIENTS := .clients
 TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
 SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
 OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
-# Four of them begin with the tests that wait for real time: see tests/lanes.py.
+# Four of them have the tests that wait for real time: see tests/lanes.py.
 WORKERS ?= 6
 FEWER   := --hypothesis-profile quick
 

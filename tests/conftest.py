@@ -22,7 +22,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.lanes import lane, looks_into, part, turn
+from tests.lanes import looks_into, part, turn, waits
 from tests.sample_files import ELSEWHERE, NOT_HERE
 from tests.scheduler import Scheduler
 from tests.shares import other_flights
@@ -132,7 +132,7 @@ def _give_way() -> None:
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Whoever computes takes nothing from the programs that others wait for in real time."""
-    if "PYTEST_XDIST_WORKER" in os.environ and lane(item.nodeid) is None:
+    if "PYTEST_XDIST_WORKER" in os.environ and not waits(item.nodeid):
         _give_way()
 
 

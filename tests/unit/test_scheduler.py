@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from tests.lanes import COMPUTING, LANES, lane, looks_into, part
+from tests.lanes import COMPUTING, WAITERS, WAITING, looks_into, part, waits
 from tests.scheduler import Scheduler
 
 
@@ -114,7 +114,7 @@ def test_what_one_that_died_had_is_done_by_who_comes_in_its_place() -> None:
     assert scheduler.tests_finished
 
 
-@pytest.mark.parametrize("count", [len(LANES) + 2, len(LANES) + 5])
+@pytest.mark.parametrize("count", [WAITERS + 2, WAITERS + 5])
 @pytest.mark.parametrize(
     "path",
     [
@@ -125,14 +125,16 @@ def test_what_one_that_died_had_is_done_by_who_comes_in_its_place() -> None:
         "tests/loopback/test_demo.py",
     ],
 )
-def test_every_file_is_collected_by_its_lane_or_by_all_that_compute(path: str, count: int) -> None:
+def test_every_file_is_collected_by_those_that_wait_or_by_those_that_compute(
+    path: str, count: int
+) -> None:
     parts = [part(f"gw{number}", count) for number in range(count)]
     assert None not in parts
     folders = [f"{path[: path.index(name)]}{name}/" for name in path.split("/")[:-1]]
     finders = {
         own for own in parts if own and all(looks_into(where, own) for where in [*folders, path])
     }
-    assert finders == {lane(path) or COMPUTING}
+    assert finders == {WAITING if waits(path) else COMPUTING}
 
 
 def test_fewer_workers_and_one_in_the_place_of_another_collect_all() -> None:
