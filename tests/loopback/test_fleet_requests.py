@@ -210,6 +210,7 @@ def test_the_record_of_two_vehicles_is_audited_without_a_difference(tape: Tape) 
     assert moved == {1, 2}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("sysid", [1, 2])
 def test_a_changed_byte_of_either_vehicle_s_frames_is_found(tape: Tape, sysid: int) -> None:
     """The audit does both vehicles again, so what either did otherwise would show."""
