@@ -93,8 +93,10 @@ class Station:
     was joined goes on; if this program was in control of it, the vehicle is held.
     """
 
-    def __init__(self, connection: Connection) -> None:
+    def __init__(self, connection: Connection, *, tells_messages: bool = True) -> None:
+        """`tells_messages`: those that it tells are of the vehicle that is flown."""
         self._connection = connection
+        self._tells_messages = tells_messages
         self._changed = threading.Condition()
         self._numbers = itertools.count(1)
         self._operations: dict[int, Operation] = {}
@@ -290,8 +292,11 @@ class Station:
         """The latest fields of a MAVLink message of the vehicle, such as "BATTERY_STATUS".
 
         The first call for a message subscribes to it and waits until it is heard.  Raises
-        ValueError for a name that no message has, TimeoutError if it is not heard in time.
+        ValueError for a name that no message has, and for a vehicle of a bridge that is not its
+        first, of which no messages are told; TimeoutError if it is not heard in time.
         """
+        if not self._tells_messages:
+            raise ValueError("of several vehicles only the first one's messages are told")
         with self._changed:
             if message not in self._messages:
                 self._unknown_messages = ""

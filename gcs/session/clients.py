@@ -16,7 +16,7 @@ from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.session.effects import Emit
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import STATION, For, Log, ToGate, Work
 
 FIRST = 1
 """The operator's program that started the station."""
@@ -122,7 +122,8 @@ class Clients:
 
     @staticmethod
     def _hold(reason: str) -> list[Work]:
-        return [ToGate(gate_inputs.OperatorLost(reason, for_good=False))]
+        """Every vehicle that is flown here: none of them has anybody in control any more."""
+        return [For(STATION, (ToGate(gate_inputs.OperatorLost(reason, for_good=False)),))]
 
     # --------------------------------------------------------------------------- control
 
@@ -154,8 +155,16 @@ class Clients:
         return [] if client == self._in_control else self._give(client)
 
     def release(self, client: int) -> list[Work]:
-        """It gives control up; what is under way goes on, and the first who asks gets control."""
-        return self._give(NOBODY) if client == self._in_control else []
+        """It gives control up, and the first who asks gets it.
+
+        Until then nobody is in control, so the vehicle is held as for an operator who is lost.
+        Hovering would not do: a stream of the same client that goes on would get control again.
+        Who wants a goal flown on lets another one take over.
+        """
+        if client != self._in_control:
+            return []
+        why = f"{self._there[client].label} has released control"
+        return [*self._hold(why), *self._give(NOBODY)]
 
     def _give(self, client: int) -> list[Work]:
         before, self._in_control = self._there.get(self._in_control), client

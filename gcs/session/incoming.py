@@ -86,7 +86,10 @@ class Incoming:
         False: nothing was in it but what only passes through, so nothing else has changed."""
         self._in_run = len(given.frames) > 1
         link, run = given.link, self._queue.run
-        items = self._links.split(link, given.data, given.frames)
+        if given.as_recorded is None:
+            items = self._links.split(link, given.data, given.frames)
+        else:
+            items = self._links.again(link, given.as_recorded)
         if (
             items is given.frames
             and not self.of_client(given)

@@ -45,7 +45,7 @@ class Vehicles:
         self._config = config
         self._policy = policy
         self._times = times
-        self._several = config.bridge and config.sim is None and not config.target_sysid
+        self._several = config.several
         self.first = Vehicle(config, policy, times, now_ns)
         self._all = [self.first]
         self._slots: dict[int, int] = {}

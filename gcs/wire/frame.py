@@ -149,6 +149,10 @@ class StreamSplitter:
         """The bytes kept for the next `feed`: the beginning of a frame, perhaps."""
         return self._rest
 
+    def go_on_after(self, rest: bytes) -> None:
+        """As if all before it had been taken, and these bytes kept."""
+        self._rest = rest
+
     def feed(self, data: bytes) -> list[Item]:
         """Take the next bytes; return the items that they complete."""
         data = self._rest + data

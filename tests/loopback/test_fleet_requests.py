@@ -187,7 +187,7 @@ def tape(monkeypatch: pytest.MonkeyPatch) -> Tape:
     """What the test's flight is recorded on."""
     tape = Tape()
     recorder = Recorder.without_file(tape, START_NS)
-    monkeypatch.setattr(Flight, "new_recorder", staticmethod(lambda: recorder))
+    monkeypatch.setattr(Flight, "new_recorder", lambda _flight: recorder)
     return tape
 
 
