@@ -312,12 +312,12 @@ class Session:
         match item:
             case ToGate() if owner == STATION:
                 return self._vehicles.to_all(item)
+            case ToGate(given) if type(given) is PositionSeen:  # nearly all of them
+                work = vehicle.ask_gate(given, now_ns)
+                return work + self._separation.moved(self._vehicles, owner, now_ns)
             case ToGate(given):
                 answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
-                work = [*answered, *vehicle.ask_gate(given, now_ns)]
-                if type(given) is PositionSeen:
-                    work += self._separation.moved(self._vehicles, owner, now_ns)
-                return work
+                return [*answered, *vehicle.ask_gate(given, now_ns)]
             case Send(message):
                 telemetry = vehicle.telemetry
                 if telemetry is None:
