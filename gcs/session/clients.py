@@ -61,6 +61,11 @@ class Clients:
         """The client number, or NOBODY."""
         return self._in_control
 
+    @property
+    def first_is_alone(self) -> bool:
+        """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
+        return all(client == FIRST or client >= FIRST_NUMBER for client in self._there)
+
     def name(self, client: int) -> str:
         """Empty where it is not there."""
         known = self._there.get(client)

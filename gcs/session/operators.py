@@ -68,6 +68,11 @@ class Operators:
         client = self._clients.in_control
         return ipc.OperatorInfo(client, self._clients.name(client)) if client else None
 
+    @property
+    def first_is_alone(self) -> bool:
+        """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
+        return self._clients.first_is_alone
+
     def client_of(self, request_id: int) -> int:
         """Who has made the request that is not over yet."""
         return self._requests.get(request_id).client

@@ -101,6 +101,8 @@ OTHER_STATION_NS = 5_000_000_000
 
 NODE = "link"
 MAX_FAULTS = 10
+SNAPSHOTS_A_LOOK = 5
+"""Whoever started a bridge only looks: alone, it is shown one snapshot of so many, two a second."""
 
 
 class Session:
@@ -156,6 +158,8 @@ class Session:
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
+        self._snapshots = 0
+        """That were due."""
         self._faults = 0
         self._frames_raised = 0
         """Frames of a run that have raised, of which `fault` was not told yet."""
@@ -312,12 +316,12 @@ class Session:
         match item:
             case ToGate() if owner == STATION:
                 return self._vehicles.to_all(item)
+            case ToGate(given) if type(given) is PositionSeen:  # nearly all of them
+                work = vehicle.ask_gate(given, now_ns)
+                return work + self._separation.moved(self._vehicles, owner, now_ns)
             case ToGate(given):
                 answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
-                work = [*answered, *vehicle.ask_gate(given, now_ns)]
-                if type(given) is PositionSeen:
-                    work += self._separation.moved(self._vehicles, owner, now_ns)
-                return work
+                return [*answered, *vehicle.ask_gate(given, now_ns)]
             case Send(message):
                 telemetry = vehicle.telemetry
                 if telemetry is None:
@@ -368,6 +372,10 @@ class Session:
                 return self._every_second(now_ns)
             case SnapshotDue():
                 stops = self._vehicles.each(lambda each: each.predicted_stop())
+                left_out = self._setup.config.bridge and self._operators.first_is_alone
+                self._snapshots += 1
+                if left_out and self._snapshots % SNAPSHOTS_A_LOOK != 1:
+                    return stops
                 return [Emit(self._snapshot(now_ns)), *stops]
             case (
                 Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()

@@ -251,6 +251,14 @@ class Vehicle:
             return work
         return work + self._interpreted(telemetry, frame, message, now_ns)
 
+    def placed(self, frame: Frame, now_ns: int) -> list[Work]:
+        """The same of one that tells where the vehicle is: nothing else of it is changed by that,
+        and nobody waits for it."""
+        message, telemetry = decode(frame), self.telemetry
+        if message is None or telemetry is None:
+            return []
+        return self._updated(telemetry, message, now_ns)
+
     def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of anybody on `link`; what is not our vehicle's changes nothing."""
         work: list[Work] = []
@@ -284,7 +292,8 @@ class Vehicle:
         work: list[Work] = []
         message = heard.message
         if type(message) in PLACE_MESSAGES:
-            return self._updated(telemetry, heard, now_ns)
+            own = heard.compid == telemetry.compid
+            return self._updated(telemetry, message, now_ns) if own else []
         if isinstance(message, m.CommandAck):
             answered = self._commands.heard(heard, now_ns)
             work += self._reasons.explained(answered, telemetry.custom_mode, now_ns)
@@ -309,14 +318,11 @@ class Vehicle:
             return work
         if heard.compid == telemetry.compid:
             work += self._watch.heard(message, now_ns)
-        return [*work, *self._updated(telemetry, heard, now_ns), *_accuracy(telemetry)]
+        return [*work, *self._updated(telemetry, message, now_ns), *_accuracy(telemetry)]
 
-    def _updated(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
+    def _updated(self, telemetry: Telemetry, message: m.Message, now_ns: int) -> list[Work]:
         """What the vehicle reports of itself, into `telemetry`."""
         work: list[Work] = []
-        message = heard.message
-        if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
-            return work
         for update in updates(message, telemetry, now_ns):
             work.append(update)
             match update:
@@ -542,11 +548,12 @@ class Vehicle:
     # --------------------------------------------------------------------------------- gate
 
     def ask_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
-        before = self.gate.state
+        gate = self._port.gate
+        before = gate.state
         if isinstance(given, inputs.StreamSeen) and self.telemetry is not None:
             given = with_thrust_meaning(given, self.telemetry.autopilot, self._parameters)
         work = [*self._port.handle(given, now_ns), *self._missions.overruled(given)]
-        self.mission_paused = still_paused(self.mission_paused, before, self.gate.state)
+        self.mission_paused = still_paused(self.mission_paused, before, gate.state)
         return work
 
     def carry_out(

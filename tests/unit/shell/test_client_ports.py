@@ -64,7 +64,8 @@ class Bench:
 
     def turn(self, wait_s: float = 0.0) -> list[Arrival]:
         """One turn of the loop: as `Loop._wait` and what follows it."""
-        sources, sinks = self.ports.sources(self.now_ns), self.ports.sinks
+        sources = self.ports.waiting + self.ports.sources(self.now_ns)
+        sinks = self.ports.sinks
         readable, writable, _ = select.select(sources, sinks, [], wait_s)
         return self.ports.turn(readable, writable, self.now_ns)
 
