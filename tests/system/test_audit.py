@@ -80,7 +80,7 @@ def test_two_operators_are_reproduced(
             other.type("station take", "goto 2 0 2")
             other.until_out("goto 2 0 2: complete")
             other.type("quit")
-            assert other.process.wait(30.0) == 0
+            assert other.ended() == 0
         operator.fly("land")
         log = operator.log_path
         operator.leave()

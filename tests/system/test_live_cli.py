@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from gcs.exit_codes import ExitCode
+from tests.system.patience import until
 from tests.system.programs import GCS, Running, gcs, running
 from tests.system.station import simulated
-from tests.system.vehicle_program import until
 from tests.system.viewer import Viewer, viewer
 
 pytestmark = pytest.mark.system
@@ -36,7 +36,7 @@ def told(lines: list[str]) -> tuple[str, str]:
 
 def interrupt(program: Running) -> int:
     program.process.send_signal(signal.SIGINT)
-    return program.process.wait(20.0)
+    return program.ended()
 
 
 def test_live_of_a_station_that_runs_is_told_and_goes_without_it_noticing(tmp_path: Path) -> None:
@@ -55,7 +55,7 @@ def test_live_ends_with_the_station(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator, running(GCS, "live") as live:
         live.until_out("take_control")
         operator.leave()
-        assert live.process.wait(10.0) == ExitCode.DONE
+        assert live.ended() == ExitCode.DONE
         assert "the vehicle is on the ground" in "\n".join(live.err)
 
 
@@ -69,16 +69,16 @@ def test_live_of_a_new_station_flies_by_services_alone(tmp_path: Path) -> None:
     with running(GCS, "live", "--sim", "--log-dir", str(tmp_path)) as live:
         live.until_out("take_control")
         url, code = told(live.out)
-        until(lambda: "Current State: GROUNDED" in "\n".join(live.err), "a vehicle", 20.0)
+        until(lambda: "Current State: GROUNDED" in "\n".join(live.err), "a vehicle")
         with viewer(url) as looker:
             looker.subscribe(STATE)
             assert looker.call("take_control", code=code)["accepted"]
             assert looker.call("arm")["accepted"]
-            until(lambda: any("Armed" in line for line in live.err), "armed", 20.0)
+            until(lambda: any("Armed" in line for line in live.err), "armed")
             assert looker.call("takeoff", up_m=2.0)["accepted"]
             looker.until(lambda: climbed(looker), "the climb")
         # The viewer in control has gone: the vehicle is held.
-        until(lambda: any("HOLDING" in line for line in live.err), "HOLDING", 20.0)
+        until(lambda: any("HOLDING" in line for line in live.err), "HOLDING")
         assert interrupt(live) == ExitCode.DONE
     (log_path,) = tmp_path.glob("*_live.mcap")
     assert str(log_path) in "\n".join(live.err)

@@ -45,8 +45,7 @@ def fly_sticks(station: Station, telemetry: Telemetry, action: Action) -> None:
     pusher = Thread(target=push)
     pusher.start()
     try:
-        time.sleep(0.2)
-        manual.start_position_control()
+        until(lambda: refusal(manual.start_position_control) == "SUCCESS", "sticks that it hears")
         until(lambda: telemetry.flight_mode() is FlightMode.POSCTL, "position mode")
         north_m = ned_m(telemetry)[0]
         sticks[0] = 0.5
@@ -136,9 +135,15 @@ def fail(station: Station, telemetry: Telemetry) -> None:
     print("failed and mended")
 
 
-def restart(station: Station, telemetry: Telemetry, action: Action) -> None:
+def reboot(telemetry: Telemetry, action: Action) -> None:
+    """Its time begins again."""
+    before_us = telemetry.attitude_euler().timestamp_us
     action.reboot()
-    time.sleep(0.3)
+    until(lambda: telemetry.attitude_euler().timestamp_us < before_us, "a new time")
+
+
+def restart(station: Station, telemetry: Telemetry, action: Action) -> None:
+    reboot(telemetry, action)
     until(station.system.is_connected, "back")
     until(telemetry.health_all_ok, "healthy after the reboot")
     print("rebooted")
@@ -163,8 +168,7 @@ def main(url: str) -> None:
         restart(station, telemetry, action)
         end(telemetry, action, action.kill)
         until(lambda: not telemetry.armed(), "disarmed by the kill")
-        action.reboot()
-        time.sleep(0.3)
+        reboot(telemetry, action)
         end(telemetry, action, action.terminate)
 
 
