@@ -57,7 +57,10 @@ class Running:
 
     def until_out(self, text: str, timeout_s: float = PATIENT_S) -> None:
         """Wait for a line of standard output that contains `text`."""
-        until(lambda: any(text in line for line in self.out), f"{text!r} in {self.err}", timeout_s)
+        try:
+            until(lambda: any(text in line for line in self.out), repr(text), timeout_s)
+        except AssertionError as error:
+            raise AssertionError(f"{error}, in {self.out}; {self.err}") from None
 
     def ended(self) -> int:
         """Waits for its end, and until all that it wrote is read; its exit code."""

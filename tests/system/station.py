@@ -18,6 +18,9 @@ from tests.system.patience import PATIENT_POLICY, PATIENT_S
 from tests.system.vehicle_program import vehicle_sim
 from tests.system.wire_tap import WireTap
 
+PATIENT_VEHICLE = {"COM_OF_LOSS_T": 60.0}
+"""A station that the machine stops for seconds streams its setpoints again afterwards."""
+
 
 class NoInterrupts:
     """Nobody presses Ctrl-C here."""
@@ -115,7 +118,7 @@ def simulated(
 ) -> Iterator[Station]:
     """A station with a vehicle of its own, connected."""
     config = StationConfig(
-        sim=SimConfig(speedup=speedup),
+        sim=SimConfig(speedup=speedup, params=PATIENT_VEHICLE),
         speedup=speedup,
         log_dir=str(log_dir),
         policy_path=policy,
@@ -139,6 +142,8 @@ def tapped(
     with tap or WireTap() as ear, station(config) as made:
         ear.connect(made.ports[0])
         url = f"udpout://127.0.0.1:{ear.vehicle_port}"
-        with vehicle_sim("--speedup", f"{speedup:g}", "--link", url):
+        params = [f"{name}={value:g}" for name, value in PATIENT_VEHICLE.items()]
+        words = [word for param in params for word in ("--param", param)]
+        with vehicle_sim("--speedup", f"{speedup:g}", "--link", url, *words):
             made.connect()
             yield made, ear

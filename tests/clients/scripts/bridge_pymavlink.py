@@ -117,6 +117,11 @@ class Peer:
         self.rest(0.3)
         return self.texts[-1] if self.texts else ""
 
+    def refusal_since(self, count):
+        """The last text of a refusal, beside others that come, after so many texts."""
+        self.rest(0.3)
+        return next((text for text in reversed(self.texts[count:]) if "refused" in text), "")
+
     # --------------------------------------------------------------------------- places
 
     def place(self, north_m, east_m):
@@ -380,8 +385,10 @@ class Peer:
         print(f"offboard position outside: came {far_m:.0f} m", flush=True)
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
         self.rest(2.0)
+        told = len(self.texts)
         far_m = self.stream(25.0, VELOCITY, velocity=(-10, 0, 0))
-        print(f"velocity at the fence: came {far_m:.0f} m {self.last_text()}", flush=True)
+        refusal = self.refusal_since(told)
+        print(f"velocity at the fence: came {far_m:.0f} m {refusal}", flush=True)
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
         self.rest(4.0)
 
@@ -421,10 +428,11 @@ class Peer:
         name = {"px4": "GF_ACTION", "ardupilot": "FENCE_ENABLE"}[self.autopilot]
         self.link.mav.param_request_read_send(1, 1, name.encode(), -1)
         before = self.wait("PARAM_VALUE", lambda m: m.param_id == name)
+        told = len(self.texts)
         self.link.mav.param_set_send(1, 1, name.encode(), 0.0, before.param_type)
         after = self.wait("PARAM_VALUE", lambda m: m.param_id == name)
         assert after.param_value == before.param_value or math.isnan(before.param_value), after
-        print(f"parameter {name}: kept {self.last_text()}", flush=True)
+        print(f"parameter {name}: kept {self.refusal_since(told)}", flush=True)
         force = 21196.0
         long = self.long
         self.refused("motors off in the air", long(M.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, force))
@@ -435,7 +443,7 @@ class Peer:
         self.refused("home elsewhere", self.at(M.MAV_CMD_DO_SET_HOME, 500, 0, 0.0))
 
     def escape_by_false_reports(self):
-        here = self.here()
+        here, told = self.here(), len(self.texts)
         lat, lon = self.place(here[0] - 40, here[1])
         for _ in range(40):
             lat_e7, lon_e7 = round(lat * 1e7), round(lon * 1e7)
@@ -450,7 +458,7 @@ class Peer:
             self.rest(0.05)
         moved_m = math.dist(self.here(), here)
         assert moved_m < 2.0, moved_m
-        print(f"false GPS and vision: moved {moved_m:.0f} m {self.last_text()}", flush=True)
+        print(f"false GPS and vision: moved {moved_m:.0f} m {self.refusal_since(told)}", flush=True)
 
 
 def main(url, autopilot, *words):
