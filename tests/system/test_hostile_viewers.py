@@ -19,7 +19,7 @@ from gcs.shell import stations
 from tests.system.hostile_clients import intervals_ms, resident_kb, setpoints_between
 from tests.system.hostile_viewers import MODULE
 from tests.system.machine import KeptWaiting
-from tests.system.programs import LONGEST_S, children
+from tests.system.programs import LONGEST_S, alive, children
 from tests.system.second_program import HoldWatch
 from tests.system.slow_viewer import slow_viewer
 from tests.system.station import tapped
@@ -50,7 +50,8 @@ def test_they_delay_no_setpoint_and_no_abort_and_cost_the_station_no_memory(
         live = opened_by(Wanted(described.pid, "127.0.0.1", 0))
         assert live is not None
         port = int(live.url.rpartition(":")[2])
-        (live_view,) = set(children(os.getpid())) - before
+        started = set(children(os.getpid())) - before
+        (live_view,) = filter(alive, started)  # `ps`, which told of them, is not any more
         before_kb = resident_kb(described.pid)
 
         kept, begin_ns = KeptWaiting(described.pid), time.monotonic_ns()
