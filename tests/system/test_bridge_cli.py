@@ -18,7 +18,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.exit_codes import ExitCode
-from tests.system.patience import PATIENT_S, hold_much, until
+from tests.system.patience import PATIENT_POLICY, PATIENT_S, hold_much, until
 from tests.system.programs import GCS, Running, gcs, running
 from tests.system.vehicle_program import free_port
 
@@ -86,7 +86,7 @@ def of_vehicle(message: Any) -> bool:
 def test_two_clients_by_udp_and_tcp_one_in_control_and_a_refusal_with_its_reason(
     tmp_path: Path,
 ) -> None:
-    words = ("--sim", "--client", ANY_UDP, "--client", ANY_TCP)
+    words = ("--sim", "--policy", PATIENT_POLICY, "--client", ANY_UDP, "--client", ANY_TCP)
     with bridge(tmp_path, *words) as program:
         one = Client(f"udpout:127.0.0.1:{port(program, 'udp')}")
         other = Client(f"tcp:127.0.0.1:{port(program, 'tcp')}", 254)

@@ -17,7 +17,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.exit_codes import ExitCode
-from tests.system.patience import PATIENT_S, hold_much, until
+from tests.system.patience import PATIENT_POLICY, PATIENT_S, hold_much, until
 from tests.system.programs import GCS, Running, gcs, running
 from tests.system.vehicle_program import free_port, vehicle_sim
 
@@ -152,6 +152,7 @@ def take_off(client: Client, sysid: int) -> None:
 @pytest.mark.thorough
 def test_one_client_flies_a_px4_and_an_ardupilot(tmp_path: Path, where: tuple[str, str]) -> None:
     words = ["--vehicle", where[0], "--vehicle", where[1], "--client", "udpin://127.0.0.1:0"]
+    words += ["--policy", PATIENT_POLICY]
     with running(GCS, "bridge", "--log-dir", str(tmp_path), "--no-compact", *words) as program:
         client = Client(f"udpout:127.0.0.1:{client_port(program)}")
         for sysid in (PX4, ARDUPILOT):

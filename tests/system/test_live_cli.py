@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 from gcs.exit_codes import ExitCode
-from tests.system.patience import until
+from tests.system.patience import PATIENT_POLICY, until
 from tests.system.programs import GCS, Running, gcs, running
 from tests.system.station import simulated
 from tests.system.viewer import Viewer, viewer
 
 pytestmark = pytest.mark.system
 
+PATIENT = ("--policy", PATIENT_POLICY)
 STATE = "/vehicle/1/state"
 
 
@@ -66,7 +67,7 @@ def climbed(looker: Viewer) -> bool:
 
 @pytest.mark.thorough
 def test_live_of_a_new_station_flies_by_services_alone(tmp_path: Path) -> None:
-    with running(GCS, "live", "--sim", "--log-dir", str(tmp_path)) as live:
+    with running(GCS, "live", "--sim", *PATIENT, "--log-dir", str(tmp_path)) as live:
         live.until_out("take_control")
         url, code = told(live.out)
         until(lambda: "Current State: GROUNDED" in "\n".join(live.err), "a vehicle")
@@ -85,7 +86,8 @@ def test_live_of_a_new_station_flies_by_services_alone(tmp_path: Path) -> None:
 
 
 def test_fly_with_a_live_view_tells_the_address_and_ends_with_it(tmp_path: Path) -> None:
-    ended = gcs("fly", "--sim", "--plain", "--live", "--log-dir", str(tmp_path), stdin="arm\n")
+    words = ("fly", "--sim", "--plain", "--live", *PATIENT, "--log-dir", str(tmp_path))
+    ended = gcs(*words, stdin="arm\n")
     assert ended.returncode == ExitCode.DONE, ended.stderr
     url, _ = told(ended.stderr.splitlines())
     assert "arm: complete" in ended.stdout

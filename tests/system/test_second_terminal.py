@@ -18,10 +18,10 @@ from gcs.exit_codes import ExitCode
 from gcs.shell import stations
 from tests.system.flight_log import AUTO_LOITER
 from tests.system.hostile_clients import setpoints_between
-from tests.system.patience import PATIENT_S, until
+from tests.system.patience import PATIENT_POLICY, PATIENT_S, until
 from tests.system.programs import GCS, LONGEST_S, alive, gcs, running
 from tests.system.second_program import HoldWatch, loiter_seen_ns, noted_ns
-from tests.system.station import simulated, station, tapped
+from tests.system.station import PATIENT_VEHICLE, simulated, station, tapped
 from tests.system.terminal import terminal
 from tests.system.wire_tap import WireTap
 
@@ -157,7 +157,12 @@ def test_a_screen_says_who_is_in_control_and_who_took_it(tmp_path: Path) -> None
 @pytest.fixture
 def kept(tmp_path: Path) -> Iterator[int]:
     """The process of a station that flies, kept, after its first operator has left."""
-    setup = StationConfig(sim=SimConfig(), log_dir=str(tmp_path), keep=True)
+    setup = StationConfig(
+        sim=SimConfig(params=PATIENT_VEHICLE),
+        policy_path=PATIENT_POLICY,
+        log_dir=str(tmp_path),
+        keep=True,
+    )
     with station(setup) as operator:
         operator.connect()
         operator.fly("arm", "takeoff 2")
@@ -180,8 +185,10 @@ def test_a_kept_station_outlives_its_operator_and_is_flown_by_one_shots(
     link = ("--link", found["endpoints"][0])
     other = gcs("goto", "2", "0", "2", *link, "--policy", "lab")
     assert other.returncode == ExitCode.USAGE
-    assert "policy lab was asked for, it has default" in other.stderr
-    moved = gcs("goto", "2", "0", "2", *link, "--policy", "default", "--log-dir", str(tmp_path))
+    assert "policy lab was asked for, it has patient" in other.stderr
+    moved = gcs(
+        "goto", "2", "0", "2", *link, "--policy", PATIENT_POLICY, "--log-dir", str(tmp_path)
+    )
     assert (moved.returncode, moved.stdout) == (0, "resume: complete\ngoto 2 0 2: complete\n")
     assert listed("status", *link)["state"] == "HOVERING", "a one-shot leaves it as it is"
     ended = gcs("stations", "end")
