@@ -24,7 +24,11 @@ PATIENT = {
 """Parameters: a script that the machine stops for a second has not gone, nor forgotten to fly."""
 ABOUT_ITSELF = re.compile("User callback queue slow|Callback .*took more than")
 """MAVSDK's words for a script that takes what comes more slowly than it comes."""
-ASKED_AGAIN = re.compile("retr(y|ies)|timed out|timeout", re.IGNORECASE)
+ASKED_AGAIN = re.compile(
+    "retr(y|ies)|timed out|timeout|unexpected response on work item", re.IGNORECASE
+)
+"""And where it meets what was late: PX4 tells a change of a parameter twice, 15 ms apart, and
+MAVSDK's own next request, as of the second of several parameters, may come in between."""
 ANSWER_S = 0.5
 """MAVSDK asks again after so long: it says so of a vehicle that does not answer, and of one that
 the machine kept waiting."""

@@ -208,8 +208,8 @@ class Peer:
     def attitudes(self) -> None:
         """Leaning at the fence of the yard, 20 m up, by 5 degrees; and back."""
         hover = Param(self.system).get_param_float("MPC_THR_HOVER")
-        self.done("goto", self.goto, 0.0, 0.0)
-        self.come_to(0.0, 0.0)
+        self.done("goto", self.goto, 0.0, 0.0, 20.0)
+        self.come_to(0.0, 0.0, 20.0)
         control = Offboard(self.system)
         control.set_attitude(Attitude(0.0, 0.0, 0.0, hover))
         self.done("attitude", control.start)

@@ -19,7 +19,9 @@ from mavsdk.plugins.manual_control import ManualControl
 from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityNedYaw
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import FixType, FlightMode, Telemetry
-from mavsdk_station import EARTH_M_PER_DEG, Station, ned_m, refusal, until
+from mavsdk_station import EARTH_M_PER_DEG, Station, ned_m, refusal, told_twice, until
+
+BOOTED_US = 3_000_000
 
 
 def take_off(telemetry: Telemetry, action: Action, up_m: float) -> None:
@@ -126,7 +128,7 @@ def breach(station: Station, telemetry: Telemetry) -> None:
 
 def fail(station: Station, telemetry: Telemetry) -> None:
     """The plugin reads once, when it is made, whether failures are enabled."""
-    Param(station.system).set_param_int("SYS_FAILURE_EN", 1)
+    told_twice(Param(station.system).set_param_int, "SYS_FAILURE_EN", 1)
     plugin = Failure(station.system)
     plugin.inject(FailureUnit.SENSOR_GPS, FailureType.OFF, 0)
     until(lambda: telemetry.gps_info().fix_type in (FixType.NO_GPS, FixType.NO_FIX), "no GPS")
@@ -136,10 +138,11 @@ def fail(station: Station, telemetry: Telemetry) -> None:
 
 
 def reboot(telemetry: Telemetry, action: Action) -> None:
-    """Its time begins again."""
+    """Its time begins again, and goes on until what MAVSDK last heard of its health is new, too."""
     before_us = telemetry.attitude_euler().timestamp_us
     action.reboot()
     until(lambda: telemetry.attitude_euler().timestamp_us < before_us, "a new time")
+    until(lambda: telemetry.attitude_euler().timestamp_us > BOOTED_US, "a vehicle that has booted")
 
 
 def restart(station: Station, telemetry: Telemetry, action: Action) -> None:

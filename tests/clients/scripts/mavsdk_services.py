@@ -21,7 +21,7 @@ from mavsdk.plugins.gimbal import Gimbal
 from mavsdk.plugins.log_files import LogFiles, LogFilesResult
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import LandedState, Telemetry
-from mavsdk_station import PATIENT_S, Station, ask_for_streams, refusal, until
+from mavsdk_station import PATIENT_S, Station, ask_for_streams, refusal, told_twice, until
 
 SESSION_ENDS_S = 1.0
 INT_PARAM = {"px4": "COM_RC_IN_MODE", "ardupilot": "FENCE_ENABLE"}
@@ -32,13 +32,13 @@ def parameters(station: Station, personality: str) -> None:
     param = Param(station.system)
     whole, real = INT_PARAM[personality], FLOAT_PARAM[personality]
     before = param.get_param_int(whole)
-    param.set_param_int(whole, 1 - min(before, 1))
+    told_twice(param.set_param_int, whole, 1 - min(before, 1))
     print("int parameter", param.get_param_int(whole) == 1 - min(before, 1))
-    param.set_param_int(whole, before)
+    told_twice(param.set_param_int, whole, before)
     before_m_s = param.get_param_float(real)
-    param.set_param_float(real, before_m_s / 2.0)
+    told_twice(param.set_param_float, real, before_m_s / 2.0)
     print("float parameter", param.get_param_float(real) == before_m_s / 2.0)
-    param.set_param_float(real, before_m_s)
+    told_twice(param.set_param_float, real, before_m_s)
     print("wrong type", refusal(param.get_param_float, whole))
     known = param.get_all_params()
     print("all parameters", len(known.int_params) >= 10, len(known.float_params) >= 30)

@@ -16,6 +16,7 @@ from mavsdk.plugins.telemetry import Telemetry
 
 EARTH_M_PER_DEG = 111_194.93
 PATIENT_S = 60.0
+TOLD_TWICE_S = 0.5
 ANSWER_S = 2.0
 """MAVSDK asks again after so long, three times, instead of 0.5 s: on a slow machine the vehicle is
 late."""
@@ -60,6 +61,13 @@ def refusal(call: Callable[..., object], *args: object) -> str:
         result = getattr(error, "result", None)
         return str(result.name) if result is not None else repr(error)
     return "SUCCESS"
+
+
+def told_twice(call: Callable[..., object], *args: object) -> None:
+    """Sets a parameter.  PX4 tells a change twice, and MAVSDK warns where the second telling meets
+    its next request."""
+    call(*args)
+    time.sleep(TOLD_TWICE_S)
 
 
 def ask_for_streams(telemetry: Telemetry) -> None:
