@@ -41,7 +41,7 @@ class Flown:
     said: list[str]
     vehicle: list[str]
     kept_waiting_s: float
-    """Script and vehicle together, by the machine."""
+    """The vehicle, by the machine."""
 
     def modes(self) -> list[str]:
         """The vehicle's modes, in order."""
