@@ -134,9 +134,9 @@ def test_an_abort_in_another_thread_ends_the_goto_that_is_waited_for() -> None:
     way.was_sent.clear()
     flight = threading.Thread(target=fly)
     flight.start()
-    assert way.was_sent.wait(10.0)
+    assert way.was_sent.wait(60.0)
     assert station.abort().state == "complete"
-    flight.join(10.0)
+    flight.join(60.0)
     assert [(each.state, each.code) for each in raised] == [("aborted", "OPERATOR")]
 
 
