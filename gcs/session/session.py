@@ -29,7 +29,7 @@ from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
-from gcs.gate.inputs import PositionSeen
+from gcs.gate.inputs import PositionSeen, Tick
 from gcs.gate.machine.gate import Gate
 from gcs.gate.requests import EndStream
 from gcs.protocol.effects import Address, Send
@@ -81,6 +81,7 @@ from gcs.session.work import (
     STATION,
     AskGate,
     AskMission,
+    AskOrbit,
     CheckStart,
     Decide,
     EndSession,
@@ -310,6 +311,9 @@ class Session:
         """Hand one item of work to the part that it is for; `owner` is whose it is."""
         vehicle = self._vehicles.of_owner(owner)
         match item:
+            case ToGate(Tick()) if owner == STATION:
+                orbits = self._vehicles.each(lambda v: v.orbit_sample(self._operators, now_ns))
+                return [*orbits, *self._vehicles.to_all(item)]
             case ToGate() if owner == STATION:
                 return self._vehicles.to_all(item)
             case ToGate(given):
@@ -350,6 +354,8 @@ class Session:
                 return self._operators.asked_of_gate(item)
             case AskMission():
                 return vehicle.ask_mission(item, now_ns)
+            case AskOrbit():
+                return vehicle.ask_orbit(item, now_ns)
             case StopTransfer(request_id):
                 return self._vehicles.each(lambda each: each.stop_transfer(request_id))
             case StreamOver(sysid, request_id):
