@@ -210,6 +210,7 @@ class Dialogue:
     def stream(self, asked_by: From, sample: ipc.Stream) -> list[BridgeEffect]:
         """One sample of a setpoint stream; it has no answer of its own."""
         self._streams_from = asked_by
+        self._orbit_replaced()
         return [Says(self.client, msgspec.structs.replace(sample, vehicle=self.vehicle))]
 
     # ---------------------------------------------------------------------------- answers
@@ -258,6 +259,8 @@ class Dialogue:
         if pending is None:
             return []
         if event.outcome == "accepted":
+            if pending.word == "orbit":
+                self._orbit_replaced()
             pending.operation = event.operation
             if event.word in DECIDED_BY_GATE and not pending.rest:
                 return self._answer(pending, Result.ACCEPTED, None, now_ns)
@@ -278,6 +281,13 @@ class Dialogue:
             return self.text(self._streams_from, Level.INFO, "stream: flown", now_ns)
         text = f"stream: {event.outcome} {event.code}: {event.sentence}"
         return self.text(self._streams_from, Level.WARNING, text, now_ns)
+
+    def _orbit_replaced(self) -> None:
+        """Another one, or a stream of its own, is flown from now on: who asks for the one before
+        again does not repeat it."""
+        for pending in self._pending.values():
+            if pending.word == "orbit" and pending.answered is not None:
+                pending.key = b""
 
     def _orbit(self, event: ipc.OrbitEvent, now_ns: int) -> list[BridgeEffect]:
         """How its orbit is flown, as a PX4 in its Orbit mode tells it: QGroundControl draws it."""

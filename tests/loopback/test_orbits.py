@@ -12,14 +12,20 @@ import pytest
 from msgspec import structs
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs import ipc
+from gcs.audit.audit import audit
+from gcs.audit.messages import Tape
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.states import State
+from gcs.record.writer import Recorder
+from gcs.session import inputs
 from tests.loopback.boxed_stream import taken_off
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.loopback.observed import START_NS
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
 from tests.loopback.test_attitude_streams import blow
 from vehicle_sim.autopilot.tasks.guided import Offboard
@@ -222,8 +228,12 @@ def test_what_is_not_given_is_as_it_is_flown(personality: Personality) -> None:
     back = circling(flight, NORTH_40, 25.0)
     back.fly(10.0)
     assert back.turned_rad * 25.0 == pytest.approx(40.0, rel=0.06)
+    assert asked(client, -20.0, 4.0, centre=NORTH_40) == ACCEPTED
+    first_again = circling(flight, NORTH_40, 20.0)
+    first_again.fly(10.0)
+    assert max(abs(away - 20.0) for away in first_again.away_m) < 0.6
     endings = [item for item in flight.decisions("complete") if item.word == "orbit"]
-    assert len(endings) == 2, "the later ones; the first is flown on, as they have it"
+    assert len(endings) == 3, "the later ones; the first is flown on, as they have it"
 
 
 @both
@@ -516,6 +526,11 @@ def test_setpoints_of_its_own_are_flown_instead(personality: Personality) -> Non
         flight.run(0.05)
     east_m, *_ = flight.truth_enu()
     assert east_m - before[0] == pytest.approx(-9.0, abs=3.0)
+    told = len(client.messages("ORBIT_EXECUTION_STATUS"))
+    assert asked(client, 15.0, 3.0, centre=NORTH_40) == ACCEPTED
+    circling(flight, NORTH_40, 15.0)
+    assert len(client.messages("ORBIT_EXECUTION_STATUS")) > told + 10
+    assert client.ask(PAUSE, 0.0) == ACCEPTED
     told_no_more(flight, client)
 
 
@@ -539,3 +554,33 @@ def test_lost_positions_interrupt_it_and_it_goes_on(personality: Personality) ->
     track = Track(flight, NORTH_40)
     track.fly(5.0)
     assert max(abs(away - 15.0) for away in track.away_m) < 0.8
+
+
+@both
+def test_an_operator_of_the_station_orbits_by_json(personality: Personality) -> None:
+    flight = Flight(personality).hovering(5.0)
+    circle = ipc.Circle((0.0, 20.0, 8.0), -10.0, 3.0, 1.0, "along")
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(900, "orbit", orbit=circle)))
+    assert flight.done(900, 90.0) == "complete"
+    assert flight.is_in(State.HOVERING)
+    told = flight.of(ipc.OrbitEvent)
+    assert (told[-1].radius_m, told[-1].nose, told[-1].circling) == (-10.0, "along", True)
+    assert told[-1].turns == pytest.approx(1.0, abs=0.06)
+    assert told[-1].centre_enu == pytest.approx((0.0, 20.0, 8.0))
+    wrong = ipc.Ask(901, "orbit", orbit=ipc.Circle(nose="backwards"))
+    flight.feed(inputs.OperatorLine(1, wrong))
+    assert flight.done(901) == "refused UNSUPPORTED"
+
+
+def test_the_audit_of_its_record_finds_no_difference(monkeypatch: pytest.MonkeyPatch) -> None:
+    tape = Tape()
+    new = staticmethod(lambda: Recorder.without_file(tape, START_NS))
+    monkeypatch.setattr(Flight, "new_recorder", new)
+    flight, client = flying("px4")
+    assert asked(client, 10.0, 3.0, turn_rad=3.0, centre=(0.0, 10.0)) == ACCEPTED
+    assert asked(client, 500.0, 3.0) == DENIED
+    flight.beating(12.0)
+    assert flight.is_in(State.HOVERING)
+    result = audit(tape.take(), tape.attachments, "test", "")
+    assert result.good, (result.notes, result.first[:5])
+    assert result.compared["frame sent"] > 400
