@@ -35,7 +35,7 @@ ARM, ORBIT, PAUSE, RTL, LAND, RELEASE = 400, 34, 193, 20, 21, 32100
 MISSION_START = 300
 NAN = math.nan
 UNSET = 0x7FFFFFFF
-GLOBAL, ABOVE_HOME = 0, 3
+GLOBAL = 0
 UP_M = 10.0
 NORTH_40 = (0.0, 40.0)
 """East and north of home."""
@@ -76,16 +76,17 @@ def orbit(
     turn_rad: float = NAN,
     centre: tuple[float, float] | None = None,
     up_m: float = NAN,
-    frame: int = ABOVE_HOME,
+    frame: int = GLOBAL,
 ) -> None:
-    """COMMAND_INT; a height above sea level in frame 0."""
+    """COMMAND_INT; the height is sent as above sea level."""
     x, y = UNSET, UNSET
+    height_m = up_m + origin(client.flight).alt_amsl_m
     if centre is not None:
         lat_deg, lon_deg = lat_lon(client.flight, centre)
         x, y = round(lat_deg * 1e7), round(lon_deg * 1e7)
     client.send(
         dialect.MAVLink_command_int_message(
-            *VEHICLE, frame, ORBIT, 0, 0, radius_m, speed_m_s, nose, turn_rad, x, y, up_m
+            *VEHICLE, frame, ORBIT, 0, 0, radius_m, speed_m_s, nose, turn_rad, x, y, height_m
         )
     )
 

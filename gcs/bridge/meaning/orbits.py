@@ -1,8 +1,8 @@
 """DO_ORBIT: a circle, which the station flies itself as a stream of verified velocities.
 
 By MAVLink's common.xml: what is NaN, or INT32_MAX, is the vehicle's default, or as it is flown
-already.  A PX4 1.14 takes the height as above sea level whatever the frame says (vehicle-sim, from
-memory); here the frame counts, as the vehicle is not the one that flies it.
+already.  A height is above sea level whatever the frame says: a PX4 takes it so (from memory), and
+MAVSDK 4.1.0 relies on it, which sends such heights in frame 3 (seen through the bridge).
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ NOSES: Final[Mapping[int, str]] = {
 }
 """ORBIT_YAW_BEHAVIOUR."""
 BY_STICKS: Final = 4
+ABOVE_SEA: Final = "the height is taken as above sea level, as a PX4 does, whatever the frame"
 
 
 def orbit(command: Command, seen: Seen) -> Meaning:
@@ -50,9 +51,11 @@ def orbit(command: Command, seen: Seen) -> Meaning:
         nose=nose,
     )
     wanted = ipc.Ask(0, "orbit", orbit=circle)
+    by_home = command.frame is not None and datum_of(command.frame) is Datum.HOME
+    note = ABOVE_SEA if by_home and not math.isnan(command.p7) else ""
     if seen.state in NOT_FLOWN_BY_US and not seen.on_ground:
-        return Words((ipc.Ask(0, "resume"), wanted))
-    return Words((wanted,))
+        return Words((ipc.Ask(0, "resume"), wanted), note)
+    return Words((wanted,), note)
 
 
 def _centre(command: Command, seen: Seen) -> ipc.Maybe3 | Refusal:
@@ -65,7 +68,7 @@ def _centre(command: Command, seen: Seen) -> ipc.Maybe3 | Refusal:
         return datum
     up_m = None
     if not level:
-        down_m = down_of(seen, command.p7, datum)
+        down_m = down_of(seen, command.p7, Datum.SEA)
         if isinstance(down_m, Refusal):
             return down_m
         up_m = -down_m
