@@ -25,11 +25,10 @@ from gcs.orbit.circle import Asked, Nose, Orbit, orbit_of
 from gcs.orbit.clearance import why_not
 from gcs.orbit.guidance import Guidance, Place
 from gcs.session.effects import Emit
-from gcs.session.operators import Operators
 from gcs.session.requests import source_of
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
-from gcs.session.work import AskGate, AskOrbit, Decide, Log, Work
+from gcs.session.work import AskGate, AskOrbit, Decide, Log, OrbitSample, Work
 
 NODE: Final = "orbit"
 BEGINS_FROM: Final = frozenset({State.HOVERING, State.MOVING, State.STREAMING})
@@ -124,13 +123,13 @@ class Orbits:
 
     def tick(
         self,
-        operators: Operators,
+        in_control: int,
         telemetry: Telemetry | None,
         gate: Gate,
         policy: Policy,
         now_ns: int,
     ) -> list[Work]:
-        """The next sample, before the gate's own tick."""
+        """The next sample, before the gate's own tick; `in_control` is an operator's number."""
         flown = self._flown
         if flown is None or telemetry is None or telemetry.pos_ned is None:
             return []
@@ -141,19 +140,17 @@ class Orbits:
         age_ns = now_ns - telemetry.position_ns
         if age_ns > round(policy.stream.position_age_s * 1e9):
             return []
-        in_control = operators.in_control
-        if in_control is None or in_control.client != client or flown.guidance.done:
+        if in_control != client or flown.guidance.done:
             self._flown = None
-            over = operators.end_stream(client, telemetry.sysid)
-            return [Log(Level.INFO, NODE, f"over after {_turns(flown.guidance)}"), *over]
+            over = Log(Level.INFO, NODE, f"over after {_turns(flown.guidance)}")
+            return [over, OrbitSample(client, None)]
         place = Place(telemetry.pos_ned, telemetry.v_ned, age_ns / 1e9)
         setpoint = flown.guidance.step(place, (now_ns - flown.last_ns) / 1e9)
         flown.last_ns = now_ns
         yaw_deg = None if setpoint.yaw_rad is None else math.degrees(setpoint.yaw_rad)
         v_enu = enu_from_ned(setpoint.v_ned)
         sample = ipc.Stream(v_enu=v_enu, yaw_deg=yaw_deg, vehicle=telemetry.sysid)
-        work = operators.line(client, sample, telemetry.autopilot, None, now_ns)
-        return [*work, *self._told(flown, telemetry, now_ns)]
+        return [OrbitSample(client, sample), *self._told(flown, telemetry, now_ns)]
 
     def _told(self, flown: Flown, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """To its operator, now and then: what is flown, for a map to show it."""

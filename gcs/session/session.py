@@ -87,6 +87,7 @@ from gcs.session.work import (
     EndSession,
     For,
     Log,
+    OrbitSample,
     PlaceFence,
     SecondDue,
     SnapshotDue,
@@ -312,7 +313,9 @@ class Session:
         vehicle = self._vehicles.of_owner(owner)
         match item:
             case ToGate(Tick()) if owner == STATION:
-                orbits = self._vehicles.each(lambda v: v.orbit_sample(self._operators, now_ns))
+                one = self._operators.in_control
+                client = 0 if one is None else one.client
+                orbits = self._vehicles.each(lambda v: v.orbit_sample(client, now_ns))
                 return [*orbits, *self._vehicles.to_all(item)]
             case ToGate() if owner == STATION:
                 return self._vehicles.to_all(item)
@@ -356,6 +359,11 @@ class Session:
                 return vehicle.ask_mission(item, now_ns)
             case AskOrbit():
                 return vehicle.ask_orbit(item, now_ns)
+            case OrbitSample(client, sample):
+                if sample is None:
+                    return self._operators.end_stream(client, vehicle.sysid)
+                autopilot, refusal = vehicle.for_operators(now_ns)
+                return self._operators.line(client, sample, autopilot, refusal, now_ns)
             case StopTransfer(request_id):
                 return self._vehicles.each(lambda each: each.stop_transfer(request_id))
             case StreamOver(sysid, request_id):

@@ -43,7 +43,6 @@ from gcs.session.interpreted_messages import (
 )
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions, still_paused
-from gcs.session.operators import Operators
 from gcs.session.orbits import Orbits
 from gcs.session.position_health import GPS_SILENT_NS
 from gcs.session.presence import STATE_MESSAGES, Presence
@@ -517,9 +516,9 @@ class Vehicle:
             asked, self.telemetry, self.gate, self._port.policy, now_ns
         )
 
-    def orbit_sample(self, operators: Operators, now_ns: int) -> list[Work]:
-        """The next sample of the orbit that is flown."""
-        return self._orbits.tick(operators, self.telemetry, self.gate, self._port.policy, now_ns)
+    def orbit_sample(self, in_control: int, now_ns: int) -> list[Work]:
+        """The next sample of the orbit that is flown, if it is that of the operator in control."""
+        return self._orbits.tick(in_control, self.telemetry, self.gate, self._port.policy, now_ns)
 
     def streamed_by(self, client: int) -> list[Work]:
         """An operator sends samples of its own: an orbit of its is not flown any more."""

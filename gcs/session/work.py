@@ -99,6 +99,13 @@ class AskOrbit(msgspec.Struct, frozen=True, gc=False):
     client: int
 
 
+class OrbitSample(msgspec.Struct, frozen=True, gc=False):
+    """The next sample of the orbit that the operator `client` has asked for; None: it is over."""
+
+    client: int
+    sample: ipc.Stream | None
+
+
 class StopTransfer(msgspec.Struct, frozen=True, gc=False):
     """The mission transfer that was opened as `request_id` is to end, if it is under way."""
 
@@ -149,6 +156,7 @@ Work: TypeAlias = (
     | Tell
     | AskMission
     | AskOrbit
+    | OrbitSample
     | StopTransfer
     | StreamOver
     | EndSession
