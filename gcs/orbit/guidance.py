@@ -118,6 +118,10 @@ class Guidance:
             if left_m > NEAR_H_M or abs(self.orbit.centre_ned[2] - here[2]) > NEAR_V_M:
                 return self._approach(north, east, left_m, down_m_s, place.age_s, bearing_rad)
             self._entry_ned, self._bearing_rad = None, bearing_rad
+            # One that flies round already, such as on the orbit before, goes on at its speed.
+            north_m_s, east_m_s, _ = place.v_ned
+            along_m_s = east_m_s * math.cos(bearing_rad) - north_m_s * math.sin(bearing_rad)
+            self._speed_m_s = max(0.0, self.orbit.way * along_m_s)
         turned_rad = math.remainder(bearing_rad - self._bearing_rad, math.tau)
         self.swept_rad += self.orbit.way * turned_rad
         self._bearing_rad = bearing_rad

@@ -142,6 +142,16 @@ def test_the_nose_east_of_the_centre(nose: Nose, yaw_deg: float | None) -> None:
     assert setpoint.v_ned[0] < 0.0, "southward"
 
 
+@pytest.mark.parametrize(("way", "begins_m_s"), [(1, 3.0), (-1, TICK_S)])
+def test_one_that_flies_round_already_goes_on_at_its_speed(way: int, begins_m_s: float) -> None:
+    """Southward in the east of the centre is clockwise; the other way round it begins anew."""
+    orbit = Orbit(CENTRE, 20.0, way, 3.0, None, Nose.FREE, None)
+    east_of_it = (CENTRE[0], CENTRE[1] + 20.0, CENTRE[2])
+    guidance = Guidance(orbit, east_of_it, PX4, RULES)
+    setpoint = guidance.step(Place(east_of_it, (-3.0, 0.0, 0.0), 0.0), TICK_S)
+    assert math.hypot(*setpoint.v_ned[:2]) == pytest.approx(begins_m_s)
+
+
 def test_an_old_position_is_taken_on_by_its_velocity() -> None:
     assert Place((1.0, 2.0, 3.0), (2.0, -4.0, 1.0), 0.5).now_ned == (2.0, 0.0, 3.5)
 
