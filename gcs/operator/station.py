@@ -169,6 +169,29 @@ class Station:
         goal = (_finite(east_m), _finite(north_m), _finite(up_m))
         return self.request(ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw_deg), wait, timeout_s)
 
+    def orbit(
+        self,
+        radius_m: float,
+        speed_m_s: float,
+        centre: tuple[float, float, float] | None = None,
+        *,
+        turns: float = 0.0,
+        nose: str = "centre",
+        wait: bool | None = None,
+        timeout_s: float | None = None,
+    ) -> Operation:
+        """Fly to the circle and round it; a positive radius is clockwise, seen from above.
+
+        `centre` is metres east, north, up; None is where the vehicle is.  `turns` 0 is until
+        something else is asked for, and then it is waited for only if that is said.  `nose`:
+        centre, initial, free, along.  Raises ValueError for numbers that are not finite.
+        """
+        if not all(map(math.isfinite, (radius_m, speed_m_s, turns, *(centre or ())))):
+            raise ValueError("an orbit has finite numbers only")
+        circle = ipc.Circle(centre, radius_m, speed_m_s, turns, nose)
+        waits = turns > 0.0 if wait is None else wait
+        return self.request(ipc.Ask(0, "orbit", orbit=circle), waits, timeout_s)
+
     def stream(self) -> Stream:
         """A setpoint stream: velocities or positions, one after the other, in a `with` block.
 

@@ -33,6 +33,7 @@ from gcs.session.times import Times
 from gcs.session.work import (
     AskGate,
     AskMission,
+    AskOrbit,
     Decide,
     EndSession,
     Log,
@@ -186,6 +187,9 @@ class Operators:
         if ask.word in MISSION_WORDS:
             given = self._give_where_free(client, ask, now_ns)
             return [*given, AskMission(self._requests.open(ask, client), ask)]
+        if ask.word == "orbit":
+            given = self._give_where_free(client, ask, now_ns)
+            return [*given, AskOrbit(self._requests.open(ask, client), ask, client)]
         try:
             request = request_of(ask, autopilot or GENERIC)
         except BadAskError as error:
@@ -236,6 +240,10 @@ class Operators:
             for other, vehicle in others
         ]
         return [*ends, *given]
+
+    def end_stream(self, client: int, sysid: int) -> list[Work]:
+        """The stream that the station has made in this operator's name is over."""
+        return [StreamOver(sysid, self._requests.open(_end_of_stream(sysid), client))]
 
     def _ask_station(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """What is asked of the station, not of the vehicle, is done at once."""

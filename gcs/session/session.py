@@ -29,7 +29,7 @@ from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
-from gcs.gate.inputs import PositionSeen
+from gcs.gate.inputs import PositionSeen, Tick
 from gcs.gate.machine.gate import Gate
 from gcs.gate.requests import EndStream
 from gcs.protocol.effects import Address, Send
@@ -81,11 +81,13 @@ from gcs.session.work import (
     STATION,
     AskGate,
     AskMission,
+    AskOrbit,
     CheckStart,
     Decide,
     EndSession,
     For,
     Log,
+    OrbitSample,
     PlaceFence,
     SecondDue,
     SnapshotDue,
@@ -314,6 +316,11 @@ class Session:
         """Hand one item of work to the part that it is for; `owner` is whose it is."""
         vehicle = self._vehicles.of_owner(owner)
         match item:
+            case ToGate(Tick()) if owner == STATION:
+                one = self._operators.in_control
+                client = 0 if one is None else one.client
+                orbits = self._vehicles.each(lambda v: v.orbit_sample(client, now_ns))
+                return [*orbits, *self._vehicles.to_all(item)]
             case ToGate() if owner == STATION:
                 return self._vehicles.to_all(item)
             case ToGate(given) if type(given) is PositionSeen:  # nearly all of them
@@ -354,6 +361,13 @@ class Session:
                 return self._operators.asked_of_gate(item)
             case AskMission():
                 return vehicle.ask_mission(item, now_ns)
+            case AskOrbit():
+                return vehicle.ask_orbit(item, now_ns)
+            case OrbitSample(client, sample):
+                if sample is None:
+                    return self._operators.end_stream(client, vehicle.sysid)
+                autopilot, refusal = vehicle.for_operators(now_ns)
+                return self._operators.line(client, sample, autopilot, refusal, now_ns)
             case StopTransfer(request_id):
                 return self._vehicles.each(lambda each: each.stop_transfer(request_id))
             case StreamOver(sysid, request_id):

@@ -43,6 +43,7 @@ from gcs.session.interpreted_messages import (
 )
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions, still_paused
+from gcs.session.orbits import Orbits
 from gcs.session.position_health import GPS_SILENT_NS
 from gcs.session.presence import STATE_MESSAGES, Presence
 from gcs.session.reasons import Reasons
@@ -56,7 +57,7 @@ from gcs.session.times import Times
 from gcs.session.updates import updates
 from gcs.session.watch import Watch
 from gcs.session.words import Words, logged
-from gcs.session.work import AskMission, CheckStart, Log, PlaceFence, ToGate, Work
+from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
@@ -103,6 +104,7 @@ class Vehicle:
             reads_thrust=policy.stream.tilt_deg > 0.0,
         )
         self._missions = Missions(own, times)
+        self._orbits = Orbits(times)
         self._words = Words(times)
         self._events = Events(own, self._words, times)
         self._control = VehicleControl(own)
@@ -514,6 +516,20 @@ class Vehicle:
             asked.kind,
         )
 
+    def ask_orbit(self, asked: AskOrbit, now_ns: int) -> list[Work]:
+        """An orbit, which is verified here before the gate is asked for its stream."""
+        return self._ask_for_control(now_ns) + self._orbits.ask(
+            asked, self.telemetry, self.gate, self._port.policy, now_ns
+        )
+
+    def orbit_sample(self, in_control: int, now_ns: int) -> list[Work]:
+        """The next sample of the orbit that is flown, if it is that of the operator in control."""
+        return self._orbits.tick(in_control, self.telemetry, self.gate, self._port.policy, now_ns)
+
+    def streamed_by(self, client: int) -> list[Work]:
+        """An operator sends samples of its own: an orbit of its is not flown any more."""
+        return self._orbits.streams_itself(client)
+
     def _ask_for_control(self, now_ns: int) -> list[Work]:
         """Of a vehicle that has operator control, and obeys another station or nobody yet."""
         if self.telemetry is None:
@@ -582,8 +598,14 @@ class Vehicle:
             case CheckStart():
                 self._port.check_start(effect)
                 return []
-            case effects.Outcome() | effects.StreamVerdict():
+            case effects.Outcome():
+                self._orbits.ended(effect.request_id)
                 return [effect]
+            case effects.StreamVerdict():
+                return [effect]
+            case effects.Verdict():
+                self._orbits.decided(effect, self.gate, self._port.policy, now_ns)
+                return self._port.tell(effect, self.sysid)
             case _:
                 return self._port.tell(effect, self.sysid)
 

@@ -12,6 +12,7 @@ import math
 import sys
 import time
 from collections.abc import Callable
+from itertools import pairwise
 
 from mavsdk.plugins import geofence as fences
 from mavsdk.plugins import mission_raw as raw
@@ -166,6 +167,35 @@ class Peer:
         self.done("offboard ended", control.stop)
         time.sleep(2.0)
 
+    def orbit(self) -> None:
+        """8 m about a place in the west of the yard, counter-clockwise at 2 m/s."""
+        self.done("orbit", self.orbit_about, -8.0, 0.0, -20.0)
+        until(lambda: self.speed_m_s() > 1.7 and self.from_circle_m() < 1.0, "circles", 40.0)
+        bearings: list[float] = []
+        for _ in range(40):
+            time.sleep(0.1)
+            assert self.from_circle_m() < 1.5
+            bearings.append(math.atan2(self.here()[1] + 20.0, self.here()[0]))
+        turned = sum(math.remainder(b - a, math.tau) for a, b in pairwise(bearings))
+        print(f"orbit flown {turned < -0.5}", flush=True)
+        self.done("hold", self.action.hold)
+        until(lambda: self.telemetry.flight_mode() is FlightMode.HOLD, "holds")
+
+    def orbit_about(self, radius_m: float, north_m: float, east_m: float) -> None:
+        from mavsdk.plugins.action import OrbitYawBehavior
+
+        sea_m = self.telemetry.home().absolute_altitude_m
+        ahead = OrbitYawBehavior.HOLD_FRONT_TO_CIRCLE_CENTER
+        self.action.do_orbit(radius_m, 2.0, ahead, *self.place(north_m, east_m), sea_m + UP_M)
+
+    def from_circle_m(self) -> float:
+        north_m, east_m, _ = self.here()
+        return abs(math.hypot(north_m, east_m + 20.0) - 8.0)
+
+    def speed_m_s(self) -> float:
+        v = self.telemetry.velocity_ned()
+        return math.hypot(v.north_m_s, v.east_m_s)
+
     def sticks(self) -> None:
         """A joystick, 25 times a second: forward at the fence of the yard, back, and let go of."""
         control = ManualControl(self.system)
@@ -237,7 +267,7 @@ class Peer:
         self.refused("goto outside the yard", self.goto, 200.0, 0.0, UP_M)
         self.refused("goto into the mast", self.goto, 0.0, 20.0, UP_M)
         self.refused("goto above the ceiling", self.goto, 0.0, 0.0, 80.0)
-        self.refused("orbit over the mast", self.orbit)
+        self.refused("orbit over the mast", self.orbit_about, 20.0, 0.0, 0.0)
         missions = raw.MissionRaw(self.system)
         cuts = self.mission((20, 10), (-5, 40), last=21)
         self.refused("mission leg that cuts the mast", missions.upload_mission, cuts)
@@ -257,13 +287,6 @@ class Peer:
         said = refusal(param.set_param_int, name, 0)
         assert param.get_param_int(name) == before
         print(f"parameter {name}: kept {said}", flush=True)
-
-    def orbit(self) -> None:
-        from mavsdk.plugins.action import OrbitYawBehavior
-
-        sea_m = self.telemetry.home().absolute_altitude_m
-        ahead = OrbitYawBehavior.HOLD_FRONT_TO_CIRCLE_CENTER
-        self.action.do_orbit(20.0, 3.0, ahead, *self.place(0.0, 0.0), sea_m + UP_M)
 
     def larger_fence(self) -> None:
         home = self.telemetry.home()

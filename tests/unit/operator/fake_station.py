@@ -161,6 +161,8 @@ class FakeStation:
         if ask.word == "stream_begin":
             self.stream_told = ""
             return self._begin(ask, "STREAMING", None)
+        if ask.word == "orbit":
+            return self._begin(ask, "STREAMING", None)
         if ask.word == "photo":
             self.photo_until_s = now_s + PHOTO_S
             return self._begin(ask, "TAKING_PICTURE", None)
