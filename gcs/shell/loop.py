@@ -120,7 +120,6 @@ class Loop:
         self._client_ports = client_ports
         self._topics = TopicStream(recording, self._tell)
         self._signals_fd, self._operator_fd = signals.fileno(), operator.fileno()
-        self._clients_fd = -1 if clients is None else clients.fileno()
         self._operator_open = True
         self._sim_open = sim is not None
         self._finish: Finish | None = None
@@ -206,7 +205,7 @@ class Loop:
         clients = self._clients
         self._busy = False
         if clients is not None and clients.alone:
-            sources.append(self._clients_fd)
+            sources.append(clients)
         elif clients is not None:
             sources += clients.sources
             sinks += clients.sinks

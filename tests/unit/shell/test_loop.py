@@ -447,6 +447,32 @@ def clients() -> Iterator[PaperClients]:
     made.close()
 
 
+class Listening(ClientSockets):
+    """Nobody is connected, until somebody knocks."""
+
+    let_in = False
+
+    def _accept(self, now_s: float) -> Iterator[Input]:
+        self.let_in = True
+        self._listener.recv(1)
+        yield from ()
+
+
+def test_who_connects_where_nobody_was_is_let_in() -> None:
+    near, far = socket.socketpair()
+    with near, far:
+        clients = Listening(near)
+        seen: list[bool] = []
+        rig = Rig(clients=clients)
+        rig.run(
+            lambda: seen.append(clients.let_in),
+            lambda: far.send(b"x") and None,
+            lambda: seen.append(clients.let_in),
+        )
+        rig.close()
+        assert seen == [False, True]
+
+
 def test_an_event_goes_to_whom_it_is_for(clients: PaperClients) -> None:
     rig = Rig(clients=clients)
     snapshot = ipc.Snapshot(0, "", "", "", [], 0.0, "", False, 0.0)
