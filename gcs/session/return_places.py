@@ -6,6 +6,7 @@ when a vehicle appears, and again whenever they may have changed:
 - rally points were sent or cleared by us, for a client or with a mission;
 - the vehicle accepted such a change from anybody (MISSION_ACK of that kind);
 - it gives its rally points another number (MISSION_CURRENT.rally_points_id);
+- its parameter RALLY_TOTAL has another value (ArduPilot), or a client sends RALLY_POINT;
 - its parameter RTL_TYPE has another value (PX4).
 
 From the moment when they may change until they are read again they are not known, and a return is
@@ -45,6 +46,7 @@ from gcs.wire.messages import (
     MissionCount,
     MissionCurrent,
     MissionRequestList,
+    ParamValue,
 )
 
 NODE = "link"
@@ -54,6 +56,8 @@ NO_ORIGIN: Final = "its origin is not known, so its rally points cannot be place
 JUDGED_TYPES: Final = frozenset({0, 5})
 """PX4's RTL_TYPE: straight to home or a rally point, or to a rally point only.  1 and 3 may lead to
 the landing of the mission on board, 2 and 4 along that mission."""
+RALLY_TOTAL: Final = "RALLY_TOTAL"
+"""ArduPilot's number of rally points; it tells a value that it has saved (from memory)."""
 AGAIN_NS: Final = 1_000_000_000
 """Wait before they are read again, where they were not told whole."""
 SILENT_AGAIN_NS: Final = 30_000_000_000
@@ -80,6 +84,8 @@ class ReturnPlaces:
         self._return_type: int | None = None
         self._number: int | None = None
         """What the vehicle calls its rally points."""
+        self._total: float | None = None
+        """How many ArduPilot's parameter says that it has."""
         self._told: ReturnPlacesSeen | None = None
         self._answered = False
 
@@ -104,11 +110,11 @@ class ReturnPlaces:
 
     def start(self, telemetry: Telemetry, *, busy: bool, now_ns: int) -> list[Work]:
         """The vehicle appeared: nothing is known of it.  `busy`: a job transfers a plan."""
-        self._return_type = self._number = None
+        self._return_type = self._number = self._total = None
         self._answered = not telemetry.autopilot.commanded
         if self._answered:
             return []
-        return [*self._forget(telemetry, now_ns), *self._go_on(telemetry, busy, now_ns)]
+        return [*self.changed(telemetry, now_ns), *self._go_on(telemetry, busy, now_ns)]
 
     def follow(
         self, work: Iterable[Work], telemetry: Telemetry, *, busy: bool, now_ns: int
@@ -119,21 +125,26 @@ class ReturnPlaces:
             if not isinstance(item, Send):
                 continue
             if _changes(item.message):
-                out += self._forget(telemetry, now_ns)
+                out += self.changed(telemetry, now_ns)
             elif _asks(item.message):
                 self._begin(telemetry, overheard=True, now_ns=now_ns)
         return out + self._go_on(telemetry, busy, now_ns)
 
     def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Work]:
-        """A mission message of the vehicle; before the jobs hear it."""
+        """A mission message or parameter of the vehicle; before the jobs hear it."""
         if heard.compid != telemetry.compid:
             return []
         match heard.message:
             case MissionAck(type=MissionResult.ACCEPTED, mission_type=kind) if _of_rally(kind):
-                return self._forget(telemetry, now_ns)
+                return self.changed(telemetry, now_ns)
             case MissionCurrent(rally_points_id=number):
                 was, self._number = self._number, number
-                return [] if was in (None, number) else self._forget(telemetry, now_ns)
+                return [] if was in (None, number) else self.changed(telemetry, now_ns)
+            case ParamValue(param_id=name, param_value=total) if name == RALLY_TOTAL:
+                before, self._total = self._total, total
+                if before is None and self._items is not None:
+                    before = float(len(self._items))
+                return [] if before in (None, total) else self.changed(telemetry, now_ns)
         if self._download is None:
             return []
         return self._answers(self._download.handle(heard, now_ns), telemetry, now_ns)
@@ -152,7 +163,8 @@ class ReturnPlaces:
         """Home or the origin has changed."""
         return self._tell(telemetry) if self._items else []
 
-    def _forget(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+    def changed(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """They may be others from now on."""
         self._items, self._why = None, READING
         self._download, self._again_ns = None, now_ns
         return self._tell(telemetry)

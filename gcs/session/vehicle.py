@@ -292,6 +292,7 @@ class Vehicle:
             work += self._reasons.explained(answered, telemetry.custom_mode, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += self._learn(self._settings.heard(heard, telemetry, now_ns), telemetry)
+            work += self._returns.heard(heard, telemetry, now_ns)
             work += self._of_missions(
                 self._missions.heard(heard, self._view(telemetry), now_ns), now_ns
             )
@@ -441,6 +442,12 @@ class Vehicle:
             busy = self._missions.busy
             work += self._returns.wake(self.telemetry, busy=busy, now_ns=now_ns)
         return work
+
+    def rally_points_change(self, now_ns: int) -> list[Work]:
+        """A client's message that changes them goes to the vehicle."""
+        if self.telemetry is None:
+            return []
+        return self._of_missions(self._returns.changed(self.telemetry, now_ns), now_ns)
 
     def _of_missions(self, work: list[Work], now_ns: int) -> list[Work]:
         """What a job does, and what follows for the places where a return may end."""

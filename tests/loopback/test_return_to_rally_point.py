@@ -200,6 +200,22 @@ def test_a_return_along_the_mission_is_refused_with_its_type() -> None:
     assert "land instead" in client.texts()
 
 
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_rally_point_as_a_single_message_makes_them_be_read_again(
+    personality: Personality,
+) -> None:
+    """RALLY_POINT, which old clients of an ArduPilot send, has no answer."""
+    flight = joined(personality)
+    client = flight.clients[1]
+    asked = len(flight.to_vehicle("MISSION_REQUEST_LIST"))
+    home = HOMES[personality]
+    lat, lon = round(home.lat_deg * 1e7), round(home.lon_deg * 1e7)
+    client.send(dialect.MAVLink_rally_point_message(*VEHICLE, 0, 1, lat, lon, 20, 0, 0, 0))
+    flight.run(0.5)
+    assert flight.to_vehicle("RALLY_POINT")
+    assert len(flight.to_vehicle("MISSION_REQUEST_LIST")) == asked + 1
+
+
 def past_the_bridge(flight: PlanFlight, items: list[PlanItem]) -> None:
     """Another station on the vehicle's own link brings rally points on board."""
     mav = dialect.MAVLink(None, srcSystem=STATION, srcComponent=190)

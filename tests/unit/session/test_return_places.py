@@ -24,6 +24,7 @@ from gcs.wire.messages import (
     MissionItemInt,
     MissionRequestInt,
     MissionRequestList,
+    ParamValue,
 )
 
 SECOND = 1_000_000_000
@@ -64,6 +65,12 @@ def point(seq: int = 0, up_m: float = 20.0, frame: int = MavFrame.GLOBAL_RELATIV
 def ack(result: int, kind: int = RALLY, to: Address = OWN) -> MissionAck:
     return MissionAck(
         target_system=to.sysid, target_component=to.compid, type=result, mission_type=kind
+    )
+
+
+def rally_total(value: float) -> ParamValue:
+    return ParamValue(
+        param_value=value, param_count=1, param_index=0, param_id="RALLY_TOTAL", param_type=2
     )
 
 
@@ -171,7 +178,7 @@ def test_what_home_and_origin_are_moves_the_places() -> None:
     assert "origin" in script.told[-1].unknown
     script.telemetry.origin = Origin(LAT, LON, AMSL_M)
     script.work += script.part.placed(script.telemetry)
-    assert script.told[-1].places
+    assert script.told[-1].unknown == ""
     many = len(script.told)
     script.work += script.part.placed(script.telemetry)
     assert len(script.told) == many
@@ -270,6 +277,15 @@ def test_another_number_of_the_points_is_a_change() -> None:
     script.hear(count(0), MissionCurrent(seq=0), MissionCurrent(seq=1))
     assert script.told[-1] == NOWHERE_ELSE
     script.hear(MissionCurrent(seq=1, rally_points_id=7))
+    assert script.told[-1] == UNKNOWN
+    assert script.sent.count("MissionRequestList") == 2
+
+
+def test_another_count_of_an_ardupilot_is_a_change() -> None:
+    script = Script(ARDUPILOT)
+    script.hear(count(0), rally_total(0), rally_total(0))
+    assert script.told[-1] == NOWHERE_ELSE
+    script.hear(rally_total(1))
     assert script.told[-1] == UNKNOWN
     assert script.sent.count("MissionRequestList") == 2
 
