@@ -100,6 +100,12 @@ class AsksForStreams:
 
 
 @dataclass(frozen=True, slots=True)
+class ChangesRallyPoints:
+    """A client's message that goes to the vehicle may change its rally points, and is not answered:
+    RALLY_POINT."""
+
+
+@dataclass(frozen=True, slots=True)
 class ToLink:
     """A frame that goes to a client's link as it is."""
 
@@ -135,6 +141,7 @@ BridgeEffect: TypeAlias = (
     | ToVehicle
     | AsksVehicle
     | AsksForStreams
+    | ChangesRallyPoints
     | ToLink
     | Answers
     | Notes

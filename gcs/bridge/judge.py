@@ -25,6 +25,7 @@ from gcs.bridge.effects import (
     AsksPlan,
     AsksVehicle,
     BridgeEffect,
+    ChangesRallyPoints,
     Notes,
     Refuses,
     StopsPlan,
@@ -68,6 +69,7 @@ from gcs.wire.messages import (
     MissionSetCurrent,
     ParamRequestRead,
     ParamValue,
+    RallyPoint,
     RequestDataStream,
     SetMode,
 )
@@ -299,7 +301,8 @@ class Judge:
                 self._log_read |= isinstance(message, LogRequestData)
                 self._log_sent |= _is_command(message, Cmd.LOGGING_START)
                 notes = [Notes(Level.INFO, f"{given.client.name}: {note}")] if note else []
-                return Judged(False, [*notes, ToVehicle(given.frame.raw)])
+                rally = [ChangesRallyPoints()] if isinstance(message, RallyPoint) else []
+                return Judged(False, [*notes, ToVehicle(given.frame.raw), *rally])
             case guard_verdict.Refused(refusal, answers, ask_vehicle):
                 by = given.by
                 refused = _refuse(given, message, row, refusal)

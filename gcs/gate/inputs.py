@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.return_place import ReturnPlace
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.attitude import Attitude
 from gcs.gate.condition import Condition
@@ -94,6 +95,19 @@ class ReturnHeightSeen:
     """The vehicle's return height in metres above home (px4 RTL_RETURN_ALT, ardupilot RTL_ALT)."""
 
     up_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnPlacesSeen:
+    """Where else than at home the vehicle's own return may end, such as at its rally points; an
+    empty tuple: nowhere else.  None where that is not known, or no straight way leads there:
+    `unknown` says why.
+
+    Until the first one no return is accepted.
+    """
+
+    places: tuple[ReturnPlace, ...] | None
+    unknown: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +210,7 @@ Input: TypeAlias = (
     | PositionSeen
     | HomeSeen
     | ReturnHeightSeen
+    | ReturnPlacesSeen
     | AccuracySeen
     | ClimbEndSeen
     | VerifierChanged

@@ -160,6 +160,11 @@ class MissionDownload(Transfer):
         self._total = 0
         self._items: list[MissionItemInt] = []
 
+    @property
+    def listed(self) -> bool:
+        """The vehicle has told how many items there are."""
+        return self._phase is _Fetch.FETCHING
+
     def start(self, now_ns: int) -> list[TransferEffect]:
         to = self._parties.target
         ask = MissionRequestList(

@@ -15,6 +15,7 @@ from gcs.bridge.effects import (
     AsksForStreams,
     AsksPlan,
     AsksVehicle,
+    ChangesRallyPoints,
     Joined,
     Lost,
     Notes,
@@ -398,6 +399,10 @@ class Session:
             case OfVehicle(sysid, effects):
                 slot = self._vehicles.slot_of(sysid)
                 return [For(FIRST_SLOT if slot is None else slot, effects)]
+            case ChangesRallyPoints() if owner == STATION:
+                return self._vehicles.each(lambda each: each.rally_points_change(now_ns))
+            case ChangesRallyPoints():
+                return vehicle.rally_points_change(now_ns)
             case AsksForStreams() if owner == STATION:
                 return self._vehicles.to_all(item)
             case AsksForStreams(msgids):

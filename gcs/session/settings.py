@@ -7,6 +7,7 @@ vehicle says that it does not have it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -33,6 +34,8 @@ LONGEST_READ_AGAIN_NS = 8_000_000_000
 
 RETURN_HEIGHT: Final = {"px4": "RTL_RETURN_ALT", "ardupilot": "RTL_ALT_M"}
 """Metres above home, by its newest name."""
+RETURN_TYPE: Final = {"px4": "RTL_TYPE"}
+"""Where a return leads; ArduCopter's is always straight to home or a rally point."""
 ACCEPTANCE_RADIUS: Final = {"px4": "NAV_ACC_RAD", "ardupilot": "WP_RADIUS_M"}
 """How near a waypoint counts as reached, metres, by its newest name."""
 CLIMB_END: Final = {"px4": "NAV_MC_ALT_RAD"}
@@ -40,7 +43,7 @@ CLIMB_END: Final = {"px4": "NAV_MC_ALT_RAD"}
 TAKEOFF_HEIGHT: Final = {"px4": "MIS_TAKEOFF_ALT"}
 """How high it takes off without a height, and at least, metres above where it stands; ArduCopter
 has no such height."""
-READ_FIRST: Final = (RETURN_HEIGHT, CLIMB_END, ACCEPTANCE_RADIUS, TAKEOFF_HEIGHT)
+READ_FIRST: Final = (RETURN_HEIGHT, RETURN_TYPE, CLIMB_END, ACCEPTANCE_RADIUS, TAKEOFF_HEIGHT)
 """What a flight waits for comes before the failsafes."""
 SPEED: Final = {"px4": "MPC_XY_CRUISE", "ardupilot": "WP_SPD"}
 """How fast it flies its legs where nothing else is asked for, m/s, by its newest name."""
@@ -61,6 +64,13 @@ class ReturnHeightKnown:
     """The return height above home in metres; None: the vehicle says that it has none."""
 
     up_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnTypeKnown:
+    """PX4's RTL_TYPE; None: the vehicle says that it has none."""
+
+    kind: int | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +97,13 @@ class FailsafesKnown:
 
 
 Found: TypeAlias = (
-    Send | ParameterKnown | ReturnHeightKnown | AcceptanceKnown | ClimbEndKnown | FailsafesKnown
+    Send
+    | ParameterKnown
+    | ReturnHeightKnown
+    | ReturnTypeKnown
+    | AcceptanceKnown
+    | ClimbEndKnown
+    | FailsafesKnown
 )
 
 
@@ -183,6 +199,8 @@ class Settings:
         self._reader = None
         if any(each.name == RETURN_HEIGHT.get(_whose(telemetry)) for each in reader.absent):
             out.append(ReturnHeightKnown(None))
+        if any(each.name == RETURN_TYPE.get(_whose(telemetry)) for each in reader.absent):
+            out.append(ReturnTypeKnown(None))
         self._silent = [each.name for each in reader.silent]
         if self._silent:
             self._read_again_ns = now_ns + self._pause_ns
@@ -198,6 +216,8 @@ class Settings:
         found: list[Found] = [ParameterKnown(name, read)]
         if newest == RETURN_HEIGHT.get(who):
             found.append(ReturnHeightKnown(value))
+        elif newest == RETURN_TYPE.get(who):
+            found.append(ReturnTypeKnown(int(value) if math.isfinite(value) else -1))
         elif newest == ACCEPTANCE_RADIUS.get(who):
             found.append(AcceptanceKnown(value))
         elif newest == CLIMB_END.get(who):

@@ -47,6 +47,7 @@ from gcs.session.orbits import Orbits
 from gcs.session.position_health import GPS_SILENT_NS
 from gcs.session.presence import STATE_MESSAGES, Presence
 from gcs.session.reasons import Reasons
+from gcs.session.return_places import ReturnPlaces
 from gcs.session.roster import Roster
 from gcs.session.screen import lost_pct
 from gcs.session.setpoints import attitude_target, setpoint
@@ -105,6 +106,7 @@ class Vehicle:
         )
         self._missions = Missions(own, times)
         self._orbits = Orbits(times)
+        self._returns = ReturnPlaces(own, times)
         self._words = Words(times)
         self._events = Events(own, self._words, times)
         self._control = VehicleControl(own)
@@ -123,7 +125,7 @@ class Vehicle:
     @property
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
-        talking = (self._commands, self._settings, self._missions)
+        talking = (self._commands, self._settings, self._missions, self._returns)
         parts = (*talking, self._words, self._events, self._reasons)
         times = [part.deadline_ns for part in parts]
         return min((time for time in times if time is not None), default=None)
@@ -180,7 +182,7 @@ class Vehicle:
     @property
     def plan_transfer(self) -> bool:
         """The station reads or writes a plan of the vehicle, or is about to."""
-        return self._missions.busy
+        return self._missions.busy or self._returns.reading
 
     @property
     def mission_items(self) -> int:
@@ -301,9 +303,15 @@ class Vehicle:
             work += self._reasons.explained(answered, telemetry.custom_mode, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += self._learn(self._settings.heard(heard, telemetry, now_ns), telemetry)
-            work += self._missions.heard(heard, self._view(telemetry), now_ns)
+            work += self._returns.heard(heard, telemetry, now_ns)
+            work += self._of_missions(
+                self._missions.heard(heard, self._view(telemetry), now_ns), now_ns
+            )
         elif type(message) in MISSION_MESSAGES:
-            work += self._missions.heard(heard, self._view(telemetry), now_ns)
+            work += self._returns.heard(heard, telemetry, now_ns)
+            work += self._of_missions(
+                self._missions.heard(heard, self._view(telemetry), now_ns), now_ns
+            )
         elif isinstance(message, m.CommandLong):
             work += self._authorized(telemetry, heard, message, now_ns)
         elif isinstance(message, m.Statustext):
@@ -330,6 +338,8 @@ class Vehicle:
             match update:
                 case ToGate(inputs.PositionSeen(reset=True)):
                     work = [*self._missions.forget(), *work, *_accuracy(telemetry)]
+                case ToGate(inputs.HomeSeen()) | PlaceFence():
+                    work += self._returns.placed(telemetry)
         return work
 
     def _authorized(
@@ -390,6 +400,7 @@ class Vehicle:
         self._discovery.start()
         self._events.start(Address(telemetry.sysid, telemetry.compid))
         work += self._learn(self._settings.start(telemetry, now_ns), telemetry)
+        work += self._returns.start(telemetry, busy=self._missions.busy, now_ns=now_ns)
         return work + self._ask_for_missing(telemetry, now_ns)
 
     def _learn(self, found: Iterable[settings.Found], telemetry: Telemetry) -> list[Work]:
@@ -406,6 +417,8 @@ class Vehicle:
                     telemetry.return_up_m, telemetry.return_told = up_m, True
                     if up_m is not None:
                         work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
+                case settings.ReturnTypeKnown(kind):
+                    work += self._returns.returns_by(kind, telemetry)
                 case settings.AcceptanceKnown(radius_m):
                     telemetry.acceptance_m = radius_m
                     work += _accuracy(telemetry)
@@ -432,8 +445,25 @@ class Vehicle:
         if self.telemetry is not None:
             work += self._reasons.wake(self.telemetry.custom_mode, now_ns)
             work += self._learn(self._settings.wake(self.telemetry, now_ns), self.telemetry)
-            work += self._missions.wake(self._view(self.telemetry), now_ns)
+            missions = self._missions.wake(self._view(self.telemetry), now_ns)
+            work += self._of_missions(missions, now_ns)
+            busy = self._missions.busy
+            work += self._returns.wake(self.telemetry, busy=busy, now_ns=now_ns)
         return work
+
+    def rally_points_change(self, now_ns: int) -> list[Work]:
+        """A client's message that changes them goes to the vehicle."""
+        if self.telemetry is None:
+            return []
+        return self._of_missions(self._returns.changed(self.telemetry, now_ns), now_ns)
+
+    def _of_missions(self, work: list[Work], now_ns: int) -> list[Work]:
+        """What a job does, and what follows for the places where a return may end."""
+        telemetry = self.telemetry
+        if telemetry is None:
+            return work
+        busy = self._missions.busy
+        return work + self._returns.follow(work, telemetry, busy=busy, now_ns=now_ns)
 
     def second(self, now_ns: int) -> list[Work]:
         """Once a second: ask for what is missing, and record how the vehicle is."""
@@ -451,6 +481,7 @@ class Vehicle:
         missing = telemetry.origin is None and now_ns - self._met_ns > self._times.real_ns(
             ORIGIN_PATIENCE_NS
         )
+        work += self._of_missions([], now_ns)
         work += self._watch.second(self.losses, now_ns)
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
         work.append(condition(Condition.ORIGIN_MISSING, missing, text))
@@ -498,14 +529,16 @@ class Vehicle:
 
     def listening(self, now_ns: int) -> bool:
         """Whether it may still turn out that there are several vehicles (one of our own is alone),
-        or the return height, which a return needs, is still on its way."""
+        or the return height or rally points, which a return needs, are still on their way."""
         several = self._config.sim is None and self._roster.listening(now_ns)
-        return several or (self.telemetry is not None and not self.telemetry.return_told)
+        if several or self.telemetry is None:
+            return several
+        return not self.telemetry.return_told or self._returns.first_time
 
     def ask_mission(self, asked: AskMission, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""
         state, policy = self.gate.state, self._port.policy
-        return self._ask_for_control(now_ns) + self._missions.ask(
+        work = self._missions.ask(
             asked.request_id,
             asked.ask,
             self.telemetry,
@@ -515,6 +548,7 @@ class Vehicle:
             asked.plan,
             asked.kind,
         )
+        return self._ask_for_control(now_ns) + self._of_missions(work, now_ns)
 
     def ask_orbit(self, asked: AskOrbit, now_ns: int) -> list[Work]:
         """An orbit, which is verified here before the gate is asked for its stream."""
@@ -541,7 +575,8 @@ class Vehicle:
     def file(self, news: FileRead | FileWritten, now_ns: int) -> list[Work]:
         if self.telemetry is None:
             return []
-        return self._missions.file(news, self._view(self.telemetry), now_ns)
+        work = self._missions.file(news, self._view(self.telemetry), now_ns)
+        return self._of_missions(work, now_ns)
 
     def stop_transfer(self, request_id: int) -> list[Work]:
         """End the mission transfer of that request; nothing where none is under way."""

@@ -76,11 +76,11 @@ class Witness:
         goal, hold = Verifier.goal, Verifier.hold_point
         climb, stop = Verifier.takeoff, Verifier.predicted_stop
 
-        def heard_goal(v: Verifier, goal_ned: Vec3, *rest: Any) -> Any:
-            return self._note(v, goal(v, goal_ned, *rest), goal_ned)
+        def heard_goal(v: Verifier, goal_ned: Vec3, *rest: Any, **named: Any) -> Any:
+            return self._note(v, goal(v, goal_ned, *rest, **named), goal_ned)
 
-        def heard_hold(v: Verifier, pos_ned: Vec3, v_ned: Vec3, *, floor_applies: bool) -> Any:
-            answer = hold(v, pos_ned, v_ned, floor_applies=floor_applies)
+        def heard_hold(v: Verifier, pos_ned: Vec3, *rest: Any, floor_applies: bool) -> Any:
+            answer = hold(v, pos_ned, *rest, floor_applies=floor_applies)
             if isinstance(answer, Cleared):
                 self.stops.add(float32(pos_ned))
             return self._note(v, answer, pos_ned)

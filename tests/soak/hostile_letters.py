@@ -25,6 +25,7 @@ from gcs.gate.inputs import (
     PositionSeen,
     Requested,
     ReturnHeightSeen,
+    ReturnPlacesSeen,
     Tick,
     VerifierChanged,
 )
@@ -250,6 +251,7 @@ def lettered(run: HostileRun) -> Seen:
     """A new gate, into some state by a word, and then a few letters.  Raises Broken."""
     dice = run.dice
     run.feed(ReturnHeightSeen(TO_RETURN_UP_M))
+    run.feed(ReturnPlacesSeen(()))
     if dice.random() < 0.9:
         run.feed(HomeSeen(run.home_ned))
         run.feed(VerifierChanged(run.verifier()))

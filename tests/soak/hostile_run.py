@@ -43,6 +43,7 @@ from gcs.gate.inputs import (
     PositionSeen,
     Requested,
     ReturnHeightSeen,
+    ReturnPlacesSeen,
     Tick,
     VerifierChanged,
 )
@@ -399,5 +400,6 @@ class HostileRun:
         self.tells()
         self.feed(HomeSeen(self.home_ned))
         self.feed(ReturnHeightSeen(TO_RETURN_UP_M))
+        self.feed(ReturnPlacesSeen(()))
         self.feed(ClimbEndSeen(0.8 if self.autopilot == "px4" else 0.0))
         self.feed(VerifierChanged(self.verifier()))

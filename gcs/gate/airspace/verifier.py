@@ -23,6 +23,7 @@ from gcs.gate.airspace.judge import FenceJudge
 from gcs.gate.airspace.limits import STANDING, beyond_limits, beyond_reach, not_finite
 from gcs.gate.airspace.prediction import BadStop, bad_overshoot, bad_stop, stopping_numbers
 from gcs.gate.airspace.projection import Origin, Projection
+from gcs.gate.airspace.return_place import HOME, ReturnPlace
 from gcs.gate.airspace.stopping import Path, predicted_stop, stops_of
 from gcs.gate.airspace.stream_samples import (
     StreamSample,
@@ -303,30 +304,52 @@ class Verifier:
         way = WayToStop(self, pos_ned, bad.stop_ned, floor_applies)
         return Breach(bad.measure.zone.name, bad.sentence, bad.numbers, way)
 
-    def return_path(self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> Cleared | Refusal:
+    def return_paths(
+        self, pos_ned: Vec3, places: Sequence[ReturnPlace], return_up_m: float
+    ) -> Cleared | Refusal:
+        """The vehicle's own return, which may end at any of `places`: each way must be clear.
+
+        The numbers are those of the way that comes nearest to a zone beside it.
+        """
+        cleared: list[Cleared] = []
+        for to in places:
+            up_m = max(return_up_m, to.over_up_m)
+            judged = self.return_path(pos_ned, to.ground_ned, up_m, to.name)
+            if isinstance(judged, Refusal):
+                return judged
+            cleared.append(judged)
+        return min(cleared, key=_least_clear_h_m)
+
+    def return_path(
+        self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float, name: str = HOME
+    ) -> Cleared | Refusal:
         """As `return_refusal`, with the numbers where the way home is clear."""
-        refusal = self.return_refusal(pos_ned, home_ned, return_up_m)
+        refusal = self.return_refusal(pos_ned, home_ned, return_up_m, name)
         if refusal is not None:
             return refusal
         top_ned, over_ned = _way_home(pos_ned, home_ned, return_up_m)
         numbers = self._nearest("leg", top_ned, over_ned)
         return Cleared((*numbers, ("leg_m", math.dist(top_ned, over_ned))))
 
-    def return_refusal(self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> Refusal | None:
-        """Why the vehicle's own way home is refused; None if it is clear.
+    def return_refusal(
+        self, pos_ned: Vec3, home_ned: Vec3, return_up_m: float, name: str = HOME
+    ) -> Refusal | None:
+        """Why the vehicle's own way home is refused, or to the place `name` that stands for home;
+        None if it is clear.
 
         It climbs to its return height (metres above home) unless it is higher, flies straight home
         and descends.  A return makes it safer, so no margin is asked for, only that it stays inside
         for certain.  The floor does not apply: a return ends on the ground.
         """
         top_ned, over_ned = _way_home(pos_ned, home_ned, return_up_m)
+        way = "the way home" if name == HOME else f"the way to {name}"
         blocked = (
             self._unusable(position=pos_ned, home=home_ned, height=(return_up_m,))
             or beyond_reach(pos_ned)
             or beyond_reach(over_ned)
             or self._return_leg("the climb to return height", pos_ned, top_ned)
-            or self._return_leg("the way home", top_ned, over_ned)
-            or self._return_leg("the descent at home", over_ned, home_ned)
+            or self._return_leg(way, top_ned, over_ned)
+            or self._return_leg(f"the descent at {name}", over_ned, home_ned)
         )
         if blocked is None:
             return None
@@ -526,6 +549,11 @@ def _way_home(pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> tuple[Vec3, 
     """The ends of the straight leg: above the vehicle, and above home."""
     down_m = min(pos_ned[2], home_ned[2] - return_up_m)
     return (*pos_ned[:2], down_m), (*home_ned[:2], down_m)
+
+
+def _least_clear_h_m(way: Cleared) -> float:
+    """How near to a zone a way comes; infinite where there is none."""
+    return dict(way.evidence).get("leg_clear_h_m", math.inf)
 
 
 def verifier_for(

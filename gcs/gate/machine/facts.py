@@ -30,6 +30,7 @@ from gcs.gate.inputs import (
     PositionSeen,
     Requested,
     ReturnHeightSeen,
+    ReturnPlacesSeen,
     StreamSeen,
     Tick,
     VerifierChanged,
@@ -97,6 +98,8 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             yield from _home(turn, pos_ned)
         case ReturnHeightSeen(up_m):
             memory.return_up_m = up_m
+        case ReturnPlacesSeen(places, unknown):
+            memory.return_places, memory.return_unknown = places, unknown
         case AccuracySeen():
             memory.arrival_h_m = arrival_radius_h_m(turn.policy.arrival, given)
         case ClimbEndSeen(within_m):

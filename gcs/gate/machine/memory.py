@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis
+from gcs.gate.airspace.return_place import HOME, ReturnPlace
 from gcs.gate.airspace.stopping import Leg, OwnPath, Path
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Verifier
@@ -105,6 +106,8 @@ class Memory:
     home_ned: Vec3 | None = None
     arrival_h_m: float | None = None  # how near beside a goal is there; None: the policy's radius
     return_up_m: float | None = None  # the vehicle's return height, above home
+    return_places: tuple[ReturnPlace, ...] | None = None  # where it may end but at home
+    return_unknown: str = ""  # why these are not known
     climb_ends_within_m: float = 0.0  # how near its height the vehicle itself ends a climb
     verifier: Verifier | None = None
     conditions: tuple[tuple[Condition, str], ...] = ()
@@ -201,6 +204,13 @@ class Memory:
             return Leg(self.flown.from_ned, to_ned) if to_ned is not None and own else None
         goal = self.goal or self.hold
         return None if goal is None else Leg(goal.from_ned or goal.pos_ned, goal.pos_ned)
+
+    @property
+    def returns_to(self) -> tuple[ReturnPlace, ...]:
+        """Every place where a return may end, home first; empty where not all of them are known."""
+        if self.home_ned is None or self.return_places is None:
+            return ()
+        return (ReturnPlace(HOME, self.home_ned), *self.return_places)
 
     def position_age_ns(self, now_ns: int) -> int | None:
         """How long ago the last position arrived; None before the first one."""

@@ -49,9 +49,9 @@ def position(turn: Turn, gained_ned: tuple[Vec3, ...] = ()) -> Refusal | None:
 def _ways_out(turn: Turn, pos_ned: Vec3) -> str:
     """What is left to a vehicle that flies where it may not hover."""
     memory, ways = turn.memory, ["land"]
-    if memory.verifier is not None and memory.home_ned and memory.return_up_m is not None:
-        blocked = memory.verifier.return_refusal(pos_ned, memory.home_ned, memory.return_up_m)
-        ways += ["rtl"] if blocked is None else []
+    if memory.verifier is not None and memory.returns_to and memory.return_up_m is not None:
+        judged = memory.verifier.return_paths(pos_ned, memory.returns_to, memory.return_up_m)
+        ways += [] if isinstance(judged, Refusal) else ["rtl"]
     ways += ["fence off"] if turn.policy.fence_switchable else []
     return f"possible: {', '.join(ways)}"
 
@@ -187,8 +187,10 @@ def _position_age_s(turn: Turn) -> float | None:
 
 
 def return_path(turn: Turn) -> Refusal | None:
-    """Is the vehicle's own way home clear?  Every refusal has the code RTL_BLOCKED and offers
-    landing instead."""
+    """Is the vehicle's own way home clear, and that to every other place where its return may end?
+
+    Every refusal has the code RTL_BLOCKED and offers landing instead.
+    """
     memory = turn.memory
     if memory.verifier is None or memory.home_ned is None:
         return _keep(turn, Refusal(Code.RTL_BLOCKED, "home or fence is not known: land instead"))
@@ -197,9 +199,12 @@ def return_path(turn: Turn) -> Refusal | None:
             turn,
             Refusal(Code.RTL_BLOCKED, "the vehicle's return height is not known: land instead"),
         )
+    if memory.return_places is None:
+        why = memory.return_unknown or "where its return may end is not known"
+        return _keep(turn, Refusal(Code.RTL_BLOCKED, f"{why}: land instead"))
     if turn.stale or memory.pos_ned is None:
         return _keep(turn, Refusal(Code.RTL_BLOCKED, "the position is too old: land instead"))
-    judged = memory.verifier.return_path(memory.pos_ned, memory.home_ned, memory.return_up_m)
+    judged = memory.verifier.return_paths(memory.pos_ned, memory.returns_to, memory.return_up_m)
     if isinstance(judged, Refusal):
         sentence = f"{judged.sentence}: land instead"
         judged = Refusal(Code.RTL_BLOCKED, sentence, judged.numbers, judged.zone)

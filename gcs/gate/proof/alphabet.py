@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import Final, TypeAlias
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.return_place import ReturnPlace
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
 from gcs.gate.inputs import (
@@ -30,6 +31,7 @@ from gcs.gate.inputs import (
     PhotoSeen,
     PositionSeen,
     Requested,
+    ReturnPlacesSeen,
     StreamSeen,
     Tick,
     VerifierChanged,
@@ -118,6 +120,12 @@ REQUESTS: Final[Mapping[str, Request]] = MappingProxyType(
         "fence on": SwitchFence(on=True),
     }
 )
+
+
+RETURN: Final = Requested(NEW_ID, OWNER, ReturnHome())
+CRITICAL: Final = ConditionChanged(Condition.BATTERY_CRITICAL, True)
+CLEAR_PLACE: Final = ReturnPlace("a clear place", (GOAL[0], GOAL[1], HOME[2]))
+PLACE_OUTSIDE: Final = ReturnPlace("a place outside", (OUTSIDE[0], OUTSIDE[1], HOME[2]))
 
 
 def _request(request: Request) -> Letter:
@@ -313,6 +321,18 @@ def _mission_without_fence(_world: World, memory: Memory, now_ns: int) -> Iterat
         yield 1, MissionLoaded("", 0)
 
 
+def _with_return_places(places: tuple[ReturnPlace, ...] | None, given: Input) -> Letter:
+    """While a return may end there, too, or it is not known where (None)."""
+
+    def letter(_world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
+        if memory.return_places == ():
+            yield 1, ReturnPlacesSeen(places)
+            yield 1, given
+            yield 1, ReturnPlacesSeen(())
+
+    return letter
+
+
 def _force_disarm_too_late(world: World, memory: Memory, now_ns: int) -> Iterator[Step]:
     yield from _until(_window_over_ns)(world, memory, now_ns)
     if memory.force_asked_ns is not None:
@@ -386,6 +406,10 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "ask: guided mode by its name": _request(SetMode("guided", FlightMode.GUIDED)),
         "ask: mission with none on board": _mission_without_one,
         "ask: mission without a fence": _mission_without_fence,
+        "ask: return to an unknown place": _with_return_places(None, RETURN),
+        "ask: return to a clear place": _with_return_places((CLEAR_PLACE,), RETURN),
+        "ask: return to a place outside": _with_return_places((PLACE_OUTSIDE,), RETURN),
+        "condition: RETURN to a place outside": _with_return_places((PLACE_OUTSIDE,), CRITICAL),
         "ask: force disarm too late": _force_disarm_too_late,
         "sample: velocity": _sample(OWNER, v_ned=STROLL),
         "sample: position": _sample(OWNER, GOAL),

@@ -27,7 +27,7 @@ from functools import partial
 from typing import TypeVar, cast
 
 from gcs.gate.condition import Condition
-from gcs.gate.inputs import ClimbEndSeen, ReturnHeightSeen
+from gcs.gate.inputs import ClimbEndSeen, ReturnHeightSeen, ReturnPlacesSeen
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.memory import SECOND_NS
@@ -85,6 +85,7 @@ class Explorer:
         """A gate that has heard nobody, with home, fence and mission known and without."""
         gate = Gate(self._world.policy, self._world.verifier.autopilot, SECOND_NS, table)
         gate.handle(ReturnHeightSeen(self._world.return_up_m), SECOND_NS)
+        gate.handle(ReturnPlacesSeen(()), SECOND_NS)
         gate.handle(ClimbEndSeen(self._world.climb_ends_within_m), SECOND_NS)
         unknown = self.codes.vector_of(gate.memory, SECOND_NS)
         for given in becomes_known(self._world):

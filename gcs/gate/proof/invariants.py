@@ -58,6 +58,7 @@ STEP_CHECKS: Final = (
     StepCheck(1, invariants_motion.streams_what_was_verified, (SendSetpoint,)),
     StepCheck(2, invariants_motion.flies_what_clears, (VerifierChanged,)),
     StepCheck(2, invariants_motion.holds_when_home_moves, (HomeSeen,)),
+    StepCheck(2, invariants_motion.returns_by_clear_ways, (SendCommand,)),
     StepCheck(2, invariants_motion.climbs_to_its_top, (Tick,)),
     StepCheck(2, invariants_motion.ends_a_climb_at_its_top, (Outcome,)),
     StepCheck(3, invariants_request.answers_once),

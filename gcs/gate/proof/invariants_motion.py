@@ -280,8 +280,17 @@ def does_what_severity_demands(edge: Edge) -> Iterator[str]:
         yield f"severity is {severity.name} and {after.state.name} goes on"
 
 
+def returns_by_clear_ways(edge: Edge) -> Iterator[str]:
+    """2: a return is commanded where the ways to all places where it may end clear, unless the
+    policy forwards it."""
+    if CommandKind.RETURN not in edge.commands or edge.policy.rtl_blocked == "forward":
+        return
+    if _return_is_blocked(edge):
+        yield f"a return is commanded in {edge.before.state.name} by a way that does not clear"
+
+
 def _return_is_blocked(edge: Edge) -> bool:
-    """Whether the verifier refuses the way home, or cannot be asked."""
+    """Whether the verifier refuses a way back, or cannot be asked."""
     after = edge.after
     verifier, pos_ned, home_ned = after.verifier, after.pos_ned, after.home_ned
     age_ns = after.position_age_ns(edge.now_ns)
@@ -289,4 +298,9 @@ def _return_is_blocked(edge: Edge) -> bool:
         return True
     if verifier is None or pos_ned is None or home_ned is None or after.return_up_m is None:
         return True
-    return isinstance(verifier.return_path(pos_ned, home_ned, after.return_up_m), Refusal)
+    if after.return_places is None:
+        return True
+    return_up_m = after.return_up_m
+    ways = [(home_ned, return_up_m)]
+    ways += [(to.ground_ned, max(return_up_m, to.over_up_m)) for to in after.return_places]
+    return any(isinstance(verifier.return_path(pos_ned, *way), Refusal) for way in ways)

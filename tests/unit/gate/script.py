@@ -34,6 +34,7 @@ from gcs.gate.inputs import (
     PositionSeen,
     Requested,
     ReturnHeightSeen,
+    ReturnPlacesSeen,
     Tick,
     VerifierChanged,
 )
@@ -99,6 +100,7 @@ class Script:
         )
         self.feed(HomeSeen((0.0, 0.0, 0.0)))
         self.feed(ReturnHeightSeen(1.5))
+        self.feed(ReturnPlacesSeen(()))
         self.feed(ClimbEndSeen(0.8 if self.autopilot == "px4" else 0.0))
         self.feed(VerifierChanged(verifier))
 

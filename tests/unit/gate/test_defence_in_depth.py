@@ -202,6 +202,7 @@ def test_a_vehicle_that_was_lost_has_reported_as_little_as_one_never_heard() -> 
         boot_ms=lost.boot_ms,
         home_ned=lost.home_ned,
         return_up_m=lost.return_up_m,
+        return_places=lost.return_places,
         climb_ends_within_m=lost.climb_ends_within_m,
         lost_in_flight=True,
         verifier=lost.verifier,

@@ -34,7 +34,9 @@ GOAL = GoTo(at(10, 0, 5))
 
 def turn(facts: Mapping[str, object] | None = None, *, age_s: float = 0.2) -> Turn:
     """All is known and the vehicle stands at `HERE`, but for the memory's fields in `facts`."""
-    memory = Memory("px4", pos_ned=HERE, v_ned=HOME, home_ned=HOME, return_up_m=20.0)
+    memory = Memory(
+        "px4", pos_ned=HERE, v_ned=HOME, home_ned=HOME, return_up_m=20.0, return_places=()
+    )
     memory.verifier = FENCE
     memory.pos_ns = NOW_NS - round(age_s * SECOND_NS)
     for name, value in (facts or {}).items():
@@ -79,6 +81,7 @@ class TestEveryQuestion:
             ("return", "verifier", Code.RTL_BLOCKED),
             ("return", "home_ned", Code.RTL_BLOCKED),
             ("return", "return_up_m", Code.RTL_BLOCKED),
+            ("return", "return_places", Code.RTL_BLOCKED),
             ("return", "pos_ned", Code.RTL_BLOCKED),
         ],
     )

@@ -169,7 +169,7 @@ def test_several_vehicles_are_named_and_none_is_meant() -> None:
     assert refusal.code is Code.SEVERAL_VEHICLES
     assert names in refusal.sentence
     assert "--vehicle" in refusal.sentence
-    script.hear(wire.float_param("RTL_RETURN_ALT", 30.0))
+    script.hear(wire.float_param("RTL_RETURN_ALT", 30.0), wire.no_rally_points())
     assert script.vehicle.listening(script.now_ns)
     script.wait(0.4)
     assert not script.vehicle.listening(script.now_ns)
@@ -182,6 +182,8 @@ def test_a_vehicle_that_was_named_is_meant() -> None:
     assert script.vehicle.refusal(script.now_ns) is None
     assert script.vehicle.listening(script.now_ns), "for its return height"
     script.hear(wire.float_param("RTL_RETURN_ALT", 30.0), sender=Sender(2))
+    assert script.vehicle.listening(script.now_ns), "for its rally points"
+    script.hear(wire.no_rally_points(), sender=Sender(2))
     assert not script.vehicle.listening(script.now_ns)
     assert script.vehicle.heard_vehicles(script.now_ns) == [
         "1/1 px4 quadrotor",
@@ -411,6 +413,7 @@ def settings(script: Script, **params: float) -> list[Work]:
         answered += script.hear(wire.float_param("RTL_RETURN_ALT", params["RTL_RETURN_ALT"]))
     else:
         answered += script.hear(wire.no_param("RTL_RETURN_ALT"))
+    answered += script.hear(wire.int_param("RTL_TYPE", 0))
     answered += script.hear(wire.float_param("NAV_MC_ALT_RAD", params.get("NAV_MC_ALT_RAD", 0.8)))
     answered += script.hear(wire.float_param("MIS_TAKEOFF_ALT", 2.5))
     answered += script.hear(wire.float_param("MPC_XY_CRUISE", 5.0))

@@ -93,9 +93,17 @@ def ack(command: int, result: int = 0) -> Message:
     return mavlink.MAVLink_command_ack_message(command, result)
 
 
-def mission_count(items: int) -> Message:
-    """How many items of a mission are on board, for the ground station."""
-    return mavlink.MAVLink_mission_count_message(255, 190, items)
+def mission_count(items: int, kind: int = 0) -> Message:
+    """How many items of a mission, or of another plan, are on board, for the ground station."""
+    return mavlink.MAVLink_mission_count_message(255, 190, items, kind)
+
+
+RALLY = 2
+"""MAV_MISSION_TYPE_RALLY"""
+
+
+def no_rally_points() -> Message:
+    return mission_count(0, RALLY)
 
 
 def text(severity: int, words: str, id: int = 0, chunk_seq: int = 0) -> Message:
