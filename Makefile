@@ -10,7 +10,7 @@ CLIENTS := .clients
 TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
 SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
 OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
-# Four of them begin with the tests that wait for real time: see tests/lanes.py.
+# Four of them have the tests that wait for real time: see tests/lanes.py.
 WORKERS ?= 6
 FEWER   := --hypothesis-profile quick
 
@@ -26,10 +26,10 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (1 to 2 minutes)
+quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about 40 s)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 $(FEWER)'
 
-test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (about 10 minutes on 2 cores)
+test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (6 to 8 minutes on 2 cores)
 	$(BIN)/python -m pytest -m "not thorough" -n $(WORKERS) $(FEWER) $(SLOWER:%=--ignore=%)
 
 thorough: $(TEST) $(TESTED) ## run the long tests: exhaustive, or one thing many times over; as .ci/run does

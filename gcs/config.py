@@ -48,6 +48,11 @@ class StationConfig(msgspec.Struct, frozen=True):
         """The number of the vehicle that is waited for; 0 = not known."""
         return self.target_sysid or (SIM_SYSID if self.sim is not None else 0)
 
+    @property
+    def several(self) -> bool:
+        """Whether every vehicle that is met is flown, and not one alone."""
+        return self.bridge and self.sim is None and not self.target_sysid
+
 
 class Wanted(msgspec.Struct, frozen=True):
     """What an operator asks of a station by name, which one that runs may have otherwise; None:

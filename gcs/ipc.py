@@ -8,8 +8,9 @@ everything is converted once, in the session.  Both unions are tagged by `type`;
 not decode is answered with a `Trouble` event.  What the record keeps too is a struct of
 `gcs/report.py`, or is made of one.
 
-Answers (`VerdictEvent`, `StreamVerdictEvent`, `EndingEvent`, `ProgressEvent`, `OperationList`,
-`MessageEvent`, `Topic`, `TopicMessage`) go to the operator who asked; all else goes to all.
+Answers (`VerdictEvent`, `StreamVerdictEvent`, `OrbitEvent`, `EndingEvent`, `ProgressEvent`,
+`OperationList`, `MessageEvent`, `Topic`, `TopicMessage`) go to the operator who asked; all else
+goes to all.
 `docs/json.md` is this module as a page; `SCHEMA` counts up when a field or a meaning that is there
 changes, not when something is added.
 
@@ -35,10 +36,24 @@ Maybe3 = tuple[float | None, float | None, float | None]
 """JSON has no NaN: what was typed as nan or inf travels as null and is refused by the gate."""
 
 
+class Circle(msgspec.Struct, frozen=True, omit_defaults=True):
+    """What an orbit is asked for.
+
+    Null or left out: as it is flown already, else 10 m at 1 m/s about the place where the vehicle
+    is, with its nose to the centre, until something else is asked for.
+    """
+
+    centre_enu: Maybe3 | None = None  # metres; east and north, up, or all may be null
+    radius_m: float | None = None  # positive: clockwise, seen from above; 2 to 1000
+    speed_m_s: float | None = None
+    turns: float | None = None  # 0 = until something else is asked for
+    nose: str = ""  # centre | initial | free | along
+
+
 class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_defaults=True):
     """One request.  `id` is the client's own number and comes back in every answer.
 
-    `word` is one of: control arm disarm takeoff goto land rtl hold abort resume photo mode
+    `word` is one of: control arm disarm takeoff goto orbit land rtl hold abort resume photo mode
     fence mission_start mission_upload mission_download mission_clear mission_set_current
     mission_check stream_begin stream_end station_take station_release station_end.
     Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
@@ -57,6 +72,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     item: int = 0  # mission_set_current: where the next start begins, as MAVLink counts (seq)
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
     vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
+    orbit: Circle | None = None  # orbit
 
 
 class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_defaults=True):
@@ -195,6 +211,21 @@ class StreamVerdictEvent(msgspec.Struct, frozen=True, tag="stream_verdict", tag_
     sentence: str = ""
     zone: str = ""
     numbers: dict[str, float | None] = {}
+    vehicle: int = 0  # system id
+
+
+class OrbitEvent(msgspec.Struct, frozen=True, tag="orbit", tag_field="type"):
+    """The orbit of this operator that is flown, twice a second."""
+
+    time_ns: int
+    centre_enu: Vec3
+    radius_m: float  # positive: clockwise, seen from above
+    speed_m_s: float
+    nose: str  # centre | initial | free | along
+    turns: float  # that were flown
+    circling: bool  # false: still on the way to the circle
+    centre_lat_lon_amsl: tuple[float, float, float] | None = None  # null without an origin
+    note: str = ""  # what is flown otherwise than it was asked for
     vehicle: int = 0  # system id
 
 
@@ -425,6 +456,7 @@ Event: TypeAlias = (
     | Fences
     | VerdictEvent
     | StreamVerdictEvent
+    | OrbitEvent
     | EndingEvent
     | Operation
     | OperationList

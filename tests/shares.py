@@ -1,6 +1,6 @@
 """Which share of the longer tests `make test` has; the others are marked `thorough`.
 
-A test that flies is flown in one of three of its cases, and in one if it has two: px4 or ardupilot,
+A test that flies is flown in one of five of its cases, one if it has fewer: px4 or ardupilot, or
 one of three winds.  Which of them come first its name decides, so that each autopilot flies about
 half of each file.  What is long in other ways is marked where it stands: `one_in` so many of a list
 of cases, `seeds`, or `pytest.mark.thorough`.
@@ -63,7 +63,7 @@ FLIGHTS = (
     ),
 )
 """Tests that fly a vehicle or start programs in each of their cases."""
-ONE_OF = 3
+ONE_OF = 5
 EXAMPLES = 100
 """Of a property that does not say how many, in `make thorough`; `make test` has a quarter."""
 

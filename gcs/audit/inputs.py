@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias, cast, get_args
+from collections.abc import Sequence
+from typing import Any, Final, TypeAlias, cast, get_args
 
 import msgspec
 
-from gcs.audit.messages import Attachments
+from gcs.audit.messages import Attachments, Stored
 from gcs.gate.policy.parse import DEFAULT
 from gcs.record.seals import PartBegan, Seal
+from gcs.session.as_recorded import AsRecorded
 from gcs.session.inputs import Datagram, FileRead, Input, OtherInput
 from gcs.session.recorded import FaultKept, FileKept, Pieces, Start, attachment_name
+from gcs.wire.blanking import may_hold_key
+from gcs.wire.frame import Frame, Reason, split
 
 
 class CannotReadError(Exception):
@@ -19,6 +23,9 @@ class CannotReadError(Exception):
 
 Kept: TypeAlias = OtherInput | Start | Pieces | FaultKept | Seal | PartBegan
 """What a message of `/session/input` holds; a Seal is a tick or the end, by its kind."""
+
+NO_FRAME: Final = frozenset(reason.value for reason in Reason)
+"""Why bytes are garbage; frames that are refused are recorded as such for other reasons."""
 
 _KINDS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(OtherInput)}
 _KINDS |= {
@@ -91,6 +98,20 @@ def _file_read(kept: FileKept, attachments: Attachments) -> FileRead:
     raise CannotReadError(f"what was read of {kept.path} is not attached, or was altered")
 
 
-def datagram_of(pieces: Pieces, raws: list[bytes], rest_before: bytes) -> Datagram:
-    """The bytes as they came: without what an earlier read of the stream had brought."""
-    return Datagram(pieces.link, (b"".join(raws) + pieces.rest)[len(rest_before) :])
+def datagram_of(pieces: Pieces, parts: Sequence[Stored], rest_before: bytes) -> Datagram:
+    """The bytes as they came: without what an earlier read of the stream had brought.
+
+    Where a key was kept out of the record, its bytes are others than came, and are not split anew.
+    Each frame must be one all the same.  Raises CannotReadError.
+    """
+    raws = [part.raw for part in parts]
+    whole = b"".join(raws) + pieces.rest
+    data = whole[len(rest_before) :]
+    if not (may_hold_key(whole) or may_hold_key(rest_before)):
+        return Datagram(pieces.link, data)
+    words = [part.why if part.is_garbage and part.why in NO_FRAME else "" for part in parts]
+    for part, raw, why in zip(parts, raws, words, strict=True):
+        if not why and [*map(type, split(raw))] != [Frame]:
+            raise CannotReadError(f"a message of {part.topic} holds no frame")
+    split_so = AsRecorded(tuple(zip(raws, words, strict=True)), pieces.rest)
+    return Datagram(pieces.link, data, as_recorded=split_so)

@@ -69,11 +69,12 @@ class _Open:
     """Of a datagram or a read."""
     pieces: Pieces | None = None
     """As they were announced."""
-    raws: list[bytes] = field(default_factory=list)
+    parts: list[Stored] = field(default_factory=list)
+    """Its frames and garbage."""
 
     @property
     def wants_more(self) -> bool:
-        return self.pieces is not None and len(self.raws) < self.pieces.items
+        return self.pieces is not None and len(self.parts) < self.pieces.items
 
 
 class Turns:
@@ -208,14 +209,14 @@ class Turns:
             self._before.append(message)
             return
         if kept is None and message.came_in and self._open.link >= 0:
-            self._open.raws.append(message.raw)
+            self._open.parts.append(message)
         self._open.turn.messages.append(message)
 
     def _close(self, *, cut: bool) -> Iterator[Turn]:
         """The turn that was open, whole."""
         if self._open is None:
             return
-        turn, link, raws = self._open.turn, self._open.link, self._open.raws
+        turn, link, parts = self._open.turn, self._open.link, self._open.parts
         if cut and self._open.wants_more:
             self.lost_input = True
             return
@@ -223,8 +224,11 @@ class Turns:
             self._clients.add(turn.given.link)
             self._rests.pop(turn.given.link, None)  # another one had this number before
         if link >= 0:
-            pieces = self._open.pieces or Pieces(link, len(raws))
-            turn.given = datagram_of(pieces, raws, self._rests.get(link, b""))
+            pieces = self._open.pieces or Pieces(link, len(parts))
+            try:
+                turn.given = datagram_of(pieces, parts, self._rests.get(link, b""))
+            except CannotReadError as error:
+                turn.given = Unreadable(str(error))
             self._rests[link] = pieces.rest
         turn.cut = cut
         yield turn

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from typing import Final
 
+from gcs import ipc
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code
 from gcs.protocol.effects import Address
-from gcs.wire.ids import MissionResult, Result, Severity
-from gcs.wire.messages import CommandAck, MissionAck, Statustext
+from gcs.wire.ids import MavFrame, MissionResult, Result, Severity
+from gcs.wire.messages import CommandAck, MissionAck, OrbitExecutionStatus, Statustext
 
 NUMBER_OF: Final = {code: number for number, code in enumerate(Code, start=1)}
 """Reason code -> its number on the wire."""
@@ -104,3 +105,18 @@ def texts(level: Level, text: str, text_id: int) -> list[Statustext]:
         Statustext(severity=severity, text=piece, id=text_id, chunk_seq=number)
         for number, piece in enumerate(pieces)
     ]
+
+
+def orbit_status(told: ipc.OrbitEvent) -> OrbitExecutionStatus | None:
+    """An orbit as a PX4 tells of its own; None where its place on the map is not known."""
+    if told.centre_lat_lon_amsl is None:
+        return None
+    lat_deg, lon_deg, alt_amsl_m = told.centre_lat_lon_amsl
+    return OrbitExecutionStatus(
+        time_usec=told.time_ns // 1000,
+        radius=told.radius_m,
+        frame=MavFrame.GLOBAL,
+        x=round(lat_deg * 1e7),
+        y=round(lon_deg * 1e7),
+        z=alt_amsl_m,
+    )

@@ -16,7 +16,13 @@ from typing import Final, TypeVar
 import msgspec
 
 from gcs import ipc
-from gcs.bridge.answers import acknowledgement, item_acknowledgement, result_of, texts
+from gcs.bridge.answers import (
+    acknowledgement,
+    item_acknowledgement,
+    orbit_status,
+    result_of,
+    texts,
+)
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
 from gcs.bridge.recent_texts import RecentTexts
 from gcs.gate.effects import Level
@@ -35,7 +41,7 @@ from memory, and neither is what has ended otherwise: the vehicle may be flown o
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
 GUIDED_ITEM: Final = -1
 """In the place of a command: a mission item to be flown to at once, which has a MISSION_ACK."""
-DECIDED_BY_GATE: Final = frozenset({"goto", "stream_begin", "stream_end"})
+DECIDED_BY_GATE: Final = frozenset({"goto", "orbit", "stream_begin", "stream_end"})
 """Words that no command to the vehicle stands for: they are answered with the verdict."""
 SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
 """Words that are answered when the vehicle shows it, within a second or two, because what a client
@@ -101,6 +107,9 @@ class Dialogue:
     _texts: RecentTexts = field(default_factory=RecentTexts)
     _refusals: RecentTexts = field(default_factory=RecentTexts)
     """Of messages that are not acknowledged."""
+    _orbit_from: From | None = None
+    """Who of this client has asked for the last orbit."""
+    _orbit_note: str = ""
     _streams_from: From | None = None
     """Who of this client sent the last sample of a stream."""
 
@@ -129,6 +138,8 @@ class Dialogue:
             return [self._acknowledge(asked_by, command, Result.ACCEPTED)]
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
         pending.answered_by = answered_by
+        if asks[-1].word == "orbit":
+            self._orbit_from = self._streams_from = asked_by
         arming = self._arming() if pending.rest and pending.word == "arm" else None
         if arming is not None:
             number = self.number()
@@ -199,6 +210,7 @@ class Dialogue:
     def stream(self, asked_by: From, sample: ipc.Stream) -> list[BridgeEffect]:
         """One sample of a setpoint stream; it has no answer of its own."""
         self._streams_from = asked_by
+        self._orbit_replaced()
         return [Says(self.client, msgspec.structs.replace(sample, vehicle=self.vehicle))]
 
     # ---------------------------------------------------------------------------- answers
@@ -214,6 +226,8 @@ class Dialogue:
                 return self._each_with(event, self._ending, now_ns)
             case ipc.StreamVerdictEvent():
                 return self._stream_verdict(event, now_ns)
+            case ipc.OrbitEvent():
+                return self._orbit(event, now_ns)
             case _:
                 return []
 
@@ -245,6 +259,8 @@ class Dialogue:
         if pending is None:
             return []
         if event.outcome == "accepted":
+            if pending.word == "orbit":
+                self._orbit_replaced()
             pending.operation = event.operation
             if event.word in DECIDED_BY_GATE and not pending.rest:
                 return self._answer(pending, Result.ACCEPTED, None, now_ns)
@@ -265,6 +281,25 @@ class Dialogue:
             return self.text(self._streams_from, Level.INFO, "stream: flown", now_ns)
         text = f"stream: {event.outcome} {event.code}: {event.sentence}"
         return self.text(self._streams_from, Level.WARNING, text, now_ns)
+
+    def _orbit_replaced(self) -> None:
+        """Another one, or a stream of its own, is flown from now on: who asks for the one before
+        again does not repeat it."""
+        for pending in self._pending.values():
+            if pending.word == "orbit" and pending.answered is not None:
+                pending.key = b""
+
+    def _orbit(self, event: ipc.OrbitEvent, now_ns: int) -> list[BridgeEffect]:
+        """How its orbit is flown, as a PX4 in its Orbit mode tells it: QGroundControl draws it."""
+        if self._orbit_from is None:
+            return []
+        to = self._orbit_from
+        told: list[BridgeEffect] = []
+        if event.note and event.note != self._orbit_note:
+            told += self.text(to, Level.INFO, f"orbit: {event.note}", now_ns)
+        self._orbit_note = event.note
+        status = orbit_status(event)
+        return told if status is None else [*told, Answers(to.link, to.addressed, status)]
 
     def _ending(self, event: ipc.EndingEvent, now_ns: int) -> list[BridgeEffect]:
         pending = self._pending.pop(event.id, None)

@@ -9,11 +9,12 @@ other: a system of the vehicle's side that is heard on a client's link is a loop
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import repeat
 from typing import Final
 
 from gcs.wire.codec import FrameWriter
 from gcs.wire.dialect import MESSAGES, MessageDef
-from gcs.wire.frame import Frame
+from gcs.wire.frame import Frame, msgid_of, raw_of
 
 EVERYBODY: Final = (0, 0)
 MOST_COMPONENTS: Final = 255
@@ -116,9 +117,9 @@ class Routes:
         """The same of frames that came together: client links, and what goes to each, in order."""
         if not self._of_link:
             return ()
-        if _TARGETED.isdisjoint([frame.msgid for frame in frames]):
-            everything = [frame.raw for frame in frames]
-            return [(link, everything) for link in self._of_link] if frames else ()
+        if _TARGETED.isdisjoint(map(msgid_of, frames)):
+            everything = [*map(raw_of, frames)]
+            return [*zip(self._of_link, repeat(everything))] if frames else ()
         shares: dict[int, list[bytes]] = {}
         for frame in frames:
             for link in self.to_clients(frame):

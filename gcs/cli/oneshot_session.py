@@ -20,6 +20,7 @@ from gcs.config import ANY_STATION, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.ipc import Ask
 from gcs.operator import event_text
+from gcs.operator.chosen_vehicle import ChosenVehicle, Way
 from gcs.operator.client import StationClient
 from gcs.operator.dialogue import (
     Connection,
@@ -86,9 +87,13 @@ def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
 def run_through(found: Description, how: OneShotConfig, task: Task) -> int:
     """Do it through a running station, which goes on."""
     with Interrupts() as interrupts:
-        joined = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
+        joined: Way = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
         click.echo(f"gcs: through the running station of process {found.pid}", err=True)
-        return run_over(joined, interrupts, replace(how, at_once=how.stops), task)
+        how = replace(how, at_once=how.stops)
+        if found.vehicles and how.wanted.vehicle is not None:
+            # Of one of several less is told: not where its home is, nor whether it has landed.
+            joined, how = ChosenVehicle(joined, how.wanted.vehicle), replace(how, placed=False)
+        return run_over(joined, interrupts, how, task)
 
 
 def run_over(

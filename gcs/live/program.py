@@ -22,8 +22,9 @@ from gcs.shell.pipes import LineSource
 from gcs.shell.stations import Description
 
 COMMAND = (sys.executable, "-m", "gcs.live.program")
-OPEN_WAIT_S = 15.0
-STATION_WAIT_S = 10.0
+OPEN_WAIT_S = 60.0
+"""A busy machine takes seconds to start a process; one that has ended is told at once."""
+STATION_WAIT_S = 30.0
 LOOK_AGAIN_S = 0.1
 
 

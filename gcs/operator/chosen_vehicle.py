@@ -6,7 +6,8 @@ snapshots show the first, and `BridgeStatus` once a second all of them, in less 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import msgspec
 
@@ -15,10 +16,16 @@ from gcs.operator.client import Polled, Readable, StationEnded, StationEvent
 from gcs.operator.dialogue import Connection
 
 
-class ChosenVehicle:
-    """A `Connection` around another one."""
+class Way(Connection, Protocol):
+    """To a station, for a program that polls or for one that listens."""
 
-    def __init__(self, connection: Connection, sysid: int) -> None:
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None: ...
+
+
+class ChosenVehicle:
+    """A `Way` around another one."""
+
+    def __init__(self, connection: Way, sysid: int) -> None:
         self._connection = connection
         self._sysid = sysid
         self._row: ipc.BridgeVehicle | None = None
@@ -32,6 +39,15 @@ class ChosenVehicle:
     def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
         polled = self._connection.poll(timeout_s, also)
         return Polled([self._seen(event) for event in polled.events], polled.ready)
+
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
+        """A change of state does not say of which vehicle it is, so snapshots alone tell that."""
+
+        def heard(event: StationEvent) -> None:
+            if not isinstance(event, ipc.StateEvent):
+                on_event(self._seen(event))
+
+        self._connection.listen(heard)
 
     def now_s(self) -> float:
         return self._connection.now_s()

@@ -9,6 +9,7 @@ from gcs.config import SimConfig, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.gate.states import LandedState, State
 from gcs.operator import joined
+from gcs.operator.chosen_vehicle import ChosenVehicle, Way
 from gcs.operator.client import StationClient
 from gcs.operator.differences import differences, hint, sentence
 from gcs.operator.failures import CannotConnect, Disconnected, StationDiffers
@@ -30,6 +31,7 @@ def connect(
     take_control: bool = False,
     keep: bool | None = None,
     autopilot: str | None = None,
+    vehicle: int | None = None,
     speedup: float | None = None,
     log_dir: str | None = None,
     name: str = "script",
@@ -45,8 +47,14 @@ def connect(
     its own with a vehicle of its own, which speaks like `autopilot` (None: px4), `speedup` times
     as fast as real time (None: 1).
 
-    A running station that has another `policy`, `log_dir`, `speedup` or `keep` than asked for is
-    not joined: StationDiffers says which.  What is None is taken as the station has it.
+    `vehicle`: the MAVLink system id of the one to fly, where several are heard (None: the only one;
+    of a running bridge the first).  What is asked is asked of that one alone, stops as well.  Of
+    one of a bridge that is not the first, `snapshot` is made anew once a second and without what
+    is not told of it, such as home; `telemetry` is not told at all.
+
+    A running station that has another `policy`, `log_dir`, `speedup` or `keep` than asked for, or
+    not that vehicle, is not joined: StationDiffers says which, and the vehicles that are there.
+    What is None is taken as the station has it.
 
     `sign_key`: the file with the vehicle's MAVLink 2 signing key, for a station of its own.
 
@@ -62,16 +70,23 @@ def connect(
             "leave out the autopilot",
             ExitCode.USAGE,
         )
+    if vehicle is not None and sim:
+        raise CannotConnect(
+            f"vehicle={vehicle} is for vehicles that are there; sim=True starts one of its own",
+            "leave out the vehicle",
+            ExitCode.USAGE,
+        )
     links = [link] if isinstance(link, str) else list(link or ())
     found = None if sim else _running(links)
     if found is not None:
-        _refuse_differences(found, Wanted(policy, log_dir, speedup=speedup, keep=keep))
-        return _join(found, name, take_control, timeout_s)
+        _refuse_differences(found, Wanted(policy, log_dir, vehicle, speedup, keep))
+        return _join(found, name, vehicle, take_control, timeout_s)
     times = 1.0 if speedup is None else speedup
-    vehicle = SimConfig(autopilot=autopilot or "px4", speedup=times) if sim else None
+    simulated = SimConfig(autopilot=autopilot or "px4", speedup=times) if sim else None
     setup = StationConfig(
         endpoints=[] if sim else links or [DEFAULT_LINK],
-        sim=vehicle,
+        sim=simulated,
+        target_sysid=vehicle or 0,
         policy_path=_policy_file(policy or "default"),
         vehicle_key_path=sign_key or "",
         log_dir=log_dir or "logs",
@@ -108,14 +123,25 @@ def _refuse_differences(found: Description, wanted: Wanted) -> None:
         raise StationDiffers(sentence(found, different), hint(found, different), different)
 
 
-def _join(found: Description, name: str, take_control: bool, timeout_s: float) -> Station:
-    """It knows the vehicle, if there is one: nothing is waited for but its greeting."""
+def _join(
+    found: Description, name: str, vehicle: int | None, take_control: bool, timeout_s: float
+) -> Station:
+    """It knows the vehicle, if there is one: nothing is waited for but its greeting, and what is
+    told of a chosen vehicle once a second."""
     try:
-        station = Station(joined.JoinedStation.join(found, f"Python {name}"))
+        way: Way = joined.JoinedStation.join(found, f"Python {name}")
     except OSError as error:
         raise CannotConnect(f"the station of process {found.pid} takes no connection") from error
+    chosen = vehicle is not None and bool(found.vehicles)
+    if vehicle is not None and chosen:
+        way = ChosenVehicle(way, vehicle)
+    first = not chosen or found.vehicle.startswith(f"{vehicle}/")
+    station = Station(way, tells_messages=first)
     try:
-        station.wait_until(lambda: station.latest is not None, timeout_s)
+        station.wait_until(
+            lambda: station.latest is not None and bool(station.latest.vehicle or not chosen),
+            timeout_s,
+        )
         if take_control:
             station.take_control()
     except Disconnected as error:

@@ -63,9 +63,9 @@ def _differences(found: Description, wanted: Wanted) -> Iterator[Difference]:
         if folder != has:
             yield Difference("log_dir", wanted.log_dir, has or "no log")
     if wanted.vehicle is not None:
-        sysid, _, _ = found.vehicle.partition("/")
-        if sysid != str(wanted.vehicle):
-            has = found.vehicle or "heard no vehicle yet"
+        names = found.vehicles or [found.vehicle]
+        if str(wanted.vehicle) not in [name.partition("/")[0] for name in names]:
+            has = ", ".join(names) or "heard no vehicle yet"
             yield Difference("vehicle", str(wanted.vehicle), has)
     if wanted.speedup is not None and wanted.speedup != found.speedup:
         yield Difference("speedup", f"{wanted.speedup:g}", f"{found.speedup:g}")

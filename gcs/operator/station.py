@@ -93,8 +93,10 @@ class Station:
     was joined goes on; if this program was in control of it, the vehicle is held.
     """
 
-    def __init__(self, connection: Connection) -> None:
+    def __init__(self, connection: Connection, *, tells_messages: bool = True) -> None:
+        """`tells_messages`: those that it tells are of the vehicle that is flown."""
         self._connection = connection
+        self._tells_messages = tells_messages
         self._changed = threading.Condition()
         self._numbers = itertools.count(1)
         self._operations: dict[int, Operation] = {}
@@ -166,6 +168,29 @@ class Station:
         """Fly straight there and hover."""
         goal = (_finite(east_m), _finite(north_m), _finite(up_m))
         return self.request(ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw_deg), wait, timeout_s)
+
+    def orbit(
+        self,
+        radius_m: float,
+        speed_m_s: float,
+        centre: tuple[float, float, float] | None = None,
+        *,
+        turns: float = 0.0,
+        nose: str = "centre",
+        wait: bool | None = None,
+        timeout_s: float | None = None,
+    ) -> Operation:
+        """Fly to the circle and round it; a positive radius is clockwise, seen from above.
+
+        `centre` is metres east, north, up; None is where the vehicle is.  `turns` 0 is until
+        something else is asked for, and then it is waited for only if that is said.  `nose`:
+        centre, initial, free, along.  Raises ValueError for numbers that are not finite.
+        """
+        if not all(map(math.isfinite, (radius_m, speed_m_s, turns, *(centre or ())))):
+            raise ValueError("an orbit has finite numbers only")
+        circle = ipc.Circle(centre, radius_m, speed_m_s, turns, nose)
+        waits = turns > 0.0 if wait is None else wait
+        return self.request(ipc.Ask(0, "orbit", orbit=circle), waits, timeout_s)
 
     def stream(self) -> Stream:
         """A setpoint stream: velocities or positions, one after the other, in a `with` block.
@@ -290,8 +315,11 @@ class Station:
         """The latest fields of a MAVLink message of the vehicle, such as "BATTERY_STATUS".
 
         The first call for a message subscribes to it and waits until it is heard.  Raises
-        ValueError for a name that no message has, TimeoutError if it is not heard in time.
+        ValueError for a name that no message has, and for a vehicle of a bridge that is not its
+        first, of which no messages are told; TimeoutError if it is not heard in time.
         """
+        if not self._tells_messages:
+            raise ValueError("of several vehicles only the first one's messages are told")
         with self._changed:
             if message not in self._messages:
                 self._unknown_messages = ""

@@ -34,7 +34,7 @@ from gcs.report import (
     MetadataItem,
     RecordItem,
 )
-from gcs.wire.blanking import SETUP_SIGNING, blanked, without_key
+from gcs.wire.blanking import SETUP_SIGNING, without_key, without_keys
 from gcs.wire.signing import Reason
 
 FLUSH_NS = 800_000_000
@@ -324,7 +324,7 @@ class Recorder:
         match item:
             case GarbageItem(link, raw, reason):
                 log = self._watched_log(ros1.garbage_channel(link))
-                kept = without_key(raw) if reason in REFUSED else blanked(raw, mend=False)
+                kept = without_key(raw) if reason in REFUSED else without_keys(raw)
                 message = ros1.encode_garbage(reason, kept)
                 self._log_message(log, message, now_ns)
             case AttachmentItem(name):

@@ -16,7 +16,7 @@ from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.session.effects import Emit
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import STATION, For, Log, ToGate, Work
 
 FIRST = 1
 """The operator's program that started the station."""
@@ -60,6 +60,11 @@ class Clients:
     def in_control(self) -> int:
         """The client number, or NOBODY."""
         return self._in_control
+
+    @property
+    def first_is_alone(self) -> bool:
+        """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
+        return all(client == FIRST or client >= FIRST_NUMBER for client in self._there)
 
     def name(self, client: int) -> str:
         """Empty where it is not there."""
@@ -122,7 +127,8 @@ class Clients:
 
     @staticmethod
     def _hold(reason: str) -> list[Work]:
-        return [ToGate(gate_inputs.OperatorLost(reason, for_good=False))]
+        """Every vehicle that is flown here: none of them has anybody in control any more."""
+        return [For(STATION, (ToGate(gate_inputs.OperatorLost(reason, for_good=False)),))]
 
     # --------------------------------------------------------------------------- control
 
@@ -154,8 +160,16 @@ class Clients:
         return [] if client == self._in_control else self._give(client)
 
     def release(self, client: int) -> list[Work]:
-        """It gives control up; what is under way goes on, and the first who asks gets control."""
-        return self._give(NOBODY) if client == self._in_control else []
+        """It gives control up, and the first who asks gets it.
+
+        Until then nobody is in control, so the vehicle is held as for an operator who is lost.
+        Hovering would not do: a stream of the same client that goes on would get control again.
+        Who wants a goal flown on lets another one take over.
+        """
+        if client != self._in_control:
+            return []
+        why = f"{self._there[client].label} has released control"
+        return [*self._hold(why), *self._give(NOBODY)]
 
     def _give(self, client: int) -> list[Work]:
         before, self._in_control = self._there.get(self._in_control), client

@@ -25,7 +25,7 @@ from gcs.session.vehicle import ALIVE
 from gcs.session.vehicles import Vehicles
 from gcs.session.work import Work
 from gcs.wire.blanking import without_key
-from gcs.wire.frame import Frame, Garbage, Item
+from gcs.wire.frame import Frame, Garbage, Item, raw_of
 from gcs.wire.ids import MsgId
 from gcs.wire.signing import Reason
 
@@ -86,7 +86,10 @@ class Incoming:
         False: nothing was in it but what only passes through, so nothing else has changed."""
         self._in_run = len(given.frames) > 1
         link, run = given.link, self._queue.run
-        items = self._links.split(link, given.data, given.frames)
+        if given.as_recorded is None:
+            items = self._links.split(link, given.data, given.frames)
+        else:
+            items = self._links.again(link, given.as_recorded)
         if (
             items is given.frames
             and not self.of_client(given)
@@ -148,11 +151,11 @@ class Incoming:
         """What came on a vehicle's link, and the frames of it: they are first of all sent on to the
         clients, together as they came.  Nearly all of them are only recorded and counted, in runs
         and not one by one, which is no work for the queue."""
-        put, mark = self._queue.put, self._queue.mark
+        effects = self._queue.effects
+        mark = len(effects)
         try:
             for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
-                for sent in self._links.together(to, raws, now_ns):
-                    put(sent)
+                effects += self._links.together(to, raws, now_ns)
         except Exception as error:
             if len(frames) > 1 and self._in_run:
                 self._queue.back_to(mark)
@@ -166,7 +169,12 @@ class Incoming:
         if frames:
             self._links.peer_known(link)
             if len(frames) == len(taken):
-                found = self._counted_together(link, frames, now_ns)
+                try:
+                    found = self._vehicles.in_turn(link, frames, now_ns)
+                except Exception:
+                    if not self._in_run:
+                        raise
+                    found = None  # which one of them raises is looked for one by one
                 if found is not None:
                     return self._in_turn(link, frames, *found, now_ns)
         worked = False
@@ -182,11 +190,11 @@ class Incoming:
             worked |= self._pass(link, passing, now_ns)
             passing = []
             if isinstance(item, GarbageItem):
-                put(Record(item))
+                effects.append(Record(item))
                 continue
-            mark = self._queue.mark
+            mark = len(effects)
             try:
-                put(Record(FrameItem(link, _RECEIVED, item.raw)))
+                effects.append(Record(FrameItem(link, _RECEIVED, item.raw)))
                 worked |= self._work(self._vehicle_frame(link, item, now_ns), now_ns)
                 worked |= msgid not in PLACES
             except Exception as error:
@@ -195,41 +203,32 @@ class Incoming:
                 worked = True
         return self._pass(link, passing, now_ns) or worked
 
-    def _counted_together(
-        self, link: int, frames: Sequence[Frame], now_ns: int
-    ) -> tuple[int, Sequence[Work]] | None:
-        """See `Vehicles.in_turn`; None, too, where one of them raises, which is then looked for one
-        by one."""
-        try:
-            return self._vehicles.in_turn(link, frames, now_ns)
-        except Exception:
-            if not self._in_run:
-                raise
-            return None
-
     def _in_turn(
         self, link: int, frames: Sequence[Frame], slot: int, alive: Sequence[Work], now_ns: int
     ) -> bool:
         """Frames of one autopilot that were counted together: recorded together, and those that
         somebody interprets looked at; whether they lead to anything."""
-        queue, kept_at = self._queue, self._queue.mark
-        raws = tuple([frame.raw for frame in frames])
-        queue.put(Record(FramesItem(link, _RECEIVED, raws)))
+        queue, effects = self._queue, self._queue.effects
+        kept_at = len(effects)
+        raws = tuple(map(raw_of, frames))
+        effects.append(Record(FramesItem(link, _RECEIVED, raws)))
         worked = bool(alive) and queue.run(alive, now_ns, slot)
         special = self._operators.subscribed
         wanted = [each for each in frames if each.msgid in INTERPRETED or each.msgid in special]
         for frame in wanted:
-            mark = queue.mark
+            mark = len(effects)
             try:
-                work = self._vehicles.counted(slot, link, frame, now_ns)
-                if frame.msgid not in PLACES or frame.msgid in special:
-                    worked, work = True, self._also(frame, work, now_ns)
-                worked |= self._work(work, now_ns)
+                if frame.msgid in PLACES and frame.msgid not in special:
+                    work = self._vehicles.placed(slot, frame, now_ns)
+                    worked |= bool(work) and queue.run(work, now_ns, slot)
+                else:
+                    worked, work = True, self._vehicles.counted(slot, link, frame, now_ns)
+                    queue.run(self._also(frame, work, now_ns), now_ns)
             except Exception as error:
                 if not self._drop(link, frame, error, mark):
                     raise
                 raws = tuple([raw for raw in raws if raw is not frame.raw])
-                queue.put_at(kept_at, Record(FramesItem(link, _RECEIVED, raws)))
+                effects[kept_at] = Record(FramesItem(link, _RECEIVED, raws))
                 worked = True
         return worked
 
@@ -237,10 +236,10 @@ class Incoming:
         """Frames in a row that only pass through; whether they lead to anything."""
         if not frames:
             return False
-        mark, worked = self._queue.mark, False
+        mark, worked = len(self._queue.effects), False
         try:
-            raws = tuple([frame.raw for frame in frames])
-            self._queue.put(Record(FramesItem(link, _RECEIVED, raws)))
+            raws = tuple(map(raw_of, frames))
+            self._queue.effects.append(Record(FramesItem(link, _RECEIVED, raws)))
             for owner in self._vehicles.passes(link, frames, now_ns):
                 worked |= self._queue.run(ALIVE, now_ns, owner)
         except Exception as error:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs import ipc
+from gcs.session.as_recorded import AsRecorded
 from gcs.wire.frame import Frame
 
 
@@ -18,6 +19,9 @@ class Datagram:
     frames: tuple[Frame, ...] = ()
     """`data`, split already: one or several datagrams of nothing but plain frames, put together
     (see `gcs.wire.frame.plain_frames`); empty where it is still to be split."""
+    as_recorded: AsRecorded | None = None
+    """Only an audit says so, where the record has other bytes than came, for a key's sake: what
+    these would be split into says nothing."""
 
 
 @dataclass(frozen=True, slots=True)

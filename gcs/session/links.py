@@ -11,11 +11,12 @@ from dataclasses import dataclass
 
 from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem
+from gcs.session.as_recorded import AsRecorded
 from gcs.session.client_frames import ClientFrames
 from gcs.session.effects import Effect, Record, Transmit
 from gcs.session.signatures import NO_KEYS, Signatures
 from gcs.wire.codec import FrameWriter
-from gcs.wire.frame import Frame, Item, StreamSplitter, split
+from gcs.wire.frame import Frame, Garbage, Item, Reason, StreamSplitter, split
 from gcs.wire.ids import MavAutopilot, MavState, MavType
 from gcs.wire.messages import Heartbeat, Message
 from gcs.wire.signing import UnsignableError
@@ -92,6 +93,15 @@ class Links:
         if link < len(self.counts):
             self.counts[link].received += len(items)
         return items
+
+    def again(self, link: int, recorded: AsRecorded) -> Sequence[Item]:
+        """The same where an audit knows what it was split into."""
+        splitter = self._splitters.get(link)
+        if splitter is not None:
+            splitter.go_on_after(recorded.rest)
+        if link < len(self.counts):
+            self.counts[link].received += len(recorded.parts)
+        return [Garbage(raw, Reason(why)) if why else split(raw)[0] for raw, why in recorded.parts]
 
     def rest(self, link: int) -> bytes:
         """Bytes of a stream that are in no item yet; always empty for a link of datagrams."""

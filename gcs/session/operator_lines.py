@@ -60,6 +60,9 @@ def _asked(
         held = bridge.held_back(command, telemetry.autopilot, vehicle)
         not_now = bridge.why_not_arm(command, telemetry.sysid)
         refusal = refusal or not_now
+    if isinstance(command, ipc.Stream) and owner != STATION:
+        streamed = vehicles.of_owner(owner).streamed_by(client)
+        return [*streamed, *operators.line(client, command, autopilot, refusal, now_ns)]
     if held is None:
         return operators.line(client, command, autopilot, refusal, now_ns)
     told = operators.line(client, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)

@@ -33,6 +33,7 @@ from gcs.session.times import Times
 from gcs.session.work import (
     AskGate,
     AskMission,
+    AskOrbit,
     Decide,
     EndSession,
     Log,
@@ -67,6 +68,11 @@ class Operators:
         """The operator in control of the station; None: nobody."""
         client = self._clients.in_control
         return ipc.OperatorInfo(client, self._clients.name(client)) if client else None
+
+    @property
+    def first_is_alone(self) -> bool:
+        """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
+        return self._clients.first_is_alone
 
     def client_of(self, request_id: int) -> int:
         """Who has made the request that is not over yet."""
@@ -181,6 +187,9 @@ class Operators:
         if ask.word in MISSION_WORDS:
             given = self._give_where_free(client, ask, now_ns)
             return [*given, AskMission(self._requests.open(ask, client), ask)]
+        if ask.word == "orbit":
+            given = self._give_where_free(client, ask, now_ns)
+            return [*given, AskOrbit(self._requests.open(ask, client), ask, client)]
         try:
             request = request_of(ask, autopilot or GENERIC)
         except BadAskError as error:
@@ -231,6 +240,10 @@ class Operators:
             for other, vehicle in others
         ]
         return [*ends, *given]
+
+    def end_stream(self, client: int, sysid: int) -> list[Work]:
+        """The stream that the station has made in this operator's name is over."""
+        return [StreamOver(sysid, self._requests.open(_end_of_stream(sysid), client))]
 
     def _ask_station(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """What is asked of the station, not of the vehicle, is done at once."""

@@ -45,7 +45,9 @@ class WorkQueue:
     def __init__(self, step: Step) -> None:
         self._step = step
         self._postponed: list[For] = []
-        self._effects: list[Work] = []
+        self.effects: list[Work] = []
+        """Those so far, in the order in which the shell is to perform them.  Between two calls of
+        `run` one that leads to nothing may be appended; `len` of it is a mark for `back_to`."""
 
     def run(self, work: Sequence[Work], now_ns: int, owner: int = STATION) -> bool:
         """Do all of it, which is of `owner`, and all that it leads to.
@@ -56,7 +58,7 @@ class WorkQueue:
         """
         worked = False
         agenda: list[Work | _OwnedAgain] = list(reversed(work))  # the next item last
-        step, effects, postponed = self._step, self._effects, self._postponed
+        step, effects, postponed = self._step, self.effects, self._postponed
         gate_answers = False
         while agenda:
             item = agenda.pop()
@@ -91,31 +93,17 @@ class WorkQueue:
                 agenda += reversed(step(item, owner, now_ns))
         return worked
 
-    @property
-    def put(self) -> Callable[[Effect], None]:
-        """Takes an effect that leads to nothing, between two calls of `run`; good until `take`."""
-        return self._effects.append
-
-    @property
-    def mark(self) -> int:
-        """Where the effects so far end: for `back_to`, between two calls of `run`."""
-        return len(self._effects)
-
     def back_to(self, mark: int) -> None:
         """Nothing of what came after that: a part has failed in the middle of it."""
         self._postponed.clear()
-        del self._effects[mark:]
-
-    def put_at(self, mark: int, effect: Effect) -> None:
-        """Instead of the effect that was put there."""
-        self._effects[mark] = effect
+        del self.effects[mark:]
 
     def take(self) -> list[Effect]:
-        """The effects so far, in the order in which the shell is to perform them."""
-        effects, self._effects = self._effects, []
+        """The effects so far; from here on there are none."""
+        effects, self.effects = self.effects, []
         return cast("list[Effect]", effects)
 
     def drop(self) -> None:
         """Nothing of what is under way: a part has failed in the middle of it."""
         self._postponed.clear()
-        self._effects.clear()
+        self.effects.clear()

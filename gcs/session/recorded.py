@@ -22,7 +22,7 @@ from gcs.session.inputs import Datagram, FileRead, Input, OtherInput
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import Log, Work
-from gcs.wire.blanking import blanked
+from gcs.wire.blanking import datagram_without_keys, without_keys
 from gcs.wire.messages import AutopilotVersion
 
 STAGES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
@@ -135,14 +135,14 @@ def pieces(link: int, items: int, rest: bytes) -> Sequence[Effect]:
     if items and not rest:
         return ()
     # `rest` may be the beginning of a SETUP_SIGNING, whose key is in no record.
-    return (Record(InputItem.of("Datagram", Pieces(link, items, blanked(rest, mend=True)))),)
+    return (Record(InputItem.of("Datagram", Pieces(link, items, without_keys(rest)))),)
 
 
 def fault(given: Input, report: str, handled: bool, at_ns: int) -> Record:
     """See `FaultKept`.  Raises nothing: an input that has no JSON is left out."""
     kind = type(given).__name__
     if isinstance(given, Datagram):
-        given = Datagram(given.link, blanked(given.data, mend=False))
+        given = Datagram(given.link, datagram_without_keys(given.data))
     try:
         as_json = msgspec.json.encode(given)
     except (TypeError, ValueError):

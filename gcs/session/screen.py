@@ -1,4 +1,4 @@
-"""What the operator's screen is told ten times a second, from telemetry and the gate."""
+"""What operators' screens are told, ten times a second, from telemetry and the gate."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
-from gcs.gate.inputs import PositionSeen
+from gcs.gate.inputs import PositionSeen, Tick
 from gcs.gate.machine.gate import Gate
 from gcs.gate.requests import EndStream
 from gcs.protocol.effects import Address, Send
@@ -82,11 +82,13 @@ from gcs.session.work import (
     STATION,
     AskGate,
     AskMission,
+    AskOrbit,
     CheckStart,
     Decide,
     EndSession,
     For,
     Log,
+    OrbitSample,
     PlaceFence,
     SecondDue,
     SnapshotDue,
@@ -102,6 +104,8 @@ OTHER_STATION_NS = 5_000_000_000
 
 NODE = "link"
 MAX_FAULTS = 10
+SNAPSHOTS_A_LOOK = 5
+"""Whoever started a bridge only looks: alone, it is shown one snapshot of so many, two a second."""
 
 
 class Session:
@@ -157,6 +161,8 @@ class Session:
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
+        self._snapshots = 0
+        """That were due."""
         self._faults = 0
         self._frames_raised = 0
         """Frames of a run that have raised, of which `fault` was not told yet."""
@@ -311,14 +317,19 @@ class Session:
         """Hand one item of work to the part that it is for; `owner` is whose it is."""
         vehicle = self._vehicles.of_owner(owner)
         match item:
+            case ToGate(Tick()) if owner == STATION:
+                one = self._operators.in_control
+                client = 0 if one is None else one.client
+                orbits = self._vehicles.each(lambda v: v.orbit_sample(client, now_ns))
+                return [*orbits, *self._vehicles.to_all(item)]
             case ToGate() if owner == STATION:
                 return self._vehicles.to_all(item)
+            case ToGate(given) if type(given) is PositionSeen:  # nearly all of them
+                work = vehicle.ask_gate(given, now_ns)
+                return work + self._separation.moved(self._vehicles, owner, now_ns)
             case ToGate(given):
                 answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
-                work = [*answered, *vehicle.ask_gate(given, now_ns)]
-                if type(given) is PositionSeen:
-                    work += self._separation.moved(self._vehicles, owner, now_ns)
-                return work
+                return [*answered, *vehicle.ask_gate(given, now_ns)]
             case Send(message):
                 telemetry = vehicle.telemetry
                 if telemetry is None:
@@ -351,6 +362,13 @@ class Session:
                 return self._operators.asked_of_gate(item)
             case AskMission():
                 return vehicle.ask_mission(item, now_ns)
+            case AskOrbit():
+                return vehicle.ask_orbit(item, now_ns)
+            case OrbitSample(client, sample):
+                if sample is None:
+                    return self._operators.end_stream(client, vehicle.sysid)
+                autopilot, refusal = vehicle.for_operators(now_ns)
+                return self._operators.line(client, sample, autopilot, refusal, now_ns)
             case StopTransfer(request_id):
                 return self._vehicles.each(lambda each: each.stop_transfer(request_id))
             case StreamOver(sysid, request_id):
@@ -369,6 +387,10 @@ class Session:
                 return self._every_second(now_ns)
             case SnapshotDue():
                 stops = self._vehicles.each(lambda each: each.predicted_stop())
+                left_out = self._setup.config.bridge and self._operators.first_is_alone
+                self._snapshots += 1
+                if left_out and self._snapshots % SNAPSHOTS_A_LOOK != 1:
+                    return stops
                 return [Emit(self._snapshot(now_ns)), *stops]
             case (
                 Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()

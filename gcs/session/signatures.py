@@ -89,7 +89,8 @@ class Signatures:
 
     def signed(self, link: int) -> bool:
         """Whether the link has a key."""
-        return self._side(link) is not None
+        side = self._vehicle if link < self._vehicle_links else self._client
+        return side is not None
 
     def outgoing(self, link: int, raw: bytes, now_ns: int) -> bytes:
         """The frame as it is to leave: signed with the link's key, or as it is where it has none.

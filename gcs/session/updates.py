@@ -7,7 +7,7 @@ and counted, and that is all.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final, TypeAlias
 
 from gcs.gate import inputs
@@ -113,27 +113,29 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
 
 def _local_position(
     message: m.LocalPositionNed, telemetry: Telemetry, now_ns: int
-) -> Iterator[Update]:
+) -> Sequence[Update]:
     pos_ned = (message.x, message.y, message.z)
     v_ned = (message.vx, message.vy, message.vz)
     if not _finite(*pos_ned, *v_ned):
         # An estimator that reports NaN reports no position; age will tell (invariant 7).
-        return
+        return ()
     restarted = False
     if telemetry.position_ns and message.time_boot_ms <= telemetry.time_boot_ms:
         if not _restarted(message.time_boot_ms, telemetry):
             # A duplicate or an overtaken datagram: older than what we have is not fresh.
-            return
+            return ()
         restarted = True
         telemetry.forget_place()
     if telemetry.delay.of(message.time_boot_ms, now_ns) > telemetry.position_age_ns:
         # It comes so late that it was too old when it arrived; the age will tell.
-        return
+        return ()
     telemetry.restart_ms = None
     telemetry.time_boot_ms = message.time_boot_ms
     telemetry.pos_ned, telemetry.v_ned, telemetry.position_ns = pos_ned, v_ned, now_ns
-    yield ToGate(inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, reset=restarted))
-    yield Record(PoseItem(telemetry.sysid, pos_ned, v_ned, telemetry.q_ned_from_frd))
+    return (
+        ToGate(inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, reset=restarted)),
+        Record(PoseItem(telemetry.sysid, pos_ned, v_ned, telemetry.q_ned_from_frd)),
+    )
 
 
 def _restarted(time_boot_ms: int, telemetry: Telemetry) -> bool:

@@ -43,6 +43,7 @@ from gcs.session.interpreted_messages import (
 )
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions, still_paused
+from gcs.session.orbits import Orbits
 from gcs.session.position_health import GPS_SILENT_NS
 from gcs.session.presence import STATE_MESSAGES, Presence
 from gcs.session.reasons import Reasons
@@ -57,7 +58,7 @@ from gcs.session.times import Times
 from gcs.session.updates import updates
 from gcs.session.watch import Watch
 from gcs.session.words import Words, logged
-from gcs.session.work import AskMission, CheckStart, Log, PlaceFence, ToGate, Work
+from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, ToGate, Work
 from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
@@ -105,6 +106,7 @@ class Vehicle:
         )
         self._missions = Missions(own, times)
         self._returns = ReturnPlaces(own, times)
+        self._orbits = Orbits(times)
         self._words = Words(times)
         self._events = Events(own, self._words, times)
         self._control = VehicleControl(own)
@@ -253,6 +255,14 @@ class Vehicle:
             return work
         return work + self._interpreted(telemetry, frame, message, now_ns)
 
+    def placed(self, frame: Frame, now_ns: int) -> list[Work]:
+        """The same of one that tells where the vehicle is: nothing else of it is changed by that,
+        and nobody waits for it."""
+        message, telemetry = decode(frame), self.telemetry
+        if message is None or telemetry is None:
+            return []
+        return self._updated(telemetry, message, now_ns)
+
     def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of anybody on `link`; what is not our vehicle's changes nothing."""
         work: list[Work] = []
@@ -286,7 +296,8 @@ class Vehicle:
         work: list[Work] = []
         message = heard.message
         if type(message) in PLACE_MESSAGES:
-            return self._updated(telemetry, heard, now_ns)
+            own = heard.compid == telemetry.compid
+            return self._updated(telemetry, message, now_ns) if own else []
         if isinstance(message, m.CommandAck):
             answered = self._commands.heard(heard, now_ns)
             work += self._reasons.explained(answered, telemetry.custom_mode, now_ns)
@@ -317,14 +328,11 @@ class Vehicle:
             return work
         if heard.compid == telemetry.compid:
             work += self._watch.heard(message, now_ns)
-        return [*work, *self._updated(telemetry, heard, now_ns), *_accuracy(telemetry)]
+        return [*work, *self._updated(telemetry, message, now_ns), *_accuracy(telemetry)]
 
-    def _updated(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
+    def _updated(self, telemetry: Telemetry, message: m.Message, now_ns: int) -> list[Work]:
         """What the vehicle reports of itself, into `telemetry`."""
         work: list[Work] = []
-        message = heard.message
-        if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
-            return work
         for update in updates(message, telemetry, now_ns):
             work.append(update)
             match update:
@@ -542,6 +550,20 @@ class Vehicle:
         )
         return self._ask_for_control(now_ns) + self._of_missions(work, now_ns)
 
+    def ask_orbit(self, asked: AskOrbit, now_ns: int) -> list[Work]:
+        """An orbit, which is verified here before the gate is asked for its stream."""
+        return self._ask_for_control(now_ns) + self._orbits.ask(
+            asked, self.telemetry, self.gate, self._port.policy, now_ns
+        )
+
+    def orbit_sample(self, in_control: int, now_ns: int) -> list[Work]:
+        """The next sample of the orbit that is flown, if it is that of the operator in control."""
+        return self._orbits.tick(in_control, self.telemetry, self.gate, self._port.policy, now_ns)
+
+    def streamed_by(self, client: int) -> list[Work]:
+        """An operator sends samples of its own: an orbit of its is not flown any more."""
+        return self._orbits.streams_itself(client)
+
     def _ask_for_control(self, now_ns: int) -> list[Work]:
         """Of a vehicle that has operator control, and obeys another station or nobody yet."""
         if self.telemetry is None:
@@ -577,11 +599,12 @@ class Vehicle:
     # --------------------------------------------------------------------------------- gate
 
     def ask_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
-        before = self.gate.state
+        gate = self._port.gate
+        before = gate.state
         if isinstance(given, inputs.StreamSeen) and self.telemetry is not None:
             given = with_thrust_meaning(given, self.telemetry.autopilot, self._parameters)
         work = [*self._port.handle(given, now_ns), *self._missions.overruled(given)]
-        self.mission_paused = still_paused(self.mission_paused, before, self.gate.state)
+        self.mission_paused = still_paused(self.mission_paused, before, gate.state)
         return work
 
     def carry_out(
@@ -610,8 +633,14 @@ class Vehicle:
             case CheckStart():
                 self._port.check_start(effect)
                 return []
-            case effects.Outcome() | effects.StreamVerdict():
+            case effects.Outcome():
+                self._orbits.ended(effect.request_id)
                 return [effect]
+            case effects.StreamVerdict():
+                return [effect]
+            case effects.Verdict():
+                self._orbits.decided(effect, self.gate, self._port.policy, now_ns)
+                return self._port.tell(effect, self.sysid)
             case _:
                 return self._port.tell(effect, self.sysid)
 

@@ -45,7 +45,7 @@ class Vehicles:
         self._config = config
         self._policy = policy
         self._times = times
-        self._several = config.bridge and config.sim is None and not config.target_sysid
+        self._several = config.several
         self.first = Vehicle(config, policy, times, now_ns)
         self._all = [self.first]
         self._slots: dict[int, int] = {}
@@ -132,8 +132,14 @@ class Vehicles:
     ) -> tuple[int, Sequence[Work]] | None:
         """See `Vehicle.in_turn`; with the slot of the vehicle whose they are."""
         slot = self.slot_of(frames[0].sysid)
-        work = None if slot is None else self._all[slot].in_turn(link, frames, now_ns)
-        return None if slot is None or work is None else (slot, work)
+        if slot is None:
+            return None
+        work = self._all[slot].in_turn(link, frames, now_ns)
+        return None if work is None else (slot, work)
+
+    def placed(self, slot: int, frame: Frame, now_ns: int) -> list[Work]:
+        """One of the frames that `in_turn` has counted, of `PLACES`: work of that slot."""
+        return self._all[slot].placed(frame, now_ns)
 
     def counted(self, slot: int, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """One of the frames that `in_turn` has counted."""

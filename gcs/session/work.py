@@ -91,6 +91,21 @@ class AskMission(msgspec.Struct, frozen=True, gc=False):
     kind: MissionType = MissionType.MISSION
 
 
+class AskOrbit(msgspec.Struct, frozen=True, gc=False):
+    """The request of the operator `client` that was opened as `request_id`, for an orbit."""
+
+    request_id: int
+    ask: ipc.Ask
+    client: int
+
+
+class OrbitSample(msgspec.Struct, frozen=True, gc=False):
+    """The next sample of the orbit that the operator `client` has asked for; None: it is over."""
+
+    client: int
+    sample: ipc.Stream | None
+
+
 class StopTransfer(msgspec.Struct, frozen=True, gc=False):
     """The mission transfer that was opened as `request_id` is to end, if it is under way."""
 
@@ -140,6 +155,8 @@ Work: TypeAlias = (
     | Log
     | Tell
     | AskMission
+    | AskOrbit
+    | OrbitSample
     | StopTransfer
     | StreamOver
     | EndSession

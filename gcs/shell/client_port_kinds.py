@@ -44,7 +44,7 @@ class Port(ABC):
     def sources(self, now_ns: int) -> Sequence[Source]: ...
 
     @abstractmethod
-    def turn(self, ready: Sequence[Source], now_ns: int) -> None:
+    def turn(self, ready: Sequence[object], now_ns: int) -> None:
         """Read what is there, into the table."""
 
     @abstractmethod
@@ -62,7 +62,7 @@ class Port(ABC):
         """What waits to be written to."""
         return ()
 
-    def flush(self, writable: Sequence[Source]) -> None:  # noqa: B027 - most have no sinks
+    def flush(self, writable: Sequence[object]) -> None:  # noqa: B027 - most have no sinks
         """They can be written to again."""
 
 
@@ -113,7 +113,7 @@ class UdpPort(Port):
     def sources(self, now_ns: int) -> Sequence[Source]:
         return (self.socket,)
 
-    def turn(self, ready: Sequence[Source], now_ns: int) -> None:
+    def turn(self, ready: Sequence[object], now_ns: int) -> None:
         if self.socket not in ready:
             return
         table, links = self._table, self.links
@@ -198,12 +198,12 @@ class TcpPort(Port):
     def sinks(self) -> Sequence[Source]:
         return [peer for peer in self.links if peer.connected.queued]
 
-    def flush(self, writable: Sequence[Source]) -> None:
+    def flush(self, writable: Sequence[object]) -> None:
         for peer in self.links:
             if peer in writable:
                 peer.connected.flush()
 
-    def turn(self, ready: Sequence[Source], now_ns: int) -> None:
+    def turn(self, ready: Sequence[object], now_ns: int) -> None:
         if self._listener in ready:
             self._accept(now_ns)
         for peer, link in list(self.links.items()):
@@ -267,7 +267,7 @@ class LinkPort(Port):
         may_read = not self.stream or self._table.may_read(client, now_ns)
         return (self.link,) if may_read else ()
 
-    def turn(self, ready: Sequence[Source], now_ns: int) -> None:
+    def turn(self, ready: Sequence[object], now_ns: int) -> None:
         for text in self.link.poke(now_ns):
             self._table.news(text)
         self._come_or_go(now_ns)

@@ -18,9 +18,10 @@ class ClientPorts:
         """None yet; `open` adds one.  Their clients have link numbers from `first_link` up."""
         self._table = ClientTable(first_link, limits or ClientLimits())
         self._ports: list[Port] = []
-        self._waiting: list[Source] = []
-        """Of the ports that only wait for datagrams: always the same."""
-        self._others: list[Port] = []
+        self.waiting: list[Source] = []
+        """What `select` is to wait for, of the ports that wait for datagrams: always the same."""
+        self.others: list[Port] = []
+        """The ports that have more than that: see `sources` and `sinks`."""
         self._links: list[LinkPort] = []
         self._first_read = 0
         self._sweep_ns = 0
@@ -30,24 +31,21 @@ class ClientPorts:
         port = open_port(endpoint, self._table)
         self._ports.append(port)
         if isinstance(port, UdpPort):
-            self._waiting.append(port.socket)
+            self.waiting.append(port.socket)
         else:
-            self._others.append(port)
+            self.others.append(port)
         if isinstance(port, LinkPort):
             self._links.append(port)
 
     def sources(self, now_ns: int) -> list[Source]:
-        """What `select` is to wait for; a client that has sent too much is not among them."""
-        if not self._others:
-            return self._waiting
-        others = [source for port in self._others for source in port.sources(now_ns)]
-        return self._waiting + others
+        """What `select` is to wait for beside `waiting`; a client that has sent too much is not
+        among them."""
+        return [source for port in self.others for source in port.sources(now_ns)]
 
     @property
     def sinks(self) -> list[Source]:
         """Connections that have something queued."""
-        others = self._others
-        return [sink for port in others for sink in port.sinks] if others else []
+        return [sink for port in self.others for sink in port.sinks]
 
     @property
     def deadline_ns(self) -> int:
@@ -60,7 +58,7 @@ class ClientPorts:
         return deadline_ns
 
     def turn(
-        self, readable: Sequence[Source], writable: Sequence[Source], now_ns: int
+        self, readable: Sequence[object], writable: Sequence[object], now_ns: int
     ) -> list[Arrival]:
         """Who came, what they sent, and who has gone, in order; at most `MAX_A_TURN` or so.
 

@@ -9,25 +9,39 @@ What one client may cost the others is bounded here: at most `max_clients` are t
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 from gcs.session.inputs import ClientCame, ClientFlooded, ClientGone, Datagram, LinkEvent
+from gcs.wire.frame import (
+    MAGIC_V1,
+    MAGIC_V2,
+    Frame,
+    Garbage,
+    Item,
+    StreamSplitter,
+    plain_frames,
+    split,
+)
 
 LAST_LINK = 254
 MAX_A_TURN = 256
 """Inputs that one turn of the loop hands on; the rest waits in the sockets."""
 MAX_CLIENT_DATAGRAM = 4096
 """Bytes; a longer one is dropped.  Clients send a frame a datagram, routers a few."""
-BYTES_A_MESSAGE = 64
-"""A datagram counts as one message for each piece of this size: an attitude command has 51 bytes, a
-mission item 50, a heartbeat 21."""
+NOISE_BYTES_A_MESSAGE = 64
+"""Bytes that are no frame count as a message more for each piece of this size: to look for frames
+in them costs more than frames do."""
+READS_A_MESSAGE = 8
+"""Of a stream: a frame may come in so many pieces and count as one message; each piece costs a turn
+of the loop."""
 EVICTABLE_NS = 3_000_000_000
 """A client that was heard within this time does not have to make room for another: whoever makes
 up senders by the thousand must not drive out those who fly."""
 FLOOD_TOLD_NS = 1_000_000_000
 
-MAGICS = (0xFD, 0xFE)
+MAGICS = (MAGIC_V2, MAGIC_V1)
 
 Arrival: TypeAlias = ClientCame | Datagram | ClientGone | ClientFlooded | LinkEvent
 
@@ -38,7 +52,7 @@ class ClientLimits:
 
     max_clients: int = 32
     rate_hz: float = 500.0
-    """Messages a second of one client; see `BYTES_A_MESSAGE`."""
+    """Messages a second of one client: frames, however many of them come in one datagram."""
     silent_s: float = 15.0
     """A peer of a UDP port that has sent nothing for so long has gone: it cannot say so itself."""
 
@@ -68,6 +82,10 @@ class _Client:
     heard_ns: int
     tokens: float
     tokens_ns: int
+    splitter: StreamSplitter | None
+    """Of a stream: to count its frames, which the session splits once more."""
+    unfinished: float = 0.0
+    """What the pieces of a frame that has not ended have been counted as."""
     dropped: int = 0
     told_ns: int = 0
 
@@ -107,7 +125,8 @@ class ClientTable:
         if len(self._clients) >= self._room and not self._make_room(peer, now_ns):
             return None
         link = next(n for n in range(self._first, LAST_LINK + 1) if n not in self._clients)
-        self._clients[link] = _Client(peer, now_ns, self._limits.rate_hz, now_ns)
+        splitter = StreamSplitter() if peer.stream else None
+        self._clients[link] = _Client(peer, now_ns, self._limits.rate_hz, now_ns, splitter)
         self._arrivals.append(ClientCame(link, peer.name, peer.stream))
         return link
 
@@ -137,15 +156,25 @@ class ClientTable:
         return not self.full_turn and self._refill(self._clients[link], now_ns) > 0.0
 
     def heard(self, link: int, data: bytes, now_ns: int) -> None:
-        """It sent this: handed on, or dropped where it sends too much."""
+        """It sent this: handed on, or dropped where it sends too much.
+
+        What is handed on is counted then, so one datagram may have more frames than are left for
+        its sender, who waits for longer after it.
+        """
         client = self._clients[link]
-        if client.peer.stream or (data and data[0] in MAGICS):
+        if client.splitter is not None or (data and data[0] in MAGICS):
             client.heard_ns = now_ns
-        if self._refill(client, now_ns) > 0.0 and len(data) <= MAX_CLIENT_DATAGRAM:
-            client.tokens -= 1 + len(data) // BYTES_A_MESSAGE
-            self._arrivals.append(Datagram(link, data))
-        else:
+        if self._refill(client, now_ns) <= 0.0 or len(data) > MAX_CLIENT_DATAGRAM:
             client.dropped += 1
+            return
+        frames: list[Frame] = []
+        if client.splitter is not None:
+            client.tokens -= _of_read(client, _messages(client.splitter.feed(data)))
+        elif frames := plain_frames(data):
+            client.tokens -= len(frames)
+        else:
+            client.tokens -= max(1, _messages(split(data)))
+        self._arrivals.append(Datagram(link, data, tuple(frames)))
 
     def _refill(self, client: _Client, now_ns: int) -> float:
         rate_hz = self._limits.rate_hz
@@ -177,3 +206,19 @@ class ClientTable:
         self._clients.clear()
         for client in clients:
             client.peer.forget()
+
+
+def _of_read(client: _Client, messages: int) -> float:
+    """What a read of a stream counts as, in which so many messages ended."""
+    if not messages:
+        client.unfinished += 1 / READS_A_MESSAGE
+        return 1 / READS_A_MESSAGE
+    counted, client.unfinished = client.unfinished, 0.0
+    return max(1 / READS_A_MESSAGE, messages - counted)
+
+
+def _messages(items: Iterable[Item]) -> int:
+    """What they count as."""
+    return sum(
+        1 + len(each.raw) // NOISE_BYTES_A_MESSAGE if type(each) is Garbage else 1 for each in items
+    )

@@ -37,10 +37,12 @@ class LocalSocket:
         policy: str = "",
         policy_digest: str = "",
         speedup: float = 1.0,
+        several: bool = False,
         folder: Path | None = None,
         unix: bool = UNIX,
     ) -> None:
-        """Raises OSError, or `stations.Unsafe`."""
+        """`several`: every vehicle that is met is flown.  Raises OSError, or `stations.Unsafe`."""
+        self._several = several
         self._folder = stations.made_safe(folder or stations.folder_of())
         stations.running(self._folder)  # removes what dead stations left
         described = Description(
@@ -71,7 +73,10 @@ class LocalSocket:
     def describe(self, snapshot: ipc.Snapshot) -> None:
         """Keep the description up to date; writes only when something in it changed."""
         now = msgspec.structs.replace(
-            self.description, vehicle=snapshot.vehicle, log_path=_absolute(snapshot.log_path)
+            self.description,
+            vehicle=snapshot.vehicle,
+            vehicles=snapshot.vehicles if self._several else [],
+            log_path=_absolute(snapshot.log_path),
         )
         if now != self.description:
             self.description = now

@@ -11,7 +11,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 from gcs import ipc
 from gcs.resources import MissionNotFoundError, find
@@ -63,6 +63,9 @@ DENSE_DATAGRAMS = 3
 """Where datagrams of vehicles come so close one after another, or so many together, turns are
 `GATHER_NS` apart: a turn for 5 datagrams costs a third of 5 turns, and nobody waits long."""
 GATHER_NS = 2_000_000
+ALONE_NS = 4_000_000
+"""Where datagrams came further apart than this, twice, a turn reads one: a second read that finds
+nothing costs as much as the first one, and what does come then is there in the next turn."""
 
 
 class Core(Protocol):
@@ -74,10 +77,14 @@ class Core(Protocol):
     def fault(self, given: Input, report: str, now_ns: int) -> Sequence[Effect]: ...
 
 
-class Source(Protocol):
-    """What `select` can wait for."""
+class HasFileno(Protocol):
+    """A pipe or a socket."""
 
     def fileno(self) -> int: ...
+
+
+Source: TypeAlias = int | HasFileno
+"""What `select` can wait for: a number, where it never changes, is one call less in each turn."""
 
 
 class Loop:
@@ -112,12 +119,18 @@ class Loop:
         self._on_snapshot = on_snapshot
         self._client_ports = client_ports
         self._topics = TopicStream(recording, self._tell)
+        self._signals_fd, self._operator_fd = signals.fileno(), operator.fileno()
+        self._clients_fd = -1 if clients is None else clients.fileno()
         self._operator_open = True
         self._sim_open = sim is not None
         self._finish: Finish | None = None
         self._look_ns = 0
         self._read_ns = 0
         self._gather_until_ns = 0
+        self._alone = False
+        """Datagrams came one by one, `ALONE_NS` and more apart."""
+        self._recording_ns = 0
+        """When the record is to be looked after."""
         self._busy = False
         """Lines that were read of other operators wait for their turn."""
 
@@ -136,35 +149,33 @@ class Loop:
         readable, writable = self._wait()
         if writable and self._screen in writable:
             self._screen.flush()
-        self._read_links(readable)
-        if not self._only_links(readable, writable):
+        links = self._read_links(readable)
+        now_ns = self._clock.now_ns()
+        only_links = 0 < links == len(readable) and not writable and not self._busy
+        # Of all else what is due by time alone can wait as long as a tick.
+        if not only_links or now_ns >= self._look_ns:
+            self._look_ns = now_ns + LOOK_NS
             self._read_others(readable, writable)
+            now_ns = self._clock.now_ns()
         if self._screen.broken and self._operator_open:
             self._operator_open = False
             self._feed(OperatorGone(FIRST, "nobody reads the link's output"))
-        self._wake_if_due()
-        for change in self._recording.upkeep(self._clock.now_ns()):
-            self._feed(change)
-        for given, report in self._recording.faults():
-            self._fault(given, report, self._recording.time_ns(self._clock.now_ns()))
-
-    def _only_links(self, readable: list[Source], writable: list[Source]) -> bool:
-        """Nothing has come but of vehicles, and all else was looked at a moment ago: what is due
-        there by time alone can wait as long as a tick."""
-        now_ns = self._clock.now_ns()
-        if readable and not writable and not self._busy and now_ns < self._look_ns:
-            links = self._links
-            return readable == links or all(source in links for source in readable)
-        self._look_ns = now_ns + LOOK_NS
-        return False
+        if now_ns >= self._core.deadline_ns:
+            self._feed(Wake())
+        if now_ns >= self._recording_ns:
+            for change in self._recording.upkeep(now_ns):
+                self._feed(change)
+        if self._recording.raised:
+            for given, report in self._recording.faults():
+                self._fault(given, report, self._recording.time_ns(self._clock.now_ns()))
 
     def _read_others(self, readable: list[Source], writable: list[Source]) -> None:
         """All but the links to vehicles."""
         self._read_client_ports(readable, writable)
-        if self._signals in readable:
+        if self._signals_fd in readable:
             for name in self._signals.read():
                 self._feed(SignalCame(name))
-        if self._operator_open and self._operator in readable:
+        if self._operator_open and self._operator_fd in readable:
             self._read_operator()
         if self._sim_open and self._sim is not None and self._sim.lines in readable:
             self._read_sim(self._sim)
@@ -174,37 +185,42 @@ class Loop:
     def _wait(self) -> tuple[list[Source], list[Source]]:
         """Once a turn, for each datagram of a slow stream: nothing here is more than it must be."""
         core_ns, recording_ns = self._core.deadline_ns, self._recording.deadline_ns
+        self._recording_ns = recording_ns
         if self._gather_until_ns:
             self._clock.pause_until(min(self._gather_until_ns, core_ns))
             self._gather_until_ns = 0
         deadline_ns = core_ns if core_ns < recording_ns else recording_ns
-        sources: list[Source] = []
+        sources: list[Source] = [self._signals_fd]
         for link in self._links:
-            if link.fileno() >= 0:
-                sources.append(link)
+            fd = link.fileno()
+            if fd >= 0:
+                sources.append(fd)
             due_ns = link.deadline_ns
             if due_ns is not None and due_ns < deadline_ns:
                 deadline_ns = due_ns
-        sources.append(self._signals)
         if self._operator_open:
-            sources.append(self._operator)
+            sources.append(self._operator_fd)
         if self._sim_open and self._sim is not None:
             sources.append(self._sim.lines)
         sinks: list[Source] = [self._screen] if self._screen.waiting else []
         clients = self._clients
+        self._busy = False
         if clients is not None and clients.alone:
-            sources.append(clients)
+            sources.append(self._clients_fd)
         elif clients is not None:
             sources += clients.sources
             sinks += clients.sinks
-        if self._client_ports is not None:
-            sources += self._client_ports.sources(self._clock.now_ns())
-            sinks += self._client_ports.sinks
-            deadline_ns = min(deadline_ns, self._client_ports.deadline_ns)
-        wait_s = self._clock.seconds_until(deadline_ns)
-        self._busy = clients is not None and not clients.alone and clients.busy
-        if self._busy:
-            wait_s = 0.0
+            self._busy = clients.busy
+        ports = self._client_ports
+        if ports is not None:
+            sources += ports.waiting
+            if ports.others:
+                sources += ports.sources(self._clock.now_ns())
+                sinks += ports.sinks
+            due_ns = ports.deadline_ns
+            if due_ns < deadline_ns:
+                deadline_ns = due_ns
+        wait_s = 0.0 if self._busy else self._clock.seconds_until(deadline_ns)
         readable, writable, _ = select.select(sources, sinks, [], wait_s)
         return readable, writable
 
@@ -212,31 +228,31 @@ class Loop:
         if self._clock.now_ns() >= self._core.deadline_ns:
             self._feed(Wake())
 
-    def _read_links(self, readable: list[Source]) -> None:
-        began_ns, datagrams = self._clock.now_ns(), 0
+    def _read_links(self, readable: list[Source]) -> int:
+        """How many of them were read."""
+        began_ns, datagrams, read = self._clock.now_ns(), 0, 0
+        apart = began_ns - self._read_ns >= ALONE_NS
+        most = 1 if apart and self._alone else MAX_DATAGRAMS_A_TURN
         for number, link in enumerate(self._links):
-            due = link.deadline_ns is not None and link.deadline_ns <= self._clock.now_ns()
-            if link in readable:
-                came = link.drain(MAX_DATAGRAMS_A_TURN)
+            if link.fileno() in readable:
+                read += 1
+                came = link.drain(most)
                 datagrams += len(came)
                 for given in pieces(number, came) if link.stream else runs(number, came):
                     self._feed(given)
-                    self._wake_if_due()
-            elif not due:
+                    if most > 1:
+                        self._wake_if_due()
+            elif (due_ns := link.deadline_ns) is None or due_ns > began_ns:
                 continue
             for text in link.poke(self._clock.now_ns()):
                 self._feed(LinkEvent(number, text))
         if datagrams:
-            self._gather(datagrams, began_ns)
-
-    def _gather(self, datagrams: int, began_ns: int) -> None:
-        """So many were found: before the next turn more are to come, where they are dense.
-
-        A turn that took longer than that is followed by the next one at once.
-        """
-        before_ns, self._read_ns = self._read_ns, began_ns
-        if datagrams >= DENSE_DATAGRAMS or began_ns - before_ns < DENSE_NS:
-            self._gather_until_ns = began_ns + GATHER_NS
+            before_ns, self._read_ns, self._alone = self._read_ns, began_ns, apart
+            if datagrams >= DENSE_DATAGRAMS or began_ns - before_ns < DENSE_NS:
+                # Before the next turn more are to come.  A turn that took longer than that is
+                # followed by the next one at once.
+                self._gather_until_ns = began_ns + GATHER_NS
+        return read
 
     def _read_client_ports(self, readable: list[Source], writable: list[Source]) -> None:
         """Whatever they send, and however much of it: the grid's deadline is met in between."""

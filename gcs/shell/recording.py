@@ -41,6 +41,8 @@ class Recording:
         self._frames_waiting = 0
         self._reserved_ns = 0
         """No message of what waits has a later log_time."""
+        self.raised = False
+        """There are `faults`."""
         self._faults: list[tuple[Datagram, str]] = []
 
     @property
@@ -107,12 +109,11 @@ class Recording:
                 self._recorder.write(item, now_ns)
             except Exception:  # noqa: BLE001 - the last resort: a bug of ours must not drop a vehicle
                 self._faults.append((given, traceback.format_exc()))
+                self.raised = True
 
     def faults(self) -> list[tuple[Datagram, str]]:
         """What raised where it was recorded later, and why; told once."""
-        if not self._faults:
-            return []
-        faults, self._faults = self._faults, []
+        faults, self._faults, self.raised = self._faults, [], False
         return faults
 
     def changes(self) -> Iterable[RecorderChanged]:

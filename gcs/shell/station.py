@@ -217,6 +217,7 @@ def _open_local_socket(
             policy=policy.name,
             policy_digest=policy_digest(setup.policy_path or "default"),
             speedup=setup.speedup,
+            several=setup.several,
         )
     except (OSError, Unsafe) as error:
         text = f"no other terminal can reach this station: {error}"

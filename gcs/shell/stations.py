@@ -40,6 +40,7 @@ class Description(msgspec.Struct, frozen=True):
     port: int = 0  # TCP, on 127.0.0.1
     token: str = ""  # what a `join` must bring, where it is a port
     vehicle: str = ""  # empty before one is heard
+    vehicles: list[str] = []  # of a bridge that flies all it meets: those that are heard
     log_path: str = ""
     started_ns: int = 0
     keep: bool = False

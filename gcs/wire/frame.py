@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import re
 import struct
+from collections.abc import Callable
 from enum import StrEnum
-from typing import NamedTuple, TypeAlias
+from operator import attrgetter
+from typing import Final, NamedTuple, TypeAlias
 
 from gcs.wire.crc import CRC_EXTRA, mcrf4xx
 from gcs.wire.dialect import MESSAGES
@@ -58,6 +60,11 @@ class Frame(NamedTuple):
         """The message's name, or UNKNOWN_<id>."""
         message = MESSAGES.get(self.msgid)
         return message.name if message else f"UNKNOWN_{self.msgid}"
+
+
+raw_of: Final[Callable[[Frame], bytes]] = attrgetter("raw")
+msgid_of: Final[Callable[[Frame], int]] = attrgetter("msgid")
+"""For `map`, over frames that came together."""
 
 
 class Reason(StrEnum):
@@ -148,6 +155,10 @@ class StreamSplitter:
     def rest(self) -> bytes:
         """The bytes kept for the next `feed`: the beginning of a frame, perhaps."""
         return self._rest
+
+    def go_on_after(self, rest: bytes) -> None:
+        """As if all before it had been taken, and these bytes kept."""
+        self._rest = rest
 
     def feed(self, data: bytes) -> list[Item]:
         """Take the next bytes; return the items that they complete."""

@@ -841,6 +841,18 @@ class ParamError(Message, frozen=True, gc=False):
     error: int  # MAV_PARAM_ERROR
 
 
+class OrbitExecutionStatus(Message, frozen=True, gc=False):
+    """ORBIT_EXECUTION_STATUS (360): 25 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.ORBIT_EXECUTION_STATUS
+    time_usec: int  # us
+    radius: float  # m
+    x: int
+    y: int
+    z: float  # m
+    frame: int  # MAV_FRAME
+
+
 class Event(Message, frozen=True, gc=False):
     """EVENT (410): 53 bytes."""
 

@@ -76,6 +76,7 @@ MESSAGES = (
     "GPS_RTCM_DATA",
     "PARAM_EXT_REQUEST_READ",
     "PARAM_EXT_ACK",
+    "ORBIT_EXECUTION_STATUS",
 )
 """Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
 

@@ -17,12 +17,13 @@ from pathlib import Path
 
 from gcs import ipc
 from gcs.operator.dialogue import TrackedRequest
+from tests.system.patience import until
 from tests.system.programs import GCS
 from tests.system.second_program import HoldWatch
 from tests.system.station import tapped
 from tests.system.terminal import terminal
 from tests.system.typed_flight import take_off
-from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.vehicle_program import free_port, vehicle_sim
 from tests.system.wire_tap import WireTap
 
 ABORTS = 50
@@ -38,7 +39,7 @@ class Stopwatch(HoldWatch):
         known = len(self.passed_ns)
         start_ns = time.monotonic_ns()
         abort()
-        until(lambda: len(self.passed_ns) > known, "the hold command", 5.0)
+        until(lambda: len(self.passed_ns) > known, "the hold command")
         return (self.passed_ns[known] - start_ns) / 1e6
 
 

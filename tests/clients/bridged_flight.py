@@ -19,13 +19,14 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from tests.clients.client_script import CLIENTS, SCRIPTS
-from tests.system.vehicle_program import free_port, until
+from tests.system.patience import PATIENT_S, until
+from tests.system.vehicle_program import free_port
 from vehicle_sim.testing.process import Personality, Simulator
 
 POLICY = Path(__file__).parent / "yard.toml"
 HOMES = {"px4": (47.397742, 8.545594, 488.0), "ardupilot": (-35.363262, 149.165237, 584.0)}
 EARTH_M_PER_DEG = 111_194.93
-FLIGHT_S = 300.0
+FLIGHT_S = 600.0
 
 
 class Truth:
@@ -123,7 +124,7 @@ def _bridge(words: list[str], said: list[str]) -> Iterator[None]:
     finally:
         process.send_signal(signal.SIGINT)
         try:
-            code = process.wait(30.0)
+            code = process.wait(PATIENT_S)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             code = process.wait()

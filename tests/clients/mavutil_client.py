@@ -10,11 +10,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tests.clients.client_script import SCRIPTS, interpreter
-from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.patience import until
+from tests.system.vehicle_program import free_port, vehicle_sim
 
 
 def run_script(
-    client: str, script: str, *words: str, folder: Path, timeout_s: float = 120.0
+    client: str, script: str, *words: str, folder: Path, timeout_s: float = 300.0
 ) -> list[str]:
     """The lines that it printed; it must end well and say nothing on standard error."""
     done = subprocess.run(

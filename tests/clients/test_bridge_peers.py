@@ -27,7 +27,7 @@ URLS = {
 WORDS = {
     "pymavlink": ("fly", "offboard", "return_blocked", "escape", "land"),
     "mavproxy": ("fly", "escape", "land"),
-    "mavsdk": ("fly", "offboard", "escape", "land"),
+    "mavsdk": ("fly", "offboard", "orbit", "escape", "land"),
     "mavsdk3": ("fly", "offboard", "escape", "land"),
 }
 FLOWN = {
@@ -53,6 +53,8 @@ def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_pa
         lines = end_peer(start_peer(client, url, flight, *WORDS[client]))
     print(*lines, sep="\n")
     in_order(lines, *FLOWN[client])
+    if "orbit" in WORDS[client]:
+        in_order(lines, "^orbit: accepted", "^orbit flown True", "^orbit over the mast: refused")
     refused = [line for line in lines if " refused " in line or "NIED" in line or "REJEC" in line]
     assert len(refused) >= REFUSED[client]
     assert flight.refusals()

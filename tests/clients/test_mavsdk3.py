@@ -10,7 +10,6 @@ from pyulog import ULog
 from tests.clients.client_script import fly
 
 pytestmark = pytest.mark.system
-# Not faster: MAVSDK warns where its script takes its callbacks too slowly, on a busy machine.
 
 SERVICES = [
     "raw mission 40 True",

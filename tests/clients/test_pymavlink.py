@@ -10,6 +10,11 @@ from tests.clients.mavutil_client import complaints, in_order, run_script, vehic
 
 pytestmark = pytest.mark.system
 
+PATIENT = {
+    "px4": ("--param", "COM_OF_LOSS_T=60", "--param", "COM_RC_LOSS_T=35"),
+    "ardupilot": (),
+}
+"""A script that the machine stops for a second is still there."""
 MODES = {
     "px4": "ALTCTL, POSCTL, STABILIZED, MANUAL, ACRO, FOLLOWME, LOITER",
     "ardupilot": "STABILIZE, ACRO, ALT_HOLD, LOITER, POSHOLD, BRAKE, CIRCLE, FOLLOW, GUIDED",
@@ -18,7 +23,7 @@ MODES = {
 
 @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 def test_mavutil_flies_a_mission_and_every_mode(autopilot: str, tmp_path: Path) -> None:
-    with vehicle(autopilot, "--speedup", "20") as (url, said):
+    with vehicle(autopilot, "--speedup", "20", *PATIENT[autopilot]) as (url, said):
         lines = run_script("pymavlink", "pymavlink_flight.py", autopilot, url, folder=tmp_path)
     in_order(
         lines,

@@ -398,7 +398,7 @@ def words(flight: HostileFlight, client: Client) -> None:
                 long(command=dialect.MAV_CMD_NAV_RETURN_TO_LAUNCH),
                 long(0, 50, 50, command=dialect.MAV_CMD_DO_CHANGE_SPEED),
                 long(80, 1, command=dialect.MAV_CMD_DO_CHANGE_ALTITUDE),
-                long(60, 5, 0, 0, math.nan, math.nan, 10, command=dialect.MAV_CMD_DO_ORBIT),
+                long(15, 5, *[math.nan] * 5, command=dialect.MAV_CMD_DO_ORBIT),
                 long(command=dialect.MAV_CMD_MISSION_START),
                 dialect.MAVLink_set_gps_global_origin_message(1, 475000000, 86000000, 0),
                 dialect.MAVLink_set_home_position_message(

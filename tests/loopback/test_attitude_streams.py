@@ -21,7 +21,6 @@ from gcs.wire.messages import SetAttitudeTarget
 from tests.loopback.boxed_stream import BoxedStream, box_fence, taken_off
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
-from tests.shares import one_in
 from vehicle_sim.simulation.fault_script import fault_of
 
 ACCEPTED = 0
@@ -181,8 +180,9 @@ def test_at_the_fence_it_is_held_inside_and_flown_back(
     assert stream.outside_m < 0.0
 
 
+@pytest.mark.thorough
 @both
-@pytest.mark.parametrize("seed", one_in(3, range(3)))
+@pytest.mark.parametrize("seed", range(3))
 def test_hostile_attitudes_never_take_it_out(personality: Personality, seed: int) -> None:
     """Anything for 25 s, in wind: for a while each, at any rate, with and without pauses."""
     dice = Random(seed)

@@ -10,11 +10,12 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs import ipc
 from gcs.gate.states import Control, State
 from gcs.report import DecisionItem
+from gcs.session import inputs
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 
 ACCEPTED = 0
-ARM, TAKE_OFF, SET_MODE, RELEASE = 400, 22, 176, 32100
+ARM, TAKE_OFF, SET_MODE = 400, 22, 176
 VELOCITY_ONLY = 0xDC7
 FENCE_M = 150.0
 
@@ -60,6 +61,15 @@ def test_full_speed_at_the_fence_is_held_inside_and_flown_back(personality: Pers
     assert "gate: Stream refused" not in client.texts(), "its own sentence has told it"
 
 
+def left_hovering(flight: BridgedFlight) -> None:
+    """A one-shot command has taken control and gone: it leaves the vehicle as it is."""
+    flight.feed(inputs.OperatorJoined(2, "gcs goto", hold_on_leave=False))
+    flight.feed(inputs.OperatorLine(2, ipc.Ask(1, "station_take")))
+    flight.feed(inputs.OperatorLine(2, ipc.Leave("done")))
+    flight.run(0.1)
+    assert flight.is_in(State.HOVERING)
+
+
 def in_control(flight: BridgedFlight) -> int:
     return flight.of(ipc.Operators)[-1].in_control
 
@@ -84,7 +94,7 @@ def test_a_stream_that_is_refused_takes_no_control(personality: Personality) -> 
     assert "NOT_FLYING" in client.texts()
     assert in_control(flight) == 0
     flight, client = flying(personality)
-    assert client.ask(RELEASE, 0.0) == ACCEPTED
+    left_hovering(flight)
     assert in_control(flight) == 0
     velocity(client, 100.0, 20)
     assert "stream: refused POLICY" in client.texts()

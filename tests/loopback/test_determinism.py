@@ -108,6 +108,7 @@ def test_a_copy_goes_on_as_the_flight_that_it_is_a_copy_of(personality: Personal
         assert further(in_the_air(personality)) == itself
 
 
+@pytest.mark.thorough
 def test_a_copy_of_a_fleet_goes_on_as_the_fleet() -> None:
     def heard(fleet: Fleet, client: Client) -> list[bytes]:
         fleet.send_to(client, 1, 8, 0, 5)

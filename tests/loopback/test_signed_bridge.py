@@ -121,7 +121,7 @@ def test_of_clients_with_a_key_only_who_signs_is_heard_and_answered(
 def test_the_audit_of_a_bridge_with_two_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     tape = Tape()
     monkeypatch.setattr(
-        Flight, "new_recorder", staticmethod(lambda: Recorder.without_file(tape, START_NS))
+        Flight, "new_recorder", lambda _flight: Recorder.without_file(tape, START_NS)
     )
     flight = BridgedFlight(vehicle_key=VEHICLE_KEY, station_key=VEHICLE_KEY, client_key=CLIENT_KEY)
     client = signing(flight.join(), CLIENT_KEY)
@@ -135,7 +135,7 @@ def test_the_audit_of_a_bridge_with_two_keys(monkeypatch: pytest.MonkeyPatch) ->
 def test_a_key_that_a_client_sends_is_in_no_record(monkeypatch: pytest.MonkeyPatch) -> None:
     tape = Tape()
     monkeypatch.setattr(
-        Flight, "new_recorder", staticmethod(lambda: Recorder.without_file(tape, START_NS))
+        Flight, "new_recorder", lambda _flight: Recorder.without_file(tape, START_NS)
     )
     flight = BridgedFlight()
     client = flight.join()

@@ -142,6 +142,12 @@ def intervals_ms(tap: WireTap, begin_ns: int, end_ns: int) -> list[float]:
     return sorted((after - before) / 1e6 for before, after in itertools.pairwise(at_ns))
 
 
+def setpoints_between(tap: WireTap, begin_ns: int, end_ns: int) -> int:
+    """How many went out in that time: the ticks of the station, as quick as the machine is."""
+    passed = [c for c in list(tap.to_vehicle) if begin_ns <= c.at_ns <= end_ns]
+    return sum(_is_setpoint(crossing.data) for crossing in passed)
+
+
 def _is_setpoint(data: bytes) -> bool:
     """Of a datagram of ours, which is one frame."""
     (frame,) = split(data)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from gcs.report import Direction
 from tests.system.flight_log import frames, whole, wire
+from tests.system.machine import KeptWaiting
 from tests.system.programs import gcs
 from tests.system.station import tapped
 from tests.system.wire_tap import Crossing
@@ -21,6 +22,8 @@ class Loss:
 
     received_s: float
     sent_s: float
+    kept_waiting_s: float
+    """What the station would have saved earlier, had the machine let it."""
 
 
 def kill_and_recover(folder: Path, recorded_s: float) -> Loss:
@@ -30,10 +33,11 @@ def kill_and_recover(folder: Path, recorded_s: float) -> Loss:
     on the wire heard, without a gap.
     """
     with tapped(folder) as (operator, tap):
+        kept = KeptWaiting(operator.client.pid)
         enough_s = time.monotonic() + recorded_s
         operator.dialogue.wait_until(lambda: time.monotonic() > enough_s, recorded_s)
+        killed_ns, kept_waiting_s = time.monotonic_ns(), kept.seconds
         os.kill(operator.client.pid, signal.SIGKILL)
-        killed_ns = time.monotonic_ns()
         tap.silence_vehicle()
         broken = operator.log_path
 
@@ -45,6 +49,7 @@ def kill_and_recover(folder: Path, recorded_s: float) -> Loss:
     return Loss(
         _lost_s(killed_ns, tap.to_station, wire(found, Direction.RECEIVED)),
         _lost_s(killed_ns, tap.to_vehicle, wire(found, Direction.SENT)),
+        kept_waiting_s,
     )
 
 

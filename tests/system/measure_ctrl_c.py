@@ -14,12 +14,12 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass
 
+from tests.system.patience import until
 from tests.system.programs import alive, descendants
-from tests.system.vehicle_program import until
 
 MOMENTS = 45
 SPAN_S = 3.0
-ENDS_WITHIN_S = 30.0
+ENDS_WITHIN_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ def interrupt(at_s: float, *words: str) -> Interrupted:
             process.kill()
             told, _ = process.communicate()
         with suppress(AssertionError):
-            until(lambda: not any(map(alive, started)), "the end of its processes", 10.0)
+            until(lambda: not any(map(alive, started)), "the end of its processes")
         return Interrupted(at_s, process.returncode, told, [pid for pid in started if alive(pid)])
 
 

@@ -11,15 +11,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.system.vehicle_program import until
+from tests.system.patience import PATIENT_S, until
 
 GCS = str(Path(sys.executable).with_name("gcs"))
+LONGEST_S = 180.0
+"""What a program that is run to its end may take on a slow machine, its flight included."""
 
 
-def gcs(*words: str, stdin: str = "", timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:
+def gcs(*words: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
     """Run it to its end."""
     return subprocess.run(
-        [GCS, *words], input=stdin, capture_output=True, text=True, timeout=timeout_s, check=False
+        [GCS, *words], input=stdin, capture_output=True, text=True, timeout=LONGEST_S, check=False
     )
 
 
@@ -53,9 +55,20 @@ class Running:
         self.process.stdin.write("".join(f"{line}\n" for line in lines))
         self.process.stdin.flush()
 
-    def until_out(self, text: str, timeout_s: float = 30.0) -> None:
+    def until_out(self, text: str, timeout_s: float = PATIENT_S) -> None:
         """Wait for a line of standard output that contains `text`."""
-        until(lambda: any(text in line for line in self.out), f"{text!r} in {self.err}", timeout_s)
+        try:
+            until(lambda: any(text in line for line in self.out), repr(text), timeout_s)
+        except AssertionError as error:
+            raise AssertionError(f"{error}, in {self.out}; {self.err}") from None
+
+    def ended(self) -> int:
+        """Waits for its end, and until all that it wrote is read; its exit code."""
+        code = self.process.wait(PATIENT_S)
+        for reader in self._readers:
+            reader.join(PATIENT_S)
+            assert not reader.is_alive(), "what it started still holds its output"
+        return code
 
     def close(self) -> None:
         """The end of its input, then of itself, then of whatever it started."""
@@ -69,7 +82,7 @@ class Running:
             self.process.kill()
             self.process.wait()
         try:
-            until(lambda: all_gone(started), "the end of its processes", 10.0)
+            until(lambda: all_gone(started), "the end of its processes")
         finally:
             for pid in filter(alive, started):
                 os.kill(pid, 9)

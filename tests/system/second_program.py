@@ -1,4 +1,4 @@
-"""A second program that aborts, and when it asked and when it was told that it is done."""
+"""A second program that aborts, when it had asked, and when it was told that it is done."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import all as dialect
 
+from tests.system.programs import LONGEST_S
 from tests.system.wire_tap import Crossing, WireTap
 
 PX4_AUTO, PX4_LOITER = 4, 3
@@ -19,9 +20,10 @@ from gcs import ipc
 sent = []
 send, read = JoinedStation.send, JoinedStation._event
 def noting_send(self, command):
+    went = send(self, command)
     if isinstance(command, ipc.Ask):
         sent.append(time.monotonic_ns())
-    return send(self, command)
+    return went
 def noting_event(self, line):
     event = read(self, line)
     if isinstance(event, ipc.EndingEvent) and event.ended == "complete":
@@ -38,7 +40,7 @@ _PROGRAMS = {
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """ns of the monotonic clock, which all processes share."""
+    """ns of the monotonic clock, which all processes share; `sent_ns`: the station has it."""
 
     sent_ns: int
     complete_ns: int
@@ -48,7 +50,7 @@ def noted_ns(program: str) -> Noted:
     """Run it to its end."""
     code = _NOTED + _PROGRAMS[program] + "print('noted', *sent)\n"
     ended = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=LONGEST_S, check=False
     )
     assert ended.returncode == 0, ended.stderr
     (noted,) = (line for line in ended.stdout.splitlines() if line.startswith("noted "))

@@ -14,10 +14,12 @@ from gcs.operator.client import StationClient, StationEnded
 from gcs.operator.dialogue import Dialogue, TrackedRequest
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
+from tests.system.patience import PATIENT_POLICY, PATIENT_S
 from tests.system.vehicle_program import vehicle_sim
 from tests.system.wire_tap import WireTap
 
-WAIT_S = 30.0
+PATIENT_VEHICLE = {"COM_OF_LOSS_T": 60.0}
+"""A station that the machine stops for seconds streams its setpoints again afterwards."""
 
 
 class NoInterrupts:
@@ -63,12 +65,12 @@ class Station:
         told = " ".join(self.dialogue.hello.endpoints)
         return [int(port) for port in re.findall(r"on udp [\d.]+:(\d+)", told)]
 
-    def until(self, condition: Callable[[], bool], what: str, timeout_s: float = WAIT_S) -> None:
+    def until(self, condition: Callable[[], bool], what: str, timeout_s: float = PATIENT_S) -> None:
         self.dialogue.wait_until(condition, timeout_s)
         assert condition(), f"not within {timeout_s:g} s: {what}\n{self.events[-10:]}"
 
     def connect(self) -> None:
-        self.dialogue.wait_for_vehicle(WAIT_S)
+        self.dialogue.wait_for_vehicle(PATIENT_S)
 
     def send(self, line: str) -> TrackedRequest:
         """Send it, wait for the verdict."""
@@ -85,7 +87,7 @@ class Station:
             self.see_completed(self.send(line))
 
     def see_completed(self, request: TrackedRequest) -> None:
-        self.until(lambda: request.settled, f"the outcome of {request.label}", 2 * WAIT_S)
+        self.until(lambda: request.settled, f"the outcome of {request.label}", 2 * PATIENT_S)
         assert request.completed, f"{request.label}: {request.verdict} {request.outcome}"
 
     def said(self, text: str) -> bool:
@@ -111,13 +113,15 @@ def station(config: StationConfig) -> Iterator[Station]:
 
 
 @contextmanager
-def simulated(log_dir: Path, speedup: float = 1.0, policy_path: str = "") -> Iterator[Station]:
+def simulated(
+    log_dir: Path, speedup: float = 1.0, policy: str = PATIENT_POLICY
+) -> Iterator[Station]:
     """A station with a vehicle of its own, connected."""
     config = StationConfig(
-        sim=SimConfig(speedup=speedup),
+        sim=SimConfig(speedup=speedup, params=PATIENT_VEHICLE),
         speedup=speedup,
         log_dir=str(log_dir),
-        policy_path=policy_path,
+        policy_path=policy,
     )
     with station(config) as made:
         made.connect()
@@ -126,7 +130,7 @@ def simulated(log_dir: Path, speedup: float = 1.0, policy_path: str = "") -> Ite
 
 @contextmanager
 def tapped(
-    log_dir: Path, speedup: float = 1.0, tap: WireTap | None = None, policy: str = ""
+    log_dir: Path, speedup: float = 1.0, tap: WireTap | None = None, policy: str = PATIENT_POLICY
 ) -> Iterator[tuple[Station, WireTap]]:
     """A station and a vehicle, separate programs, with an ear on the wire between them."""
     config = StationConfig(
@@ -138,6 +142,8 @@ def tapped(
     with tap or WireTap() as ear, station(config) as made:
         ear.connect(made.ports[0])
         url = f"udpout://127.0.0.1:{ear.vehicle_port}"
-        with vehicle_sim("--speedup", f"{speedup:g}", "--link", url):
+        params = [f"{name}={value:g}" for name, value in PATIENT_VEHICLE.items()]
+        words = [word for param in params for word in ("--param", param)]
+        with vehicle_sim("--speedup", f"{speedup:g}", "--link", url, *words):
             made.connect()
             yield made, ear

@@ -16,8 +16,8 @@ if sys.platform != "win32":
     import pty
     import termios
 
+from tests.system.patience import PATIENT_S, until
 from tests.system.programs import alive, all_gone, family
-from tests.system.vehicle_program import until
 
 ROWS, COLUMNS = 50, 160
 SIZES = ("LINES", "COLUMNS")
@@ -96,10 +96,10 @@ class Terminal:
         """Whether it has been written since the last key."""
         return self.text.find(text, self._since) >= 0
 
-    def until_text(self, *texts: str, timeout_s: float = 20.0) -> None:
+    def until_text(self, *texts: str, timeout_s: float = PATIENT_S) -> None:
         until(lambda: all(map(self.shows, texts)), f"{texts} on screen", timeout_s)
 
-    def until_either(self, *texts: str, timeout_s: float = 20.0) -> str:
+    def until_either(self, *texts: str, timeout_s: float = PATIENT_S) -> str:
         """The first of the texts that shows."""
         until(lambda: any(map(self.shows, texts)), f"one of {texts} on screen", timeout_s)
         return next(filter(self.shows, texts))
@@ -120,7 +120,7 @@ class Terminal:
             self.process.kill()
         self.process.wait()
         try:
-            until(lambda: all_gone(started), "the end of its processes", 10.0)
+            until(lambda: all_gone(started), "the end of its processes")
         finally:
             for pid in filter(alive, started):
                 os.kill(pid, 9)

@@ -9,12 +9,14 @@ from pathlib import Path
 import pytest
 
 from tests.system.flight_log import only_log
+from tests.system.patience import PATIENT_POLICY
 from tests.system.programs import GCS, gcs, running
 from tests.system.station import simulated, tapped
 from tests.system.vehicle_program import free_port, vehicle_sim
 
 pytestmark = pytest.mark.system
 
+PATIENT = ("--policy", PATIENT_POLICY)
 SCRIPT = """\
 arm
 takeoff 3
@@ -36,7 +38,7 @@ def audited(*logs: Path) -> str:
 
 @pytest.mark.thorough
 def test_a_script_of_gcs_fly_is_reproduced(tmp_path: Path) -> None:
-    ended = gcs("fly", "--sim", "--plain", "--log-dir", str(tmp_path), stdin=SCRIPT)
+    ended = gcs("fly", "--sim", "--plain", *PATIENT, "--log-dir", str(tmp_path), stdin=SCRIPT)
     assert "goto 500 0 3: refused OUTSIDE_FENCE" in ended.stdout, ended.stdout + ended.stderr
     told = audited(only_log(tmp_path))
     assert "files 1" in told
@@ -46,7 +48,7 @@ def test_a_script_of_gcs_fly_is_reproduced(tmp_path: Path) -> None:
 @pytest.mark.thorough
 def test_one_shot_commands_are_reproduced(tmp_path: Path) -> None:
     port = free_port()
-    link = ("--link", f"udpin://127.0.0.1:{port}", "--log-dir", str(tmp_path))
+    link = ("--link", f"udpin://127.0.0.1:{port}", *PATIENT, "--log-dir", str(tmp_path))
     with vehicle_sim("--link", f"udpout://127.0.0.1:{port}"):
         for words in (("arm",), ("takeoff", "2"), ("goto", "1", "0", "2"), ("land",)):
             ended = gcs(*words, *link)
@@ -63,7 +65,8 @@ def test_a_link_that_is_a_stream_is_reproduced(tmp_path: Path) -> None:
     port = free_port()
     with vehicle_sim("--link", f"tcpin://127.0.0.1:{port}"):
         url = f"tcpout://127.0.0.1:{port}"
-        ended = gcs("fly", "--link", url, "--plain", "--log-dir", str(tmp_path), stdin=SCRIPT)
+        words = ("--link", url, "--plain", *PATIENT, "--log-dir", str(tmp_path))
+        ended = gcs("fly", *words, stdin=SCRIPT)
     assert "land: complete" in ended.stdout, ended.stdout + ended.stderr
     audited(only_log(tmp_path))
 
@@ -80,7 +83,7 @@ def test_two_operators_are_reproduced(
             other.type("station take", "goto 2 0 2")
             other.until_out("goto 2 0 2: complete")
             other.type("quit")
-            assert other.process.wait(30.0) == 0
+            assert other.ended() == 0
         operator.fly("land")
         log = operator.log_path
         operator.leave()

@@ -18,8 +18,9 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.exit_codes import ExitCode
+from tests.system.patience import PATIENT_POLICY, PATIENT_S, hold_much, until
 from tests.system.programs import GCS, Running, gcs, running
-from tests.system.vehicle_program import free_port, until
+from tests.system.vehicle_program import free_port
 
 if sys.platform != "win32":
     from tests.system.terminal import terminal
@@ -27,7 +28,6 @@ if sys.platform != "win32":
 pytestmark = pytest.mark.system
 
 ANY_UDP, ANY_TCP = "udpin://127.0.0.1:0", "tcpin://127.0.0.1:0"
-WAIT_S = 30.0
 
 
 class Client:
@@ -37,6 +37,7 @@ class Client:
         self._link: Any = mavutil.mavlink_connection(
             url, source_system=sysid, source_component=190, dialect="all"
         )
+        hold_much(self._link.port)
         self._beat_s = 0.0
         self.close: Callable[[], None] = self._link.close
 
@@ -44,7 +45,7 @@ class Client:
         self._link.mav.send(message)
 
     def until(self, kind: str, wanted: Callable[[Any], bool] = lambda _: True) -> Any:
-        end_s = time.monotonic() + WAIT_S
+        end_s = time.monotonic() + PATIENT_S
         while time.monotonic() < end_s:
             if time.monotonic() >= self._beat_s:
                 self._beat_s = time.monotonic() + 1.0
@@ -52,7 +53,7 @@ class Client:
             message = self._link.recv_match(blocking=True, timeout=0.2)
             if message is not None and message.get_type() == kind and wanted(message):
                 return message
-        raise AssertionError(f"no such {kind} within {WAIT_S:g} s")
+        raise AssertionError(f"no such {kind} within {PATIENT_S:g} s")
 
 
 @contextmanager
@@ -74,28 +75,33 @@ def port(program: Running, kind: str) -> int:
 
 def ended(program: Running) -> int:
     program.process.send_signal(signal.SIGTERM)
-    return program.process.wait(WAIT_S)
+    return program.ended()
 
 
 def of_vehicle(message: Any) -> bool:
-    return bool(message.get_srcSystem() == 1)
+    """Of its autopilot: the camera has heartbeats, too."""
+    return (message.get_srcSystem(), message.get_srcComponent()) == (1, 1)
 
 
 def test_two_clients_by_udp_and_tcp_one_in_control_and_a_refusal_with_its_reason(
     tmp_path: Path,
 ) -> None:
-    words = ("--sim", "--client", ANY_UDP, "--client", ANY_TCP)
+    words = ("--sim", "--policy", PATIENT_POLICY, "--client", ANY_UDP, "--client", ANY_TCP)
     with bridge(tmp_path, *words) as program:
         one = Client(f"udpout:127.0.0.1:{port(program, 'udp')}")
         other = Client(f"tcp:127.0.0.1:{port(program, 'tcp')}", 254)
         for client in (one, other):
             assert client.until("HEARTBEAT", of_vehicle).autopilot == dialect.MAV_AUTOPILOT_PX4
-        one.until("STATUSTEXT", lambda text: "GPS fix" in text.text)
         one.until("HOME_POSITION")
         arm = dialect.MAVLink_command_long_message(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
-        one.send(arm)
-        accepted = one.until("COMMAND_ACK", lambda ack: ack.command == 400)
-        assert accepted.result == dialect.MAV_RESULT_ACCEPTED
+
+        def armed() -> bool:
+            """It refuses as long as it starts."""
+            one.send(arm)
+            answer = one.until("COMMAND_ACK", lambda ack: ack.command == 400)
+            return bool(answer.result == dialect.MAV_RESULT_ACCEPTED)
+
+        until(armed, "an arming that is accepted")
         other.send(arm)
         refused = other.until("COMMAND_ACK", lambda ack: ack.command == 400)
         assert refused.result == dialect.MAV_RESULT_TEMPORARILY_REJECTED
@@ -165,7 +171,7 @@ def test_on_a_terminal_it_is_a_page_that_ctrl_c_ends_in_order(tmp_path: Path) ->
         screen.until_text("255/190")
         screen.press("\x03")
         screen.until_text("log: ", "gcs: the simulation has ended with it")
-        assert screen.process.wait(WAIT_S) == ExitCode.DONE
+        assert screen.process.wait(PATIENT_S) == ExitCode.DONE
         assert screen.seen.count(b"\x1b[?25h") >= screen.seen.count(b"\x1b[?25l") > 0
         assert screen.settings == screen.settings_before
         client.close()

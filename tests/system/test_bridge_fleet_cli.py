@@ -17,15 +17,15 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.exit_codes import ExitCode
+from tests.system.patience import PATIENT_POLICY, PATIENT_S, hold_much, until
 from tests.system.programs import GCS, Running, gcs, running
-from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.vehicle_program import free_port, vehicle_sim
 
 if sys.platform != "win32":
     from tests.system.terminal import terminal
 
 pytestmark = pytest.mark.system
 
-WAIT_S = 60.0
 ARM, TAKE_OFF, LAND, REPOSITION = 400, 22, 21, 192
 PX4, ARDUPILOT = 1, 2
 HOMES = {PX4: "47.397742,8.545594,488", ARDUPILOT: "47.397742,8.545993,488"}
@@ -39,6 +39,7 @@ class Client:
         self._link: Any = mavutil.mavlink_connection(
             url, source_system=245, source_component=190, dialect="all"
         )
+        hold_much(self._link.port)
         self._beat_s = 0.0
         self.latest: dict[tuple[int, str], Any] = {}
         self.close: Callable[[], None] = self._link.close
@@ -85,9 +86,9 @@ class Client:
         return int(self.latest[sysid, "COMMAND_ACK"].result)
 
     def until(self, true: Callable[[], bool], what: str) -> None:
-        end_s = time.monotonic() + WAIT_S
+        end_s = time.monotonic() + PATIENT_S
         while not true():
-            assert time.monotonic() < end_s, f"no {what} within {WAIT_S:g} s"
+            assert time.monotonic() < end_s, f"no {what} within {PATIENT_S:g} s"
             if time.monotonic() >= self._beat_s:
                 self._beat_s = time.monotonic() + 1.0
                 self._link.mav.heartbeat_send(6, 8, 0, 0, 4)
@@ -139,7 +140,7 @@ def take_off(client: Client, sysid: int) -> None:
         return client.command(sysid, ARM, 1) == 0
 
     client.until(lambda: (sysid, "HOME_POSITION") in client.latest, f"home of {sysid}")
-    end_s = time.monotonic() + WAIT_S
+    end_s = time.monotonic() + PATIENT_S
     while not armed():
         assert time.monotonic() < end_s, f"{sysid} does not arm"
     nan = math.nan
@@ -151,6 +152,7 @@ def take_off(client: Client, sysid: int) -> None:
 @pytest.mark.thorough
 def test_one_client_flies_a_px4_and_an_ardupilot(tmp_path: Path, where: tuple[str, str]) -> None:
     words = ["--vehicle", where[0], "--vehicle", where[1], "--client", "udpin://127.0.0.1:0"]
+    words += ["--policy", PATIENT_POLICY]
     with running(GCS, "bridge", "--log-dir", str(tmp_path), "--no-compact", *words) as program:
         client = Client(f"udpout:127.0.0.1:{client_port(program)}")
         for sysid in (PX4, ARDUPILOT):
@@ -166,7 +168,7 @@ def test_one_client_flies_a_px4_and_an_ardupilot(tmp_path: Path, where: tuple[st
             lambda: not client.armed(PX4) and not client.armed(ARDUPILOT), "both down, disarmed"
         )
         program.process.send_signal(signal.SIGTERM)
-        assert program.process.wait(WAIT_S) == ExitCode.DONE
+        assert program.ended() == ExitCode.DONE
         client.close()
     (log,) = tmp_path.glob("*_bridge.mcap")
     told = gcs("log", "info", "--json", str(log))
@@ -185,4 +187,4 @@ def test_the_page_shows_both(tmp_path: Path, where: tuple[str, str]) -> None:
         screen.until_text("1/1 px4 quadrotor", "2/1 ardupilot quadrotor", "GROUNDED")
         screen.press("\x03")
         screen.until_text("log: ")
-        assert screen.process.wait(WAIT_S) == ExitCode.DONE
+        assert screen.process.wait(PATIENT_S) == ExitCode.DONE

@@ -12,9 +12,10 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.exit_codes import ExitCode
+from tests.system.patience import until
 from tests.system.programs import GCS, Running, gcs, running
 from tests.system.test_bridge_cli import Client, ended, of_vehicle, port
-from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.vehicle_program import free_port, vehicle_sim
 
 pytestmark = pytest.mark.system
 

@@ -14,10 +14,11 @@ import pytest
 
 from tests.shares import one_in
 from tests.system.flight_log import whole
+from tests.system.patience import PATIENT_S
 from tests.system.programs import gcs
 from tests.unit.record.flights import MS, a_flight, messages_of, record
 
-FLIGHT = "takeoff 5\nwait 120\nland\nquit\n"
+ON_THE_GROUND = "wait 120\nquit\n"
 
 
 def within(seconds: float, true: Callable[[], bool]) -> bool:
@@ -36,9 +37,9 @@ def test_a_process_that_is_told_to_end_leaves_a_whole_file_and_no_other(tmp_path
     messages = messages_of(flight)
     copy = flight.with_name(f".{flight.name}.compacting")
     with subprocess.Popen([sys.executable, "-m", "gcs.record.compact", str(flight)]) as process:
-        assert within(30.0, copy.exists)
+        assert within(PATIENT_S, copy.exists)
         process.send_signal(signal.SIGTERM)
-        process.wait(30.0)
+        process.wait(PATIENT_S)
     assert list(flight.parent.iterdir()) == [flight]
     assert messages_of(flight) == messages
     assert whole(flight).damaged == 0
@@ -49,13 +50,13 @@ def test_a_station_ends_at_once_and_its_record_is_compacted_unless_told_not_to(
     tmp_path: Path, option: str
 ) -> None:
     arguments = ("fly", "--plain", "--sim", "--speedup", "20", "--log-dir", str(tmp_path), option)
-    ended = gcs(*arguments, stdin=FLIGHT)
+    ended = gcs(*arguments, stdin=ON_THE_GROUND)
     assert ended.returncode == 0, ended.stderr
     (path,) = tmp_path.glob("*.mcap")
     written = path.stat().st_size
     assert written > 1_000_000
     if option == "--compact":
-        assert within(30.0, lambda: path.stat().st_size < written)
+        assert within(PATIENT_S, lambda: path.stat().st_size < written)
         assert list(tmp_path.iterdir()) == [path]
     else:
         time.sleep(1.0)

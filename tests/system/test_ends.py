@@ -11,8 +11,8 @@ import pytest
 from tests.shares import one_in
 from tests.system.flight_log import assert_held, only_log
 from tests.system.killed_station import kill_and_recover
+from tests.system.patience import PATIENT_POLICY, until
 from tests.system.programs import GCS, Running, all_gone, children, descendants, running
-from tests.system.vehicle_program import until
 
 pytestmark = pytest.mark.system
 
@@ -22,11 +22,12 @@ def test_a_killed_station_loses_at_most_a_second_and_recover_makes_its_record_wh
     recorded_s: float, tmp_path: Path
 ) -> None:
     loss = kill_and_recover(tmp_path, recorded_s)
-    assert max(loss.received_s, loss.sent_s) <= 1.0
+    assert max(loss.received_s, loss.sent_s) <= 1.0 + loss.kept_waiting_s
 
 
 def in_mid_flight(log_dir: Path) -> tuple[str, ...]:
-    return (GCS, "fly", "--sim", "--plain", "--speedup", "2", "--log-dir", str(log_dir))
+    words = ("--policy", PATIENT_POLICY, "--log-dir", str(log_dir))
+    return (GCS, "fly", "--sim", "--plain", "--speedup", "2", *words)
 
 
 def take_off_and_go(program: Running) -> tuple[int, int]:
@@ -59,8 +60,8 @@ def test_when_the_operators_program_goes_the_station_holds_the_vehicle_and_close
             os.killpg(program.pid, number)  # a Ctrl-C reaches all of them
         else:
             os.kill(program.pid, number)
-        assert program.process.wait(10.0) == exit_code
-        until(lambda: all_gone(family), "the end of station and vehicle", 10.0)
+        assert program.ended() == exit_code
+        until(lambda: all_gone(family), "the end of station and vehicle")
 
     assert_held(only_log(tmp_path))
 
@@ -69,8 +70,8 @@ def test_a_station_that_is_told_to_go_holds_the_vehicle_and_closes_the_log(tmp_p
     with running(*in_mid_flight(tmp_path)) as program:
         family = take_off_and_go(program)
         os.kill(family[0], signal.SIGTERM)
-        program.process.wait(10.0)
-        until(lambda: all_gone(family), "the end of station and vehicle", 10.0)
+        program.ended()
+        until(lambda: all_gone(family), "the end of station and vehicle")
 
     assert_held(only_log(tmp_path))
     assert "Traceback" not in "".join(program.err)
@@ -80,8 +81,8 @@ def test_a_vehicle_of_our_own_does_not_survive_a_killed_station(tmp_path: Path) 
     with running(*in_mid_flight(tmp_path)) as program:
         station, vehicle = take_off_and_go(program)
         os.kill(station, signal.SIGKILL)
-        program.process.wait(10.0)
-        until(lambda: all_gone([station, vehicle]), "the end of the vehicle", 10.0)
+        program.ended()
+        until(lambda: all_gone([station, vehicle]), "the end of the vehicle")
 
     assert program.process.returncode == 70
     assert any("the link process died" in line for line in program.err)
@@ -95,8 +96,8 @@ def test_an_end_of_input_in_mid_flight_leaves_in_good_order(tmp_path: Path) -> N
         family = descendants(program.pid)
         assert program.process.stdin is not None
         program.process.stdin.close()
-        assert program.process.wait(10.0) == 0
-        until(lambda: all_gone(family), "the end of station and vehicle", 10.0)
+        assert program.ended() == 0
+        until(lambda: all_gone(family), "the end of station and vehicle")
 
     assert_held(only_log(tmp_path))
     assert any("in AUTO.LOITER" in line for line in program.err)

@@ -16,7 +16,9 @@ import pytest
 from gcs import ipc
 from gcs.operator.joined import JoinedStation
 from gcs.shell import stations
-from tests.system.hostile_clients import MODULE, intervals_ms, resident_kb
+from tests.system.hostile_clients import MODULE, intervals_ms, resident_kb, setpoints_between
+from tests.system.machine import KeptWaiting
+from tests.system.programs import LONGEST_S
 from tests.system.second_program import HoldWatch
 from tests.system.station import tapped
 from tests.system.wire_tap import WireTap
@@ -27,13 +29,23 @@ pytestmark = [
 ]
 
 CLIENTS = 80
+TICK_MS = 50.0
 LATE_MS = 55.0
 """Nine of ten setpoints come within this: the tenth is left to a machine that others use too, and
 the 99th of 100 is measured by the script on one that nobody else uses."""
 GAP_MS = 500.0
-"""What such a machine may do by itself; a link that waits for a client stands for seconds."""
+"""A link that waits for a client stands for seconds.  To both limits is added what the machine
+kept the station waiting, as far as it is known (`KeptWaiting`)."""
 GROWS_KB = 16_000
-SOON_MS = 100.0
+SOON_TICKS = 2
+
+
+def assert_undisturbed(intervals_ms: list[float], kept: KeptWaiting) -> None:
+    """Of the setpoints, sorted.  Each that the machine made late took at least `LATE_MS` of it."""
+    kept_ms = kept.seconds * 1e3
+    late = sum(interval_ms > LATE_MS for interval_ms in intervals_ms)
+    assert late <= len(intervals_ms) / 10 + kept_ms / (LATE_MS - TICK_MS), (intervals_ms, kept_ms)
+    assert intervals_ms[-1] < GAP_MS + kept_ms
 
 
 def test_a_crowd_delays_no_setpoint_and_no_abort_and_costs_no_memory(
@@ -44,26 +56,25 @@ def test_a_crowd_delays_no_setpoint_and_no_abort_and_costs_no_memory(
     with tapped(tmp_path, tap=WireTap(watch.hear)) as (operator, tap):
         operator.fly("arm", "takeoff 3")
         (described,) = stations.running(stations.folder_of())
+        kept = KeptWaiting(described.pid)
         begin_ns, before_kb = time.monotonic_ns(), resident_kb(described.pid)
         words = [sys.executable, "-m", MODULE, described.socket_path]
         crowd = subprocess.Popen([*words, str(CLIENTS), "1"], stdout=subprocess.PIPE)
-        operator.until(lambda: crowd.poll() is not None, "the end of the crowd", 120.0)
+        operator.until(lambda: crowd.poll() is not None, "the end of the crowd", LONGEST_S)
         end_ns, after_kb = time.monotonic_ns(), resident_kb(described.pid)
         told, _ = crowd.communicate()
         assert crowd.returncode == 0
         assert sum(json.loads(told).values()) == CLIENTS
-        crowded = intervals_ms(tap, begin_ns, end_ns)
-        assert crowded[len(crowded) * 9 // 10] <= LATE_MS
-        assert crowded[-1] < GAP_MS
+        assert_undisturbed(intervals_ms(tap, begin_ns, end_ns), kept)
         assert after_kb - before_kb < GROWS_KB
 
         crowd = subprocess.Popen([*words, "100000", "2"], stdout=subprocess.DEVNULL)
         try:
             joined = JoinedStation.join(described, "a test", hold_on_leave=False)
-            asked_ns = time.monotonic_ns()
             joined.send(ipc.Ask(1, "abort"))
+            asked_ns = time.monotonic_ns()
             operator.until(lambda: bool(watch.passed_ns), "a hold on the wire")
-            assert (watch.passed_ns[0] - asked_ns) / 1e6 < SOON_MS
+            assert setpoints_between(tap, asked_ns, watch.passed_ns[0]) <= SOON_TICKS
             operator.until(lambda: operator.said("Current State: HOLDING"), "HOLDING")
             joined.close()
         finally:

@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from tests.system.patience import PATIENT_S
+
 pytestmark = pytest.mark.system
 
 OF_OTHERS = (
@@ -54,7 +56,7 @@ def loaded(*command: str) -> set[str]:
         input="",
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=PATIENT_S,
         check=True,
     )
     names = re.findall(r"^import time: +\d+ \| +\d+ \| +(\S+)$", ended.stderr, re.MULTILINE)
@@ -90,4 +92,4 @@ def test_what_the_package_promises_is_there_when_it_is_asked_for() -> None:
         "import vehicle_sim.testing as t; names = [getattr(t, n).__name__ for n in t.__all__]; "
         "assert names == t.__all__, names; assert not hasattr(t, 'Nothing')"
     )
-    subprocess.run([sys.executable, "-c", program], timeout=60, check=True)
+    subprocess.run([sys.executable, "-c", program], timeout=PATIENT_S, check=True)

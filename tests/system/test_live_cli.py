@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 from gcs.exit_codes import ExitCode
+from tests.system.patience import PATIENT_POLICY, until
 from tests.system.programs import GCS, Running, gcs, running
 from tests.system.station import simulated
-from tests.system.vehicle_program import until
 from tests.system.viewer import Viewer, viewer
 
 pytestmark = pytest.mark.system
 
+PATIENT = ("--policy", PATIENT_POLICY)
 STATE = "/vehicle/1/state"
 
 
@@ -36,7 +37,7 @@ def told(lines: list[str]) -> tuple[str, str]:
 
 def interrupt(program: Running) -> int:
     program.process.send_signal(signal.SIGINT)
-    return program.process.wait(20.0)
+    return program.ended()
 
 
 def test_live_of_a_station_that_runs_is_told_and_goes_without_it_noticing(tmp_path: Path) -> None:
@@ -55,7 +56,7 @@ def test_live_ends_with_the_station(tmp_path: Path) -> None:
     with simulated(tmp_path) as operator, running(GCS, "live") as live:
         live.until_out("take_control")
         operator.leave()
-        assert live.process.wait(10.0) == ExitCode.DONE
+        assert live.ended() == ExitCode.DONE
         assert "the vehicle is on the ground" in "\n".join(live.err)
 
 
@@ -66,26 +67,27 @@ def climbed(looker: Viewer) -> bool:
 
 @pytest.mark.thorough
 def test_live_of_a_new_station_flies_by_services_alone(tmp_path: Path) -> None:
-    with running(GCS, "live", "--sim", "--log-dir", str(tmp_path)) as live:
+    with running(GCS, "live", "--sim", *PATIENT, "--log-dir", str(tmp_path)) as live:
         live.until_out("take_control")
         url, code = told(live.out)
-        until(lambda: "Current State: GROUNDED" in "\n".join(live.err), "a vehicle", 20.0)
+        until(lambda: "Current State: GROUNDED" in "\n".join(live.err), "a vehicle")
         with viewer(url) as looker:
             looker.subscribe(STATE)
             assert looker.call("take_control", code=code)["accepted"]
             assert looker.call("arm")["accepted"]
-            until(lambda: any("Armed" in line for line in live.err), "armed", 20.0)
+            until(lambda: any("Armed" in line for line in live.err), "armed")
             assert looker.call("takeoff", up_m=2.0)["accepted"]
             looker.until(lambda: climbed(looker), "the climb")
         # The viewer in control has gone: the vehicle is held.
-        until(lambda: any("HOLDING" in line for line in live.err), "HOLDING", 20.0)
+        until(lambda: any("HOLDING" in line for line in live.err), "HOLDING")
         assert interrupt(live) == ExitCode.DONE
     (log_path,) = tmp_path.glob("*_live.mcap")
     assert str(log_path) in "\n".join(live.err)
 
 
 def test_fly_with_a_live_view_tells_the_address_and_ends_with_it(tmp_path: Path) -> None:
-    ended = gcs("fly", "--sim", "--plain", "--live", "--log-dir", str(tmp_path), stdin="arm\n")
+    words = ("fly", "--sim", "--plain", "--live", *PATIENT, "--log-dir", str(tmp_path))
+    ended = gcs(*words, stdin="arm\n")
     assert ended.returncode == ExitCode.DONE, ended.stderr
     url, _ = told(ended.stderr.splitlines())
     assert "arm: complete" in ended.stdout

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.system.vehicle_program import until
+from tests.system.patience import PATIENT_S, until
+from tests.system.programs import LONGEST_S
 from vehicle_sim.testing import Simulator, SimulatorError, SimVehicle
 
 pytestmark = pytest.mark.system
@@ -65,7 +66,7 @@ def test_a_suite_of_strangers_needs_nothing_but_the_package(tmp_path: Path) -> N
             def test_it_flies(vehicle):
                 link = mavutil.mavlink_connection(vehicle.pymavlink_url)
                 link.mav.heartbeat_send(6, 8, 0, 0, 0)
-                assert link.wait_heartbeat(timeout=5).autopilot == 12
+                assert link.wait_heartbeat(timeout=60).autopilot == 12
 
             def test_it_fails(vehicle):
                 vehicle.inject("gps_lost")
@@ -78,7 +79,7 @@ def test_a_suite_of_strangers_needs_nothing_but_the_package(tmp_path: Path) -> N
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=LONGEST_S,
         check=False,
     )
     assert "1 failed, 1 passed" in ended.stdout, ended.stdout
@@ -135,7 +136,7 @@ def test_nothing_is_left_of_a_test_run_that_is_killed(tmp_path: Path) -> None:
     assert run.stdout is not None
     port = int(run.stdout.readline().rpartition(":")[2])
     run.kill()
-    run.wait(10)
+    run.wait(PATIENT_S)
     run.stdout.close()
 
     def free() -> bool:
@@ -146,4 +147,4 @@ def test_nothing_is_left_of_a_test_run_that_is_killed(tmp_path: Path) -> None:
                 return False
             return True
 
-    until(free, "the vehicle has ended with its owner", 10.0)
+    until(free, "the vehicle has ended with its owner")

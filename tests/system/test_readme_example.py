@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.system.programs import LONGEST_S
+
 pytest.importorskip("mavsdk")
 
 pytestmark = pytest.mark.system
@@ -50,7 +52,7 @@ def test_the_readmes_example_passes_as_it_stands(tmp_path: Path) -> None:
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=90,
+        timeout=LONGEST_S,
         check=False,
     )
     assert ended.returncode == 0, ended.stdout

@@ -7,21 +7,25 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
+from tests.system.patience import PATIENT_S, until
 from tests.system.terminal import terminal
-from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.vehicle_program import free_port, vehicle_sim
 
 pytestmark = [pytest.mark.system, pytest.mark.skipif(sys.platform == "win32", reason="signals")]
 
+PAGES_S = 2.0
+"""A live page would be drawn several times."""
 PROGRAM = [sys.executable, "-m", "vehicle_sim"]
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [*PROGRAM, *arguments], capture_output=True, text=True, timeout=20, check=False
+        [*PROGRAM, *arguments], capture_output=True, text=True, timeout=PATIENT_S, check=False
     )
 
 
@@ -82,14 +86,14 @@ def test_a_signal_ends_it_cleanly(number: signal.Signals, code: int) -> None:
     process.stdout.readline()
     process.stdout.readline()
     process.send_signal(number)
-    _, errors = process.communicate(timeout=10)
+    _, errors = process.communicate(timeout=PATIENT_S)
     assert (process.returncode, errors) == (code, "")
 
 
 def test_it_tells_what_to_connect_to_and_ends_with_its_lifeline() -> None:
     port = free_port()
     with vehicle_sim("--port", str(port)) as lines:
-        until(lambda: len(lines) >= 2, "two lines", 10.0)
+        until(lambda: len(lines) >= 2, "two lines")
         assert lines[0].startswith("INFO vehicle1: px4 quadrotor at 47.397742, 8.545594")
         assert lines[1].endswith(f"connect with udpout://127.0.0.1:{port}\n")
 
@@ -104,7 +108,7 @@ def test_it_ends_at_once_with_a_lifeline_that_has_ended(lifeline: str, tmp_path:
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
         text=True,
-        timeout=20,
+        timeout=PATIENT_S,
         check=False,
     )
     assert (process.returncode, process.stderr) == (0, "")
@@ -117,14 +121,14 @@ def test_pymavlinks_mavutil_is_not_loaded() -> None:
         "import vehicle_sim.autopilot.autopilot\n"
         "assert 'pymavlink.mavutil' not in sys.modules"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=20)
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=PATIENT_S)
 
 
 def test_a_viewer_is_sent_where_the_vehicle_is() -> None:
     """--view: HIL_STATE_QUATERNION (115) and HEARTBEAT (0), and nothing else."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as viewer:
         viewer.bind(("127.0.0.1", 0))
-        viewer.settimeout(10.0)
+        viewer.settimeout(PATIENT_S)
         url = f"udp://127.0.0.1:{viewer.getsockname()[1]}"
         with vehicle_sim("--port", "0", "--view", url):
             first, second = viewer.recv(2048), viewer.recv(2048)
@@ -145,12 +149,14 @@ def test_it_tells_its_version() -> None:
 
 
 def test_in_the_background_of_a_terminal_it_leaves_the_screen_to_others() -> None:
-    shell = (
-        f"set -m; {' '.join(PROGRAM)} --port {free_port()} & sleep 5; echo my prompt; kill %1; wait"
-    )
+    program = f"{' '.join(PROGRAM)} --port {free_port()}"
+    shell = f"set -m; {program} & read; echo my prompt; kill %1; wait"
     with terminal("/bin/bash", "-c", shell) as screen:
-        screen.until_text("listens on UDP port", "my prompt")
-        screen.process.wait(20.0)
+        screen.until_text("listens on UDP port")
+        time.sleep(PAGES_S)
+        screen.press("\n")
+        screen.until_text("my prompt")
+        screen.process.wait(PATIENT_S)
     assert b"\x1b" not in screen.seen
     assert "battery" not in screen.text
 

@@ -10,7 +10,8 @@ from functools import partial
 
 import pytest
 
-from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.patience import PATIENT_S, until
+from tests.system.vehicle_program import free_port, vehicle_sim
 
 mavsdk = pytest.importorskip("mavsdk")
 
@@ -22,20 +23,25 @@ from mavsdk.plugins.telemetry import FlightMode, Telemetry  # noqa: E402
 pytestmark = pytest.mark.system
 
 
+PATIENT = ("--param", "COM_RC_LOSS_T=35")
+"""Sticks that the machine stops for a second are not lost."""
+
+
 @contextmanager
 def flying() -> Iterator[tuple[object, Telemetry, Action]]:
     """A px4 in HOLD, up to NAV_MC_ALT_RAD below 2.5 m; four times as fast as life."""
     port = free_port()
-    with vehicle_sim("--speedup", "4", "--link", f"udpout://127.0.0.1:{port}") as lines:
+    with vehicle_sim("--speedup", "4", *PATIENT, "--link", f"udpout://127.0.0.1:{port}") as lines:
         station = mavsdk.Configuration.create_with_component_type(
             mavsdk.ComponentType.GROUND_STATION
         )
         with mavsdk.Mavsdk(station) as sdk:
             sdk.add_any_connection(f"udpin://127.0.0.1:{port}")
-            system = sdk.first_autopilot(10.0)
+            system = sdk.first_autopilot(PATIENT_S)
             assert system is not None, lines
             telemetry, action = Telemetry(system), Action(system)
             until(telemetry.health_all_ok, "health all ok")
+            until(lambda: math.isfinite(telemetry.home().latitude_deg), "home")
             action.arm()
             until(telemetry.armed, "armed")
             action.takeoff()

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from tests.system.vehicle_program import free_port, until, vehicle_sim
+from tests.system.patience import PATIENT_S, until
+from tests.system.vehicle_program import free_port, vehicle_sim
 
 mavsdk = pytest.importorskip("mavsdk")
 pyulog = pytest.importorskip("pyulog")
@@ -31,7 +32,7 @@ def download(logs: Any, entry: Any, path: Path) -> None:
             ended.set()
 
     logs.download_log_file_async(entry, str(path), progress)
-    assert ended.wait(20.0), "no end of the download"
+    assert ended.wait(PATIENT_S), "no end of the download"
     assert results[-1] is LogFilesResult.SUCCESS
 
 
@@ -43,7 +44,7 @@ def test_mavsdk_lists_downloads_and_erases_the_logs_of_two_flights(tmp_path: Pat
         )
         with mavsdk.Mavsdk(station) as sdk:
             sdk.add_any_connection(f"udpin://127.0.0.1:{port}")
-            system = sdk.first_autopilot(10.0)
+            system = sdk.first_autopilot(PATIENT_S)
             assert system is not None, lines
             telemetry, action, logs = Telemetry(system), Action(system), LogFiles(system)
             until(telemetry.health_all_ok, "health all ok")

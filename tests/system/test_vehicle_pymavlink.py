@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import socket
 import threading
@@ -13,6 +14,7 @@ from typing import Protocol
 import pytest
 from pymavlink import mavutil
 
+from tests.system.patience import PATIENT_S, hold_much
 from tests.system.vehicle_program import free_port, vehicle_sim
 
 pytestmark = pytest.mark.system
@@ -22,6 +24,10 @@ POSITION_AND_YAW = 2552
 GUIDED = 4
 OFFBOARD_MAIN = 6
 ON_GROUND = 1
+
+
+PATIENT = ("--param", "COM_OF_LOSS_T=60")
+"""A script that the machine stops for a second is not one that has gone."""
 
 
 class Message(Protocol):
@@ -45,13 +51,14 @@ class Pilot:
 
     def __init__(self, url: str) -> None:
         self.link = mavutil.mavlink_connection(url, source_system=255, source_component=190)
-        assert self.link.wait_heartbeat(timeout=10) is not None
+        hold_much(self.link.port)
+        assert self.link.wait_heartbeat(timeout=PATIENT_S) is not None
         self.latest: dict[str, Message] = {}
         self.goal_ned: tuple[float, float, float] | None = None
         self._sent_s = 0.0
         self._beat_s = 0.0
 
-    def until(self, condition: Callable[[], bool], what: str, timeout_s: float = 30.0) -> None:
+    def until(self, condition: Callable[[], bool], what: str, timeout_s: float = PATIENT_S) -> None:
         end = time.monotonic() + timeout_s
         while not condition():
             now = time.monotonic()
@@ -72,22 +79,21 @@ class Pilot:
         )
 
     def ask(self, command: int, *params: float) -> None:
-        """Sends the command and waits until it is accepted, asking again once a second."""
+        """Sends the command once a second until it is accepted."""
         p = (*params, *(0.0,) * (7 - len(params)))
-        for _ in range(20):
-            self.latest.pop("COMMAND_ACK", None)
-            self.link.mav.command_long_send(1, 1, command, 0, *p)
-            self.until(lambda: "COMMAND_ACK" in self.latest, f"ack of {command}", 5.0)
-            ack = self.latest["COMMAND_ACK"]
-            assert ack.command == command
-            if ack.result == 0:
-                return
-            self.wait(1.0)
-        pytest.fail(f"command {command} was never accepted")
+        asks_s = itertools.count(time.monotonic(), 1.0)
+        next_s = next(asks_s)
+        self.latest.pop("COMMAND_ACK", None)
 
-    def wait(self, seconds: float) -> None:
-        end = time.monotonic() + seconds
-        self.until(lambda: time.monotonic() > end, "the end of a pause", 2.0 * seconds)
+        def accepted() -> bool:
+            nonlocal next_s
+            if time.monotonic() >= next_s:
+                self.link.mav.command_long_send(1, 1, command, 0, *p)
+                next_s = next(asks_s)
+            ack = self.latest.get("COMMAND_ACK")
+            return ack is not None and (ack.command, ack.result) == (command, 0)
+
+        self.until(accepted, f"an acceptance of {command}")
 
     def seen(self, kind: str, condition: Callable[[Message], bool]) -> Callable[[], bool]:
         return lambda: kind in self.latest and condition(self.latest[kind])
@@ -123,7 +129,7 @@ def pilot(url: str) -> Iterator[Pilot]:
 def test_a_script_flies_px4_offboard() -> None:
     port = free_port()
     with (
-        vehicle_sim("--speedup", "4", "--link", f"udpout://127.0.0.1:{port}"),
+        vehicle_sim("--speedup", "4", *PATIENT, "--link", f"udpout://127.0.0.1:{port}"),
         pilot(f"udpin:127.0.0.1:{port}") as script,
     ):
         script.until(lambda: "LOCAL_POSITION_NED" in script.latest, "a position")

@@ -2,24 +2,42 @@
 
 from __future__ import annotations
 
+import random
 import socket
 import subprocess
 import sys
 import threading
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+from tests.system.patience import PATIENT_S
+
+PORTS = range(20_000, 32_000)
+"""Linux, macOS and Windows give none of these to who leaves the choice to them."""
 
 
 def free_port(kind: socket.SocketKind = socket.SOCK_DGRAM) -> int:
-    """A port that nobody had a moment ago."""
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """A port that nobody had a moment ago, and that nobody is given by chance meanwhile."""
+    while True:
+        port = _random.choice(PORTS)
+        with socket.socket(socket.AF_INET, kind) as probe, suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+
+
+_random = random.SystemRandom()
+
+
+class Lines(list[str]):
+    """What a program has printed so far."""
+
+    def __init__(self, pid: int) -> None:
+        super().__init__()
+        self.pid = pid
 
 
 @contextmanager
-def vehicle_sim(*arguments: str) -> Iterator[list[str]]:
+def vehicle_sim(*arguments: str) -> Iterator[Lines]:
     """The lines that it prints, as they come."""
     process = subprocess.Popen(
         [sys.executable, "-m", "vehicle_sim", "--lifeline", *arguments],
@@ -30,7 +48,7 @@ def vehicle_sim(*arguments: str) -> Iterator[list[str]]:
     )
     assert process.stdin is not None
     assert process.stdout is not None
-    lines: list[str] = []
+    lines = Lines(process.pid)
     reader = threading.Thread(target=lines.extend, args=(process.stdout,))
     reader.start()
     try:
@@ -38,7 +56,7 @@ def vehicle_sim(*arguments: str) -> Iterator[list[str]]:
     finally:
         process.stdin.close()
         try:
-            code = process.wait(5)
+            code = process.wait(PATIENT_S)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
@@ -47,11 +65,3 @@ def vehicle_sim(*arguments: str) -> Iterator[list[str]]:
             reader.join()
             process.stdout.close()
     assert code == 0, "\n".join(lines)
-
-
-def until(condition: Callable[[], bool], what: str, timeout_s: float = 30.0) -> None:
-    """Waits until the condition holds; fails with `what` it was."""
-    end = time.monotonic() + timeout_s
-    while not condition():
-        assert time.monotonic() < end, f"not within {timeout_s:g} s: {what}"
-        time.sleep(0.02)

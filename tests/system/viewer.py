@@ -16,6 +16,8 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
+from tests.system.patience import PATIENT_S
+
 SUBPROTOCOL = "foxglove.sdk.v1"
 MESSAGE, SERVICE_RESPONSE = 1, 3
 CLIENT_MESSAGE, SERVICE_REQUEST = 1, 2
@@ -51,7 +53,7 @@ class Viewer:
     _responses: dict[int, dict[str, Any]] = field(default_factory=dict)
     _numbers: Iterator[int] = field(default_factory=lambda: itertools.count(1))
 
-    def until(self, condition: Callable[[], bool], what: str, timeout_s: float = 20.0) -> None:
+    def until(self, condition: Callable[[], bool], what: str, timeout_s: float = PATIENT_S) -> None:
         deadline_s = time.monotonic() + timeout_s
         while not condition():
             left_s = deadline_s - time.monotonic()
@@ -146,7 +148,13 @@ class Viewer:
 @contextmanager
 def viewer(url: str) -> Iterator[Viewer]:
     """Connected, and it knows the topics and services that are there."""
-    with connect(url, subprotocols=[SUBPROTOCOL], max_size=None) as connection:
+    with connect(
+        url,
+        subprotocols=[SUBPROTOCOL],
+        max_size=None,
+        open_timeout=PATIENT_S,
+        ping_timeout=PATIENT_S,
+    ) as connection:
         made = Viewer(connection)
         made.until(lambda: bool(made.info and made.services), "the server's greeting")
         yield made

@@ -16,7 +16,14 @@ from gcs.shell.stations import Description
 
 PAGE = Path(__file__).parents[2] / "docs" / "json.md"
 BEGIN, END = "<!-- from gcs/ipc.py: begin -->\n", "<!-- from gcs/ipc.py: end -->\n"
-PARTS = (ipc.OperatorInfo, report.FenceShape, ipc.BridgeLink, ipc.BridgeClient, ipc.BridgeVehicle)
+PARTS = (
+    ipc.Circle,
+    ipc.OperatorInfo,
+    report.FenceShape,
+    ipc.BridgeLink,
+    ipc.BridgeClient,
+    ipc.BridgeVehicle,
+)
 """Structs inside of others."""
 
 

@@ -19,8 +19,9 @@ from vehicle_sim.autopilot.interface import Truth
 
 Personality: TypeAlias = Literal["px4", "ardupilot"]
 
-START_S: Final = 20.0
-ANSWER_S: Final = 10.0
+START_S: Final = 60.0
+ANSWER_S: Final = 60.0
+"""A machine that tests share may stop it for seconds; one that has ended is told at once."""
 STOP_S: Final = 5.0
 POLL_S: Final = 0.02
 LOG_LINES: Final = 40
@@ -70,7 +71,7 @@ class SimVehicle:
         told = self._simulator.ask(do="truth", vehicle=self.system)["truth"]
         return msgspec.convert(told, Truth)
 
-    def wait(self, holds: Callable[[Truth], bool], timeout_s: float = 30.0) -> Truth:
+    def wait(self, holds: Callable[[Truth], bool], timeout_s: float = 60.0) -> Truth:
         """The first truth seen for which `holds` does; it is looked at 50 times a second.
 
         The time-out is in real seconds.  Raises TimeoutError with the last truth.

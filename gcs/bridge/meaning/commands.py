@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from gcs.bridge.meaning import mission_commands as mission
-from gcs.bridge.meaning import modes
+from gcs.bridge.meaning import modes, orbits
 from gcs.bridge.meaning import motion_commands as motion
 from gcs.bridge.meaning.command import Command
 from gcs.bridge.meaning.meaning import Meaning, Seen
@@ -77,7 +77,12 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
         mission.of_no_use,
         "PX4: goto straight up or down, p2 is the frame of p1. ArduPilot: refused, as it does",
     ),
-    Cmd.DO_ORBIT: _same(mission.orbit, "refused: a mission with NAV_LOITER_TURNS can be verified"),
+    Cmd.DO_ORBIT: _same(
+        orbits.orbit,
+        "orbit, also after a hold (resume, then orbit): the circle, the way to it and the room to "
+        "stop in are verified, then the station flies it as a stream, on an ArduPilot too. NaN: "
+        "as it is flown already, else 10 m, 1 m/s, about where it is: see orbits",
+    ),
     Cmd.CONDITION_YAW: CommandRow(
         mission.of_no_use,
         motion.condition_yaw,

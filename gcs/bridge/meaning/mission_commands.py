@@ -128,13 +128,6 @@ def region_of_interest(command: Command, seen: Seen) -> Meaning:
     return forward(seen)
 
 
-def orbit(command: Command, seen: Seen) -> Meaning:
-    return unsupported(
-        "a circle that the vehicle flies by itself is not held inside the fence: "
-        "send it as a mission with NAV_LOITER_TURNS, or as a stream of setpoints"
-    )
-
-
 def go_around(command: Command, seen: Seen) -> Meaning:
     return unsupported("a landing is broken off with hold: mode AUTO.LOITER or BRAKE")
 

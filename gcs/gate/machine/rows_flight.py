@@ -9,6 +9,7 @@ from gcs.gate.effects import OutcomeKind
 from gcs.gate.machine.cells import (
     COMPLETE,
     LIFTED_OFF,
+    OPERATOR_LOST,
     SEVERITY,
     STOPPED_BY_OPERATOR,
     TAKEN_OVER,
@@ -76,6 +77,12 @@ lifted_off_from_ground: Final[Cell] = (
         to=HOLDING,
     ),
     hold_if_awaited,
+    Branch(
+        when=(Guard.MISSION_GOES_ON, Guard.OPERATOR_LOST),
+        ends=OPERATOR_LOST,
+        do=(Action.HOLD,),
+        to=HOLDING,
+    ),
     Branch(
         when=(Guard.MISSION_GOES_ON, Guard.SEVERITY_PERMITS),
         do=(Action.DROP_DEADLINE, Action.GAIN_CONTROL),

@@ -12,6 +12,7 @@ import math
 import sys
 import time
 from collections.abc import Callable
+from itertools import pairwise
 
 from mavsdk.plugins import geofence as fences
 from mavsdk.plugins import mission_raw as raw
@@ -65,7 +66,6 @@ class Peer:
         until(
             lambda: math.dist(self.here(), (north_m, east_m, up_m)) < 1.2,
             f"at {north_m} {east_m} {up_m}",
-            40.0,
         )
         time.sleep(1.5)
 
@@ -102,18 +102,18 @@ class Peer:
         missions = raw.MissionRaw(self.system)
         missions.subscribe_mission_progress(lambda now, _: progress.append(now.current))
         self.done("start of the mission", missions.start_mission)
-        until(lambda: progress and progress[-1] >= 2, "second item", 60.0)
+        until(lambda: progress and progress[-1] >= 2, "second item")
         print("flies the mission", flush=True)
         self.done("hold", self.action.hold)
         self.done("return", self.action.return_to_launch)
-        until(lambda: self.telemetry.flight_mode() is FlightMode.RETURN_TO_LAUNCH, "returns", 20.0)
+        until(lambda: self.telemetry.flight_mode() is FlightMode.RETURN_TO_LAUNCH, "returns")
         print("returns", flush=True)
         self.done("hold", self.action.hold)
 
     def be_healthy(self) -> None:
         if self.autopilot == "ardupilot":
             ask_for_streams(self.telemetry)
-        until(self.telemetry.health_all_ok, "health all ok", 40.0)
+        until(self.telemetry.health_all_ok, "health all ok")
         print("healthy", flush=True)
         until(lambda: math.isfinite(self.telemetry.home().latitude_deg), "home")
 
@@ -121,7 +121,7 @@ class Peer:
         self.done("take-off height", self.action.set_takeoff_altitude, UP_M)
         self.done("arm", self.action.arm)
         self.done("take-off", self.action.takeoff)
-        until(lambda: self.here()[2] > UP_M - 1.0, "up", 30.0)
+        until(lambda: self.here()[2] > UP_M - 1.0, "up")
         if self.autopilot == "px4":
             until(lambda: self.telemetry.flight_mode() is FlightMode.HOLD, "taken off")
         time.sleep(3.0)
@@ -156,7 +156,7 @@ class Peer:
         north_m, east_m, down_m = ned_m(self.telemetry)
         control.set_position_ned(PositionNedYaw(north_m + 6.0, east_m, down_m, 0.0))
         self.done("offboard", control.start)
-        until(lambda: abs(ned_m(self.telemetry)[0] - north_m - 6.0) < 1.2, "6 m north", 30.0)
+        until(lambda: abs(ned_m(self.telemetry)[0] - north_m - 6.0) < 1.2, "6 m north")
         print("offboard position", flush=True)
         control.set_velocity_ned(VelocityNedYaw(-2.0, 0.0, 0.0, 0.0))
         until(lambda: self.telemetry.velocity_ned().north_m_s < -1.5, "2 m/s southward")
@@ -166,6 +166,35 @@ class Peer:
         print("offboard body velocity", flush=True)
         self.done("offboard ended", control.stop)
         time.sleep(2.0)
+
+    def orbit(self) -> None:
+        """8 m about a place in the west of the yard, counter-clockwise at 2 m/s."""
+        self.done("orbit", self.orbit_about, -8.0, 0.0, -20.0)
+        until(lambda: self.speed_m_s() > 1.7 and self.from_circle_m() < 1.0, "circles", 40.0)
+        bearings: list[float] = []
+        for _ in range(40):
+            time.sleep(0.1)
+            assert self.from_circle_m() < 1.5
+            bearings.append(math.atan2(self.here()[1] + 20.0, self.here()[0]))
+        turned = sum(math.remainder(b - a, math.tau) for a, b in pairwise(bearings))
+        print(f"orbit flown {turned < -0.5}", flush=True)
+        self.done("hold", self.action.hold)
+        until(lambda: self.telemetry.flight_mode() is FlightMode.HOLD, "holds")
+
+    def orbit_about(self, radius_m: float, north_m: float, east_m: float) -> None:
+        from mavsdk.plugins.action import OrbitYawBehavior
+
+        sea_m = self.telemetry.home().absolute_altitude_m
+        ahead = OrbitYawBehavior.HOLD_FRONT_TO_CIRCLE_CENTER
+        self.action.do_orbit(radius_m, 2.0, ahead, *self.place(north_m, east_m), sea_m + UP_M)
+
+    def from_circle_m(self) -> float:
+        north_m, east_m, _ = self.here()
+        return abs(math.hypot(north_m, east_m + 20.0) - 8.0)
+
+    def speed_m_s(self) -> float:
+        v = self.telemetry.velocity_ned()
+        return math.hypot(v.north_m_s, v.east_m_s)
 
     def sticks(self) -> None:
         """A joystick, 25 times a second: forward at the fence of the yard, back, and let go of."""
@@ -178,18 +207,31 @@ class Peer:
         print(f"full stick: came {far_m:.0f} m", flush=True)
         self.push(control, 3.0)
         held_m = self.here()[0]
-        self.push(control, 4.0, x=-0.6)
-        print("full stick back", abs(self.here()[0] - held_m) > 4.0, flush=True)
+
+        def back() -> bool:
+            return abs(self.here()[0] - held_m) > 4.0
+
+        self.push(control, 60.0, x=-0.6, until=back)
+        print("full stick back", back(), flush=True)
         print("flew forward", held_m - north_m > 20.0, flush=True)
         self.push(control, 3.0)
         self.done("goto", self.goto, 0.0, 0.0, UP_M)
 
-    def push(self, control: ManualControl, seconds: float, x: float = 0.0) -> float:
-        """Forward; the throttle is in its middle.  How far from home it came."""
+    def push(
+        self,
+        control: ManualControl,
+        seconds: float,
+        x: float = 0.0,
+        until: Callable[[], bool] = lambda: False,
+    ) -> float:
+        """Forward, no longer than `until` it is so; the throttle is in its middle.  How far from
+        home it came."""
         end_s, far_m = time.monotonic() + seconds, 0.0
         while time.monotonic() < end_s:
             control.set_manual_control_input(x, 0.0, 0.5, 0.0)
             far_m = max(far_m, *(abs(each) for each in self.here()[:2]))
+            if until():
+                break
             time.sleep(0.04)
         return far_m
 
@@ -204,19 +246,19 @@ class Peer:
         control.set_attitude(Attitude(0.0, -5.0, 0.0, hover))
         until(lambda: self.telemetry.velocity_ned().north_m_s > 1.0, "leans to the north")
         print("flies where it leans", flush=True)
-        until(lambda: self.here()[0] > 15.0, "15 m north", 40.0)
-        until(lambda: abs(self.telemetry.velocity_ned().north_m_s) < 0.3, "held", 40.0)
+        until(lambda: self.here()[0] > 15.0, "15 m north")
+        until(lambda: abs(self.telemetry.velocity_ned().north_m_s) < 0.3, "held")
         held_m = self.here()[0]
         print(f"held {held_m:.0f} m north", flush=True)
         control.set_attitude(Attitude(0.0, 5.0, 0.0, hover))
-        until(lambda: self.here()[0] < held_m - 5.0, "leans back", 40.0)
+        until(lambda: self.here()[0] < held_m - 5.0, "leans back")
         print("flies back", flush=True)
         self.done("offboard ended", control.stop)
         time.sleep(4.0)
 
     def land(self) -> None:
         self.done("land", self.action.land)
-        until(lambda: not self.telemetry.armed(), "landed and disarmed", 60.0)
+        until(lambda: not self.telemetry.armed(), "landed and disarmed")
         print("landed and disarmed", flush=True)
 
     # ------------------------------------------------------------------------- escaping
@@ -225,7 +267,7 @@ class Peer:
         self.refused("goto outside the yard", self.goto, 200.0, 0.0, UP_M)
         self.refused("goto into the mast", self.goto, 0.0, 20.0, UP_M)
         self.refused("goto above the ceiling", self.goto, 0.0, 0.0, 80.0)
-        self.refused("orbit over the mast", self.orbit)
+        self.refused("orbit over the mast", self.orbit_about, 20.0, 0.0, 0.0)
         missions = raw.MissionRaw(self.system)
         cuts = self.mission((20, 10), (-5, 40), last=21)
         self.refused("mission leg that cuts the mast", missions.upload_mission, cuts)
@@ -245,13 +287,6 @@ class Peer:
         said = refusal(param.set_param_int, name, 0)
         assert param.get_param_int(name) == before
         print(f"parameter {name}: kept {said}", flush=True)
-
-    def orbit(self) -> None:
-        from mavsdk.plugins.action import OrbitYawBehavior
-
-        sea_m = self.telemetry.home().absolute_altitude_m
-        ahead = OrbitYawBehavior.HOLD_FRONT_TO_CIRCLE_CENTER
-        self.action.do_orbit(20.0, 3.0, ahead, *self.place(0.0, 0.0), sea_m + UP_M)
 
     def larger_fence(self) -> None:
         home = self.telemetry.home()

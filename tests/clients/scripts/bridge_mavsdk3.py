@@ -71,7 +71,6 @@ class Peer:
                 < 1.2
             ),
             f"at {north_m} {east_m} {up_m}",
-            40.0,
         )
         await asyncio.sleep(1.5)
 
@@ -88,9 +87,7 @@ class Peer:
         await self.done("take-off height", drone.action.set_takeoff_altitude(UP_M))
         await self.done("arm", drone.action.arm())
         await self.done("take-off", drone.action.takeoff())
-        await until(
-            drone.telemetry.position(), lambda p: p.relative_altitude_m > UP_M - 1.0, "up", 30.0
-        )
+        await until(drone.telemetry.position(), lambda p: p.relative_altitude_m > UP_M - 1.0, "up")
         await asyncio.sleep(6.0)
         await self.done("goto", self.goto(12.0, 0.0, UP_M))
         await self.come_to(12.0, 0.0, UP_M)
@@ -98,9 +95,7 @@ class Peer:
         await self.done("goto", self.goto(0.0, 0.0, UP_M))
         await self.come_to(0.0, 0.0, UP_M)
         await self.done("start of the mission", drone.mission_raw.start_mission())
-        await until(
-            drone.mission_raw.mission_progress(), lambda now: now.current >= 2, "item 2", 60.0
-        )
+        await until(drone.mission_raw.mission_progress(), lambda now: now.current >= 2, "item 2")
         print("flies the mission", flush=True)
         await self.done("hold", drone.action.hold())
         await self.done("return", drone.action.return_to_launch())
@@ -138,7 +133,6 @@ class Peer:
             self.drone.telemetry.position_velocity_ned(),
             lambda p: abs(p.position.north_m - goal_m) < 1.2,
             "6 m north",
-            30.0,
         )
         print("offboard position", flush=True)
         await control.set_velocity_ned(VelocityNedYaw(-2.0, 0.0, 0.0, 0.0))
@@ -155,7 +149,7 @@ class Peer:
 
     async def land(self) -> None:
         await self.done("land", self.drone.action.land())
-        await until(self.drone.telemetry.armed(), lambda armed: not armed, "disarmed", 60.0)
+        await until(self.drone.telemetry.armed(), lambda armed: not armed, "disarmed")
         print("landed and disarmed", flush=True)
 
     # ------------------------------------------------------------------------- escaping

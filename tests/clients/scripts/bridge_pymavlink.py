@@ -51,7 +51,7 @@ class Peer:
         else:
             self.texts.append(message.text)
 
-    def wait(self, kinds, holds=lambda message: True, seconds=30.0, needed=True):
+    def wait(self, kinds, holds=lambda message: True, seconds=60.0, needed=True):
         """The first message of these kinds for which it holds; None if not `needed`."""
         kinds = [kinds] if isinstance(kinds, str) else kinds
         end = time.monotonic() + seconds
@@ -75,7 +75,7 @@ class Peer:
 
     def _final(self, command, send):
         """The final acknowledgement; sent again each second, as MAVSDK and QGroundControl do."""
-        for turn in range(4):
+        for turn in range(40):
             send(turn)
             end = time.monotonic() + 1.5
             while time.monotonic() < end:
@@ -86,7 +86,7 @@ class Peer:
                     break
                 if ack.result != M.MAV_RESULT_IN_PROGRESS:
                     return ack
-                end = time.monotonic() + 30.0
+                end = time.monotonic() + 60.0
         raise AssertionError(f"no acknowledgement of {command}; texts {self.texts[-6:]}")
 
     def long(self, command, *params):
@@ -117,6 +117,11 @@ class Peer:
         self.rest(0.3)
         return self.texts[-1] if self.texts else ""
 
+    def refusal_since(self, count):
+        """The last text of a refusal, beside others that come, after so many texts."""
+        self.rest(0.3)
+        return next((text for text in reversed(self.texts[count:]) if "refused" in text), "")
+
     # --------------------------------------------------------------------------- places
 
     def place(self, north_m, east_m):
@@ -130,7 +135,7 @@ class Peer:
         east_m = (fix.lon * 1e-7 - lon) * 111_319.49 * math.cos(math.radians(lat))
         return (fix.lat * 1e-7 - lat) * 111_319.49, east_m, fix.relative_alt * 1e-3
 
-    def come_to(self, north_m, east_m, up_m, seconds=40.0, within_m=1.2):
+    def come_to(self, north_m, east_m, up_m, seconds=60.0, within_m=1.2):
         end = time.monotonic() + seconds
         while math.dist(self.here(), (north_m, east_m, up_m)) > within_m:
             assert time.monotonic() < end, (self.here(), self.texts[-6:])
@@ -139,7 +144,7 @@ class Peer:
     # --------------------------------------------------------------------------- flying
 
     def connect(self):
-        end = time.monotonic() + 15.0
+        end = time.monotonic() + 60.0
         while self.link.recv_match(type="HEARTBEAT") is None or self.link.target_system != 1:
             assert time.monotonic() < end, "no vehicle"
             self.beat()
@@ -160,7 +165,7 @@ class Peer:
         first = self.wait("PARAM_VALUE", lambda m: m.param_index != 65535)
         names.add(first.param_id)
         while len(names) < first.param_count:
-            names.add(self.wait("PARAM_VALUE", seconds=5.0).param_id)
+            names.add(self.wait("PARAM_VALUE").param_id)
         print(f"all parameters: {len(names) == first.param_count}", flush=True)
 
     def upload(self, items, mission_type=0):
@@ -215,7 +220,7 @@ class Peer:
         )
         return self.long(M.MAV_CMD_DO_SET_MODE, base | 1, main, sub)
 
-    def in_mode(self, *names, seconds=20.0):
+    def in_mode(self, *names, seconds=60.0):
         self.wait("HEARTBEAT", lambda m: self.link.flightmode in names, seconds)
 
     def arm(self):
@@ -292,12 +297,16 @@ class Peer:
         """While another one flies: it reads all, and moves nothing."""
         self.connect()
         self.parameters()
-        self.wait("HEARTBEAT", lambda m: m.get_srcComponent() == 1 and m.system_status == 4, 60.0)
-        self.wait("GLOBAL_POSITION_INT", lambda m: m.relative_alt > 3000, 60.0)
+        self.wait("HEARTBEAT", lambda m: m.get_srcComponent() == 1 and m.system_status == 4, 240.0)
+        self.wait("GLOBAL_POSITION_INT", lambda m: m.relative_alt > 3000, 240.0)
         self.refused("goto of another", self.goto(5, 5, UP_M))
         self.refused("take-off of another", self.long(M.MAV_CMD_NAV_TAKEOFF, *[math.nan] * 7))
         result = self.upload(self.mission((5, 5, UP_M, 1), last=21))
         self.denied("mission of another", result)
+        end = time.monotonic() + 60.0
+        while not any("in control" in text for text in self.texts):
+            assert time.monotonic() < end, self.texts
+            self.rest(0.1)
         print(f"told: {next(text for text in self.texts if 'in control' in text)}", flush=True)
 
     def hold_mode(self):
@@ -314,8 +323,8 @@ class Peer:
 
     # ------------------------------------------------------------------------- escaping
 
-    def stream(self, seconds, mask, position=(0, 0, 0), velocity=(0, 0, 0)):
-        """A setpoint at 20 Hz, as an offboard program sends it."""
+    def stream(self, seconds, mask, position=(0, 0, 0), velocity=(0, 0, 0), until=lambda: False):
+        """A setpoint at 20 Hz, as an offboard program sends it; no longer than `until` it is so."""
         end, turn = time.monotonic() + seconds, 0
         farthest_m = 0.0
         while time.monotonic() < end:
@@ -327,6 +336,8 @@ class Peer:
             turn += 1
             self.rest(0.05)
             farthest_m = max(farthest_m, *(abs(x) for x in self.here()[:2]))
+            if until():
+                break
         return farthest_m
 
     def escape(self):
@@ -343,13 +354,18 @@ class Peer:
         """A stream of positions, then one of velocities, both where they may be flown."""
         start_m = self.here()[0]
         here = self.latest("LOCAL_POSITION_NED")
-        self.stream(8.0, POSITION, position=(here.x + 6.0, here.y, here.z))
-        north_m = self.here()[0] - start_m
-        assert abs(north_m - 6.0) < 1.5, (north_m, self.texts[-6:])
+
+        def north_m():
+            return self.here()[0] - start_m
+
+        goal = (here.x + 6.0, here.y, here.z)
+        self.stream(60.0, POSITION, position=goal, until=lambda: abs(north_m() - 6.0) < 1.0)
+        self.stream(4.0, POSITION, position=goal)
+        assert abs(north_m() - 6.0) < 1.5, (north_m(), self.texts[-6:])
         print("offboard position", flush=True)
-        self.stream(4.0, VELOCITY, velocity=(-1.5, 0, 0))
-        south_m = north_m - (self.here()[0] - start_m)
-        assert south_m > 2.5, (south_m, self.texts[-6:])
+        there_m = north_m()
+        self.stream(60.0, VELOCITY, velocity=(-1.5, 0, 0), until=lambda: there_m - north_m() > 2.5)
+        assert there_m - north_m() > 2.5, (north_m(), self.texts[-6:])
         self.stream(1.5, VELOCITY)
         print("offboard velocity", flush=True)
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
@@ -369,8 +385,10 @@ class Peer:
         print(f"offboard position outside: came {far_m:.0f} m", flush=True)
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
         self.rest(2.0)
+        told = len(self.texts)
         far_m = self.stream(25.0, VELOCITY, velocity=(-10, 0, 0))
-        print(f"velocity at the fence: came {far_m:.0f} m {self.last_text()}", flush=True)
+        refusal = self.refusal_since(told)
+        print(f"velocity at the fence: came {far_m:.0f} m {refusal}", flush=True)
         self.done("hold", self.long(M.MAV_CMD_DO_SET_MODE, *self.hold_mode()))
         self.rest(4.0)
 
@@ -410,10 +428,11 @@ class Peer:
         name = {"px4": "GF_ACTION", "ardupilot": "FENCE_ENABLE"}[self.autopilot]
         self.link.mav.param_request_read_send(1, 1, name.encode(), -1)
         before = self.wait("PARAM_VALUE", lambda m: m.param_id == name)
+        told = len(self.texts)
         self.link.mav.param_set_send(1, 1, name.encode(), 0.0, before.param_type)
         after = self.wait("PARAM_VALUE", lambda m: m.param_id == name)
         assert after.param_value == before.param_value or math.isnan(before.param_value), after
-        print(f"parameter {name}: kept {self.last_text()}", flush=True)
+        print(f"parameter {name}: kept {self.refusal_since(told)}", flush=True)
         force = 21196.0
         long = self.long
         self.refused("motors off in the air", long(M.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, force))
@@ -424,7 +443,7 @@ class Peer:
         self.refused("home elsewhere", self.at(M.MAV_CMD_DO_SET_HOME, 500, 0, 0.0))
 
     def escape_by_false_reports(self):
-        here = self.here()
+        here, told = self.here(), len(self.texts)
         lat, lon = self.place(here[0] - 40, here[1])
         for _ in range(40):
             lat_e7, lon_e7 = round(lat * 1e7), round(lon * 1e7)
@@ -439,7 +458,7 @@ class Peer:
             self.rest(0.05)
         moved_m = math.dist(self.here(), here)
         assert moved_m < 2.0, moved_m
-        print(f"false GPS and vision: moved {moved_m:.0f} m {self.last_text()}", flush=True)
+        print(f"false GPS and vision: moved {moved_m:.0f} m {self.refusal_since(told)}", flush=True)
 
 
 def main(url, autopilot, *words):

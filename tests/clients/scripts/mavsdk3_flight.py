@@ -28,11 +28,14 @@ from mavsdk_grpc.tune import SongElement, TuneDescription
 
 T = TypeVar("T")
 EARTH_M_PER_DEG = 111_194.93
+PATIENT_S = 60.0
+ANSWER_S = 2.0
+"""MAVSDK asks again after so long, instead of 0.5 s: on a slow machine the vehicle is late."""
 NAN = float("nan")
 
 
 async def until(
-    stream: AsyncIterator[T], fits: Callable[[T], bool], what: str, timeout_s: float = 20.0
+    stream: AsyncIterator[T], fits: Callable[[T], bool], what: str, timeout_s: float = PATIENT_S
 ) -> T:
     """The first value of the stream that fits."""
 
@@ -55,7 +58,7 @@ async def first(stream: AsyncIterator[T]) -> T:
 async def refusal(call: Awaitable[object]) -> str:
     """The name of the result with which MAVSDK refuses a call."""
     try:
-        await asyncio.wait_for(call, 10.0)
+        await asyncio.wait_for(call, PATIENT_S)
     except Exception as error:  # noqa: BLE001  # every plugin has an error class of its own
         result = getattr(error, "_result", None)
         return str(result.result.name) if result is not None else repr(error)
@@ -72,6 +75,7 @@ async def connected(url: str) -> System:
         port = probe.getsockname()[1]
     drone = System(port=port)
     await drone.connect(url)
+    await drone.core.set_mavlink_timeout(ANSWER_S)
     await until(drone.core.connection_state(), lambda state: state.is_connected, "connected")
     return drone
 
@@ -213,7 +217,7 @@ async def mission(drone: System) -> None:
         drone.mission.mission_progress(), lambda now: now.current == now.total == 3, "finished"
     )
     print("mission finished", await drone.mission.is_mission_finished())
-    await until(drone.telemetry.armed(), lambda armed: not armed, "landed and disarmed", 30.0)
+    await until(drone.telemetry.armed(), lambda armed: not armed, "landed and disarmed")
 
 
 async def raw(drone: System) -> None:
@@ -250,7 +254,7 @@ async def services(drone: System, scratch: Path, personality: str) -> None:
     before = await param.get_param_float(name)
     await param.set_param_float(name, before / 2.0)
     print("parameter", await param.get_param_float(name) == before / 2.0)
-    await asyncio.sleep(0.1)  # PX4 tells a change twice: the first one's must not meet the next
+    await asyncio.sleep(1.0)  # PX4 tells a change twice: the first one's must not meet the next
     await param.set_param_float(name, before)
     print("all parameters", len((await param.get_all_params()).float_params) >= 30)
 

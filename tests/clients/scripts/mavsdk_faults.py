@@ -19,7 +19,9 @@ from mavsdk.plugins.manual_control import ManualControl
 from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityNedYaw
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import FixType, FlightMode, Telemetry
-from mavsdk_station import EARTH_M_PER_DEG, Station, ned_m, refusal, until
+from mavsdk_station import EARTH_M_PER_DEG, Station, ned_m, refusal, told_twice, until
+
+BOOTED_US = 3_000_000
 
 
 def take_off(telemetry: Telemetry, action: Action, up_m: float) -> None:
@@ -45,8 +47,7 @@ def fly_sticks(station: Station, telemetry: Telemetry, action: Action) -> None:
     pusher = Thread(target=push)
     pusher.start()
     try:
-        time.sleep(0.2)
-        manual.start_position_control()
+        until(lambda: refusal(manual.start_position_control) == "SUCCESS", "sticks that it hears")
         until(lambda: telemetry.flight_mode() is FlightMode.POSCTL, "position mode")
         north_m = ned_m(telemetry)[0]
         sticks[0] = 0.5
@@ -127,7 +128,7 @@ def breach(station: Station, telemetry: Telemetry) -> None:
 
 def fail(station: Station, telemetry: Telemetry) -> None:
     """The plugin reads once, when it is made, whether failures are enabled."""
-    Param(station.system).set_param_int("SYS_FAILURE_EN", 1)
+    told_twice(Param(station.system).set_param_int, "SYS_FAILURE_EN", 1)
     plugin = Failure(station.system)
     plugin.inject(FailureUnit.SENSOR_GPS, FailureType.OFF, 0)
     until(lambda: telemetry.gps_info().fix_type in (FixType.NO_GPS, FixType.NO_FIX), "no GPS")
@@ -136,9 +137,16 @@ def fail(station: Station, telemetry: Telemetry) -> None:
     print("failed and mended")
 
 
-def restart(station: Station, telemetry: Telemetry, action: Action) -> None:
+def reboot(telemetry: Telemetry, action: Action) -> None:
+    """Its time begins again, and goes on until what MAVSDK last heard of its health is new, too."""
+    before_us = telemetry.attitude_euler().timestamp_us
     action.reboot()
-    time.sleep(0.3)
+    until(lambda: telemetry.attitude_euler().timestamp_us < before_us, "a new time")
+    until(lambda: telemetry.attitude_euler().timestamp_us > BOOTED_US, "a vehicle that has booted")
+
+
+def restart(station: Station, telemetry: Telemetry, action: Action) -> None:
+    reboot(telemetry, action)
     until(station.system.is_connected, "back")
     until(telemetry.health_all_ok, "healthy after the reboot")
     print("rebooted")
@@ -163,8 +171,7 @@ def main(url: str) -> None:
         restart(station, telemetry, action)
         end(telemetry, action, action.kill)
         until(lambda: not telemetry.armed(), "disarmed by the kill")
-        action.reboot()
-        time.sleep(0.3)
+        reboot(telemetry, action)
         end(telemetry, action, action.terminate)
 
 

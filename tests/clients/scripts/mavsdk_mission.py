@@ -15,7 +15,7 @@ from mavsdk.plugins import mission_raw as raw
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.camera import Camera
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
-from mavsdk_station import EARTH_M_PER_DEG, Station, ask_for_streams, refusal, until
+from mavsdk_station import EARTH_M_PER_DEG, PATIENT_S, Station, ask_for_streams, refusal, until
 
 WAYPOINT = 16
 RALLY_POINT = 5100
@@ -47,7 +47,7 @@ def uploaded(plugin: missions.Mission, plan: missions.MissionPlan) -> None:
             ended.set()
 
     plugin.upload_mission_with_progress_async(plan, heard)
-    assert ended.wait(10.0), "upload goes on for ever"
+    assert ended.wait(PATIENT_S), "upload goes on for ever"
     assert seen[-1] == 2.0, f"upload failed: {plugin}"
     print("uploaded with progress", seen[0] < 0.5, max(seen[:-1]) == 1.0, seen == sorted(seen))
 
@@ -88,11 +88,11 @@ def fly_mission(station: Station, telemetry: Telemetry, action: Action) -> None:
     until(lambda: telemetry.flight_mode() is FlightMode.HOLD, "paused")
     print("paused")
     plugin.start_mission()
-    until(plugin.is_mission_finished, "mission finished", 30.0)
+    until(plugin.is_mission_finished, "mission finished")
     until(lambda: telemetry.flight_mode() is FlightMode.RETURN_TO_LAUNCH, "returns after it")
     until(lambda: progress[-1] == (5, 5), f"progress told to its end, not {progress}")
     print("finished", "in order", progress == sorted(progress))
-    until(lambda: not telemetry.armed(), "landed and disarmed", 30.0)
+    until(lambda: not telemetry.armed(), "landed and disarmed")
     print("photos", len(photos) >= 2, photos == list(range(photos[0], photos[0] + len(photos))))
     plugin.clear_mission()
     print("cleared", len(plugin.download_mission().mission_items))
@@ -133,7 +133,7 @@ def fly_raw(station: Station, telemetry: Telemetry, action: Action) -> None:
     until(lambda: telemetry.position().relative_altitude_m > 1.0, "off the ground")
     plugin.start_mission()
     until(lambda: telemetry.flight_mode() is FlightMode.MISSION, "flies the mission")
-    until(lambda: not telemetry.armed(), "landed and disarmed", 40.0)
+    until(lambda: not telemetry.armed(), "landed and disarmed")
     print("flown in order", progress == sorted(progress), max(progress) >= 3)
     plugin.clear_mission()
 

@@ -14,7 +14,7 @@ from mavsdk.plugins.action import Action
 from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
-from mavsdk_station import EARTH_M_PER_DEG, Station, ask_for_streams, until
+from mavsdk_station import EARTH_M_PER_DEG, PATIENT_S, Station, ask_for_streams, until
 
 SPEED_M_S = 5.0
 LEG_M = 80.0
@@ -85,10 +85,11 @@ def main(url: str, personality: str, factor: float, wall_s: float) -> None:
         telemetry.subscribe_attitude_euler(
             lambda angle, _: seen.append((time.monotonic_ns(), angle.timestamp_us * 1000))
         )
+        patient_s = wall_s * 4.0 + PATIENT_S
         ended = {"px4": FlightMode.RETURN_TO_LAUNCH, "ardupilot": FlightMode.MISSION}[personality]
         if personality == "px4":
-            until(lambda: telemetry.flight_mode() is ended, "mission over", wall_s * 4.0 + 10.0)
-        until(lambda: not telemetry.armed(), "landed and disarmed", wall_s * 4.0 + 10.0)
+            until(lambda: telemetry.flight_mode() is ended, "mission over", patient_s)
+        until(lambda: not telemetry.armed(), "landed and disarmed", patient_s)
         (began_ns, first_ns), (ended_ns, last_ns) = seen[0], seen[-1]
         print(f"wall {(ended_ns - began_ns) * 1e-9:.3f} s")
         print(f"factor {(last_ns - first_ns) / (ended_ns - began_ns):.4f}")

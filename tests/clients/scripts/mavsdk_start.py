@@ -11,7 +11,7 @@ import time
 
 from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, log_subscribe
 from mavsdk.plugins.telemetry import Telemetry
-from mavsdk_station import until
+from mavsdk_station import PATIENT_S, until
 
 
 def told(event: str) -> None:
@@ -23,7 +23,7 @@ def main(url: str, again: bool) -> None:
     sdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
     sdk.add_any_connection(url)
     told("waiting")
-    system = sdk.first_autopilot(20.0)
+    system = sdk.first_autopilot(PATIENT_S)
     assert system is not None, "no autopilot"
     told("heard")
     telemetry = Telemetry(system)

@@ -6,6 +6,7 @@ with Station("udpin://127.0.0.1:14540") as station:
 
 from __future__ import annotations
 
+import ctypes
 import time
 from collections.abc import Callable
 from types import TracebackType
@@ -14,6 +15,11 @@ from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, log_subscribe
 from mavsdk.plugins.telemetry import Telemetry
 
 EARTH_M_PER_DEG = 111_194.93
+PATIENT_S = 60.0
+TOLD_TWICE_S = 0.5
+ANSWER_S = 2.0
+"""MAVSDK asks again after so long, three times, instead of 0.5 s: on a slow machine the vehicle is
+late."""
 
 
 class Station:
@@ -22,8 +28,9 @@ class Station:
     def __init__(self, url: str) -> None:
         log_subscribe(_print_trouble)
         self.sdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+        _set_timeout_s(self.sdk, ANSWER_S)
         self.sdk.add_any_connection(url)
-        self.system = self.sdk.first_autopilot(10.0)
+        self.system = self.sdk.first_autopilot(PATIENT_S)
         assert self.system is not None, f"no autopilot at {url}"
 
     def __enter__(self) -> Station:
@@ -38,7 +45,7 @@ class Station:
         self.sdk.destroy()
 
 
-def until(condition: Callable[[], bool], what: str, timeout_s: float = 20.0) -> None:
+def until(condition: Callable[[], bool], what: str, timeout_s: float = PATIENT_S) -> None:
     """Waits; a script that waits in vain ends with an AssertionError."""
     end_s = time.monotonic() + timeout_s
     while not condition():
@@ -54,6 +61,13 @@ def refusal(call: Callable[..., object], *args: object) -> str:
         result = getattr(error, "result", None)
         return str(result.name) if result is not None else repr(error)
     return "SUCCESS"
+
+
+def told_twice(call: Callable[..., object], *args: object) -> None:
+    """Sets a parameter.  PX4 tells a change twice, and MAVSDK warns where the second telling meets
+    its next request."""
+    call(*args)
+    time.sleep(TOLD_TWICE_S)
 
 
 def ask_for_streams(telemetry: Telemetry) -> None:
@@ -74,6 +88,11 @@ def ask_for_streams(telemetry: Telemetry) -> None:
 def ned_m(telemetry: Telemetry) -> tuple[float, float, float]:
     here = telemetry.position_velocity_ned().position
     return (here.north_m, here.east_m, here.down_m)
+
+
+def _set_timeout_s(sdk: Mavsdk, seconds: float) -> None:
+    """`Mavsdk::set_timeout_s` of C++, for which Python has no word."""
+    sdk._lib.mavsdk_set_timeout_s(ctypes.c_void_p(sdk._handle), ctypes.c_double(seconds))
 
 
 def _print_trouble(level: LogLevel, message: str, file: str | None, line: int) -> bool:

@@ -30,7 +30,7 @@ FLOWN_MODES = {
 def main(personality, url):
     global link
     link = mavutil.mavlink_connection(url, source_system=255)
-    link.wait_heartbeat(timeout=10)
+    link.wait_heartbeat(timeout=60)
     print(f"heartbeat of system {link.target_system}, mode {link.flightmode}")
     if personality == "ardupilot":
         link.mav.request_data_stream_send(1, 1, mavlink.MAV_DATA_STREAM_ALL, 10, 1)
@@ -58,7 +58,7 @@ def main(personality, url):
 # ------------------------------------------------------------------------------- plumbing
 
 
-def wait(kind, condition=lambda message: True, seconds=30.0):
+def wait(kind, condition=lambda message: True, seconds=60.0):
     """The first message of that kind for which the condition holds."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -83,19 +83,25 @@ def beat(last=[0.0]):  # noqa: B006
         link.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
 
 
-def acked(command):
-    """The final result of a command that was sent."""
-    ack = wait(
-        "COMMAND_ACK",
-        lambda m: m.command == command and m.result != mavlink.MAV_RESULT_IN_PROGRESS,
-    )
-    assert ack.result == mavlink.MAV_RESULT_ACCEPTED, ack
+def acked(command, send):
+    """Sends the command, again every two seconds, until its final result comes."""
+    end = time.monotonic() + 60.0
+    while time.monotonic() < end:
+        send()
+        asked = time.monotonic()
+        while time.monotonic() < asked + 2.0:
+            beat()
+            ack = link.recv_match(type="COMMAND_ACK", blocking=True, timeout=0.1)
+            if ack is not None and (ack.command, ack.result) == (command, 0):
+                return
+            final = ack is not None and ack.result != mavlink.MAV_RESULT_IN_PROGRESS
+            assert not (final and ack.command == command), ack
+    raise AssertionError(f"no result of {command}")
 
 
 def set_mode(name):
     assert name in link.mode_mapping(), name
-    link.set_mode(name)
-    acked(mavlink.MAV_CMD_DO_SET_MODE)
+    acked(mavlink.MAV_CMD_DO_SET_MODE, lambda: link.set_mode(name))
     wait("HEARTBEAT", lambda m: link.flightmode == name)
 
 
@@ -166,16 +172,16 @@ def fly_the_mission(personality):
 def arm_and_take_off(personality, home):
     if personality == "ardupilot":
         set_mode("GUIDED")
-    link.arducopter_arm()
-    acked(mavlink.MAV_CMD_COMPONENT_ARM_DISARM)
+    acked(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, link.arducopter_arm)
     link.motors_armed_wait()
     print("armed")
     # PX4 takes the height above the sea, ArduPilot above home.
     up = home.alt + 10 if personality == "px4" else 10
-    link.mav.command_long_send(
-        1, 1, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, math.nan, math.nan, math.nan, up
+    take_off = (0, 0, 0, 0, math.nan, math.nan, math.nan, up)
+    acked(
+        mavlink.MAV_CMD_NAV_TAKEOFF,
+        lambda: link.mav.command_long_send(1, 1, mavlink.MAV_CMD_NAV_TAKEOFF, *take_off),
     )
-    acked(mavlink.MAV_CMD_NAV_TAKEOFF)
     # PX4 ends its climb up to NAV_MC_ALT_RAD = 0.8 m lower.
     height_reached(10, within_m=0.9 if personality == "px4" else 0.5)
     print("10 m up")
@@ -186,12 +192,12 @@ def fly_to_a_place(personality, home):
     if personality == "px4":
         wait("HEARTBEAT", lambda m: link.flightmode == "LOITER")
     lat, lon = mavextra.gps_offset(home.lat, home.lng, -10, 0)
-    link.mav.command_int_send(
+    there = (
         *(1, 1, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, mavlink.MAV_CMD_DO_REPOSITION, 0, 0),
         *(-1, mavlink.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE, 0, math.nan),
         *(round(lat * 1e7), round(lon * 1e7), 12),
     )
-    acked(mavlink.MAV_CMD_DO_REPOSITION)
+    acked(mavlink.MAV_CMD_DO_REPOSITION, lambda: link.mav.command_int_send(*there))
     wait(
         "GLOBAL_POSITION_INT",
         lambda m: abs(m.lon - lon * 1e7) < 80 and abs(m.relative_alt - 12000) < 500,
@@ -202,13 +208,13 @@ def fly_to_a_place(personality, home):
 def fly_by_setpoints(personality):
     """SET_POSITION_TARGET_LOCAL_NED at 10 Hz; PX4 wants the stream before it enters OFFBOARD."""
     mode = {"ardupilot": "GUIDED", "px4": "OFFBOARD"}[personality]
-    for turn in range(300):
+    for turn in range(600):
         beat()
         link.mav.set_position_target_local_ned_send(
             *(0, 1, 1, mavlink.MAV_FRAME_LOCAL_NED, 0b110111111000),
             *(5, -5, -8, 0, 0, 0, 0, 0, 0, 0, 0),
         )
-        if turn == 10:
+        if turn % 50 == 10:
             link.set_mode(mode)
         here = latest("LOCAL_POSITION_NED")
         if turn > 10 and math.dist((here.x, here.y, here.z), (5, -5, -8)) < 0.5:
@@ -244,12 +250,12 @@ def fly_by_sticks(personality):
         else:
             link.mav.manual_control_send(1, 0, 0, 500 + round(500 * throttle), 0, 0)
 
-    for _ in range(200):
+    for _ in range(1200):
         sticks(0.6)
         if latest("GLOBAL_POSITION_INT").relative_alt > start + 5000:
             break
         time.sleep(0.05)
-    for _ in range(200):
+    for _ in range(1200):
         sticks(0.0)
         if abs(latest("GLOBAL_POSITION_INT").vz) < 10:
             break

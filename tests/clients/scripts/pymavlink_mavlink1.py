@@ -22,7 +22,7 @@ def main(personality, url):
     seen = {}
 
     def wait(kind, condition=lambda message: True):
-        end = time.monotonic() + 15.0
+        end = time.monotonic() + 60.0
         while time.monotonic() < end:
             message = link.recv_match(blocking=True, timeout=0.1)
             if message is None or message.get_type() == "BAD_DATA":

@@ -28,7 +28,7 @@ KEY = bytes(range(32))
 def main(personality, url):
     global link
     link = mavutil.mavlink_connection(url, source_system=255)
-    link.wait_heartbeat(timeout=10)
+    link.wait_heartbeat(timeout=60)
     home_position()
     parameters(personality)
     fence_and_rally()
@@ -41,7 +41,7 @@ def main(personality, url):
     link.close()
 
 
-def wait(kind, condition=lambda message: True, seconds=20.0):
+def wait(kind, condition=lambda message: True, seconds=60.0):
     """The first message of that kind for which the condition holds."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:

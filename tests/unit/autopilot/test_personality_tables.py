@@ -13,6 +13,7 @@ from typing import Final, get_args
 import pytest
 
 import vehicle_sim
+from tests.each import each
 from vehicle_sim.autopilot.modes import Personality
 
 ROOT: Final = Path(vehicle_sim.__file__).parent
@@ -61,6 +62,6 @@ def test_a_table_is_no_comparison() -> None:
     assert comparisons('TABLE = {"px4": 1, "ardupilot": 2}\nx = TABLE["px4"] == 1') == []
 
 
-@pytest.mark.parametrize("file", FILES)
+@each("file", FILES)
 def test_nothing_is_compared_with_a_personality(file: str) -> None:
     assert comparisons((ROOT / file).read_text(encoding="utf-8")) == []

@@ -5,16 +5,15 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
-
 import vehicle_sim
+from tests.each import each
 
 ROOMS = ("autopilot", "estimation", "control_loops")
 _ROOT = Path(vehicle_sim.__file__).parent
 FILES = sorted(file for room in ROOMS for file in (_ROOT / room).rglob("*.py"))
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(_ROOT)))
+@each("file", FILES, said=lambda file: str(file.relative_to(_ROOT)))
 def test_no_one_reaches_for_the_body_of_the_blocks(file: Path) -> None:
     """The import contract sees names of modules; a body can also be had from `Blocks`."""
     reached = [

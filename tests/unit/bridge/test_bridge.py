@@ -145,13 +145,13 @@ def test_nobody_plays_the_bridge_or_the_vehicle(name: tuple[int, int]) -> None:
 def test_a_command_for_all_components_is_answered_by_the_autopilot() -> None:
     table = Table(seen=standing(PX4))
     for compid, answers_as in ((0, 1), (1, 1), (154, 154)):
-        orbit = mavlink.MAVLink_command_long_message(1, compid, Cmd.DO_ORBIT, 0, *[0.0] * 7)
-        refused = of(Refuses, table.says(orbit).effects)[0]
+        around = mavlink.MAVLink_command_long_message(1, compid, Cmd.DO_GO_AROUND, 0, *[0.0] * 7)
+        refused = of(Refuses, table.says(around).effects)[0]
         verdict = ipc.VerdictEvent(refused.ask.id, refused.ask.word, "refused", "UNSUPPORTED")
         told = table.bridge.told(refused.client, verdict, 1, table.now_ns)
         (answer, *_) = of(Answers, told)
         assert answer.source == Address(1, answers_as)
-        assert acks(told) == [(Cmd.DO_ORBIT, Result.UNSUPPORTED)]
+        assert acks(told) == [(Cmd.DO_GO_AROUND, Result.UNSUPPORTED)]
         table.now_ns += 10 * S
 
 

@@ -358,9 +358,7 @@ def test_px4_takes_no_condition_yaw() -> None:
 
 
 @BOTH
-def test_circles_and_going_around_are_refused_with_what_to_do_instead(autopilot: Autopilot) -> None:
-    orbit = command_long(34, 20.0, 2.0, 0.0, 0.0, NAN, NAN, NAN)
-    assert "NAV_LOITER_TURNS" in refusal(meaning_of(orbit, flying(autopilot)))
+def test_going_around_is_refused_with_what_to_do_instead(autopilot: Autopilot) -> None:
     assert "hold" in refusal(meaning_of(command_long(191), flying(autopilot)))
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.bridge.routing import EVERYBODY, Routes, readdressed, target_of
 from gcs.wire.frame import Frame, split
+from tests.each import each
 
 TARGETED = sorted(
     (cls for cls in dialect.mavlink_map.values() if "target_system" in cls.fieldnames),
@@ -37,7 +37,7 @@ def blank(cls: Any, **given: int) -> Any:
     return cls(*values)
 
 
-@pytest.mark.parametrize("cls", TARGETED, ids=lambda cls: str(cls.msgname))
+@each("cls", TARGETED, said=lambda cls: str(cls.msgname))
 def test_the_target_stands_where_pymavlink_puts_it(cls: Any) -> None:
     has_component = "target_component" in cls.fieldnames
     for sysid, compid in ((0, 0), (7, 0), (7, 190), (255, 1)):
@@ -96,7 +96,7 @@ class TestRoutes:
         assert routes.to_clients(ack_for(255, 230)) == []
 
 
-@pytest.mark.parametrize("cls", TARGETED, ids=lambda cls: str(cls.msgname))
+@each("cls", TARGETED, said=lambda cls: str(cls.msgname))
 def test_a_frame_for_all_becomes_one_for_a_system(cls: Any) -> None:
     """As pymavlink reads it: nothing but the target is another."""
     given = {"target_component": 5} if "target_component" in cls.fieldnames else {}

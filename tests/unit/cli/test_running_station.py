@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import msgspec
 import pytest
 
 from gcs import ipc
@@ -164,6 +165,71 @@ def test_a_stop_takes_any_policy_and_log_but_stops_no_other_vehicle(
     assert ended.exit_code == ExitCode.USAGE
     assert "vehicle 2 was asked for, it has 1/1 px4 quadrotor" in ended.output
     assert words(connection) == ["abort"]
+
+
+THERE = ["1/1 px4 quadrotor", "2/1 ardupilot quadrotor"]
+BRIDGE = msgspec.structs.replace(FOUND, vehicles=THERE)
+AT_SECOND = ipc.BridgeVehicle(
+    2, "2/1 ardupilot quadrotor", "HOVERING", "OURS", "NOMINAL", [], "GUIDED", True
+)
+
+
+class SeveralVehicles(FakeStation):
+    """Of a bridge: it tells its vehicles before each snapshot."""
+
+    def tick(self, now_s: float) -> list[ipc.Event]:
+        return [ipc.BridgeStatus(0, [], [], [AT_SECOND]), *super().tick(now_s)]
+
+
+@pytest.mark.parametrize(
+    ("typed", "asked"),
+    [
+        (("goto", 3, 0, 2), ["goto"]),
+        (("land",), ["land"]),
+        (("abort",), ["abort"]),
+    ],
+)
+def test_of_a_bridge_the_vehicle_that_was_named_is_asked_and_no_other(
+    found: list[Description],
+    connection: FakeConnection,
+    typed: tuple[object, ...],
+    asked: list[str],
+) -> None:
+    found[:] = [BRIDGE]
+    connection.station = SeveralVehicles("airborne")
+    gcs(*typed, "--link", LINK, "--vehicle", 2, "--wait", 1)
+    sent = [each for each in connection.sent if isinstance(each, ipc.Ask)]
+    assert [(each.word, each.vehicle) for each in sent] == [(word, 2) for word in asked]
+
+
+def test_the_status_of_a_vehicle_of_a_bridge_is_of_that_one(
+    found: list[Description], connection: FakeConnection
+) -> None:
+    found[:] = [BRIDGE]
+    connection.station = SeveralVehicles("airborne")
+    ended = gcs("status", "--link", LINK, "--vehicle", 2)
+    assert ended.exit_code == ExitCode.DONE, ended.output
+    assert "2/1 ardupilot quadrotor" in ended.output
+
+
+def test_a_stop_of_the_first_vehicle_of_a_bridge_is_for_that_one_alone(
+    found: list[Description], connection: FakeConnection
+) -> None:
+    found[:] = [BRIDGE]
+    gcs("abort", "--link", LINK, "--vehicle", 1)
+    assert [each.vehicle for each in connection.sent if isinstance(each, ipc.Ask)] == [1]
+
+
+@pytest.mark.parametrize("command", [("goto", 3, 0, 2), ("abort",), ("status",)])
+def test_a_vehicle_that_a_bridge_does_not_have_is_refused_with_those_that_it_has(
+    found: list[Description], connection: FakeConnection, command: tuple[object, ...]
+) -> None:
+    found[:] = [BRIDGE]
+    ended = gcs(*command, "--link", LINK, "--vehicle", 3)
+    assert ended.exit_code == ExitCode.USAGE
+    there = "1/1 px4 quadrotor, 2/1 ardupilot quadrotor"
+    assert f"vehicle 3 was asked for, it has {there}" in ended.output
+    assert connection.sent == []
 
 
 def test_stations_are_listed_without_their_tokens(found: list[Description]) -> None:

@@ -290,3 +290,11 @@ class TestLandedAndAirborne:
         assert state_of(script) is State.HOLDING
         assert script.commands() == [CommandKind.HOLD]
         assert ended(script, request_id) == "aborted SEVERITY"
+
+    def test_a_mission_that_lifts_off_again_is_held_where_its_operator_is_lost(self) -> None:
+        script, request_id = flight(State.FLYING_MISSION)
+        remember(script, lifted=True, operator_lost=True)
+        script.land_state(self.ON)
+        script.land_state(self.AIR)
+        assert state_of(script) is State.HOLDING
+        assert ended(script, request_id) == "aborted OPERATOR_LOST"

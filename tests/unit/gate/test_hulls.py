@@ -16,6 +16,7 @@ from gcs.gate.airspace.hulls import (
     ring_outside,
 )
 from gcs.gate.geometry import Circle, Point, Polygon
+from tests.each import each
 
 TOWER = Polygon(((20.0, -5.0), (30.0, -5.0), (30.0, 5.0), (20.0, 5.0)))
 NOTCHED = Polygon(((0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (25.0, 40.0), (20.0, 10.0), (0.0, 40.0)))
@@ -26,7 +27,7 @@ def points_of(dice: random.Random, count: int) -> list[Point]:
     return [(dice.uniform(-10, 50), dice.uniform(-20, 50)) for _ in range(count)]
 
 
-@pytest.mark.parametrize("seed", range(200))
+@each("seed", range(200))
 def test_the_ground_track_is_the_convex_hull(seed: int) -> None:
     points = points_of(random.Random(seed), 1 + seed % 7)
     corners = ground_track(points)
@@ -36,7 +37,7 @@ def test_the_ground_track_is_the_convex_hull(seed: int) -> None:
     assert set(corners) <= set(points)
 
 
-@pytest.mark.parametrize("seed", range(300))
+@each("seed", range(300))
 def test_a_hull_beside_a_zone_is_as_far_off_as_shapely_says(seed: int) -> None:
     points = points_of(random.Random(seed), 1 + seed % 6)
     track = ground_track(points)
@@ -71,7 +72,7 @@ def test_a_notch_that_reaches_into_a_hull_leaves_the_zone() -> None:
     assert hull_inside(NOTCHED, track) < 0.0
 
 
-@pytest.mark.parametrize("seed", range(300))
+@each("seed", range(300))
 def test_a_ring_is_as_far_off_as_shapely_says(seed: int) -> None:
     dice = random.Random(seed)
     (centre,) = points_of(dice, 1)

@@ -12,7 +12,7 @@ import os
 import select
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from gcs import config, ipc
@@ -161,6 +161,8 @@ class FakeStation:
         if ask.word == "stream_begin":
             self.stream_told = ""
             return self._begin(ask, "STREAMING", None)
+        if ask.word == "orbit":
+            return self._begin(ask, "STREAMING", None)
         if ask.word == "photo":
             self.photo_until_s = now_s + PHOTO_S
             return self._begin(ask, "TAKING_PICTURE", None)
@@ -303,6 +305,9 @@ class FakeConnection:
             self._events.extend(self._ended_or_tick())
         events, self._events = self._events, []
         return Polled(events, ready)
+
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
+        raise AssertionError("this one is polled")
 
     def close(self) -> StationEnded:
         self.closed = True

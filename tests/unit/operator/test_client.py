@@ -18,6 +18,7 @@ pytestmark = pytest.mark.slow  # a station's process
 
 FAKE = (sys.executable, "-m", "tests.unit.operator.fake_station")
 PATIENCE = 200
+PATIENT_S = 60.0
 
 
 @pytest.fixture(autouse=True)
@@ -74,9 +75,9 @@ def test_a_listener_is_given_every_event_up_to_the_end() -> None:
     client = start("flight")
     queue: Queue[StationEvent] = Queue()
     client.listen(queue.put)
-    assert isinstance(queue.get(timeout=20), ipc.Hello)
+    assert isinstance(queue.get(timeout=PATIENT_S), ipc.Hello)
     client.send(ipc.Leave("done"))
-    while not isinstance(last := queue.get(timeout=20), StationEnded):
+    while not isinstance(last := queue.get(timeout=PATIENT_S), StationEnded):
         pass
     assert last.bye is not None
     client.close()

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
 import pytest
 
 import gcs
+from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator import joined
-from gcs.operator.client import StationClient
+from gcs.operator.client import StationClient, StationEvent
 from gcs.operator.differences import Difference
 from gcs.operator.joined import JoinedStation
 from gcs.policy_digest import policy_digest
@@ -67,6 +70,56 @@ def test_what_the_running_station_has_otherwise_is_told(
     assert "process 4711" in differs.sentence
     assert f"leave out {difference.option} to use that station" in differs.hint
     assert f"gcs stations end --link {LINK}" in differs.hint
+
+
+THERE = ["1/1 px4 quadrotor", "2/1 ardupilot quadrotor"]
+BRIDGE = msgspec.structs.replace(RUNNING, vehicles=THERE)
+AT_SECOND = ipc.BridgeVehicle(
+    2, "2/1 ardupilot quadrotor", "HOVERING", "OURS", "NOMINAL", [], "GUIDED", True
+)
+
+
+class BridgeWay(FakeWay):
+    """To a bridge: its vehicles are told before its first snapshot."""
+
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
+        on_event(ipc.BridgeStatus(0, [], [], [AT_SECOND]))
+        super().listen(on_event)
+
+
+def test_of_a_bridge_one_vehicle_is_flown(monkeypatch: pytest.MonkeyPatch) -> None:
+    way = BridgeWay()
+    monkeypatch.setattr(joined, "running_stations", lambda: [BRIDGE])
+    monkeypatch.setattr(JoinedStation, "join", lambda *_, **__: way)
+    with gcs.connect(LINK, vehicle=2) as station:
+        assert station.snapshot.vehicle == "2/1 ardupilot quadrotor"
+        assert station.state == "HOVERING"
+        station.abort(wait=False)
+        way.tell(ipc.StateEvent("HOVERING", "HOLDING", "", "OURS", "NOMINAL"))
+        assert station.state == "HOVERING", "that may have been another vehicle"
+        with pytest.raises(ValueError, match="only the first one's messages"):
+            station.telemetry("BATTERY_STATUS")
+    assert [each.vehicle for each in way.sent if isinstance(each, ipc.Ask)] == [2]
+
+
+def test_a_vehicle_that_is_not_there_is_told_with_those_that_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(joined, "running_stations", lambda: [BRIDGE])
+    (told,) = differing(vehicle=3).differences
+    assert told == Difference("vehicle", "3", "1/1 px4 quadrotor, 2/1 ardupilot quadrotor")
+
+
+def test_a_station_with_one_vehicle_has_that_one_alone() -> None:
+    (told,) = differing(vehicle=2).differences
+    assert told == Difference("vehicle", "2", "1/1 px4 quadrotor")
+    with gcs.connect(LINK, vehicle=1) as station:
+        assert station.hello is not None
+
+
+def test_no_vehicle_is_chosen_of_a_simulator_of_ones_own() -> None:
+    with pytest.raises(gcs.CannotConnect, match="vehicle=2 is for vehicles that are there"):
+        gcs.connect(sim=True, vehicle=2)
 
 
 def test_all_that_differs_is_told_at_once() -> None:

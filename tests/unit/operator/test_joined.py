@@ -92,9 +92,9 @@ class TestTheConnection:
         heard: Queue[StationEvent] = Queue()
         far.joined.listen(heard.put)
         far.tell(ipc.Trouble("one"))
-        assert heard.get(timeout=10) == ipc.Trouble("one")
+        assert heard.get(timeout=60) == ipc.Trouble("one")
         far.sock.close()
-        assert isinstance(heard.get(timeout=10), StationEnded)
+        assert isinstance(heard.get(timeout=60), StationEnded)
 
     def test_a_file_of_this_folder_is_named_so_that_the_station_finds_it(
         self, far: FarEnd, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

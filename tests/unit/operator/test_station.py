@@ -103,6 +103,15 @@ def test_what_is_no_number_goes_to_the_gate_as_null() -> None:
     assert way.sent[-1] == ipc.Ask(2, "goto", goal_enu=(None, 0.0, 2.0))
 
 
+def test_an_orbit_without_an_end_is_not_waited_for() -> None:
+    station, way = flying()
+    station.orbit(-10.0, 2.0, (0.0, 20.0, 5.0), nose="along", wait=False)
+    circle = ipc.Circle((0.0, 20.0, 5.0), -10.0, 2.0, 0.0, "along")
+    assert way.sent[-1] == ipc.Ask(2, "orbit", orbit=circle)
+    with pytest.raises(ValueError, match="finite"):
+        station.orbit(float("nan"), 2.0)
+
+
 def test_an_operation_can_be_waited_for_later() -> None:
     station, way = flying()
     flight = station.goto(3.0, 0.0, 2.0, wait=False)
@@ -134,9 +143,9 @@ def test_an_abort_in_another_thread_ends_the_goto_that_is_waited_for() -> None:
     way.was_sent.clear()
     flight = threading.Thread(target=fly)
     flight.start()
-    assert way.was_sent.wait(10.0)
+    assert way.was_sent.wait(60.0)
     assert station.abort().state == "complete"
-    flight.join(10.0)
+    flight.join(60.0)
     assert [(each.state, each.code) for each in raised] == [("aborted", "OPERATOR")]
 
 

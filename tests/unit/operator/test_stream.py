@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
+from types import SimpleNamespace
 
 import pytest
 
@@ -29,11 +31,26 @@ def code(stream: Stream) -> str:
     return "" if stream.refusal is None else stream.refusal.code
 
 
-def test_a_velocity_is_flown_for_its_seconds_and_ended() -> None:
+class VirtualTime:
+    """A clock that passes only where a station waits for its time to be over."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now_s = 0.0
+        passing = SimpleNamespace(monotonic=lambda: self.now_s)
+        monkeypatch.setattr("gcs.operator.stream.time", passing)
+        monkeypatch.setattr(Station, "wait_until", self._wait_until)
+
+    def _wait_until(self, done: Callable[[], bool], timeout_s: float) -> None:
+        if not done():
+            self.now_s += timeout_s
+
+
+def test_a_velocity_is_flown_for_its_seconds_and_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     station, way = flying()
-    begun_s = time.monotonic()
-    station.velocity(1.0, -2.0, 0.5, 30.0, seconds=0.25)
-    assert 0.25 <= time.monotonic() - begun_s < 1.0
+    with monkeypatch.context() as patch:
+        clock = VirtualTime(patch)
+        station.velocity(1.0, -2.0, 0.5, 30.0, seconds=0.25)
+    assert clock.now_s == pytest.approx(0.25)
     assert words(way) == ["stream_begin", "sample", "stream_end"]
     samples = [sent for sent in way.sent if isinstance(sent, ipc.Stream)]
     assert samples == [ipc.Stream(v_enu=(1.0, -2.0, 0.5), yaw_rate_deg_s=30.0)] * 3

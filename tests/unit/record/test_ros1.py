@@ -20,6 +20,7 @@ from gcs.record import ros1
 from gcs.report import Direction, FrameItem
 from gcs.wire.blanking import SETUP_SIGNING, without_key
 from gcs.wire.dialect import MESSAGES, TYPE_CODES, MessageDef
+from tests.each import each
 from tests.sample_files import elsewhere
 from tests.unit.record.flights import frame_v1, frame_v2, record
 
@@ -119,7 +120,7 @@ def test_payload_fields_called_like_ours_get_an_underscore() -> None:
     assert "uint8 frame_" in lines
 
 
-@pytest.mark.parametrize("definition", MESSAGES.values(), ids=lambda d: d.name)
+@each("definition", MESSAGES.values(), said=lambda d: d.name)
 def test_names_in_a_schema_are_legal_and_unique(definition: MessageDef) -> None:
     own = ros1.schema_text(definition).split("=" * 80)[0].splitlines()
     names = [re.split(r"[ =]+", line)[1] for line in own]

@@ -7,7 +7,14 @@ import pytest
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.session.effects import EVERYONE, Effect, Emit, ShowTopics
-from gcs.session.inputs import OperatorGone, OperatorJoined, OperatorNoise, SignalCame
+from gcs.session.inputs import (
+    ClientCame,
+    Datagram,
+    OperatorGone,
+    OperatorJoined,
+    OperatorNoise,
+    SignalCame,
+)
 from tests.unit.session import told, wire
 from tests.unit.session.station import Script
 
@@ -61,6 +68,24 @@ class TestWhoIsTold:
         kinds = {type(event) for event in to(SECOND, script.told)}
         assert kinds == {ipc.StateEvent, ipc.Operation, ipc.Snapshot}
         assert {ipc.VerdictEvent, ipc.StateEvent} <= {type(e) for e in to(1, script.told)}
+
+    def test_who_started_a_bridge_and_looks_alone_is_shown_two_snapshots_a_second(self) -> None:
+        script = Script(config=StationConfig(bridge=True)).met()
+        script.feed(ClientCame(1, "udp 127.0.0.1:5", False))
+        script.feed(Datagram(1, wire.Sender(sysid=254).frame(wire.heartbeat())))
+        script.forget()
+        script.run(2.0)
+        assert len(told.snapshots(script.told)) == 4
+        join(script)
+        script.forget()
+        script.run(2.0)
+        assert len(told.snapshots(script.told)) == 20
+
+    def test_who_started_a_station_is_shown_ten_though_nobody_else_looks(self) -> None:
+        script = Script().met()
+        script.forget()
+        script.run(2.0)
+        assert len(told.snapshots(script.told)) == 20
 
     def test_equal_numbers_of_two_operators_are_two_requests(self) -> None:
         script = Script().hovering()

@@ -17,6 +17,7 @@ from gcs.wire.codec import FrameWriter
 from gcs.wire.dialect import MESSAGES, MESSAGES_BY_NAME
 from gcs.wire.frame import plain_frames
 from gcs.wire.messages import CLASSES, LocalPositionNed
+from tests.each import each
 from tests.unit.session import told, wire
 from tests.unit.session.station import Script
 
@@ -88,18 +89,17 @@ def test_long_reads_of_a_stream_are_cut_between_frames() -> None:
     assert datagrams([]) == []
 
 
-@pytest.mark.parametrize("msgid", sorted(set(MESSAGES) - INTERPRETED))
-def test_decoding_what_passes_through_would_change_nothing(
-    msgid: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@each("msgid", sorted(set(MESSAGES) - INTERPRETED))
+def test_decoding_what_passes_through_would_change_nothing(msgid: int) -> None:
     """The same datagrams with every message decoded: the same effects, and the same snapshot."""
     writer, definition = FrameWriter(1, 1), MESSAGES[msgid]
     payloads = [random.Random(seed).randbytes(definition.max_len) for seed in range(3)]
     data = b"".join(writer.write_payload(msgid, payload) for payload in payloads)
     passing = effects_of(data)
-    for module in (incoming, vehicle):
-        monkeypatch.setattr(module, "INTERPRETED", frozenset(MESSAGES))
-    assert effects_of(data) == passing
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (incoming, vehicle):
+            patch.setattr(module, "INTERPRETED", frozenset(MESSAGES))
+        assert effects_of(data) == passing
 
 
 def effects_of(data: bytes) -> list[Effect]:

@@ -126,6 +126,8 @@ class PaperLink(Link):
         if self.drain_fails:
             raise RuntimeError("planted: drain")
         came, self._came = self._came[:limit], self._came[limit:]
+        if self._came:
+            self._far.send(b"!")
         return came
 
     def send(self, data: bytes) -> None:

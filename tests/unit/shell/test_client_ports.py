@@ -26,7 +26,7 @@ FRAME = b"\xfd\x00\x00\x00\x00\xff\xbe\x00\x00\x00\x00\x00"
 """Looks like a frame to whoever looks at its first byte; nobody here looks at more."""
 UDP_IN = Endpoint(Kind.UDP_IN, "127.0.0.1", 0)
 TCP_IN = Endpoint(Kind.TCP_IN, "127.0.0.1", 0)
-WAIT_S = 5.0
+WAIT_S = 60.0
 
 
 class Bench:
@@ -64,7 +64,8 @@ class Bench:
 
     def turn(self, wait_s: float = 0.0) -> list[Arrival]:
         """One turn of the loop: as `Loop._wait` and what follows it."""
-        sources, sinks = self.ports.sources(self.now_ns), self.ports.sinks
+        sources = self.ports.waiting + self.ports.sources(self.now_ns)
+        sinks = self.ports.sinks
         readable, writable, _ = select.select(sources, sinks, [], wait_s)
         return self.ports.turn(readable, writable, self.now_ns)
 

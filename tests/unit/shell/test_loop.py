@@ -270,8 +270,10 @@ def test_a_deadline_that_passes_while_datagrams_keep_coming_is_served_between_th
 
 def test_one_turn_takes_no_more_than_its_share_of_a_flood(rig: Rig) -> None:
     flood = [b"%d" % n for n in range(MAX_DATAGRAMS_A_TURN + 1)]
-    rig.run(lambda: rig.links[0].bring(*flood), lambda: rig.advance(50))
-    assert rig.core.inputs.index(Wake()) == MAX_DATAGRAMS_A_TURN
+    rig.run(lambda: rig.links[0].bring(*flood), lambda: rig.advance(1))
+    last, next_turn = Datagram(0, flood[-2]), Datagram(0, flood[-1])
+    assert rig.times_ns(last) == [START_NS]
+    assert rig.times_ns(next_turn) == [START_NS + 1 * MS]
 
 
 def test_it_waits_for_the_first_deadline_of_core_recorder_and_links(rig: Rig) -> None:
@@ -361,8 +363,17 @@ def test_a_recorder_that_fails_is_told_before_the_next_input(rig: Rig) -> None:
 
 def test_what_the_recorder_finds_at_its_own_time_is_handed_on(rig: Rig) -> None:
     grew = RecorderGrew(123_456)
-    rig.run(lambda: rig.recording.upkeep_news.append(grew))
-    assert grew in rig.core.inputs
+    rig.recording.upkeep_news.append(grew)
+    rig.recording.due_ns = START_NS + 10 * MS
+    rig.run(lambda: rig.advance(9), lambda: rig.advance(1))
+    assert rig.times_ns(grew) == [START_NS + 10 * MS]
+
+
+def test_before_its_own_time_the_recorder_is_left_alone(rig: Rig) -> None:
+    grew = RecorderGrew(123_456)
+    rig.recording.upkeep_news.append(grew)
+    rig.run(lambda: rig.advance(9), lambda: rig.links[0].bring(b"first"))
+    assert grew not in rig.core.inputs
 
 
 def test_a_vehicle_of_our_own_is_heard_line_by_line_and_its_end_once(rig: Rig) -> None:
@@ -585,6 +596,29 @@ def test_turns_are_apart_where_datagrams_are_dense_and_nowhere_else(rig: Rig) ->
     )
     dense_ns = [START_NS + round(at_ms * MS) for at_ms in (17.4, 25.4)]
     assert rig.clock.pauses_ns == [time_ns + GATHER_NS for time_ns in dense_ns]
+
+
+def test_where_datagrams_come_far_apart_a_turn_reads_one_and_loses_none(rig: Rig) -> None:
+    link = rig.links[0]
+
+    def bring(after_ms: float, *datagrams: bytes) -> Callable[[], None]:
+        def step() -> None:
+            rig.advance(after_ms)
+            if datagrams:
+                link.bring(*datagrams)
+
+        return step
+
+    rig.run(
+        bring(8.0, b"1", b"2"),
+        bring(8.0, b"3", b"4"),
+        bring(0.1),
+        bring(8.0, b"5", b"6"),
+        bring(8.0, b"7"),
+    )
+    came = [(now_ns, each.data) for now_ns, each in rig.core.given if isinstance(each, Datagram)]
+    ms = [8.0, 8.0, 16.0, 16.1, 24.1, 24.1, 32.1]
+    assert came == [(START_NS + round(at * MS), b"%d" % n) for n, at in enumerate(ms, 1)]
 
 
 def test_two_vehicles_at_once_are_not_dense(rig: Rig) -> None:

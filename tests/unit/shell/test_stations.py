@@ -8,6 +8,7 @@ import stat
 import sys
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from gcs import ipc
@@ -15,6 +16,7 @@ from gcs.shell import stations
 from gcs.shell.endpoints import parse_endpoint
 from gcs.shell.local_socket import LocalSocket
 from gcs.shell.stations import Description, Unsafe
+from tests.unit.operator.fake_station import FakeStation
 
 pytestmark = [
     pytest.mark.slow,  # sockets
@@ -64,6 +66,17 @@ def test_what_a_dead_station_left_is_removed(tmp_path: Path) -> None:
     assert len(list(folder.iterdir())) == 2
     assert stations.running(folder) == []
     assert list(folder.iterdir()) == []
+
+
+def test_of_a_bridge_all_vehicles_that_can_be_chosen_are_described(tmp_path: Path) -> None:
+    names = ["1/1 px4 quadrotor", "2/1 ardupilot quadrotor"]
+    seen = msgspec.structs.replace(FakeStation().snapshot(), vehicle=names[0], vehicles=names)
+    for several in (True, False):
+        local = LocalSocket([LINK], "", keep=False, several=several, folder=tmp_path / "mavgate")
+        local.describe(seen)
+        (found,) = stations.running(tmp_path / "mavgate")
+        assert (found.vehicle, found.vehicles) == (names[0], names if several else [])
+        local.close()
 
 
 def test_a_new_station_takes_the_place_of_a_dead_one_with_its_number(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v10 import all as upstream_1
 from pymavlink.dialects.v20 import all as upstream
 
+from tests.each import each
 from vehicle_sim.wire import ids
 from vehicle_sim.wire.codec import BY_TYPE, encode
 from vehicle_sim.wire.dialect import LAYOUTS, NAMES
@@ -50,7 +51,7 @@ def any_message(kind: type[Message], draw: random.Random) -> Message:
     return kind._make(value(field, draw) for field in fields)
 
 
-@pytest.mark.parametrize("kind", TYPES.values(), ids=lambda kind: kind.__name__)
+@each("kind", TYPES.values(), said=lambda kind: kind.__name__)
 def test_every_message_comes_back_whole(kind: type[Message]) -> None:
     draw = random.Random(kind.__name__)
     for sequence in range(20):
@@ -62,10 +63,10 @@ def test_every_message_comes_back_whole(kind: type[Message]) -> None:
         assert counters == Counters(frames=1)
 
 
-@pytest.mark.parametrize(
+@each(
     "kind",
     [kind for kind in TYPES.values() if IDS[kind] in upstream.mavlink_map],
-    ids=lambda kind: kind.__name__,
+    said=lambda kind: kind.__name__,
 )
 def test_pymavlink_reads_what_we_write(kind: type[Message]) -> None:
     draw = random.Random(kind.__name__)
@@ -89,10 +90,10 @@ def test_pymavlink_reads_what_we_write(kind: type[Message]) -> None:
             assert theirs == ours, field.name
 
 
-@pytest.mark.parametrize(
+@each(
     "kind",
     [kind for kind in TYPES.values() if IDS[kind] in upstream_1.mavlink_map],
-    ids=lambda kind: kind.__name__,
+    said=lambda kind: kind.__name__,
 )
 def test_pymavlink_reads_what_we_write_in_mavlink_1(kind: type[Message]) -> None:
     """The base fields, and the CRC over exactly them."""

@@ -5,9 +5,14 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs.wire.blanking import blanked, without_key
+from gcs.wire.blanking import (
+    datagram_without_keys,
+    may_hold_key,
+    without_key,
+    without_keys,
+)
 from gcs.wire.codec import FrameWriter, decode
-from gcs.wire.frame import Frame, StreamSplitter, split
+from gcs.wire.frame import Frame, split
 from gcs.wire.messages import Heartbeat, SetupSigning
 from gcs.wire.signing import SecretKey, Signer
 
@@ -39,26 +44,53 @@ def test_the_frame_stays_a_good_one_of_the_same_length(key: bytes, signed: bool)
 
 
 @given(key=keys)
-def test_bytes_that_are_no_frame_do_not_become_one(key: bytes) -> None:
+def test_of_a_damaged_one_the_key_is_kept_out_too(key: bytes) -> None:
     raw = setup(key)
-    broken = bytearray(raw)
-    broken[-1] ^= 1
-    kept = blanked(bytes(broken), mend=False)
-    zeros = bytes(min(32, len(raw) - 22))  # MAVLink 2 cuts a key's last zeros
-    assert kept == bytes(broken[:20]) + zeros + kept[20 + len(zeros) :]
-    assert not any(isinstance(item, Frame) for item in split(kept))
+    broken = raw[:-1] + bytes([raw[-1] ^ 1])
+    kept = without_keys(broken)
+    zeros = bytes(min(32, len(raw) - 20))  # MAVLink 2 cuts a key's last zeros
+    assert kept[: 20 + len(zeros)] == broken[:20] + zeros
+    assert without_keys(kept) == kept
 
 
-@given(key=keys, cut=st.integers(1, 60), signed=st.booleans())
-def test_a_stream_that_was_cut_anywhere_gives_the_same_frame_without_its_key(
-    key: bytes, cut: int, signed: bool
+HEADER = b"\xfd\x2a\x00\x00\x00\xff\xbf\x00\x01\x00"
+"""Of a SETUP_SIGNING."""
+
+
+@given(before=st.binary(max_size=22), signed=st.booleans())
+def test_a_key_that_looks_like_a_header_blanks_nothing_but_itself(
+    before: bytes, signed: bool
 ) -> None:
-    """What is recorded of a read that ends within the frame goes on with what is recorded next."""
+    key = (before + HEADER + bytes(range(1, 33)))[:32]
     raw = setup(key, signed=signed)
-    splitter = StreamSplitter()
-    splitter.feed(raw[:cut])
-    rest = blanked(splitter.rest, mend=True)
-    assert without_key(raw).startswith(rest) or cut >= len(raw)
+    kept = without_key(raw)
+    end = 10 + raw[1]
+    assert kept[:20] + kept[end + 2 :] == raw[:20] + raw[end + 2 :]
+    assert set(kept[20:end]) <= {0}
+    assert isinstance(split(kept)[0], Frame)
+
+
+@given(
+    st.lists(
+        st.one_of(st.binary(max_size=60), st.just(HEADER), st.sampled_from(range(256)).map(bytes)),
+        max_size=8,
+    ).map(b"".join)
+)
+def test_what_is_recorded_stays_as_it_is_when_it_is_recorded_again(noise: bytes) -> None:
+    kept = without_keys(noise)
+    assert len(kept) == len(noise)
+    assert without_keys(kept) == kept
+    assert may_hold_key(kept) == may_hold_key(noise)
+    whole = datagram_without_keys(noise)
+    assert len(whole) == len(noise)
+
+
+def test_a_time_stamp_that_makes_a_header_with_the_zeros_of_a_key_is_none() -> None:
+    """fd ... 01 before the key, and zeros after it: the first 20 bytes are no key's place."""
+    noise = HEADER + b"\x00\xfd\x00\x00\x00\x00\x00\x00\x00\x01" + bytes([7] * 60)
+    kept = without_keys(noise)
+    assert kept == noise[:20] + bytes(32) + noise[52:]
+    assert without_keys(kept) == kept
 
 
 def test_other_frames_stay_as_they_are() -> None:

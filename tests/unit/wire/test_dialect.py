@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 
-import pytest
 from fastcrc import crc16
 from pymavlink.dialects.v20 import all as pymavlink_dialect
 from pymavlink.generator.mavcrc import x25crc
@@ -18,6 +17,7 @@ from gcs.wire.dialect import (
     FieldDef,
     MessageDef,
 )
+from tests.each import each
 from tests.sample_files import elsewhere
 
 
@@ -35,12 +35,12 @@ def crc_extra_by_the_spec(message: MessageDef) -> int:
     return (crc & 0xFF) ^ (crc >> 8)
 
 
-@pytest.mark.parametrize("message", MESSAGES.values(), ids=lambda message: message.name)
+@each("message", MESSAGES.values(), said=lambda message: message.name)
 def test_the_crc_extra_follows_from_the_base_fields(message: MessageDef) -> None:
     assert message.crc_extra == crc_extra_by_the_spec(message)
 
 
-@pytest.mark.parametrize("message", MESSAGES.values(), ids=lambda message: message.name)
+@each("message", MESSAGES.values(), said=lambda message: message.name)
 def test_fields_lie_packed_and_extensions_last(message: MessageDef) -> None:
     offset = 0
     for field in message.fields:

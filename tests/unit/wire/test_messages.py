@@ -13,6 +13,7 @@ from gcs.wire.codec import FrameWriter, Layout, decode, encode
 from gcs.wire.dialect import MESSAGES, FieldDef, MessageDef
 from gcs.wire.frame import Frame, split
 from gcs.wire.messages import CLASSES, Message
+from tests.each import each
 from tests.shares import examples
 
 BITS = {"int8": 8, "int16": 16, "int32": 32, "int64": 64}
@@ -61,7 +62,7 @@ def as_pymavlink_says(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
 
 
-@pytest.mark.parametrize("cls", CLASSES.values(), ids=lambda cls: cls.__name__)
+@each("cls", CLASSES.values(), said=lambda cls: cls.__name__)
 def test_a_class_has_the_dialects_fields(cls: type[Message]) -> None:
     definition = MESSAGES[cls.MSG_ID]
     assert cls.__name__.upper() == definition.name.replace("_", "")
@@ -75,7 +76,7 @@ def test_a_class_has_the_dialects_fields(cls: type[Message]) -> None:
         assert hints[field.name] == expected, field.name
 
 
-@pytest.mark.parametrize("cls", CLASSES.values(), ids=lambda cls: cls.__name__)
+@each("cls", CLASSES.values(), said=lambda cls: cls.__name__)
 def test_extensions_that_did_not_come_read_as_the_defaults(cls: type[Message]) -> None:
     definition = MESSAGES[cls.MSG_ID]
     zeros = decode(zero_frame(definition))
@@ -137,7 +138,7 @@ def payload_of(definition: MessageDef) -> bytes:
     return bytes(17 * i % 0x7F + 1 for i in range(definition.max_len))
 
 
-@pytest.mark.parametrize("cls", CLASSES.values(), ids=lambda cls: cls.__name__)
+@each("cls", CLASSES.values(), said=lambda cls: cls.__name__)
 def test_every_byte_of_a_payload_is_in_a_field(cls: type[Message]) -> None:
     definition = MESSAGES[cls.MSG_ID]
     payload = payload_of(definition)
@@ -146,7 +147,7 @@ def test_every_byte_of_a_payload_is_in_a_field(cls: type[Message]) -> None:
     assert encode(decoded) == payload
 
 
-@pytest.mark.parametrize("cls", CLASSES.values(), ids=lambda cls: cls.__name__)
+@each("cls", CLASSES.values(), said=lambda cls: cls.__name__)
 def test_a_class_may_be_older_than_the_dialect(cls: type[Message]) -> None:
     """A newer pymavlink may know another extension; fields never change otherwise."""
     ours = MESSAGES[cls.MSG_ID]
