@@ -261,12 +261,17 @@ def test_px4s_mission_box_goes_up_and_comes_down_equal_in_meaning() -> None:
 
 def refused_in_place(paths: list[Path]) -> None:
     flight = Flight().connected()
+    read = _about_plans(flight)
     for path in paths:
         ask = flight.say("mission_upload", path=str(path))
         flight.run(0.5)
         assert flight.outcome(ask) == "refused BAD_MISSION", path.name
         assert str(path) in flight.verdicts(ask)[0].sentence
-    assert not [name for name in flight.sent_types() if name.startswith("MISSION")]
+    assert _about_plans(flight) == read, "but the rally points, when it was met"
+
+
+def _about_plans(flight: Flight) -> list[str]:
+    return [name for name in flight.sent_types() if name.startswith("MISSION")]
 
 
 def test_a_wrong_plan_is_refused_with_its_place_in_the_file() -> None:

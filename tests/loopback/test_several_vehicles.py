@@ -20,7 +20,7 @@ from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import LinkSpec, World
 
-DISCOVERY = {"PARAM_REQUEST_READ", "TIMESYNC", "HEARTBEAT"}
+DISCOVERY = {"MISSION_REQUEST_LIST", "MISSION_ACK", "PARAM_REQUEST_READ", "TIMESYNC", "HEARTBEAT"}
 ASKING = {511, 512}  # SET_MESSAGE_INTERVAL, REQUEST_MESSAGE
 
 
