@@ -5,12 +5,13 @@ from __future__ import annotations
 import contextlib
 import select
 import shlex
+import signal
 import subprocess
 import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Protocol
@@ -66,6 +67,19 @@ def command_line(argv: Sequence[str]) -> str:
     return shlex.join(["gcs" if name in ("gcs", "gcs.exe", "__main__.py") else name, *words])
 
 
+@contextlib.contextmanager
+def _ctrl_c_waits() -> Iterator[None]:
+    """A program that is started within is not ended by a Ctrl-C before it is in its own session."""
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class StationClient:
     """A station process that was started by this program, and ends with it.
 
@@ -101,14 +115,15 @@ class StationClient:
         words = [*(command or STATION_COMMAND), config.encode(setup)]
         # In a session of its own: a Ctrl-C is for the operator's program, which then leaves in
         # good order; the station hears of everything through its pipe.
-        process = subprocess.Popen(
-            words,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-            creationflags=_CREATION_FLAGS,
-        )
+        with _ctrl_c_waits():
+            process = subprocess.Popen(
+                words,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
+                creationflags=_CREATION_FLAGS,
+            )
         return cls(process, keep=setup.keep)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import socket
 import sys
 from collections.abc import Iterator
@@ -119,3 +120,15 @@ def test_a_wait_ends_when_something_else_is_readable() -> None:
 )
 def test_what_was_typed_is_kept_without_the_machines_folders(argv: list[str], typed: str) -> None:
     assert command_line(argv) == typed
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signal masks")
+def test_no_ctrl_c_ends_a_station_before_it_is_in_its_own_session() -> None:
+    """It was ended so where a busy machine let it wait between its start and that."""
+    interrupted = "import os, signal, sys; os.kill(os.getpid(), signal.SIGINT); sys.exit(7)"
+    client = StationClient.start(StationConfig(), (sys.executable, "-c", interrupted))
+    ended = next(events_of(client))
+    assert isinstance(ended, StationEnded)
+    assert ended.exit_code == 7
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    client.close()
