@@ -22,8 +22,9 @@ PATIENT = {
     "ardupilot": {"GUID_TIMEOUT": 5, "DISARM_DELAY": 0},
 }
 """Parameters: a script that the machine stops for a second has not gone, nor forgotten to fly."""
-ABOUT_ITSELF = re.compile("User callback queue slow|Callback .*took more than")
-"""MAVSDK's words for a script that takes what comes more slowly than it comes."""
+ABOUT_ITSELF = re.compile("User callback queue slow|Callback .*took more than|Ignore: last: ")
+"""MAVSDK's words for a script that takes what comes more slowly than it comes, and for the second
+answer to a piece of a file that it has asked for twice meanwhile."""
 ASKED_AGAIN = re.compile(
     "retr(y|ies)|timed out|timeout|unexpected response on work item", re.IGNORECASE
 )
