@@ -51,7 +51,10 @@ def _home_and_fence(turn: Turn) -> Refusal | None:
 
 
 def _position(turn: Turn) -> Refusal | None:
-    return verifying.position(turn, may_have_gained(turn, None))
+    """Taken off its leg, the vehicle stops from the speed that it has gained there; one that is
+    held already does not stop worse."""
+    flies = turn.memory.goal is not None
+    return verifying.position(turn, may_have_gained(turn, None) if flies else ())
 
 
 CHECKS: Final[Mapping[Check, Callable[[Turn], Refusal | None]]] = MappingProxyType(
