@@ -77,6 +77,13 @@ class Edge:
         return age_ns is None or age_ns > self.policy.position_age_s * SECOND_NS
 
     @property
+    def mode_overdue(self) -> bool:
+        """A commanded mode was overdue when the step came, and no tick had come since."""
+        before = self.before
+        awaited = before.asked_mode is not None and before.hold_again_ns is None
+        return awaited and self.now_ns >= before.asked_until_ns
+
+    @property
     def stands(self) -> bool:
         """Surely on the ground: disarmed and not reported to fly, or reported there of late and
         seen no higher since, with nothing under way that lifts it."""

@@ -22,7 +22,7 @@ The walk (`walk.py`) takes each letter in all situations that wait for their tur
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from functools import partial
 from typing import TypeVar, cast
 
@@ -60,9 +60,8 @@ class Explorer:
         self._memory = WatchedMemory(self._questions)
         self._now_ns = cast(int, Instant(self._questions, NOW))
         self._outcomes = self._outcomes_by(TABLE)
-        self.parts = [self._tree(partial(self._number, part, {})) for part in PARTS]
         self.objections = self._tree(self._objections_to_memory)
-        self.judge = Judge(self.parts, self.objections, self.combination, self.codes)
+        self.judge = self.judge_by(PARTS)
         self._whole = self._walk(TABLE)
 
     def explore(self, table: Table = TABLE) -> Explored:
@@ -81,6 +80,12 @@ class Explorer:
         self._whole.run()
         return frozenset(self._whole.first_met)
 
+    @property
+    def met(self) -> Begun:
+        """The walk through the real table, with all its nodes."""
+        self._whole.run()
+        return self._whole.met
+
     def starts(self, table: Table) -> tuple[Vector, Vector]:
         """A gate that has heard nobody, with home, fence and mission known and without."""
         gate = Gate(self._world.policy, self._world.verifier.autopilot, SECOND_NS, table)
@@ -96,6 +101,11 @@ class Explorer:
         """The outcome of every letter that makes sense, by what the gate remembers."""
         altered = {cell for cell in TABLE if table[cell] != TABLE[cell]}
         return Letters(self._outcomes, self._outcomes_by(table), altered)
+
+    def judge_by(self, parts: Sequence[Part]) -> Judge:
+        """Tells situations apart by these parts."""
+        trees = [self._tree(partial(self._number, part, {})) for part in parts]
+        return Judge(trees, self.objections, self.combination, self.codes)
 
     def combination(self, vector: Vector) -> Iterator[Combination]:
         memory = self.codes.memory_of(vector)

@@ -3,6 +3,9 @@
 Request ids and sentences are left out, times are reduced to what is due and what is not, and
 what the present state does not look at is left out altogether.  Two memories that differ only
 there are one situation, and the explorer goes on from the first of them that it met.
+
+What a later state looks at makes a difference too, and not all of it is here: that would be several
+times as many situations.  `merges.py` samples what is lost.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
 from gcs.gate.proof.world import ABOVE, EDGE, LOW, TOP
-from gcs.gate.states import FlightMode, State
+from gcs.gate.states import FlightMode, LandedState, State
 
 MODES_THAT_MATTER: Final = {
     State.GROUNDED: frozenset({FlightMode.RETURN, FlightMode.LAND, FlightMode.MISSION}),
@@ -26,8 +29,8 @@ MODES_THAT_MATTER: Final = {
     State.HOVERING: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),
     State.HOLDING: frozenset({FlightMode.HOLD}),
     State.FLYING_MISSION: frozenset({FlightMode.MISSION}),
-    State.RETURNING: frozenset({FlightMode.RETURN}),
-    State.LANDING: frozenset({FlightMode.LAND}),
+    State.RETURNING: frozenset({FlightMode.RETURN, FlightMode.HOLD, FlightMode.GUIDED}),
+    State.LANDING: frozenset({FlightMode.LAND, FlightMode.HOLD, FlightMode.GUIDED}),
 }
 """The modes that are told apart in a state; in any other state none is."""
 
@@ -44,6 +47,8 @@ ALIKE: Final = {
 """Requests that are treated alike once they are under way."""
 
 LATE_GUIDED: Final = (State.HOLDING, State.EXTERNAL)
+LATE_TAKE_OFF: Final = (State.NO_VEHICLE, State.GROUNDED, State.STALE, State.HOLDING)
+"""Where a command of our own is told apart that may yet take effect."""
 
 
 def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
@@ -119,14 +124,16 @@ def clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     age_ns = memory.position_age_ns(now_ns)
     told_ns = memory.landed_ns
     aged = told_ns is not None and now_ns - told_ns >= policy.heartbeat_age_s * SECOND_NS
+    # Told to stand, and seen higher: it stands once it is seen lower.
+    stands = memory.armed and memory.landed is LandedState.ON_GROUND
     force_ns = memory.force_asked_ns
     awaited = memory.hold_again_ns is None and memory.asked_mode is not None
     return (
         age_ns is None or age_ns > policy.position_age_s * SECOND_NS,
-        (memory.airborne, memory.on_ground) if not aged else memory.armed,
+        (memory.airborne, memory.on_ground, stands) if not aged else memory.armed,
         awaited and now_ns < memory.asked_until_ns,
         state in LATE_GUIDED and now_ns < memory.guided_until_ns,
-        state in (State.GROUNDED, State.STALE) and now_ns < memory.takeoff_until_ns,
+        state in LATE_TAKE_OFF and now_ns < memory.takeoff_until_ns,
         force_ns is not None and now_ns - force_ns <= FORCE_WINDOW_NS,
         _stream_clocks(policy, memory, now_ns) if state is State.STREAMING else None,
         _gains_clocks(policy, memory, now_ns),

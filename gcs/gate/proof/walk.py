@@ -148,6 +148,11 @@ class Walk:
         met = bisect_left(self._edge_to, at * len(self._letters.names))
         return Begun(self._nodes.some(0, met), self._edge_to[:met], at)
 
+    @property
+    def met(self) -> Begun:
+        """This walk with all its nodes, none of which waits for its turn any more."""
+        return Begun(self._nodes.some(0, self._nodes.count), list(self._edge_to), self._at)
+
     def run(self, most: int | None = None) -> Explored:
         """To the end, once; or until at least `most` nodes have had their turn."""
         while self._over is None:

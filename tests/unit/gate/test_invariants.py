@@ -21,6 +21,7 @@ from gcs.gate.inputs import (
     Input,
     LandedSeen,
     MissionLoaded,
+    OperatorLost,
     PositionSeen,
     Requested,
     ReturnHeightSeen,
@@ -30,7 +31,7 @@ from gcs.gate.inputs import (
 )
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.gate import Gate
-from gcs.gate.machine.memory import SECOND_NS
+from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.rules import Branch, Reply
 from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.permit import Permit
@@ -40,7 +41,7 @@ from gcs.gate.proof.edge import Edge
 from gcs.gate.proof.invariants import objections
 from gcs.gate.proof.world import YARD, World
 from gcs.gate.requests import GoTo, TakeControl
-from gcs.gate.states import FlightMode, LandedState, State
+from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.shares import examples
 
 HOME = (0.0, 0.0, 0.0)
@@ -239,3 +240,30 @@ def test_the_books_notice_a_goal_that_is_queued() -> None:
     run.feed(Tick(0), TICK_NS)
     with pytest.raises(AssertionError, match="a goal is taken in MOVING"):
         run.ask(GoTo((0.0, 3.0, -5.0)))
+
+
+@pytest.mark.parametrize(("overdue_in_ns", "then"), [(0, State.HOLDING), (1, State.LANDING)])
+def test_a_mode_that_is_overdue_is_dealt_with_before_the_operator_leaves(
+    overdue_in_ns: int, then: State
+) -> None:
+    """Where no tick came between the two, the landing ends for the first of them."""
+    now_ns = 10 * SECOND_NS
+    memory = Memory(
+        "px4",
+        State.LANDING,
+        Control.OURS,
+        heard_ns=now_ns,
+        heard_before=True,
+        armed=True,
+        mode=FlightMode.GUIDED,
+        asked_mode=FlightMode.LAND,
+        asked_until_ns=now_ns + overdue_in_ns,
+    )
+    gate, given = Gate.resumed(YARD, memory, now_ns), OperatorLost("the test ends")
+    before = gate.memory
+    effects = gate.handle(given, now_ns)
+    edge = Edge(YARD, before, given, now_ns, effects, gate.memory)
+    assert gate.state is then
+    assert list(objections(edge)) == []
+    ended = replace(edge, after=replace(edge.after, state=State.HOLDING))
+    assert any(o.invariant == 0 for o in objections(ended)) is (then is State.LANDING)

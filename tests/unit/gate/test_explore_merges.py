@@ -1,0 +1,68 @@
+"""A reduction of memories to situations that is too coarse shows in what its walk leaves out.
+
+Here situations are told apart by little more than the state, which is a walk of seconds.  What the
+real reduction leaves out is sampled in `test_explore.py`.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from gcs.gate.machine.table import TABLE, Table
+from gcs.gate.proof.explorer import Explorer
+from gcs.gate.proof.merges import LeftOut
+from gcs.gate.proof.situation import PARTS
+from gcs.gate.proof.walk import Begun, Explored, Judge, Walk
+from tests.unit.gate.explored import WORLDS
+from tests.unit.gate.planted import FAULTS
+
+
+@cache
+def explorer() -> Explorer:
+    return Explorer(WORLDS["px4"])
+
+
+@cache
+def by_state() -> Judge:
+    return explorer().judge_by(PARTS[:1])
+
+
+def walks(table: Table) -> tuple[Explored, LeftOut, Walk]:
+    """The coarse walk, what it left out, and the walk that goes on from there."""
+    letters = explorer().letters(table)
+    coarse = Walk(letters, by_state(), Begun.from_starts(explorer().starts(table)))
+    explored = coarse.run()
+    left_out = LeftOut(letters, by_state(), coarse.met, np.random.default_rng(1))
+    left_out.choose(explored.situations, 300)
+    left_out.choose_farther(300)
+    left_out.choose_farther(300)
+    return explored, left_out, left_out.walk()
+
+
+def test_memories_that_differ_and_are_taken_for_one_show() -> None:
+    explored, left_out, further = walks(TABLE)
+    assert explored.fault is None
+    assert left_out.count == 900
+    reached = further.run()
+    assert reached.fault is None
+    assert reached.situations > explored.situations + left_out.count
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        "a breach is held but not braked",
+        "a hold is over at once though the vehicle may fly",
+    ],
+)
+def test_a_fault_that_the_coarse_walk_misses_is_found(what: str) -> None:
+    planted = next(planted for planted in FAULTS if planted.what == what)
+    explored, _, further = walks({**TABLE, **planted.cells})
+    assert explored.fault is None
+    fault = further.run().fault
+    assert fault is not None
+    assert fault.objection.invariant == planted.invariant, str(fault)
+    assert len(fault.trace) > 1
