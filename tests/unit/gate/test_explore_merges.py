@@ -36,16 +36,16 @@ def walks(table: Table) -> tuple[Explored, LeftOut, Walk]:
     coarse = Walk(letters, by_state(), Begun.from_starts(explorer().starts(table)))
     explored = coarse.run()
     left_out = LeftOut(letters, by_state(), coarse.met, np.random.default_rng(1))
-    left_out.choose(explored.situations, 300)
-    left_out.choose_farther(300)
-    left_out.choose_farther(300)
+    left_out.choose(explored.situations, 1200)
+    left_out.choose_farther(1200)
+    left_out.choose_farther(1200)
     return explored, left_out, left_out.walk()
 
 
 def test_memories_that_differ_and_are_taken_for_one_show() -> None:
     explored, left_out, further = walks(TABLE)
     assert explored.fault is None
-    assert left_out.count == 900
+    assert left_out.count == 3600
     reached = further.run()
     assert reached.fault is None
     assert reached.situations > explored.situations + left_out.count
