@@ -540,7 +540,7 @@ def test_who_gives_control_up_ends_it(personality: Personality) -> None:
     flight, client = orbiting(personality)
     assert client.ask(RELEASE, 0.0) == ACCEPTED
     flight.beating(1.0)
-    assert flight.is_in(State.HOVERING)
+    assert flight.is_in(State.HOLDING)
     told_no_more(flight, client)
 
 
