@@ -29,7 +29,7 @@ demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated v
 quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about 40 s)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 $(FEWER)'
 
-test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (6 to 8 minutes on 2 cores)
+test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (about 6 minutes on 2 cores)
 	$(BIN)/python -m pytest -m "not thorough" -n $(WORKERS) $(FEWER) $(SLOWER:%=--ignore=%)
 
 thorough: $(TEST) $(TESTED) ## run the long tests: exhaustive, or one thing many times over; as .ci/run does
