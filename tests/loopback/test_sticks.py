@@ -203,7 +203,7 @@ def test_a_stick_during_a_goto_is_a_stream_by_the_policys_retarget(
 ) -> None:
     flight, client, joystick = flying(personality, policy)
     joystick.fly(0.2)
-    goes_to(flight, client, 25.0)
+    goes_to(flight, client, 12.0)
     joystick.fly(2.0)
     assert flight.is_in(State.MOVING)
     joystick.fly(2.0, x=-600)
