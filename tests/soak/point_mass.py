@@ -70,7 +70,7 @@ class PointMass:
         self.stubborn = False
         self.now_s = 0.0
         self._leg_from: Vec3 = (0.0, 0.0, 0.0)
-        self._acts_s = 0.0
+        self._acts_s = self._acts_v_s = 0.0
         self._stopping = False
         self._brakes_as = (self.braking.a_brake_h_m_s2, self.braking.a_brake_v_m_s2)
         self._bearing = dice.uniform(0.0, math.tau)
@@ -191,11 +191,11 @@ class PointMass:
         if self.mode in (FlightMode.HOLD, FlightMode.LAND) or self._stopping:
             return
         b, v = self.braking, math.hypot(*self.vel[:2])
-        self._acts_s = self.now_s + max(0.0, self.hold_react_s)
+        self._acts_s = self._acts_v_s = self.now_s + max(0.0, self.hold_react_s)
         self._brakes_as = (b.a_brake_h_m_s2, b.a_brake_v_m_s2)
         room_m = self._room_to_stop_m(v)
         held_m = v * max(0.0, self.hold_react_s) + v * v / 2.0 / b.a_brake_h_m_s2
-        if room_m < held_m:  # then it goes on for longer, and brakes harder
+        if room_m < held_m:  # then it goes on for longer, level, and brakes harder
             a = self.approach
             brakes_m = v * v / 2.0 / a.a_brake_h_m_s2
             self._acts_s = self.now_s + max(0.0, (room_m - brakes_m) / v)
@@ -274,9 +274,7 @@ class PointMass:
             case FlightMode.OTHER:
                 self._towards_velocity(self.pilot_v, GAIN_M_S2, GAIN_M_S2)
             case FlightMode.HOLD | FlightMode.LAND:
-                if self.now_s >= self._acts_s:
-                    down_m_s = 0.0 if self.mode is FlightMode.HOLD else 0.7
-                    self._towards_velocity((0.0, 0.0, down_m_s), *self._brakes_as)
+                self._brakes(0.0 if self.mode is FlightMode.HOLD else 0.7)
             case _:
                 self._flies_its_path()
         guided_px4 = self.mode is FlightMode.GUIDED and self.autopilot == "px4"
@@ -320,8 +318,7 @@ class PointMass:
         """Straight there, as fast as it can still stop, a little behind it, by its approach."""
         a = self.approach
         if self._stopping:
-            if self.now_s >= self._acts_s:
-                self._towards_velocity((0.0, 0.0, 0.0), *self._brakes_as)
+            self._brakes(0.0)
             self._stopping = self.speed_m_s > STILL
             return
         here = self.reported()
@@ -339,6 +336,13 @@ class PointMass:
         self._towards_velocity(
             wanted, a.a_gain_h_m_s2 if faster else a.a_brake_h_m_s2, max(a.a_brake_v_m_s2, 0.1)
         )
+
+    def _brakes(self, down_m_s: float) -> None:
+        """As it was told to, level and vertically each from its own time on."""
+        a_h, a_v = self._brakes_as
+        level = a_h if self.now_s >= self._acts_s else 0.0
+        upright = a_v if self.now_s >= self._acts_v_s else 0.0
+        self._towards_velocity((0.0, 0.0, down_m_s), level, upright)
 
     def _towards_velocity(self, wanted: Vec3, a_h: float, a_v: float) -> None:
         """Changes the velocity by no more than the accelerations, horizontally as a vector."""

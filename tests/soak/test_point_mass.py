@@ -118,3 +118,19 @@ def test_sent_back_at_speed_it_brakes_already_when_it_is_told_to_hold(autopilot:
     expected_m = travel_m(vehicle.vel[0], a.react_s, a.a_brake_h_m_s2)
     assert stops(vehicle, "hold") == pytest.approx(expected_m, abs=1.0)
     assert expected_m < 0.6 * travel_m(FAST_M_S, braking.react_s, braking.a_brake_h_m_s2)
+
+
+@BOTH
+def test_it_climbs_on_no_longer_than_a_hold_takes_even_where_it_flies_on_to_its_goal(
+    autopilot: str,
+) -> None:
+    """One that climbed on as long as it flew on was 5 m above its ceiling (seed 41088575)."""
+    vehicle = flying(autopilot, FAST_M_S)
+    vehicle.climb_m_s = 3.0
+    vehicle.setpoint = (GOAL_M, 0.0, -40.0)
+    flies_until(vehicle, 12.0)
+    up_m, climbs_m_s, b = -vehicle.pos[2], -vehicle.vel[2], vehicle.braking
+    stops(vehicle, "hold")
+    expected_m = travel_m(climbs_m_s, b.react_s, b.a_brake_v_m_s2)
+    assert climbs_m_s > 2.0
+    assert -vehicle.pos[2] - up_m == pytest.approx(expected_m, abs=2.0 * climbs_m_s * STEP_S)
