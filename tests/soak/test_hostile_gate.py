@@ -212,6 +212,11 @@ def test_a_mission_that_is_put_on_board_changes_no_return() -> None:
     assert run.vehicle.path == returns != []
 
 
+def test_a_stream_may_begin_with_the_input_by_which_a_picture_is_overdue() -> None:
+    """The picture's time was over, and no tick had told it yet (seed 51000240)."""
+    fly(51000240, policy_of(51000240), judged=True)
+
+
 def test_no_brake_point_is_asked_for_where_the_position_has_jumped() -> None:
     """Far at once, to 0.3 m from the edge, and not told as a reset: it is held, in no place that a
     setpoint could name (seed 30022010)."""

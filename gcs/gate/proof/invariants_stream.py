@@ -7,7 +7,7 @@ from typing import Final
 
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.condition import Severity
-from gcs.gate.effects import SendSetpoint, StreamVerdict
+from gcs.gate.effects import SendSetpoint, StreamVerdict, Transition
 from gcs.gate.inputs import StreamSeen, Tick
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.permit import Permit
@@ -94,11 +94,14 @@ def takes_samples_of_one_client(edge: Edge) -> Iterator[str]:
     task = before.task
     owner = None if task is None else task.requested.source
     replaces = edge.policy.retarget == "replace" and owner == given.source
+    # What was due by then, such as the end of a picture's time, is done before the sample is.
+    entered = (each for each in edge.effects if isinstance(each, Transition))
+    begins_in = next((e.before for e in entered if e.after is State.STREAMING), before.state)
     if before.state is State.STREAMING:
         if given.source != before.streamer:
             yield f"a sample of {given.source} is flown in the stream of another"
-    elif before.state is not State.HOVERING and not (before.state is State.MOVING and replaces):
-        yield f"a stream begins in {before.state.name}"
+    elif begins_in is not State.HOVERING and not (begins_in is State.MOVING and replaces):
+        yield f"a stream begins in {begins_in.name}"
     elif before.state is State.HOVERING and before.control is not Control.OURS:
         yield "a stream begins while control is being taken"
     if edge.stale or edge.severity >= Severity.HOLD or before.operator_lost:
