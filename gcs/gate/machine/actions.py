@@ -16,7 +16,7 @@ from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, Level, OutcomeKind, Ruling, SwitchedFence
 from gcs.gate.machine import commanding, holding, streaming, verifying
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.gaining import leg_begins, leg_left
+from gcs.gate.machine.gained_speed import leg_begins, leg_left
 from gcs.gate.machine.memory import Goal, Task
 from gcs.gate.machine.progress import within_arrival
 from gcs.gate.machine.rules import Action, End

@@ -8,7 +8,7 @@ from typing import Final
 
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.machine import verifying
-from gcs.gate.machine.gaining import may_have_gained
+from gcs.gate.machine.gained_speed import may_have_gained
 from gcs.gate.machine.rules import Check
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal

@@ -36,7 +36,7 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.events import SAW, Event, event_of
-from gcs.gate.machine.gaining import velocity_seen
+from gcs.gate.machine.gained_speed import velocity_seen
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS
 from gcs.gate.machine.progress import arrival_radius_h_m, within_arrival
 from gcs.gate.machine.sentences import ASKED_FOR, result_word

@@ -11,7 +11,7 @@ from gcs.enu_text import place
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.gaining import leg_left
+from gcs.gate.machine.gained_speed import leg_left
 from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.turn import SetpointDraft, Turn
 from gcs.gate.refusal import Code, Refusal

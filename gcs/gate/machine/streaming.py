@@ -12,7 +12,7 @@ import math
 from gcs.gate.effects import Level, OutcomeKind, StreamVerdict
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.gaining import leg_begins, leg_left
+from gcs.gate.machine.gained_speed import leg_begins, leg_left
 from gcs.gate.machine.memory import SECOND_NS, FlownSample, Goal
 from gcs.gate.machine.rules import End
 from gcs.gate.machine.sentences import no_fresh_position

@@ -19,7 +19,7 @@ from gcs.gate.airspace.zones import Zone
 from gcs.gate.attitude import Attitude
 from gcs.gate.geometry import Circle
 from gcs.gate.inputs import StreamSeen
-from gcs.gate.machine.gaining import may_have_gained
+from gcs.gate.machine.gained_speed import may_have_gained
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS, Memory
 from gcs.gate.machine.sentences import no_fresh_position
 from gcs.gate.machine.turn import Turn

@@ -66,7 +66,7 @@ class Approach(_Section, frozen=True):
 
     It is on the leg to its goal while it would stop within `cross_track_m` of it and moves across
     it, or back, no faster than `cross_track_m_s`.  It gains speed on its way there by
-    `a_gain_h_m_s2` at the most; see `gaining.py`.
+    `a_gain_h_m_s2` at the most; see `gained_speed.py`.
     """
 
     react_s: Annotated[float, Meta(ge=0.0, le=10.0)]

@@ -5,7 +5,7 @@ what the present state does not look at is left out altogether.  Two memories th
 there are one situation, and the explorer goes on from the first of them that it met.
 
 What a later state looks at makes a difference too, and not all of it is here: that would be several
-times as many situations.  `merges.py` samples what is lost.
+times as many situations.  `left_out.py` samples what is lost.
 """
 
 from __future__ import annotations

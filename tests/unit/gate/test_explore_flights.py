@@ -48,7 +48,7 @@ BETWEEN: Final = (
 )
 """What a gate has asked for and not seen yet."""
 NODES: Final = 1_000
-"""So many of the situations that are nearest; there are 149,893 in all on a PX4."""
+"""So many of the situations that are nearest; there are 149,587 in all on a PX4."""
 CELLS: Final = {"px4": 650, "ardupilot": 640}
 """At least so many of the 668 cells that can be entered have a part in that."""
 FARTHER: Final = frozenset(

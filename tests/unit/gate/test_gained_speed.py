@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.gaining import gained_velocity, speed_to_stop_within
+from gcs.gate.airspace.gained_speed import gained_velocity, speed_to_stop_within
 from gcs.gate.airspace.stopping import Leg, Stops, stops_of, travel_m
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code

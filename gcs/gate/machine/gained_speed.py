@@ -1,6 +1,7 @@
 """What of the vehicle's speed its reports do not show yet: it flies to a goal and gains speed.
 
-Looked at where something else is asked for than the leg that is flown; see `airspace/gaining.py`.
+Looked at where something else is asked for than the leg that is flown; see
+`airspace/gained_speed.py`.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import math
 from typing import Final
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.gaining import gained_velocity
+from gcs.gate.airspace.gained_speed import gained_velocity
 from gcs.gate.airspace.stopping import Leg, stops_of
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.turn import Turn
@@ -52,16 +53,12 @@ def may_have_gained(turn: Turn, to_ned: Vec3 | None) -> tuple[Vec3, ...]:
     return tuple(found)
 
 
-def gains(turn: Turn) -> bool:
-    """May it be faster on its leg than it was reported?"""
-    return turn.now_ns < turn.memory.gains_ns + round(_react_s(turn) * SECOND_NS)
-
-
 def _gained(turn: Turn) -> Vec3 | None:
+    """None, too, where no report has shown more speed for so long that it has no more by now."""
     memory, path = turn.memory, turn.memory.path
     if not isinstance(path, Leg) or memory.pos_ned is None or memory.v_ned is None:
         return None
-    if not gains(turn):
+    if turn.now_ns >= memory.gains_ns + round(_react_s(turn) * SECOND_NS):
         return None
     stops = stops_of(turn.policy, memory.autopilot)
     return gained_velocity(memory.pos_ned, memory.v_ned, path, stops)

@@ -13,7 +13,7 @@ import pytest
 
 from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.proof.explorer import Explorer
-from gcs.gate.proof.merges import LeftOut
+from gcs.gate.proof.left_out import LeftOut
 from gcs.gate.proof.situation import PARTS
 from gcs.gate.proof.walk import Begun, Explored, Judge, Walk
 from tests.unit.gate.explored import WORLDS
