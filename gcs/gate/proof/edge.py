@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Effect, Ruling, SendCommand, SendSetpoint, Verdict
-from gcs.gate.inputs import Input, Requested
+from gcs.gate.inputs import Input, PositionSeen, Requested
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.questions import WatchedMemory
@@ -75,6 +75,15 @@ class Edge:
         """The position was too old (or absent) when the step came."""
         age_ns = self.before.position_age_ns(self.now_ns)
         return age_ns is None or age_ns > self.policy.position_age_s * SECOND_NS
+
+    @property
+    def overtaken(self) -> bool:
+        """It brings a position that is older, by the vehicle's own stamps, than one that was heard
+        before: nothing follows from it."""
+        given = self.given
+        if not isinstance(given, PositionSeen) or given.reset:
+            return False
+        return given.time_boot_ms < self.before.boot_ms
 
     @property
     def mode_overdue(self) -> bool:

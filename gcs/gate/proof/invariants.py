@@ -73,6 +73,7 @@ STEP_CHECKS: Final = (
     StepCheck(8, invariants_stream.takes_samples_of_one_client, (StreamSeen,)),
     StepCheck(1, invariants_stream.lets_no_refused_sample_go_on, (StreamVerdict,)),
     StepCheck(1, invariants_stream.keeps_what_it_flies),
+    StepCheck(7, invariants_motion.learns_nothing_from_the_past, (PositionSeen,)),
     StepCheck(7, invariants_motion.moves_on_fresh_positions, (Transition, Outcome, Tick)),
     StepCheck(0, invariants_motion.does_what_severity_demands, (ConditionChanged, PositionSeen)),
     StepCheck(7, invariants_command.arms_on_a_fresh_position, (SendCommand,)),

@@ -181,7 +181,7 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
     assert isinstance(given, PositionSeen)
     if before.control is Control.NONE or before.flown_state not in BRAKED:
         return
-    if before.verifier is None:
+    if before.verifier is None or edge.overtaken:
         return
     floor = before.landed is LandedState.IN_AIR and before.flown_state not in (
         State.TAKING_OFF,
@@ -201,6 +201,13 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
         yield f"a breach is predicted and {edge.after.state.name} goes on"
     if breach.brake_pos_ned is not None and not edge.setpoints and not _jumped(edge, given):
         yield f"a breach is predicted in {before.state.name} and not braked"
+
+
+def learns_nothing_from_the_past(edge: Edge) -> Iterator[str]:
+    """7: a position that a newer one has overtaken is neither flown by nor taken for fresh."""
+    before, after = edge.before, edge.after
+    if edge.overtaken and (before.pos_ned, before.pos_ns) != (after.pos_ned, after.pos_ns):
+        yield "a position that was overtaken is taken for the present one"
 
 
 def _jumped(edge: Edge, given: PositionSeen) -> bool:
@@ -267,7 +274,7 @@ def does_what_severity_demands(edge: Edge) -> Iterator[str]:
         return
     stale = before.state is State.STALE
     comes = severity > severity_of(edge.policy, before) and not stale
-    comes_back = stale and isinstance(edge.given, PositionSeen)
+    comes_back = stale and isinstance(edge.given, PositionSeen) and not edge.overtaken
     flown = before.flown_state in FLOWN_BY_US or before.flown_state is State.HOLDING
     if not (comes or comes_back) or not flown or before.on_ground:
         return
