@@ -21,7 +21,7 @@ from gcs.session.operators import Operators
 from gcs.session.queue import WorkQueue
 from gcs.session.recorded import pieces
 from gcs.session.signatures import Signatures
-from gcs.session.vehicle import ALIVE
+from gcs.session.vehicle_frames import ALIVE
 from gcs.session.vehicles import Vehicles
 from gcs.session.work import Work
 from gcs.wire.blanking import without_key

@@ -13,7 +13,7 @@ from gcs.gate.airspace.projection import Projection
 from gcs.gate.airspace.separation import Track, closest_approach, is_too_close
 from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
-from gcs.session.gate_port import NOT_FLYING, condition
+from gcs.session.gate_port import condition
 from gcs.session.telemetry import Telemetry
 from gcs.session.vehicle import Vehicle
 from gcs.session.vehicles import Vehicles
@@ -56,7 +56,7 @@ class Separation:
 
     def _too_close(self, one: Vehicle, other: Vehicle, was: bool, now_ns: int) -> str:
         """In words how close they come; empty where it is far enough, or one does not fly."""
-        here, there = _flying(one, now_ns), _flying(other, now_ns)
+        here, there = one.flying(now_ns), other.flying(now_ns)
         if here is None or there is None:
             return ""
         assert there.pos_ned is not None
@@ -75,15 +75,6 @@ class Separation:
             f"{approach.least_m:.1f} m away in {approach.in_s:.1f} s, if both fly on "
             f"({limits.least_m:g} m are to be kept)"
         )
-
-
-def _flying(vehicle: Vehicle, now_ns: int) -> Telemetry | None:
-    """What it tells, if it flies and its position is fresh."""
-    telemetry = vehicle.telemetry
-    if telemetry is None or telemetry.pos_ned is None or vehicle.gate.state in NOT_FLYING:
-        return None
-    fresh = now_ns - telemetry.position_ns <= telemetry.position_age_ns
-    return telemetry if fresh else None
 
 
 def _in_frame_of(here: Telemetry, there: Telemetry, pos_ned: Vec3) -> Vec3 | None:

@@ -123,32 +123,32 @@ class Vehicles:
     # ------------------------------------------------------------------------------ frames
 
     def passes(self, link: int, frames: Sequence[Frame], now_ns: int) -> list[int]:
-        """See `Vehicle.passes`; the slots of those whose gate is to hear that they live."""
+        """See `VehicleFrames.passes`; the slots of those whose gate is to hear that they live."""
         vehicles = enumerate(self._all)
-        return [slot for slot, vehicle in vehicles if vehicle.passes(link, frames, now_ns)]
+        return [slot for slot, vehicle in vehicles if vehicle.frames.passes(link, frames, now_ns)]
 
     def in_turn(
         self, link: int, frames: Sequence[Frame], now_ns: int
     ) -> tuple[int, Sequence[Work]] | None:
-        """See `Vehicle.in_turn`; with the slot of the vehicle whose they are."""
+        """See `VehicleFrames.in_turn`; with the slot of the vehicle whose they are."""
         slot = self.slot_of(frames[0].sysid)
         if slot is None:
             return None
-        work = self._all[slot].in_turn(link, frames, now_ns)
+        work = self._all[slot].frames.in_turn(link, frames, now_ns)
         return None if work is None else (slot, work)
 
     def placed(self, slot: int, frame: Frame, now_ns: int) -> list[Work]:
         """One of the frames that `in_turn` has counted, of `PLACES`: work of that slot."""
-        return self._all[slot].placed(frame, now_ns)
+        return self._all[slot].frames.placed(frame, now_ns)
 
     def counted(self, slot: int, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """One of the frames that `in_turn` has counted."""
         vehicle = self._all[slot]
         if frame.msgid == MsgId.RADIO_STATUS and len(self._all) > 1:
             return self.each(
-                lambda each: each.counted(link, frame, now_ns) if link in each.links else ()
+                lambda each: each.frames.counted(link, frame, now_ns) if link in each.links else ()
             )
-        work = vehicle.counted(link, frame, now_ns)
+        work = vehicle.frames.counted(link, frame, now_ns)
         if frame.msgid == MsgId.HEARTBEAT:
             work = [*self._twice(vehicle, link, frame, now_ns), *work]
         return [For(slot, tuple(work))] if work else []
@@ -160,18 +160,20 @@ class Vehicles:
             return self._meet(link, frame, now_ns)
         if frame.msgid == MsgId.RADIO_STATUS and len(self._all) > 1:
             return self.each(
-                lambda each: each.frame(link, frame, now_ns) if link in each.links else ()
+                lambda each: each.frames.frame(link, frame, now_ns) if link in each.links else ()
             )
         owner = slot or FIRST
         twice = self._twice(self._all[owner], link, frame, now_ns) if slot is not None else []
-        work = [*twice, *self._all[owner].frame(link, frame, now_ns)]
+        work = [*twice, *self._all[owner].frames.frame(link, frame, now_ns)]
         return [For(owner, tuple(work))] if work else []
 
     def _twice(self, vehicle: Vehicle, link: int, frame: Frame, now_ns: int) -> Sequence[Work]:
         """A vehicle has two links, or two vehicles have one number, and then nothing that is told
         of them is right: it is said once."""
+        if frame.msgid != MsgId.HEARTBEAT:
+            return ()
         telemetry = vehicle.telemetry
-        if frame.msgid != MsgId.HEARTBEAT or telemetry is None or telemetry.link == link:
+        if telemetry is None or telemetry.link == link:
             return ()
         silent = now_ns - telemetry.link_ns > self._times.real_ns(LINK_SILENT_NS)
         if silent or frame.sysid in self._told_twice or not is_autopilot(frame):
@@ -204,7 +206,7 @@ class Vehicles:
             for name, text in self.first.gate.reasons
             if name in OF_THE_STATION
         ]
-        return [For(slot, (*vehicle.frame(link, frame, now_ns), *wrong))]
+        return [For(slot, (*vehicle.frames.frame(link, frame, now_ns), *wrong))]
 
     # ---------------------------------------------------------------------------- requests
 

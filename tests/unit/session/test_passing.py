@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import pytest
 
 from gcs.report import Direction
-from gcs.session import incoming, vehicle
+from gcs.session import incoming, vehicle_frames
 from gcs.session.effects import Effect, Transmit
 from gcs.session.inputs import ClientCame, Datagram
 from gcs.session.interpreted_messages import INTERPRETED
@@ -97,7 +97,7 @@ def test_decoding_what_passes_through_would_change_nothing(msgid: int) -> None:
     data = b"".join(writer.write_payload(msgid, payload) for payload in payloads)
     passing = effects_of(data)
     with pytest.MonkeyPatch.context() as patch:
-        for module in (incoming, vehicle):
+        for module in (incoming, vehicle_frames):
             patch.setattr(module, "INTERPRETED", frozenset(MESSAGES))
         assert effects_of(data) == passing
 

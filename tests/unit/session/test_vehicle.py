@@ -53,7 +53,7 @@ class Script:
     def bytes(self, raw: bytes, link: int = 0) -> list[Work]:
         (frame,) = split(raw)
         assert isinstance(frame, Frame)
-        return self.vehicle.frame(link, frame, self.now_ns)
+        return self.vehicle.frames.frame(link, frame, self.now_ns)
 
     def wait(self, seconds: float) -> None:
         self.now_ns += round(seconds * SECOND_NS)

@@ -1,0 +1,165 @@
+"""What a message of a vehicle leads to: it is given to each part that it concerns.
+
+A heartbeat of an autopilot may be that of a vehicle that is met, or is back.
+"""
+
+from __future__ import annotations
+
+from gcs.gate import inputs
+from gcs.gate.effects import Level
+from gcs.gate.machine.arming import why_not_arm
+from gcs.protocol import arm_authorizer
+from gcs.protocol.autopilot import autopilot_of
+from gcs.protocol.effects import Address, Heard, Send
+from gcs.session import recorded, teller
+from gcs.session.delay import Delay
+from gcs.session.effects import Record
+from gcs.session.events import EVENT_MESSAGES
+from gcs.session.interpreted_messages import (
+    CAMERA_MESSAGES,
+    MISSION_MESSAGES,
+    PARAMETER_MESSAGES,
+    PLACE_MESSAGES,
+    of_autopilot,
+)
+from gcs.session.screen import lost_pct
+from gcs.session.telemetry import Telemetry
+from gcs.session.updates import updates
+from gcs.session.vehicle_parts import VehicleParts, accuracy
+from gcs.session.words import logged
+from gcs.session.work import Log, PlaceFence, ToGate, Work
+from gcs.wire import messages as m
+from gcs.wire.frame import Frame
+from gcs.wire.ids import Component
+
+NODE = "link"
+
+
+class VehicleMessages:
+    """Those of one vehicle; `VehicleFrames` has counted and decoded them."""
+
+    def __init__(self, parts: VehicleParts) -> None:
+        self._parts = parts
+
+    def heard(
+        self, telemetry: Telemetry, frame: Frame, message: m.Message, now_ns: int
+    ) -> list[Work]:
+        """A message of it that is not void."""
+        before = telemetry.armed, telemetry.mode_name, telemetry.landed
+        heard = Heard(frame.sysid, frame.compid, message)
+        work = self._heard(telemetry, heard, now_ns)
+        if before != (telemetry.armed, telemetry.mode_name, telemetry.landed):
+            work.append(Record(recorded.status(telemetry, lost_pct(self._parts.presence.losses))))
+        return work
+
+    def _heard(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
+        parts = self._parts
+        work: list[Work] = []
+        message = heard.message
+        if type(message) in PLACE_MESSAGES:
+            own = heard.compid == telemetry.compid
+            return self.updated(telemetry, message, now_ns) if own else []
+        if isinstance(message, m.CommandAck):
+            answered = parts.commands.heard(heard, now_ns)
+            work += parts.reasons.explained(answered, telemetry.custom_mode, now_ns)
+        elif type(message) in PARAMETER_MESSAGES:
+            work += parts.learn(parts.settings.heard(heard, telemetry, now_ns), telemetry)
+            work += parts.returns.heard(heard, telemetry, now_ns)
+            work += parts.with_return_places(
+                parts.missions.heard(heard, parts.view(telemetry), now_ns), now_ns
+            )
+        elif type(message) in MISSION_MESSAGES:
+            work += parts.returns.heard(heard, telemetry, now_ns)
+            work += parts.with_return_places(
+                parts.missions.heard(heard, parts.view(telemetry), now_ns), now_ns
+            )
+        elif isinstance(message, m.CommandLong):
+            work += self._authorized(telemetry, heard, message, now_ns)
+        elif isinstance(message, m.Statustext):
+            work += logged(parts.words.text(heard.compid, message, now_ns))
+        elif isinstance(message, m.AutopilotVersion):
+            work.append(Record(recorded.vehicle(telemetry, message, parts.of)))
+        elif isinstance(message, m.ControlStatus):
+            if text := parts.control.heard(message):
+                level = Level.WARNING if parts.control.another else Level.INFO
+                work.append(Log(level, NODE, text))
+        elif type(message) in EVENT_MESSAGES and heard.compid == telemetry.compid:
+            work += parts.events.heard(heard, now_ns)
+        if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
+            return work
+        if heard.compid == telemetry.compid:
+            work += parts.watch.heard(message, now_ns)
+        return [*work, *self.updated(telemetry, message, now_ns), *accuracy(telemetry)]
+
+    def updated(self, telemetry: Telemetry, message: m.Message, now_ns: int) -> list[Work]:
+        """What the vehicle reports of itself, into `telemetry`."""
+        work: list[Work] = []
+        for update in updates(message, telemetry, now_ns):
+            work.append(update)
+            match update:
+                case ToGate(inputs.PositionSeen(reset=True)):
+                    work = [*self._parts.missions.forget(), *work, *accuracy(telemetry)]
+                case ToGate(inputs.HomeSeen()) | PlaceFence():
+                    work += self._parts.returns.placed(telemetry)
+        return work
+
+    def _authorized(
+        self, telemetry: Telemetry, heard: Heard, asked: m.CommandLong, now_ns: int
+    ) -> list[Work]:
+        """The vehicle asks whether it may arm, where it is set up to ask this station."""
+        parts = self._parts
+        asker = Address(heard.sysid, heard.compid)
+        refusal = why_not_arm(parts.port.policy, parts.port.gate.memory, now_ns)
+        troubles = [
+            "" if refusal is None else refusal.sentence,
+            parts.settings.without_fence(telemetry, fence_plan=parts.missions.fence_on_board),
+            parts.missions.unverified,
+        ]
+        answer = arm_authorizer.answer(asked, asker, parts.own, [each for each in troubles if each])
+        if answer is None:
+            return []
+        parts.commands.deny_arming("" if answer.granted else answer.text)
+        level = Level.INFO if answer.granted else Level.WARNING
+        return [Send(answer.ack), Log(level, teller.NODE, answer.text)]
+
+    def heartbeat(self, link: int, frame: Frame, beat: m.Heartbeat, now_ns: int) -> list[Work]:
+        """Choose our vehicle: the first autopilot that is heard, or the one that was named."""
+        parts = self._parts
+        if not of_autopilot(beat) or frame.compid != Component.AUTOPILOT1:
+            return []
+        work: list[Work] = []
+        if parts.roster.heard(frame.sysid, frame.compid, beat, now_ns):
+            names = ", ".join(parts.roster.names(now_ns))
+            level = Level.INFO if parts.config.target_sysid else Level.WARNING
+            work.append(Log(level, NODE, f"several vehicles are heard: {names}"))
+        wanted = parts.config.target_sysid
+        if wanted not in (0, frame.sysid):
+            return work
+        telemetry = parts.telemetry
+        if telemetry is None:
+            autopilot = autopilot_of(beat.autopilot, beat.type)
+            telemetry = Telemetry(frame.sysid, frame.compid, autopilot, link)
+            telemetry.mav_autopilot, telemetry.mav_type = beat.autopilot, beat.type
+            telemetry.delay = Delay(parts.times)
+            telemetry.rx_window_start_ns = telemetry.link_ns = now_ns
+            telemetry.position_age_ns = round(parts.port.policy.position_age_s * 1e9)
+            parts.met_ns = now_ns
+            parts.telemetry = telemetry
+            work += parts.port.meet(telemetry, now_ns)
+            news = f"vehicle {telemetry.label} on link {link}"
+        elif telemetry.sysid == frame.sysid and (
+            telemetry.was_gone or parts.presence.is_gone(telemetry, now_ns)
+        ):
+            parts.presence.back(telemetry, now_ns)
+            news = f"vehicle {telemetry.label} is back"
+            telemetry.forget_place()
+            work += parts.missions.forget()
+            work.append(PlaceFence())
+        else:
+            return work
+        work.append(Log(Level.INFO, NODE, news))
+        parts.discovery.start()
+        parts.events.start(Address(telemetry.sysid, telemetry.compid))
+        work += parts.learn(parts.settings.start(telemetry, now_ns), telemetry)
+        work += parts.returns.start(telemetry, busy=parts.missions.busy, now_ns=now_ns)
+        return work + parts.ask_for_missing(telemetry, now_ns)

@@ -1,0 +1,162 @@
+"""All that one vehicle has in a session: its parts, what it reports, and what several of them need.
+
+Nothing here decides when a part is asked: `vehicle_frames.py`, `vehicle_messages.py`,
+`vehicle_decisions.py` and `vehicle.py` do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from gcs.config import StationConfig
+from gcs.gate import inputs
+from gcs.gate.condition import Condition
+from gcs.gate.effects import Level
+from gcs.gate.policy.policy import Policy
+from gcs.protocol.effects import Address, Send
+from gcs.protocol.vehicle_control import VehicleControl
+from gcs.report import ParamItem
+from gcs.session import settings
+from gcs.session.commands import Commands
+from gcs.session.discovery import Discovery
+from gcs.session.effects import Record
+from gcs.session.events import Events
+from gcs.session.failsafes import limits_of
+from gcs.session.gate_port import GatePort, condition
+from gcs.session.jobs.job import VehicleView
+from gcs.session.missions import Missions
+from gcs.session.orbits import Orbits
+from gcs.session.presence import Presence
+from gcs.session.reasons import Reasons
+from gcs.session.return_places import ReturnPlaces
+from gcs.session.roster import Roster
+from gcs.session.settings import Settings
+from gcs.session.telemetry import Telemetry
+from gcs.session.times import Times
+from gcs.session.watch import Watch
+from gcs.session.words import Words
+from gcs.session.work import Log, ToGate, Work
+
+NODE = "link"
+
+
+class VehicleParts:
+    """Of one vehicle: each part keeps what is its own, and `VehicleParts` what is no part's."""
+
+    def __init__(
+        self,
+        config: StationConfig,
+        policy: Policy,
+        times: Times,
+        now_ns: int,
+        *,
+        shown: bool,
+    ) -> None:
+        """`shown`: it is the one that the screens of operators show."""
+        self.config = config
+        self.shown = shown
+        self.times = times
+        gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
+        self.start_ns = now_ns
+        own = self.own = Address(config.sysid, config.compid)
+        self.port = GatePort(times.policy(policy), now_ns, shown=shown)
+        self.commands = Commands(own, times)
+        self.discovery = Discovery(times)
+        self.settings = Settings(
+            own,
+            times,
+            limits_of(policy, own.sysid),
+            reads_thrust=policy.stream.tilt_deg > 0.0,
+        )
+        self.missions = Missions(own, times)
+        self.orbits = Orbits(times)
+        self.returns = ReturnPlaces(own, times)
+        self.words = Words(times)
+        self.events = Events(own, self.words, times)
+        self.control = VehicleControl(own)
+        self.roster = Roster(config.target_sysid, times, gone_ns)
+        self.reasons = Reasons(self.words, times)
+        self.met_ns = 0
+        """When it was heard for the first time."""
+        self.parameters: dict[str, float] = {}
+        """Those of its parameters that are known."""
+        self.presence = Presence(times, gone_ns)
+        self.watch = Watch(policy, times)
+        self.telemetry: Telemetry | None = None
+        """What it reports; None until it is heard."""
+        self.mission_paused = False
+        """A mission was stopped by a hold, and nothing else was flown since."""
+
+    @property
+    def sysid(self) -> int:
+        """0 before it is heard."""
+        return self.telemetry.sysid if self.telemetry else 0
+
+    @property
+    def of(self) -> str:
+        """In names in the record, of which the first vehicle's are plain."""
+        return "" if self.shown else f"-{self.sysid}"
+
+    def view(self, telemetry: Telemetry) -> VehicleView:
+        """What a mission job is to know of it."""
+        return VehicleView(telemetry, self.port.gate.state, self.port.policy)
+
+    def learn(self, found: Iterable[settings.Found], telemetry: Telemetry) -> list[Work]:
+        """What the vehicle's own settings say."""
+        work: list[Work] = []
+        for item in found:
+            match item:
+                case Send():
+                    work.append(item)
+                case settings.ParameterKnown(name, value):
+                    self.parameters[name] = value
+                    work.append(Record(ParamItem(telemetry.sysid, name, value)))
+                case settings.ReturnHeightKnown(up_m):
+                    telemetry.return_up_m, telemetry.return_told = up_m, True
+                    if up_m is not None:
+                        work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
+                case settings.ReturnTypeKnown(kind):
+                    work += self.returns.returns_by(kind, telemetry)
+                case settings.AcceptanceKnown(radius_m):
+                    telemetry.acceptance_m = radius_m
+                    work += accuracy(telemetry)
+                case settings.ClimbEndKnown(within_m):
+                    work.append(ToGate(inputs.ClimbEndSeen(within_m)))
+                case settings.FailsafesKnown(weak, every):
+                    telemetry.failsafes = every
+                    head = "the vehicle's own failsafes: "
+                    text = head + ("; ".join(weak) or "all on")
+                    work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
+                    work.append(Log(Level.INFO, NODE, head + "; ".join(every or weak)))
+        return work
+
+    def ask_for_missing(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """What of it is needed and did not come yet."""
+        commands = self.discovery.missing(telemetry, now_ns)
+        return [work for c in commands for work in self.commands.send_own(c, now_ns)]
+
+    def with_return_places(self, work: list[Work], now_ns: int) -> list[Work]:
+        """What a job does, and what follows for the places where a return may end."""
+        telemetry = self.telemetry
+        if telemetry is None:
+            return work
+        busy = self.missions.busy
+        return work + self.returns.follow(work, telemetry, busy=busy, now_ns=now_ns)
+
+    def ask_for_control(self, now_ns: int) -> list[Work]:
+        """Of a vehicle that has operator control, and obeys another station or nobody yet."""
+        if self.telemetry is None:
+            return []
+        address = Address(self.telemetry.sysid, self.telemetry.compid)
+        command = self.control.before_command(address, now_ns)
+        return [] if command is None else self.commands.send_own(command, now_ns)
+
+
+def accuracy(telemetry: Telemetry) -> list[Work]:
+    """How near to a goal is there, as far as the vehicle tells; where that is news to the gate."""
+    health, acceptance_m = telemetry.health, telemetry.acceptance_m
+    seen = inputs.AccuracySeen(health.accuracy_h_m, acceptance_m)
+    if seen == telemetry.accuracy_told:
+        return []
+    telemetry.accuracy_told = seen
+    return [ToGate(seen)]
