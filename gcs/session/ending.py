@@ -14,6 +14,7 @@ from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
 from gcs.session.vehicles import Vehicles
 from gcs.session.work import For, Log, ToGate, Work
+from gcs.session.zone_lines import where_is
 
 NODE = "link"
 
@@ -50,10 +51,10 @@ class Ending:
         """The end of the session, where the start is refused or the vehicle may be left."""
         if self.finished:
             return []
-        policy = self._setup.config.policy_path or self._setup.policy.name
         bad_home = self._vehicles.first.bad_home
         if bad_home is not None and len(self._vehicles) == 1:
-            text = f"{policy}: fence: home is outside: {bad_home.sentence}"
+            where = where_is(bad_home.zone, self._setup)
+            text = f"{where}: home is outside: {bad_home.sentence}"
             hint = "the vehicle returns and lands there: a fence round it, or another --policy"
             trouble = Emit(ipc.Trouble(text, hint, ExitCode.BAD_FILE))
             return [trouble, *self.finish(ExitCode.BAD_FILE, text)]
@@ -63,7 +64,8 @@ class Ending:
             if outside:
                 return outside
         elif refusal is not None:
-            text = f"{policy}: fence: the vehicle stands outside: {refusal.sentence}"
+            where = where_is(refusal.zone, self._setup)
+            text = f"{where}: the vehicle stands outside: {refusal.sentence}"
             hint = "fly from inside the fence, or give a policy for this place with --policy"
             trouble = Emit(ipc.Trouble(text, hint, ExitCode.REFUSED_BY_GATE))
             return [trouble, *self.finish(ExitCode.REFUSED_BY_GATE, text)]

@@ -15,7 +15,7 @@ from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
 from gcs.gate.condition import Condition
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
-from gcs.gate.refusal import Refusal
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import State
 from gcs.report import FenceShape, StopItem
@@ -143,10 +143,13 @@ class GatePort:
 
     @property
     def _checks_start(self) -> bool:
-        """It stands on the ground, there is a fence, and it was not looked at yet."""
-        if self._start_checked or self._verifier is None or not self._verifier.zones:
+        """It stands on the ground, there is a fence or it can never be placed here, and it was not
+        looked at yet."""
+        verifier = self._verifier
+        if self._start_checked or verifier is None:
             return False
-        return self.gate.state is State.GROUNDED
+        placed = bool(verifier.zones) or _never_placed(verifier)
+        return placed and self.gate.state is State.GROUNDED
 
     def check_start(self, at: CheckStart) -> None:
         """Once, on the ground: is the vehicle inside?  If not, the policy is for elsewhere.
@@ -159,6 +162,12 @@ class GatePort:
         home_ned = self._verifier.home_ned
         self.bad_home = None if home_ned is None else check_start(self._verifier, home_ned)
         self.bad_start = check_start(self._verifier, at.pos_ned)
+
+
+def _never_placed(verifier: Verifier) -> bool:
+    """Home and origin are known, and the fence is too far from there, or no polygon."""
+    unplaced = verifier.unplaced
+    return verifier.home_ned is not None and unplaced is not None and unplaced.code is Code.POLICY
 
 
 def condition(name: Condition, active: bool, text: str) -> ToGate:

@@ -18,6 +18,23 @@ from tests.system.vehicle_program import free_port
 
 pytestmark = pytest.mark.system
 
+FAR_POLYGON = """[[fence]]
+name = "elsewhere"
+kind = "polygon"
+frame = "geographic"
+corners = [[10.0, 10.0], [10.0, 10.01], [10.01, 10.01]]
+"""
+WITH_A_PIT = """[[fence]]
+name = "home"
+kind = "circle"
+radius_m = 50
+
+[[fence]]
+name = "pit"
+kind = "circle"
+inclusion = false
+radius_m = 8
+"""
 FAR_FENCE = """\
 name = "elsewhere"
 [[fence]]
@@ -153,8 +170,29 @@ def test_a_home_outside_a_fence_in_the_local_frame(tmp_path: Path) -> None:
     logs = str(tmp_path / "logs")
     code, told = refused("fly", "--sim", "--plain", "--policy", str(policy), "--log-dir", logs)
     assert code == 4
-    assert f"{policy}: fence: home is outside" in told
     assert "outside inclusion circle 'there'" in told
+    assert f"{policy}:2: fence[1]: home is outside: " in told
+    assert "hint: the vehicle returns and lands there" in told
+
+
+@pytest.mark.parametrize(
+    ("zones", "where", "why"),
+    [
+        (FAR_POLYGON, ":1: fence[1]: ", "corner 1 is not a place within 1000 km"),
+        (WITH_A_PIT, ":6: fence[2]: ", "inside exclusion circle 'pit'"),
+    ],
+)
+def test_a_home_that_turns_out_to_be_outside(
+    tmp_path: Path, zones: str, where: str, why: str
+) -> None:
+    """Only once the vehicle tells its origin, or because the zone is one to keep out of."""
+    policy = tmp_path / "mine.toml"
+    policy.write_text(zones)
+    logs = str(tmp_path / "logs")
+    code, told = refused("fly", "--sim", "--plain", "--policy", str(policy), "--log-dir", logs)
+    assert code == 4
+    assert f"{policy}{where}home is outside: " in told
+    assert why in told
     assert "hint: the vehicle returns and lands there" in told
 
 
