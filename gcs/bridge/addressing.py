@@ -15,7 +15,8 @@ from gcs.bridge.client import Client
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import OfVehicle
-from gcs.bridge.judge import Judge, Judged, Look, Received
+from gcs.bridge.judge.judge import Judge
+from gcs.bridge.judge.received import Judged, Look, Received
 from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import TARGETS, readdressed, target_of

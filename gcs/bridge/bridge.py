@@ -1,6 +1,6 @@
 """The bridge: all MAVLink clients of one station, before its vehicles.
 
-Who is there (`client.py`), where frames go (`routing.py`), what is done with each (`judge.py`), and
+Who is there (`client.py`), where frames go (`routing.py`), what is done with each (`judge/`), and
 what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded here.
 """
 
@@ -26,7 +26,9 @@ from gcs.bridge.effects import (
     OfVehicle,
     ToLink,
 )
-from gcs.bridge.judge import Judged, asks_for_height, climbs, of_plan
+from gcs.bridge.judge.climbs import asks_for_height, climbs
+from gcs.bridge.judge.plans import of_plan
+from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
@@ -265,23 +267,22 @@ class Bridge:
         self, message: ParamValue, autopilot: str, vehicle: int, now_ns: int
     ) -> list[BridgeEffect]:
         """PARAM_VALUE of a vehicle's autopilot."""
-        return self._judges.of(vehicle).parameter(message, autopilot, now_ns)
+        return self._judges.of(vehicle).set_up.parameter(message, autopilot, now_ns)
 
     def armed(self, vehicle: Address) -> list[BridgeEffect]:
         """Once a second, of every vehicle that is armed."""
-        return [
-            OfVehicle(
-                vehicle.sysid, tuple(self._judges.of(vehicle.sysid).armed(self._own, vehicle))
-            )
-        ]
+        ended = self._judges.of(vehicle.sysid).set_up.armed(self._own, vehicle)
+        return [OfVehicle(vehicle.sysid, tuple(ended))]
 
     def held_back(
         self, command: ipc.Command, autopilot: Autopilot, vehicle: Address
     ) -> AsksVehicle | None:
         """A climb of any operator cannot be judged until the vehicle has answered this."""
-        if not isinstance(command, ipc.Ask) or not self._judges.of(vehicle.sysid).height_awaited:
+        if not isinstance(command, ipc.Ask):
             return None
-        return asks_for_height(self._own, vehicle) if climbs(command, autopilot) else None
+        awaited = self._judges.of(vehicle.sysid).set_up.height_awaited
+        held = awaited and climbs(command, autopilot)
+        return asks_for_height(self._own, vehicle) if held else None
 
     def told(self, number: int, event: ipc.Event, vehicle: int, now_ns: int) -> list[BridgeEffect]:
         """What the station tells a client as an operator, of what it asked of a vehicle."""

@@ -24,7 +24,7 @@ from gcs.bridge.effects import (
     ToLink,
     ToVehicle,
 )
-from gcs.bridge.judge import Judged
+from gcs.bridge.judge.received import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
 from gcs.frames import enu_from_ned

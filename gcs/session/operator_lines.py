@@ -9,7 +9,7 @@ import msgspec
 
 from gcs import ipc
 from gcs.bridge.bridge import Bridge
-from gcs.bridge.judge import HEIGHT_WRITTEN
+from gcs.bridge.judge.climbs import HEIGHT_WRITTEN
 from gcs.protocol.effects import Address
 from gcs.session.gate_port import NOT_FLYING
 from gcs.session.operators import Operators

@@ -75,7 +75,7 @@ def audited(
 def test_a_frame_that_slips_through_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Here every message is called harmless where the bridge looks it up."""
     row = Row("ANY", Kind.HARMLESS, "planted")
-    monkeypatch.setattr("gcs.bridge.judge.message_row", lambda msgid: row)
+    monkeypatch.setattr("gcs.bridge.judge.judge.message_row", lambda msgid: row)
     with pytest.raises(AssertionError, match="reaches the vehicle"):
         bridge_clients.flown(0)
 

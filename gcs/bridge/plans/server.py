@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 from gcs import ipc
 from gcs.bridge.answers import texts
@@ -78,19 +78,6 @@ answers has not heard it."""
 MOST_FINDINGS: Final = 10
 """Findings of one plan that a client is sent as texts; the log has all."""
 
-PlanMessage: TypeAlias = (
-    MissionCount
-    | MissionItem
-    | MissionItemInt
-    | MissionAck
-    | MissionClearAll
-    | MissionWritePartialList
-    | MissionSetCurrent
-    | MissionRequestList
-    | MissionRequestPartialList
-    | MissionRequest
-    | MissionRequestInt
-)
 PLAN_MESSAGES: Final[tuple[type[Message], ...]] = (
     MissionCount,
     MissionItem,

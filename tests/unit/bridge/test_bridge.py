@@ -23,7 +23,7 @@ from gcs.bridge.effects import (
     ToLink,
     ToVehicle,
 )
-from gcs.bridge.judge import Judged
+from gcs.bridge.judge.received import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.gate.effects import Level
 from gcs.gate.policy.parse import DEFAULT

@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.bridge import Bridge
 from gcs.bridge.effects import Answers, Notes, OfVehicle, Refuses, Says, ToVehicle
-from gcs.bridge.judge import Judged
+from gcs.bridge.judge.received import Judged
 from gcs.gate.policy.parse import parse_policy
 from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address

@@ -1,0 +1,88 @@
+"""What a client says about plans goes to its plan server (`plans/`)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcs import ipc
+from gcs.bridge.classes import Row
+from gcs.bridge.client import Exchange
+from gcs.bridge.client_plan import ClientPlan
+from gcs.bridge.effects import Answers, AsksPlan, BridgeEffect, Refuses, StopsPlan, ToVehicle
+from gcs.bridge.judge.received import Judged, Received
+from gcs.bridge.judge.set_up import SetUpJudge
+from gcs.bridge.plans import effects as plan_effects
+from gcs.bridge.plans.collecting import acknowledgement
+from gcs.bridge.plans.downloads import Downloads
+from gcs.bridge.plans.effects import PlanEffect
+from gcs.gate.effects import Level
+from gcs.wire.frame import Frame
+from gcs.wire.ids import MissionResult, MissionType
+from gcs.wire.messages import Message, MissionClearAll, MissionCount
+
+
+class PlanJudge:
+    """Of what clients say about the plans of one vehicle."""
+
+    def __init__(self, set_up: SetUpJudge) -> None:
+        self._set_up = set_up
+        self._downloads = Downloads()
+
+    def judge(self, given: Received, message: Message, row: Row) -> Judged:
+        """What a client says about missions, fences and rally points."""
+        seen, client = given.look(), given.client
+        if seen is not None and isinstance(message, MissionCount | MissionClearAll):
+            judged = self._set_up.refuses(given, message, row, seen)
+            if judged is not None:
+                return judged
+        busy = seen is not None and seen.plan_transfer
+        reader = given.by.link, given.by.source
+        held = self._downloads.holds(
+            message, reader, busy, given.now_ns, in_control=given.in_control
+        )
+        if held:
+            text = f"{row.name}: not now: {held}"
+            told = client.dialogue.text(given.by, Level.INFO, text, given.now_ns)
+            if self._downloads.answers(reader, given.now_ns):
+                kind = getattr(message, "mission_type", MissionType.MISSION)
+                no = acknowledgement(given.by.source, MissionResult.ERROR, kind)
+                told.append(Answers(given.by.link, given.by.addressed, no))
+            return Judged(True, told)
+        effects = client.plans.handle(message, given.by, given.now_ns)
+        refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
+        return Judged(refused, of_plan(client, effects, given.frame))
+
+    def gone(self, link: int) -> None:
+        """Nobody who was heard on that link is there any more: its turn to read is over."""
+        self._downloads.gone(link)
+
+
+def of_plan(
+    client: Exchange, effects: Sequence[PlanEffect], frame: Frame | None = None
+) -> list[BridgeEffect]:
+    """What a client's plan server wants; `frame` is what it was given, if it was one."""
+    done: list[BridgeEffect] = []
+    for effect in effects:
+        match effect:
+            case Answers():
+                done.append(effect)
+            case plan_effects.Upload(plan):
+                done.append(_ask_plan(client, "mission_upload", plan.source, plan.kind, plan))
+            case plan_effects.Clear(kind):
+                done.append(_ask_plan(client, "mission_clear", "", kind, None))
+            case plan_effects.Withdraw(reason):
+                done.append(StopsPlan(client.number, client.plan_ask, reason))
+            case plan_effects.Pass() if frame is not None:
+                done.append(ToVehicle(frame.raw))
+            case plan_effects.Refused(name, refusal):
+                ask = ipc.Ask(client.dialogue.number(), name.lower())  # answered already
+                done.append(Refuses(client.number, ask, refusal))
+    return done
+
+
+def _ask_plan(
+    client: Exchange, word: str, source: str, kind: MissionType, plan: ClientPlan | None
+) -> AsksPlan:
+    client.plan_ask = client.dialogue.number()
+    ask = ipc.Ask(client.plan_ask, word, path=source, vehicle=client.vehicle)
+    return AsksPlan(client.number, ask, kind, plan)
