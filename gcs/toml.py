@@ -254,7 +254,9 @@ def _explain_single(value: object, kind: object) -> tuple[str, str]:
 
 
 def _explain_number(value: object, least: float | None, most: float | None) -> tuple[str, str]:
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool):
+        return f"{shown(value)} is not a number", ""
+    if not isinstance(value, int | float):
         return f"{shown(value)} is not a number", "write it without quotes or unit"
     limits = f"between {least:g} and {most:g}"
     try:
@@ -268,4 +270,6 @@ def _explain_number(value: object, least: float | None, most: float | None) -> t
 
 def shown(value: object) -> str:
     """A value as errors quote it."""
+    if isinstance(value, bool):
+        return str(value).lower()
     return f'"{value}"' if isinstance(value, str) else str(value)

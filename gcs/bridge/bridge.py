@@ -205,8 +205,8 @@ class Bridge:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
             return Judged(False, [])
-        here = " ".join(str(each.sysid) for each in vehicles)
-        heard = f"vehicles: {here}" if here else "no vehicle is heard yet"
+        here = ", ".join(str(each.sysid) for each in vehicles)
+        heard = f"heard: system {here}" if here else "no vehicle is heard yet"
         reason = f"there is no system {sysid} here ({heard})"
         told = self._once(client, reason)
         if told:

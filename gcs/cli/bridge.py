@@ -40,15 +40,16 @@ def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> N
     if name is None:
         return
     from gcs.bridge.classes.explain import explain, explanation
-    from gcs.bridge.guard.explain import parameter_explanation
+    from gcs.bridge.guard.explain import key_explanation, parameter_explanation
     from gcs.bridge.meaning.explain import meaning_explanation
     from gcs.bridge.meaning.explain_modes import mode_explanation
     from gcs.exit_codes import ExitCode
     from gcs.operator.errors import ExitError
 
     try:
-        meaning = meaning_explanation(explain(name).name)
-        told = "\n".join(line for line in (explanation(name), meaning) if line)
+        row = explain(name)
+        lines = explanation(name), key_explanation(row.name), meaning_explanation(row.name)
+        told = "\n".join(line for line in lines if line)
     except KeyError as error:
         found = mode_explanation(name) or parameter_explanation(name)
         if found is None:

@@ -73,7 +73,7 @@ def lock_vehicle(
     setup = LockSetup(key, lock, sysid, clock.now_ns() + round(timeout_s * 1e9))
     over_link(setup, url, clock)
     lines = _told(setup, options)
-    if key is None:
+    if key is None and setup.vehicle:
         lines.append(NO_KEY)
     for line in lines:
         click.echo(f"lock: vehicle {setup.vehicle}: {line}", err=True)

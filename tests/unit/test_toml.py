@@ -68,7 +68,7 @@ def test_whole_numbers_are_numbers_and_what_is_left_out_has_its_default() -> Non
         ('"home"', '" "', 1, "name", '" " is not a text', "write it in quotes"),
         ("name", "nam", 1, "name", "is missing", "`nam` is unknown here: did you mean name?"),
         ('name = "home"\n', "", 1, "name", "is missing", 'name = "..."'),
-        ("= 5", "= true", 2, "most_m", "True is not a number", "write it without quotes or unit"),
+        ("= 5", "= true", 2, "most_m", "true is not a number", ""),
         ("= 5", "= nan", 2, "most_m", "nan is not finite", "between 0 and 100"),
         ("= 5", "= -inf", 2, "most_m", "-inf is not finite", "between 0 and 100"),
         ("= 5", "= 101", 2, "most_m", "101 is impossible", "between 0 and 100"),

@@ -15,7 +15,7 @@ WHAT_IS_DONE: Final = {
     Kind.POINTING: "forwarded for the client in control, or for any while nobody is",
     Kind.MOTION: "a request of the client, which the gate decides as it does every operator's",
     Kind.CONFIGURATION: "decided by [bridge] of the policy; by default the strict way",
-    Kind.DENIED: "refused, and the client is told; unless [bridge] of the policy allows it",
+    Kind.DENIED: "refused, and the client is told; unless `extra_harmless` of [bridge] names it",
     Kind.CARRIER: "the command in it decides",
     Kind.LOCAL: "kept at the gate, never forwarded",
 }

@@ -1,9 +1,21 @@
-"""What the guard does with a parameter, in words: `gcs bridge --explain NAME`."""
+"""What the guard does with a parameter or a command, in words: `gcs bridge --explain NAME`."""
 
 from __future__ import annotations
 
+from gcs.bridge.guard.commands import ROWS
 from gcs.bridge.guard.free_parameters import free_group_of
 from gcs.bridge.guard.safety_parameters import BY_AUTOPILOT, NAME, group_of
+from gcs.gate.policy.parse import DEFAULT
+
+
+def key_explanation(command: str) -> str:
+    """Which key of the policy decides on a command that configures; empty for any other name."""
+    row = next((row for row in ROWS.values() if row.name == command), None)
+    if row is None:
+        return ""
+    if row.key is None:
+        return "  policy: no key of [bridge] lets it through"
+    return f'  policy: `{row.key}` of [bridge], "{getattr(DEFAULT.bridge, row.key)}" by default'
 
 
 def parameter_explanation(name: str) -> str | None:

@@ -21,7 +21,8 @@ _NOT_HARMLESS: Final = {
     Kind.CONFIGURATION: ("has a key of its own in [bridge]", ""),
     **_NOT_DENIED,
 }
-_MODES: Final = tuple(mode.name for each in (PX4, ARDUPILOT) for mode in each.modes)
+_MODES: Final = tuple(dict.fromkeys(mode.name for each in (PX4, ARDUPILOT) for mode in each.modes))
+"""Each once: many are both autopilots'."""
 
 
 def check_names(rules: BridgeRules) -> NameFault | None:

@@ -102,7 +102,7 @@ def test_what_is_for_nobody_is_answered_with_a_text_that_names_the_vehicles(mess
     judged = pair.says(message)
     assert judged.refused
     assert acks(judged.effects) == []
-    assert texts(list(judged.effects)) == "refused: there is no system 9 here (vehicles: 1 2)"
+    assert texts(list(judged.effects)) == "refused: there is no system 9 here (heard: system 1, 2)"
     assert {each.source for each in of(Answers, judged.effects)} == {BOTH[0]}
     assert len(of(Notes, judged.effects)) == 1
     again = pair.says(message)

@@ -119,6 +119,14 @@ def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> N
         ),
         ("SET_MODE", ("message 11: motion", "  the gate makes of it: as DO_SET_MODE")),
         ("SDLOG_MODE", ("SDLOG_MODE, a parameter that a client may write", "  px4: it says")),
+        (
+            "DO_FLIGHTTERMINATION",
+            (
+                "command 185: configuration",
+                'policy: `termination` of [bridge], "refuse" by default',
+            ),
+        ),
+        ("INJECT_FAILURE", ("policy: no key of [bridge] lets it through",)),
         ("PARAM_SET", ("PARAM_SET, message 23: configuration", "  why: ")),
         (
             "gf_action",
