@@ -14,7 +14,9 @@ from typing import Any
 from unittest import mock
 
 from gcs import ipc
-from gcs.gate.airspace.verifier import Breach, Cleared, Verifier
+from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.questions.braking import Breach
+from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.effects import Effect
 from gcs.gate.inputs import Input
 from gcs.gate.machine.gate import Gate

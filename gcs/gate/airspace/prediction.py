@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from gcs.enu_text import fixed
 from gcs.frames import Vec3
 from gcs.gate.airspace import stopping
+from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.clearance import Measure
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.airspace.stopping import Path
 from gcs.gate.policy.policy import Overshoot
 from gcs.gate.refusal import Code, Refusal
 
@@ -26,19 +29,15 @@ class BadStop:
 
 
 def bad_stop(
-    judge: FenceJudge,
-    home_ned: Vec3 | None,
-    pos_ned: Vec3,
-    v_ned: Vec3,
-    predicted_ned: Vec3,
-    *,
-    floor_applies: bool,
+    bounds: Bounds, pos_ned: Vec3, v_ned: Vec3, path: Path, *, floor_applies: bool
 ) -> BadStop | None:
     """The predicted stop, if it or the way to it breaks a limit of the fence; else None.
 
     Where the floor does not apply, the stop is no lower than the ground, at home's height.
     """
-    north_m, east_m, down_m = predicted_ned
+    judge, home_ned = bounds.judge, bounds.home_ned
+    stops = stopping.stops_of(bounds.policy, bounds.autopilot)
+    north_m, east_m, down_m = stopping.predicted_stop(pos_ned, v_ned, path, stops)
     if not floor_applies and home_ned is not None:
         down_m = min(down_m, max(pos_ned[2], home_ned[2]))
     stop_ned = (north_m, east_m, down_m)
@@ -53,6 +52,28 @@ def bad_stop(
     )
     numbers = (("clear_m", measure.start_m), ("stop_clear_m", rest_m), ("limit_m", limit_m))
     return BadStop(stop_ned, measure, sentence, (*numbers, *stopping_numbers(judge, v_ned)))
+
+
+def cannot_stop(
+    bounds: Bounds, pos_ned: Vec3, v_ned: Vec3, path: Path, *, floor_applies: bool
+) -> Refusal | None:
+    """Refuses a position and velocity from which the vehicle could not stop inside."""
+    bad = bad_stop(bounds, pos_ned, v_ned, path, floor_applies=floor_applies)
+    if bad is None:
+        return None
+    return Refusal(Code.CANNOT_STOP, bad.sentence, bad.numbers, bad.measure.zone.name)
+
+
+def cannot_stop_gained(
+    bounds: Bounds, pos_ned: Vec3, gained_ned: Sequence[Vec3], *, floor_applies: bool
+) -> Refusal | None:
+    """As `cannot_stop`, by velocities that are not reported yet."""
+    for v_ned in gained_ned:
+        refusal = cannot_stop(bounds, pos_ned, v_ned, None, floor_applies=floor_applies)
+        if refusal is not None:
+            sentence = f"it gains speed on its way: {refusal.sentence}"
+            return replace(refusal, sentence=sentence)
+    return None
 
 
 def bad_overshoot(

@@ -11,7 +11,8 @@ from typing import Final, NamedTuple, assert_never
 
 from gcs.enu_text import place
 from gcs.frames import Vec3
-from gcs.gate.airspace.verifier import Breach, Verifier
+from gcs.gate.airspace.questions.braking import Breach
+from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import (
     AccuracySeen,

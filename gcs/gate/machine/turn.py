@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
+from gcs.gate.airspace.questions.braking import Breach
 from gcs.gate.airspace.stream_samples import StreamSample
-from gcs.gate.airspace.verifier import Breach
 from gcs.gate.condition import Severity
 from gcs.gate.effects import (
     CancelCommand,

@@ -12,9 +12,10 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis, lean_of
+from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.limits import STANDING
 from gcs.gate.airspace.stream_samples import TICK_S, StreamSample
-from gcs.gate.airspace.verifier import Cleared, Verifier
+from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.attitude import Attitude
 from gcs.gate.geometry import Circle

@@ -9,7 +9,8 @@ import pytest
 from msgspec.structs import replace
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.verifier import Cleared, Verifier, verifier_for
+from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle
 from gcs.gate.policy.parse import DEFAULT

@@ -11,6 +11,7 @@ import pytest
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.clearance import NO_MARGINS, Margins
+from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.limits import (
     FASTEST_M_S,
     STANDING,
@@ -18,7 +19,7 @@ from gcs.gate.airspace.limits import (
     beyond_reach,
     not_finite,
 )
-from gcs.gate.airspace.verifier import Cleared, Verifier
+from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.geometry import REACH_M
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code, Refusal

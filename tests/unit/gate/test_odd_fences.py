@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import pytest
 
+from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.projection import Origin, Projection
-from gcs.gate.airspace.verifier import Cleared, Verifier, verifier_for
+from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.refusal import Code, Refusal
 from tests.unit.gate.airspace import STILL, at

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from gcs.frames import enu_from_ned
+from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.questions.braking import Breach
 from gcs.gate.airspace.stopping import Leg
-from gcs.gate.airspace.verifier import Breach, Cleared
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon
 from gcs.gate.policy.parse import DEFAULT

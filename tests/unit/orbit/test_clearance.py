@@ -8,8 +8,9 @@ from dataclasses import replace
 import pytest
 from msgspec import structs
 
+from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.stream_samples import StreamSample
-from gcs.gate.airspace.verifier import Cleared, Verifier, verifier_for
+from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import CircleSpec
