@@ -39,7 +39,7 @@ from gcs.gate.proof.invariants import objections_to_memory
 from gcs.gate.proof.letters import Letters
 from gcs.gate.proof.outcome import Outcome
 from gcs.gate.proof.questions import Instant, Questions, WatchedMemory
-from gcs.gate.proof.situation import PARTS, Part
+from gcs.gate.proof.situation import USUAL, Part, ToldApart, parts
 from gcs.gate.proof.taking import take
 from gcs.gate.proof.vector import NOW, Codes, Vector
 from gcs.gate.proof.walk import Begun, Combination, Explored, Judge, Walk
@@ -53,7 +53,7 @@ class Explorer:
     """Explores one world, and keeps what it learnt: of a table in which few cells are altered,
     only that is run anew which meets those cells, and the walk begins where it first meets one."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, apart: ToldApart = USUAL) -> None:
         self._world = world
         self.codes = Codes()
         self._questions = Questions(self.codes)
@@ -61,7 +61,7 @@ class Explorer:
         self._now_ns = cast(int, Instant(self._questions, NOW))
         self._outcomes = self._outcomes_by(TABLE)
         self.objections = self._tree(self._objections_to_memory)
-        self.judge = self.judge_by(PARTS)
+        self.judge = self.judge_by(parts(apart))
         self._whole = self._walk(TABLE)
 
     def explore(self, table: Table = TABLE) -> Explored:
@@ -102,9 +102,9 @@ class Explorer:
         altered = {cell for cell in TABLE if table[cell] != TABLE[cell]}
         return Letters(self._outcomes, self._outcomes_by(table), altered)
 
-    def judge_by(self, parts: Sequence[Part]) -> Judge:
-        """Tells situations apart by these parts."""
-        trees = [self._tree(partial(self._number, part, {})) for part in parts]
+    def judge_by(self, parts: Sequence[tuple[Part, int]]) -> Judge:
+        """Tells situations apart by these parts, each with the bits for its number."""
+        trees = [(self._tree(partial(self._number, part, {})), bits) for part, bits in parts]
         return Judge(trees, self.objections, self.combination, self.codes)
 
     def combination(self, vector: Vector) -> Iterator[Combination]:

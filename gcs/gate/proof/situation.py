@@ -5,12 +5,15 @@ what the present state does not look at is left out altogether.  Two memories th
 there are one situation, and the explorer goes on from the first of them that it met.
 
 What a later state looks at makes a difference too, and not all of it is here: that would be several
-times as many situations.  `left_out.py` samples what is lost.
+times as many situations.  `FINER` tells most of it apart; `left_out.py` samples what is lost.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
 from typing import Final, TypeAlias
 
 from gcs.gate.condition import Severity
@@ -22,7 +25,7 @@ from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
 from gcs.gate.proof.world import ABOVE, EDGE, LOW, TOP
 from gcs.gate.states import FlightMode, LandedState, State
 
-MODES_THAT_MATTER: Final = {
+_MODES: Final = {
     State.GROUNDED: frozenset({FlightMode.RETURN, FlightMode.LAND, FlightMode.MISSION}),
     State.STALE: frozenset({FlightMode.RETURN, FlightMode.LAND}),
     State.TAKING_OFF: frozenset({FlightMode.HOLD, FlightMode.GUIDED}),
@@ -34,10 +37,13 @@ MODES_THAT_MATTER: Final = {
 }
 """The modes that are told apart in a state; in any other state none is."""
 
-PLACES_THAT_MATTER: Final = frozenset(
+_PLACES: Final = frozenset(
     {State.TAKING_OFF, State.HOVERING, State.FLYING_MISSION, State.HOLDING, State.EXTERNAL}
 )
 """Where a dash for the fence matters beyond the sample that shows it: staying is judged there."""
+
+_LATE_GUIDED: Final = frozenset({State.HOLDING, State.EXTERNAL})
+_LATE_TAKE_OFF: Final = frozenset({State.NO_VEHICLE, State.GROUNDED, State.STALE, State.HOLDING})
 
 ALIKE: Final = {
     Event.RESUME: Event.CONTROL,
@@ -46,20 +52,40 @@ ALIKE: Final = {
 }
 """Requests that are treated alike once they are under way."""
 
-LATE_GUIDED: Final = (State.HOLDING, State.EXTERNAL)
-LATE_TAKE_OFF: Final = (State.NO_VEHICLE, State.GROUNDED, State.STALE, State.HOLDING)
-"""Where a command of our own is told apart that may yet take effect."""
+
+@dataclass(frozen=True, slots=True)
+class ToldApart:
+    """In which states a thing is told apart that may matter in a later state only."""
+
+    modes: Mapping[State, frozenset[FlightMode]] = MappingProxyType(_MODES)
+    places: frozenset[State] = _PLACES
+    late_guided: frozenset[State] = _LATE_GUIDED  # a GUIDED command that may yet take effect
+    late_take_off: frozenset[State] = _LATE_TAKE_OFF
+    worst: Mapping[State, Severity] = MappingProxyType({State.STALE: Severity.LAND})
+    """Severities beyond this one are taken for it; beyond RETURN, where none is named."""
+
+
+USUAL: Final = ToldApart()
+
+FINER: Final = ToldApart(
+    {**_MODES, State.STALE: frozenset(FlightMode), State.GROUNDED: frozenset(FlightMode)},
+    frozenset(State),
+    frozenset(State),
+    frozenset(State),
+    dict.fromkeys(State, Severity.TERMINATE),
+)
+"""Several times as many situations: for a soak."""
 
 
 def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     """Equal for memories that the explorer need not tell apart."""
-    return tuple(part(policy, memory, now_ns) for part in PARTS)
+    return tuple(part(policy, memory, now_ns) for part, _ in parts(USUAL))
 
 
-def _machine(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+def _machine(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     state = memory.state
     severities = [policy.severities[name] for name, _ in memory.conditions]
-    worst = Severity.LAND if state is State.STALE else Severity.RETURN
+    worst = apart.worst.get(state, Severity.RETURN)
     return (
         state,
         memory.control,
@@ -71,31 +97,31 @@ def _machine(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     )
 
 
-def _reported(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+def _reported(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     state, flies = memory.state, memory.flown_state
     return (
         (memory.heard_before, memory.lost_in_flight) if state is State.NO_VEHICLE else None,
         memory.pos_ned is None,
         memory.armed,
-        memory.mode if memory.mode in MODES_THAT_MATTER.get(flies, ()) else None,
+        memory.mode if memory.mode in apart.modes.get(flies, ()) else None,
         memory.climbed if flies is State.TAKING_OFF else None,
         memory.lifted if flies in (State.TAKING_OFF, State.FLYING_MISSION) else None,
         memory.mission_over if flies is State.FLYING_MISSION else None,
     )
 
 
-def _position(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+def _position(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     climbs = memory.flown_state is State.TAKING_OFF
     flown = memory.goal is not None
     return (
         memory.pos_ned in (TOP, LOW, ABOVE) and memory.pos_ned if climbs else None,
-        memory.state in PLACES_THAT_MATTER and memory.pos_ned == EDGE,
+        memory.state in apart.places and memory.pos_ned == EDGE,
         memory.goal is not None and memory.pos_ned == memory.goal.pos_ned,
         flown and memory.within_since_ns is not None,
     )
 
 
-def _requests(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+def _requests(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     task = memory.task
     return (
         None if task is None else (ALIKE.get(task.kind, task.kind), task.waiting),
@@ -105,7 +131,7 @@ def _requests(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     )
 
 
-def _commands(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+def _commands(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     unanswered = [kind for _, kind in memory.outstanding if kind is not CommandKind.HOLD]
     hold_again = memory.hold_again_ns is not None
     awaited = not hold_again and memory.asked_mode is not None
@@ -118,7 +144,7 @@ def _commands(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     )
 
 
-def clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+def _clocks(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     """All that changes by time alone; no other part looks at the time."""
     state = memory.state
     age_ns = memory.position_age_ns(now_ns)
@@ -132,8 +158,8 @@ def clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
         age_ns is None or age_ns > policy.position_age_s * SECOND_NS,
         (memory.airborne, memory.on_ground, stands) if not aged else memory.armed,
         awaited and now_ns < memory.asked_until_ns,
-        state in LATE_GUIDED and now_ns < memory.guided_until_ns,
-        state in LATE_TAKE_OFF and now_ns < memory.takeoff_until_ns,
+        state in apart.late_guided and now_ns < memory.guided_until_ns,
+        state in apart.late_take_off and now_ns < memory.takeoff_until_ns,
         force_ns is not None and now_ns - force_ns <= FORCE_WINDOW_NS,
         _stream_clocks(policy, memory, now_ns) if state is State.STREAMING else None,
         _gains_clocks(policy, memory, now_ns),
@@ -159,7 +185,7 @@ def _stream_clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     )
 
 
-def _stream(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+def _stream(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     if memory.flown_state is not State.STREAMING:
         return None
     flown = memory.flown
@@ -172,13 +198,21 @@ def _stream(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
 
 Part: TypeAlias = Callable[[Policy, Memory, int], Hashable]
 
-PARTS: Final[tuple[Part, ...]] = (
-    _machine,
-    _reported,
-    _position,
-    _requests,
-    _commands,
-    _stream,
-    clocks,
+_PARTS: Final = (
+    (_machine, 11),
+    (_reported, 10),
+    (_position, 7),
+    (_requests, 7),
+    (_commands, 9),
+    (_stream, 6),
+    (_clocks, 13),
 )
-"""Apart, as each looks at a few fields only: the explorer asks anew for those that may differ."""
+"""Each with the bits that number what it may be: together they fit one number."""
+
+
+def parts(apart: ToldApart) -> tuple[tuple[Part, int], ...]:
+    """The parts of a situation, each with the bits for its number.
+
+    Apart, as each looks at a few fields only: the explorer asks anew for those that may differ.
+    """
+    return tuple((partial(part, apart), bits) for part, bits in _PARTS)

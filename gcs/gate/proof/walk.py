@@ -35,8 +35,6 @@ FIRST_BATCH: Final = 16
 """The first is small, each other one twice as large: a planted fault is often met at once."""
 EDGES: Final = 100_000
 """What so many edges reach is looked at together."""
-PART_BITS: Final = 9
-"""What each part of a situation was is numbered in so many bits: seven parts fit one number."""
 _STATE, _CONTROL, _CONDITIONS = PLACE["state"], PLACE["control"], PLACE["conditions"]
 
 
@@ -66,10 +64,10 @@ class Explored:
 
 @dataclass(frozen=True, slots=True)
 class Judge:
-    """What the walk asks about a memory: the parts of its situation, the invariants' objections,
-    and which combinations it is."""
+    """What the walk asks about a memory: the parts of its situation, each with the bits for its
+    number, the invariants' objections, and which combinations it is."""
 
-    parts: list[DecisionTree[int]]
+    parts: list[tuple[DecisionTree[int], int]]
     objections: DecisionTree[list[Objection]]
     combinations: Callable[[Vector], Iterator[Combination]]
     codes: Codes
@@ -77,16 +75,16 @@ class Judge:
     def situations(self, columns: Columns) -> Numbers:
         """One number for each vector, equal for those that are one situation."""
         whole = np.zeros(columns.shape[1], dtype=np.int64)
-        for tree in self.parts:
-            whole <<= PART_BITS
+        for tree, bits in self.parts:
+            whole <<= bits
             for part, numbers in tree.split(columns):
-                assert part < 1 << PART_BITS
+                assert part < 1 << bits
                 whole[numbers] += part
         return whole
 
     def steady_ns(self, columns: Columns) -> Numbers:
         """For how long a situation stays what it is if nothing happens."""
-        times = [tree.steady_ns(columns) for tree in self.parts]
+        times = [tree.steady_ns(columns) for tree, _ in self.parts]
         return cast(Numbers, np.minimum.reduce([*times, self.objections.steady_ns(columns)]))
 
     def first_objected(self, columns: Columns) -> int | None:

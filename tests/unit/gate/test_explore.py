@@ -23,12 +23,13 @@ from gcs.gate.proof.edge import Objection
 from gcs.gate.proof.explorer import Explorer
 from gcs.gate.proof.invariants import objections
 from gcs.gate.proof.left_out import LeftOut
+from gcs.gate.proof.situation import FINER
 from gcs.gate.proof.taking import take
 from gcs.gate.proof.walk import Begun, Explored, Walk
 from gcs.gate.proof.world import CONDITIONS, World
 from gcs.gate.refusal import Code
 from gcs.gate.states import Control, State
-from tests.soaking import SOAKING
+from tests.soaking import SOAKING, Counted
 from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS, Planted
 from tests.unit.gate.unreached import UNREACHED
@@ -132,6 +133,18 @@ def test_what_the_walk_leaves_out_breaks_no_invariant_either(name: str) -> None:
     assert further.fault is None, str(further.fault)
     new = further.situations - len(met.edges) - left_out.count
     assert new < len(met.edges) / 10
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", WORLDS)
+def test_told_apart_more_finely_every_combination_keeps_every_invariant_too(
+    name: str, record_property: Counted
+) -> None:
+    """Most of what the usual walk takes for one situation and a later state tells apart."""
+    found = Explorer(WORLDS[name], FINER).explore()
+    record_property("situations, told apart more finely", found.situations)
+    assert found.fault is None, str(found.fault)
+    assert found.situations > 3 * explored(name).situations
 
 
 @pytest.mark.parametrize("planted", FAULTS, ids=lambda planted: planted.what)

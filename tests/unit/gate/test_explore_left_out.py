@@ -14,7 +14,7 @@ import pytest
 from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.proof.explorer import Explorer
 from gcs.gate.proof.left_out import LeftOut
-from gcs.gate.proof.situation import PARTS
+from gcs.gate.proof.situation import USUAL, parts
 from gcs.gate.proof.walk import Begun, Explored, Judge, Walk
 from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS
@@ -27,7 +27,7 @@ def explorer() -> Explorer:
 
 @cache
 def by_state() -> Judge:
-    return explorer().judge_by(PARTS[:1])
+    return explorer().judge_by(parts(USUAL)[:1])
 
 
 def walks(table: Table) -> tuple[Explored, LeftOut, Walk]:
