@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from types import MappingProxyType
 from typing import Final, TypeAlias
 
 from gcs.gate.condition import Severity
@@ -57,15 +56,17 @@ ALIKE: Final = {
 class ToldApart:
     """In which states a thing is told apart that may matter in a later state only."""
 
-    modes: Mapping[State, frozenset[FlightMode]] = MappingProxyType(_MODES)
-    places: frozenset[State] = _PLACES
-    late_guided: frozenset[State] = _LATE_GUIDED  # a GUIDED command that may yet take effect
-    late_take_off: frozenset[State] = _LATE_TAKE_OFF
-    worst: Mapping[State, Severity] = MappingProxyType({State.STALE: Severity.LAND})
+    modes: Mapping[State, frozenset[FlightMode]]
+    places: frozenset[State]
+    late_guided: frozenset[State]  # a GUIDED command that may yet take effect
+    late_take_off: frozenset[State]
+    worst: Mapping[State, Severity]
     """Severities beyond this one are taken for it; beyond RETURN, where none is named."""
 
 
-USUAL: Final = ToldApart()
+USUAL: Final = ToldApart(
+    _MODES, _PLACES, _LATE_GUIDED, _LATE_TAKE_OFF, {State.STALE: Severity.LAND}
+)
 
 FINER: Final = ToldApart(
     {**_MODES, State.STALE: frozenset(FlightMode), State.GROUNDED: frozenset(FlightMode)},
