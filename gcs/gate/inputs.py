@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.mission_box import MissionBox
 from gcs.gate.airspace.return_place import ReturnPlace
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.attitude import Attitude
@@ -165,6 +166,16 @@ class MissionLoaded:
 
 
 @dataclass(frozen=True, slots=True)
+class MissionPathVerified:
+    """The mission on board was verified from where the vehicle is; its start may be asked for now.
+
+    `within` is a box round all of that path; None where it has no path.
+    """
+
+    within: MissionBox | None
+
+
+@dataclass(frozen=True, slots=True)
 class MissionSeen:
     """Progress of the mission: it is at item `seq` of `total`; `finished` after the last one."""
 
@@ -217,6 +228,7 @@ Input: TypeAlias = (
     | CommandEnded
     | PhotoSeen
     | MissionLoaded
+    | MissionPathVerified
     | MissionSeen
     | ConditionChanged
     | OperatorLost

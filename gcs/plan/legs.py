@@ -8,7 +8,7 @@ is told by *regions*; a region is every point of the convex hull of a few points
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TypeAlias
@@ -187,6 +187,18 @@ class FlightPath:
     @property
     def segments(self) -> tuple[tuple[Vec3, Vec3], ...]:
         return tuple((leg.from_ned, leg.to_ned) for leg in self.legs)
+
+    @property
+    def corners(self) -> Iterator[Vec3]:
+        """Points of which the hull has all that may be flown."""
+        for leg in self.legs:
+            yield from (leg.from_ned, leg.to_ned)
+        for region in self.regions:
+            yield from region.points
+        for circle in self.circles:
+            north, east, down = circle.centre_ned
+            for away_m in (-circle.radius_m, circle.radius_m):
+                yield from ((north + away_m, east, down), (north, east + away_m, down))
 
     @property
     def length_m(self) -> float:

@@ -180,8 +180,8 @@ def _alone(flight: Flight) -> Iterator[str]:
 def _past_the_gate(flight: Flight, mission: Mission) -> Iterator[str]:
     """What the gate refused is put on board by hand, and flown alone."""
     vehicle, personality = flight.vehicle, flight.personality
-    vehicle.load_rally(_on_board(rally_points(mission.document)))
-    items = _on_board(items_of(mission.document, personality))
+    vehicle.load_rally(on_board(rally_points(mission.document)))
+    items = on_board(items_of(mission.document, personality))
     bad = vehicle.check_plan(items)
     if bad is not None:
         yield f"the vehicle would not take it: {bad}"
@@ -190,7 +190,7 @@ def _past_the_gate(flight: Flight, mission: Mission) -> Iterator[str]:
     yield from _alone(flight)
 
 
-def _on_board(items: list[SentItem]) -> tuple[PlanItem, ...]:
+def on_board(items: list[SentItem]) -> tuple[PlanItem, ...]:
     """As the vehicle keeps what is sent to it."""
     return tuple(
         PlanItem(

@@ -7,6 +7,8 @@ direction.
 Two sets of figures: the policy's braking, what a hold takes from the command on, and its approach,
 what a vehicle takes that slows down by itself for a goal it was sent.  `predicted_stop` chooses.
 
+A vehicle that is outside the box round its verified mission slows down for nothing that is known.
+
 What a vehicle slows down for is its goal and nothing that stands before it.  A leg is clear of
 everything at all heights between those of its ends; what the vehicle flies towards above or below
 those is judged by its braking.
@@ -19,6 +21,7 @@ from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.mission_box import MissionBox
 from gcs.gate.policy.policy import Approach, Braking, Overshoot, Policy
 
 
@@ -35,7 +38,12 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class OwnPath:
-    """The vehicle flies a path of its own that was verified: a take-off, mission or return."""
+    """The vehicle flies a path of its own that was verified: a take-off, mission or return.
+
+    `within` is where that path is; None where it is not known so.
+    """
+
+    within: MissionBox | None = None
 
 
 Path: TypeAlias = Leg | OwnPath | None
@@ -109,8 +117,9 @@ def predicted_stop(pos_ned: Vec3, v_ned: Vec3, path: Path, stops: Stops) -> Vec3
     match path:
         case None:
             return held_ned
-        case OwnPath():
-            return own_ned
+        case OwnPath(within):
+            on_path = within is None or within.holds(pos_ned)
+            return own_ned if on_path else held_ned
         case Leg():
             north, east, _ = held_ned
             if _along_leg(own_ned, v_ned, path, stops):

@@ -25,6 +25,7 @@ from gcs.gate.inputs import (
     LandedSeen,
     MessageSeen,
     MissionLoaded,
+    MissionPathVerified,
     MissionSeen,
     OperatorLost,
     PhotoSeen,
@@ -111,7 +112,9 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             yield from _photo(turn, given)
         case MissionLoaded(name, items):
             memory.mission_name, memory.mission_items = name, items
-            memory.mission_over = False
+            memory.mission_over, memory.mission_within = False, None
+        case MissionPathVerified(within):
+            memory.mission_within = within
         case MissionSeen(seq, total, finished):
             memory.mission_over = finished or 0 < total <= seq + 1
             yield Occurrence(Event.MISSION_FINISHED if finished else Event.MISSION_ITEM)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis
+from gcs.gate.airspace.mission_box import MissionBox
 from gcs.gate.airspace.return_place import HOME, ReturnPlace
 from gcs.gate.airspace.stopping import Leg, OwnPath, Path
 from gcs.gate.airspace.stream_samples import StreamSample
@@ -113,6 +114,7 @@ class Memory:
     conditions: tuple[tuple[Condition, str], ...] = ()
     mission_name: str = ""
     mission_items: int = 0
+    mission_within: MissionBox | None = None  # where it is flown, as verified before its start
     mission_over: bool = False  # the mission on board is at its last item, or past it
     photo_ok: bool = False
     photo_index: int | None = None  # of the last picture that was reported
@@ -196,6 +198,8 @@ class Memory:
         A client's velocities lead to no place.  A vehicle that hovers where it never flew to is on
         a leg without length.
         """
+        if self.flown_state is State.FLYING_MISSION:
+            return OwnPath(self.mission_within)
         if self.flown_state in OWN_PATHS:
             return OwnPath()
         if self.flown_state is State.STREAMING and self.flown is not None:

@@ -225,7 +225,9 @@ def _jumped(edge: Edge, given: PositionSeen) -> bool:
 
 def _flown(memory: Memory) -> Path:
     """What the vehicle flies and slows down for by itself."""
-    if memory.flown_state in (State.TAKING_OFF, State.FLYING_MISSION, State.RETURNING):
+    if memory.flown_state is State.FLYING_MISSION:
+        return OwnPath(memory.mission_within)
+    if memory.flown_state in (State.TAKING_OFF, State.RETURNING):
         return OwnPath()
     if memory.flown_state is State.STREAMING and memory.flown is not None:
         asked = memory.flown.sample

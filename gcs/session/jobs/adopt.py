@@ -59,6 +59,7 @@ class Adopt(PreparedJob, StartingJob):
         answer = cleared(found)
         if isinstance(answer, Refusal):
             return self.refuse_path(found, answer)
+        self.note_path(found.path)
         plan = self.prepared.plan
         points = tuple(dict.fromkeys(end for leg in found.path.segments for end in leg))
         return [

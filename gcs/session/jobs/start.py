@@ -72,6 +72,7 @@ class Start(StartingJob):
         answer = cleared(found)
         if isinstance(answer, Refusal):
             return self.refuse(answer)
+        self.note_path(found.path)
         self._to_verify = self._to_verify[1:]
         if self._to_verify:
             return self.verify(self._on_board.plan, view, now_ns, self._to_verify[0])

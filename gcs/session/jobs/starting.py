@@ -14,11 +14,14 @@ from dataclasses import dataclass
 from typing import Final
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.mission_box import box_round
 from gcs.gate.airspace.projection import Origin
+from gcs.gate.inputs import MissionPathVerified
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import StartMission
 from gcs.gate.states import LandedState, State
 from gcs.plan.item_messages import item_of
+from gcs.plan.legs import FlightPath
 from gcs.plan.model import Plan
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address
@@ -28,7 +31,7 @@ from gcs.session.jobs.job import Asked, JobWork, VehicleView, code_of
 from gcs.session.jobs.verified import VerifiedJob
 from gcs.session.paths import autopilot_name
 from gcs.session.telemetry import Telemetry
-from gcs.session.work import AskGate
+from gcs.session.work import AskGate, ToGate
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import MissionItemInt
 
@@ -76,6 +79,8 @@ class StartingJob(VerifiedJob):
         self._begin_seq: int | None = None
         """That item; None: the first."""
         self._verified_from: _Place | None = None
+        self._corners_ned: list[Vec3] = []
+        """Of the path from there; of both, where it may begin at either of two items."""
         self._rounds = 0
 
     @abstractmethod
@@ -123,6 +128,7 @@ class StartingJob(VerifiedJob):
         at, counts as verified from where the vehicle was at first."""
         if self._verified_from is None:
             self._verified_from = _place(view.telemetry)
+            self._corners_ned = []
         return super().verify(plan, view, now_ns, begin_item)
 
     def _ask_from_here(self, view: VehicleView, now_ns: int) -> list[JobWork]:
@@ -139,10 +145,15 @@ class StartingJob(VerifiedJob):
         self._verified_from = None
         return self.verify_anew(view, now_ns)
 
+    def note_path(self, path: FlightPath) -> None:
+        """It has cleared."""
+        self._corners_ned += path.corners
+
     def ask_gate(self) -> list[JobWork]:
         """All that is known of the mission is: the start is the gate's to decide."""
         self.over = True
-        return [AskGate(self.asked.request_id, StartMission(self._begin_seq))]
+        within = ToGate(MissionPathVerified(box_round(self._corners_ned)))
+        return [within, AskGate(self.asked.request_id, StartMission(self._begin_seq))]
 
     def failed(
         self, result: int | None, text: str, view: VehicleView, now_ns: int
