@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import errno
 import os
+import select
 import sys
-from typing import Protocol
+from typing import Final, Protocol
 
 from gcs.shell.endpoints import Endpoint
 from gcs.shell.sockets.base import Link
+
+REOPEN_NS: Final = 1_000_000_000
+"""How often to look whether a device that was unplugged is there again."""
 
 
 class SerialUnavailable(OSError):  # noqa: N818 - it names the condition
@@ -30,26 +34,30 @@ class _Port(Protocol):
 
 
 class SerialLine(Link):
-    """One device, read and written without waiting."""
+    """One device, read and written without waiting; one that was unplugged is opened again."""
 
     stream = True
 
     def __init__(self, endpoint: Endpoint) -> None:
         """Raises SerialUnavailable, or OSError if the device cannot be opened."""
         super().__init__(endpoint)
-        self._port_open = _open(endpoint)
-        self._fd = self._port_open.fileno()
-        os.set_blocking(self._fd, False)
-        self._lost = False
+        self._port_open: _Port | None = _open(endpoint)
+        self._fd = _watched(self._port_open)
         self._unsent = b""
         """The end of what the line took only a part of."""
+        self._reopen_ns = 0
+        """While it is lost: when to look for it again."""
 
     def fileno(self) -> int:
-        return -1 if self._lost else self._fd
+        return self._fd
+
+    @property
+    def deadline_ns(self) -> int | None:
+        return self._reopen_ns if self._port_open is None else None
 
     def drain(self, limit: int) -> list[bytes]:
         pieces: list[bytes] = []
-        for _ in range(limit):
+        for _ in range(limit if self._port_open is not None else 0):
             try:
                 piece = os.read(self._fd, self.read_bytes)
             except BlockingIOError:
@@ -58,6 +66,8 @@ class SerialLine(Link):
                 self._lose(error.strerror or str(error))
                 break
             if not piece:
+                if _hung_up(self._fd):
+                    self._lose("the device is gone")
                 break
             pieces.append(piece)
         return pieces
@@ -77,20 +87,52 @@ class SerialLine(Link):
 
     def _write(self, data: bytes) -> bytes:
         """What is left of it."""
+        if self._port_open is None:
+            return data
         try:
             return data[os.write(self._fd, data) :]
         except OSError:
             return data
 
+    def poke(self, now_ns: int) -> list[str]:
+        if self._port_open is None and now_ns >= self._reopen_ns:
+            self._reopen_ns = now_ns + REOPEN_NS
+            self._reopen()
+        return super().poke(now_ns)
+
+    def _reopen(self) -> None:
+        try:
+            self._port_open = _open(self.endpoint)
+        except OSError:
+            return
+        self._fd = _watched(self._port_open)
+        self._news.append(f"{self.endpoint}: it is there again")
+
     def _lose(self, why: str) -> None:
-        self._lost = True
-        self._news.append(f"{self.endpoint}: lost, {why}")
+        self.close()
+        self._port_open, self._fd, self._unsent = None, -1, b""
+        self._news.append(f"{self.endpoint}: lost, {why}; it is opened when it is there again")
 
     def close(self) -> None:
-        self._port_open.close()
+        if self._port_open is not None:
+            self._port_open.close()
 
     def describe(self) -> str:
         return f"serial {self.endpoint.device} at {self.endpoint.baud} baud"
+
+
+def _watched(port: _Port) -> int:
+    """What `select` watches of a port."""
+    fd = port.fileno()
+    os.set_blocking(fd, False)
+    return fd
+
+
+def _hung_up(fd: int) -> bool:
+    """Nothing to read is also what a line says whose other end is quiet."""
+    poll = select.poll()
+    poll.register(fd, select.POLLIN)
+    return any(found & (select.POLLHUP | select.POLLERR) for _, found in poll.poll(0))
 
 
 def _open(endpoint: Endpoint) -> _Port:
