@@ -4,7 +4,8 @@ No sockets: `client_ports.py` has those.  A client is one peer on one client por
 number of its own, the lowest that is free; the number is given again after it has gone.
 
 What one client may cost the others is bounded here: at most `max_clients` are there, each may send
-`rate_hz` messages a second with a second's worth at once, and a turn hands on `MAX_A_TURN` inputs.
+`rate_hz` messages a second with a second's worth at once, and a few commands beside that, and a
+turn hands on `MAX_A_TURN` inputs.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from gcs.wire.frame import (
     plain_frames,
     split,
 )
+from gcs.wire.ids import MsgId
 
 LAST_LINK = 254
 MAX_A_TURN = 256
@@ -40,6 +42,10 @@ EVICTABLE_NS = 3_000_000_000
 """A client that was heard within this time does not have to make room for another: whoever makes
 up senders by the thousand must not drive out those who fly."""
 FLOOD_TOLD_NS = 1_000_000_000
+COMMAND_HZ = 20.0
+"""So many commands and modes a second are handed on of a sender whose messages are dropped: among
+them is a stop, which is never to be lost for what the same client streams."""
+COMMANDS = frozenset({MsgId.SET_MODE, MsgId.COMMAND_INT, MsgId.COMMAND_LONG})
 
 MAGICS = (MAGIC_V2, MAGIC_V1)
 
@@ -88,6 +94,8 @@ class _Client:
     """What the pieces of a frame that has not ended have been counted as."""
     dropped: int = 0
     told_ns: int = 0
+    commands: float = COMMAND_HZ
+    """How many of these may be handed on though it sends too much."""
 
 
 class ClientTable:
@@ -164,7 +172,8 @@ class ClientTable:
         client = self._clients[link]
         if client.splitter is not None or (data and data[0] in MAGICS):
             client.heard_ns = now_ns
-        if self._refill(client, now_ns) <= 0.0 or len(data) > MAX_CLIENT_DATAGRAM:
+        too_much = self._refill(client, now_ns) <= 0.0
+        if len(data) > MAX_CLIENT_DATAGRAM or (too_much and not _commands(client, data)):
             client.dropped += 1
             return
         frames: list[Frame] = []
@@ -180,6 +189,7 @@ class ClientTable:
         rate_hz = self._limits.rate_hz
         more = (now_ns - client.tokens_ns) * rate_hz / 1e9
         client.tokens, client.tokens_ns = min(rate_hz, client.tokens + more), now_ns
+        client.commands = min(COMMAND_HZ, client.commands + more * COMMAND_HZ / rate_hz)
         return client.tokens
 
     def send(self, link: int, data: bytes) -> None:
@@ -206,6 +216,26 @@ class ClientTable:
         self._clients.clear()
         for client in clients:
             client.peer.forget()
+
+
+def _commands(client: _Client, data: bytes) -> bool:
+    """Whether this is one command or mode, of which few enough came of late."""
+    if client.splitter is not None or client.commands < 1.0:
+        return False
+    if _only_message(data) not in COMMANDS:
+        return False
+    client.commands -= 1.0
+    return True
+
+
+def _only_message(data: bytes) -> int:
+    """The number of the message in a datagram of one frame, by its header alone; -1 for others."""
+    if len(data) > 9 and data[0] == MAGIC_V2:
+        signed = 13 * (data[2] & 1)
+        return int.from_bytes(data[7:10], "little") if len(data) == 12 + data[1] + signed else -1
+    if len(data) > 5 and data[0] == MAGIC_V1:
+        return data[5] if len(data) == 8 + data[1] else -1
+    return -1
 
 
 def _of_read(client: _Client, messages: int) -> float:

@@ -15,7 +15,7 @@ from gcs import ipc
 from gcs.bridge.meaning.command import Command
 from gcs.bridge.meaning.meaning import Meaning, Reject, Seen, Words
 from gcs.bridge.meaning.places import Datum, datum_of, down_of, north_east_of
-from gcs.bridge.meaning.says import NOT_FLOWN_BY_US, refuse, unsupported
+from gcs.bridge.meaning.says import comes_back, refuse, unsupported
 from gcs.gate.refusal import Code, Refusal
 
 NOSES: Final[Mapping[int, str]] = {
@@ -53,7 +53,7 @@ def orbit(command: Command, seen: Seen) -> Meaning:
     wanted = ipc.Ask(0, "orbit", orbit=circle)
     by_home = command.frame is not None and datum_of(command.frame) is Datum.HOME
     note = ABOVE_SEA if by_home and not math.isnan(command.p7) else ""
-    if seen.state in NOT_FLOWN_BY_US and not seen.on_ground:
+    if comes_back(seen) and not seen.on_ground:
         return Words((ipc.Ask(0, "resume"), wanted), note)
     return Words((wanted,), note)
 

@@ -9,7 +9,8 @@ from gcs import ipc
 from gcs.bridge.meaning.meaning import Forward, Reject, Seen, Words
 from gcs.frames import Vec3, as_on_the_wire, enu_from_ned
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.states import State
+from gcs.gate.states import FlightMode, State
+from gcs.protocol.autopilot import mode_named
 
 SAME_GOAL_M: Final = 0.01
 SAME_YAW_RAD: Final = 0.01
@@ -53,9 +54,21 @@ def go_to(
         return Words((), note)
     degrees = None if yaw_rad is None else math.degrees(yaw_rad)
     wanted = ipc.Ask(0, "goto", goal_enu=enu_from_ned(goal), yaw_deg=degrees)
-    if resume and seen.state in NOT_FLOWN_BY_US:
+    if resume and comes_back(seen):
         return Words((ipc.Ask(0, "resume"), wanted), note)
     return Words((wanted,), note)
+
+
+def comes_back(seen: Seen) -> bool:
+    """Whether a message that asks to fly somewhere, and so for another mode, resumes the vehicle.
+
+    It ends a hold.  It takes no vehicle from a pilot who flies it with sticks: that takes a mode
+    that is asked for by itself.
+    """
+    if seen.state is State.EXTERNAL:
+        shown = mode_named(seen.autopilot, seen.mode_name)
+        return shown is not None and shown.meaning is not FlightMode.OTHER
+    return seen.state in NOT_FLOWN_BY_US
 
 
 def _is_flown_to(seen: Seen, goal_ned: Vec3, yaw_rad: float | None) -> bool:

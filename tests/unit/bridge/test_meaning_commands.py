@@ -264,6 +264,18 @@ def test_reposition_with_the_flag_leaves_a_hold(state: State) -> None:
     assert words(meaning_of(without, flying(ARDUPILOT, state=state))) == ["goto"]
 
 
+@pytest.mark.parametrize(
+    ("mode_name", "asked"),
+    [("POSCTL", ["goto"]), ("STABILIZED", ["goto"]), ("AUTO.LOITER", ["resume", "goto"])],
+)
+def test_reposition_takes_no_vehicle_from_a_pilot(mode_name: str, asked: list[str]) -> None:
+    """The autopilot would take it; here a pilot's sticks outrank a click on the map, and the gate
+    refuses the go-to: NOT_IN_CONTROL."""
+    flag = command_long(192, -1.0, CHANGE_MODE, 0.0, NAN, PX4_LAT, PX4_LON, 505.0)
+    seen = flying(PX4, state=State.EXTERNAL, mode_name=mode_name)
+    assert words(meaning_of(flag, seen)) == asked
+
+
 @pytest.mark.parametrize("flags", [0.0, 2.0, 3.0, NAN])
 def test_px4_reposition_without_the_flag_alone(flags: float) -> None:
     """PX4 1.14.3, recorded: flags 0 is UNSUPPORTED in every mode (scenarios_px4.json)."""

@@ -9,7 +9,7 @@ from pymavlink.dialects.v10 import all as dialect1
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.session.inputs import ClientFlooded, Datagram
-from gcs.shell.client_table import MAX_A_TURN, ClientLimits, ClientTable
+from gcs.shell.client_table import COMMAND_HZ, MAX_A_TURN, ClientLimits, ClientTable
 from gcs.wire.frame import Frame, Garbage, split
 
 RATE_HZ = 50.0
@@ -117,6 +117,45 @@ def test_one_datagram_may_take_its_sender_over_the_rate_who_then_waits() -> None
     many = SMALL * (4096 // len(SMALL))
     sender.for_a_while(many, 0.01)
     assert SECONDS * RATE_HZ <= sender.frames <= (SECONDS + 1) * RATE_HZ + MOST_IN_ONE
+
+
+HOLD_V1 = bytes(dialect1.MAVLink_set_mode_message(1, 1, 5).pack(dialect1.MAVLink(None, 245, 190)))
+
+
+def signed_hold() -> bytes:
+    mav = dialect.MAVLink(None, 245, 190)
+    mav.signing.secret_key = b"k" * 32
+    mav.signing.sign_outgoing = True
+    mav.signing.timestamp = 1
+    return bytes(dialect.MAVLink_command_long_message(1, 1, 17, 0, *[0.0] * 7).pack(mav))
+
+
+@pytest.mark.parametrize(
+    "hold",
+    [
+        packed(dialect.MAVLink_command_long_message(1, 1, 17, 0, *[0.0] * 7)),
+        packed(dialect.MAVLink_command_int_message(1, 1, 6, 192, 0, 0, *[0.0] * 4, 0, 0, 0.0)),
+        HOLD_V1,
+        signed_hold(),
+    ],
+)
+def test_a_stop_is_handed_on_whatever_its_sender_streams(hold: bytes) -> None:
+    sender = Sender()
+    sender.for_a_while(SMALL, 0.0005)
+    for number in range(1, 21):
+        for _ in range(100):
+            sender.now_ns += 500_000
+            sender.sends(SMALL)
+        sender.sends(hold)
+        assert sender.handed_on.count(hold) == number
+
+
+def test_commands_alone_go_a_little_over_the_rate() -> None:
+    sender = Sender()
+    hold = packed(dialect.MAVLink_command_long_message(1, 1, 17, 0, *[0.0] * 7))
+    sender.for_a_while(hold, 0.001)
+    assert sender.frames <= (SECONDS + 1) * (RATE_HZ + COMMAND_HZ)
+    assert sender.flooded
 
 
 def broken(inside: bytes) -> bytes:
