@@ -128,8 +128,9 @@ def _field(dice: random.Random) -> ZoneSpec:
     if dice.random() < 0.5:
         return CircleSpec(90.0, (0.0, 0.0), name="field", inclusion=True)
     notch = dice.uniform(-40.0, 40.0)  # a field with a notch
-    corners = ((-90, -90), (90, -90), (90, 90), (notch + 20, 90), (notch, 35), (notch - 20, 90))
-    return PolygonSpec((*corners, (-90, 90)), name="field", inclusion=True)
+    m = 90.0  # floats, as they are read back from a record
+    corners = ((-m, -m), (m, -m), (m, m), (notch + 20.0, m), (notch, 35.0), (notch - 20.0, m))
+    return PolygonSpec((*corners, (-m, m)), name="field", inclusion=True)
 
 
 def _masts(dice: random.Random, way: list[tuple[float, float]]) -> Iterator[ZoneSpec]:

@@ -59,8 +59,15 @@ def lets_down_what_comes_down(edge: Edge) -> Iterator[str]:
         return
     if edge.after.state is not edge.before.state or edge.commands:
         yield f"the operator leaves, and {edge.before.state.name} does not go on"
-    if edge.before.outstanding != edge.after.outstanding:
+    if _brings_down(edge.before) != _brings_down(edge.after):
         yield f"the operator leaves, and what {edge.before.state.name} needs is asked for no more"
+
+
+def _brings_down(memory: Memory) -> list[tuple[int, CommandKind]]:
+    """The unanswered commands that a return or landing needs.  Another one, such as a forced
+    disarm, ends with its request."""
+    needed = (CommandKind.RETURN, CommandKind.LAND, CommandKind.HOLD)
+    return [command for command in memory.outstanding if command[1] in needed]
 
 
 def loses_only_what_is_silent(edge: Edge) -> Iterator[str]:
