@@ -7,6 +7,7 @@ import random
 from collections.abc import Callable
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.mission_box import box_round
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
@@ -20,6 +21,7 @@ from gcs.gate.inputs import (
     LandedSeen,
     MessageSeen,
     MissionLoaded,
+    MissionPathVerified,
     MissionSeen,
     OperatorLost,
     PhotoSeen,
@@ -378,9 +380,14 @@ def mission(run: HostileRun, *, starts: bool = False) -> None:
 
 
 def ask_station(run: HostileRun, request: Request, source: str = "operator") -> None:
-    """A mission is begun as the station begins one: where its path still clears from here."""
-    if not isinstance(request, StartMission) or _mission_clears(run):
-        run.ask(request, source)
+    """A mission is begun as the station begins one: where its path still clears from here, and
+    with the box round that."""
+    if isinstance(request, StartMission):
+        if not _mission_clears(run):
+            return
+        path = (run.vehicle.reported(), *run.vehicle.mission)
+        run.feed(MissionPathVerified(box_round(path)))
+    run.ask(request, source)
 
 
 def _mission_clears(run: HostileRun) -> bool:
