@@ -93,6 +93,13 @@ class Edge:
         return awaited and self.now_ns >= before.asked_until_ns
 
     @property
+    def task_overdue(self) -> bool:
+        """The request under way was overdue when the step came, and no tick had come since."""
+        task = self.before.task
+        deadline_ns = None if task is None else task.deadline_ns
+        return deadline_ns is not None and self.now_ns >= deadline_ns
+
+    @property
     def stands(self) -> bool:
         """Surely on the ground: disarmed and not reported to fly, or reported there of late and
         seen no higher since, with nothing under way that lifts it."""

@@ -51,11 +51,13 @@ def arms_on_a_fresh_position(edge: Edge) -> Iterator[str]:
 def lets_down_what_comes_down(edge: Edge) -> Iterator[str]:
     """Whoever leaves cancels no return and no landing.
 
-    Not judged where the vehicle is lost or the mode is overdue at that moment: the gate deals with
-    that first, as at a tick.
+    Not judged where the vehicle is lost, or a mode or the request under way is overdue at that
+    moment: the gate deals with that first, as at a tick.
     """
     comes_down = edge.before.state in (State.RETURNING, State.LANDING)
-    if not comes_down or edge.after.state is State.NO_VEHICLE or edge.mode_overdue:
+    if not comes_down or edge.after.state is State.NO_VEHICLE:
+        return
+    if edge.mode_overdue or edge.task_overdue:
         return
     if edge.after.state is not edge.before.state or edge.commands:
         yield f"the operator leaves, and {edge.before.state.name} does not go on"
