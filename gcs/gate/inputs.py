@@ -169,10 +169,10 @@ class MissionLoaded:
 class MissionPathVerified:
     """The mission on board was verified from where the vehicle is; its start may be asked for now.
 
-    `within` is a box round all of that path; None where it has no path.
+    `within` is a box round all of that path.
     """
 
-    within: MissionBox | None
+    within: MissionBox
 
 
 @dataclass(frozen=True, slots=True)

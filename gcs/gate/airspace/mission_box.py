@@ -31,10 +31,7 @@ class MissionBox:
         )
 
 
-def box_round(points_ned: Iterable[Vec3]) -> MissionBox | None:
-    """The least box that has all of them; None where there are none."""
-    points = [*points_ned]
-    if not points:
-        return None
-    norths, easts, downs = zip(*points, strict=True)
+def box_round(points_ned: Iterable[Vec3]) -> MissionBox:
+    """The least box that has all of them, of which there is one at least."""
+    norths, easts, downs = zip(*points_ned, strict=True)
     return MissionBox((min(norths), min(easts), min(downs)), (max(norths), max(easts), max(downs)))

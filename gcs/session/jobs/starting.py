@@ -152,8 +152,10 @@ class StartingJob(VerifiedJob):
     def ask_gate(self) -> list[JobWork]:
         """All that is known of the mission is: the start is the gate's to decide."""
         self.over = True
-        within = ToGate(MissionPathVerified(box_round(self._corners_ned)))
-        return [within, AskGate(self.asked.request_id, StartMission(self._begin_seq))]
+        work: list[JobWork] = []
+        if self._corners_ned:
+            work.append(ToGate(MissionPathVerified(box_round(self._corners_ned))))
+        return [*work, AskGate(self.asked.request_id, StartMission(self._begin_seq))]
 
     def failed(
         self, result: int | None, text: str, view: VehicleView, now_ns: int

@@ -13,7 +13,6 @@ BOX = MissionBox((0.0, -20.0, -10.0), (40.0, 30.0, 0.0))
 
 def test_a_box_is_round_all_points() -> None:
     assert box_round([(0.0, 30.0, -10.0), (40.0, -20.0, 0.0), (3.0, 3.0, -3.0)]) == BOX
-    assert box_round([]) is None
 
 
 def test_a_little_beside_its_path_counts_as_on_it() -> None:

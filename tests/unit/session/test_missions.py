@@ -9,7 +9,7 @@ from msgspec import structs
 
 from gcs import ipc
 from gcs.gate.effects import Outcome, Ruling
-from gcs.gate.inputs import MissionLoaded, MissionSeen
+from gcs.gate.inputs import MissionLoaded, MissionPathVerified, MissionSeen
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code
 from gcs.gate.requests import StartMission
@@ -253,9 +253,10 @@ def test_after_a_restart_of_the_vehicle_nothing_is_known_of_what_is_on_board() -
     assert script.missions.forget() == []
     assert seen(script.hear(current(1))) == []
     work = script.ask("mission_start")
-    assert [item.given for item in work if isinstance(item, ToGate)] == [
-        MissionLoaded("the mission on board", FOUR)
-    ]
+    loaded, path = (item.given for item in work if isinstance(item, ToGate))
+    assert loaded == MissionLoaded("the mission on board", FOUR)
+    assert isinstance(path, MissionPathVerified)
+    assert path.within.holds((0.0, 0.0, 0.0))
     assert work[-1] == AskGate(2, StartMission())
 
 
