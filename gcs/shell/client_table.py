@@ -95,7 +95,8 @@ class _Client:
     dropped: int = 0
     told_ns: int = 0
     commands: float = COMMAND_HZ
-    """How many of these may be handed on though it sends too much."""
+    """How many commands may be handed on though it sends too much; as it was at `commands_ns`."""
+    commands_ns: int = 0
 
 
 class ClientTable:
@@ -173,7 +174,7 @@ class ClientTable:
         if client.splitter is not None or (data and data[0] in MAGICS):
             client.heard_ns = now_ns
         too_much = self._refill(client, now_ns) <= 0.0
-        if len(data) > MAX_CLIENT_DATAGRAM or (too_much and not _commands(client, data)):
+        if len(data) > MAX_CLIENT_DATAGRAM or (too_much and not _may_command(client, data, now_ns)):
             client.dropped += 1
             return
         frames: list[Frame] = []
@@ -189,7 +190,6 @@ class ClientTable:
         rate_hz = self._limits.rate_hz
         more = (now_ns - client.tokens_ns) * rate_hz / 1e9
         client.tokens, client.tokens_ns = min(rate_hz, client.tokens + more), now_ns
-        client.commands = min(COMMAND_HZ, client.commands + more * COMMAND_HZ / rate_hz)
         return client.tokens
 
     def send(self, link: int, data: bytes) -> None:
@@ -218,11 +218,13 @@ class ClientTable:
             client.peer.forget()
 
 
-def _commands(client: _Client, data: bytes) -> bool:
+def _may_command(client: _Client, data: bytes, now_ns: int) -> bool:
     """Whether this is one command or mode, of which few enough came of late."""
-    if client.splitter is not None or client.commands < 1.0:
+    if client.splitter is not None or _only_message(data) not in COMMANDS:
         return False
-    if _only_message(data) not in COMMANDS:
+    more = (now_ns - client.commands_ns) * COMMAND_HZ / 1e9
+    client.commands, client.commands_ns = min(COMMAND_HZ, client.commands + more), now_ns
+    if client.commands < 1.0:
         return False
     client.commands -= 1.0
     return True

@@ -15,9 +15,9 @@ from msgspec import structs
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from tests.loopback.flight import PERSONALITIES, Personality
-from tests.loopback.plan_clients import ACCEPTED, Mavsdk, PlanFlight, mission
+from tests.loopback.plan_clients import mission
 from tests.loopback.random_missions import on_board
-from tests.loopback.test_set_current import ARM, FIELD, flown, square
+from tests.loopback.test_set_current import FIELD, flown, with_square
 
 FAR_M = 400.0
 MARGIN_M = 2.0
@@ -25,18 +25,12 @@ MARGIN_M = 2.0
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_vehicle_is_stopped_inside_the_fence(personality: Personality) -> None:
-    flight = PlanFlight(personality, policy=structs.replace(DEFAULT, fence=(FIELD,)))
-    client = flight.join()
-    flight.connected()
-    items = mission(personality, *square(personality))
-    assert Mavsdk(flight, client, items).ended() == "complete", client.texts()
-    assert client.ask(ARM, 1) == ACCEPTED
-    flown(flight)
+    flight = flown(with_square(personality, structs.replace(DEFAULT, fence=(FIELD,))))
     away = mission(personality, (FAR_M, 0.0, 10.0), (FAR_M, 0.0, 10.0), (FAR_M, 0.0, 10.0))
     flight.vehicle.load_plan(on_board(away))
     farthest_m = 0.0
     for _ in range(300):
-        client.beat()
+        flight.clients[1].beat()
         flight.run(0.2)
         farthest_m = max(farthest_m, math.hypot(*flight.truth_enu()[:2]))
     assert flight.is_in(State.HOLDING)

@@ -68,7 +68,7 @@ def comes_back(seen: Seen) -> bool:
     if seen.state is State.EXTERNAL:
         shown = mode_named(seen.autopilot, seen.mode_name)
         return shown is not None and shown.meaning is not FlightMode.OTHER
-    return seen.state in NOT_FLOWN_BY_US
+    return seen.state is State.HOLDING
 
 
 def _is_flown_to(seen: Seen, goal_ned: Vec3, yaw_rad: float | None) -> bool:

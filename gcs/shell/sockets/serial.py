@@ -66,7 +66,7 @@ class SerialLine(Link):
                 self._lose(error.strerror or str(error))
                 break
             if not piece:
-                if _hung_up(self._fd):
+                if not pieces and _hung_up(self._fd):
                     self._lose("the device is gone")
                 break
             pieces.append(piece)
