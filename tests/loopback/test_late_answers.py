@@ -155,6 +155,12 @@ def test_what_is_not_answered_in_time_takes_no_effect_later(
     fly(personality, seed, how, script)
 
 
+@pytest.mark.parametrize("wait_s", [0.0, 0.3, 6.0])
+def test_a_take_off_that_was_cancelled_is_not_begun_when_it_is_armed_again(wait_s: float) -> None:
+    """An ArduCopter keeps it until it leaves GUIDED."""
+    fly("ardupilot", 0, Answers(0.0, 1, 0.0), [("takeoff", 1.0), ("disarm", 6.0), ("arm", wait_s)])
+
+
 @pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_station_that_goes_on_asking_is_found(
     personality: Personality, monkeypatch: pytest.MonkeyPatch

@@ -28,18 +28,28 @@ ARM_FROM: Final[Mapping[str, tuple[frozenset[FlightMode], CommandKind]]] = Mappi
 px4 is in OFFBOARD again once it disarms after a flight in it, and does not arm there without
 setpoints.  It takes NAV_TAKEOFF and the mode of a mission disarmed, and flies as soon as it is
 armed (all recorded from PX4 1.14.3): such an arming would be a take-off that nobody has judged.
+
+An ArduCopter keeps a take-off that it was told in GUIDED until it leaves that mode, over a
+disarming too, and may begin it when it is armed again (from memory of its source; where its
+throttle stick is above zero).  So it leaves a GUIDED in which it was armed before.
 """
 
 
 def arm(turn: Turn) -> None:
     """Command arming, after a mode that the autopilot arms in."""
-    memory = turn.memory
     turn.set_deadline(turn.policy.control.timeout_s)
+    _arm_or_its_mode(turn, "asked for on the ground")
+
+
+def _arm_or_its_mode(turn: Turn, reason: str) -> None:
+    memory = turn.memory
     modes, first = ARM_FROM.get(memory.autopilot, (frozenset(FlightMode), CommandKind.HOLD))
-    if memory.mode in modes:
-        turn.command(CommandKind.ARM, "asked for on the ground")
-    else:
+    if memory.mode not in modes:
         _command_after(turn, first, CommandKind.ARM)
+    elif memory.guided_used and memory.autopilot == "ardupilot":
+        _command_after(turn, CommandKind.HOLD, CommandKind.ARM)
+    else:
+        turn.command(CommandKind.ARM, reason)
 
 
 def _command_after(turn: Turn, first: CommandKind, then: CommandKind) -> None:
@@ -54,7 +64,7 @@ def _command_after(turn: Turn, first: CommandKind, then: CommandKind) -> None:
 
 
 def send_waiting(turn: Turn) -> None:
-    """Send the command that waited for its mode."""
+    """Send the command that waited for its mode; arming may wait for one more."""
     task = turn.memory.task
     assert task is not None
     assert task.waiting is not None
@@ -62,7 +72,7 @@ def send_waiting(turn: Turn) -> None:
     if task.waiting is CommandKind.TAKE_OFF:
         _climb(turn)
     else:
-        turn.command(task.waiting, "the vehicle shows the mode for it")
+        _arm_or_its_mode(turn, "the vehicle shows the mode for it")
 
 
 def set_guided(turn: Turn) -> None:

@@ -46,7 +46,7 @@ from gcs.gate.machine.turn import Turn
 from gcs.gate.machine.verifying import refusal_of_what_is_flown
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo
-from gcs.gate.states import Control, LandedState, State
+from gcs.gate.states import Control, FlightMode, LandedState, State
 
 JUMP_LEAST_M = 0.5
 """A position that changes by less is no jump, however short the time between the samples."""
@@ -135,6 +135,8 @@ def _heartbeat(turn: Turn, seen: HeartbeatSeen) -> Iterator[Occurrence]:
     was_armed, was_mode = memory.armed, memory.mode
     memory.heard_ns, memory.heard_before = turn.now_ns, True
     memory.armed, memory.mode, memory.mode_name = seen.armed, seen.mode, seen.mode_name
+    used = memory.guided_used or seen.armed or was_mode is None
+    memory.guided_used = used and seen.mode is FlightMode.GUIDED
     memory.failsafe = seen.failsafe
     if memory.state is State.NO_VEHICLE:
         memory.lost_in_flight = False

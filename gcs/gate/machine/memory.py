@@ -96,6 +96,7 @@ class Memory:
     armed: bool = False
     mode: FlightMode | None = None
     mode_name: str = ""
+    guided_used: bool = False  # it was armed, or first heard, in the guided mode that it is in
     failsafe: bool = False  # one of the vehicle's own is active
     landed: LandedState = LandedState.UNDEFINED
     landed_ns: int | None = None

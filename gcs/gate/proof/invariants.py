@@ -77,6 +77,7 @@ STEP_CHECKS: Final = (
     StepCheck(7, invariants_motion.moves_on_fresh_positions, (Transition, Outcome, Tick)),
     StepCheck(0, invariants_motion.does_what_severity_demands, (ConditionChanged, PositionSeen)),
     StepCheck(7, invariants_command.arms_on_a_fresh_position, (SendCommand,)),
+    StepCheck(9, invariants_command.leaves_guided_before_it_arms_again, (SendCommand,)),
     StepCheck(7, invariants_command.loses_only_what_is_silent, (Transition,)),
     StepCheck(0, invariants_command.lets_down_what_comes_down, (OperatorLost,)),
     StepCheck(9, invariants_command.ends_what_it_commands, (SendCommand,)),

@@ -48,6 +48,15 @@ def arms_on_a_fresh_position(edge: Edge) -> Iterator[str]:
         yield "arming is commanded without a fresh position"
 
 
+def leaves_guided_before_it_arms_again(edge: Edge) -> Iterator[str]:
+    """9: an ArduCopter is armed in no guided mode in which it may have kept a take-off."""
+    after = edge.after
+    if CommandKind.ARM not in edge.commands or after.autopilot != "ardupilot":
+        return
+    if after.mode is FlightMode.GUIDED and after.guided_used:
+        yield "arming is commanded in a guided mode in which it was armed before"
+
+
 def lets_down_what_comes_down(edge: Edge) -> Iterator[str]:
     """Whoever leaves cancels no return and no landing.
 

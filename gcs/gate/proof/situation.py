@@ -105,10 +105,15 @@ def _reported(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> 
         memory.pos_ned is None,
         memory.armed,
         memory.mode if memory.mode in apart.modes.get(flies, ()) else None,
+        _leaves_guided_to_arm(memory) if flies is State.GROUNDED else None,
         memory.climbed if flies is State.TAKING_OFF else None,
         memory.lifted if flies in (State.TAKING_OFF, State.FLYING_MISSION) else None,
         memory.mission_over if flies is State.FLYING_MISSION else None,
     )
+
+
+def _leaves_guided_to_arm(memory: Memory) -> bool:
+    return memory.guided_used and not memory.armed and memory.autopilot == "ardupilot"
 
 
 def _position(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:

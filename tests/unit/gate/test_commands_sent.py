@@ -95,8 +95,9 @@ class TestCommands:
     @pytest.mark.parametrize("mode", list(FlightMode))
     def test_ardupilot_arms_in_guided_alone(self, mode: FlightMode) -> None:
         script = Script(policy("default"), "ardupilot")
-        script.mode = mode
+        script.mode = FlightMode.OTHER
         script.connect()
+        script.heartbeat(mode)
         script.ask(Arm())
         waits = mode is not FlightMode.GUIDED
         assert script.commands() == [CommandKind.GUIDED if waits else CommandKind.ARM]

@@ -15,9 +15,12 @@ import numpy as np
 import pytest
 
 from gcs.gate.condition import Severity
+from gcs.gate.effects import CommandKind
+from gcs.gate.machine import commanding
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.rules import Branch
 from gcs.gate.machine.table import TABLE
+from gcs.gate.machine.turn import Turn
 from gcs.gate.proof.alphabet import ALPHABET
 from gcs.gate.proof.edge import Objection
 from gcs.gate.proof.explorer import Explorer
@@ -154,6 +157,19 @@ def test_a_planted_fault_is_found_with_its_shortest_trace(planted: Planted) -> N
     assert fault.objection.invariant == planted.invariant, str(fault)
     assert fault.trace[-1][0] == planted.letter, str(fault)
     assert "shortest trace:" in str(fault)
+
+
+def test_an_ardupilot_that_is_armed_again_in_the_same_guided_mode_is_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def at_once(turn: Turn, reason: str) -> None:
+        turn.command(CommandKind.ARM, reason)
+
+    monkeypatch.setattr(commanding, "_arm_or_its_mode", at_once)
+    fault = Explorer(WORLDS["ardupilot"]).explore().fault
+    assert fault is not None
+    assert "in which it was armed before" in fault.objection.sentence
+    assert fault.trace[-1][0] == "ask: arm"
 
 
 def test_the_trace_is_the_shortest_there_is() -> None:

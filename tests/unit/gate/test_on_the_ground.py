@@ -296,6 +296,90 @@ def test_an_arming_that_is_taken_back_is_not_sent_again() -> None:
     assert CancelCommand(request_id, ARM) in script.all(CancelCommand)
 
 
+class TestArmingAgainInGuided:
+    """An ArduCopter keeps a take-off that it was told in GUIDED until it leaves that mode, over a
+    disarming too (from memory of its source), so a guided mode in which it was armed is left."""
+
+    def armed_once(self) -> Script:
+        """It was armed in GUIDED, and stands there disarmed."""
+        script = Script(policy("default"), "ardupilot")
+        script.mode = FlightMode.OTHER
+        script.connect()
+        script.heartbeat(FlightMode.GUIDED, armed=False)
+        script.heartbeat(armed=True)
+        script.heartbeat(armed=False)
+        script.forget()
+        return script
+
+    def test_it_is_left_and_entered_again_first(self) -> None:
+        script = self.armed_once()
+        request_id = script.ask(Arm())
+        assert script.commands() == [HOLD]
+        script.answer(HOLD, 0)
+        script.heartbeat(FlightMode.HOLD)
+        assert script.commands() == [HOLD, CommandKind.GUIDED]
+        script.answer(CommandKind.GUIDED, 0)
+        script.heartbeat(FlightMode.GUIDED)
+        assert script.commands() == [HOLD, CommandKind.GUIDED, ARM]
+        script.heartbeat(armed=True)
+        assert ended(script, request_id) == "complete"
+        script.forget()
+        script.wait(3.0)
+        assert script.commands() == []
+
+    def test_a_guided_mode_that_was_entered_since_is_a_new_one(self) -> None:
+        script = self.armed_once()
+        script.heartbeat(FlightMode.OTHER)
+        script.heartbeat(FlightMode.GUIDED)
+        script.ask(Arm())
+        assert script.commands() == [ARM]
+
+    def test_what_it_was_told_before_it_was_heard_nobody_knows(self) -> None:
+        script = Script(policy("default"), "ardupilot")
+        script.mode = FlightMode.GUIDED
+        script.connect()
+        script.forget()
+        script.ask(Arm())
+        assert script.commands() == [HOLD]
+
+    def test_nor_while_it_was_lost(self) -> None:
+        script = Script(policy("default"), "ardupilot")
+        script.mode = FlightMode.OTHER
+        script.connect()
+        script.heartbeat(FlightMode.GUIDED)
+        script.reports_heartbeat = False
+        script.wait(6.0)
+        script.heartbeat()
+        script.land_state(LandedState.ON_GROUND)
+        script.tick()
+        script.forget()
+        script.ask(Arm())
+        assert script.commands() == [HOLD]
+
+    def test_the_deadline_ends_it(self) -> None:
+        script = self.armed_once()
+        request_id = script.ask(Arm())
+        script.wait(3.0)
+        script.heartbeat(FlightMode.HOLD)
+        script.wait(2.1)
+        assert ended(script, request_id) == "timed out NO_ANSWER"
+        script.heartbeat(FlightMode.GUIDED)
+        assert ARM not in script.commands()
+
+    def test_a_hold_that_is_refused_ends_it(self) -> None:
+        script = self.armed_once()
+        request_id = script.ask(Arm())
+        script.answer(HOLD, 4)
+        assert ended(script, request_id) == "aborted VEHICLE_REFUSED"
+
+    def test_px4_has_no_such_mode(self) -> None:
+        script = landed_in(FlightMode.HOLD)
+        script.heartbeat(armed=True)
+        script.heartbeat(armed=False)
+        script.ask(Arm())
+        assert script.commands() == [ARM]
+
+
 class TestGuidedByItsName:
     """Clients of an ArduCopter set GUIDED before they arm: it moves nothing on the ground.  px4's
     OFFBOARD flies what a stream sends, and is not set there."""

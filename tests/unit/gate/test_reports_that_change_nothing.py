@@ -44,9 +44,11 @@ def changes_only(script: Script, given: Input, **facts: object) -> None:
 
 def mode_seen(script: Script, mode: FlightMode, **facts: object) -> None:
     """The heartbeat shows `mode`; of the rest only `facts` change."""
-    given = HeartbeatSeen(script.gate.memory.armed, mode, mode.value)
+    before = script.gate.memory
+    given = HeartbeatSeen(before.armed, mode, mode.value)
     heard = {"heard_ns": script.now_ns, "mode": mode, "mode_name": mode.value}
-    changes_only(script, given, **heard, **facts)
+    used = mode is FlightMode.GUIDED and (before.armed or before.guided_used)
+    changes_only(script, given, **heard, guided_used=used, **facts)
 
 
 class TestInTheAir:
