@@ -159,7 +159,7 @@ class PhotoSeen:
 @dataclass(frozen=True, slots=True)
 class MissionLoaded:
     """A mission was verified whole, uploaded, and read back equal; `items` 0: no such mission is
-    on board."""
+    on board, and one that is flown is held."""
 
     name: str
     items: int

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
+from gcs.gate.effects import Level
 from gcs.gate.inputs import Input, MissionLoaded, MissionSeen, OperatorLost, Requested
 from gcs.gate.machine.events import Event, event_of
 from gcs.gate.policy.policy import Policy
@@ -23,6 +24,7 @@ from gcs.session.jobs.clear import Clear
 from gcs.session.jobs.client_upload import ClientUpload
 from gcs.session.jobs.download import Download
 from gcs.session.jobs.job import (
+    NODE,
     Asked,
     BeginsAt,
     Job,
@@ -34,11 +36,12 @@ from gcs.session.jobs.job import (
 from gcs.session.jobs.relay import RelayPlan
 from gcs.session.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.session.jobs.start import Start
+from gcs.session.jobs.starting import first_item
 from gcs.session.jobs.upload import Upload
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
-from gcs.session.work import AskGate, ToGate, Work
+from gcs.session.work import AskGate, Log, ToGate, Work
 from gcs.wire.ids import Cmd, MissionState, MissionType
 from gcs.wire.messages import MissionCurrent, MissionItemReached
 
@@ -96,9 +99,13 @@ class Missions:
         """Items that the vehicle holds, as they were read back last."""
         self._told: MissionCurrent | None = None
         """What the vehicle tells of its plans."""
+        self._first_item = 0
+        """The number of the first item after home, where home is one."""
         self._verified_id = 0
         self._verified_ns: int | None = None
         """The number that it gives the mission that was verified, and since when there is one."""
+        self._told_verified = False
+        """Whether it has told of that mission since."""
 
     @property
     def deadline_ns(self) -> int | None:
@@ -237,8 +244,9 @@ class Missions:
         work: list[Work] = []
         match heard.message:
             case MissionCurrent(seq=seq, mission_state=state) as told:
-                self._told = told
+                self._told, self._first_item = told, first_item(view.telemetry)
                 self._number(told, now_ns)
+                work += self._replaced(told, view)
                 self._was_active |= state == MissionState.ACTIVE
                 over = state == MissionState.COMPLETE and self._was_active
                 work += self._progress(seq, over)
@@ -264,8 +272,8 @@ class Missions:
             return ""
         if known is None:
             return f"the mission on board ({told.total} items) was not verified: upload or clear it"
-        if told.total != len(known.sent):
-            which = f"{told.total} items, {len(known.sent)} were verified"
+        if told.total != self._countable(known):
+            which = f"{told.total} items, {self._countable(known)} were verified"
             return f"another mission is on board than was verified ({which})"
         if self._verified_id and told.mission_id != self._verified_id:
             return "another mission of as many items is on board than was verified"
@@ -274,11 +282,36 @@ class Missions:
     def _number(self, told: MissionCurrent, now_ns: int) -> None:
         """Keep the number of the verified mission, once it is told after that was on board."""
         if self._on_board is None:
-            self._verified_id, self._verified_ns = 0, None
+            self._learn_anew()
         elif self._verified_ns is None:
             self._verified_ns = now_ns
-        elif not self._verified_id and now_ns - self._verified_ns >= self._times.real_ns(NEWS_NS):
-            self._verified_id = told.mission_id
+        elif now_ns - self._verified_ns >= self._times.real_ns(NEWS_NS):
+            self._verified_id = self._verified_id or told.mission_id
+            self._told_verified |= told.total == self._countable(self._on_board)
+
+    def _countable(self, known: OnBoard) -> int:
+        """Items as MISSION_CURRENT.total counts them: ArduPilot leaves out home (recorded: 6 of the
+        7 of its MISSION_COUNT)."""
+        return len(known.sent) - self._first_item
+
+    def _learn_anew(self) -> None:
+        """Another mission was verified, or none is on board."""
+        self._verified_id, self._verified_ns, self._told_verified = 0, None, False
+
+    def _replaced(self, told: MissionCurrent, view: VehicleView) -> list[Work]:
+        """What is flown is not what was verified: another station has put it on board meanwhile.
+
+        Only where the vehicle has told of the verified one before: its number of items, and the
+        number (`mission_id`) that it gives each mission, where it gives one.
+        """
+        another = told.total in NO_ITEMS or bool(self.unverified)
+        if not self._told_verified or not another or view.state is not State.FLYING_MISSION:
+            return []
+        text = self.unverified or "no mission is on board any more"
+        self._on_board, self._begin_seq = None, None
+        self._learn_anew()
+        log = Log(Level.ERROR, NODE, f"While its mission is flown: {text}")
+        return [log, ToGate(MissionLoaded("", 0))]
 
     def wake(self, view: VehicleView, now_ns: int) -> list[Work]:
         if self._job is None:
@@ -323,7 +356,7 @@ class Missions:
         for item in job_work:
             if isinstance(item, OnBoardChanged):
                 self._on_board, self._begin_seq = item.on_board, None
-                self._verified_id, self._verified_ns = 0, None
+                self._learn_anew()
                 if item.on_board is not None:
                     self.total = len(item.on_board.sent)
             elif isinstance(item, BeginsAt):

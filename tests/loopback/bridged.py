@@ -19,6 +19,7 @@ from gcs.session import inputs
 from gcs.wire.frame import Frame, split
 from tests.loopback.flight import Flight, Personality
 from tests.loopback.lossy_link import CLEAR, Weather
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.tasks.guided import Offboard
 
 VEHICLE = (1, 1)
@@ -144,6 +145,7 @@ class BridgedFlight(Flight):
         up: Weather = CLEAR,
         down: Weather = CLEAR,
         params: dict[str, float] | None = None,
+        firmware: Firmware | None = None,
         offboard: Offboard = "smooth",
         config: StationConfig = BRIDGE,
         vehicle_key: bytes | None = None,
@@ -158,6 +160,7 @@ class BridgedFlight(Flight):
             up=up,
             down=down,
             params=params,
+            firmware=firmware,
             offboard=offboard,
             config=config,
             vehicle_key=vehicle_key,

@@ -21,6 +21,7 @@ from gcs.session import inputs
 from tests.loopback.bridged import BRIDGE, VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import HOMES, Personality
 from tests.loopback.lossy_link import CLEAR, Air, Weather
+from vehicle_sim.autopilot.firmware import Firmware
 
 MS = 1_000_000
 S = 1_000 * MS
@@ -54,6 +55,7 @@ class PlanFlight(BridgedFlight):
         *,
         seed: int = 1,
         policy: Policy = DEFAULT,
+        firmware: Firmware | None = None,
         vehicle_weather: Weather = CLEAR,
         client_weather: Weather = CLEAR,
         config: StationConfig = BRIDGE,
@@ -69,6 +71,7 @@ class PlanFlight(BridgedFlight):
             policy=policy,
             up=vehicle_weather,
             down=vehicle_weather,
+            firmware=firmware,
             config=config,
         )
 

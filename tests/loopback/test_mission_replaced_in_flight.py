@@ -1,8 +1,10 @@
 """Another station puts a mission on board past the bridge, while the one before is flown.
 
-The vehicle flies it at once.  Outside the box round what was verified nothing says that it slows
-down for a waypoint of its own, so the gate brakes by what a hold takes.  By its approach, an
-ArduCopter at 10 m/s came to rest 22 m outside.
+The vehicle flies it at once.  It is held as soon as the vehicle tells of another number of items,
+or another number of the mission (`mission_id`), which the recorded ones do not tell.  Where that
+does not show: outside the box round what was verified nothing says that it slows down for a
+waypoint of its own, so the gate brakes by what a hold takes.  By its approach, an ArduCopter at
+10 m/s came to rest 22 m outside.
 """
 
 from __future__ import annotations
@@ -15,19 +17,55 @@ from msgspec import structs
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from tests.loopback.flight import PERSONALITIES, Personality
-from tests.loopback.plan_clients import mission
+from tests.loopback.plan_clients import PlanFlight, mission
 from tests.loopback.random_missions import on_board
 from tests.loopback.test_set_current import FIELD, flown, with_square
 
 FAR_M = 400.0
 MARGIN_M = 2.0
+TOLD_EVERY_S = 1.0
+"""MISSION_CURRENT of either."""
+
+
+def replaced(flight: PlanFlight, *places_m: tuple[float, float, float]) -> PlanFlight:
+    """Take-off, these waypoints and a return are on board now, all of a sudden."""
+    items = mission(flight.personality, *places_m)
+    flight.vehicle.load_plan(on_board(items))
+    return flight
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
-def test_the_vehicle_is_stopped_inside_the_fence(personality: Personality) -> None:
+def test_another_number_of_items_shows_at_once(personality: Personality) -> None:
+    flight = replaced(flown(with_square(personality)), (20.0, 0.0, 10.0))
+    flight.beating(TOLD_EVERY_S + 0.5)
+    assert flight.is_in(State.HOLDING)
+    assert [each.code for each in flight.decisions("aborted")] == ["BAD_MISSION"]
+    (line,) = [each for each in flight.lines("mission") if "While its mission is flown" in each]
+    assert "another mission is on board than was verified" in line
+
+
+def test_another_mission_of_as_many_items_shows_where_missions_have_numbers() -> None:
+    square = [(30.0, 0.0, 10.0), (30.0, 30.0, 10.0), (0.0, 30.0, 10.0)]
+    flight = replaced(flown(with_square("px4", firmware="1.15")), *square)
+    flight.beating(TOLD_EVERY_S + 0.5)
+    assert flight.is_in(State.HOLDING)
+    assert [each.code for each in flight.decisions("aborted")] == ["BAD_MISSION"]
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_the_same_mission_flies_on(personality: Personality) -> None:
+    flight = flown(with_square(personality))
+    flight.vehicle.load_plan(tuple(flight.vehicle.plan))
+    flight.beating(5.0)
+    assert flight.is_in(State.FLYING_MISSION)
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_else_the_vehicle_is_stopped_inside_the_fence(
+    personality: Personality,
+) -> None:
     flight = flown(with_square(personality, structs.replace(DEFAULT, fence=(FIELD,))))
-    away = mission(personality, (FAR_M, 0.0, 10.0), (FAR_M, 0.0, 10.0), (FAR_M, 0.0, 10.0))
-    flight.vehicle.load_plan(on_board(away))
+    replaced(flight, (FAR_M, 0.0, 10.0), (FAR_M, 0.0, 10.0), (FAR_M, 0.0, 10.0))
     farthest_m = 0.0
     for _ in range(300):
         flight.clients[1].beat()

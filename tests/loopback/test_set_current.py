@@ -18,6 +18,7 @@ from gcs.gate.states import State
 from tests.loopback.bridged import Client
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.plan_clients import ACCEPTED, NORTH_DEG, Mavsdk, PlanFlight, mission
+from vehicle_sim.autopilot.firmware import Firmware
 
 ARM, TAKE_OFF, MISSION_START, SET_CURRENT = 400, 22, 300, 224
 DENIED = 2
@@ -45,8 +46,10 @@ def seq(personality: Personality, item: int) -> int:
     return item + (personality == "ardupilot")
 
 
-def with_square(personality: Personality, policy: Policy = DEFAULT) -> PlanFlight:
-    flight = PlanFlight(personality, policy=policy)
+def with_square(
+    personality: Personality, policy: Policy = DEFAULT, firmware: Firmware | None = None
+) -> PlanFlight:
+    flight = PlanFlight(personality, policy=policy, firmware=firmware)
     client = flight.join()
     flight.connected()
     assert (

@@ -34,7 +34,9 @@ class Plans:
         return self._stored.get(kind, ())
 
     def opaque_id(self, kind: MissionType) -> int:
-        """Of the plan that is stored; it is worked out once."""
+        """Of the plan that is stored; 0 where the firmware numbers none.  It is worked out once."""
+        if not self._profile.numbers_plans:
+            return 0
         items = self.plan(kind)
         known, number = self._ids.get(kind, ((), 0))
         if known is not items:

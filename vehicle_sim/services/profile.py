@@ -70,6 +70,7 @@ class Profile:
     events: bool  # the events interface; a text that is an event too ends with a TAB
     tells_log_path: bool  # a STATUSTEXT when a log begins
     no_such_item: MissionResult  # MISSION_REQUEST beyond the last
+    numbers_plans: bool  # `opaque_id` and `mission_id`, not recorded of 4.7 and 1.14
     refuses_other_components: bool  # commands to one that there is not get an answer
     protocol_version_command: bool  # REQUEST_PROTOCOL_VERSION is known
     names_unknown_message: bool  # SET_MESSAGE_INTERVAL is DENIED with a text, else FAILED
@@ -193,6 +194,7 @@ PX4: Final = Profile(
     events=True,
     tells_log_path=True,
     no_such_item=MissionResult.ERROR,
+    numbers_plans=False,
     refuses_other_components=True,
     protocol_version_command=True,
     names_unknown_message=False,
@@ -270,6 +272,7 @@ ARDUPILOT: Final = Profile(
     events=False,
     tells_log_path=False,
     no_such_item=MissionResult.INVALID_SEQUENCE,
+    numbers_plans=False,
     refuses_other_components=False,
     protocol_version_command=False,
     names_unknown_message=True,
@@ -305,6 +308,7 @@ def profile_of(personality: Personality, firmware: Firmware) -> Profile:
         profile,
         banner=(_RELEASE[firmware], *profile.banner[1:]) if profile.banner else (),
         flight_sw_version=FLIGHT_SW_VERSION[firmware],
+        numbers_plans=firmware == "1.15",  # from memory
         parameter_errors=firmware == "4.7",
         refuses_fast_streams=firmware == "4.7",
     )

@@ -19,7 +19,7 @@ from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.effects import Client, Effect, Note, Send
-from vehicle_sim.services.plan_items import from_float, from_int, opaque_id
+from vehicle_sim.services.plan_items import from_float, from_int
 from vehicle_sim.services.plans import Plans
 from vehicle_sim.services.profile import PLAN_TYPES, Profile
 from vehicle_sim.services.streams import NEVER
@@ -210,7 +210,12 @@ class Uploads:
         bad = self._plans.check(upload.kind, items)
         if bad is None:
             self._plans.store(upload.kind, items)
-            said = ack(upload.client, upload.kind, MissionResult.ACCEPTED, opaque_id(items))
+            said = ack(
+                upload.client,
+                upload.kind,
+                MissionResult.ACCEPTED,
+                self._plans.opaque_id(upload.kind),
+            )
             effects: list[Effect] = [
                 Note("info", f"{upload.kind.name.lower()} of {len(items)} items received"),
                 said,

@@ -110,9 +110,8 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             yield from _verifier(turn, verifier)
         case PhotoSeen():
             yield from _photo(turn, given)
-        case MissionLoaded(name, items):
-            memory.mission_name, memory.mission_items = name, items
-            memory.mission_over, memory.mission_within = False, None
+        case MissionLoaded():
+            yield from _mission(turn, given)
         case MissionPathVerified(within):
             memory.mission_within = within
         case MissionSeen(seq, total, finished):
@@ -197,6 +196,16 @@ def _verifier(turn: Turn, verifier: Verifier) -> Iterator[Occurrence]:
     why = refusal_of_what_is_flown(memory, verifier, was)
     if why is not None:
         yield Occurrence(Event.CLEARS_NO_MORE, why)
+
+
+def _mission(turn: Turn, loaded: MissionLoaded) -> Iterator[Occurrence]:
+    """What is flown as a mission is refused once it is known that another one may be on board."""
+    memory = turn.memory
+    memory.mission_name, memory.mission_items = loaded.name, loaded.items
+    memory.mission_over, memory.mission_within = False, None
+    if not loaded.items and memory.flown_state is State.FLYING_MISSION:
+        text = "the mission on board is not the one that was verified"
+        yield Occurrence(Event.CLEARS_NO_MORE, Refusal(Code.BAD_MISSION, text))
 
 
 def _photo(turn: Turn, seen: PhotoSeen) -> Iterator[Occurrence]:

@@ -23,6 +23,7 @@ from gcs.gate.inputs import (
     CommandEnded,
     ConditionChanged,
     HomeSeen,
+    MissionLoaded,
     OperatorLost,
     PositionSeen,
     Requested,
@@ -57,6 +58,7 @@ class StepCheck:
 STEP_CHECKS: Final = (
     StepCheck(1, invariants_motion.streams_what_was_verified, (SendSetpoint,)),
     StepCheck(2, invariants_motion.flies_what_clears, (VerifierChanged,)),
+    StepCheck(2, invariants_motion.flies_the_mission_that_was_verified, (MissionLoaded,)),
     StepCheck(2, invariants_motion.holds_when_home_moves, (HomeSeen,)),
     StepCheck(2, invariants_motion.returns_by_clear_ways, (SendCommand,)),
     StepCheck(2, invariants_motion.climbs_to_its_top, (Tick,)),

@@ -10,7 +10,7 @@ from gcs.gate.airspace.limits import STANDING
 from gcs.gate.airspace.stopping import Leg, OwnPath, Path
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Outcome, OutcomeKind, Transition
-from gcs.gate.inputs import HomeSeen, PositionSeen, Tick, VerifierChanged
+from gcs.gate.inputs import HomeSeen, MissionLoaded, PositionSeen, Tick, VerifierChanged
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge, severity_of
@@ -120,6 +120,15 @@ def flies_what_clears(edge: Edge) -> Iterator[str]:
         judged = verifier.hold_point(after.hold.pos_ned, STANDING, floor_applies=True)
     if isinstance(judged, Refusal):
         yield f"{after.state.name} goes on in a fence that refuses it: {judged.code}"
+
+
+def flies_the_mission_that_was_verified(edge: Edge) -> Iterator[str]:
+    """2: no mission goes on where none that was verified is on board any more."""
+    assert isinstance(edge.given, MissionLoaded)
+    after = edge.after
+    goes_on = after.flown_state is State.FLYING_MISSION and after.state is not State.NO_VEHICLE
+    if goes_on and not edge.given.items and after.control is not Control.NONE:
+        yield "a mission goes on that is not on board any more"
 
 
 def holds_when_home_moves(edge: Edge) -> Iterator[str]:

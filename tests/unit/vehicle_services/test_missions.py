@@ -9,6 +9,7 @@ import pytest
 
 from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S
 from vehicle_sim.autopilot.interface import MissionReached
+from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MissionResult, MissionType
 
@@ -199,13 +200,28 @@ def test_types_and_numbers_beyond_all_measure_are_refused() -> None:
 
 
 def test_the_id_of_a_plan_is_the_same_in_ack_count_and_mission_current() -> None:
-    bench = Bench("px4")
+    bench = Bench("px4", firmware="1.15")
     (ack,) = [each for each in upload(bench, [item(0)]) if isinstance(each, m.MissionAck)]
     (told,) = [
         each for each in bench.send(m.MissionRequestList(1, 1)) if isinstance(each, m.MissionCount)
     ]
     current = next(each for each in bench.advance(1 * S) if isinstance(each, m.MissionCurrent))
     assert ack.opaque_id == told.opaque_id == current.mission_id != 0
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+def test_the_recorded_firmware_numbers_no_plans(personality: Personality) -> None:
+    """px4_1_14_flight.tlog and arducopter_4_7_flight.tlog: MISSION_ACK of 3 bytes, MISSION_CURRENT
+    of 6."""
+    bench = Bench(personality)
+    (ack,) = [each for each in upload(bench, [item(0)]) if isinstance(each, m.MissionAck)]
+    asked = m.CommandLong(m.IDS[m.MissionCurrent], 0, 0, 0, 0, 0, 0, 512, 1, 1, 0)
+    current = next(
+        each
+        for each in [*bench.send(asked), *bench.advance(1 * S)]
+        if isinstance(each, m.MissionCurrent)
+    )
+    assert (ack.opaque_id, current.mission_id) == (0, 0)
 
 
 def test_px4_gives_items_back_as_it_got_them_in_int_form() -> None:
