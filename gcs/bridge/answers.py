@@ -92,7 +92,8 @@ def item_acknowledgement(result: int, to: Address) -> MissionAck:
 def texts(level: Level, text: str, text_id: int) -> list[Statustext]:
     """STATUSTEXT, in pieces where it is long; `text_id` 1 to 65535 joins them.
 
-    Letters outside ASCII are replaced: a piece is cut at a byte.
+    Letters outside ASCII are replaced: a piece is cut at a byte.  Pieces that would all be full are
+    followed by one that holds a blank.
     """
     plain = text.encode("ascii", "replace").decode("ascii")
     severity = int(SEVERITIES[level])
@@ -100,7 +101,11 @@ def texts(level: Level, text: str, text_id: int) -> list[Statustext]:
         return [Statustext(severity=severity, text=plain)]
     pieces = [plain[at : at + TEXT_LETTERS] for at in range(0, len(plain), TEXT_LETTERS)]
     if len(pieces[-1]) == TEXT_LETTERS:
-        pieces.append("")  # a full piece says that another one follows
+        # "Any null character in the text field is taken to mean this was the last chunk"
+        # (common.xml, STATUSTEXT.chunk_seq): a full piece has none, so another one must follow it.
+        # ArduPilot sends an empty one, which QGroundControl shows as a missing one, " ... "
+        # (StatusTextHandler.cc); a blank ends the text as well and is not seen.
+        pieces.append(" ")
     return [
         Statustext(severity=severity, text=piece, id=text_id, chunk_seq=number)
         for number, piece in enumerate(pieces)

@@ -20,8 +20,8 @@ from gcs.gate.effects import Level
 from gcs.operator import event_text
 
 DECISIONS = 8
-OTHER_LINES = 12
-"""Lines of the page that are no decisions and no clients."""
+OTHER_LINES = 10
+"""Lines of the page that are no vehicles, no decisions and no clients."""
 OUTCOME_STYLES = {"refused": "yellow", "accepted": "green"}
 WIDE = 110
 """Letters that a row of every column of a vehicle takes, about."""
@@ -78,19 +78,16 @@ class BridgePage:
     def page(self, height: int, width: int) -> RenderableType:
         """The whole of it, in at most so many lines."""
         seen = self._seen
-        wrong = bridge_text.conditions_line(seen)
         clients = bridge_text.client_rows(self._status)
-        vehicles = bridge_text.vehicle_rows(self._status, narrow=width < WIDE)
-        room = height - OTHER_LINES - min(DECISIONS, len(self._decisions)) - len(vehicles)
+        vehicles = self._vehicles(narrow=width < WIDE)
+        lines = sum(each.row_count if isinstance(each, Table) else 1 for each in vehicles)
+        room = height - OTHER_LINES - min(DECISIONS, len(self._decisions)) - lines
         room = max(3, room)
         hidden = len(clients) - 1 - room
         parts: list[RenderableType] = [
-            Text(bridge_text.vehicle_line(seen), style="bold"),
+            *vehicles,
             Text(f"in control: {bridge_text.control_line(seen)}"),
         ]
-        if wrong:
-            parts.append(Text(f"wrong: {wrong}", style="yellow"))
-        parts += [_table(vehicles, whole=True)] if vehicles else []
         parts += [_table(bridge_text.link_rows(self._status)), _table(clients[: room + 1])]
         if len(clients) == 1:
             parts += [Text(f"nobody yet; {where}", style="dim") for where in self._where]
@@ -99,6 +96,18 @@ class BridgePage:
         parts += [self._decision(each) for each in self._decisions]
         parts.append(Text(self._footer(), style="dim"))
         return Group(*parts)
+
+    def _vehicles(self, *, narrow: bool) -> list[Table | Text]:
+        """Each vehicle once: one alone in a line, several in rows, with their notes below where
+        they have no room there."""
+        rows = bridge_text.vehicle_rows(self._status, narrow=narrow)
+        if rows:
+            notes = bridge_text.vehicle_notes(self._status) if narrow else []
+            below = [Text(note, no_wrap=True, overflow="ellipsis") for note in notes]
+            return [_table(rows, whole=True), *below]
+        wrong = bridge_text.conditions_line(self._seen)
+        warned = [Text(f"wrong: {wrong}", style="yellow")] if wrong else []
+        return [Text(bridge_text.vehicle_line(self._seen), style="bold"), *warned]
 
     def _decision(self, decision: ipc.BridgeDecision) -> Text:
         several = self._status is not None and len(self._status.vehicles) > 1

@@ -7,6 +7,7 @@ import time
 
 from gcs import ipc
 from gcs.enu_text import fixed
+from gcs.gate.states import State
 from gcs.operator import event_text
 
 Row = tuple[str, ...]
@@ -23,11 +24,11 @@ LONG_SILENCE_S = 3.0
 
 
 def vehicle_line(seen: ipc.Snapshot | None) -> str:
-    """`1/1 px4 quadrotor, OFFBOARD, armed, HOVERING (OURS), severity NOMINAL, ...`."""
+    """`1/1 px4 quadrotor, HOVERING, control OURS, severity NOMINAL, ...`."""
     if seen is None or not seen.vehicle:
         others = f"; heard: {', '.join(seen.vehicles)}" if seen and seen.vehicles else ""
         return f"no vehicle heard yet{others}"
-    return f"{seen.vehicle}, {event_text.state_line(seen, 1).removeprefix('state: ')}"
+    return f"{seen.vehicle}, {event_text.vehicle_words(seen)}"
 
 
 def conditions_line(seen: ipc.Snapshot | None) -> str:
@@ -61,33 +62,53 @@ def link_rows(status: ipc.BridgeStatus | None) -> list[Row]:
 
 def vehicle_rows(status: ipc.BridgeStatus | None, *, narrow: bool = False) -> list[Row]:
     """One a vehicle where there are several, the head first; else empty.  Places are metres of each
-    vehicle's own local origin."""
+    vehicle's own local origin.  `narrow`: without notes, which are `vehicle_notes`."""
     vehicles = status.vehicles if status else []
     if len(vehicles) < 2:
         return []
     shown = [not (narrow and name in NARROW) for name in VEHICLES_HEAD]
     return [
         tuple(word for word, wanted in zip(row, shown, strict=True) if wanted)
-        for row in (VEHICLES_HEAD, *map(_vehicle_row, vehicles))
+        for row in (VEHICLES_HEAD, *(_vehicle_row(each, noted=not narrow) for each in vehicles))
     ]
 
 
-def _vehicle_row(each: ipc.BridgeVehicle) -> Row:
+def vehicle_notes(status: ipc.BridgeStatus | None) -> list[str]:
+    """What else is to be known of several vehicles: `vehicle 2: armed, too_close`."""
+    vehicles = status.vehicles if status else []
+    if len(vehicles) < 2:
+        return []
+    return [f"vehicle {each.vehicle}: {notes}" for each in vehicles if (notes := _notes(each))]
+
+
+def _notes(each: ipc.BridgeVehicle) -> str:
     notes = ["armed"] if each.armed else []
-    if each.silent_s >= LONG_SILENCE_S:
+    if _is_lost(each):
+        notes.append(event_text.lost_words(each.silent_s))
+    elif each.silent_s >= LONG_SILENCE_S:
         notes.append(f"silent for {each.silent_s:.0f} s")
-    notes += each.conditions
+    return ", ".join([*notes, *each.conditions])
+
+
+def _is_lost(each: ipc.BridgeVehicle) -> bool:
+    """It has a row because it was heard; the gate knows of no vehicle there any more."""
+    return each.state == State.NO_VEHICLE.name
+
+
+def _vehicle_row(each: ipc.BridgeVehicle, *, noted: bool) -> Row:
+    """A lost vehicle stands where it was last; its mode and speed may be others by now."""
+    lost = _is_lost(each)
     return (
         each.name,
         each.state,
         each.control,
         each.severity,
-        each.mode,
+        "-" if lost else each.mode,
         "-" if each.pos_enu is None else " ".join(fixed(x, 1) for x in each.pos_enu),
-        "-" if each.v_enu is None else f"{math.hypot(*each.v_enu):.1f}",
+        "-" if lost or each.v_enu is None else f"{math.hypot(*each.v_enu):.1f}",
         "-" if each.battery_pct is None else f"{each.battery_pct:.0f} %",
         f"{each.lost_pct:.1f} %",
-        ", ".join(notes),
+        _notes(each) if noted else "",
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from gcs import ipc
 from gcs.enu_text import signed_enu
 from gcs.gate.refusal import Code
+from gcs.gate.states import State
 from gcs.operator import request_words
 from gcs.operator.control_text import control_words
 from gcs.operator.errors import error_lines
@@ -84,13 +85,25 @@ def state_line(seen: ipc.Snapshot | None, client: int) -> str:
     """
     if seen is None:
         return "state: nothing heard yet"
+    return f"state: {vehicle_words(seen)}, in control: {control_words(seen, client)}"
+
+
+def vehicle_words(seen: ipc.Snapshot) -> str:
+    """The vehicle in a line.  Of a lost one the mode is not told: it may be in another by now."""
     armed = {None: "armed unknown", True: "armed", False: "disarmed"}[seen.armed]
-    battery = "-" if seen.battery_pct is None else f"{seen.battery_pct:.0f}"
-    return (
-        f"state: {seen.state}, control {seen.control}, severity {seen.severity}, "
-        f"at {signed_enu(seen.pos_enu)} m, mode {seen.mode or '-'}, {armed}, battery {battery} %, "
-        f"in control: {control_words(seen, client)}"
-    )
+    battery = "-" if seen.battery_pct is None else f"{seen.battery_pct:.0f} %"
+    told = f"{seen.state}, control {seen.control}, severity {seen.severity}"
+    place = f"at {signed_enu(seen.pos_enu)} m"
+    if seen.vehicle and seen.state == State.NO_VEHICLE.name:
+        return (
+            f"{told}, {lost_words(seen.heartbeat_age_s)}, last {place}, {armed}, battery {battery}"
+        )
+    return f"{told}, {place}, mode {seen.mode or '-'}, {armed}, battery {battery}"
+
+
+def lost_words(silent_s: float | None) -> str:
+    """Of a vehicle that was heard and is not any more: `lost for 12 s`."""
+    return "lost" if silent_s is None else f"lost for {silent_s:.0f} s"
 
 
 def operation_line(operation: ipc.Operation, now_ns: int) -> str:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
+from gcs.bridge.dialogue import From
 from gcs.plan.item_messages import item_of, item_of_degrees
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address
@@ -40,9 +41,9 @@ class Collecting:
     """`start`, then `item`, `unsupported`, `again` and `wake` until it is `whole`, `given_up`, or
     `bad_item` names one that cannot be taken."""
 
-    def __init__(self, opened: MissionCount, client: Address, timing: Timing) -> None:
-        self._kind = MissionType(opened.mission_type)
-        self._client = client
+    def __init__(self, opened: MissionCount, opened_by: From, timing: Timing) -> None:
+        self.kind = MissionType(opened.mission_type)
+        self.opened_by = opened_by
         self._timing = timing
         self._silence_ns = SILENCE_NS * timing.item_wait_ns // Timing().item_wait_ns
         self._round_trip = RoundTrip(timing)
@@ -124,7 +125,7 @@ class Collecting:
         wait_ns = self._round_trip.wait_ns << max(0, self._repeats - QUICK_REPEATS)
         self._asked_ns = now_ns
         self.deadline_ns = now_ns + min(wait_ns, 2 * self._timing.item_wait_ns)
-        return [question(len(self.items), self._client, self._kind, self._as_int)]
+        return [question(len(self.items), self.opened_by.source, self.kind, self._as_int)]
 
 
 def question(seq: int, client: Address, kind: MissionType, as_int: bool) -> Question:

@@ -1,43 +1,30 @@
 """The mission protocol towards one MAVLink client, as if the station were the vehicle.
 
-    COUNT ──▶ collecting ──all items──▶ Upload ──▶ decided: refused ──▶ MISSION_ACK, texts
-                 │                         └──▶ accepted, on its way to the vehicle;
-                 │ silence, a bad item          `following` keeps the client waiting
-                 ▼                              └──▶ ended ──▶ MISSION_ACK, once
-              MISSION_ACK
+    COUNT ──▶ collecting ──all items──▶ Submission ──▶ Upload, to the station (`submissions`)
+                 │
+                 │ silence, a bad item
+                 ▼
+              MISSION_ACK, repeated where it gets lost (`last_ack`)
 
 https://mavlink.io/en/services/mission.html.  Nothing of a plan reaches the vehicle before all of
-it is here.  Downloads go to the vehicle as they are.  Answers are in the name of the autopilot, as
-PX4's are to a client that addresses it as 0 or as MAV_COMP_ID_MISSIONPLANNER.
+it is here.  Downloads go to the vehicle as they are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Final
 
 from gcs import ipc
-from gcs.bridge.answers import texts
 from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.dialogue import From
-from gcs.bridge.effects import Answers
-from gcs.bridge.plans.collecting import Collecting, ItemMessage, acknowledgement, question
-from gcs.bridge.plans.effects import (
-    Clear,
-    Pass,
-    PlanEffect,
-    Refused,
-    SetCurrent,
-    Upload,
-    Withdraw,
-)
+from gcs.bridge.plans.collecting import Collecting, ItemMessage
+from gcs.bridge.plans.effects import Pass, PlanEffect, SetCurrent
 from gcs.bridge.plans.following import Following
-from gcs.bridge.plans.results import result_of
-from gcs.bridge.recent_texts import RecentTexts
-from gcs.gate.effects import Level
-from gcs.gate.refusal import Code, Refusal
-from gcs.protocol.effects import Address
+from gcs.bridge.plans.last_ack import LastAck
+from gcs.bridge.plans.replies import MISSION_PLANNER, Replies, replies, reply
+from gcs.bridge.plans.submissions import Submission, Submissions
+from gcs.gate.refusal import Code
 from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.wire.ids import Component, MissionResult, MissionType
 from gcs.wire.messages import (
@@ -55,8 +42,6 @@ from gcs.wire.messages import (
     MissionWritePartialList,
 )
 
-MISSION_PLANNER: Final = 190
-"""MAV_COMP_ID_MISSIONPLANNER: PX4 takes plans that are addressed to it (`mavlink_mission.cpp`)."""
 MOST_ITEMS: Final[Mapping[MissionType, int]] = {
     MissionType.MISSION: 2_000,
     MissionType.FENCE: 500,
@@ -69,15 +54,6 @@ NAMES: Final = {
     MissionType.FENCE: "fence",
     MissionType.RALLY: "rally points",
 }
-ACK_REPEATED_NS: Final = 15_000_000_000
-"""How long a client that sends its last item again is told the result again."""
-PROBE_NS: Final = 400_000_000
-PROBES: Final = 4
-"""On a link that loses frames the last item is asked for once more after the ACK: a client that
-answers has not heard it."""
-MOST_FINDINGS: Final = 10
-"""Findings of one plan that a client is sent as texts; the log has all."""
-
 PLAN_MESSAGES: Final[tuple[type[Message], ...]] = (
     MissionCount,
     MissionItem,
@@ -92,37 +68,6 @@ PLAN_MESSAGES: Final[tuple[type[Message], ...]] = (
     MissionRequestInt,
 )
 """What `PlanServer.handle` takes: all that a client says about plans."""
-
-
-@dataclass(slots=True)
-class _Asked:
-    """What the station was asked for and has not answered yet: an upload, or (no plan) a clear."""
-
-    asked_by: From
-    kind: MissionType
-    plan: ClientPlan | None
-    opened: MissionCount | None
-    following: Following | None
-    as_int: bool
-    lossy: bool
-    result: MissionResult | None = None
-    """Known, but the client is not ready for it yet."""
-    withdrawn: bool = False
-    told: int = 0
-
-
-@dataclass(slots=True)
-class _Told:
-    """The last answer, in case it gets lost."""
-
-    asked_by: From
-    ack: MissionAck
-    kind: MissionType
-    count: int
-    as_int: bool
-    until_ns: int
-    probes: int
-    probe_ns: int | None
 
 
 class PlanServer:
@@ -141,33 +86,37 @@ class PlanServer:
     ) -> None:
         """`timing` is for this client's link; `most_items`: longer plans are answered NO_SPACE."""
         self._timing = timing
-        self._scale = timing.item_wait_ns / SPEC_TIMING.item_wait_ns
         self._most_items = most_items
         self._collecting: Collecting | None = None
-        self._collecting_by: From | None = None
-        self._asked: _Asked | None = None
-        self._next: _Asked | None = None
-        """Collected while the one before is still being stopped."""
-        self._told: _Told | None = None
-        self._text_id = 0
-        self._texts = RecentTexts()
+        self._replies = Replies()
+        self._last_ack = LastAck(timing)
+        self._submissions = Submissions(self._replies, self._last_ack)
 
     @property
     def deadline_ns(self) -> int | None:
         """When `wake` is due; None: nothing is waited for."""
-        times = []
-        if self._collecting is not None:
-            times.append(self._collecting.deadline_ns)
-        if self._asked is not None and self._asked.following is not None:
-            times.append(self._asked.following.deadline_ns)
-        if self._told is not None:
-            times.append(self._told.probe_ns)
+        collecting_ns = self._collecting.deadline_ns if self._collecting is not None else None
+        times = (collecting_ns, self._submissions.deadline_ns, self._last_ack.deadline_ns)
         return min((time for time in times if time is not None), default=None)
 
     @property
     def busy(self) -> bool:
         """An upload of this client is under way, from its first message to its answer."""
-        return self._collecting is not None or self._asked is not None
+        return self._collecting is not None or self._submissions.current is not None
+
+    # ----------------------------------------------------------------------- the station
+
+    def finding(self, text: str, now_ns: int) -> list[PlanEffect]:
+        """Something that is wrong with the plan, for the client to read."""
+        return self._submissions.finding(text, now_ns)
+
+    def decided(self, event: ipc.VerdictEvent, now_ns: int) -> list[PlanEffect]:
+        """The verdict on the `Upload` or `Clear` that was asked for last."""
+        return self._submissions.decided(event, now_ns)
+
+    def ended(self, event: ipc.EndingEvent, now_ns: int) -> list[PlanEffect]:
+        """How it ended after it was accepted."""
+        return self._submissions.ended(event, now_ns)
 
     # ----------------------------------------------------------------------- the client
 
@@ -184,7 +133,7 @@ class PlanServer:
                 return self._clear(message, asked_by, now_ns)
             case MissionWritePartialList():
                 text = "a part of a plan cannot be verified: send the whole plan"
-                return self._refuse(
+                return self._replies.refuse(
                     asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text, now_ns
                 )
             case MissionSetCurrent(seq=seq):
@@ -195,31 +144,30 @@ class PlanServer:
                 | MissionRequest()
                 | MissionRequestInt()
             ):
-                self._told = None  # it has gone on to something else
+                self._last_ack.forget()  # it has gone on to something else
                 return [Pass()]
             case _:
                 return []
 
     def _count(self, message: MissionCount, asked_by: From, now_ns: int) -> list[PlanEffect]:
         """An upload begins, or its first message comes again."""
-        self._told = None
+        self._last_ack.forget()
         refused = self._cannot_take(message, asked_by, now_ns)
         if refused is not None:
             return refused
         kind = MissionType(message.mission_type)
         if message.count > self._most_items[kind]:
             text = f"{NAMES[kind]} of {message.count} items: at most {self._most_items[kind]}"
-            return self._refuse(
+            return self._replies.refuse(
                 asked_by, message, MissionResult.NO_SPACE, Code.BAD_MISSION, text, now_ns
             )
         if message.count == 0:
             return self._begin_clear(kind, asked_by)
         collecting = self._collecting
         if collecting is not None and collecting.opened == message and not collecting.items:
-            return self._to(asked_by, collecting.again(now_ns))
-        self._collecting_by = asked_by
-        self._collecting = Collecting(message, asked_by.source, self._timing)
-        return self._to(asked_by, self._collecting.start(now_ns))
+            return replies(asked_by, collecting.again(now_ns))
+        self._collecting = Collecting(message, asked_by, self._timing)
+        return replies(asked_by, self._collecting.start(now_ns))
 
     def _cannot_take(
         self, message: MissionCount | MissionClearAll, asked_by: From, now_ns: int
@@ -227,7 +175,7 @@ class PlanServer:
         """Why nothing like this can be taken now; None where it can."""
         if asked_by.addressed.compid not in (Component.AUTOPILOT1, MISSION_PLANNER):
             text = f"component {asked_by.addressed.compid} takes no plans through this station"
-            return self._refuse(
+            return self._replies.refuse(
                 asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text, now_ns
             )
         known = message.mission_type in NAMES
@@ -235,300 +183,117 @@ class PlanServer:
             isinstance(message, MissionClearAll) and message.mission_type == MissionType.ALL
         ):
             text = f"mission type {message.mission_type} is not known here"
-            return self._refuse(
+            return self._replies.refuse(
                 asked_by, message, MissionResult.UNSUPPORTED, Code.UNSUPPORTED, text, now_ns
             )
-        other = self._collecting_by if self._collecting else None
-        other = other or (self._asked.asked_by if self._asked else None)
+        current = self._submissions.current
+        other = current.asked_by if current is not None else None
+        other = self._collecting.opened_by if self._collecting is not None else other
         if other is not None and other.source != asked_by.source:
             who = f"{other.source.sysid}/{other.source.compid}"
             text = f"a plan of {who}, on the same link, is still under way"
-            return self._refuse(asked_by, message, MissionResult.DENIED, Code.BUSY, text, now_ns)
+            return self._replies.refuse(
+                asked_by, message, MissionResult.DENIED, Code.BUSY, text, now_ns
+            )
         return None
 
     def _item(self, message: ItemMessage, asked_by: From, now_ns: int) -> list[PlanEffect]:
-        collecting, asked = self._collecting, self._asked
-        if collecting is not None and self._collecting_by is not None:
-            opened_by = self._collecting_by
+        collecting = self._collecting
+        if collecting is not None:
+            opened_by = collecting.opened_by
             ours = asked_by.source == opened_by.source
-            if ours and message.mission_type == collecting.opened.mission_type:
+            if ours and message.mission_type == collecting.kind:
                 questions = collecting.item(message, now_ns)
-                return self._to(opened_by, questions) + self._collected(now_ns)
+                return replies(opened_by, questions) + self._collected(collecting, now_ns)
             return []
-        if asked is not None and asked.following is not None:
-            if asked_by.source == asked.asked_by.source and message.mission_type == asked.kind:
-                questions = asked.following.item(message.seq, now_ns)
-                return self._to(asked.asked_by, questions) + self._answer_if_ready(now_ns)
-            return []
-        return self._late_item(message, asked_by, now_ns)
+        return self._submissions.item(message, asked_by, now_ns)
 
-    def _collected(self, now_ns: int) -> list[PlanEffect]:
+    def _collected(self, collecting: Collecting, now_ns: int) -> list[PlanEffect]:
         """Where the last item is here, ask the station; where one is bad, refuse."""
-        collecting, opened_by = self._collecting, self._collecting_by
-        assert collecting is not None
-        assert opened_by is not None
-        kind = MissionType(collecting.opened.mission_type)
+        opened, opened_by = collecting.opened, collecting.opened_by
         if collecting.bad_item is not None:
             self._collecting = None
             text = f"item {collecting.bad_item}: its place is no latitude and longitude"
-            return self._refuse(
-                opened_by, collecting.opened, MissionResult.INVALID, Code.BAD_MISSION, text, now_ns
+            return self._replies.refuse(
+                opened_by, opened, MissionResult.INVALID, Code.BAD_MISSION, text, now_ns
             )
         if not collecting.whole:
             return []
         self._collecting = None
-        source = f"the {NAMES[kind]} of {opened_by.source.sysid}/{opened_by.source.compid}"
-        plan = ClientPlan(kind, tuple(collecting.items), source)
-        client, as_int = opened_by.source, collecting.asks_int
-        count = collecting.opened.count
-        asked = _Asked(
+        kind, client, as_int = collecting.kind, opened_by.source, collecting.asks_int
+        source = f"the {NAMES[kind]} of {client.sysid}/{client.compid}"
+        following = Following(
+            opened.count, client, kind, as_int, collecting.answer_ns, self._timing, now_ns
+        )
+        submission = Submission(
             opened_by,
             kind,
-            plan,
-            collecting.opened,
-            Following(count, client, kind, as_int, collecting.answer_ns, self._timing, now_ns),
+            ClientPlan(kind, tuple(collecting.items), source),
+            opened,
+            following,
             as_int,
-            collecting.repeated > 0,
+            lossy=collecting.repeated > 0,
         )
-        before = self._asked
-        if before is None:
-            self._asked = asked
-            return [Upload(plan)]
-        if before.plan == plan and not before.withdrawn:
-            # The same plan once more: it is on its way already.
-            before.following = asked.following
-            return []
-        self._next = asked
-        if before.withdrawn:
-            return []
-        before.withdrawn, before.following = True, None
-        return [Withdraw("the client has sent another plan")]
+        return self._submissions.submit(submission)
 
     def _acknowledged(self, message: MissionAck, asked_by: From, now_ns: int) -> list[PlanEffect]:
         """The client ends a download (that is the vehicle's to hear), or its own upload."""
         if message.type == MissionResult.ACCEPTED:
             return [Pass()]
-        collecting, asked = self._collecting, self._asked
-        if collecting is not None and self._collecting_by is not None:
-            opened_by = self._collecting_by
+        collecting, current = self._collecting, self._submissions.current
+        if collecting is not None:
+            opened_by = collecting.opened_by
             if opened_by.source != asked_by.source:
                 return [Pass()]
             if message.type == MissionResult.UNSUPPORTED:
                 if collecting.items:
                     return []
-                return self._to(opened_by, collecting.unsupported(now_ns))
+                return replies(opened_by, collecting.unsupported(now_ns))
             self._collecting = None
             return []
-        if asked is not None and asked.asked_by.source == asked_by.source:
-            if message.type == MissionResult.UNSUPPORTED or asked.withdrawn:
-                return []
-            asked.withdrawn, asked.following = True, None
-            return [Withdraw("the client has cancelled it")]
-        return [Pass()]
-
-    # ---------------------------------------------------------------------------- clear
+        if current is None or current.asked_by.source != asked_by.source:
+            return [Pass()]
+        return [] if message.type == MissionResult.UNSUPPORTED else self._submissions.cancel()
 
     def _clear(self, message: MissionClearAll, asked_by: From, now_ns: int) -> list[PlanEffect]:
         refused = self._cannot_take(message, asked_by, now_ns)
         if refused is not None:
             return refused
-        told = self._told
-        repeated = told is not None and told.count == 0 and told.kind == message.mission_type
-        if told is not None and repeated and now_ns < told.until_ns:
-            return [self._answer(asked_by, told.ack)]
-        self._told = None
+        again = self._last_ack.of_clear(message.mission_type, now_ns)
+        if again is not None:
+            return [reply(asked_by, again)]
+        self._last_ack.forget()
         return self._begin_clear(MissionType(message.mission_type), asked_by)
 
     def _begin_clear(self, kind: MissionType, asked_by: From) -> list[PlanEffect]:
         """A plan of no items, too, is none."""
-        asked = self._asked
-        if asked is not None and asked.plan is None and asked.kind == kind:
-            return []  # it is being done
+        if self._submissions.clears(kind):
+            return []
         self._collecting = None
-        clear = _Asked(asked_by, kind, None, None, None, True, False)
-        if asked is None:
-            self._asked = clear
-            return [Clear(kind)]
-        self._next = clear
-        if asked.withdrawn:
-            return []
-        asked.withdrawn, asked.following = True, None
-        return [Withdraw("the client wants it cleared")]
-
-    # ----------------------------------------------------------------------- the station
-
-    def finding(self, text: str, now_ns: int) -> list[PlanEffect]:
-        """Something that is wrong with the plan, for the client to read."""
-        asked = self._asked
-        if asked is None or asked.withdrawn or asked.told >= MOST_FINDINGS:
-            return []
-        asked.told += 1
-        return self._text(asked.asked_by, Level.WARNING, text, now_ns)
-
-    def decided(self, event: ipc.VerdictEvent, now_ns: int) -> list[PlanEffect]:
-        """The verdict on the `Upload` or `Clear` that was asked for last."""
-        if event.outcome == "accepted":
-            return []
-        return self._over(event.code, event.sentence, now_ns)
-
-    def ended(self, event: ipc.EndingEvent, now_ns: int) -> list[PlanEffect]:
-        """How it ended after it was accepted."""
-        if event.ended == "complete":
-            return self._complete(now_ns)
-        return self._over(event.code, event.sentence, now_ns)
-
-    def _complete(self, now_ns: int) -> list[PlanEffect]:
-        asked = self._asked
-        if asked is None:
-            return []
-        if asked.withdrawn:
-            return self._go_on(now_ns)
-        asked.result = MissionResult.ACCEPTED
-        if asked.following is None:
-            return self._answer_if_ready(now_ns)
-        questions = asked.following.finish(now_ns)
-        return self._to(asked.asked_by, questions) + self._answer_if_ready(now_ns)
-
-    def _over(self, code: str, sentence: str, now_ns: int) -> list[PlanEffect]:
-        """Refused, or begun and failed."""
-        asked = self._asked
-        if asked is None:
-            return []
-        if asked.withdrawn:
-            return self._go_on(now_ns)
-        asked.result = result_of(code, sentence)
-        said = self._text(asked.asked_by, Level.WARNING, f"{code}: {sentence}", now_ns)
-        return [*said, *self._tell(asked, now_ns)]
-
-    def _answer_if_ready(self, now_ns: int) -> list[PlanEffect]:
-        asked = self._asked
-        if asked is None or asked.result is None:
-            return []
-        if asked.following is not None and not asked.following.ready:
-            return []
-        return self._tell(asked, now_ns)
-
-    def _tell(self, asked: _Asked, now_ns: int) -> list[PlanEffect]:
-        """The MISSION_ACK; it may be told once more, if it gets lost."""
-        assert asked.result is not None
-        opaque_id = asked.opened.opaque_id if asked.opened else 0
-        if asked.result is not MissionResult.ACCEPTED:
-            opaque_id = 0
-        ack = acknowledgement(asked.asked_by.source, asked.result, asked.kind, opaque_id)
-        count = asked.opened.count if asked.opened else 0
-        probe_ns = self._scaled(PROBE_NS) + now_ns if asked.lossy and count else None
-        self._told = _Told(
-            asked.asked_by,
-            ack,
-            asked.kind,
-            count,
-            asked.as_int,
-            now_ns + self._scaled(ACK_REPEATED_NS),
-            PROBES,
-            probe_ns,
-        )
-        return [self._answer(asked.asked_by, ack), *self._go_on(now_ns)]
-
-    def _go_on(self, now_ns: int) -> list[PlanEffect]:
-        """With what the client has asked for since."""
-        self._asked, self._next = self._next, None
-        if self._asked is None:
-            return []
-        self._told = None
-        plan = self._asked.plan
-        return [Clear(self._asked.kind)] if plan is None else [Upload(plan)]
+        return self._submissions.submit(Submission(asked_by, kind))
 
     # ----------------------------------------------------------------------------- time
 
     def wake(self, now_ns: int) -> list[PlanEffect]:
         """`deadline_ns` has passed."""
         effects: list[PlanEffect] = []
-        collecting, opened_by = self._collecting, self._collecting_by
-        if collecting is not None and opened_by is not None:
-            effects += self._to(opened_by, collecting.wake(now_ns))
+        collecting = self._collecting
+        if collecting is not None:
+            effects += replies(collecting.opened_by, collecting.wake(now_ns))
             if collecting.given_up:
-                effects += self._silent(collecting, opened_by, now_ns)
-        asked = self._asked
-        if asked is not None and asked.following is not None:
-            effects += self._to(asked.asked_by, asked.following.wake(now_ns))
-            effects += self._answer_if_ready(now_ns)
-        return effects + self._probe(now_ns)
+                effects += self._silent(collecting, now_ns)
+        return effects + self._submissions.wake(now_ns) + self._last_ack.wake(now_ns)
 
-    def _silent(self, collecting: Collecting, opened_by: From, now_ns: int) -> list[PlanEffect]:
+    def _silent(self, collecting: Collecting, now_ns: int) -> list[PlanEffect]:
         self._collecting = None
-        if self._asked is not None:
+        if self._submissions.current is not None:
             return []  # it was the first message of the plan that is on its way, once more
-        kind = MissionType(collecting.opened.mission_type)
         had, count = len(collecting.items), collecting.opened.count
-        text = f"{NAMES[kind]}: item {had} of {count} did not come"
-        return self._refuse(
-            opened_by,
+        return self._replies.refuse(
+            collecting.opened_by,
             collecting.opened,
             MissionResult.OPERATION_CANCELLED,
             Code.NO_ANSWER,
-            text,
+            f"{NAMES[collecting.kind]}: item {had} of {count} did not come",
             now_ns,
         )
-
-    def _late_item(self, message: ItemMessage, asked_by: From, now_ns: int) -> list[PlanEffect]:
-        """The last item once more, after the answer: the answer has got lost."""
-        told = self._told
-        if told is None or told.count == 0 or now_ns >= told.until_ns:
-            return []
-        same = (asked_by.source, message.mission_type) == (told.asked_by.source, told.kind)
-        if not same or message.seq + 1 != told.count:
-            return []
-        if told.probe_ns is not None:
-            told.probes, told.probe_ns = PROBES, now_ns + self._scaled(PROBE_NS)
-        return [self._answer(told.asked_by, told.ack)]
-
-    def _probe(self, now_ns: int) -> list[PlanEffect]:
-        told = self._told
-        if told is None or told.probe_ns is None or now_ns < told.probe_ns:
-            return []
-        if told.probes == 0:
-            told.probe_ns = None
-            return []
-        told.probes -= 1
-        told.probe_ns = now_ns + self._scaled(PROBE_NS)
-        client = told.asked_by.source
-        return self._to(told.asked_by, [question(told.count - 1, client, told.kind, told.as_int)])
-
-    def _scaled(self, span_ns: int) -> int:
-        return round(span_ns * self._scale)
-
-    # -------------------------------------------------------------------------- answers
-
-    def _refuse(
-        self,
-        asked_by: From,
-        message: MissionCount | MissionClearAll | MissionWritePartialList,
-        result: MissionResult,
-        code: Code,
-        text: str,
-        now_ns: int,
-    ) -> list[PlanEffect]:
-        """What is refused without the station's verdict."""
-        ack = acknowledgement(asked_by.source, result, message.mission_type)
-        name = type(message).MSG_ID.name
-        return [
-            Refused(name, Refusal(code, text)),
-            *self._text(asked_by, Level.WARNING, text, now_ns),
-            self._answer(asked_by, ack),
-        ]
-
-    def _text(self, to: From, level: Level, text: str, now_ns: int) -> list[PlanEffect]:
-        """The same words not more often than every few seconds."""
-        if not self._texts.is_news(text, now_ns):
-            return []
-        self._text_id = self._text_id % 0xFFFF + 1
-        return [self._answer(to, message) for message in texts(level, text, self._text_id)]
-
-    def _to(self, to: From, messages: Sequence[Message]) -> list[PlanEffect]:
-        return [self._answer(to, message) for message in messages]
-
-    @staticmethod
-    def _answer(to: From, message: Message) -> Answers:
-        compid = to.addressed.compid
-        name = Component.AUTOPILOT1 if compid == MISSION_PLANNER else compid
-        return Answers(to.link, Address(to.addressed.sysid, name), message)

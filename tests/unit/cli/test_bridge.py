@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 
+import msgspec
 import pytest
 from rich.console import Console
 
@@ -325,6 +326,50 @@ def test_the_page_shows_several_vehicles_in_rows() -> None:
         *("1.0 -20.0 10.1", "5.0", "71 %"),
     )
     assert bridge_text.vehicle_rows(ipc.BridgeStatus(0, [LINK], [ONE], FLEET[:1])) == []
+
+
+def test_one_vehicle_is_shown_once() -> None:
+    text = drawn(snapshot(), ipc.BridgeStatus(0, [LINK], [ONE], FLEET[:1]))
+    assert text.count("1/1 px4 quadrotor") == 1
+    assert text.count("in control") == 1
+
+
+def test_of_several_vehicles_each_is_shown_once() -> None:
+    for width in (80, 150):
+        text = drawn(snapshot(), ipc.BridgeStatus(0, [LINK], [ONE], FLEET), width=width)
+        assert [text.count(each.name) for each in FLEET] == [1, 1], text
+
+
+def test_on_80_columns_the_notes_of_several_vehicles_stand_below_them() -> None:
+    lines = drawn(snapshot(), ipc.BridgeStatus(0, [LINK], [ONE], FLEET), width=80).splitlines()
+    assert lines[3:5] == ["vehicle 1: armed", "vehicle 2: armed, silent for 4 s, too_close"]
+
+
+LOST = msgspec.structs.replace(FLEET[1], state="NO_VEHICLE", silent_s=72.4, conditions=[])
+
+
+def test_a_lost_vehicle_of_several_is_lost_for_so_long_and_in_no_mode() -> None:
+    status = ipc.BridgeStatus(0, [LINK], [ONE], [FLEET[0], LOST])
+    row = dict(zip(bridge_text.VEHICLES_HEAD, bridge_text.vehicle_rows(status)[2], strict=True))
+    assert (row["mode"], row["m/s"], row["east north up"]) == ("-", "-", "1.0 -20.0 10.1")
+    assert row[""] == "armed, lost for 72 s"
+    text = drawn(snapshot(), status)
+    assert "GUIDED" not in text
+    assert "lost for 72 s" in text
+    assert "vehicle 2: armed, lost for 72 s" in drawn(snapshot(), status, width=80)
+
+
+def test_one_lost_vehicle_is_lost_for_so_long_and_in_no_mode() -> None:
+    text = drawn(msgspec.structs.replace(snapshot(), state="NO_VEHICLE", heartbeat_age_s=72.4))
+    assert "1/1 px4 quadrotor, NO_VEHICLE, control OURS, severity CAUTION, lost for 72 s" in text
+    assert "last at E - N - U - m, armed" in text
+    assert "OFFBOARD" not in text
+
+
+def test_a_battery_that_is_not_known_has_no_per_cent() -> None:
+    assert bridge_text.vehicle_line(snapshot()).endswith("armed, battery -")
+    known = msgspec.structs.replace(snapshot(), battery_pct=71.4)
+    assert bridge_text.vehicle_line(known).endswith("armed, battery 71 %")
 
 
 def test_a_link_on_which_nothing_is_heard_says_so() -> None:
