@@ -378,10 +378,11 @@ class BridgeClient(msgspec.Struct, frozen=True):
     rx_hz: float = 0.0  # frames a second that it sends
     tx_hz: float = 0.0  # that it is sent
     refused: int = 0  # its frames that did not go to the vehicle, since it came
-    dropped: int = 0  # its datagrams over the rate limit, which nobody looked at
+    dropped: int = 0  # its datagrams over the rate limit, which nobody looked at; it is told
     signed: str = ""  # empty: not signed; else what is known of its signatures
     in_control: bool = False
     silent_s: float = 0.0  # since its last frame
+    verified: bool = True  # false: a port with a key took it in, and it has not signed anything yet
 
 
 class BridgeVehicle(msgspec.Struct, frozen=True):

@@ -31,6 +31,7 @@ from gcs.bridge.judge.plans import of_plan
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
+from gcs.bridge.unverified import Unverified
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Refusal
@@ -68,7 +69,10 @@ class Bridge:
         self._silent_ns = silent_ns
         self._timing = timing
         self._deadman_ns = deadman_ns
+        self._rate_hz = rules.client_rate_hz
         self._routes = Routes()
+        self.unverified = Unverified()
+        """Of the links that are there, those of peers who have not shown that they have the key."""
         self._by_link: dict[int, Client] = {}
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
@@ -79,11 +83,19 @@ class Bridge:
 
     # --------------------------------------------------------------------- come and go
 
-    def came(self, link: int, name: str) -> list[BridgeEffect]:
-        """A peer is there; it is a client with its first good frame."""
-        self._routes.open(link)
+    def came(self, link: int, name: str, *, verified: bool = True) -> list[BridgeEffect]:
+        """A peer is there; it is a client with its first good frame.  Not `verified`: it is sent
+        nothing but heartbeats before that."""
         self._by_link[link] = Client(link, name, self._timing, self._deadman_ns)
+        if not verified:
+            return [*self.unverified.come(link, name)]
+        self._routes.open(link)
         return [Notes(Level.INFO, f"{name} has connected, on link {link}")]
+
+    def verify(self, link: int) -> list[BridgeEffect]:
+        """The first frame of a peer that was `unverified` is good."""
+        self._routes.open(link)
+        return [*self.unverified.verify(link, self._by_link[link].name)]
 
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:
         """It has gone, and its link's number is free."""
@@ -93,6 +105,8 @@ class Bridge:
         client = self._by_link.pop(link, None)
         if client is None:
             return []
+        if link in self.unverified:
+            return [*self.unverified.go(link, client.name, reason)]
         note = Notes(Level.INFO, f"{client.name} has gone: {reason}")
         return [*self._lose(client, reason), note]
 
@@ -101,18 +115,24 @@ class Bridge:
         client = self._by_link.get(link)
         if client is None:
             return []
-        client.dropped += dropped
+        client.flooding.count += dropped
         text = f"{client.name} sends too much: {dropped} datagrams dropped"
         return [Notes(Level.WARNING, text)]
 
-    def second(self, now_ns: int) -> list[BridgeEffect]:
-        """Once a second: whoever says nothing any more is lost."""
-        effects: list[BridgeEffect] = []
+    def second(self, vehicles: Sequence[Address], now_ns: int) -> list[BridgeEffect]:
+        """Once a second: whoever says nothing any more is lost, and who sends too much is told, in
+        the name of the first of `vehicles`: QGroundControl shows no text of anybody else (from
+        memory)."""
+        effects: list[BridgeEffect] = [*self.unverified.second()]
+        speaker = vehicles[0] if vehicles else self._own
         for client in self._by_link.values():
             client.received.count(0, now_ns)
             client.sent.count(0, now_ns)
             if client.joined and now_ns - client.heard_ns > self._silent_ns:
                 effects += self._lose(client, f"silent for {self._silent_ns / 1e9:.0f} s")
+            if client.link not in self.unverified:
+                flooded = client.flooding.due_text(self._rate_hz, now_ns)
+                effects += [Answers(client.link, speaker, text) for text in flooded]
         return effects
 
     def _lose(self, client: Client, reason: str) -> list[BridgeEffect]:
@@ -259,6 +279,8 @@ class Bridge:
         """What goes to which client link of frames that came together from the vehicle's side, as
         they are and in their order."""
         shares = self._routes.shares(frames)
+        if self.unverified:
+            shares = [*shares, *self.unverified.shares(frames)]
         for link, raws in shares:
             self._by_link[link].sent.count(len(raws), now_ns)
         return shares
@@ -434,9 +456,10 @@ class Bridge:
                 rx_hz=client.received.hz,
                 tx_hz=client.sent.hz,
                 refused=client.refused,
-                dropped=client.dropped,
+                dropped=client.flooding.count,
                 in_control=client.joined and client.number == self._in_control,
                 silent_s=(now_ns - client.heard_ns) / 1e9 if client.heard_ns else 0.0,
+                verified=client.link not in self.unverified,
             )
             for client in self._by_link.values()
         ]

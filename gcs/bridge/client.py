@@ -9,6 +9,7 @@ from itertools import count
 from gcs import ipc
 from gcs.bridge.dialogue import Dialogue, From
 from gcs.bridge.effects import BridgeEffect, Notes, Says
+from gcs.bridge.flooding import Flooding
 from gcs.bridge.meaning.chosen_before_arming import (
     KEPT_NS,
     MISSION_MODE,
@@ -62,7 +63,7 @@ class Client:
         self.received = Rate()
         self.sent = Rate()
         self.refused = 0
-        self.dropped = 0
+        self.flooding = Flooding()
         self.begin(0)
         self.joined = False
 

@@ -1,4 +1,5 @@
-"""`gcs status`: the latest snapshot as a table, or as JSON; of a bridge its other vehicles, too."""
+"""`gcs status`: the latest snapshot as a table, or as JSON; of a bridge its other vehicles,
+too, and the clients that are not verified."""
 
 from __future__ import annotations
 
@@ -23,10 +24,11 @@ def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> Ex
     """Give the slower values a moment to arrive, then print."""
 
     def whole() -> bool:
-        seen = dialogue.snapshot
+        seen, hello = dialogue.snapshot, dialogue.hello
         if seen is None or seen.battery_pct is None:
             return False
-        return len(seen.vehicles) < 2 or dialogue.bridge is not None
+        others = len(seen.vehicles) > 1 or (hello is not None and bool(hello.client_ports))
+        return not others or dialogue.bridge is not None
 
     dialogue.wait_until(whole, SLOW_VALUES_WAIT_S)
     display.clear()
@@ -66,12 +68,13 @@ def rows(
 ) -> list[tuple[str, str]]:
     """What is shown to the operator `client`, top to bottom; unknown values are a dash.
 
-    `bridge` has the vehicles of a bridge, of which `seen` is the first one.
+    `bridge` has the vehicles of a bridge, of which `seen` is the first one, and its clients.
     """
     armed = {None: "-", True: "armed", False: "disarmed"}[seen.armed]
     conditions = f" ({', '.join(seen.conditions)})" if seen.conditions else ""
     flown = {each.name: each for each in bridge.vehicles} if bridge else {}
     others = [name for name in seen.vehicles if name != seen.vehicle and name not in flown]
+    unverified = [each for each in bridge.clients if not each.verified] if bridge else []
     return [
         ("vehicle", seen.vehicle),
         *([("also heard", ", ".join(others))] if others else []),
@@ -90,7 +93,13 @@ def rows(
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),
         ("log", seen.log_path or "not recorded"),
         *((f"vehicle {x.vehicle}", _other(x)) for x in flown.values() if x.name != seen.vehicle),
+        *([("not verified", "\n".join(map(_unverified, unverified)))] if unverified else []),
     ]
+
+
+def _unverified(each: ipc.BridgeClient) -> str:
+    """A client of a port with a key that has not signed anything yet, and what came of it."""
+    return f"client {each.name}: {each.signed or 'nothing came yet'}"
 
 
 def _other(each: ipc.BridgeVehicle) -> str:

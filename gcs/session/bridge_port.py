@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -48,6 +48,7 @@ from gcs.session.operator_lines import line
 from gcs.session.operators import Operators
 from gcs.session.screen import lost_pct
 from gcs.session.settings import SPEED, TAKEOFF_HEIGHT
+from gcs.session.signatures import Signatures
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.vehicle import Vehicle
@@ -144,29 +145,29 @@ class BridgePort:
         return []
 
     def second(
-        self, now_ns: int, counts: Sequence[Counts], signed: Callable[[int], str]
+        self, now_ns: int, counts: Sequence[Counts], signatures: Signatures
     ) -> list[BridgeEffect | Emit]:
-        """Once a second: who is lost, and how it stands for whoever watches the bridge.
-
-        `signed` says of a link's number what is known of its signatures.
-        """
-        done: list[BridgeEffect | Emit] = [*self.bridge.second(now_ns)]
-        done += self.bridge.control_status(self._vehicles.addresses)
+        """Once a second: who is lost, and how it stands for whoever watches the bridge."""
+        vehicles = self._vehicles.addresses
+        done: list[BridgeEffect | Emit] = [*self.bridge.second(vehicles, now_ns)]
+        done += self.bridge.control_status(vehicles)
         for each in self._vehicles:
             if each.telemetry is not None and each.telemetry.armed:
                 done += self.bridge.armed(Address(each.telemetry.sysid, each.telemetry.compid))
         if self._shown:
             links = self._link_rows(now_ns, counts)
             clients = [
-                msgspec.structs.replace(client, signed=signed(client.link))
+                msgspec.structs.replace(
+                    client, signed=signatures.told(client.link, verified=client.verified)
+                )
                 for client in self.bridge.status(now_ns)
             ]
-            vehicles = [
+            rows = [
                 _vehicle_row(each, each.telemetry, now_ns)
                 for each in self._vehicles
                 if each.telemetry is not None
             ]
-            done.append(Emit(ipc.BridgeStatus(now_ns, links, clients, vehicles)))
+            done.append(Emit(ipc.BridgeStatus(now_ns, links, clients, rows)))
         return done
 
     def _link_rows(self, now_ns: int, counts: Sequence[Counts]) -> list[ipc.BridgeLink]:

@@ -51,6 +51,13 @@ class WriteFile(msgspec.Struct, frozen=True, gc=False):
     data: bytes
 
 
+class ClientVerified(msgspec.Struct, frozen=True, gc=False):
+    """The first frame with a good signature was taken of the MAVLink client on that link: from now
+    on it has one of the places of those who have the key."""
+
+    link: int
+
+
 class Finish(msgspec.Struct, frozen=True, gc=False):
     """Nothing is left to do: close the log, stop our own vehicle, go."""
 
@@ -58,4 +65,6 @@ class Finish(msgspec.Struct, frozen=True, gc=False):
     sentence: str
 
 
-Effect: TypeAlias = Transmit | Record | Emit | ShowTopics | ReadFile | WriteFile | Finish
+Effect: TypeAlias = (
+    Transmit | Record | Emit | ShowTopics | ReadFile | WriteFile | ClientVerified | Finish
+)

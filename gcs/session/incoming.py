@@ -12,7 +12,7 @@ from gcs.gate.condition import Condition
 from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem, FramesItem, GarbageItem
 from gcs.session.bridge_port import BridgePort
-from gcs.session.effects import Effect, Record
+from gcs.session.effects import ClientVerified, Effect, Record
 from gcs.session.gate_port import condition
 from gcs.session.inputs import Datagram
 from gcs.session.interpreted_messages import INTERPRETED, PLACES
@@ -125,12 +125,13 @@ class Incoming:
     def _taken(self, link: int, items: Sequence[Item], now_ns: int) -> list[Frame | GarbageItem]:
         """The frames that are taken, and the rest as the record has it."""
         signed = self._signatures.signed(link)
+        verifying = link in self._bridge.bridge.unverified
         taken: list[Frame | GarbageItem] = []
         for item in items:
             if isinstance(item, Garbage):
                 taken.append(GarbageItem(link, item.raw, item.reason.value))
             elif (signed or item.signature) and (
-                reason := self._signatures.refused(link, item, now_ns)
+                reason := self._signatures.refused(link, item, now_ns, verifying=verifying)
             ):
                 # Not as a frame: nobody shall take it for the sender's, in a viewer neither.
                 taken.append(GarbageItem(link, without_key(item.raw), reason.value))
@@ -258,11 +259,16 @@ class Incoming:
         return bool(work) and self._queue.run(work, now_ns)
 
     def _client_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
-        """A good frame of a MAVLink client: judged first, because the record says how."""
+        """A good frame of a MAVLink client: judged first, because the record says how.  The first
+        one of a client that was not verified has a good signature, as others are not taken."""
         self._links.client_spoke(link, frame.raw)
+        bridge = self._bridge.bridge
+        verified: list[Work] = []
+        if link in bridge.unverified:
+            verified = [ClientVerified(link), *bridge.verify(link)]
         judged = self._bridge.from_client(link, frame, now_ns)
         direction = Direction.REFUSED if judged.refused else Direction.RECEIVED
-        return [Record(FrameItem(link, direction, frame.raw)), *judged.effects]
+        return [Record(FrameItem(link, direction, frame.raw)), *verified, *judged.effects]
 
     def _vehicle_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         sysid, compid = self._own

@@ -74,12 +74,14 @@ class ClientCame:
     """A MAVLink client is there, on a link of its own until it has gone.
 
     The number of the link is free, and from the number of the vehicles' links up.  `name` is where
-    it is ("udp 127.0.0.1:14551"); `stream`: its `Datagram`s are pieces of one byte stream.
+    it is ("udp 127.0.0.1:14551"); `stream`: its `Datagram`s are pieces of one byte stream.  Not
+    `verified`: a port with a key took it in, and whether it has the key is not known yet.
     """
 
     link: int
     name: str
     stream: bool
+    verified: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -289,9 +289,9 @@ class Session:
                 return self._operators.signalled(name)
             case LinkEvent(_, text, trouble):
                 return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
-            case ClientCame(link, name, stream):
+            case ClientCame(link, name, stream, verified):
                 self._links.open(link, stream)
-                return [*self._bridge.bridge.came(link, name)]
+                return [*self._bridge.bridge.came(link, name, verified=verified)]
             case ClientGone(link, reason):
                 self._links.close(link)
                 self._signatures.forget(link)
@@ -419,7 +419,7 @@ class Session:
         """Heartbeat, what is missing, and the slow half of the record."""
         first = self._vehicles.first
         work: list[Work] = [*self._links.heartbeat(now_ns), *self._remind()]
-        work += self._bridge.second(now_ns, self._links.counts, self._signatures.told)
+        work += self._bridge.second(now_ns, self._links.counts, self._signatures)
         work += self._signatures.second(now_ns)
         work += self._operators.second(now_ns)
         if first.telemetry is None:

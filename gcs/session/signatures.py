@@ -58,7 +58,6 @@ class _Refused:
 
     count: int = 0
     told: int = 0
-    told_ns: int = 0
     senders: Counter[str] = field(default_factory=Counter)
     """Since it was last told: `255/190 COMMAND_LONG`."""
 
@@ -81,6 +80,9 @@ class Signatures:
         self._client = _Side(keys.client) if keys.client else None
         self._unsigned_taken = unsigned_taken
         self._refused: dict[tuple[int, Reason], _Refused] = {}
+        self._told_ns: dict[tuple[int, Reason], int] = {}
+        """When it was told last, also of a client that has gone: who comes anew again and again on
+        one link does not fill the log."""
         self._signs_to_us: set[tuple[int, int, int]] = set()
         self._news: list[Log] = []
 
@@ -98,21 +100,37 @@ class Signatures:
         Raises UnsignableError for a MAVLink 1 frame of a message that the dialect lacks.
         """
         side = self._side(link)
-        return raw if side is None else side.signer(link, self._own).sign(raw, now_ns)
+        if side is None:
+            return raw
+        signed = side.signer(link, self._own).sign(raw, now_ns)
+        if side is self._client:
+            # A peer without the key that sends us back what it was sent is not to be verified.
+            side.checker.sent(signed)
+        return signed
 
-    def refused(self, link: int, frame: Frame, now_ns: int) -> Reason | None:
-        """Why a frame that came in is not to be taken; None where it is."""
+    def refused(
+        self, link: int, frame: Frame, now_ns: int, *, verifying: bool = False
+    ) -> Reason | None:
+        """Why a frame that came in is not to be taken; None where it is.
+
+        `verifying`: its sender is not verified yet, so no frame is taken without a signature, not
+        even a radio's.
+        """
         side = self._side(link)
         if side is None:
             if frame.signature:
                 self._signed_without_key(link, frame)
             return None
         verdict = side.checker.check(frame, now_ns)
-        if not isinstance(verdict, Bad):
+        if isinstance(verdict, Bad):
+            reason = verdict.reason
+        elif verifying and not frame.signature:
+            reason = Reason.UNSIGNED
+        else:
             return None
-        self._count(link, frame, verdict.reason)
-        taken = verdict.reason is Reason.UNSIGNED and self._unsigned_taken
-        return None if taken else verdict.reason
+        self._count(link, frame, reason)
+        taken = reason is Reason.UNSIGNED and self._unsigned_taken
+        return None if taken else reason
 
     def counts(self, link: int) -> Mapping[Reason, int]:
         """What came in wrong on a link so far."""
@@ -122,18 +140,20 @@ class Signatures:
         """A client's link has gone: another one may get its number."""
         self._refused = {key: kept for key, kept in self._refused.items() if key[0] != link}
 
-    def told(self, link: int) -> str:
-        """In a few words, for a page: empty where the link has no key."""
+    def told(self, link: int, *, verified: bool = True) -> str:
+        """In a few words, for a page: empty where the link has no key, or nothing came."""
         if not self.signed(link):
             return ""
         counts = self.counts(link)
-        return ", ".join(f"{count} {reason}" for reason, count in counts.items()) or "signed"
+        words = ", ".join(f"{count} {reason}" for reason, count in counts.items())
+        return words or ("signed" if verified else "")
 
     def second(self, now_ns: int) -> list[Log]:
         """Once a second: what came in wrong since it was last told, at most every 10 s."""
         lines, self._news = self._news, []
         for (link, reason), refused in self._refused.items():
-            due = not refused.told or now_ns - refused.told_ns >= TELL_EVERY_NS
+            told_ns = self._told_ns.get((link, reason))
+            due = told_ns is None or now_ns - told_ns >= TELL_EVERY_NS
             if refused.count == refused.told or not due:
                 continue
             names = [name for name, _ in refused.senders.most_common(SOURCES_TOLD)]
@@ -144,7 +164,8 @@ class Signatures:
             done = "taken all the same" if taken else "refused"
             text = f"link {link}: {refused.count} frame{plural}{since} {_WHAT[reason]}, {done}: "
             lines.append(Log(Level.WARNING, NODE, text + ", ".join(names) + more))
-            refused.told, refused.told_ns = refused.count, now_ns
+            refused.told = refused.count
+            self._told_ns[link, reason] = now_ns
             refused.senders.clear()
         return lines
 

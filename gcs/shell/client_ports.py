@@ -78,6 +78,10 @@ class ClientPorts:
         """To one client, whole; nothing where it has gone."""
         self._table.send(link, data)
 
+    def verify(self, link: int, now_ns: int) -> None:
+        """The client there, if it is there still, has shown that it has the key."""
+        self._table.verify(link, now_ns)
+
     @property
     def endpoints(self) -> list[Endpoint]:
         """As they were opened: with the port that was given where any free one was asked for."""

@@ -6,6 +6,9 @@ number of its own, the lowest that is free; the number is given again after it h
 What one client may cost the others is bounded here: at most `max_clients` are there, each may send
 `rate_hz` messages a second with a second's worth at once, and a few commands beside that, and a
 turn hands on `MAX_A_TURN` inputs.
+
+On ports with a key, a peer that came by itself is not verified before the session says so
+(`verify`).  Until then it takes none of those places: there are `UNVERIFIED_PLACES` beside them.
 """
 
 from __future__ import annotations
@@ -41,6 +44,12 @@ of the loop."""
 EVICTABLE_NS = 3_000_000_000
 """A client that was heard within this time does not have to make room for another: whoever makes
 up senders by the thousand must not drive out those who fly."""
+UNVERIFIED_PLACES = 16
+"""For peers that may have the key.  Whoever comes takes the place of the one that came first, so
+that nobody can keep them all; so many that one who waits for a heartbeat before it signs anything
+hears it before a handful of others, who come again and again, have driven it out."""
+UNVERIFIED_HZ = 200.0
+"""So many of them come in a second: each is recorded as it comes and goes."""
 FLOOD_TOLD_NS = 1_000_000_000
 COMMAND_HZ = 20.0
 """So many commands and modes a second are handed on of a sender whose messages are dropped: among
@@ -61,6 +70,8 @@ class ClientLimits:
     """Messages a second of one client: frames, however many of them come in one datagram."""
     silent_s: float = 15.0
     """A peer of a UDP port that has sent nothing for so long has gone: it cannot say so itself."""
+    verifies: bool = False
+    """The ports have a key, and nothing is taken without it."""
 
 
 class Peer(Protocol):
@@ -71,7 +82,7 @@ class Peer(Protocol):
     expires: bool
     """Whether silence means that it has gone."""
     stays: bool
-    """It was named by the user: it makes no room for another."""
+    """It was named by the user: it makes no room for another, and is verified as it comes."""
 
     def send(self, data: bytes) -> str:
         """Off at once, queued or dropped.  Not empty: why the client has gone."""
@@ -90,6 +101,7 @@ class _Client:
     tokens_ns: int
     splitter: StreamSplitter | None
     """Of a stream: to count its frames, which the session splits once more."""
+    verified: bool
     unfinished: float = 0.0
     """What the pieces of a frame that has not ended have been counted as."""
     dropped: int = 0
@@ -105,9 +117,18 @@ class ClientTable:
     def __init__(self, first_link: int, limits: ClientLimits) -> None:
         self._first = first_link
         self._limits = limits
-        self._room = min(limits.max_clients, LAST_LINK - first_link + 1)
+        beside = UNVERIFIED_PLACES if limits.verifies else 0
+        self._room = min(limits.max_clients, LAST_LINK - first_link + 1 - beside)
         self._clients: dict[int, _Client] = {}
         self._arrivals: list[Arrival] = []
+        self._unverified: list[int] = []
+        """Their links, in the order in which they came."""
+        self._new: set[int] = set()
+        """Those of them that came in this turn: the session has not looked at what they sent."""
+        self._given_up: set[int] = set()
+        """Links whose clients went in this turn.  Where there are keys, nobody gets the number
+        before the session knows: what it sends to the one, or says of it, is not the other's."""
+        self._newcomers, self._newcomers_ns = UNVERIFIED_HZ, 0
         self._refused_told_ns = 0
 
     def __contains__(self, link: int) -> bool:
@@ -121,6 +142,8 @@ class ClientTable:
     def take(self) -> list[Arrival]:
         """What came since the last call, in order."""
         taken, self._arrivals = self._arrivals, []
+        self._new.clear()
+        self._given_up.clear()
         return taken
 
     def news(self, text: str) -> None:
@@ -131,17 +154,54 @@ class ClientTable:
 
     def come(self, peer: Peer, now_ns: int) -> int | None:
         """Its link number; None where there is no room for it."""
-        if len(self._clients) >= self._room and not self._make_room(peer, now_ns):
+        verified = peer.stays or not self._limits.verifies
+        if not (self._has_room(peer, now_ns) if verified else self._may_try(peer, now_ns)):
             return None
-        link = next(n for n in range(self._first, LAST_LINK + 1) if n not in self._clients)
-        splitter = StreamSplitter() if peer.stream else None
-        self._clients[link] = _Client(peer, now_ns, self._limits.rate_hz, now_ns, splitter)
-        self._arrivals.append(ClientCame(link, peer.name, peer.stream))
+        taken = self._clients.keys() | (self._given_up if self._limits.verifies else ())
+        link = next((n for n in range(self._first, LAST_LINK + 1) if n not in taken), None)
+        if link is None:
+            return None
+        rate_hz, splitter = self._limits.rate_hz, StreamSplitter() if peer.stream else None
+        self._clients[link] = _Client(peer, now_ns, rate_hz, now_ns, splitter, verified)
+        self._arrivals.append(ClientCame(link, peer.name, peer.stream, verified))
+        if not verified:
+            self._unverified.append(link)
+            self._new.add(link)
         return link
 
-    def _make_room(self, peer: Peer, now_ns: int) -> bool:
-        """The one that was silent longest goes, if it was silent for a while."""
-        passing = [link for link, client in self._clients.items() if not client.peer.stays]
+    def verify(self, link: int, now_ns: int) -> None:
+        """The session has taken a frame with a good signature of the client that it knows there:
+        it has one of the places of those who have the key, or goes where there is none."""
+        if link not in self._unverified:
+            return  # it has gone meanwhile
+        client = self._clients[link]
+        room = self._has_room(client.peer, now_ns)
+        self._unverified.remove(link)
+        client.verified = True
+        if not room:
+            self.gone(link, "no room for it")
+
+    def _may_try(self, peer: Peer, now_ns: int) -> bool:
+        """Whether one more can come that is not verified: the first of them makes room for it."""
+        more = (now_ns - self._newcomers_ns) * UNVERIFIED_HZ / 1e9
+        self._newcomers, self._newcomers_ns = min(UNVERIFIED_HZ, self._newcomers + more), now_ns
+        if self._newcomers < 1.0:
+            return False
+        if len(self._unverified) >= UNVERIFIED_PLACES:
+            first = self._unverified[0]
+            if first in self._new:
+                return False
+            self.gone(first, f"made room for {peer.name}")
+        self._newcomers -= 1.0
+        return True
+
+    def _has_room(self, peer: Peer, now_ns: int) -> bool:
+        """Whether there is a place among those who are verified; the one of them that was silent
+        longest makes room, if it was silent for a while."""
+        if len(self._clients) - len(self._unverified) < self._room:
+            return True
+        there = ((link, client) for link, client in self._clients.items() if client.verified)
+        passing = [link for link, client in there if not client.peer.stays]
         link = min(passing, key=lambda each: self._clients[each].heard_ns, default=None)
         if link is not None and now_ns - self._clients[link].heard_ns >= EVICTABLE_NS:
             self.gone(link, f"made room for {peer.name}")
@@ -155,6 +215,9 @@ class ClientTable:
     def gone(self, link: int, reason: str) -> None:
         """Its number is free from now on."""
         client = self._clients.pop(link)
+        if not client.verified:
+            self._unverified.remove(link)
+        self._given_up.add(link)
         client.peer.forget()
         self._arrivals.append(ClientGone(link, reason))
 

@@ -18,6 +18,7 @@ from gcs.resources import MissionNotFoundError, find
 from gcs.session.clients import FIRST
 from gcs.session.effects import (
     EVERYONE,
+    ClientVerified,
     Effect,
     Emit,
     Finish,
@@ -358,6 +359,8 @@ class Loop:
                 return _read(token, path)
             case WriteFile(token, path, data):
                 return _write(token, path, data)
+            case ClientVerified(link) if self._client_ports is not None:
+                self._client_ports.verify(link, now_ns)
             case Finish():
                 self._finish = effect
         return None

@@ -171,7 +171,8 @@ def _open_client_ports(
     if not setup.clients:
         return None
     rules = policy.bridge
-    limits = ClientLimits(rules.max_clients, rules.client_rate_hz, rules.client_gone_s)
+    verifies = bool(setup.client_key_path) and policy.signing.unsigned != "warn"
+    limits = ClientLimits(rules.max_clients, rules.client_rate_hz, rules.client_gone_s, verifies)
     ports = ClientPorts(len(links), limits)
     opened.callback(ports.close)
     for url in setup.clients:

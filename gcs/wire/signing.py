@@ -36,6 +36,8 @@ LATE_MAX_TICKS: Final = 60 * 100_000
 """A stream that is new must not be further behind: one minute (MAVLink guide)."""
 STREAMS_MAX: Final = 1024
 """Streams that are remembered; only frames that were signed with the key make one."""
+SENT_MAX: Final = 4096
+"""Streams of our own that are remembered; of more, the first one is forgotten."""
 UNSIGNED_ALLOWED: Final = frozenset({109, 166})
 """RADIO_STATUS and RADIO: the radio on the way puts them in, and has no key."""
 
@@ -174,7 +176,7 @@ class Signer:
 class Checker:
     """Judges the signatures of all that came in under one key."""
 
-    __slots__ = ("_clock", "_key", "_signers", "_streams")
+    __slots__ = ("_clock", "_key", "_sent", "_signers", "_streams")
 
     def __init__(self, key: Key, clock: SigningClock | None = None) -> None:
         """`clock`: as that of the key's `Signer`s."""
@@ -182,10 +184,18 @@ class Checker:
         self._clock = clock or SigningClock()
         self._streams: dict[tuple[int, int, int], int] = {}
         self._signers: set[tuple[int, int]] = set()
+        self._sent: dict[tuple[int, int, int], int] = {}
 
     def never(self, sysid: int, compid: int, link_id: int) -> None:
         """A stream that is ours to send: what comes back of it is a replay."""
         self._streams[sysid, compid, link_id] = TIMESTAMP_MAX
+
+    def sent(self, raw: bytes) -> None:
+        """We have signed this frame, in whatever name: what comes back of it is a replay."""
+        stream = (raw[5], raw[6], raw[-SIGNATURE_SIZE])
+        if stream not in self._sent and len(self._sent) >= SENT_MAX:
+            del self._sent[next(iter(self._sent))]
+        self._sent[stream] = int.from_bytes(raw[_TIMESTAMP], "little")
 
     def check(self, frame: Frame, unix_ns: int) -> Verdict:
         """Whether to take the frame; one that is taken moves its stream on.
@@ -202,6 +212,8 @@ class Checker:
             return _BAD[Reason.WRONG_KEY]
         timestamp = int.from_bytes(raw[_TIMESTAMP], "little")
         stream = (frame.sysid, frame.compid, raw[-SIGNATURE_SIZE])
+        if timestamp <= self._sent.get(stream, -1):
+            return _BAD[Reason.REPLAYED]
         last = self._streams.get(stream)
         if last is not None:
             if timestamp <= last:

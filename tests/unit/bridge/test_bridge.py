@@ -97,8 +97,8 @@ def test_a_peer_is_a_client_with_its_first_frame_and_lost_when_it_is_silent() ->
     judged = table.says(HEARTBEAT)
     assert of(Joined, judged.effects) == [Joined(1000, "MAVLink 245/190, udp 1")]
     assert not of(Joined, table.says(HEARTBEAT).effects)
-    assert table.bridge.second(table.now_ns + 10 * S) == []
-    (lost,) = table.bridge.second(table.now_ns + 10 * S + 1)
+    assert table.bridge.second([VEHICLE], table.now_ns + 10 * S) == []
+    (lost,) = table.bridge.second([VEHICLE], table.now_ns + 10 * S + 1)
     assert lost == Lost(1000, "silent for 10 s")
     assert of(Joined, table.says(HEARTBEAT).effects)[0].client == 1001, "it is another one then"
 
@@ -291,7 +291,7 @@ def test_what_a_lost_client_had_the_vehicle_send_is_taken_back() -> None:
         1, 1, Cmd.SET_MESSAGE_INTERVAL, 0, 105, 20_000, 0, 0, 0, 0, 0
     )
     table.says(faster)
-    effects = table.bridge.second(table.now_ns + 11 * S)
+    effects = table.bridge.second([VEHICLE], table.now_ns + 11 * S)
     (asked,) = of(AsksVehicle, effects)
     told = asked.message
     assert isinstance(told, CommandLong)

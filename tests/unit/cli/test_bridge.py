@@ -219,6 +219,13 @@ def test_links_and_clients_in_rows() -> None:
     assert len(bridge_text.client_rows(None)) == 1
 
 
+def test_a_client_that_is_not_verified_is_named_so() -> None:
+    stranger = ipc.BridgeClient(0, 3, "udp 127.0.0.1:5003", signed="2 unsigned", verified=False)
+    status = ipc.BridgeStatus(0, [LINK], [ONE, stranger])
+    assert bridge_text.client_rows(status)[2][-1] == "not verified, 2 unsigned"
+    assert "2 clients (1 not verified), 0 refused;" in bridge_text.status_line(status, snapshot())
+
+
 # ------------------------------------------------------------------------------------ lines
 
 
@@ -244,7 +251,7 @@ def test_a_refusal_is_a_line_with_its_reason() -> None:
 def test_the_status_comes_every_ten_seconds_and_when_clients_change() -> None:
     printed = Printed()(snapshot(), STATUS)
     line = (
-        "bridge: 212/s in, 4/s out, 0.1 % lost; 2 clients, 3 refused; "
+        "bridge: 212/s in, 4/s out, 0.1 % lost; 2 clients, 3 refused, 40 dropped; "
         "in control: 1000 (MAVLink 255/190)"
     )
     assert printed.out[1:] == [line]

@@ -46,6 +46,21 @@ def test_every_vehicle_of_a_bridge_is_shown() -> None:
     assert "vehicle 1" not in shown
 
 
+def test_clients_that_are_not_verified_are_shown() -> None:
+    seen = FakeStation().snapshot()
+    clients = [
+        ipc.BridgeClient(1000, 1, "udp 127.0.0.1:5001", signed="signed"),
+        ipc.BridgeClient(0, 2, "udp 127.0.0.1:5002", signed="3 unsigned", verified=False),
+        ipc.BridgeClient(0, 3, "tcp 127.0.0.1:5003", verified=False),
+    ]
+    shown = dict(rows(seen, 1, ipc.BridgeStatus(0, [], clients)))
+    assert shown["not verified"].splitlines() == [
+        "client udp 127.0.0.1:5002: 3 unsigned",
+        "client tcp 127.0.0.1:5003: nothing came yet",
+    ]
+    assert "not verified" not in dict(rows(seen, 1, ipc.BridgeStatus(0, [], clients[:1])))
+
+
 def test_unknown_values_are_dashes() -> None:
     shown = dict(rows(FakeStation("silent").snapshot(), 1))
     assert shown["position"].startswith("E - N - U -")

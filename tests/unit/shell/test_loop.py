@@ -13,7 +13,16 @@ import pytest
 from gcs import ipc
 from gcs.record.writer import Recorder
 from gcs.report import LogEvent, PoseItem, RecordItem
-from gcs.session.effects import Emit, Finish, ReadFile, Record, ShowTopics, Transmit, WriteFile
+from gcs.session.effects import (
+    ClientVerified,
+    Emit,
+    Finish,
+    ReadFile,
+    Record,
+    ShowTopics,
+    Transmit,
+    WriteFile,
+)
 from gcs.session.incoming import FramesRaisedError
 from gcs.session.inputs import (
     ClientCame,
@@ -589,6 +598,7 @@ class PaperPorts(ClientPorts):
         super().__init__(2)
         self.brings: list[Arrival] = []
         self.sent: list[tuple[int, bytes]] = []
+        self.verified: list[int] = []
         self.due_ns = 1 << 62
         self.turns_ns: list[int] = []
 
@@ -605,6 +615,9 @@ class PaperPorts(ClientPorts):
 
     def send(self, link: int, data: bytes) -> None:
         self.sent.append((link, data))
+
+    def verify(self, link: int, now_ns: int) -> None:
+        self.verified.append(link)
 
 
 def test_turns_are_apart_where_datagrams_are_dense_and_nowhere_else(rig: Rig) -> None:
@@ -700,6 +713,19 @@ def test_what_clients_send_is_handed_on_and_what_is_for_them_goes_to_their_ports
     assert rig.core.inputs[:2] == came
     assert rig.links[0].sent == [b"for the vehicle"]
     assert ports.sent == [(2, b"for the client")]
+    rig.close()
+
+
+def test_which_client_has_shown_its_key_is_told_to_its_port_at_once() -> None:
+    ports = PaperPorts()
+    rig = Rig(client_ports=ports)
+    came: list[Arrival] = [Datagram(2, b"signed"), Datagram(3, b"not signed")]
+    ports.brings = [*came]
+    seen: list[list[int]] = []
+    rig.core.answers[came[0]] = [ClientVerified(2)]
+    rig.core.does[came[1]] = lambda: seen.append([*ports.verified])
+    rig.run(lambda: None)
+    assert seen == [[2]], "before the next input"
     rig.close()
 
 

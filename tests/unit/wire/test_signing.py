@@ -16,6 +16,7 @@ from gcs.wire.signing import (
     EPOCH_NS,
     GOOD,
     LATE_MAX_TICKS,
+    SENT_MAX,
     STREAMS_MAX,
     TIMESTAMP_MAX,
     Bad,
@@ -289,3 +290,36 @@ def test_the_fingerprint_tells_keys_apart_and_is_no_part_of_the_key() -> None:
     assert KEY.fingerprint != OTHER.fingerprint
     digest = hashlib.sha256(KEY.secret).hexdigest()
     assert KEY.fingerprint.replace(":", "") not in KEY.secret.hex() + digest
+
+
+# --------------------------------------------------------------- what comes back of what we sent
+
+
+def test_what_we_sign_in_anothers_name_is_a_replay_when_it_comes_back() -> None:
+    clock = SigningClock()
+    signer, checker = Signer(KEY, 201, clock), Checker(KEY, clock)
+    raw = signer.sign(FrameWriter(1, 1).write(BEAT), NOW_NS)
+    checker.sent(raw)
+    assert reason(checker, raw) is Reason.REPLAYED
+    assert reason(checker, Peer(link_id=3, timestamp=NOW + 5).says()) is None, "its own stream"
+
+
+def test_another_sender_that_has_our_link_id_is_taken_with_what_is_newer() -> None:
+    clock = SigningClock()
+    signer, checker = Signer(KEY, 201, clock), Checker(KEY, clock)
+    checker.sent(signer.sign(FrameWriter(1, 1).write(BEAT), NOW_NS))
+    assert reason(checker, Peer(link_id=201, timestamp=NOW + 100_000).says()) is None
+
+
+def test_of_our_streams_the_newest_are_remembered() -> None:
+    clock = SigningClock()
+    signer, checker = Signer(KEY, 201, clock), Checker(KEY, clock)
+    raws = [
+        signer.sign(FrameWriter(number >> 8, number & 0xFF).write(BEAT), NOW_NS)
+        for number in range(SENT_MAX + 1)
+    ]
+    for raw in raws:
+        checker.sent(raw)
+    assert reason(checker, raws[-1]) is Reason.REPLAYED
+    assert reason(checker, raws[1]) is Reason.REPLAYED
+    assert reason(checker, raws[0]) is None
