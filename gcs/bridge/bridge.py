@@ -12,8 +12,9 @@ from typing import Final
 from gcs import ipc
 from gcs.bridge.addressing import Given, Judges, LookAt
 from gcs.bridge.answers import texts
+from gcs.bridge.armings import Armings
 from gcs.bridge.classes import Kind, message_row
-from gcs.bridge.client import Client, Exchange
+from gcs.bridge.client import Client, Exchange, of_vehicle
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
@@ -33,7 +34,6 @@ from gcs.bridge.needed_rates import Rates
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
-from gcs.gate.refusal import Refusal
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import Timing
@@ -76,6 +76,7 @@ class Bridge:
         self._namesakes: dict[int, int] = {}
         """When a link was told that its sender's address is ours."""
         self._in_control = 0
+        self.armings = Armings(self._judges, self._exchanges)
 
     # --------------------------------------------------------------------- come and go
 
@@ -122,7 +123,9 @@ class Bridge:
         del self._by_number[client.number]
         self._control.forget(client.number)
         taken_back = self._judges.client_lost(client, self._own)
-        held = [done for each in client.exchanges for done in _of(each, each.take_mode_back())]
+        held = [
+            done for each in client.exchanges for done in of_vehicle(each, each.take_mode_back())
+        ]
         return [*held, Lost(client.number, reason), *taken_back]
 
     def _meet(self, client: Client, frame: Frame) -> list[BridgeEffect]:
@@ -229,10 +232,10 @@ class Bridge:
         for each in self._exchanges():
             due_ns = each.plans.deadline_ns
             if due_ns is not None and due_ns <= now_ns:
-                done += _of(each, of_plan(each, each.plans.wake(now_ns)))
+                done += of_vehicle(each, of_plan(each, each.plans.wake(now_ns)))
             until_ns = each.chosen_until_ns
             if until_ns is not None and until_ns <= now_ns:
-                done += _of(each, each.wake(now_ns))
+                done += of_vehicle(each, each.wake(now_ns))
         return done
 
     def _exchanges(self, vehicle: int | None = None) -> list[Exchange]:
@@ -290,10 +293,12 @@ class Bridge:
         if client is None:
             return []
         if not isinstance(event, ipc.VerdictEvent | ipc.EndingEvent):
-            return _of(client.at(vehicle), self._told(client.at(vehicle), event, now_ns))
+            return of_vehicle(client.at(vehicle), self._told(client.at(vehicle), event, now_ns))
         # By its number, which is one of the client's, the exchange knows what it is about.
         return [
-            done for each in client.exchanges for done in _of(each, self._told(each, event, now_ns))
+            done
+            for each in client.exchanges
+            for done in of_vehicle(each, self._told(each, event, now_ns))
         ]
 
     @staticmethod
@@ -317,58 +322,16 @@ class Bridge:
         for each in self._exchanges(vehicle):
             if each.number != number:
                 each.dialogue.forget()
-                done += _of(each, each.forget_choice("another one asks for something", now_ns))
+                done += of_vehicle(
+                    each, each.forget_choice("another one asks for something", now_ns)
+                )
         return done
-
-    def armed_seen(self, vehicle: int, now_ns: int) -> list[BridgeEffect]:
-        """A heartbeat shows it armed: nothing that was chosen before is flown.  A mode that may
-        have come after the arming is taken back at once.  Otherwise it is not any more: who arms a
-        vehicle that shows it wants it."""
-        mode = self._judges.of(vehicle).mission_mode
-        late = mode.may_have_come_late()
-        mode.arm_ended()
-        held: list[BridgeEffect] = []
-        for each in self._exchanges(vehicle):
-            if late:
-                held += _of(each, each.take_mode_back())
-            each.keep_mode()
-        return [*held, *self.not_standing(vehicle, "the vehicle is armed", now_ns)]
-
-    def not_standing(self, vehicle: int, why: str, now_ns: int) -> list[BridgeEffect]:
-        """Nothing that was chosen before is flown.  Disarmed, it may be said to fly for a moment;
-        a mode that a client has set is taken back all the same."""
-        return [
-            done
-            for each in self._exchanges(vehicle)
-            for done in _of(each, each.forget_choice(why, now_ns))
-        ]
 
     def leave(self) -> list[BridgeEffect]:
         """The session ends: the mode of a mission that a client has set is taken back now."""
-        return [done for each in self._exchanges() for done in _of(each, each.take_mode_back())]
-
-    def arm_asked(self, vehicle: int, now_ns: int) -> None:
-        """Somebody's arming goes to that vehicle's gate, which sets hold first."""
-        for each in self._exchanges(vehicle):
-            each.keep_mode_for_now(now_ns)
-
-    def arm_sent(self, vehicle: int, now_ns: int) -> None:
-        """The gate has that vehicle armed, whoever asked for it."""
-        self._judges.of(vehicle).mission_mode.arm_sent(now_ns)
-
-    def arm_refused(self, vehicle: int) -> None:
-        """The vehicle has refused an arming.  Of one that it accepts a heartbeat is to tell."""
-        self._judges.of(vehicle).mission_mode.arm_ended()
-
-    def mode_shown(self, mode_name: str, vehicle: int, now_ns: int) -> None:
-        """A heartbeat of that vehicle shows this mode."""
-        self._judges.of(vehicle).mission_mode.shown(mode_name, now_ns)
-
-    def why_not_arm(self, command: ipc.Command, vehicle: int) -> Refusal | None:
-        """Why an arming of any operator cannot be judged now."""
-        if not isinstance(command, ipc.Ask) or command.word != "arm":
-            return None
-        return self._judges.of(vehicle).mission_mode.why_not_arm()
+        return [
+            done for each in self._exchanges() for done in of_vehicle(each, each.take_mode_back())
+        ]
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent; `operation` is the request's."""
@@ -391,7 +354,7 @@ class Bridge:
         effects: list[BridgeEffect] = []
         for each in self._exchanges():
             if each.number != number:
-                effects += _of(each, each.forget_choice(who, now_ns))
+                effects += of_vehicle(each, each.forget_choice(who, now_ns))
         for vehicle in vehicles:
             effects += self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
         return effects
@@ -440,8 +403,3 @@ class Bridge:
             )
             for client in self._by_link.values()
         ]
-
-
-def _of(exchange: Exchange, effects: Sequence[BridgeEffect]) -> list[BridgeEffect]:
-    """What an exchange leads to, as its vehicle's."""
-    return [OfVehicle(exchange.vehicle, tuple(effects))] if effects else []
