@@ -11,7 +11,6 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.addressing import Given, Judges, LookAt
-from gcs.bridge.answers import texts
 from gcs.bridge.armings import Armings
 from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client, Exchange, of_vehicle
@@ -31,6 +30,7 @@ from gcs.bridge.judge.climbs import asks_for_height, climbs
 from gcs.bridge.judge.plans import of_plan
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
+from gcs.bridge.refused_addresses import RefusedAddresses
 from gcs.bridge.routing import Routes, target_of
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
@@ -43,8 +43,6 @@ from gcs.wire.messages import ParamValue
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
-NAMESAKE_TOLD_NS: Final = 2_000_000_000
-"""Between two texts to another bridge of our address."""
 
 
 class Bridge:
@@ -72,9 +70,7 @@ class Bridge:
         self._by_link: dict[int, Client] = {}
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
-        self._told_once: set[tuple[int, str]] = set()
-        self._namesakes: dict[int, int] = {}
-        """When a link was told that its sender's address is ours."""
+        self._refused_addresses = RefusedAddresses(own)
         self._in_control = 0
         self.armings = Armings(self._judges, self._exchanges)
 
@@ -89,8 +85,7 @@ class Bridge:
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:
         """It has gone, and its link's number is free."""
         self._routes.close(link)
-        self._told_once = {told for told in self._told_once if told[0] != link}
-        self._namesakes.pop(link, None)
+        self._refused_addresses.gone(link)
         client = self._by_link.pop(link, None)
         if client is None:
             return []
@@ -148,10 +143,10 @@ class Bridge:
         `look` tells of one, by its system id, how it is."""
         client = self._by_link[link]
         client.received.count(1, now_ns)
-        reason = self._why_not_from(frame, vehicles)
-        if reason:
+        refused = self._refused_addresses.of_sender(client, frame, vehicles, now_ns)
+        if refused is not None:
             client.refused += 1
-            return Judged(True, [*self._once(client, reason), *self._namesake(link, frame, now_ns)])
+            return Judged(True, refused)
         client.heard_ns = now_ns
         effects: list[BridgeEffect] = [] if client.joined else self._meet(client, frame)
         self._routes.heard(link, frame.sysid, frame.compid)
@@ -168,56 +163,16 @@ class Bridge:
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
 
-    def _why_not_from(self, frame: Frame, vehicles: Sequence[Address]) -> str:
-        """Why no frame of this sender may come from a client; empty where it may.
-
-        A frame of a vehicle on a client's link is a loop of links, or somebody who plays it.
-        """
-        if (frame.sysid, frame.compid) == (self._own.sysid, self._own.compid):
-            return (
-                f"it calls itself {frame.sysid}/{frame.compid}, as this station does; "
-                "start one of the two with another --sysid"
-            )
-        if any((frame.sysid, frame.compid) == (each.sysid, each.compid) for each in vehicles):
-            return f"it calls itself {frame.sysid}/{frame.compid}, as the vehicle does"
-        return ""
-
-    def _namesake(self, link: int, frame: Frame, now_ns: int) -> list[BridgeEffect]:
-        """Another bridge before this one, with the same address, is answered in our own name: it
-        finds a second station of its address on its vehicle's link, and tells its people."""
-        own = self._own
-        if (frame.sysid, frame.compid) != (own.sysid, own.compid) or frame.msgid != MsgId.HEARTBEAT:
-            return []
-        last_ns = self._namesakes.get(link)
-        if last_ns is not None and now_ns - last_ns < NAMESAKE_TOLD_NS:
-            return []
-        self._namesakes[link] = now_ns
-        text = f"refused: {own.sysid}/{own.compid} is this station's address, too: use --sysid"
-        return [Answers(link, own, message) for message in texts(Level.ERROR, text, 1)]
-
     def _elsewhere(
         self, client: Client, frame: Frame, sysid: int, vehicles: Sequence[Address]
     ) -> Judged:
-        """A frame for a system that is no vehicle of ours: another client, or nobody.
-
-        Nobody's: whoever sent it is told which vehicles there are, once.  It gets no answer of the
-        protocol's, because that would be in the name of a component that is not there.
-        """
+        """A frame for a system that is no vehicle of ours: another client, or nobody."""
         links = self._routes.between_clients(frame, client.link)
         if links and message_row(frame.msgid).kind is not Kind.DENIED:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
             return Judged(False, [])
-        here = ", ".join(str(each.sysid) for each in vehicles)
-        heard = f"heard: system {here}" if here else "no vehicle is heard yet"
-        reason = f"there is no system {sysid} here ({heard})"
-        told = self._once(client, reason)
-        if told:
-            # In a vehicle's name: QGroundControl shows no text of anybody else (from memory).
-            speaker = vehicles[0] if vehicles else self._own
-            messages = texts(Level.WARNING, f"refused: {reason}", sysid)
-            told += [Answers(client.link, speaker, message) for message in messages]
-        return Judged(True, told)
+        return Judged(True, self._refused_addresses.of_target(client, sysid, vehicles))
 
     @property
     def deadline_ns(self) -> int | None:
@@ -246,13 +201,6 @@ class Bridge:
             for each in client.exchanges
             if vehicle in (None, each.vehicle)
         ]
-
-    def _once(self, client: Client, reason: str) -> list[BridgeEffect]:
-        """A frame that nobody can be answered about: told once for each client and reason."""
-        if (client.link, reason) in self._told_once:
-            return []
-        self._told_once.add((client.link, reason))
-        return [Notes(Level.WARNING, f"frames of {client.name} are refused: {reason}")]
 
     # --------------------------------------------------------------------- for clients
 
