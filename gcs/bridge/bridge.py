@@ -11,9 +11,9 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.addressing import Given, Judges, LookAt
-from gcs.bridge.answers import texts
+from gcs.bridge.armings import Armings
 from gcs.bridge.classes import Kind, message_row
-from gcs.bridge.client import Client, Exchange
+from gcs.bridge.client import Client, Exchange, of_vehicle
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
@@ -30,11 +30,11 @@ from gcs.bridge.judge.climbs import asks_for_height, climbs
 from gcs.bridge.judge.plans import of_plan
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
+from gcs.bridge.refused_addresses import RefusedAddresses
 from gcs.bridge.routing import Routes, target_of
 from gcs.bridge.unverified import Unverified
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
-from gcs.gate.refusal import Refusal
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import Timing
@@ -44,8 +44,6 @@ from gcs.wire.messages import ParamValue
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
-NAMESAKE_TOLD_NS: Final = 2_000_000_000
-"""Between two texts to another bridge of our address."""
 
 
 class Bridge:
@@ -76,10 +74,9 @@ class Bridge:
         self._by_link: dict[int, Client] = {}
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
-        self._told_once: set[tuple[int, str]] = set()
-        self._namesakes: dict[int, int] = {}
-        """When a link was told that its sender's address is ours."""
+        self._refused_addresses = RefusedAddresses(own)
         self._in_control = 0
+        self.armings = Armings(self._judges, self._exchanges)
 
     # --------------------------------------------------------------------- come and go
 
@@ -100,8 +97,7 @@ class Bridge:
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:
         """It has gone, and its link's number is free."""
         self._routes.close(link)
-        self._told_once = {told for told in self._told_once if told[0] != link}
-        self._namesakes.pop(link, None)
+        self._refused_addresses.gone(link)
         client = self._by_link.pop(link, None)
         if client is None:
             return []
@@ -142,7 +138,9 @@ class Bridge:
         del self._by_number[client.number]
         self._control.forget(client.number)
         taken_back = self._judges.client_lost(client, self._own)
-        held = [done for each in client.exchanges for done in _of(each, each.take_mode_back())]
+        held = [
+            done for each in client.exchanges for done in of_vehicle(each, each.take_mode_back())
+        ]
         return [*held, Lost(client.number, reason), *taken_back]
 
     def _meet(self, client: Client, frame: Frame) -> list[BridgeEffect]:
@@ -165,10 +163,10 @@ class Bridge:
         `look` tells of one, by its system id, how it is."""
         client = self._by_link[link]
         client.received.count(1, now_ns)
-        reason = self._why_not_from(frame, vehicles)
-        if reason:
+        refused = self._refused_addresses.of_sender(client, frame, vehicles, now_ns)
+        if refused is not None:
             client.refused += 1
-            return Judged(True, [*self._once(client, reason), *self._namesake(link, frame, now_ns)])
+            return Judged(True, refused)
         client.heard_ns = now_ns
         effects: list[BridgeEffect] = [] if client.joined else self._meet(client, frame)
         self._routes.heard(link, frame.sysid, frame.compid)
@@ -185,56 +183,16 @@ class Bridge:
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
 
-    def _why_not_from(self, frame: Frame, vehicles: Sequence[Address]) -> str:
-        """Why no frame of this sender may come from a client; empty where it may.
-
-        A frame of a vehicle on a client's link is a loop of links, or somebody who plays it.
-        """
-        if (frame.sysid, frame.compid) == (self._own.sysid, self._own.compid):
-            return (
-                f"it calls itself {frame.sysid}/{frame.compid}, as this station does; "
-                "start one of the two with another --sysid"
-            )
-        if any((frame.sysid, frame.compid) == (each.sysid, each.compid) for each in vehicles):
-            return f"it calls itself {frame.sysid}/{frame.compid}, as the vehicle does"
-        return ""
-
-    def _namesake(self, link: int, frame: Frame, now_ns: int) -> list[BridgeEffect]:
-        """Another bridge before this one, with the same address, is answered in our own name: it
-        finds a second station of its address on its vehicle's link, and tells its people."""
-        own = self._own
-        if (frame.sysid, frame.compid) != (own.sysid, own.compid) or frame.msgid != MsgId.HEARTBEAT:
-            return []
-        last_ns = self._namesakes.get(link)
-        if last_ns is not None and now_ns - last_ns < NAMESAKE_TOLD_NS:
-            return []
-        self._namesakes[link] = now_ns
-        text = f"refused: {own.sysid}/{own.compid} is this station's address, too: use --sysid"
-        return [Answers(link, own, message) for message in texts(Level.ERROR, text, 1)]
-
     def _elsewhere(
         self, client: Client, frame: Frame, sysid: int, vehicles: Sequence[Address]
     ) -> Judged:
-        """A frame for a system that is no vehicle of ours: another client, or nobody.
-
-        Nobody's: whoever sent it is told which vehicles there are, once.  It gets no answer of the
-        protocol's, because that would be in the name of a component that is not there.
-        """
+        """A frame for a system that is no vehicle of ours: another client, or nobody."""
         links = self._routes.between_clients(frame, client.link)
         if links and message_row(frame.msgid).kind is not Kind.DENIED:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
             return Judged(False, [])
-        here = ", ".join(str(each.sysid) for each in vehicles)
-        heard = f"heard: system {here}" if here else "no vehicle is heard yet"
-        reason = f"there is no system {sysid} here ({heard})"
-        told = self._once(client, reason)
-        if told:
-            # In a vehicle's name: QGroundControl shows no text of anybody else (from memory).
-            speaker = vehicles[0] if vehicles else self._own
-            messages = texts(Level.WARNING, f"refused: {reason}", sysid)
-            told += [Answers(client.link, speaker, message) for message in messages]
-        return Judged(True, told)
+        return Judged(True, self._refused_addresses.of_target(client, sysid, vehicles))
 
     @property
     def deadline_ns(self) -> int | None:
@@ -249,10 +207,10 @@ class Bridge:
         for each in self._exchanges():
             due_ns = each.plans.deadline_ns
             if due_ns is not None and due_ns <= now_ns:
-                done += _of(each, of_plan(each, each.plans.wake(now_ns)))
+                done += of_vehicle(each, of_plan(each, each.plans.wake(now_ns)))
             until_ns = each.chosen_until_ns
             if until_ns is not None and until_ns <= now_ns:
-                done += _of(each, each.wake(now_ns))
+                done += of_vehicle(each, each.wake(now_ns))
         return done
 
     def _exchanges(self, vehicle: int | None = None) -> list[Exchange]:
@@ -263,13 +221,6 @@ class Bridge:
             for each in client.exchanges
             if vehicle in (None, each.vehicle)
         ]
-
-    def _once(self, client: Client, reason: str) -> list[BridgeEffect]:
-        """A frame that nobody can be answered about: told once for each client and reason."""
-        if (client.link, reason) in self._told_once:
-            return []
-        self._told_once.add((client.link, reason))
-        return [Notes(Level.WARNING, f"frames of {client.name} are refused: {reason}")]
 
     # --------------------------------------------------------------------- for clients
 
@@ -312,10 +263,12 @@ class Bridge:
         if client is None:
             return []
         if not isinstance(event, ipc.VerdictEvent | ipc.EndingEvent):
-            return _of(client.at(vehicle), self._told(client.at(vehicle), event, now_ns))
+            return of_vehicle(client.at(vehicle), self._told(client.at(vehicle), event, now_ns))
         # By its number, which is one of the client's, the exchange knows what it is about.
         return [
-            done for each in client.exchanges for done in _of(each, self._told(each, event, now_ns))
+            done
+            for each in client.exchanges
+            for done in of_vehicle(each, self._told(each, event, now_ns))
         ]
 
     @staticmethod
@@ -339,58 +292,16 @@ class Bridge:
         for each in self._exchanges(vehicle):
             if each.number != number:
                 each.dialogue.forget()
-                done += _of(each, each.forget_choice("another one asks for something", now_ns))
+                done += of_vehicle(
+                    each, each.forget_choice("another one asks for something", now_ns)
+                )
         return done
-
-    def armed_seen(self, vehicle: int, now_ns: int) -> list[BridgeEffect]:
-        """A heartbeat shows it armed: nothing that was chosen before is flown.  A mode that may
-        have come after the arming is taken back at once.  Otherwise it is not any more: who arms a
-        vehicle that shows it wants it."""
-        mode = self._judges.of(vehicle).mission_mode
-        late = mode.may_have_come_late()
-        mode.arm_ended()
-        held: list[BridgeEffect] = []
-        for each in self._exchanges(vehicle):
-            if late:
-                held += _of(each, each.take_mode_back())
-            each.keep_mode()
-        return [*held, *self.not_standing(vehicle, "the vehicle is armed", now_ns)]
-
-    def not_standing(self, vehicle: int, why: str, now_ns: int) -> list[BridgeEffect]:
-        """Nothing that was chosen before is flown.  Disarmed, it may be said to fly for a moment;
-        a mode that a client has set is taken back all the same."""
-        return [
-            done
-            for each in self._exchanges(vehicle)
-            for done in _of(each, each.forget_choice(why, now_ns))
-        ]
 
     def leave(self) -> list[BridgeEffect]:
         """The session ends: the mode of a mission that a client has set is taken back now."""
-        return [done for each in self._exchanges() for done in _of(each, each.take_mode_back())]
-
-    def arm_asked(self, vehicle: int, now_ns: int) -> None:
-        """Somebody's arming goes to that vehicle's gate, which sets hold first."""
-        for each in self._exchanges(vehicle):
-            each.keep_mode_for_now(now_ns)
-
-    def arm_sent(self, vehicle: int, now_ns: int) -> None:
-        """The gate has that vehicle armed, whoever asked for it."""
-        self._judges.of(vehicle).mission_mode.arm_sent(now_ns)
-
-    def arm_refused(self, vehicle: int) -> None:
-        """The vehicle has refused an arming.  Of one that it accepts a heartbeat is to tell."""
-        self._judges.of(vehicle).mission_mode.arm_ended()
-
-    def mode_shown(self, mode_name: str, vehicle: int, now_ns: int) -> None:
-        """A heartbeat of that vehicle shows this mode."""
-        self._judges.of(vehicle).mission_mode.shown(mode_name, now_ns)
-
-    def why_not_arm(self, command: ipc.Command, vehicle: int) -> Refusal | None:
-        """Why an arming of any operator cannot be judged now."""
-        if not isinstance(command, ipc.Ask) or command.word != "arm":
-            return None
-        return self._judges.of(vehicle).mission_mode.why_not_arm()
+        return [
+            done for each in self._exchanges() for done in of_vehicle(each, each.take_mode_back())
+        ]
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent; `operation` is the request's."""
@@ -413,7 +324,7 @@ class Bridge:
         effects: list[BridgeEffect] = []
         for each in self._exchanges():
             if each.number != number:
-                effects += _of(each, each.forget_choice(who, now_ns))
+                effects += of_vehicle(each, each.forget_choice(who, now_ns))
         for vehicle in vehicles:
             effects += self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
         return effects
@@ -463,8 +374,3 @@ class Bridge:
             )
             for client in self._by_link.values()
         ]
-
-
-def _of(exchange: Exchange, effects: Sequence[BridgeEffect]) -> list[BridgeEffect]:
-    """What an exchange leads to, as its vehicle's."""
-    return [OfVehicle(exchange.vehicle, tuple(effects))] if effects else []

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import count
 
 from gcs import ipc
 from gcs.bridge.dialogue import Dialogue, From
-from gcs.bridge.effects import BridgeEffect, Notes, Says
+from gcs.bridge.effects import BridgeEffect, Notes, OfVehicle, Says
 from gcs.bridge.flooding import Flooding
 from gcs.bridge.meaning.chosen_before_arming import (
     KEPT_NS,
@@ -199,3 +199,8 @@ class Exchange:
         hold = ipc.Ask(self.dialogue.number(), "hold", vehicle=self.vehicle)
         text = f"{self.name}: {MISSION_MODE} is taken back: the mission was not started"
         return [Notes(Level.INFO, text), Says(self.number, hold)]
+
+
+def of_vehicle(exchange: Exchange, effects: Sequence[BridgeEffect]) -> list[BridgeEffect]:
+    """What an exchange leads to, as its vehicle's."""
+    return [OfVehicle(exchange.vehicle, tuple(effects))] if effects else []

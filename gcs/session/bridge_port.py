@@ -130,17 +130,19 @@ class BridgePort:
         asks for, the answers to the others are older than."""
         if isinstance(given, Requested):
             if isinstance(given.request, Arm):
-                self.bridge.arm_asked(sysid, now_ns)
+                self.bridge.armings.asked(sysid, now_ns)
             return self.bridge.asked(self._operators.client_of(given.request_id), sysid, now_ns)
         if isinstance(given, HeartbeatSeen):
-            done = self.bridge.armed_seen(sysid, now_ns) if given.armed else []
-            self.bridge.mode_shown(given.mode_name, sysid, now_ns)
+            done = self.bridge.armings.seen(sysid, now_ns) if given.armed else []
+            self.bridge.armings.mode_shown(given.mode_name, sysid, now_ns)
             return done
         if isinstance(given, LandedSeen) and given.landed is not LandedState.ON_GROUND:
-            return self.bridge.not_standing(sysid, "it does not stand on the ground", now_ns)
+            return self.bridge.armings.not_standing(
+                sysid, "it does not stand on the ground", now_ns
+            )
         if isinstance(given, CommandEnded) and given.result is not None:
             if given.kind is CommandKind.ARM and given.result != Result.ACCEPTED:
-                self.bridge.arm_refused(sysid)
+                self.bridge.armings.refused(sysid)
             return self.bridge.command_answered(given.request_id, given.result, now_ns)
         return []
 

@@ -58,7 +58,7 @@ def _asked(
     if telemetry is not None:
         vehicle = Address(telemetry.sysid, telemetry.compid)
         held = bridge.held_back(command, telemetry.autopilot, vehicle)
-        not_now = bridge.why_not_arm(command, telemetry.sysid)
+        not_now = bridge.armings.why_not(command, telemetry.sysid)
         refusal = refusal or not_now
     if isinstance(command, ipc.Stream) and owner != STATION:
         streamed = vehicles.of_owner(owner).streamed_by(client)

@@ -340,7 +340,7 @@ class Session:
             case gate_effects.StreamVerdict():
                 return self._operators.stream_verdict(item, vehicle.sysid, now_ns)
             case gate_effects.SendCommand(kind=CommandKind.ARM):
-                self._bridge.bridge.arm_sent(vehicle.sysid, now_ns)
+                self._bridge.bridge.armings.sent(vehicle.sysid, now_ns)
                 return vehicle.carry_out(item, now_ns)
             case (
                 gate_effects.SendSetpoint()
