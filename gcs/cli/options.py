@@ -146,7 +146,8 @@ CLIENT_KEY = click.Option(
     type=UTF8,
     default="",
     metavar="FILE",
-    help="The signing key of MAVLink clients: what they send unsigned is refused.",
+    help="The signing key of MAVLink clients: what they send unsigned is refused, and who comes to "
+    "a port is sent heartbeats alone until it has signed.",
 )
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
 

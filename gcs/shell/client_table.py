@@ -117,7 +117,7 @@ class ClientTable:
     def __init__(self, first_link: int, limits: ClientLimits) -> None:
         self._first = first_link
         self._limits = limits
-        beside = UNVERIFIED_PLACES if limits.verifies else 0
+        beside = 2 * UNVERIFIED_PLACES if limits.verifies else 0  # also of those who have just gone
         self._room = min(limits.max_clients, LAST_LINK - first_link + 1 - beside)
         self._clients: dict[int, _Client] = {}
         self._arrivals: list[Arrival] = []
@@ -129,6 +129,9 @@ class ClientTable:
         """Links whose clients went in this turn.  Where there are keys, nobody gets the number
         before the session knows: what it sends to the one, or says of it, is not the other's."""
         self._newcomers, self._newcomers_ns = UNVERIFIED_HZ, 0
+        self._no_room: dict[str, int] = {}
+        """Who has the key, and went as there was no place: its name, and when it may come again.
+        Before `EVICTABLE_NS` it would hardly find one, and each time is told and recorded."""
         self._refused_told_ns = 0
 
     def __contains__(self, link: int) -> bool:
@@ -179,13 +182,14 @@ class ClientTable:
         self._unverified.remove(link)
         client.verified = True
         if not room:
+            self._no_room[client.peer.name] = now_ns + EVICTABLE_NS
             self.gone(link, "no room for it")
 
     def _may_try(self, peer: Peer, now_ns: int) -> bool:
         """Whether one more can come that is not verified: the first of them makes room for it."""
         more = (now_ns - self._newcomers_ns) * UNVERIFIED_HZ / 1e9
         self._newcomers, self._newcomers_ns = min(UNVERIFIED_HZ, self._newcomers + more), now_ns
-        if self._newcomers < 1.0:
+        if self._newcomers < 1.0 or self._no_room.get(peer.name, now_ns) > now_ns:
             return False
         if len(self._unverified) >= UNVERIFIED_PLACES:
             first = self._unverified[0]
@@ -266,6 +270,7 @@ class ClientTable:
     def sweep(self, now_ns: int) -> None:
         """Those that were silent for too long, and what was dropped."""
         silent_ns = round(self._limits.silent_s * 1e9)
+        self._no_room = {name: at for name, at in self._no_room.items() if at > now_ns}
         for link, client in list(self._clients.items()):
             if client.dropped and now_ns - client.told_ns >= FLOOD_TOLD_NS:
                 self._arrivals.append(ClientFlooded(link, client.dropped))

@@ -168,3 +168,23 @@ def test_the_audit_reproduces_who_was_verified_and_when(monkeypatch: pytest.Monk
     assert {item.kind for item in came} >= {"ClientCame", "ClientGone"}
     result = audit(tape.take(), tape.attachments, "test", "")
     assert result.good, (result.notes, result.first[:5])
+
+
+def test_a_flood_is_told_to_a_client_and_to_no_stranger() -> None:
+    flight = Door()
+    flight.connected()
+    stranger, owner = flight.comes(246), flight.comes(245, CLIENT_KEY)
+    owner.beat()
+    for second in range(7):
+        for client in (stranger, owner):
+            client.beat()
+            flight.feed(inputs.ClientFlooded(client.link, 100 + second))
+        flight.run(1.0)
+    told = [text for text in owner.messages("STATUSTEXT") if "dropped" in text.text]
+    assert [text.severity for text in told] == [dialect.MAV_SEVERITY_WARNING] * 2
+    assert [text.get_srcSystem() for text in told] == [1, 1]
+    assert "gate: 100 dropped: more than 500 messages/s" in owner.texts()
+    assert "gate: 515 dropped: more than 500 messages/s" in owner.texts()
+    assert flight.kinds(stranger) == {"HEARTBEAT"}
+    rows = flight.of(ipc.BridgeStatus)[-1].clients
+    assert [row.dropped for row in rows] == [721, 721]

@@ -118,6 +118,37 @@ def test_where_all_places_are_taken_a_verified_one_goes_and_is_told() -> None:
     assert other in door.table
 
 
+def test_one_without_the_key_that_is_silent_is_no_place_for_one_who_has_it() -> None:
+    door = Door(max_clients=1)
+    one = door.verified()
+    silent = door.comes()
+    assert silent is not None
+    door.turn(4.0)
+    door.beats(one)
+    third = door.verified()
+    assert [link for link, _ in gone(door.turn())] == [third]
+    assert silent in door.table
+
+
+def test_who_found_no_place_comes_again_after_a_while() -> None:
+    door = Door(max_clients=1)
+    one = door.verified()
+    again = PaperPeer("again")
+    link = door.table.come(again, door.now_ns)
+    assert link is not None
+    door.table.verify(link, door.now_ns)
+    came = 0
+    for _ in range(40):
+        door.turn(0.1)
+        door.beats(one)
+        door.table.sweep(door.now_ns)
+        came += door.table.come(again, door.now_ns) is not None
+        if came:
+            break
+    assert came
+    assert door.now_ns == 1_000 * S + 3_100_000_000, "the first turn, and 3 s"
+
+
 def test_a_silent_one_with_the_key_makes_room_for_another_one() -> None:
     door = Door(max_clients=2)
     silent, lively = door.verified(), door.verified()
@@ -207,8 +238,11 @@ def test_so_many_come_in_a_second_however_many_try() -> None:
 
 
 def test_there_is_a_link_for_each_place() -> None:
-    door = Door(max_clients=32, first=LAST_LINK - UNVERIFIED_PLACES - 1)
+    door = Door(max_clients=32, first=LAST_LINK - 2 * UNVERIFIED_PLACES - 1)
     one, other = door.verified(), door.verified()
     crowd = [door.comes() for _ in range(UNVERIFIED_PLACES)]
     assert None not in crowd
     assert len({one, other, *crowd}) == UNVERIFIED_PLACES + 2
+    door.turn()
+    third = door.verified()
+    assert third not in door.table, "no more links than two are left for those who have the key"

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import gc
 import os
+import select
+import socket
 import sys
 from contextlib import ExitStack
 from pathlib import Path
-from typing import cast
+from typing import Literal, cast
 
+import msgspec
 import pytest
 
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
+from gcs.gate.policy.parse import DEFAULT
 from gcs.session.effects import Finish
+from gcs.session.inputs import ClientCame
 from gcs.shell import sockets, station
 from gcs.shell.endpoints import Endpoint
 from gcs.shell.pipes import LineSink
 from gcs.shell.signals import SignalSource
-from gcs.shell.station import CannotStartError, _open_links
+from gcs.shell.station import CannotStartError, _open_client_ports, _open_links
 
 
 def test_a_serial_line_that_cannot_be_used_is_told_with_its_own_hint(
@@ -33,6 +38,28 @@ def test_a_serial_line_that_cannot_be_used_is_told_with_its_own_hint(
     assert caught.value == CannotStartError(
         ExitCode.USAGE, "/dev/ttyUSB0,57600: serial lines need pyserial", "install pyserial"
     )
+
+
+@pytest.mark.slow  # sockets
+@pytest.mark.parametrize(
+    ("key", "unsigned", "verified"),
+    [("", "refuse", True), ("client.key", "refuse", False), ("client.key", "warn", True)],
+)
+def test_a_peer_is_to_be_verified_where_nothing_is_taken_without_the_key(
+    key: str, unsigned: Literal["refuse", "warn"], verified: bool
+) -> None:
+    config = StationConfig(clients=["udpin://127.0.0.1:0"], client_key_path=key)
+    policy = msgspec.structs.replace(
+        DEFAULT, signing=msgspec.structs.replace(DEFAULT.signing, unsigned=unsigned)
+    )
+    with ExitStack() as opened, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as peer:
+        ports = _open_client_ports(config, policy, [], opened)
+        assert ports is not None
+        peer.sendto(b"\xfd", ("127.0.0.1", ports.endpoints[0].port))
+        readable, _, _ = select.select(ports.waiting, [], [], 60.0)
+        came = ports.turn(readable, [], 1_000_000_000)[0]
+    assert isinstance(came, ClientCame)
+    assert came.verified is verified
 
 
 def test_what_is_there_at_the_start_is_left_out_of_every_later_garbage_collection(
