@@ -11,7 +11,7 @@ from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge, same
 from gcs.gate.requests import Abort, Disarm, Hold
-from gcs.gate.states import FlightMode, LandedState, State
+from gcs.gate.states import Control, FlightMode, LandedState, State
 
 RISKY: Final = frozenset({CommandKind.ARM, CommandKind.TAKE_OFF})
 """Commands whose late effect is dangerous."""
@@ -128,7 +128,8 @@ def holds_until_it_is_shown(edge: Edge) -> Iterator[str]:
     """A hold that is commanded and not shown always has a next try, at 1 Hz."""
     before, after = edge.before, edge.after
     again_ns = after.hold_again_ns
-    if CommandKind.HOLD in edge.commands and again_ns is None and INSTEAD.isdisjoint(edge.commands):
+    given_up = not INSTEAD.isdisjoint(edge.commands) or _taken_back(edge)
+    if CommandKind.HOLD in edge.commands and again_ns is None and not given_up:
         yield f"hold is commanded in {after.state.name} and has no next try"
     if before.hold_again_ns is None:
         return
@@ -139,6 +140,12 @@ def holds_until_it_is_shown(edge: Edge) -> Iterator[str]:
         yield f"hold is due in {after.state.name} and not commanded"
     elif again_ns > edge.now_ns + HOLD_EVERY_NS:
         yield "the next try of hold is too far off"
+
+
+def _taken_back(edge: Edge) -> bool:
+    """A mode was overdue when the operator asked for control, so the vehicle was told to hold in
+    the same step, before control is taken of what holds."""
+    return edge.mode_overdue and edge.accepted and edge.after.control is Control.TAKING
 
 
 def _chosen_by_others(edge: Edge) -> bool:

@@ -13,7 +13,7 @@ from msgspec import structs
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import verifier_for
-from gcs.gate.effects import Outcome, Ruling, SendSetpoint, SwitchedFence, Verdict
+from gcs.gate.effects import CommandKind, Outcome, Ruling, SendSetpoint, SwitchedFence, Verdict
 from gcs.gate.inputs import (
     ClimbEndSeen,
     HeartbeatSeen,
@@ -40,7 +40,7 @@ from gcs.gate.proof.alphabet import ALPHABET, TICK_NS
 from gcs.gate.proof.edge import Edge
 from gcs.gate.proof.invariants import objections
 from gcs.gate.proof.world import YARD, World
-from gcs.gate.requests import GoTo, TakeControl
+from gcs.gate.requests import GoTo, Resume, TakeControl
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.shares import examples
 
@@ -267,3 +267,37 @@ def test_a_mode_that_is_overdue_is_dealt_with_before_the_operator_leaves(
     assert list(objections(edge)) == []
     ended = replace(edge, after=replace(edge.after, state=State.HOLDING))
     assert any(o.invariant == 0 for o in objections(ended)) is (then is State.LANDING)
+
+
+@pytest.mark.parametrize(("overdue_in_ns", "then"), [(0, State.HOVERING), (1, State.LANDING)])
+def test_a_mode_that_is_overdue_is_dealt_with_before_control_is_asked_for(
+    overdue_in_ns: int, then: State
+) -> None:
+    """The landing that came to nothing ends in a hold, of which the operator takes control."""
+    run = Run()
+    now_ns = 10 * SECOND_NS
+    memory = replace(
+        run.gate.memory,
+        state=State.LANDING,
+        control=Control.OURS,
+        heard_ns=now_ns,
+        heard_before=True,
+        armed=True,
+        landed=LandedState.IN_AIR,
+        landed_ns=now_ns,
+        pos_ned=(0.0, 0.0, -5.0),
+        v_ned=(0.0, 0.0, 0.0),
+        pos_ns=now_ns,
+        mode=FlightMode.GUIDED,
+        asked_mode=FlightMode.LAND,
+        asked_until_ns=now_ns + overdue_in_ns,
+    )
+    gate, given = Gate.resumed(YARD, memory, now_ns), Requested(1, "test", Resume())
+    before = gate.memory
+    effects = gate.handle(given, now_ns)
+    edge = Edge(YARD, before, given, now_ns, effects, gate.memory)
+    assert gate.state is then
+    assert (CommandKind.HOLD in edge.commands) is (then is State.HOVERING)
+    assert list(objections(edge)) == []
+    lost = replace(edge, after=replace(edge.after, control=Control.OURS))
+    assert any("has no next try" in str(o) for o in objections(lost)) is (then is State.HOVERING)
