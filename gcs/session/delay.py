@@ -1,4 +1,4 @@
-"""How late a position came: the time that it spent in queues on its way.
+"""How late a position came: the time that it spent on its way, in queues and else.
 
 A position has the vehicle's time stamp.  What its arrival is later than that, compared with the
 quickest sample, is delay; a vehicle whose clock runs at another rate than ours, as a simulator that
@@ -6,6 +6,10 @@ is slower than real time, looks as if that grew and grew.  So the vehicle is ask
 a second (TIMESYNC, https://mavlink.io/en/services/timesync.html): a position that comes together
 with an answer was no longer on its way than question and answer together were.  Both autopilots
 answer (recorded).
+
+The same answers show a delay that was there from the first byte, with which no sample is compared:
+how a way there and back is shared between the two is not known, so all of it is taken for the way
+of the positions.  For a stop it is the same: it takes as long to be sent as the rest.
 """
 
 from __future__ import annotations
@@ -22,6 +26,9 @@ ASK_REAL_NS: Final = 100_000_000
 """Between two questions: a second, but of a vehicle in a hurry no more than ten a real second."""
 ASKED_KEPT: Final = 5
 """An answer that comes later than so many questions tells nothing of now."""
+TELL_EVERY_NS: Final = 10_000_000_000
+ANSWERS_KEPT: Final = 5
+"""The quickest of the last ones counts: one answer may wait for a busy vehicle."""
 
 
 @dataclass(slots=True)
@@ -35,9 +42,15 @@ class Delay:
     _latest_at_ns: int | None = None
     _asked_ns: list[int] = field(default_factory=list)
     _last_asked_ns: int = 0
+    _least_ns: list[int] = field(default_factory=list)
+    """What the two clocks differ by at least, as each of the last answers shows it."""
+    late_ns: int = 0
+    """How late the latest position came."""
+    _told_ns: int | None = None
 
     def of(self, time_boot_ms: int, now_ns: int) -> int:
-        """How much later than the quickest sample one with that stamp comes.
+        """How late a position with that stamp comes: at most, by the vehicle's answers, or how much
+        later than the quickest one, where that is more.
 
         The quickest is forgotten at 1 ms a second, more than any two clocks drift apart.
         """
@@ -47,7 +60,21 @@ class Delay:
         allowed_ns = self._quickest_ns + (now_ns - self._quickest_at_ns) // 1000
         self._quickest_ns, self._quickest_at_ns = min(offset_ns, allowed_ns), now_ns
         self._latest_ns, self._latest_at_ns = offset_ns, now_ns
-        return offset_ns - self._quickest_ns
+        first_ns = min(self._quickest_ns, max(self._least_ns, default=self._quickest_ns))
+        self.late_ns = offset_ns - first_ns
+        return self.late_ns
+
+    def trouble(self, allowed_ns: int, now_ns: int) -> str:
+        """Once in ten seconds, where positions come later than is allowed: that they do."""
+        told_ns = self._told_ns
+        if self.late_ns <= allowed_ns or (told_ns is not None and now_ns - told_ns < TELL_EVERY_NS):
+            return ""
+        self._told_ns = now_ns
+        late_s, allowed_s = self.times.real_s(self.late_ns), self.times.real_s(allowed_ns)
+        return (
+            f"positions come up to {late_s:.1f} s late, and are not used: {allowed_s:g} s are "
+            f"allowed (position_age_s). The way to the vehicle and back takes as long (TIMESYNC)"
+        )
 
     @property
     def ask_at_ns(self) -> int:
@@ -72,3 +99,4 @@ class Delay:
         assert self._quickest_ns is not None
         bound_ns = self._latest_ns - (now_ns - asked_ns)
         self._quickest_ns = max(self._quickest_ns, bound_ns)
+        self._least_ns = [*self._least_ns[1 - ANSWERS_KEPT :], bound_ns]

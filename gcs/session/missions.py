@@ -38,6 +38,7 @@ from gcs.session.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.session.jobs.start import Start
 from gcs.session.jobs.starting import first_item
 from gcs.session.jobs.upload import Upload
+from gcs.session.mission_told import MissionTold
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
@@ -51,10 +52,8 @@ TRANSFER_WORDS = frozenset(
 MISSION_WORDS = TRANSFER_WORDS | {"mission_start", "mission_check"}
 KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
 
-NO_ITEMS = (0, 0xFFFF)
-"""MISSION_CURRENT.total without a mission.  PX4 has told it since 1.14; 0 was "not told" before."""
-NEWS_NS = 1_500_000_000
-"""How long a MISSION_CURRENT may still be about the mission before: it comes once a second."""
+PLAN_RECEIVED = "Flight plan received"
+"""What ArduCopter tells all of a mission that was uploaded (recorded, 4.7)."""
 
 STOPS = frozenset(
     {Event.ABORT, Event.HOLD, Event.LAND, Event.RETURN, Event.DISARM, Event.FORCE_DISARM}
@@ -97,15 +96,7 @@ class Missions:
         """Whether the vehicle was seen flying the mission that was started last."""
         self.total: int | None = None
         """Items that the vehicle holds, as they were read back last."""
-        self._told: MissionCurrent | None = None
-        """What the vehicle tells of its plans."""
-        self._first_item = 0
-        """The number of the first item after home, where home is one."""
-        self._verified_id = 0
-        self._verified_ns: int | None = None
-        """The number that it gives the mission that was verified, and since when there is one."""
-        self._told_verified = False
-        """Whether it has told of that mission since."""
+        self._told = MissionTold(times)
 
     @property
     def deadline_ns(self) -> int | None:
@@ -244,9 +235,9 @@ class Missions:
         work: list[Work] = []
         match heard.message:
             case MissionCurrent(seq=seq, mission_state=state) as told:
-                self._told, self._first_item = told, first_item(view.telemetry)
-                self._number(told, now_ns)
-                work += self._replaced(told, view)
+                self._told.heard(told, self._on_board, first_item(view.telemetry), now_ns)
+                if why := self._told.replaced(self._on_board):
+                    work += self._forget_flown(why, view)
                 self._was_active |= state == MissionState.ACTIVE
                 over = state == MissionState.COMPLETE and self._was_active
                 work += self._progress(seq, over)
@@ -259,58 +250,27 @@ class Missions:
     @property
     def fence_on_board(self) -> bool:
         """Whether the vehicle says that a fence was uploaded to it; older firmware does not."""
-        return self._told is not None and self._told.fence_id != 0
+        return self._told.fence_on_board
 
     @property
     def unverified(self) -> str:
-        """What is wrong with the mission on board, as the vehicle tells of it (MISSION_CURRENT):
-        that it was not verified, or is another one.  Empty where it was, or where there is none."""
-        told, known = self._told, self._on_board
-        if told is None:
-            return "it has not told whether a mission is on board"
-        if told.total in NO_ITEMS:
-            return ""
-        if known is None:
-            return f"the mission on board ({told.total} items) was not verified: upload or clear it"
-        if told.total != self._countable(known):
-            which = f"{told.total} items, {self._countable(known)} were verified"
-            return f"another mission is on board than was verified ({which})"
-        if self._verified_id and told.mission_id != self._verified_id:
-            return "another mission of as many items is on board than was verified"
-        return ""
+        """What is wrong with the mission on board, as the vehicle tells of it.  Empty where it was
+        verified, or where there is none."""
+        return self._told.unverified(self._on_board)
 
-    def _number(self, told: MissionCurrent, now_ns: int) -> None:
-        """Keep the number of the verified mission, once it is told after that was on board."""
-        if self._on_board is None:
-            self._learn_anew()
-        elif self._verified_ns is None:
-            self._verified_ns = now_ns
-        elif now_ns - self._verified_ns >= self._times.real_ns(NEWS_NS):
-            self._verified_id = self._verified_id or told.mission_id
-            self._told_verified |= told.total == self._countable(self._on_board)
-
-    def _countable(self, known: OnBoard) -> int:
-        """Items as MISSION_CURRENT.total counts them: ArduPilot leaves out home (recorded: 6 of the
-        7 of its MISSION_COUNT)."""
-        return len(known.sent) - self._first_item
-
-    def _learn_anew(self) -> None:
-        """Another mission was verified, or none is on board."""
-        self._verified_id, self._verified_ns, self._told_verified = 0, None, False
-
-    def _replaced(self, told: MissionCurrent, view: VehicleView) -> list[Work]:
-        """What is flown is not what was verified: another station has put it on board meanwhile.
-
-        Only where the vehicle has told of the verified one before: its number of items, and the
-        number (`mission_id`) that it gives each mission, where it gives one.
-        """
-        another = told.total in NO_ITEMS or bool(self.unverified)
-        if not self._told_verified or not another or view.state is not State.FLYING_MISSION:
+    def said(self, text: str, view: VehicleView) -> list[Work]:
+        """A text of the vehicle: ArduPilot's of a mission that it was sent, by whomever."""
+        if text != PLAN_RECEIVED or self._on_board is None:
             return []
-        text = self.unverified or "no mission is on board any more"
+        return self._forget_flown(f'another mission was put on board ("{text}")', view)
+
+    def _forget_flown(self, why: str, view: VehicleView) -> list[Work]:
+        """The station itself uploads and clears no mission that is flown."""
+        if view.state is not State.FLYING_MISSION:
+            return []
         self._on_board, self._begin_seq = None, None
-        self._learn_anew()
-        log = Log(Level.ERROR, NODE, f"While its mission is flown: {text}")
+        self._told.learn_anew()
+        log = Log(Level.ERROR, NODE, f"While its mission is flown: {why}")
         return [log, ToGate(MissionLoaded("", 0))]
 
     def wake(self, view: VehicleView, now_ns: int) -> list[Work]:
@@ -320,7 +280,7 @@ class Missions:
 
     def forget(self) -> list[Work]:
         """The vehicle restarted or was away: nothing is known of what it has on board."""
-        self._told = None
+        self._told.forget()
         self._begin_seq = None
         if self._on_board is None:
             return []
@@ -356,7 +316,7 @@ class Missions:
         for item in job_work:
             if isinstance(item, OnBoardChanged):
                 self._on_board, self._begin_seq = item.on_board, None
-                self._learn_anew()
+                self._told.learn_anew()
                 if item.on_board is not None:
                     self.total = len(item.on_board.sent)
             elif isinstance(item, BeginsAt):

@@ -47,6 +47,7 @@ def snapshot(
     if telemetry is None:
         return without_vehicle
     placed = telemetry.pos_ned is not None
+    position_age_ns = now_ns - telemetry.position_ns + telemetry.delay.late_ns
     return msgspec.structs.replace(
         without_vehicle,
         vehicle=telemetry.label,
@@ -56,7 +57,7 @@ def snapshot(
         pos_enu=enu_from_ned(telemetry.pos_ned) if telemetry.pos_ned else None,
         v_enu=enu_from_ned(telemetry.v_ned) if placed else None,
         yaw_deg=None if telemetry.yaw_rad is None else math.degrees(telemetry.yaw_rad) % 360.0,
-        position_age_s=(now_ns - telemetry.position_ns) / 1e9 if placed else None,
+        position_age_s=position_age_ns / 1e9 if placed else None,
         home_enu=enu_from_ned(telemetry.home_ned) if telemetry.home_ned else None,
         gps=telemetry.health.gps.words,
         estimator=telemetry.health.estimator.words,

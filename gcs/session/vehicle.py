@@ -19,7 +19,7 @@ from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address, Send
 from gcs.protocol.sequence import SequenceTracker
 from gcs.report import FenceShape
-from gcs.session import recorded, teller
+from gcs.session import recorded, teller, vehicle_messages
 from gcs.session.effects import Record
 from gcs.session.gate_port import NOT_FLYING, condition
 from gcs.session.inputs import FileRead, FileWritten
@@ -33,7 +33,7 @@ from gcs.session.vehicle_decisions import VehicleDecisions
 from gcs.session.vehicle_frames import VehicleFrames
 from gcs.session.vehicle_parts import VehicleParts
 from gcs.session.words import logged
-from gcs.session.work import AskMission, AskOrbit, CheckStart, PlaceFence, Work
+from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, Work
 from gcs.wire import messages as m
 from gcs.wire.messages import CommandLong
 
@@ -184,6 +184,8 @@ class Vehicle:
         if now_ns >= telemetry.delay.ask_at_ns:
             target = telemetry.sysid, telemetry.compid
             work.append(Send(m.Timesync(0, telemetry.delay.ask(now_ns), *target)))
+        if late := telemetry.delay.trouble(telemetry.position_age_ns, now_ns):
+            work.append(Log(effects.Level.WARNING, vehicle_messages.NODE, late))
         if now_ns - telemetry.position_ns <= telemetry.position_age_ns:
             work += telemetry.health.gps_silent(parts.times.real_ns(GPS_SILENT_NS), now_ns)
         missing = telemetry.origin is None and now_ns - parts.met_ns > parts.times.real_ns(

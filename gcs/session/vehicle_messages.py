@@ -77,6 +77,7 @@ class VehicleMessages:
             work += self._authorized(telemetry, heard, message, now_ns)
         elif isinstance(message, m.Statustext):
             work += logged(parts.words.text(heard.compid, message, now_ns))
+            work += parts.missions.said(message.text, parts.view(telemetry))
         elif isinstance(message, m.AutopilotVersion):
             work.append(Record(recorded.vehicle(telemetry, message, parts.of)))
         elif isinstance(message, m.ControlStatus):

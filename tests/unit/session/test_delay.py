@@ -18,13 +18,16 @@ class Script:
         self.rate, self.answers = rate, answers
         self.now_ns = 0
 
-    def run(self, seconds: float, queue_s_per_s: float = 0.0) -> int:
-        """The greatest delay meanwhile; a question a second, its answer in the queue as well."""
+    def run(self, seconds: float, queue_s_per_s: float = 0.0, way_s: float = 0.0) -> int:
+        """The greatest delay meanwhile; a question a second, its answer in the queue as well.
+
+        `way_s`: so long is all on its way from the vehicle, from the first byte.
+        """
         worst = 0
         start_ns = self.now_ns
         for _ in range(round(seconds * 10)):
             self.now_ns += 100 * MS
-            queue_ns = round((self.now_ns - start_ns) * queue_s_per_s)
+            queue_ns = round((self.now_ns - start_ns) * queue_s_per_s + way_s * SECOND)
             stamp_ms = round((self.now_ns - queue_ns) * self.rate / MS)
             worst = max(worst, self.delay.of(stamp_ms, self.now_ns))
             if self.answers and self.now_ns % SECOND == 0:
@@ -66,3 +69,38 @@ def test_a_position_that_came_long_before_the_answer_is_not_excused_by_it() -> N
     assert delay.of(1000, 5 * SECOND) == pytest.approx(4 * SECOND, rel=0.01)
     delay.answered(asked_ns, 5 * SECOND + 300 * MS)
     assert delay.of(1300, 5 * SECOND + 300 * MS) == pytest.approx(4 * SECOND, rel=0.01)
+
+
+@pytest.mark.parametrize("way_s", [0.0, 0.3, 1.5, 3.0])
+def test_a_delay_that_was_there_from_the_first_byte_shows(way_s: float) -> None:
+    """The answers take as long; 20 ms are the way to the vehicle."""
+    script = Script()
+    script.run(3.0, way_s=way_s)
+    assert script.delay.late_ns == pytest.approx(way_s * SECOND + 20 * MS, abs=MS)
+
+
+def test_without_answers_it_does_not() -> None:
+    script = Script(answers=False)
+    script.run(3.0, way_s=3.0)
+    assert script.delay.late_ns == 0
+
+
+def test_one_answer_that_waited_says_nothing_of_the_way() -> None:
+    script = Script()
+    script.run(3.0)
+    asked_ns = script.delay.ask(script.now_ns - SECOND)
+    script.delay.answered(asked_ns, script.now_ns)
+    script.answers = False
+    script.run(0.5)
+    assert script.delay.late_ns == pytest.approx(20 * MS, abs=MS)
+
+
+def test_what_is_too_late_is_told_once_in_ten_seconds() -> None:
+    script, told = Script(), []
+    for _ in range(25):
+        script.run(1.0, way_s=3.0)
+        told.append(script.delay.trouble(SECOND, script.now_ns))
+    (first, *_) = [each for each in told if each]
+    assert "up to 3.0 s late" in first
+    assert len([each for each in told if each]) == 3
+    assert Script().delay.trouble(SECOND, SECOND) == ""

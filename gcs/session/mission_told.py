@@ -1,0 +1,90 @@
+"""What a vehicle tells of its mission (MISSION_CURRENT), beside the one that was verified.
+
+It tells how many items there are, and newer firmware a number of the mission (`mission_id`).  The
+recorded PX4 1.14 and ArduCopter 4.7 give none.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gcs.session.plans import OnBoard
+from gcs.session.times import Times
+from gcs.wire.messages import MissionCurrent
+
+NO_ITEMS: Final = (0, 0xFFFF)
+"""MISSION_CURRENT.total without a mission.  PX4 has told it since 1.14; 0 was "not told" before."""
+NEWS_NS: Final = 1_500_000_000
+"""How long a MISSION_CURRENT may still be about the mission before: it comes once a second."""
+
+
+class MissionTold:
+    """Of one vehicle; it is asked about the verified mission that is known to be on board."""
+
+    def __init__(self, times: Times) -> None:
+        self._times = times
+        self._told: MissionCurrent | None = None
+        self._first_item = 0
+        """The number of the first item after home, where home is one."""
+        self._verified_id = 0
+        self._verified_ns: int | None = None
+        """The number that it gives the mission that was verified, and since when there is one."""
+        self._seen = False
+        """Whether it has told of that mission since."""
+
+    @property
+    def fence_on_board(self) -> bool:
+        """Whether the vehicle says that a fence was uploaded to it; older firmware does not."""
+        return self._told is not None and self._told.fence_id != 0
+
+    def forget(self) -> None:
+        """The vehicle restarted or was away."""
+        self._told = None
+
+    def learn_anew(self) -> None:
+        """Another mission was verified, or none is on board."""
+        self._verified_id, self._verified_ns, self._seen = 0, None, False
+
+    def heard(
+        self, told: MissionCurrent, known: OnBoard | None, first_item: int, now_ns: int
+    ) -> None:
+        """Keep it, and the number of the verified mission, once it is told after that was brought
+        on board.  `first_item`: of those that the vehicle counts."""
+        self._told, self._first_item = told, first_item
+        if known is None:
+            self.learn_anew()
+        elif self._verified_ns is None:
+            self._verified_ns = now_ns
+        elif now_ns - self._verified_ns >= self._times.real_ns(NEWS_NS):
+            self._verified_id = self._verified_id or told.mission_id
+            self._seen |= told.total == self._countable(known)
+
+    def unverified(self, known: OnBoard | None) -> str:
+        """What is wrong with the mission on board: that it was not verified, or is another one.
+        Empty where it was verified, or where there is none."""
+        told = self._told
+        if told is None:
+            return "it has not told whether a mission is on board"
+        if told.total in NO_ITEMS:
+            return ""
+        if known is None:
+            return f"the mission on board ({told.total} items) was not verified: upload or clear it"
+        if told.total != self._countable(known):
+            which = f"{told.total} items, {self._countable(known)} were verified"
+            return f"another mission is on board than was verified ({which})"
+        if self._verified_id and told.mission_id != self._verified_id:
+            return "another mission of as many items is on board than was verified"
+        return ""
+
+    def replaced(self, known: OnBoard | None) -> str:
+        """That what is on board is not what it has told of before; empty where it is."""
+        if not self._seen or self._told is None:
+            return ""
+        if self._told.total in NO_ITEMS:
+            return "no mission is on board any more"
+        return self.unverified(known)
+
+    def _countable(self, known: OnBoard) -> int:
+        """Items as MISSION_CURRENT.total counts them: ArduPilot leaves out home (recorded: 6 of the
+        7 of its MISSION_COUNT)."""
+        return len(known.sent) - self._first_item
