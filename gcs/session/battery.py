@@ -21,6 +21,10 @@ from gcs.wire.messages import BatteryStatus, SysStatus
 SAG_NS: Final = 5_000_000_000
 """A voltage counts where it is low for so long: motors that spin up pull it down for a moment
 (ArduPilot waits 10 s: BATT_LOW_TIMER)."""
+BETTER_PCT: Final = 2
+BETTER_V: Final = 1.02
+"""A battery that is low is so until this much more is told than the limit, in per cent of the
+charge and as a factor of the voltage: what is told goes up and down with the load."""
 UNKNOWN_MV: Final = 0xFFFF
 PROPULSION: Final = frozenset(
     {BatteryFunction.UNKNOWN, BatteryFunction.ALL, BatteryFunction.PROPULSION}
@@ -89,11 +93,16 @@ class Batteries:
         found = [(told, words)]
         if left_pct >= 0:
             text = f"{left_pct} % are left"
-            found += [(Level.LOW, text)] if left_pct <= limits.low_pct else []
-            found += [(Level.CRITICAL, text)] if left_pct <= limits.critical_pct else []
+            for level, limit_pct in (
+                (Level.LOW, limits.low_pct),
+                (Level.CRITICAL, limits.critical_pct),
+            ):
+                stays = battery.level >= level and left_pct < min(limit_pct + BETTER_PCT, 100)
+                found += [(level, text)] if left_pct <= limit_pct or stays else []
         volts = None if total_mv in (0, UNKNOWN_MV) else total_mv / 1e3
         for level, limit_v in ((Level.LOW, limits.low_v), (Level.CRITICAL, limits.critical_v)):
-            if volts is None or limit_v is None or volts > limit_v:
+            better = BETTER_V if battery.level >= level else 1.0
+            if volts is None or limit_v is None or volts > limit_v * better:
                 battery.since_ns.pop(level, None)
             elif now_ns - battery.since_ns.setdefault(level, now_ns) >= SAG_NS:
                 found.append((level, f"{volts:.1f} V"))

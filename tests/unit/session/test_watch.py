@@ -131,6 +131,27 @@ def test_a_charged_battery_is_no_longer_low() -> None:
     assert script.told == {}
 
 
+@pytest.mark.parametrize("tell", [system, battery])
+def test_at_its_limit_it_is_low_once_and_not_again_and_again(tell: type[Message]) -> None:
+    """The share goes up and down by a per cent or two as the load does."""
+    script = Script()
+    for left_pct in (15, 16, 15, 16, 14, 16):
+        script.hear(tell(left_pct))
+        assert Condition.BATTERY_LOW in script.told
+    script.hear(tell(17))
+    assert script.told == {}
+    script.hear(tell(16))
+    assert script.told == {}
+
+
+def test_a_full_battery_is_not_low_whatever_the_limit() -> None:
+    script = Script(parse_policy("[battery]\nlow_pct = 99.5", "my.toml"))
+    script.hear(system(99))
+    assert Condition.BATTERY_LOW in script.told
+    script.hear(system(100))
+    assert script.told == {}
+
+
 def test_of_several_batteries_the_worst_counts_and_a_camera_s_does_not() -> None:
     script = Script()
     script.hear(battery(10, number=1))
@@ -154,7 +175,9 @@ def test_a_voltage_counts_after_five_seconds() -> None:
     script.hear(system(80, 13_900))
     assert script.told[Condition.BATTERY_LOW] == "13.9 V"
     assert Condition.BATTERY_CRITICAL not in script.told
-    script.hear(system(80, 14_100))
+    script.hear(system(80, 14_200))
+    assert Condition.BATTERY_LOW in script.told
+    script.hear(system(80, 14_300))
     assert script.told == {}
 
 
