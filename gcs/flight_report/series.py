@@ -76,7 +76,7 @@ class Series:
             last.join(row)
             return
         self._stretches.append(row)
-        if len(self._stretches) * (1 if self._rows_each == 1 else 2) > MAX_ROWS:
+        while len(self._stretches) * (1 if self._rows_each == 1 else 2) > MAX_ROWS:
             self._halve()
 
     def _halve(self) -> None:

@@ -7,7 +7,7 @@ import math
 import random
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gcs.flight_report.lanes import MAX_CHANGES, Lane, Span
@@ -45,6 +45,7 @@ class TestSeries:
         assert peak_s == pytest.approx(2_000.0, abs=5_000.0 / 500)
 
     @given(st.integers(1, 6_000), st.integers(0, 2**32))
+    @example(MAX_ROWS + 1, 0)
     def test_rows_are_few_and_their_times_rise(self, count: int, seed: int) -> None:
         chance = random.Random(seed)
         values = [None if chance.random() < 0.2 else chance.random() for _ in range(count)]
