@@ -32,11 +32,13 @@ from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.refused_addresses import RefusedAddresses
 from gcs.bridge.routing import Routes, target_of
+from gcs.bridge.unheard import Unheard
 from gcs.bridge.unverified import Unverified
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
+from gcs.protocol.enforced_sysid import Hears
 from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MsgId
@@ -75,6 +77,7 @@ class Bridge:
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
         self._refused_addresses = RefusedAddresses(own)
+        self._unheard = Unheard()
         self._in_control = 0
         self.armings = Armings(self._judges, self._exchanges)
 
@@ -98,6 +101,7 @@ class Bridge:
         """It has gone, and its link's number is free."""
         self._routes.close(link)
         self._refused_addresses.gone(link)
+        self._unheard.gone(link)
         client = self._by_link.pop(link, None)
         if client is None:
             return []
@@ -129,6 +133,14 @@ class Bridge:
             if client.link not in self.unverified:
                 flooded = client.flooding.due_text(self._rate_hz, now_ns)
                 effects += [Answers(client.link, speaker, text) for text in flooded]
+        return effects
+
+    def hears_alone(self, vehicle: Address, hears: Hears) -> list[BridgeEffect]:
+        """Once a second, of a vehicle that does not hear everybody: who is not heard is told."""
+        effects: list[BridgeEffect] = []
+        for client in self._by_number.values():
+            sysids = [sysid for sysid, _ in self._routes.components(client.link)]
+            effects += self._unheard.told(client, sysids, vehicle, hears)
         return effects
 
     def _lose(self, client: Client, reason: str) -> list[BridgeEffect]:

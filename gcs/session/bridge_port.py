@@ -38,6 +38,7 @@ from gcs.gate.refusal import Refusal
 from gcs.gate.requests import Arm
 from gcs.gate.states import LandedState
 from gcs.protocol.effects import Address
+from gcs.protocol.enforced_sysid import hears_alone
 from gcs.protocol.parameter_names import names_of
 from gcs.session import teller
 from gcs.session.discovery import needed_hz
@@ -154,8 +155,15 @@ class BridgePort:
         done: list[BridgeEffect | Emit] = [*self.bridge.second(vehicles, now_ns)]
         done += self.bridge.control_status(vehicles)
         for each in self._vehicles:
-            if each.telemetry is not None and each.telemetry.armed:
-                done += self.bridge.armed(Address(each.telemetry.sysid, each.telemetry.compid))
+            telemetry = each.telemetry
+            if telemetry is None:
+                continue
+            address = Address(telemetry.sysid, telemetry.compid)
+            if telemetry.armed:
+                done += self.bridge.armed(address)
+            hears = hears_alone(telemetry.autopilot.name, each.parameters)
+            if hears is not None:
+                done += self.bridge.hears_alone(address, hears)
         if self._shown:
             links = self._link_rows(now_ns, counts)
             clients = [
