@@ -96,7 +96,8 @@ class BridgePort:
     def from_client(self, link: int, frame: Frame, now_ns: int) -> Judged:
         """A good frame on a client's link."""
         vehicles = self._vehicles.addresses
-        return self.bridge.from_client(link, frame, vehicles, self._seen, now_ns)
+        why_not = partial(self._vehicles.why_not_ours, now_ns=now_ns)
+        return self.bridge.from_client(link, frame, vehicles, self._seen, now_ns, why_not)
 
     def _seen(self, sysid: int) -> Seen | None:
         """How that vehicle is; None before it is heard."""
