@@ -30,13 +30,15 @@ from gcs.bridge.judge.climbs import asks_for_height, climbs
 from gcs.bridge.judge.plans import of_plan
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
-from gcs.bridge.refused_addresses import RefusedAddresses
+from gcs.bridge.refused_addresses import RefusedAddresses, WhyNotOurs, nobody_else
 from gcs.bridge.routing import Routes, target_of
+from gcs.bridge.unheard import Unheard
 from gcs.bridge.unverified import Unverified
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
+from gcs.protocol.enforced_sysid import Hears
 from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MsgId
@@ -75,6 +77,7 @@ class Bridge:
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
         self._refused_addresses = RefusedAddresses(own)
+        self._unheard = Unheard()
         self._in_control = 0
         self.armings = Armings(self._judges, self._exchanges)
 
@@ -98,6 +101,7 @@ class Bridge:
         """It has gone, and its link's number is free."""
         self._routes.close(link)
         self._refused_addresses.gone(link)
+        self._unheard.gone(link)
         client = self._by_link.pop(link, None)
         if client is None:
             return []
@@ -131,6 +135,14 @@ class Bridge:
                 effects += [Answers(client.link, speaker, text) for text in flooded]
         return effects
 
+    def hears_alone(self, vehicle: Address, hears: Hears) -> list[BridgeEffect]:
+        """Once a second, of a vehicle that does not hear everybody: who is not heard is told."""
+        effects: list[BridgeEffect] = []
+        for client in self._by_number.values():
+            sysids = [sysid for sysid, _ in self._routes.components(client.link)]
+            effects += self._unheard.told(client, sysids, vehicle, hears)
+        return effects
+
     def _lose(self, client: Client, reason: str) -> list[BridgeEffect]:
         if not client.joined:
             return []
@@ -158,9 +170,10 @@ class Bridge:
         vehicles: Sequence[Address],
         look: LookAt,
         now_ns: int,
+        why_not_ours: WhyNotOurs = nobody_else,
     ) -> Judged:
-        """A good frame on a client's link; `vehicles` are the autopilots that were heard, and
-        `look` tells of one, by its system id, how it is."""
+        """A good frame on a client's link; `vehicles` are the autopilots that were met, and `look`
+        tells of one, by its system id, how it is; `why_not_ours` is asked of other systems."""
         client = self._by_link[link]
         client.received.count(1, now_ns)
         refused = self._refused_addresses.of_sender(client, frame, vehicles, now_ns)
@@ -173,7 +186,7 @@ class Bridge:
         sysid, _ = target_of(frame)
         addressed = [each for each in vehicles if sysid in (0, each.sysid)]
         if sysid and not addressed:
-            judged = self._elsewhere(client, frame, sysid, vehicles)
+            judged = self._elsewhere(client, frame, sysid, vehicles, why_not_ours)
         else:
             given = Given(client, frame, look, self._in_control, now_ns)
             judged = self._judges.judge(given, addressed)
@@ -184,7 +197,12 @@ class Bridge:
         return Judged(judged.refused, [*effects, *judged.effects])
 
     def _elsewhere(
-        self, client: Client, frame: Frame, sysid: int, vehicles: Sequence[Address]
+        self,
+        client: Client,
+        frame: Frame,
+        sysid: int,
+        vehicles: Sequence[Address],
+        why_not_ours: WhyNotOurs,
     ) -> Judged:
         """A frame for a system that is no vehicle of ours: another client, or nobody."""
         links = self._routes.between_clients(frame, client.link)
@@ -192,7 +210,8 @@ class Bridge:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
             return Judged(False, [])
-        return Judged(True, self._refused_addresses.of_target(client, sysid, vehicles))
+        refused = self._refused_addresses.of_target(client, frame, vehicles, why_not_ours(sysid))
+        return Judged(True, refused)
 
     @property
     def deadline_ns(self) -> int | None:

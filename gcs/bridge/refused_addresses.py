@@ -5,19 +5,32 @@ People are told, once for each client and reason.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Callable, Sequence
+from typing import Final, TypeAlias
 
-from gcs.bridge.answers import texts
+from gcs.bridge.answers import acknowledgement, texts
 from gcs.bridge.client import Client
 from gcs.bridge.effects import Answers, BridgeEffect, Notes
+from gcs.bridge.routing import target_of
 from gcs.gate.effects import Level
+from gcs.gate.refusal import Code
 from gcs.protocol.effects import Address
+from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
-from gcs.wire.ids import MsgId
+from gcs.wire.ids import Component, MsgId, Result
+from gcs.wire.messages import CommandInt, CommandLong
 
 NAMESAKE_TOLD_NS: Final = 2_000_000_000
 """Between two texts to another bridge of our address."""
+
+
+WhyNotOurs: TypeAlias = Callable[[int], str]
+"""Of a system that is heard on a vehicle's link and is not flown here, why not; else empty."""
+
+
+def nobody_else(_sysid: int) -> str:
+    """Where nobody but the vehicles is heard."""
+    return ""
 
 
 class RefusedAddresses:
@@ -55,22 +68,30 @@ class RefusedAddresses:
         return [*self._once(client, reason), *self._namesake(client.link, frame, now_ns)]
 
     def of_target(
-        self, client: Client, sysid: int, vehicles: Sequence[Address]
+        self, client: Client, frame: Frame, vehicles: Sequence[Address], why_not_ours: str
     ) -> list[BridgeEffect]:
-        """What is told of a frame for a system that nobody is: which vehicles there are.
+        """What is told of a frame for a system that is no vehicle of this station.
 
-        It gets no answer of the protocol's, because that would be in the name of a component that
-        is not there.
+        One for nobody gets no answer of the protocol's, because that would be in the name of a
+        component that is not there.  Where `why_not_ours` says why a vehicle that clients see is
+        not flown here, a command for it is acknowledged.
         """
+        sysid, compid = target_of(frame)
         here = ", ".join(str(each.sysid) for each in vehicles)
         heard = f"heard: system {here}" if here else "no vehicle is heard yet"
-        reason = f"there is no system {sysid} here ({heard})"
+        reason = why_not_ours or f"there is no system {sysid} here ({heard})"
         told = self._once(client, reason)
         if told:
             # In a vehicle's name: QGroundControl shows no text of anybody else (from memory).
             speaker = vehicles[0] if vehicles else self._own
             messages = texts(Level.WARNING, f"refused: {reason}", sysid)
             told += [Answers(client.link, speaker, message) for message in messages]
+        message = decode(frame) if why_not_ours else None
+        if isinstance(message, CommandLong | CommandInt):
+            asked = Address(sysid, compid or Component.AUTOPILOT1)
+            sender = Address(frame.sysid, frame.compid)
+            denied = acknowledgement(message.command, Result.DENIED, sender, Code.POLICY)
+            told.append(Answers(client.link, asked, denied))
         return told
 
     def _namesake(self, link: int, frame: Frame, now_ns: int) -> list[BridgeEffect]:

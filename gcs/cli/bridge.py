@@ -87,7 +87,8 @@ OWN_COMPID = 191
     "--target",
     type=click.IntRange(1, 255),
     metavar="SYSID",
-    help="Fly this vehicle alone, by its MAVLink system id.  [default: every one that is heard]",
+    help="Fly this vehicle alone, by its MAVLink system id; clients see others on the link, and "
+    "command none of them.  [default: every one that is heard]",
 )
 @click.option(
     "--sysid",

@@ -19,6 +19,7 @@ from gcs.gate.states import LandedState, State
 from gcs.operator import request_words
 from gcs.operator.client import Polled, Readable, StationEnded
 from gcs.operator.errors import ExitError, Interrupted
+from gcs.operator.vehicle_alone import after_station_died, record_hint
 
 LEAVE_WAIT_S = 20.0
 START_WAIT_S = 60.0
@@ -160,7 +161,7 @@ class Dialogue:
             else:
                 self._handle(event)
         if self.ended is not None and not self._leaving:
-            raise unexpected_end(self.ended, self.trouble)
+            raise unexpected_end(self.ended, self.trouble, self.snapshot)
         if self._interrupts.name and not self._leaving:
             raise Interrupted(self._interrupts.name)
         if self._watched is not None and self._watched[0] in polled.ready:
@@ -316,8 +317,13 @@ class Dialogue:
         return seen.landed not in UNKNOWN_LANDED and seen.state != State.STALE.name
 
 
-def unexpected_end(ended: StationEnded, trouble: ipc.Trouble | None) -> ExitError:
-    """Why the station ended although nobody asked it to; `trouble` is the last that it told."""
+def unexpected_end(
+    ended: StationEnded, trouble: ipc.Trouble | None, seen: ipc.Snapshot | None = None
+) -> ExitError:
+    """Why the station ended although nobody asked it to, and what its vehicle does now.
+
+    `trouble` and `seen` are the last that it told; who is sent no snapshots passes none.
+    """
     if trouble is not None and trouble.exit_code:
         return ExitError(trouble.exit_code, trouble.text, trouble.hint)
     if ended.bye is not None:
@@ -325,10 +331,11 @@ def unexpected_end(ended: StationEnded, trouble: ipc.Trouble | None) -> ExitErro
     if ended.exit_code is None:
         return ExitError(ExitCode.NOT_COMPLETED, "the connection to the station was lost")
     code, tail = ended.exit_code, ended.stderr_tail
+    words = f"its last words:\n{tail}" if tail else "it left no word"
     return ExitError(
         ExitCode.BUG,
-        f"the link process died (exit code {code}); the vehicle's own failsafe acts now",
-        f"its last words:\n{tail}" if tail else "it left no word",
+        f"the link process died (exit code {code}); {after_station_died(seen)}",
+        "\n".join(filter(None, (record_hint(seen.log_path if seen else ""), words))),
     )
 
 

@@ -394,7 +394,7 @@ class Station:
             return Disconnected("this program has left the station")
         if self._ended is None:
             return Disconnected("the connection to the station was lost")
-        return Disconnected(str(unexpected_end(self._ended, self.trouble)))
+        return Disconnected(str(unexpected_end(self._ended, self.trouble, self.latest)))
 
     def _heard(self, event: StationEvent) -> None:
         """In the reader's thread."""

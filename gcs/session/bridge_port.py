@@ -38,6 +38,7 @@ from gcs.gate.refusal import Refusal
 from gcs.gate.requests import Arm
 from gcs.gate.states import LandedState
 from gcs.protocol.effects import Address
+from gcs.protocol.enforced_sysid import hears_alone
 from gcs.protocol.parameter_names import names_of
 from gcs.session import teller
 from gcs.session.discovery import needed_hz
@@ -95,7 +96,8 @@ class BridgePort:
     def from_client(self, link: int, frame: Frame, now_ns: int) -> Judged:
         """A good frame on a client's link."""
         vehicles = self._vehicles.addresses
-        return self.bridge.from_client(link, frame, vehicles, self._seen, now_ns)
+        why_not = partial(self._vehicles.why_not_ours, now_ns=now_ns)
+        return self.bridge.from_client(link, frame, vehicles, self._seen, now_ns, why_not)
 
     def _seen(self, sysid: int) -> Seen | None:
         """How that vehicle is; None before it is heard."""
@@ -154,8 +156,15 @@ class BridgePort:
         done: list[BridgeEffect | Emit] = [*self.bridge.second(vehicles, now_ns)]
         done += self.bridge.control_status(vehicles)
         for each in self._vehicles:
-            if each.telemetry is not None and each.telemetry.armed:
-                done += self.bridge.armed(Address(each.telemetry.sysid, each.telemetry.compid))
+            telemetry = each.telemetry
+            if telemetry is None:
+                continue
+            address = Address(telemetry.sysid, telemetry.compid)
+            if telemetry.armed:
+                done += self.bridge.armed(address)
+            hears = hears_alone(telemetry.autopilot.name, each.parameters)
+            if hears is not None:
+                done += self.bridge.hears_alone(address, hears)
         if self._shown:
             links = self._link_rows(now_ns, counts)
             clients = [

@@ -39,10 +39,13 @@ class Roster:
     def names(self, now_ns: int) -> list[str]:
         """Those that are heard now, by id."""
         return [
-            self._labels[sysid]
-            for sysid, heard_ns in sorted(self._heard_ns.items())
-            if now_ns - heard_ns <= self._gone_ns
+            self._labels[sysid] for sysid in sorted(self._heard_ns) if self.hears(sysid, now_ns)
         ]
+
+    def hears(self, sysid: int, now_ns: int) -> bool:
+        """Whether the autopilot of that system is heard now."""
+        heard_ns = self._heard_ns.get(sysid)
+        return heard_ns is not None and now_ns - heard_ns <= self._gone_ns
 
     def listening(self, now_ns: int) -> bool:
         """Whether others may still be heard that were there all the time."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from gcs.protocol.effects import Address, Heard, Send, Wake
+from gcs.protocol.enforced_sysid import NAMES_OF_ENFORCED
 from gcs.protocol.parameter_names import names_of
 from gcs.protocol.parameters import decode_value
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
@@ -111,11 +112,19 @@ class Settings:
     """Reads them once for each time that a vehicle appears, and follows what changes later."""
 
     def __init__(
-        self, own: Address, times: Times, limits: Limits, *, reads_thrust: bool = False
+        self,
+        own: Address,
+        times: Times,
+        limits: Limits,
+        *,
+        reads_thrust: bool = False,
+        reads_enforced: bool = False,
     ) -> None:
-        """`reads_thrust`: what a thrust means to the vehicle, too (`thrust_meaning.py`)."""
+        """`reads_thrust`: what a thrust means to the vehicle, too (`thrust_meaning.py`);
+        `reads_enforced`: whether it hears one system id alone (`enforced_sysid.py`)."""
         self._own = own
         self._reads_thrust = reads_thrust
+        self._reads_enforced = reads_enforced
         self._limits = limits
         self._times = times
         self._reader: SettingsReader | None = None
@@ -138,6 +147,8 @@ class Settings:
         wanted += [name for name in parameters_of(who) if name not in wanted]
         wanted += [table[who] for table in READ_LAST if who in table]
         wanted += NAMES_OF_THRUST.get(who, ()) if self._reads_thrust else ()
+        enforced = NAMES_OF_ENFORCED.get(who, ()) if self._reads_enforced else ()
+        wanted += [name for name in enforced if name not in wanted]
         names = [(newest, name) for newest in wanted for name in names_of(newest)]
         self._scales = {name.name: (newest, name.scale) for newest, name in names}
         self._values, self._told = {}, None

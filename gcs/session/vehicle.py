@@ -241,6 +241,10 @@ class Vehicle:
         """The names of all that are heard."""
         return self._parts.roster.names(now_ns)
 
+    def hears(self, sysid: int, now_ns: int) -> bool:
+        """Whether the autopilot of that system is heard, this vehicle or another one."""
+        return self._parts.roster.hears(sysid, now_ns)
+
     def listening(self, now_ns: int) -> bool:
         """Whether it may still turn out that there are several vehicles (one of our own is alone),
         or the return height or rally points, which a return needs, are still on their way."""

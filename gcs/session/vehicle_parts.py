@@ -67,6 +67,7 @@ class VehicleParts:
             times,
             limits_of(policy, own.sysid),
             reads_thrust=policy.stream.tilt_deg > 0.0,
+            reads_enforced=config.bridge or bool(config.clients),
         )
         self.missions = Missions(own, times)
         self.orbits = Orbits(times)

@@ -103,6 +103,19 @@ class Vehicles:
         """The names of all that are heard."""
         return [name for vehicle in self._all for name in vehicle.heard_vehicles(now_ns)]
 
+    def why_not_ours(self, sysid: int, now_ns: int) -> str:
+        """Of a system that is heard on a link and was not met: why nothing can be asked of it;
+        empty where no autopilot of that number is heard."""
+        if self.slot_of(sysid) is not None or not self.first.hears(sysid, now_ns):
+            return ""
+        chosen, is_bridge = self._config.target_sysid, self._config.bridge
+        station = "bridge" if is_bridge else "station"
+        if chosen:
+            option = "--target" if is_bridge else "--vehicle"
+            return f"system {sysid} is not this {station}'s: {option} {chosen}"
+        ours = ", ".join(str(address.sysid) for address in self.addresses)
+        return f"system {sysid} is not this {station}'s, which has met: {ours}"
+
     def prefix(self, owner: int) -> str:
         """What is said of a vehicle begins so; empty where there is one only, or of the station."""
         if len(self._all) == 1 or owner == STATION:

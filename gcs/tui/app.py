@@ -22,6 +22,7 @@ from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
 from gcs.operator.client import StationEnded, StationEvent
+from gcs.operator.vehicle_alone import after_station_died
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.hang_up import on_hang_up
 from gcs.tui.keyboard import PendingGoal, VelocityKeys
@@ -117,7 +118,7 @@ class FlyApp(App[None]):
         """How it ended, once `run` has returned; waits for the station process to end."""
         self._end_within(0.0)
         ended = self._ended or self._connection.close()
-        return SessionResult(ended, self._leaving, self._trouble)
+        return SessionResult(ended, self._leaving, self._trouble, self.scene.snapshot)
 
     @property
     def heard_vehicle(self) -> bool:
@@ -226,7 +227,8 @@ class FlyApp(App[None]):
             return
         sentence = f"the link process has ended (exit code {ended.exit_code}); q leaves"
         self.scene.answer = Answer(sentence.upper(), "refused")
-        for line in [sentence, *ended.stderr_tail.splitlines()]:
+        alone = [after_station_died(self.scene.snapshot)] if ended.bye is None else []
+        for line in [sentence, *alone, *ended.stderr_tail.splitlines()]:
             self._log_line(line, look.BAD)
 
     def _log_line(self, text: str, style: str, level: int = 4, time_ns: int | None = None) -> None:

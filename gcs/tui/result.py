@@ -14,11 +14,13 @@ from gcs.operator.errors import Interrupted
 
 @dataclass(frozen=True, slots=True)
 class SessionResult:
-    """`asked` is False if the station ended before the operator wanted to leave."""
+    """`asked` is False if the station ended before the operator wanted to leave; `trouble` and
+    `seen` are the last that it told."""
 
     ended: StationEnded
     asked: bool
     trouble: ipc.Trouble | None = None
+    seen: ipc.Snapshot | None = None
 
 
 def until_hello(
@@ -55,7 +57,7 @@ def print_result(
     Raises ExitError if the station ended although nobody asked it to.
     """
     if not result.asked:
-        raise unexpected_end(result.ended, result.trouble)
+        raise unexpected_end(result.ended, result.trouble, result.seen)
     bye = result.ended.bye
     if bye is None:
         echo(f"gcs: the link ended without a good-bye\n{result.ended.stderr_tail}".rstrip())

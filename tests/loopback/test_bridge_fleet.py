@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
@@ -12,6 +13,7 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.report import AttachmentItem, DecisionItem
+from tests.loopback.bridged import BRIDGE
 from tests.loopback.fleet import (
     ACCEPTED,
     ARM,
@@ -107,6 +109,26 @@ def test_a_third_system_id_is_refused() -> None:
     assert client.acks(LAND) == []
     assert any("there is no system 3 here" in text for text in flight.told())
     assert flight.each(lambda n: flight.state_of(n) is State.HOVERING)()
+
+
+def test_a_vehicle_that_is_not_the_target_is_shown_and_not_commanded() -> None:
+    flight = Fleet(config=msgspec.structs.replace(BRIDGE, target_sysid=1))
+    client = flight.join()
+    flight.run(5)
+    shown = {beat.get_srcSystem() for beat in client.messages("HEARTBEAT")}
+    assert {1, 2} <= shown
+    sent = len(flight.sent)
+    client.command(LAND, target=(2, 1))
+    client.command(LAND, target=(2, 1))
+    flight.run(0)
+    assert len(flight.sent) == sent
+    answered = [(ack.get_srcSystem(), ack.result) for ack in client.acks(LAND)]
+    assert answered == [(2, DENIED), (2, DENIED)]
+    assert client.texts().count("refused: system 2 is not this bridge's: --target 1") == 1
+    client.command(LAND, target=(3, 1))
+    flight.run(0)
+    assert "there is no system 3 here (heard: system 1)" in client.texts()
+    assert len(client.acks(LAND)) == 2
 
 
 def test_who_plays_either_vehicle_is_not_believed() -> None:

@@ -238,6 +238,23 @@ def test_an_ardupilot_that_enforces_hears_clients_of_the_bridges_number_alone(
     read = [each for each in client.messages("PARAM_VALUE") if each.param_id == "ARMING_RUDDER"]
     assert bool(read) is hears
     assert client.ask(ARM, 1, within_s=10) == 0
+    told = "vehicle 1 hears system 255 alone (SYSID_ENFORCE), not 245"
+    assert client.texts().count(told) == (0 if hears else 1)
+
+
+def test_a_client_that_came_before_the_vehicle_enforces_is_told_when_it_does() -> None:
+    flight = BridgedFlight("ardupilot")
+    client = flight.join(sysid=245)
+    flight.connected()
+    flight.run(2.0)
+    assert "alone" not in client.texts()
+    parameters = flight.vehicle.parameters
+    parameters.set("SYSID_ENFORCE", 1)
+    own = flight.join(sysid=255)
+    own.send(dialect.MAVLink_param_request_read_message(1, 1, b"SYSID_ENFORCE", -1))
+    flight.run(3.0)
+    assert client.texts().count("(SYSID_ENFORCE), not 245") == 1
+    assert "alone" not in own.texts()
 
 
 def test_a_vehicle_without_a_key_is_made_to_ask_all_the_same() -> None:

@@ -15,7 +15,8 @@ from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import SPEC_TIMING
 from gcs.wire.frame import Frame, split
-from gcs.wire.ids import Cmd
+from gcs.wire.ids import Cmd, Result
+from gcs.wire.messages import CommandAck
 from tests.unit.bridge.test_bridge import HEARTBEAT, OWN, S, acks, frame_of, of, texts
 from tests.unit.bridge.vehicles import standing
 
@@ -31,9 +32,13 @@ class Pair:
         self.bridge.came(1, "udp 1")
         self.says(HEARTBEAT)
 
-    def says(self, message: Any, vehicles: tuple[Address, ...] = BOTH) -> Judged:
-        seen = standing(PX4)
-        return self.bridge.from_client(1, frame_of(message), vehicles, lambda _: seen, 1_000 * S)
+    def says(
+        self, message: Any, vehicles: tuple[Address, ...] = BOTH, why_not_ours: str = ""
+    ) -> Judged:
+        seen, frame = standing(PX4), frame_of(message)
+        return self.bridge.from_client(
+            1, frame, vehicles, lambda _: seen, 1_000 * S, lambda _: why_not_ours
+        )
 
 
 def faster(sysid: int, msgid: int, hz: float) -> Any:
@@ -108,6 +113,35 @@ def test_what_is_for_nobody_is_answered_with_a_text_that_names_the_vehicles(mess
     again = pair.says(message)
     assert (again.refused, list(again.effects)) == (True, [])
     assert "no system 10" in texts(list(pair.says(land(10)).effects))
+
+
+NOT_OURS = "system 2 is not this bridge's: --target 1"
+
+
+@pytest.mark.parametrize("kind", ["long", "int"])
+def test_a_command_for_a_vehicle_that_is_shown_only_is_denied_in_its_name(kind: str) -> None:
+    """Each time; the text comes once."""
+    pair = Pair()
+    message = land(2)
+    if kind == "int":
+        message = mavlink.MAVLink_command_int_message(2, 0, 0, Cmd.NAV_LAND, 0, 0, *[0] * 7)
+    judged = pair.says(message, BOTH[:1], NOT_OURS)
+    assert judged.refused
+    assert texts(list(judged.effects)) == f"refused: {NOT_OURS}"
+    assert acks(judged.effects) == [(Cmd.NAV_LAND, Result.DENIED)]
+    assert {
+        each.source for each in of(Answers, judged.effects) if isinstance(each.message, CommandAck)
+    } == {BOTH[1]}
+    again = pair.says(message, BOTH[:1], NOT_OURS)
+    assert acks(again.effects) == [(Cmd.NAV_LAND, Result.DENIED)]
+    assert texts(list(again.effects)) == ""
+
+
+def test_what_is_no_command_for_a_vehicle_that_is_shown_only_is_told_by_text() -> None:
+    asked = mavlink.MAVLink_param_request_list_message(2, 1)
+    judged = Pair().says(asked, BOTH[:1], NOT_OURS)
+    assert (judged.refused, acks(judged.effects)) == (True, [])
+    assert texts(list(judged.effects)) == f"refused: {NOT_OURS}"
 
 
 def test_before_a_vehicle_is_heard_the_bridge_says_so_itself() -> None:

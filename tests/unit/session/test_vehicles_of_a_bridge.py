@@ -93,6 +93,32 @@ def test_any_other_station_flies_one(config: StationConfig) -> None:
 
 
 @pytest.mark.parametrize(
+    ("config", "why"),
+    [
+        (
+            StationConfig(bridge=True, target_sysid=7),
+            "system 3 is not this bridge's: --target 7",
+        ),
+        (
+            StationConfig(clients=["a port"], target_sysid=7),
+            "system 3 is not this station's: --vehicle 7",
+        ),
+        (StationConfig(clients=["a port"]), "system 3 is not this station's, which has met: 7"),
+        (StationConfig(bridge=True), ""),
+    ],
+)
+def test_of_another_one_that_is_heard_it_is_said_why_it_is_not_flown(
+    config: StationConfig, why: str
+) -> None:
+    fleet = Fleet(config)
+    fleet.hear(heartbeat(7))
+    fleet.hear(heartbeat(3))
+    assert [fleet.vehicles.why_not_ours(sysid, 2) for sysid in (3, 7, 9)] == [why, "", ""]
+    long_after_ns = 3_600 * 10**9
+    assert fleet.vehicles.why_not_ours(3, long_after_ns) == "", "it is not heard any more"
+
+
+@pytest.mark.parametrize(
     "other",
     [
         heartbeat(3, kind=STATION_TYPE, autopilot=NO_AUTOPILOT),

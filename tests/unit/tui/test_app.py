@@ -477,11 +477,12 @@ def test_a_station_that_dies_is_shown_and_is_an_error() -> None:
         await drawn(app, pilot)
         assert "THE LINK PROCESS HAS ENDED (EXIT CODE -9)" in screen_text(app)
         assert "last words" in screen_text(app)
+        assert "the vehicle was disarmed" in screen_text(app)
         await pilot.press("q")
 
     app, station = flown(script)
     assert not any(isinstance(command, ipc.Leave) for command in station.sent)
-    with pytest.raises(ExitError, match="died") as failed:
+    with pytest.raises(ExitError, match=r"died .*; the vehicle was disarmed") as failed:
         print_result(app.result, lambda _: None)
     assert failed.value.exit_code == ExitCode.BUG
 
