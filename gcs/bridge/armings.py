@@ -22,6 +22,8 @@ class Armings:
         """`exchanges` are those of all clients that are there, with one vehicle."""
         self._judges = judges
         self._exchanges = exchanges
+        self._shown_armed: dict[int, bool] = {}
+        """By the last heartbeat of each vehicle."""
 
     def why_not(self, command: ipc.Command, vehicle: int) -> Refusal | None:
         """Why an arming of any operator cannot be judged now."""
@@ -41,6 +43,16 @@ class Armings:
     def refused(self, vehicle: int) -> None:
         """The vehicle has refused an arming.  Of one that it accepts a heartbeat is to tell."""
         self._judges.of(vehicle).mission_mode.arm_ended()
+
+    def unasked(self, vehicle: int, *, armed: bool, asked: bool) -> bool:
+        """Whether a heartbeat shows the vehicle armed that the one before showed disarmed, and not
+        by an arming of the gate's: one that is `asked` for now, or that may still come late.
+
+        The gate forgets a vehicle that is lost; here what it was then counts when it is back.
+        """
+        was, self._shown_armed[vehicle] = self._shown_armed.get(vehicle), armed
+        late = self._judges.of(vehicle).mission_mode.arm_may_come
+        return armed and was is False and not (asked or late)
 
     def seen(self, vehicle: int, now_ns: int) -> list[BridgeEffect]:
         """A heartbeat shows it armed: nothing that was chosen before is flown.  A mode that may

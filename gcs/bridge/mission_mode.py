@@ -66,6 +66,11 @@ class MissionMode:
         """An arming goes to the vehicle.  One that the gate refuses cannot come late."""
         self._arm_ns = now_ns
 
+    @property
+    def arm_may_come(self) -> bool:
+        """An arming was sent to the vehicle, and may still take effect."""
+        return self._arm_ns is not None
+
     def arm_ended(self) -> None:
         """The vehicle has refused it, or a heartbeat shows it armed."""
         self._arm_ns = None

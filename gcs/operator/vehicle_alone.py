@@ -12,8 +12,8 @@ from gcs import ipc
 
 STATION_LOSS: Final = "ground-station loss: "
 OFFBOARD_LOSS: Final = "offboard loss: "
-OFFBOARD_MODE: Final = "OFFBOARD"
-"""PX4's mode in which it flies setpoints: without them it acts by a setting of its own."""
+SETPOINT_MODES: Final = frozenset({"OFFBOARD", "GUIDED"})
+"""In which it flies setpoints: without them it acts by a setting of its own."""
 UNREAD: Final = "could not be read"
 GOES_ON: Final = (
     "it goes on with what it was told: an ArduPilot flies to its last goal and stays there, "
@@ -29,8 +29,8 @@ def after_station_died(seen: ipc.Snapshot | None) -> str:
         return "the vehicle was disarmed"
     said = [_station_loss(_of(seen, STATION_LOSS))]
     offboard = _of(seen, OFFBOARD_LOSS)
-    if seen.mode == OFFBOARD_MODE and offboard:
-        said.append(f"in {OFFBOARD_MODE} it does this as its setpoints have ended: {offboard}")
+    if seen.mode in SETPOINT_MODES and offboard:
+        said.append(f"in {seen.mode} it does this as its setpoints have ended: {offboard}")
     others = len(seen.vehicles) - 1
     if others > 0:
         said.append(f"that is {seen.vehicle}; of {others} more nothing is known here")

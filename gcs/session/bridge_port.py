@@ -61,6 +61,7 @@ from gcs.wire.ids import Result
 from gcs.wire.messages import ParamValue
 
 NODE = "link"
+UNASKED = "it was disarmed and is armed now, and no client of this bridge asked for it"
 
 
 class BridgePort:
@@ -135,7 +136,9 @@ class BridgePort:
                 self.bridge.armings.asked(sysid, now_ns)
             return self.bridge.asked(self._operators.client_of(given.request_id), sysid, now_ns)
         if isinstance(given, HeartbeatSeen):
-            done = self.bridge.armings.seen(sysid, now_ns) if given.armed else []
+            done = self._armed_unasked(given, sysid, now_ns)
+            if given.armed:
+                done += self.bridge.armings.seen(sysid, now_ns)
             self.bridge.armings.mode_shown(given.mode_name, sysid, now_ns)
             return done
         if isinstance(given, LandedSeen) and given.landed is not LandedState.ON_GROUND:
@@ -147,6 +150,20 @@ class BridgePort:
                 self.bridge.armings.refused(sysid)
             return self.bridge.command_answered(given.request_id, given.result, now_ns)
         return []
+
+    def _armed_unasked(self, seen: HeartbeatSeen, sysid: int, now_ns: int) -> list[BridgeEffect]:
+        """Told where the vehicle has become armed and the gate has not asked it to.  Whether a
+        pilot armed it, another station or the vehicle itself no message tells."""
+        vehicle = self._vehicles.of_sysid(sysid)
+        if not self._shown or vehicle is None or vehicle.telemetry is None:
+            return []
+        outstanding = vehicle.gate.memory.outstanding
+        asked = any(kind is CommandKind.ARM for _, kind in outstanding)
+        if not self.bridge.armings.unasked(sysid, armed=seen.armed, asked=asked):
+            return []
+        address = Address(sysid, vehicle.telemetry.compid)
+        note = Notes(Level.WARNING, UNASKED)
+        return [note, *self.bridge.warn(Level.WARNING, UNASKED, address, now_ns)]
 
     def second(
         self, now_ns: int, counts: Sequence[Counts], signatures: Signatures

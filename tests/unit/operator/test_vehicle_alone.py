@@ -42,6 +42,7 @@ def test_an_ardupilot_whose_failsafe_is_off_goes_on() -> None:
     told = after_station_died(flying("ardupilot", "GUIDED", FS_GCS_ENABLE=0.0))
     assert "ground-station failsafe is off (FS_GCS_ENABLE = 0): it goes on with what it" in told
     assert "an ArduPilot flies to its last goal" in told
+    assert told.endswith("its setpoints have ended: stop of velocities, positions are held")
 
 
 def test_what_leads_to_an_action_is_told_with_its_time() -> None:
