@@ -39,6 +39,8 @@ ACK_WAIT_NS = 500_000_000
 WORK_WAIT_NS = 10_000_000_000
 """How long a command that is in progress may say nothing more."""
 PERCENT_UNKNOWN = 255
+MOST_COUNTED = 255
+"""`confirmation` is one byte."""
 
 Input: TypeAlias = Submit | Withdraw | Heard | Wake
 _Key: TypeAlias = tuple[int, int, int]
@@ -207,7 +209,9 @@ class CommandClient:
         for key, flight in list(self._flights.items()):
             if now_ns < flight.wait_until_ns:
                 continue
-            may_try = flight.sent < flight.submit.tries and now_ns <= flight.submit.deadline_ns
+            submit = flight.submit
+            tries_left = submit.tries is None or flight.sent < submit.tries
+            may_try = tries_left and now_ns <= submit.deadline_ns
             event = _Event.SILENCE if may_try else _Event.GIVEN_UP
             effects += self._step(key, event, now_ns, None)
         return effects
@@ -256,7 +260,7 @@ def _try(flight: _Flight, now_ns: int, ack_wait_ns: int) -> Send:
     """
     command = flight.submit.command
     if flight.sent and isinstance(command, CommandLong):
-        command = msgspec.structs.replace(command, confirmation=flight.sent)
+        command = msgspec.structs.replace(command, confirmation=min(flight.sent, MOST_COUNTED))
     flight.sent += 1
     only_try = flight.submit.tries == 1
     flight.wait_until_ns = flight.submit.deadline_ns if only_try else now_ns + ack_wait_ns

@@ -54,14 +54,15 @@ class Submit:
     """Send a command.  `token` comes back in `Finished`.
 
     No try leaves after `deadline_ns` (a late arm or take-off is dangerous); `tries` is 1 for what
-    must not be done twice.  `urgent` takes the place of one with the same id that is in flight,
-    instead of waiting behind it: a hold must not wait for the answer to a mode change.
+    must not be done twice, and None for what is repeated until its deadline.  `urgent` takes the
+    place of one with the same id that is in flight, instead of waiting behind it: a hold must not
+    wait for the answer to a mode change.
     """
 
     token: int
     command: CommandLong | CommandInt
     deadline_ns: int
-    tries: int = 4
+    tries: int | None = 4
     urgent: bool = False
 
 

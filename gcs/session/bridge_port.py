@@ -97,10 +97,11 @@ class BridgePort:
     def from_client(self, link: int, frame: Frame, now_ns: int) -> Judged:
         """A good frame on a client's link."""
         vehicles = self._vehicles.addresses
+        look = partial(self._seen, now_ns)
         why_not = partial(self._vehicles.why_not_ours, now_ns=now_ns)
-        return self.bridge.from_client(link, frame, vehicles, self._seen, now_ns, why_not)
+        return self.bridge.from_client(link, frame, vehicles, look, now_ns, why_not)
 
-    def _seen(self, sysid: int) -> Seen | None:
+    def _seen(self, now_ns: int, sysid: int) -> Seen | None:
         """How that vehicle is; None before it is heard."""
         vehicle = self._vehicles.of_sysid(sysid)
         if vehicle is None or vehicle.telemetry is None:
@@ -114,6 +115,7 @@ class BridgePort:
             mission_items=vehicle.mission_items,
             land_starts=vehicle.land_starts,
             clears_takeoff=partial(_clears_takeoff, vehicle.gate),
+            why_not_resume=partial(vehicle.why_not_resume, now_ns),
         )
 
     def parameter(self, frame: Frame, now_ns: int) -> list[BridgeEffect]:

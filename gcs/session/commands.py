@@ -45,6 +45,11 @@ NEEDS_PERMIT = frozenset(
 ONE_TRY = frozenset({CommandKind.PHOTO})
 """Doing it twice would take two pictures of a vehicle that does not look at the number."""
 
+TRIED_UNTIL_DEADLINE = frozenset({CommandKind.LAND, CommandKind.RETURN})
+"""Doing it late, or again, is not dangerous: on a link with a round trip of seconds it is repeated
+for as long as the gate awaits its mode.  A late arm or take-off would be, and a hold is commanded
+again by the gate."""
+
 URGENT = frozenset(
     {CommandKind.HOLD, CommandKind.LAND, CommandKind.DISARM, CommandKind.FORCE_DISARM}
 )
@@ -187,7 +192,7 @@ class Commands:
             token,
             command,
             wanted.deadline_ns,
-            tries=1 if wanted.kind in ONE_TRY else 4,
+            tries=_tries(wanted.kind),
             urgent=wanted.kind in URGENT,
         )
         return self._work(self._client.handle(submit, now_ns), now_ns)
@@ -222,6 +227,12 @@ class Commands:
             return [*work, _log(not_ready)]
         del self._sent[token]
         return [_answer(wanted, result, text)]
+
+
+def _tries(kind: CommandKind) -> int | None:
+    if kind in TRIED_UNTIL_DEADLINE:
+        return None
+    return 1 if kind in ONE_TRY else 4
 
 
 def _answer(wanted: SendCommand, result: int | None, text: str = "") -> ToGate:

@@ -13,6 +13,7 @@ from gcs.config import StationConfig
 from gcs.gate import effects, inputs
 from gcs.gate.condition import Condition
 from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.resuming import why_not_resume
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import Autopilot
@@ -90,6 +91,11 @@ class Vehicle:
     def gate(self) -> Gate:
         """To look at, not to handle."""
         return self._parts.port.gate
+
+    def why_not_resume(self, now_ns: int) -> Refusal | None:
+        """Why the gate would not fly it under control from here, once it is held."""
+        port = self._parts.port
+        return why_not_resume(port.policy, port.gate.memory, now_ns)
 
     def flying(self, now_ns: int) -> Telemetry | None:
         """What it tells, if it flies and its position is fresh."""

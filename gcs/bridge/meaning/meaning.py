@@ -24,11 +24,16 @@ def _clears_nothing(up_m: float) -> bool:
     return False
 
 
+def _resumes() -> Refusal | None:
+    return None
+
+
 @dataclass(frozen=True, slots=True)
 class Seen:
     """The vehicle as it was last reported, and what the gate does with it.
 
-    `state` and the fields after it have defaults with which less is allowed, not more.
+    `state` and the fields after it have defaults with which less is allowed, not more; but for
+    the last, which the gate decides anyway.
     """
 
     autopilot: Autopilot
@@ -74,6 +79,9 @@ class Seen:
     """The client who asks has sent sticks lately."""
     clears_takeoff: Callable[[float], bool] = _clears_nothing
     """Whether a climb from here, by so many metres, would be cleared if the vehicle were armed."""
+    why_not_resume: Callable[[], Refusal | None] = _resumes
+    """Why the gate would not hover under control here, once the vehicle is held; None: it would.
+    The gate asks it again: this is so that what will be refused stops nothing first."""
 
 
 @dataclass(frozen=True, slots=True)

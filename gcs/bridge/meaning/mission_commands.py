@@ -7,9 +7,9 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
-from gcs.bridge.meaning.meaning import Meaning, Seen, Words
+from gcs.bridge.meaning.meaning import Meaning, Reject, Seen, Words
 from gcs.bridge.meaning.modes import meaning_named
-from gcs.bridge.meaning.says import forward, refuse, unsupported
+from gcs.bridge.meaning.says import forward, hover_again, refuse, unsupported
 from gcs.gate.refusal import Code
 from gcs.gate.states import FlightMode, State
 from gcs.protocol.autopilot import mode_named
@@ -68,8 +68,9 @@ def _set_current(number: int, seen: Seen, start: Meaning | None = None) -> Meani
         return refuse(Code.BAD_MISSION, f"there is no item {number}: the last one is {last}")
     words = (ipc.Ask(0, "mission_set_current", item=number),)
     if seen.state is State.FLYING_MISSION and seen.in_control:
-        stop = (ipc.Ask(0, "hold"), ipc.Ask(0, "resume"))
-        return Words((*stop, *words, ipc.Ask(0, "mission_start")), STOPPED_FIRST)
+        return hover_again(seen, *words, ipc.Ask(0, "mission_start"), note=STOPPED_FIRST)
+    if isinstance(start, Reject):
+        return start
     if isinstance(start, Words):
         *before, last_word = start.asks or (ipc.Ask(0, "mission_start"),)
         return Words((*before, *words, last_word), start.note)

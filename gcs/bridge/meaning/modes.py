@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
-from gcs.bridge.meaning.meaning import Meaning, Seen, Words
+from gcs.bridge.meaning.meaning import Meaning, Reject, Seen, Words
 from gcs.bridge.meaning.says import (
     DONE,
     NOT_FLOWN_BY_US,
     ask,
     forward,
+    hover_again,
     mode,
     refuse,
     unsupported,
@@ -59,8 +60,11 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
     match wanted.meaning:
         case FlightMode.HOLD:
             obeys_sticks = wanted.name != _sent(seen.autopilot, FlightMode.HOLD)
-            if obeys_sticks and seen.has_sticks and seen.in_control and not seen.on_ground:
-                return Words(_HOVER_AGAIN, _by_sticks(wanted, seen))
+            by_sticks = obeys_sticks and seen.has_sticks and seen.in_control
+            if by_sticks and not seen.on_ground:
+                again = hover_again(seen, note=_by_sticks(wanted, seen))
+                # A client that stops it is never refused.
+                return again if isinstance(again, Words) else hold(seen, wanted.name)
             return hold(seen, wanted.name)
         case FlightMode.GUIDED:
             return guided(wanted, seen)
@@ -79,7 +83,6 @@ def for_mode(wanted: Mode, seen: Seen) -> Meaning:
 
 _POSITION_MODES = frozenset({"POSCTL", "POSHOLD"})
 """Modes in which the vehicle stays where it is until a stick is moved, and again after that."""
-_HOVER_AGAIN = (ipc.Ask(0, "hold"), ipc.Ask(0, "resume"))
 
 
 def _waits_for_take_off(wanted: Mode, seen: Seen) -> Words | None:
@@ -106,7 +109,9 @@ def _position_mode(wanted: Mode, seen: Seen) -> Meaning:
         return ask("resume", note)
     if seen.state is State.STREAMING or (seen.state is State.HOVERING and seen.mode_name == guided):
         return Words((), note)
-    return ask("control", note) if seen.state is State.HOVERING else Words(_HOVER_AGAIN, note)
+    if seen.state is State.HOVERING:
+        return ask("control", note)
+    return hover_again(seen, note=note)
 
 
 def _by_sticks(wanted: Mode, seen: Seen) -> str:
@@ -144,8 +149,7 @@ def guided(wanted: Mode, seen: Seen) -> Meaning:
         return ask("resume")
     if seen.state in FLIES_ITSELF:
         # The heartbeat may still show the mode before: `mode_name` counts for nothing here.
-        stop_first = Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume")))
-        return stop_first if seen.in_control else ask("control")
+        return hover_again(seen) if seen.in_control else ask("control")
     if seen.mode_name == wanted.name and seen.in_control:
         return DONE
     return ask("control")
@@ -161,7 +165,7 @@ _WORD_OF = {
 }
 
 
-def _flown_by_itself(wanted: Mode, seen: Seen) -> Words:
+def _flown_by_itself(wanted: Mode, seen: Seen) -> Words | Reject:
     """By its name where it is not the mode that the gate sends: the gate says which one that is.
 
     A mission may be started, or gone on with, from a hold: its client has no word for `resume`.
@@ -178,7 +182,7 @@ def _flown_by_itself(wanted: Mode, seen: Seen) -> Words:
     if seen.state in NOT_FLOWN_BY_US and not seen.on_ground:
         return Words((ipc.Ask(0, "resume"), *word.asks))
     if seen.state in UNDER_WAY and seen.in_control:
-        return Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume"), *word.asks))
+        return hover_again(seen, *word.asks)
     return word
 
 

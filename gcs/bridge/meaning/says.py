@@ -29,6 +29,18 @@ def ask(word: str, note: str = "") -> Words:
     return Words((ipc.Ask(0, word),), note)
 
 
+def hover_again(seen: Seen, *then: ipc.Ask, note: str = "") -> Words | Reject:
+    """Stop what is flown, and take control of the vehicle where it is; `then` what follows.
+
+    Where the gate would not give control, nothing is stopped: the vehicle may be on its way home
+    because of what forbids it.
+    """
+    refusal = seen.why_not_resume()
+    if refusal is not None:
+        return Reject(refusal)
+    return Words((ipc.Ask(0, "hold"), ipc.Ask(0, "resume"), *then), note)
+
+
 def mode(name: str) -> Words:
     """The request for a mode by the autopilot's own name."""
     return Words((ipc.Ask(0, "mode", mode=name),))

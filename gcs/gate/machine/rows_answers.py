@@ -79,6 +79,8 @@ take_control_if_regainable: Final = Branch(
     when=CONTROL_REGAINABLE, do=(Action.TAKE_CONTROL,), to=HOVERING
 )
 unchanged_if_on_ground: Final = Branch(when=(Guard.ON_GROUND,))
+# The answer was lost, not the command.
+unchanged_if_mode_fits_state: Final = Branch(when=(Guard.MODE_FITS_STATE,))
 
 ANSWER_ROWS: Final[Mapping[Event, Row]] = {
     Event.GOAL_CLEARED: row(
@@ -126,7 +128,7 @@ ANSWER_ROWS: Final[Mapping[Event, Row]] = {
         during(MOVING, STREAMING, then=unchanged),
         during(TAKING_PICTURE, then=hover_and_end(NO_ANSWER)),
         during(FLYING_MISSION, then=(end_if_on_ground(NO_ANSWER), hold_and_end(NO_ANSWER))),
-        during(RETURNING, LANDING, then=hold_and_end(NO_ANSWER)),
+        during(RETURNING, LANDING, then=(unchanged_if_mode_fits_state, hold_and_end(NO_ANSWER))),
         during(HOLDING, then=unchanged),
         during(EXTERNAL, then=end(NO_ANSWER)),
     ),

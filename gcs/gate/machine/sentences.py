@@ -47,7 +47,7 @@ ENDED: Final[Mapping[Code, str]] = MappingProxyType(
         Code.OPERATOR_LOST: "the operator is lost",
         Code.SUPERSEDED: "a later request took its place",
         Code.DEADLINE: "it took longer than its deadline",
-        Code.NO_ANSWER: "the vehicle did not do it in time",
+        Code.NO_ANSWER: "whether the vehicle does it is not known: it was not shown in time",
         Code.VEHICLE_REFUSED: "the vehicle refused",
         Code.STALE: "the vehicle's position is too old",
         Code.LINK_LOST: "the vehicle is not heard any more",

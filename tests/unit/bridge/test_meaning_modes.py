@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.meaning import Forward, Words
+from gcs.bridge.meaning.meaning import Forward, Reject, Words
 from gcs.bridge.meaning.translate import meaning_of
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.wire.messages import Message
@@ -136,6 +139,23 @@ def test_guided_gets_to_where_the_gate_hovers(
     seen = flying(autopilot, state=state)
     seen = seen if mode_name else flying(autopilot, state=state, mode_name="")
     assert words(meaning_of(guided, seen)) == asked
+
+
+@GUIDED
+@pytest.mark.parametrize("state", [State.FLYING_MISSION, State.RETURNING, State.LANDING])
+def test_what_would_be_refused_after_a_hold_stops_nothing(
+    state: State, autopilot: Autopilot, guided: Message
+) -> None:
+    why = Refusal(Code.SEVERITY, "severity is RETURN: battery_critical")
+    seen = flying(autopilot, state=state, why_not_resume=lambda: why)
+    assert meaning_of(guided, seen) == Reject(why)
+    if state is not State.LANDING:
+        jump = meaning_of(command_long(224, 1.0), replace(seen, state=State.FLYING_MISSION))
+        assert jump == Reject(why)
+    if state is State.RETURNING:
+        assert meaning_of(command_long(300), seen) == Reject(why)
+        if autopilot is PX4:
+            assert meaning_of(command_long(300, 2.0), seen) == Reject(why), "from its third item"
 
 
 @GUIDED

@@ -18,11 +18,12 @@ from msgspec import structs
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.meaning import Sample, Seen, Settled, Sticks, Words
+from gcs.bridge.meaning.meaning import Reject, Sample, Seen, Settled, Sticks, Words
 from gcs.bridge.meaning.stick_stream import StickStream
 from gcs.bridge.meaning.translate import meaning_of
 from gcs.gate.airspace.stream_samples import StreamSample, beyond_rules
 from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.wire.messages import Message
@@ -403,6 +404,20 @@ def test_the_position_mode_of_who_has_sticks_stops_and_hovers(
     assert words(meaning) == ["hold", "resume"]
     assert isinstance(meaning, Words)
     assert "verifies what the sticks ask for" in meaning.note
+
+
+@POSITION
+def test_the_position_mode_that_would_be_refused_stops_nothing_but_a_hold_stops(
+    autopilot: Autopilot, message: Message
+) -> None:
+    """LOITER is a hold as well, and a hold is never refused."""
+    why = Refusal(Code.SEVERITY, "severity is RETURN: battery_critical")
+    seen = hovering(autopilot, state=State.RETURNING, has_sticks=True, why_not_resume=lambda: why)
+    meaning = meaning_of(message, seen)
+    if message == copter("LOITER"):
+        assert words(meaning) == ["hold"]
+    else:
+        assert meaning == Reject(why)
 
 
 @POSITION

@@ -8,7 +8,17 @@ import pytest
 
 from gcs.gate.effects import CommandKind, Say
 from gcs.gate.inputs import CommandEnded, MissionLoaded, MissionSeen, PhotoSeen
-from gcs.gate.requests import Abort, Arm, Disarm, Hold, StartMission, TakeOff
+from gcs.gate.requests import (
+    Abort,
+    Arm,
+    Disarm,
+    Hold,
+    Land,
+    Request,
+    ReturnHome,
+    StartMission,
+    TakeOff,
+)
 from gcs.gate.states import Control, FlightMode, State
 from tests.unit.gate.reactions import (
     HELD,
@@ -38,6 +48,8 @@ COMMAND = {
 }
 """What a state waits for an answer to."""
 
+COMES_DOWN: dict[State, Request] = {State.RETURNING: ReturnHome(), State.LANDING: Land()}
+
 LEADS_TO = {
     State.GROUNDED: (State.GROUNDED, Control.NONE, []),
     State.TAKING_OFF: HELD,
@@ -53,7 +65,11 @@ whose control we asked for, is held; with a picture missing, hovering goes on.""
 
 
 def asked(state: State) -> tuple[Script, int]:
-    """The command has left, and is not answered."""
+    """The command has left, and is not answered; the vehicle shows the mode it was in before."""
+    if state in COMES_DOWN:
+        script, _ = flight(State.HOVERING)
+        script.wait(2.0)
+        return script, script.ask(COMES_DOWN[state])
     script, request_id = flight(state)
     if state is State.HOVERING:
         script.wait(1.2)
@@ -78,6 +94,36 @@ def test_a_refusal_or_no_answer_ends_the_request(
     script, request_id = asked(state)
     told = CommandEnded(request_id, COMMAND[state], result)
     assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(*LEADS_TO[state], how)
+
+
+@pytest.mark.parametrize(
+    ("state", "shown"),
+    [
+        (State.RETURNING, FlightMode.RETURN),
+        (State.RETURNING, FlightMode.LAND),
+        (State.LANDING, FlightMode.LAND),
+    ],
+)
+@pytest.mark.parametrize(
+    ("result", "after", "how"),
+    [
+        (SILENT, None, ""),
+        (REFUSED, HELD, "aborted VEHICLE_REFUSED"),
+    ],
+)
+def test_a_lost_answer_is_nothing_where_the_vehicle_shows_that_it_comes_down(
+    state: State,
+    shown: FlightMode,
+    result: int | None,
+    after: tuple[State, Control, list[CommandKind]] | None,
+    how: str,
+) -> None:
+    script, request_id = asked(state)
+    script.heartbeat(shown)
+    came = state_of(script)
+    told = CommandEnded(request_id, COMMAND[state], result)
+    wanted = Reaction(*(after or (came, script.gate.control, [])), how)
+    assert reaction(script, request_id, lambda s: s.feed(told)) == wanted
 
 
 @pytest.mark.parametrize(

@@ -134,6 +134,20 @@ def test_silence_ends_a_command_without_a_result() -> None:
     assert ended == [Finished(1, Cmd.COMPONENT_ARM_DISARM, None, "no answer to 4 tries")]
 
 
+def test_tries_beyond_what_confirmation_can_count_leave_all_the_same() -> None:
+    client, now_ns = CommandClient(OWN), 0
+    sent = client.handle(Submit(1, MODE, 300 * ACK_WAIT_NS, tries=None), now_ns)
+    while client.deadline_ns is not None:
+        now_ns = client.deadline_ns
+        sent += client.handle(Wake(), now_ns)
+    counted = [
+        effect.message.confirmation
+        for effect in sent
+        if isinstance(effect, Send) and isinstance(effect.message, CommandLong)
+    ]
+    assert counted == [min(number, 255) for number in range(301)]
+
+
 def test_what_must_not_be_done_twice_is_sent_once() -> None:
     station = Station()
     station.submit(1, ARM, deadline_ns=9 * ACK_WAIT_NS, tries=1)

@@ -102,6 +102,31 @@ def test_silence_is_no_answer() -> None:
     assert ended.result is None
 
 
+@pytest.mark.parametrize(
+    ("kind", "tries"),
+    [
+        (CommandKind.LAND, 11),
+        (CommandKind.RETURN, 11),
+        (CommandKind.ARM, 4),
+        (CommandKind.HOLD, 4),
+    ],
+)
+def test_only_what_brings_it_down_is_tried_until_its_deadline(
+    kind: CommandKind, tries: int
+) -> None:
+    commands = Commands(OWN, Times())
+    wanted = SendCommand(7, kind, DEADLINE_NS, issue(None, None, 0, "a test"))
+    count = sent(commands.send(wanted, vehicle(), 0))
+    out: list[Work] = []
+    while commands.deadline_ns is not None:
+        now_ns = commands.deadline_ns
+        out = commands.wake(told(), now_ns)
+        count += sent(out)
+        assert not sent(out) or now_ns <= DEADLINE_NS
+    assert count == tries
+    assert [ended.result for ended in answers(out)] == [None]
+
+
 def test_a_vehicle_that_says_it_would_not_arm_is_not_asked_until_the_time_is_nearly_over() -> None:
     commands = Commands(OWN, Times())
     assert sent(arm(commands, told(prearm_ok=False))) == 0

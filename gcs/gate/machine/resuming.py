@@ -1,0 +1,33 @@
+"""Whether the gate would give control of the vehicle back once it is held, asked before it is."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gcs.frames import Vec3
+from gcs.gate.machine.checks import CHECKS
+from gcs.gate.machine.memory import Memory
+from gcs.gate.machine.rules import Check
+from gcs.gate.machine.sentences import REFUSED, no_fresh_position
+from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.verifying import home_or_fence_unknown
+from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Code, Refusal
+
+AT_REST: Final[Vec3] = (0.0, 0.0, 0.0)
+
+
+def why_not_resume(policy: Policy, memory: Memory, now_ns: int) -> Refusal | None:
+    """The refusal that `resume` would get if the vehicle were held where it is; None: none.
+
+    Changes nothing.  The position is judged as of a vehicle at rest: a hold comes first.
+    """
+    if not memory.airborne:
+        return Refusal(Code.NOT_FLYING, REFUSED[Code.NOT_FLYING])
+    turn = Turn(policy, memory, now_ns)
+    if memory.verifier is None:
+        return home_or_fence_unknown()
+    if turn.stale or memory.pos_ned is None:
+        return no_fresh_position(memory)
+    judged = memory.verifier.hold_point(memory.pos_ned, AT_REST, (), floor_applies=True)
+    return judged if isinstance(judged, Refusal) else CHECKS[Check.SEVERITY](turn)

@@ -1,0 +1,55 @@
+"""Whether a vehicle that is held would be flown under control again, asked before it is held."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+
+import pytest
+
+from gcs.gate.condition import Condition
+from gcs.gate.inputs import ConditionChanged
+from gcs.gate.machine.resuming import why_not_resume
+from gcs.gate.refusal import Code
+from gcs.gate.requests import Hold, Resume
+from gcs.gate.states import State
+from tests.unit.gate.reactions import flight
+from tests.unit.gate.script import Script, policy
+
+FLIES_ITSELF = [State.RETURNING, State.FLYING_MISSION]
+
+
+def why(script: Script) -> Code | None:
+    """What it answers; that it changes nothing is looked at, too."""
+    before = deepcopy(script.gate.memory)
+    refusal = why_not_resume(policy("default"), script.gate.memory, script.now_ns)
+    assert script.gate.memory == before
+    return None if refusal is None else refusal.code
+
+
+@pytest.mark.parametrize("state", FLIES_ITSELF)
+def test_nothing_stands_in_its_way(state: State) -> None:
+    script, _ = flight(state)
+    assert why(script) is None
+
+
+@pytest.mark.parametrize("state", FLIES_ITSELF)
+def test_a_severity_does_and_the_gate_says_the_same_after_a_hold(state: State) -> None:
+    script, _ = flight(state)
+    script.feed(ConditionChanged(Condition.BATTERY_CRITICAL, True))
+    assert why(script) is Code.SEVERITY
+    script.ask(Hold())
+    script.tick()
+    assert script.refusal(script.ask(Resume())) is Code.SEVERITY
+
+
+@pytest.mark.parametrize("state", FLIES_ITSELF)
+def test_a_position_that_is_too_old_does(state: State) -> None:
+    script, _ = flight(state)
+    script.reports_position = False
+    script.wait(1.2)
+    assert why(script) is Code.STALE
+
+
+def test_standing_on_the_ground_does() -> None:
+    script, _ = flight(State.GROUNDED)
+    assert why(script) is Code.NOT_FLYING
