@@ -8,7 +8,9 @@ from __future__ import annotations
 import math
 
 import pytest
+from msgspec import structs
 
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
@@ -16,6 +18,8 @@ from tests.loopback.flight import PERSONALITIES, Flight, Personality
 from tests.loopback.lossy_link import Weather
 
 SLOW = Weather(delay_s=(1.5, 1.5))
+PATIENT = structs.replace(DEFAULT, position_age_s=5.0)
+"""By the default nothing is flown on such a link: its positions are too old."""
 AWAY_M = 12.0
 
 
@@ -24,7 +28,7 @@ def away_from_home(personality: Personality) -> Flight:
 
     The way up is slow only now: an arming and a take-off are not tried for as long.
     """
-    flight = Flight(personality, down=SLOW).hovering(5.0)
+    flight = Flight(personality, policy=PATIENT, down=SLOW).hovering(5.0)
     assert flight.done(flight.goto(AWAY_M, 0.0, 5.0)) == "complete"
     flight.up.weather = SLOW
     return flight
