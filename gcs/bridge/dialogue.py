@@ -77,6 +77,7 @@ class _Pending:
     answered_by: str = ""
     """The word whose completion answers the command, the end of the last being told as text; empty:
     the last answers it."""
+    note: str = ""  # told when the first of what is asked is accepted
 
 
 @dataclass(slots=True)
@@ -123,11 +124,16 @@ class Dialogue:
         now_ns: int,
         *,
         answered_by: str = "",
+        note: str = "",
     ) -> list[BridgeEffect]:
-        """Ask for `asks`, one after the other, because of a message; none: it is so already."""
+        """Ask for `asks`, one after the other, because of a message; none: it is so already.
+
+        `note` is told as soon as the first of them is accepted: of what is refused it is untrue.
+        """
         key, command = _key(message), _command(message)
+        done = self.text(asked_by, Level.INFO, note, now_ns) if note and not asks else []
         if not asks and not command:
-            return []  # such as sticks in the middle, 25 a second: nothing came in between
+            return done  # such as sticks in the middle, 25 a second: nothing came in between
         if asks and asks[0].word in STOPS:
             self._told = None
         repeated = self._repeated(asked_by, key, command, now_ns)
@@ -135,9 +141,9 @@ class Dialogue:
             return repeated
         self._last_key, self._told = key, None
         if not asks:
-            return [self._acknowledge(asked_by, command, Result.ACCEPTED)]
+            return [*done, self._acknowledge(asked_by, command, Result.ACCEPTED)]
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
-        pending.answered_by = answered_by
+        pending.answered_by, pending.note = answered_by, note
         if asks[-1].word == "orbit":
             self._orbit_from = self._streams_from = asked_by
         arming = self._arming() if pending.rest and pending.word == "arm" else None
@@ -262,9 +268,11 @@ class Dialogue:
             if pending.word == "orbit":
                 self._orbit_replaced()
             pending.operation = event.operation
+            note, pending.note = pending.note, ""
+            said = self.text(pending.asked_by, Level.INFO, note, now_ns) if note else []
             if event.word in DECIDED_BY_GATE and not pending.rest:
-                return self._answer(pending, Result.ACCEPTED, None, now_ns)
-            return []
+                return [*said, *self._answer(pending, Result.ACCEPTED, None, now_ns)]
+            return said
         del self._pending[event.id]
         code = _code(event.code)
         text = f"{pending.name}: {event.outcome} {event.code}: {event.sentence}"

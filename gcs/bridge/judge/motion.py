@@ -93,11 +93,10 @@ class MotionJudge:
                     unknown = refuse(given, message, row, HEIGHT_WRITTEN)
                     asks_for_it = asks_for_height(given.by.source, given.by.addressed)
                     return Judged(True, [*unknown.effects, asks_for_it])
-                told = client.dialogue.text(given.by, Level.INFO, note, now_ns) if note else []
                 asked = client.dialogue.ask(
-                    given.by, message, asks, now_ns, answered_by=answered_by
+                    given.by, message, asks, now_ns, answered_by=answered_by, note=note
                 )
-                return Judged(False, [*told, *asked])
+                return Judged(False, asked)
             case Sample():
                 return Judged(False, client.dialogue.stream(given.by, stream_of(meaning)))
             case Forward():
