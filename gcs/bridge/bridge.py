@@ -32,8 +32,8 @@ from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.refused_addresses import RefusedAddresses, WhyNotOurs, nobody_else
 from gcs.bridge.routing import Routes, target_of
-from gcs.bridge.unheard import Unheard
-from gcs.bridge.unverified import Unverified
+from gcs.bridge.unheard_clients import Unheard
+from gcs.bridge.unverified_clients import Unverified
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.autopilot import Autopilot
@@ -115,7 +115,7 @@ class Bridge:
         client = self._by_link.get(link)
         if client is None:
             return []
-        client.flooding.count += dropped
+        client.dropped.count += dropped
         text = f"{client.name} sends too much: {dropped} datagrams dropped"
         return [Notes(Level.WARNING, text)]
 
@@ -131,7 +131,7 @@ class Bridge:
             if client.joined and now_ns - client.heard_ns > self._silent_ns:
                 effects += self._lose(client, f"silent for {self._silent_ns / 1e9:.0f} s")
             if client.link not in self.unverified:
-                flooded = client.flooding.due_text(self._rate_hz, now_ns)
+                flooded = client.dropped.due_text(self._rate_hz, now_ns)
                 effects += [Answers(client.link, speaker, text) for text in flooded]
         return effects
 
@@ -386,7 +386,7 @@ class Bridge:
                 rx_hz=client.received.hz,
                 tx_hz=client.sent.hz,
                 refused=client.refused,
-                dropped=client.flooding.count,
+                dropped=client.dropped.count,
                 in_control=client.joined and client.number == self._in_control,
                 silent_s=(now_ns - client.heard_ns) / 1e9 if client.heard_ns else 0.0,
                 verified=client.link not in self.unverified,

@@ -8,8 +8,8 @@ from itertools import count
 
 from gcs import ipc
 from gcs.bridge.dialogue import Dialogue, From
+from gcs.bridge.dropped_messages import DroppedMessages
 from gcs.bridge.effects import BridgeEffect, Notes, OfVehicle, Says
-from gcs.bridge.flooding import Flooding
 from gcs.bridge.meaning.chosen_before_arming import (
     KEPT_NS,
     MISSION_MODE,
@@ -63,7 +63,7 @@ class Client:
         self.received = Rate()
         self.sent = Rate()
         self.refused = 0
-        self.flooding = Flooding()
+        self.dropped = DroppedMessages()
         self.begin(0)
         self.joined = False
 

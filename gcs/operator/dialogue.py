@@ -19,7 +19,7 @@ from gcs.gate.states import LandedState, State
 from gcs.operator import request_words
 from gcs.operator.client import Polled, Readable, StationEnded
 from gcs.operator.errors import ExitError, Interrupted
-from gcs.operator.vehicle_alone import after_station_died, record_hint
+from gcs.operator.station_loss import after_station_died, record_hint
 
 LEAVE_WAIT_S = 20.0
 START_WAIT_S = 60.0

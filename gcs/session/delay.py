@@ -42,8 +42,10 @@ class Delay:
     _latest_at_ns: int | None = None
     _asked_ns: list[int] = field(default_factory=list)
     _last_asked_ns: int = 0
-    _least_ns: list[int] = field(default_factory=list)
+    _bounds_ns: list[int] = field(default_factory=list)
     """What the two clocks differ by at least, as each of the last answers shows it."""
+    _bound_ns: int | None = None
+    """The greatest of them."""
     late_ns: int = 0
     """How late the latest position came."""
     _told_ns: int | None = None
@@ -60,8 +62,9 @@ class Delay:
         allowed_ns = self._quickest_ns + (now_ns - self._quickest_at_ns) // 1000
         self._quickest_ns, self._quickest_at_ns = min(offset_ns, allowed_ns), now_ns
         self._latest_ns, self._latest_at_ns = offset_ns, now_ns
-        first_ns = min(self._quickest_ns, max(self._least_ns, default=self._quickest_ns))
-        self.late_ns = offset_ns - first_ns
+        bound_ns = self._bound_ns
+        undelayed_ns = self._quickest_ns if bound_ns is None else min(self._quickest_ns, bound_ns)
+        self.late_ns = offset_ns - undelayed_ns
         return self.late_ns
 
     def trouble(self, allowed_ns: int, now_ns: int) -> str:
@@ -72,8 +75,8 @@ class Delay:
         self._told_ns = now_ns
         late_s, allowed_s = self.times.real_s(self.late_ns), self.times.real_s(allowed_ns)
         return (
-            f"positions come up to {late_s:.1f} s late, and are not used: {allowed_s:g} s are "
-            f"allowed (position_age_s). The way to the vehicle and back takes as long (TIMESYNC)"
+            f"positions come up to {late_s:.1f} s late, by their time stamps and the answers to "
+            f"TIMESYNC, and are not used: {allowed_s:g} s are allowed (position_age_s)"
         )
 
     @property
@@ -99,4 +102,5 @@ class Delay:
         assert self._quickest_ns is not None
         bound_ns = self._latest_ns - (now_ns - asked_ns)
         self._quickest_ns = max(self._quickest_ns, bound_ns)
-        self._least_ns = [*self._least_ns[1 - ANSWERS_KEPT :], bound_ns]
+        self._bounds_ns = [*self._bounds_ns[1 - ANSWERS_KEPT :], bound_ns]
+        self._bound_ns = max(self._bounds_ns)

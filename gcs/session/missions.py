@@ -38,7 +38,7 @@ from gcs.session.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.session.jobs.start import Start
 from gcs.session.jobs.starting import first_item
 from gcs.session.jobs.upload import Upload
-from gcs.session.mission_told import MissionTold
+from gcs.session.mission_current import MissionTold
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times

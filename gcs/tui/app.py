@@ -22,7 +22,7 @@ from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
 from gcs.operator.client import StationEnded, StationEvent
-from gcs.operator.vehicle_alone import after_station_died
+from gcs.operator.station_loss import after_station_died
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.hang_up import on_hang_up
 from gcs.tui.keyboard import PendingGoal, VelocityKeys

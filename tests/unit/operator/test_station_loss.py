@@ -11,7 +11,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.operator.client import StationEnded
 from gcs.operator.dialogue import Dialogue, TrackedRequest, unexpected_end
 from gcs.operator.errors import ExitError
-from gcs.operator.vehicle_alone import after_station_died
+from gcs.operator.station_loss import after_station_died
 from gcs.session.failsafes import findings, limits_of
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 

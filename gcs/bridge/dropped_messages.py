@@ -21,7 +21,7 @@ TEXT_ID: Final = 1
 
 
 @dataclass(slots=True)
-class Flooding:
+class DroppedMessages:
     """Datagrams of one client that were dropped."""
 
     count: int = 0
