@@ -154,6 +154,7 @@ FAILSAFE_ROWS: Final[Mapping[Event, Row]] = {
             then=(
                 stop_stream_if(Guard.RETURNS_TO_STATE, OPERATOR_LOST),
                 end_if_task_is_arm(OPERATOR_LOST),
+                end_and_let_it_go_on_if_task_ends_landed,
                 unchanged,
             ),
         ),

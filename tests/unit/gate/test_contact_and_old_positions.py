@@ -508,3 +508,20 @@ class TestWhileThePositionIsTooOld:
 def test_a_resume_from_the_grace_of_a_hold_is_refused() -> None:
     script, _ = stale(State.HOLDING)
     assert script.refusal(script.ask(Resume())) is Code.STALE
+
+
+@pytest.mark.parametrize("state", [State.RETURNING, State.LANDING])
+def test_who_leaves_after_a_landing_whose_positions_are_old_is_told_how_it_ended(
+    state: State,
+) -> None:
+    """`random_flight.flown(394015001986)`: landed, still armed, and no position any more."""
+    script, request_id = flight(state)
+    script.at(0.0, 0.0, 0.0)
+    script.land_state(LandedState.ON_GROUND)
+    script.reports_position = False
+    script.wait(2.0)
+    assert (state_of(script), ended(script, request_id)) == (State.STALE, "")
+    sent = script.commands()
+    script.feed(OperatorLost("quit"))
+    assert ended(script, request_id) == "aborted OPERATOR_LOST"
+    assert script.commands() == sent
