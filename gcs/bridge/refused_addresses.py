@@ -78,7 +78,7 @@ class RefusedAddresses:
         """
         sysid, compid = target_of(frame)
         here = ", ".join(str(each.sysid) for each in vehicles)
-        heard = f"heard: system {here}" if here else "no vehicle is heard yet"
+        heard = f"heard: system {here}" if here else "no vehicle's heartbeat was heard yet"
         reason = why_not_ours or f"there is no system {sysid} here ({heard})"
         told = self._once(client, reason)
         if told:

@@ -146,5 +146,5 @@ def test_what_is_no_command_for_a_vehicle_that_is_shown_only_is_told_by_text() -
 
 def test_before_a_vehicle_is_heard_the_bridge_says_so_itself() -> None:
     judged = Pair().says(land(1), vehicles=())
-    assert "system 1 here (no vehicle is heard yet)" in texts(list(judged.effects))
+    assert "system 1 here (no vehicle's heartbeat was heard yet)" in texts(list(judged.effects))
     assert {each.source for each in of(Answers, judged.effects)} == {OWN}
