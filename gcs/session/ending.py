@@ -95,6 +95,7 @@ class Ending:
         """Now, with this exit code."""
         self.finished = True
         return [
+            *self._vehicles.each(_end_requests),
             *self._vehicles.each(lambda each: each.leave()),
             Log(Level.INFO, NODE, sentence),
             *self._vehicles.each(lambda each: each.remind()),
@@ -105,6 +106,13 @@ class Ending:
         if len(self._vehicles) == 1:
             return _last_words(self._vehicles.first, "the vehicle")
         return "; ".join(_last_words(each, f"vehicle {each.sysid}") for each in self._vehicles)
+
+
+def _end_requests(vehicle: Vehicle) -> list[Work]:
+    """A request that came while the station was being left, or that the gate waited for."""
+    if vehicle.gate.memory.task is None:
+        return []
+    return [ToGate(gate_inputs.OperatorLost("the station ends"))]
 
 
 def _last_words(vehicle: Vehicle, name: str) -> str:

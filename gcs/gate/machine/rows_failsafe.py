@@ -155,7 +155,8 @@ FAILSAFE_ROWS: Final[Mapping[Event, Row]] = {
                 stop_stream_if(Guard.RETURNS_TO_STATE, OPERATOR_LOST),
                 end_if_task_is_arm(OPERATOR_LOST),
                 end_and_let_it_go_on_if_task_ends_landed,
-                unchanged,
+                unchanged_if_hold_awaited,
+                end(OPERATOR_LOST),
             ),
         ),
         during(GROUNDED, then=(hold_mode_if_take_off_may_come_late, end(OPERATOR_LOST))),
@@ -165,6 +166,14 @@ FAILSAFE_ROWS: Final[Mapping[Event, Row]] = {
         during(MOVING, STREAMING, TAKING_PICTURE, then=hold_and_end(OPERATOR_LOST)),
         during(FLYING_MISSION, then=hold_and_end(OPERATOR_LOST)),
         during(RETURNING, LANDING, then=end_and_let_it_go_on),
-        during(HOLDING, EXTERNAL, then=unchanged),
+        during(
+            HOLDING,
+            EXTERNAL,
+            then=(
+                end_and_let_it_go_on_if_task_ends_landed,
+                unchanged_if_hold_awaited,
+                end(OPERATOR_LOST),
+            ),
+        ),
     ),
 }

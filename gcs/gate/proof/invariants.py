@@ -64,6 +64,7 @@ STEP_CHECKS: Final = (
     StepCheck(2, invariants_motion.climbs_to_its_top, (Tick,)),
     StepCheck(2, invariants_motion.ends_a_climb_at_its_top, (Outcome,)),
     StepCheck(3, invariants_request.answers_once),
+    StepCheck(3, invariants_request.leaves_no_request_open, (OperatorLost,)),
     StepCheck(4, invariants_request.keeps_nothing_refused, (Verdict,)),
     StepCheck(4, invariants_request.takes_goals_where_it_hovers, (Requested,)),
     StepCheck(5, invariants_request.aborts_at_once, (Requested,)),

@@ -62,6 +62,14 @@ def answers_once(edge: Edge) -> Iterator[str]:
         yield f"outcomes {outcomes} for accepted {sorted(running | accepted)}"
 
 
+def leaves_no_request_open(edge: Edge) -> Iterator[str]:
+    """3: whoever leaves is told an ending of what was under way, but for a hold that is not shown
+    yet, for which the station waits."""
+    after = edge.after
+    if after.task is not None and after.hold_again_ns is None:
+        yield f"{after.task.requested.request} has no ending, and the operator leaves"
+
+
 def keeps_nothing_refused(edge: Edge) -> Iterator[str]:
     """4: refused means gone."""
     refused = {

@@ -479,6 +479,17 @@ FAULTS = [
         0,
         "operator lost",
     ),
+    *(
+        planted(
+            f"what is under way in {state.name} is left without its ending",
+            state,
+            Event.OPERATOR_LOST,
+            NOTHING,
+            3,
+            "operator lost",
+        )
+        for state in (State.STALE, State.GROUNDED, State.LANDING, State.HOLDING, State.EXTERNAL)
+    ),
     # ---------------------------------------------------------------------------- streams
     planted(
         "a refused stream is flown on",

@@ -189,6 +189,21 @@ class TestContact:
         assert script.all(CancelCommand) == []
         assert not script.gate.settled
 
+    def test_nor_of_one_that_is_back_and_does_not_show_it_yet(self) -> None:
+        script = Script(policy("default")).take_control(UP)
+        script.reports_heartbeat = script.reports_position = False
+        script.wait(4.0)
+        request_id = script.ask(Land())
+        script.heartbeat(FlightMode.HOLD)
+        script.position()
+        assert (state_of(script), ended(script, request_id)) == (State.EXTERNAL, "")
+        script.forget()
+        script.feed(OperatorLost("quit"))
+        assert ended(script, request_id) == "aborted OPERATOR_LOST"
+        assert script.commands() == []
+        assert script.all(CancelCommand) == []
+        assert script.gate.settled
+
     def test_so_it_is_where_the_position_went_first(self) -> None:
         script, request_id = flight(State.MOVING)
         script.reports_heartbeat = script.reports_position = False

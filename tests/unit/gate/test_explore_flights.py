@@ -55,6 +55,7 @@ FARTHER: Final = frozenset(
     {
         "a take-off is complete where the vehicle ends its climb",
         "the place where the climb ended is held, and not its top",
+        "what is under way in HOLDING is left without its ending",
     }
 )
 """Planted faults that are not met so near."""

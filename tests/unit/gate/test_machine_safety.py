@@ -19,7 +19,7 @@ from gcs.gate.inputs import (
 )
 from gcs.gate.machine.gate import Gate
 from gcs.gate.refusal import Code
-from gcs.gate.requests import Abort, Arm, Land, Request, ReturnHome, TakeOff
+from gcs.gate.requests import Abort, Arm, Disarm, Land, Request, ReturnHome, TakeOff
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP, lead_to
@@ -290,6 +290,28 @@ class TestOperatorLost:
         script.feed(OperatorLost("quit"))
         assert script.outcome(requested).code is Code.OPERATOR_LOST
         assert CancelCommand(requested, CommandKind.ARM) in script.all(CancelCommand)
+
+    def test_an_arming_that_is_not_answered_is_not_left_open_where_the_vehicle_flies(self) -> None:
+        script = Script(policy("default")).connect()
+        script.heartbeat(FlightMode.GUIDED)
+        requested = script.ask(Arm())
+        script.land_state(LandedState.IN_AIR)
+        script.heartbeat(FlightMode.HOLD)
+        assert (script.gate.state, script.ended(requested)) == (State.HOLDING, False)
+        script.feed(OperatorLost("quit"))
+        assert script.outcome(requested).code is Code.OPERATOR_LOST
+        assert script.gate.settled
+
+    def test_nor_is_a_disarming_without_a_position(self) -> None:
+        script = Script(policy("default")).connect()
+        script.heartbeat(armed=True)
+        script.reports_position = False
+        script.wait(1.5)
+        requested = script.ask(Disarm())
+        script.wait(1.0)
+        assert (script.gate.state, script.ended(requested)) == (State.STALE, False)
+        script.feed(OperatorLost("quit"))
+        assert script.outcome(requested).code is Code.OPERATOR_LOST
 
 
 def test_without_a_verifier_nothing_that_moves_is_accepted() -> None:

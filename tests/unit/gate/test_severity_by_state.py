@@ -351,10 +351,11 @@ class TestOperatorLost:
         )
         assert reaction(script, request_id, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
 
-    def test_what_somebody_else_flies_is_left_alone(self) -> None:
+    def test_what_somebody_else_flies_is_left_alone_and_nothing_is_left_open(self) -> None:
+        """The station does not wait for what it does not fly."""
         script, request_id = flight(State.EXTERNAL)
         assert reaction(script, request_id, lambda s: s.feed(self.QUIT)) == Reaction(
-            State.EXTERNAL, Control.NONE, [], ""
+            State.EXTERNAL, Control.NONE, [], "aborted OPERATOR_LOST"
         )
 
     @pytest.mark.parametrize("mode", [FlightMode.RETURN, FlightMode.LAND])

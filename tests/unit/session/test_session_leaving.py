@@ -136,6 +136,17 @@ def test_while_leaving_no_mission_job_begins() -> None:
     assert told.verdicts(script.told)[-1] == (late, "refused", "OPERATOR_LOST")
 
 
+def test_a_landing_that_is_asked_for_while_leaving_has_its_outcome_before_the_end() -> None:
+    script = Script().hovering()
+    script.feed(LEAVE)
+    script.run(0.1)
+    late = script.ask("land")
+    script.run(4.0)
+    assert told.verdicts(script.told)[-1] == (late, "accepted", "")
+    assert told.outcomes(script.told)[-1] == (late, "aborted", "OPERATOR_LOST")
+    assert told.finishes(script.told) != []
+
+
 def test_the_session_ends_once() -> None:
     script = Script().met()
     script.feed(LEAVE)
