@@ -1,7 +1,9 @@
 """The vehicle's own failsafes and fence, as its parameters have them, beside what the policy wants.
 
 A gate on the ground cannot act once the link is down: then these are what is left.  So what is off,
-or weaker than the policy, is told (`Condition.VEHICLE_FAILSAFE_WEAK`).
+or weaker than the policy, is told (`Condition.VEHICLE_FAILSAFE_WEAK`).  A fence that was uploaded
+counts as far as it keeps the vehicle near home; the policy's exclusion zones are not looked for in
+it.
 
 Meanings of values: parameter references of PX4 1.14 and ArduCopter 4.7; those that vehicle-sim has
 too are checked against the recorded autopilots there.
@@ -16,6 +18,7 @@ from typing import Final, TypeAlias
 
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec, ZoneSpec
+from gcs.session.fence_on_board import NO_FENCE, UploadedFence
 
 LONGEST_STATION_LOSS_S: Final = 30.0
 """Without a station for longer than this, it might as well be never.  A judgement of ours."""
@@ -33,13 +36,16 @@ Values: TypeAlias = Mapping[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """The policy, as far as a vehicle's own fence can be as narrow; metres from and above home."""
+    """What a vehicle's settings are judged beside: the policy, as far as a vehicle's own fence can
+    be as narrow, in metres from and above home; and what the vehicle has that is no setting."""
 
     reach_m: float
     """The farthest from home that its fence lets the vehicle fly."""
     ceiling_up_m: float
     own_sysid: int
     """The station's number, which an ArduPilot must be told to watch."""
+    uploaded: UploadedFence = NO_FENCE
+    """The fence that it was sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,8 +151,16 @@ def _wider(values: Values, name: str, most_m: float, what: str) -> tuple[str, bo
     return f"{what} {limit_m:g} m", False
 
 
-def _both(first: tuple[str, bool], second: tuple[str, bool]) -> tuple[str, bool]:
-    return f"{first[0]}, {second[0]}", first[1] or second[1]
+def _fence(
+    radius: tuple[str, bool], height: tuple[str, bool], limits: Limits, unused: str = ""
+) -> tuple[str, bool]:
+    """A vehicle's circle and height; an uploaded fence may do for the circle, unless it is
+    `unused`, for that reason."""
+    most_m = limits.reach_m + SLACK_M
+    near = not unused and limits.uploaded.keeps_within(most_m)
+    words = limits.uploaded.words(limits.reach_m, most_m, unused)
+    says = ", ".join((radius[0], height[0], *([f"uploaded: {words}"] if words else [])))
+    return says, height[1] or (radius[1] and not near)
 
 
 # --------------------------------------------------------------------------------------- PX4
@@ -210,9 +224,10 @@ def _px4_breach(values: Values, _limits: Limits) -> tuple[str, bool]:
 
 
 def _px4_fence(values: Values, limits: Limits) -> tuple[str, bool]:
-    return _both(
+    return _fence(
         _wider(values, "GF_MAX_HOR_DIST", limits.reach_m, "radius"),
         _wider(values, "GF_MAX_VER_DIST", limits.ceiling_up_m, "height"),
+        limits,
     )
 
 
@@ -253,7 +268,7 @@ _COPTER_FENCE: Final = {
     4: "brake, or land",
     5: "smart return, or land",
 }
-_HEIGHT, _CIRCLE = 1, 2
+_HEIGHT, _CIRCLE, _ZONES = 1, 2, 4
 """Bits of FENCE_TYPE."""
 
 
@@ -318,7 +333,7 @@ def _copter_fence(values: Values, limits: Limits) -> tuple[str, bool]:
         radius = _wider(values, "FENCE_RADIUS", limits.reach_m, "radius")
     if kinds & _HEIGHT:
         height = _wider(values, "FENCE_ALT_MAX", limits.ceiling_up_m, "height")
-    return _both(radius, height)
+    return _fence(radius, height, limits, "" if kinds & _ZONES else on)
 
 
 CASES: Final[Mapping[str, tuple[Case, ...]]] = {

@@ -25,6 +25,9 @@ from gcs.session.telemetry import Telemetry
 from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
 
 NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
+RETOLD: Final = frozenset({Condition.VEHICLE_FAILSAFE_WEAK})
+"""Conditions that the gate is told of once more when their reason is another one.  The reasons of
+the others hold numbers, which are others with each message."""
 
 
 class GatePort:
@@ -82,7 +85,10 @@ class GatePort:
 
     def _is_news(self, given: inputs.ConditionChanged) -> bool:
         """Whether the condition changed; it is looked at far more often than it does."""
-        return given.active != (given.condition in self.gate.conditions)
+        if given.active != (given.condition in self.gate.conditions):
+            return True
+        retold = given.active and given.condition in RETOLD
+        return retold and (given.condition, given.text) not in self.gate.reasons
 
     def tell(
         self,

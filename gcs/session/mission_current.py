@@ -32,11 +32,6 @@ class MissionTold:
         self._seen = False
         """Whether it has told of that mission since."""
 
-    @property
-    def fence_on_board(self) -> bool:
-        """Whether the vehicle says that a fence was uploaded to it; older firmware does not."""
-        return self._told is not None and self._told.fence_id != 0
-
     def forget(self) -> None:
         """The vehicle restarted or was away."""
         self._told = None

@@ -248,11 +248,6 @@ class Missions:
         return work
 
     @property
-    def fence_on_board(self) -> bool:
-        """Whether the vehicle says that a fence was uploaded to it; older firmware does not."""
-        return self._told.fence_on_board
-
-    @property
     def unverified(self) -> str:
         """What is wrong with the mission on board, as the vehicle tells of it.  Empty where it was
         verified, or where there is none."""

@@ -8,7 +8,7 @@ vehicle says that it does not have it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
 from gcs.protocol.effects import Address, Heard, Send, Wake
@@ -17,6 +17,7 @@ from gcs.protocol.parameter_names import names_of
 from gcs.protocol.parameters import decode_value
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
 from gcs.session.failsafes import CASES, FENCE, FENCE_ACTION, Limits, findings, parameters_of
+from gcs.session.fence_on_board import UploadedFence
 from gcs.session.telemetry import Telemetry
 from gcs.session.thrust_meaning import NAMES_OF_THRUST
 from gcs.session.times import Times
@@ -240,16 +241,19 @@ class Settings:
         told, self._told = self._told, self._failsafes(_whose(telemetry))
         return [] if self._told == told else [self._told]
 
-    def without_fence(self, telemetry: Telemetry, *, fence_plan: bool) -> str:
-        """Why no fence of the vehicle's own would stop it; empty where one would.
+    def uploaded(self, fence: UploadedFence, telemetry: Telemetry) -> list[Found]:
+        """The fence that was uploaded to the vehicle is so now."""
+        if fence == self._limits.uploaded:
+            return []
+        self._limits = replace(self._limits, uploaded=fence)
+        # Before its settings were told once, they are still being read.
+        return [] if self._told is None else self._summary(telemetry)
 
-        `fence_plan`: it has one on board that was uploaded.
-        """
+    def without_fence(self, telemetry: Telemetry) -> str:
+        """Why no fence of the vehicle's own would stop it; empty where one would."""
         found = findings(_whose(telemetry), self._values, self._limits)
         for each in found:
-            if each.weak and each.about == FENCE_ACTION:
-                return each.words
-            if each.weak and each.about == FENCE and not fence_plan:
+            if each.weak and each.about in (FENCE_ACTION, FENCE):
                 return each.words
         return "" if found else "its fence is not known here"
 

@@ -82,7 +82,7 @@ class Vehicle:
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
         parts = self._parts
-        talking = (parts.commands, parts.settings, parts.missions, parts.returns)
+        talking = (parts.commands, parts.settings, parts.missions, parts.returns, parts.fence)
         waiting = (*talking, parts.words, parts.events, parts.reasons)
         times = [part.deadline_ns for part in waiting]
         return min((time for time in times if time is not None), default=None)
@@ -143,7 +143,8 @@ class Vehicle:
     @property
     def plan_transfer(self) -> bool:
         """The station reads or writes a plan of the vehicle, or is about to."""
-        return self._parts.missions.busy or self._parts.returns.reading
+        parts = self._parts
+        return parts.missions.busy or parts.returns.reading or parts.fence.reading
 
     @property
     def mission_items(self) -> int:
@@ -166,9 +167,8 @@ class Vehicle:
             work += parts.reasons.wake(parts.telemetry.custom_mode, now_ns)
             work += parts.learn(parts.settings.wake(parts.telemetry, now_ns), parts.telemetry)
             missions = parts.missions.wake(parts.view(parts.telemetry), now_ns)
-            work += parts.with_return_places(missions, now_ns)
-            busy = parts.missions.busy
-            work += parts.returns.wake(parts.telemetry, busy=busy, now_ns=now_ns)
+            work += parts.with_plans_on_board(missions, now_ns)
+            work += parts.wake_plans_on_board(parts.telemetry, now_ns)
         return work
 
     def rally_points_change(self, now_ns: int) -> list[Work]:
@@ -176,7 +176,7 @@ class Vehicle:
         parts = self._parts
         if parts.telemetry is None:
             return []
-        return parts.with_return_places(parts.returns.changed(parts.telemetry, now_ns), now_ns)
+        return parts.with_plans_on_board(parts.returns.changed(parts.telemetry, now_ns), now_ns)
 
     def second(self, now_ns: int) -> list[Work]:
         """Once a second: ask for what is missing, and record how the vehicle is."""
@@ -197,7 +197,7 @@ class Vehicle:
         missing = telemetry.origin is None and now_ns - parts.met_ns > parts.times.real_ns(
             ORIGIN_PATIENCE_NS
         )
-        work += parts.with_return_places([], now_ns)
+        work += parts.with_plans_on_board([], now_ns)
         work += parts.watch.second(parts.presence.losses, now_ns)
         text = "the vehicle has not told its origin (GPS_GLOBAL_ORIGIN)"
         work.append(condition(Condition.ORIGIN_MISSING, missing, text))
@@ -274,7 +274,7 @@ class Vehicle:
             asked.plan,
             asked.kind,
         )
-        return parts.ask_for_control(now_ns) + parts.with_return_places(work, now_ns)
+        return parts.ask_for_control(now_ns) + parts.with_plans_on_board(work, now_ns)
 
     def ask_orbit(self, asked: AskOrbit, now_ns: int) -> list[Work]:
         """An orbit, which is verified here before the gate is asked for its stream."""
@@ -299,7 +299,7 @@ class Vehicle:
         if parts.telemetry is None:
             return []
         work = parts.missions.file(news, parts.view(parts.telemetry), now_ns)
-        return parts.with_return_places(work, now_ns)
+        return parts.with_plans_on_board(work, now_ns)
 
     def stop_transfer(self, request_id: int) -> list[Work]:
         """End the mission transfer of that request; nothing where none is under way."""

@@ -64,15 +64,9 @@ class VehicleMessages:
             work += parts.reasons.explained(answered, telemetry.custom_mode, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += parts.learn(parts.settings.heard(heard, telemetry, now_ns), telemetry)
-            work += parts.returns.heard(heard, telemetry, now_ns)
-            work += parts.with_return_places(
-                parts.missions.heard(heard, parts.view(telemetry), now_ns), now_ns
-            )
+            work += self._of_plans(telemetry, heard, now_ns)
         elif type(message) in MISSION_MESSAGES:
-            work += parts.returns.heard(heard, telemetry, now_ns)
-            work += parts.with_return_places(
-                parts.missions.heard(heard, parts.view(telemetry), now_ns), now_ns
-            )
+            work += self._of_plans(telemetry, heard, now_ns)
         elif isinstance(message, m.CommandLong):
             work += self._authorized(telemetry, heard, message, now_ns)
         elif isinstance(message, m.Statustext):
@@ -92,6 +86,14 @@ class VehicleMessages:
             work += parts.watch.heard(message, now_ns)
         return [*work, *self.updated(telemetry, message, now_ns), *accuracy(telemetry)]
 
+    def _of_plans(self, telemetry: Telemetry, heard: Heard, now_ns: int) -> list[Work]:
+        """About a mission, rally points or a fence."""
+        parts = self._parts
+        work = parts.returns.heard(heard, telemetry, now_ns)
+        work += parts.fence.heard(heard, telemetry, now_ns)
+        missions = parts.missions.heard(heard, parts.view(telemetry), now_ns)
+        return work + parts.with_plans_on_board(missions, now_ns)
+
     def updated(self, telemetry: Telemetry, message: m.Message, now_ns: int) -> list[Work]:
         """What the vehicle reports of itself, into `telemetry`."""
         work: list[Work] = []
@@ -102,6 +104,7 @@ class VehicleMessages:
                     work = [*self._parts.missions.forget(), *work, *accuracy(telemetry)]
                 case ToGate(inputs.HomeSeen()) | PlaceFence():
                     work += self._parts.returns.placed(telemetry)
+                    work += self._parts.look_at_fence(telemetry)
         return work
 
     def _authorized(
@@ -113,7 +116,7 @@ class VehicleMessages:
         refusal = why_not_arm(parts.port.policy, parts.port.gate.memory, now_ns)
         troubles = [
             "" if refusal is None else refusal.sentence,
-            parts.settings.without_fence(telemetry, fence_plan=parts.missions.fence_on_board),
+            parts.settings.without_fence(telemetry),
             parts.missions.unverified,
         ]
         answer = arm_authorizer.answer(asked, asker, parts.own, [each for each in troubles if each])
@@ -163,4 +166,5 @@ class VehicleMessages:
         parts.events.start(Address(telemetry.sysid, telemetry.compid))
         work += parts.learn(parts.settings.start(telemetry, now_ns), telemetry)
         work += parts.returns.start(telemetry, busy=parts.missions.busy, now_ns=now_ns)
+        parts.fence.start(telemetry, now_ns)
         return work + parts.ask_for_missing(telemetry, now_ns)

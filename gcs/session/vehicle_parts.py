@@ -22,6 +22,7 @@ from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
 from gcs.session.events import Events
 from gcs.session.failsafes import limits_of
+from gcs.session.fence_on_board import FenceOnBoard
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
@@ -72,6 +73,7 @@ class VehicleParts:
         self.missions = Missions(own, times)
         self.orbits = Orbits(times)
         self.returns = ReturnPlaces(own, times)
+        self.fence = FenceOnBoard(own, times)
         self.words = Words(times)
         self.events = Events(own, self.words, times)
         self.control = VehicleControl(own)
@@ -136,13 +138,28 @@ class VehicleParts:
         commands = self.discovery.missing(telemetry, now_ns)
         return [work for c in commands for work in self.commands.send_own(c, now_ns)]
 
-    def with_return_places(self, work: list[Work], now_ns: int) -> list[Work]:
-        """What a job does, and what follows for the places where a return may end."""
+    def with_plans_on_board(self, work: list[Work], now_ns: int) -> list[Work]:
+        """What a job does, and what follows for rally points and fence: one transfer at a time."""
         telemetry = self.telemetry
         if telemetry is None:
             return work
+        jobs, busy = tuple(work), self.missions.busy
+        rally = self.returns.follow(jobs, telemetry, busy=busy or self.fence.reading, now_ns=now_ns)
+        busy |= self.returns.reading
+        fence = self.fence.follow(jobs, telemetry, busy=busy, now_ns=now_ns)
+        return [*work, *rally, *fence, *self.look_at_fence(telemetry)]
+
+    def wake_plans_on_board(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """A wait for rally points or fence may be over."""
         busy = self.missions.busy
-        return work + self.returns.follow(work, telemetry, busy=busy, now_ns=now_ns)
+        rally = self.returns.wake(telemetry, busy=busy or self.fence.reading, now_ns=now_ns)
+        busy |= self.returns.reading
+        fence = self.fence.wake(telemetry, busy=busy, now_ns=now_ns)
+        return [*rally, *fence, *self.look_at_fence(telemetry)]
+
+    def look_at_fence(self, telemetry: Telemetry) -> list[Work]:
+        """What the uploaded fence is, or where home is, may have changed."""
+        return self.learn(self.settings.uploaded(self.fence.seen(telemetry), telemetry), telemetry)
 
     def ask_for_control(self, now_ns: int) -> list[Work]:
         """Of a vehicle that has operator control, and obeys another station or nobody yet."""

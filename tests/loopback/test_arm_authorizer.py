@@ -5,9 +5,7 @@ Source of what the vehicle does: PX4's ArmAuthorization.cpp, as vehicle-sim play
 
 from __future__ import annotations
 
-import itertools
 import struct
-from typing import Any
 
 from pymavlink.dialects.v20 import all as dialect
 
@@ -18,8 +16,8 @@ from gcs.session import inputs
 from tests.loopback import pymavlink_decoder
 from tests.loopback.bridged import BridgedFlight
 from tests.loopback.flight import MISSIONS, Flight
+from tests.loopback.stranger import stranger, stranger_fences, stranger_uploads
 from vehicle_sim.autopilot.firmware import Firmware
-from vehicle_sim.simulation.world import Datagram, Transmit
 
 ARM, AUTHORIZATION = 400, 3001
 ACCEPTED, DENIED = 0, 2
@@ -31,8 +29,6 @@ GUARDED = {
     "GF_MAX_HOR_DIST": 100.0,
     "GF_MAX_VER_DIST": 40.0,
 }
-STRANGER = "another station"
-SEQUENCES = itertools.count()
 
 
 def guarded(policy: Policy = DEFAULT, firmware: Firmware | None = None, **params: float) -> Flight:
@@ -40,38 +36,9 @@ def guarded(policy: Policy = DEFAULT, firmware: Firmware | None = None, **params
     return flight.connected()
 
 
-def stranger(flight: Flight, *messages: Any) -> list[Any]:
-    """Another station says something straight to the vehicle; what it is answered."""
-    mav = dialect.MAVLink(None, srcSystem=254, srcComponent=190)
-    mav.seq = next(SEQUENCES) * 16 & 0xFF
-    answers: list[Any] = []
-    for message in messages:
-        data = Datagram(0, STRANGER, bytes(message.pack(mav)))
-        mav.seq = (mav.seq + 1) & 0xFF
-        for output in flight.world.handle(data, flight.now_ns):
-            if isinstance(output, Transmit) and output.peer == STRANGER:
-                answers += mav.parse_buffer(output.data) or []
-            elif isinstance(output, Transmit):
-                flight.down.send(output.data, flight.now_ns)
-    return answers
-
-
 def stranger_arms(flight: Flight) -> None:
     stranger(flight, dialect.MAVLink_command_long_message(1, 1, ARM, 0, 1, 0, 0, 0, 0, 0, 0))
     flight.run(1.5)
-
-
-def stranger_uploads(flight: Flight, items: int) -> None:
-    """A mission past the gate, of waypoints 100 m apart."""
-    asked = stranger(flight, dialect.MAVLink_mission_count_message(1, 1, items, 0))
-    for seq in range(items):
-        assert asked, "the vehicle asks for the next item"
-        item = dialect.MAVLink_mission_item_int_message(
-            1, 1, seq, 6, 16, 0, 1, 0, 0, 0, 0, 473977420 + 9000 * seq, 85455940, 20, 0
-        )
-        asked = stranger(flight, item)
-    assert "MISSION_ACK" in {message.get_type() for message in asked}
-    flight.run(3.0)
 
 
 def answers(flight: Flight) -> list[tuple[int, int, int]]:
@@ -122,6 +89,32 @@ def test_a_fence_that_does_nothing_is_named() -> None:
 
 def test_no_fence_on_board_is_named() -> None:
     denied(guarded(GF_MAX_HOR_DIST=0.0), "geofence", "GF_MAX_HOR_DIST")
+
+
+def test_a_fence_that_was_uploaded_does_for_the_radius() -> None:
+    flight = guarded(firmware="1.15", GF_MAX_HOR_DIST=0.0)
+    stranger_fences(flight, 70.0)
+    flight.run(2.0)
+    stranger_arms(flight)
+    assert answers(flight) == [(ACCEPTED, 10, 10)]
+    told = [line for line in flight.lines("link") if "to stay in" in line]
+    assert "uploaded: 1 to stay in, 0 to stay out of, up to 99 m from home" in told[-1]
+
+
+def test_one_that_is_wider_than_the_policys_does_not() -> None:
+    flight = guarded(firmware="1.15", GF_MAX_HOR_DIST=0.0)
+    stranger_fences(flight, 300.0)
+    flight.run(2.0)
+    denied(flight, "GF_MAX_HOR_DIST", "up to 424 m from home, the policy's is 150 m")
+
+
+def test_one_that_is_taken_away_does_no_more() -> None:
+    flight = guarded(firmware="1.15", GF_MAX_HOR_DIST=0.0)
+    stranger_fences(flight, 70.0)
+    flight.run(2.0)
+    stranger(flight, dialect.MAVLink_mission_clear_all_message(1, 1, 1))
+    flight.run(1.0)
+    denied(flight, "GF_MAX_HOR_DIST")
 
 
 def test_a_severity_is_named() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.session.failsafes import CASES, Finding, findings, limits_of, parameters_of
+from gcs.session.fence_on_board import UploadedFence
 
 LIMITS = limits_of(DEFAULT, own_sysid=255)
 
@@ -156,6 +158,59 @@ def test_a_fence_of_the_vehicle_is_as_narrow_as_the_policys_or_it_is_weak() -> N
     assert said("ardupilot", "geofence", FENCE_ALT_MAX=50.0, FENCE_TYPE=5).says == (
         "no circle (FENCE_TYPE = 5), height 50 m"
     )
+
+
+def fenced(autopilot: str, uploaded: UploadedFence, **changed: float) -> Finding:
+    """What is said of its fence, where that was uploaded."""
+    values = {**RECORDED[autopilot], "GF_MAX_VER_DIST": 50.0, "FENCE_ALT_MAX": 50.0, **changed}
+    limits = replace(LIMITS, uploaded=uploaded)
+    (found,) = (each for each in findings(autopilot, values, limits) if each.about == "geofence")
+    return found
+
+
+def test_an_uploaded_fence_that_is_as_narrow_as_the_policys_does_for_the_circle() -> None:
+    near = fenced("px4", UploadedFence(1, 2, 140.2))
+    assert near == Finding(
+        "geofence",
+        "no radius (GF_MAX_HOR_DIST = 0), the policy's is 150 m, height 50 m, "
+        "uploaded: 1 to stay in, 2 to stay out of, up to 140 m from home",
+        weak=False,
+    )
+    assert not fenced("ardupilot", UploadedFence(1, 0, 150.0), FENCE_RADIUS=500.0).weak
+
+
+@pytest.mark.parametrize(
+    ("uploaded", "words"),
+    [
+        (
+            UploadedFence(1, 0, 400.0),
+            "uploaded: 1 to stay in, 0 to stay out of, "
+            "up to 400 m from home, the policy's is 150 m",
+        ),
+        (UploadedFence(0, 2), "uploaded: 0 to stay in, 2 to stay out of"),
+        (
+            UploadedFence(1, 0),
+            "uploaded: 1 to stay in, 0 to stay out of, where home is not known",
+        ),
+        (UploadedFence(unreadable="it says no"), "uploaded: not known (it says no)"),
+    ],
+)
+def test_any_other_uploaded_fence_does_not(uploaded: UploadedFence, words: str) -> None:
+    found = fenced("px4", uploaded)
+    assert found.weak
+    assert found.says.endswith(words)
+    assert not fenced("px4", uploaded, GF_MAX_HOR_DIST=150.0).weak, "the circle does"
+
+
+def test_no_uploaded_fence_does_for_the_height() -> None:
+    assert fenced("px4", UploadedFence(1, 0, 100.0), GF_MAX_VER_DIST=0.0).weak
+
+
+def test_an_arducopter_that_uses_no_zones() -> None:
+    found = fenced("ardupilot", UploadedFence(1, 0, 100.0), FENCE_TYPE=1)
+    assert found.weak
+    assert found.says.endswith("1 to stay in, 0 to stay out of, not in use (FENCE_TYPE = 1)")
+    assert not fenced("ardupilot", UploadedFence(1, 0, 100.0), FENCE_TYPE=5).weak
 
 
 def test_the_policys_reach_is_that_of_its_zones_about_home_and_its_own_limits() -> None:

@@ -64,6 +64,20 @@ def test_the_gate_s_answer_is_whole_before_anything_that_the_session_adds() -> N
         assert port.handle(given, SECOND_NS)[-1] == GATE_ANSWERED
 
 
+@pytest.mark.parametrize(
+    ("name", "kept"),
+    [(Condition.VEHICLE_FAILSAFE_WEAK, "a fence is off"), (Condition.GPS_POOR, "all is off")],
+)
+def test_what_is_weak_in_the_vehicle_is_told_anew_when_it_is_something_else(
+    name: Condition, kept: str
+) -> None:
+    port = GatePort(DEFAULT, 0)
+    for text in ("all is off", "a fence is off", "a fence is off"):
+        port.handle(inputs.ConditionChanged(name, True, text), 0)
+    assert dict(port.gate.reasons) == {name: kept}
+    assert not of(Say, port.handle(inputs.ConditionChanged(name, True, kept), 0)), "no news"
+
+
 def test_a_new_vehicle_has_a_new_gate_and_what_was_wrong_still_is() -> None:
     port = GatePort(DEFAULT, 0)
     port.handle(inputs.ConditionChanged(Condition.RECORDER_FAILED, True, "disk full"), 0)
