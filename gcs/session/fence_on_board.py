@@ -134,14 +134,8 @@ def _reaches_m(zone: Zone, telemetry: Telemetry) -> Iterator[float]:
     projection = Projection(telemetry.origin, telemetry.autopilot.name)
     home_north_m, home_east_m, _ = telemetry.home_ned
     shape = zone.shape
-    places, more_m = (
-        ((shape.centre,), shape.radius_m)
-        if isinstance(shape, Circle)
-        else (
-            shape.corners,
-            0.0,
-        )
-    )
+    places = (shape.centre,) if isinstance(shape, Circle) else shape.corners
+    more_m = shape.radius_m if isinstance(shape, Circle) else 0.0
     for place in places:
         if isinstance(place, LatLon):
             north_m, east_m = projection.north_east(*place)
