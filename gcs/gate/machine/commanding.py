@@ -9,7 +9,7 @@ from typing import Final
 
 from gcs.frames import as_on_the_wire
 from gcs.gate.effects import CommandKind, Level
-from gcs.gate.machine.holding import repeat_hold
+from gcs.gate.machine.holding import repeat_hold, verify_held_point
 from gcs.gate.machine.turn import Turn
 from gcs.gate.requests import StartMission, TakeOff
 from gcs.gate.states import Control, FlightMode
@@ -123,14 +123,17 @@ def _climb(turn: Turn) -> None:
 def _fly_by_itself(
     turn: Turn, kind: CommandKind, reason: str, seconds: float | None, seq: int | None = None
 ) -> None:
-    """Command a mode in which the vehicle flies by itself; no setpoints are sent meanwhile.
+    """Command a mode in which the vehicle flies by itself.  One that follows our setpoints is held
+    where it is until it shows that mode.
 
     `seconds` is the deadline of the request; None: it has none.  `seq` is where a mission begins.
     """
     memory = turn.memory
     turn.cancel_commands()
+    memory.goal = memory.hold = None
+    if memory.control is Control.OURS and memory.mode is FlightMode.GUIDED and memory.airborne:
+        verify_held_point(turn)
     memory.control = Control.OURS
-    memory.hold = memory.goal = None
     memory.ask_control_ns = None
     turn.set_deadline(seconds)
     turn.command(kind, reason, seq=seq)

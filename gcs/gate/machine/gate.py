@@ -119,7 +119,8 @@ class Gate:
         memory = self._turn.memory
         if memory.flown_state is State.STREAMING and memory.flown is not None:
             return memory.flown.sample.pos_ned
-        flown = memory.goal or memory.hold
+        by_itself = STREAMS[memory.state] is Streams.HOLD_GOAL_UNTIL_MODE
+        flown = memory.goal or (None if by_itself else memory.hold)
         return None if flown is None else flown.pos_ned
 
     @property
@@ -294,6 +295,7 @@ class Gate:
         goal = {
             Streams.HOLD_GOAL: memory.hold,
             Streams.ACTIVE_GOAL: memory.goal,
+            Streams.HOLD_GOAL_UNTIL_MODE: memory.hold if awaits_mode_in_guided(turn) else None,
         }.get(streams)
         if streams is Streams.SAMPLE:
             goal = memory.hold
@@ -336,6 +338,14 @@ class Gate:
                 draft.seq,
             )
         return draft
+
+
+def awaits_mode_in_guided(turn: Turn) -> bool:
+    """The vehicle still follows setpoints, on a position that can be judged, and is to leave that
+    mode."""
+    memory = turn.memory
+    awaited = memory.asked_mode is not None and memory.mode is FlightMode.GUIDED
+    return awaited and not turn.stale
 
 
 def _plus(time_ns: int | None, seconds: float) -> int | None:

@@ -129,6 +129,7 @@ def _guards_of_memory() -> dict[Guard, Callable[[Memory], bool]]:
         Guard.GOAL_PENDING: lambda m: m.pending is not None,
         Guard.GOAL_ACTIVE: lambda m: m.goal is not None,
         Guard.HOLD_AWAITED: lambda m: m.hold_again_ns is not None,
+        Guard.HELD_IN_PLACE: lambda m: m.hold is not None,
         Guard.HOLD_REQUESTED: lambda m: m.hold_requested,
         Guard.MISSION_AT_LAST_ITEM: lambda m: m.mission_over,
         Guard.IN_GRACE: lambda m: m.grace_until_ns is not None,

@@ -80,7 +80,11 @@ def confirm_hold(turn: Turn) -> None:
 
 
 def stop_awaiting_mode(turn: Turn) -> None:
-    turn.memory.asked_mode = None
+    """The mode is shown, or is waited for no more."""
+    memory = turn.memory
+    memory.asked_mode = None
+    if memory.state in (State.FLYING_MISSION, State.RETURNING, State.LANDING):
+        memory.hold = None
 
 
 def brake(turn: Turn) -> None:

@@ -96,6 +96,10 @@ hold_if_grace_over: Final = Branch(
     do=(Action.STOP_STREAM, Action.HOLD),
 )
 verify_held_point: Final = Branch(do=(Action.VERIFY_HELD_POINT,))
+# Until the vehicle shows the mode in which it lands or returns, it is held in its place.
+verify_held_point_if_held: Final = Branch(
+    when=(Guard.HELD_IN_PLACE,), do=(Action.VERIFY_HELD_POINT,)
+)
 brake: Final = Branch(ends=FENCE_BREACH, do=(Action.BRAKE, Action.HOLD), to=HOLDING)
 # A late sample is predicted too; only a vehicle that is held already is not braked.
 brake_if_it_returns_to_flight: Final = Branch(
@@ -158,7 +162,7 @@ POSITION_ROWS: Final[Mapping[Event, Row]] = {
         during(MOVING, STREAMING, TAKING_PICTURE, then=hold_and_end(POSITION_JUMPED)),
         during(FLYING_MISSION, then=hold_and_end(POSITION_JUMPED)),
         during(RETURNING, then=(hold_if_in_control(POSITION_JUMPED), unchanged)),
-        during(LANDING, then=unchanged),
+        during(LANDING, then=(verify_held_point_if_held, unchanged)),
         during(HOLDING, then=verify_held_point),
         during(EXTERNAL, then=unchanged),
     ),
@@ -171,7 +175,7 @@ POSITION_ROWS: Final[Mapping[Event, Row]] = {
         during(MOVING, STREAMING, TAKING_PICTURE, then=hold_and_end(HOME_MOVED)),
         during(FLYING_MISSION, then=hold_and_end(HOME_MOVED)),
         during(RETURNING, then=(hold_if_in_control(HOME_MOVED), unchanged)),
-        during(LANDING, then=unchanged),
+        during(LANDING, then=(verify_held_point_if_held, unchanged)),
         during(HOLDING, then=verify_held_point),
         during(EXTERNAL, then=unchanged),
     ),
@@ -184,7 +188,7 @@ POSITION_ROWS: Final[Mapping[Event, Row]] = {
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, then=hold_and_end(AS_JUDGED)),
         during(FLYING_MISSION, then=hold_and_end(AS_JUDGED)),
-        during(RETURNING, LANDING, then=unchanged),
+        during(RETURNING, LANDING, then=(verify_held_point_if_held, unchanged)),
         during(HOLDING, then=verify_held_point),
         during(EXTERNAL, then=unchanged),
     ),

@@ -62,6 +62,7 @@ class Guard(StrEnum):
     FORCE_DISARM_UNCONFIRMED = "it was asked for only once"
     SEVERITY_PERMITS = "severity permits motion"
     HOLD_AWAITED = "hold is commanded and not shown yet"
+    HELD_IN_PLACE = "a held point is its goal"
     HOLD_REQUESTED = "it was asked for"
     MODE_AWAITED = "a commanded mode is not shown yet"
     MODE_FITS_STATE = "the mode belongs to the state"

@@ -63,6 +63,7 @@ class Streams(StrEnum):
     HOLD_GOAL = "the hold goal"
     ACTIVE_GOAL = "the active goal"
     SAMPLE = "the client's sample, or the hold goal in its place"
+    HOLD_GOAL_UNTIL_MODE = "the hold goal, until another mode than guided is shown"
     AS_BEFORE = "as before, for the grace"
 
 
@@ -77,11 +78,15 @@ STREAMS: Final[Mapping[State, Streams]] = MappingProxyType(
         State.MOVING: Streams.ACTIVE_GOAL,
         State.STREAMING: Streams.SAMPLE,
         State.TAKING_PICTURE: Streams.HOLD_GOAL,
-        State.FLYING_MISSION: Streams.NOTHING,
-        State.RETURNING: Streams.NOTHING,
-        State.LANDING: Streams.NOTHING,
+        State.FLYING_MISSION: Streams.HOLD_GOAL_UNTIL_MODE,
+        State.RETURNING: Streams.HOLD_GOAL_UNTIL_MODE,
+        State.LANDING: Streams.HOLD_GOAL_UNTIL_MODE,
         State.HOLDING: Streams.HOLD_GOAL,
         State.EXTERNAL: Streams.NOTHING,
     }
 )
-"""Setpoints leave in these states and in no other (invariant 1)."""
+"""Setpoints leave in these states and in no other (invariant 1).
+
+A PX4 in OFFBOARD that hears no setpoint for COM_OF_LOSS_T begins a failsafe of its own, which may
+sink: so the place where it was stays its goal until the mode that was commanded is shown.
+"""

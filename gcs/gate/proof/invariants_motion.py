@@ -30,6 +30,8 @@ STREAMING_STATES: Final = frozenset(
         State.STALE,  # for the grace only
     }
 )
+FLIES_BY_ITSELF: Final = frozenset({State.FLYING_MISSION, State.RETURNING, State.LANDING})
+"""A vehicle that still follows setpoints is held in its place until it does."""
 FLOWN_BY_US: Final = frozenset(
     {
         State.TAKING_OFF,
@@ -88,7 +90,7 @@ def streams_what_was_verified(edge: Edge) -> Iterator[str]:
     ]
     for sent in edge.setpoints:
         pos_ned = sent.permit.pos_ned
-        if edge.after.state not in STREAMING_STATES:
+        if not _may_stream(edge.after):
             yield f"a setpoint leaves in {edge.after.state.name}"
         if edge.after.control is Control.NONE:
             yield "a setpoint leaves without control"
@@ -102,6 +104,12 @@ def streams_what_was_verified(edge: Edge) -> Iterator[str]:
             yield "a setpoint leaves between the ticks"
 
 
+def _may_stream(after: Memory) -> bool:
+    if after.state in FLIES_BY_ITSELF:
+        return after.mode is FlightMode.GUIDED and after.asked_mode is not None
+    return after.state in STREAMING_STATES
+
+
 def flies_what_clears(edge: Edge) -> Iterator[str]:
     """2: what is flown was verified, and still clears in the fence that is now."""
     before, after, verifier = edge.before, edge.after, edge.after.verifier
@@ -109,7 +117,9 @@ def flies_what_clears(edge: Edge) -> Iterator[str]:
     if before.verifier == verifier or after.control is Control.NONE:
         return
     pos_ned, v_ned, flown = after.pos_ned, after.v_ned, after.flown_state
-    if verifier is None or pos_ned is None or v_ned is None or flown not in STREAMING_STATES:
+    if verifier is None or pos_ned is None or v_ned is None:
+        return
+    if flown not in STREAMING_STATES and not _may_stream(after):
         return
     if after.state is State.STALE and after.grace_until_ns is None:
         return

@@ -217,6 +217,13 @@ def elsewhere(script: Script) -> Verifier:
     return replace_zones(verifier, zones=(*verifier.zones, yard))
 
 
+def follows_setpoints(script: Script) -> bool:
+    """Does the vehicle show the mode in which we fly it, on a fresh position?"""
+    memory = script.gate.memory
+    ours = memory.control is Control.OURS and memory.mode is FlightMode.GUIDED
+    return ours and memory.state is not State.STALE
+
+
 def streams(script: Script) -> bool:
     """Does a setpoint leave with the next tick?"""
     effects: list[Effect] = script.tick()

@@ -107,6 +107,8 @@ class TestReads:
         script.tick()
         assert self.goals(script) == (there, here)
         script.ask(Land())
+        assert self.goals(script) == (None, here), "held in its place until it shows the mode"
+        script.heartbeat(FlightMode.LAND)
         assert self.goals(script) == (None, None)
 
     def test_the_age_of_the_position(self) -> None:

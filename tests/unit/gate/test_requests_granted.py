@@ -82,13 +82,15 @@ class TestGranted:
         assert state_of(script) is State.HOVERING
 
     @pytest.mark.parametrize("state", [State.GROUNDED, State.HOVERING])
-    def test_a_mission_is_started_and_nothing_is_streamed(self, state: State) -> None:
+    def test_a_mission_is_started_and_then_nothing_is_streamed(self, state: State) -> None:
         script = Script(policy("default"))
         lead_to(state, script)
         script.feed(MissionLoaded("square", 4))
         asked = script.ask(StartMission())
         assert (state_of(script), script.gate.control) == (State.FLYING_MISSION, Control.OURS)
         assert script.gate.memory.outstanding == ((asked, CommandKind.START_MISSION),)
+        assert streams(script) is (state is State.HOVERING), "held until it shows the mode"
+        script.heartbeat(FlightMode.MISSION)
         assert not streams(script)
 
     @pytest.mark.parametrize("state", STATES)

@@ -25,6 +25,7 @@ from tests.unit.gate.reactions import (
     default_policy,
     ended,
     flight,
+    follows_setpoints,
     reaction,
     state_of,
     streams,
@@ -397,7 +398,10 @@ class TestLand:
     @pytest.mark.parametrize("state", [*AIRBORNE, State.STALE])
     def test_it_is_commanded_and_takes_the_place_of_what_was_under_way(self, state: State) -> None:
         script, request_id = flight(state)
+        followed = follows_setpoints(script)
         assert reaction(script, request_id, lambda s: s.ask(Land())) == Reaction(
             State.LANDING, Control.OURS, [CommandKind.LAND], "superseded SUPERSEDED"
         )
+        assert streams(script) is followed, "held in its place until it shows the mode"
+        script.heartbeat(FlightMode.LAND)
         assert not streams(script)

@@ -14,11 +14,12 @@ from gcs.gate.requests import (
     Disarm,
     ReturnHome,
 )
-from gcs.gate.states import Control, State
+from gcs.gate.states import Control, FlightMode, State
 from tests.unit.gate.reactions import (
     AIRBORNE,
     Reaction,
     flight,
+    follows_setpoints,
     reaction,
     state_of,
     streams,
@@ -36,9 +37,12 @@ class TestReturn:
         self, state: State
     ) -> None:
         script, request_id = flight(state)
+        followed = follows_setpoints(script)
         assert reaction(script, request_id, lambda s: s.ask(ReturnHome())) == Reaction(
             State.RETURNING, Control.OURS, [CommandKind.RETURN], "superseded SUPERSEDED"
         )
+        assert streams(script) is followed, "held in its place until it shows the mode"
+        script.heartbeat(FlightMode.RETURN)
         assert not streams(script)
 
     def blocked(self, state: State, rtl_blocked: str) -> tuple[Script, int]:

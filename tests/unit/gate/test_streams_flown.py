@@ -149,6 +149,11 @@ def test_a_landing_ends_the_stream() -> None:
     assert state_of(script) is State.LANDING
     script.forget()
     script.tick()
+    (held,) = sent(script)
+    assert held.pos_ned == script.gate.pos_ned, "its place, until it shows the mode"
+    script.heartbeat(FlightMode.LAND)
+    script.forget()
+    script.tick()
     assert sent(script) == []
 
 

@@ -107,11 +107,10 @@ def test_nothing_is_streamed_where_the_vehicle_flies_by_itself() -> None:
         State.NO_VEHICLE,
         State.GROUNDED,
         State.TAKING_OFF,
-        State.FLYING_MISSION,
-        State.RETURNING,
-        State.LANDING,
         State.EXTERNAL,
     }
+    awaiting = {s for s, what in STREAMS.items() if what is Streams.HOLD_GOAL_UNTIL_MODE}
+    assert awaiting == {State.FLYING_MISSION, State.RETURNING, State.LANDING}
 
 
 def test_a_mode_asked_for_by_name_is_the_request_it_means() -> None:
