@@ -188,6 +188,7 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.GRACE_OVER: _grace_over,
         Guard.MODE_GUIDED: _mode(FlightMode.GUIDED),
         Guard.STANDS_IN_GUIDED: _stands_in_guided,
+        Guard.MODE_TAKE_OFF: _mode(FlightMode.TAKEOFF),
         Guard.MODE_RETURN: _mode(FlightMode.RETURN),
         Guard.MODE_LAND: _mode(FlightMode.LAND),
         Guard.OWN_STREAM: streaming.own_stream,

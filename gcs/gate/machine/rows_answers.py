@@ -14,6 +14,7 @@ from gcs.gate.machine.cells import (
     NO_ANSWER,
     VEHICLE_REFUSED,
     cannot_happen,
+    disarm_if_on_ground,
     end,
     end_if_on_ground,
     hold_and_end,
@@ -81,6 +82,7 @@ take_control_if_regainable: Final = Branch(
 unchanged_if_on_ground: Final = Branch(when=(Guard.ON_GROUND,))
 # The answer was lost, not the command.
 unchanged_if_mode_fits_state: Final = Branch(when=(Guard.MODE_FITS_STATE,))
+unchanged_if_mode_is_take_off: Final = Branch(when=(Guard.MODE_TAKE_OFF,))
 
 ANSWER_ROWS: Final[Mapping[Event, Row]] = {
     Event.GOAL_CLEARED: row(
@@ -122,12 +124,26 @@ ANSWER_ROWS: Final[Mapping[Event, Row]] = {
         during(NO_VEHICLE, then=end(NO_ANSWER)),
         during(STALE, then=(stop_stream_if(Guard.IN_GRACE, NO_ANSWER), end(NO_ANSWER))),
         during(GROUNDED, then=end(NO_ANSWER)),
-        during(TAKING_OFF, then=(end_if_on_ground(NO_ANSWER), hold_and_end(NO_ANSWER))),
+        during(
+            TAKING_OFF,
+            then=(
+                unchanged_if_mode_is_take_off,
+                disarm_if_on_ground(NO_ANSWER),
+                hold_and_end(NO_ANSWER),
+            ),
+        ),
         during(HOVERING, then=(release_if_taking_control(NO_ANSWER), unchanged)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, then=unchanged),
         during(TAKING_PICTURE, then=hover_and_end(NO_ANSWER)),
-        during(FLYING_MISSION, then=(end_if_on_ground(NO_ANSWER), hold_and_end(NO_ANSWER))),
+        during(
+            FLYING_MISSION,
+            then=(
+                unchanged_if_mode_fits_state,
+                disarm_if_on_ground(NO_ANSWER),
+                hold_and_end(NO_ANSWER),
+            ),
+        ),
         during(RETURNING, LANDING, then=(unchanged_if_mode_fits_state, hold_and_end(NO_ANSWER))),
         during(HOLDING, then=unchanged),
         during(EXTERNAL, then=end(NO_ANSWER)),

@@ -68,6 +68,7 @@ class Guard(StrEnum):
     MODE_FITS_STATE = "the mode belongs to the state"
     MODE_GUIDED = "the mode is guided"
     STANDS_IN_GUIDED = "guided is asked for by its name, and it stands still in it"
+    MODE_TAKE_OFF = "the mode is take-off"
     MODE_RETURN = "the mode is return"
     MODE_LAND = "the mode is land"
     GUIDED_MAY_COME_LATE = "our own guided command comes late"

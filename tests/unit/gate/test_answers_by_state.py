@@ -25,6 +25,7 @@ from tests.unit.gate.reactions import (
     Reaction,
     flight,
     reaction,
+    remember,
     state_of,
     streams,
     take_off,
@@ -92,6 +93,8 @@ def test_a_refusal_or_no_answer_ends_the_request(
     state: State, result: int | None, how: str
 ) -> None:
     script, request_id = asked(state)
+    if state in (State.TAKING_OFF, State.FLYING_MISSION):
+        remember(script, mode=FlightMode.HOLD)
     told = CommandEnded(request_id, COMMAND[state], result)
     assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(*LEADS_TO[state], how)
 
@@ -102,6 +105,8 @@ def test_a_refusal_or_no_answer_ends_the_request(
         (State.RETURNING, FlightMode.RETURN),
         (State.RETURNING, FlightMode.LAND),
         (State.LANDING, FlightMode.LAND),
+        (State.TAKING_OFF, FlightMode.TAKEOFF),
+        (State.FLYING_MISSION, FlightMode.MISSION),
     ],
 )
 @pytest.mark.parametrize(
@@ -111,7 +116,7 @@ def test_a_refusal_or_no_answer_ends_the_request(
         (REFUSED, HELD, "aborted VEHICLE_REFUSED"),
     ],
 )
-def test_a_lost_answer_is_nothing_where_the_vehicle_shows_that_it_comes_down(
+def test_a_lost_answer_is_nothing_where_the_vehicle_shows_that_it_does_it(
     state: State,
     shown: FlightMode,
     result: int | None,
@@ -127,22 +132,28 @@ def test_a_lost_answer_is_nothing_where_the_vehicle_shows_that_it_comes_down(
 
 
 @pytest.mark.parametrize(
-    ("result", "how"), [(REFUSED, "aborted VEHICLE_REFUSED"), (SILENT, "timed out NO_ANSWER")]
+    ("result", "sent", "how"),
+    [
+        (REFUSED, [], "aborted VEHICLE_REFUSED"),
+        (SILENT, [CommandKind.HOLD, CommandKind.DISARM], "timed out NO_ANSWER"),
+    ],
 )
 @pytest.mark.parametrize("kind", [CommandKind.TAKE_OFF, CommandKind.START_MISSION])
 def test_what_did_not_leave_the_ground_stays_there(
-    kind: CommandKind, result: int | None, how: str
+    kind: CommandKind, result: int | None, sent: list[CommandKind], how: str
 ) -> None:
+    """A command that may come late yet finds a vehicle that is disarmed."""
     script = Script(policy("default"))
     if kind is CommandKind.TAKE_OFF:
         request_id = take_off(script)
+        remember(script, mode=FlightMode.HOLD)
     else:
         lead_to(State.GROUNDED, script)
         script.feed(MissionLoaded("square", 4))
         request_id = script.ask(StartMission())
     told = CommandEnded(request_id, kind, result)
     assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-        State.GROUNDED, Control.NONE, [], how
+        State.GROUNDED, Control.NONE, sent, how
     )
 
 
@@ -205,7 +216,7 @@ class TestHold:
 
     def test_a_refusal_of_the_gates_own_hold_ends_no_request_and_it_is_asked_again(self) -> None:
         script, request_id = flight(State.TAKING_OFF)
-        script.feed(CommandEnded(request_id, CommandKind.TAKE_OFF, SILENT))
+        script.feed(CommandEnded(request_id, CommandKind.TAKE_OFF, REFUSED))
         assert state_of(script) is State.HOLDING
         for _ in range(3):
             script.forget()

@@ -176,8 +176,10 @@ class TestLandedState:
 
     def test_a_hold_after_a_take_off_that_nobody_answered_is_commanded(self) -> None:
         script = climbing()
+        script.heartbeat(FlightMode.HOLD)
         script.answer(CommandKind.TAKE_OFF, None)
         assert script.gate.state is State.GROUNDED
+        assert script.commands()[-2:] == [CommandKind.HOLD, CommandKind.DISARM]
         script.forget()
         hold = script.ask(Hold())
         assert script.commands() == [CommandKind.HOLD]

@@ -175,7 +175,7 @@ class TestStanding:
     def test_nor_while_one_that_was_given_up_may_come_late(self) -> None:
         script = Script(policy("default"))
         take_off(script)
-        script.answer(CommandKind.TAKE_OFF, None)
+        script.answer(CommandKind.TAKE_OFF, 2)
         assert state_of(script) is State.GROUNDED
         script.v_ned = (0.0, 0.0, -1.0)
         script.at(0.0, 0.0, 1.0)

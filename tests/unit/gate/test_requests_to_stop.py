@@ -202,7 +202,7 @@ class TestOnTheGround:
         """A take-off was given up and may come yet; a disarm was asked for since."""
         script = Script(policy("default"))
         take_off(script)
-        script.answer(CommandKind.TAKE_OFF, None)
+        script.answer(CommandKind.TAKE_OFF, 2)
         assert state_of(script) is State.GROUNDED
         return script, script.ask(Disarm())
 
@@ -241,7 +241,7 @@ class TestOnTheGround:
     ) -> None:
         script = Script(default_policy(rtl_blocked=blocked))
         take_off(script)
-        script.answer(CommandKind.TAKE_OFF, None)
+        script.answer(CommandKind.TAKE_OFF, 2)
         disarm = script.ask(Disarm())
         script.feed(ReturnHeightSeen(80.0))
         how = "superseded SUPERSEDED" if blocked == "forward" else "aborted OPERATOR"

@@ -126,7 +126,10 @@ class TestDeadlines:
         just_before(script, 60.0)
         assert not script.ended(request_id)
         assert reaction(script, request_id, lambda s: s.wait(0.1)) == Reaction(
-            State.GROUNDED, Control.NONE, [], "timed out DEADLINE"
+            State.GROUNDED,
+            Control.NONE,
+            [CommandKind.HOLD, CommandKind.DISARM],
+            "timed out DEADLINE",
         )
 
     @pytest.mark.parametrize("wanted", [Arm(), Disarm()])
