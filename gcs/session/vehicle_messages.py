@@ -167,4 +167,5 @@ class VehicleMessages:
         work += parts.learn(parts.settings.start(telemetry, now_ns), telemetry)
         work += parts.returns.start(telemetry, busy=parts.missions.busy, now_ns=now_ns)
         parts.fence.start(telemetry, now_ns)
+        work += parts.with_plans_on_board([], now_ns)
         return work + parts.ask_for_missing(telemetry, now_ns)
