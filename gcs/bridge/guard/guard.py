@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS
+from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS, choice_of
 from gcs.bridge.guard.files import is_read, judge_file
 from gcs.bridge.guard.parameters import HASH_CHECK, Changed, ParameterGuard, refused_write
 from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
@@ -125,27 +125,11 @@ class Guard:
         if row is None:
             sentence = f"command {message.command} has no rule here"
             return Refused(Refusal(Code.UNSUPPORTED, sentence))
-        rules = self._rules
-        match row.key:
-            case None:
-                return Refused(Refusal(Code.POLICY, f"{row.what} is never allowed to a client"))
-            case "parameters":
-                return self._storage(message, row.what, seen)
-            case "home":
-                choice: str = rules.home
-            case "origin":
-                choice = rules.origin
-            case "fence":
-                choice = rules.fence
-            case "calibration":
-                choice = rules.calibration
-            case "reboot":
-                choice = rules.reboot
-            case "termination":
-                choice = rules.termination
-            case "downloads":
-                choice = rules.downloads
-        return by_choice(choice, row.key, row.what, seen)
+        if row.key is None:
+            return Refused(Refusal(Code.POLICY, f"{row.what} is never allowed to a client"))
+        if row.key == "parameters":
+            return self._storage(message, row.what, seen)
+        return by_choice(choice_of(row.key, self._rules), row.key, row.what, seen)
 
     def _storage(self, message: CommandLong | CommandInt, what: str, seen: GuardSeen) -> Judgement:
         """PREFLIGHT_STORAGE."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
+from gcs.bridge.guard.carried import refused_items
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import PlanError
 from gcs.plan.writer import write
@@ -16,6 +17,7 @@ from gcs.session.effects import Record
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.bring import BringMission
 from gcs.session.jobs.job import Asked, JobWork, VehicleView
+from gcs.session.jobs.starting import first_item
 from gcs.session.paths import autopilot_name
 from gcs.session.plans import prepare_items
 from gcs.session.work import Tell
@@ -34,6 +36,9 @@ class ClientUpload(BringMission):
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         items = self._plan.items
+        bridge = view.policy.bridge
+        if refused := refused_items(items, first_item(view.telemetry), bridge):
+            return self.refuse_for_all(refused[0], refused[1:])
         steps = prepare_items(self.source, items, view.telemetry)
         return self.prepare_with(steps, len(items) <= SMALL_ITEMS, view, now_ns)
 
