@@ -12,10 +12,11 @@ from gcs.bridge.guard.files import is_read, judge_file
 from gcs.bridge.guard.parameters import HASH_CHECK, Changed, ParameterGuard, refused_write
 from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused, by_choice
+from gcs.bridge.plans.results import result_of
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import PX4, ParamEncoding
-from gcs.wire.ids import MissionResult, MissionType, ParamFault
+from gcs.wire.ids import MissionType, ParamFault
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
@@ -144,6 +145,8 @@ class Guard:
     ) -> Judgement:
         """Fences and rally points; a mission itself is not the guard's."""
         keys = _PLANS.get(MissionType(message.mission_type)) if _known(message) else ()
+        if isinstance(message, MissionCount) and message.mission_type == MissionType.ALL:
+            keys = ()  # all at once are cleared, and not sent
         if keys is None:
             return Allowed()
         if not keys:
@@ -184,7 +187,7 @@ def _plan_refused(
     answer = MissionAck(
         target_system=seen.client.sysid,
         target_component=seen.client.compid,
-        type=MissionResult.DENIED,
+        type=result_of(refusal.code, refusal.sentence),
         mission_type=message.mission_type,
     )
     return Refused(refusal, (answer,))
