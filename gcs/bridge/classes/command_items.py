@@ -70,3 +70,5 @@ ITEMS: tuple[Group, ...] = (
         },
     ),
 )
+
+ONLY_IN_PLANS: frozenset[int] = frozenset(number for group in ITEMS for number in group.names)

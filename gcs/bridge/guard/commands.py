@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, Literal, TypeAlias
 
+from gcs.gate.policy.policy import BridgeRules
 from gcs.wire.dialect import ENUMS
 
 Key: TypeAlias = Literal[
@@ -57,3 +58,24 @@ ROWS: Final[Mapping[int, CommandRow]] = MappingProxyType({_NUMBERS[r.name]: r fo
 STORAGE_KEEPS: Final = frozenset({0, 1})
 """param1 of PREFLIGHT_STORAGE that changes no value: read from storage, write to it; 2 to 4 set
 defaults."""
+
+
+def choice_of(key: Key, rules: BridgeRules) -> str:
+    """What the policy says at `key`."""
+    match key:
+        case "fence":
+            return rules.fence
+        case "home":
+            return rules.home
+        case "origin":
+            return rules.origin
+        case "calibration":
+            return rules.calibration
+        case "reboot":
+            return rules.reboot
+        case "termination":
+            return rules.termination
+        case "parameters":
+            return rules.parameters
+        case "downloads":
+            return rules.downloads

@@ -7,15 +7,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS
+from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS, choice_of
 from gcs.bridge.guard.files import is_read, judge_file
 from gcs.bridge.guard.parameters import HASH_CHECK, Changed, ParameterGuard, refused_write
 from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused, by_choice
+from gcs.bridge.plans.results import result_of
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import PX4, ParamEncoding
-from gcs.wire.ids import MissionResult, MissionType, ParamFault
+from gcs.wire.ids import MissionType, ParamFault
 from gcs.wire.messages import (
     CommandInt,
     CommandLong,
@@ -125,27 +126,11 @@ class Guard:
         if row is None:
             sentence = f"command {message.command} has no rule here"
             return Refused(Refusal(Code.UNSUPPORTED, sentence))
-        rules = self._rules
-        match row.key:
-            case None:
-                return Refused(Refusal(Code.POLICY, f"{row.what} is never allowed to a client"))
-            case "parameters":
-                return self._storage(message, row.what, seen)
-            case "home":
-                choice: str = rules.home
-            case "origin":
-                choice = rules.origin
-            case "fence":
-                choice = rules.fence
-            case "calibration":
-                choice = rules.calibration
-            case "reboot":
-                choice = rules.reboot
-            case "termination":
-                choice = rules.termination
-            case "downloads":
-                choice = rules.downloads
-        return by_choice(choice, row.key, row.what, seen)
+        if row.key is None:
+            return Refused(Refusal(Code.POLICY, f"{row.what} is never allowed to a client"))
+        if row.key == "parameters":
+            return self._storage(message, row.what, seen)
+        return by_choice(choice_of(row.key, self._rules), row.key, row.what, seen)
 
     def _storage(self, message: CommandLong | CommandInt, what: str, seen: GuardSeen) -> Judgement:
         """PREFLIGHT_STORAGE."""
@@ -160,6 +145,8 @@ class Guard:
     ) -> Judgement:
         """Fences and rally points; a mission itself is not the guard's."""
         keys = _PLANS.get(MissionType(message.mission_type)) if _known(message) else ()
+        if isinstance(message, MissionCount) and message.mission_type == MissionType.ALL:
+            keys = ()  # all at once are cleared, and not sent
         if keys is None:
             return Allowed()
         if not keys:
@@ -200,7 +187,7 @@ def _plan_refused(
     answer = MissionAck(
         target_system=seen.client.sysid,
         target_component=seen.client.compid,
-        type=MissionResult.DENIED,
+        type=result_of(refusal.code, refusal.sentence),
         mission_type=message.mission_type,
     )
     return Refused(refusal, (answer,))

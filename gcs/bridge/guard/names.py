@@ -1,13 +1,16 @@
-"""Whether the names in the policy's `[bridge]` are those of messages, commands and modes."""
+"""The names in the policy's `[bridge]`: whether they are those of messages, commands and modes, and
+what the policy says of them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final
 
 from gcs.bridge.classes.explain import explain
 from gcs.bridge.classes.row import Kind
 from gcs.gate.policy.parse import NameFault
 from gcs.gate.policy.policy import BridgeRules
+from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import ARDUPILOT, PX4, mode_named
 from gcs.toml import did_you_mean
 
@@ -23,6 +26,16 @@ _NOT_HARMLESS: Final = {
 }
 _MODES: Final = tuple(dict.fromkeys(mode.name for each in (PX4, ARDUPILOT) for mode in each.modes))
 """Each once: many are both autopilots'."""
+
+DENIED_BY_NAME: Final = Refusal(
+    Code.POLICY, "the policy denies it by its name (policy: bridge.extra_denied)"
+)
+
+
+def kinds_by_name(rules: BridgeRules) -> Mapping[str, Kind]:
+    """What the policy says of messages and commands by name; they are as `check_names` has them."""
+    denied = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
+    return denied | {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
 
 
 def check_names(rules: BridgeRules) -> NameFault | None:

@@ -64,8 +64,17 @@ def by_choice(choice: str, key: str, what: str, seen: GuardSeen) -> Judgement:
         case "on_ground" if seen.stands_disarmed:
             return Allowed(f"{what} is forwarded")
         case "on_ground":
-            sentence = f"{what} is allowed while the vehicle is disarmed on the ground only"
-            return Refused(Refusal(Code.IN_AIR, f"{sentence} (policy: bridge.{key})"))
+            return Refused(Refusal(Code.IN_AIR, on_ground_only(what, key)))
         case _:
-            sentence = f"{what} is not allowed (policy: bridge.{key})"
-            return Refused(Refusal(Code.POLICY, sentence))
+            return Refused(Refusal(Code.POLICY, not_allowed(what, key)))
+
+
+def on_ground_only(what: str, key: str) -> str:
+    """The sentence of what the policy's "on_ground" refuses."""
+    sentence = f"{what} is allowed while the vehicle is disarmed on the ground only"
+    return f"{sentence} (policy: bridge.{key})"
+
+
+def not_allowed(what: str, key: str) -> str:
+    """The sentence of what the policy's "refuse" refuses."""
+    return f"{what} is not allowed (policy: bridge.{key})"

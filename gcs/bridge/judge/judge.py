@@ -10,9 +10,10 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.bridge.asked_rates import AskedRates
-from gcs.bridge.classes import Kind, Row, command_row, explain, message_row
+from gcs.bridge.classes import Kind, Row, command_row, message_row
 from gcs.bridge.control import ControlServer
 from gcs.bridge.effects import AsksForStreams, AsksVehicle, BridgeEffect, ToVehicle
+from gcs.bridge.guard.names import DENIED_BY_NAME, kinds_by_name
 from gcs.bridge.judge.motion import MotionJudge
 from gcs.bridge.judge.plans import PlanJudge
 from gcs.bridge.judge.received import Judged, Received, refuse
@@ -60,8 +61,7 @@ class Judge:
         self.mission_mode = MissionMode()
         self._motion = MotionJudge(self.set_up, self.mission_mode)
         self._plans = PlanJudge(self.set_up)
-        self._kinds = {explain(name).name: Kind.DENIED for name in rules.extra_denied}
-        self._kinds |= {explain(name).name: Kind.HARMLESS for name in rules.extra_harmless}
+        self._kinds = kinds_by_name(rules)
         """What the policy says of messages and commands by name."""
 
     def concerns_each(self, frame: Frame) -> bool:
@@ -101,7 +101,8 @@ class Judge:
             case Kind.LOCAL:
                 return Judged(False, [])
             case Kind.DENIED | Kind.CARRIER:
-                refusal = Refusal(Code.POLICY, row.why)
+                by_name = row.name in self._kinds
+                refusal = DENIED_BY_NAME if by_name else Refusal(Code.POLICY, row.why)
                 return refuse(given, message, row, refusal)
             case Kind.MOTION:
                 return self._motion.judge(given, message, row)

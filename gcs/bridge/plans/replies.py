@@ -18,6 +18,7 @@ from gcs.bridge.recent_texts import RecentTexts
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
+from gcs.wire.codec import encode
 from gcs.wire.ids import Component, MissionResult
 from gcs.wire.messages import Message, MissionClearAll, MissionCount, MissionWritePartialList
 
@@ -43,10 +44,17 @@ class Replies:
     def __init__(self) -> None:
         self._text_id = 0
         self._texts = RecentTexts()
+        self._plans = 0
 
-    def text(self, to: From, level: Level, text: str, now_ns: int) -> list[PlanEffect]:
-        """The same words not more often than every few seconds."""
-        if not self._texts.is_news(text, now_ns):
+    def another_plan(self) -> None:
+        """From now on it is about another plan: what was said of the one before is news again."""
+        self._plans += 1
+
+    def text(
+        self, to: From, level: Level, text: str, now_ns: int, request: bytes = b""
+    ) -> list[PlanEffect]:
+        """The same words of the same plan, and request, not more often than every few seconds."""
+        if not self._texts.is_news(text, now_ns, (self._plans, request)):
             return []
         self._text_id = self._text_id % 0xFFFF + 1
         return replies(to, texts(level, text, self._text_id))
@@ -65,6 +73,6 @@ class Replies:
         name = type(message).MSG_ID.name
         return [
             Refused(name, Refusal(code, text)),
-            *self.text(asked_by, Level.WARNING, text, now_ns),
+            *self.text(asked_by, Level.WARNING, text, now_ns, encode(message)),
             reply(asked_by, ack),
         ]

@@ -167,6 +167,7 @@ class PlanServer:
         if collecting is not None and collecting.opened == message and not collecting.items:
             return replies(asked_by, collecting.again(now_ns))
         self._collecting = Collecting(message, asked_by, self._timing)
+        self._replies.another_plan()
         return replies(asked_by, self._collecting.start(now_ns))
 
     def _cannot_take(
@@ -270,6 +271,7 @@ class PlanServer:
         if self._submissions.clears(kind):
             return []
         self._collecting = None
+        self._replies.another_plan()
         return self._submissions.submit(Submission(asked_by, kind))
 
     # ----------------------------------------------------------------------------- time

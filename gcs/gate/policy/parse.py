@@ -201,6 +201,11 @@ def _check_limits(doc: toml.Document, p: Policy) -> None:
     if doc.has(("takeoff", "max_up_m")) and p.takeoff.max_up_m > p.max_up_m:
         what = f"{p.takeoff.max_up_m:g} is above the policy's max_up_m of {p.max_up_m:g}"
         raise doc.error(("takeoff", "max_up_m"), what)
+    arrival = p.arrival
+    if doc.has(("arrival", "max_radius_m")) and arrival.max_radius_m < arrival.radius_m:
+        what = f"{arrival.max_radius_m:g} is less than radius_m of {arrival.radius_m:g}"
+        hint = f"max_radius_m = {arrival.radius_m:g} leaves the radius as it is"
+        raise doc.error(("arrival", "max_radius_m"), what, hint)
     battery = p.battery
     if battery.critical_pct > battery.low_pct:
         what = f"{battery.critical_pct:g} is above low_pct of {battery.low_pct:g}"
@@ -227,6 +232,10 @@ def _check_bridge(doc: toml.Document, rules: BridgeRules, check_names: CheckName
         if name in rules.parameters_guarded:
             what = f'"{name}" is in parameters_guarded, too'
             raise doc.error(("bridge", "parameters_allowed", number), what)
+    if doc.has(("bridge", "message_hz")) and rules.message_hz > rules.messages_hz:
+        what = f"{rules.message_hz:g} is more than messages_hz of {rules.messages_hz:g}"
+        hint = "messages_hz is what all messages together may have"
+        raise doc.error(("bridge", "message_hz"), what, hint)
     fault = None if check_names is None else check_names(rules)
     if fault is not None:
         raise doc.error(("bridge", fault.key, fault.entry), fault.what, fault.hint)

@@ -1,11 +1,13 @@
 """Adopt: the mission on board, which this station did not bring, is read, verified and started.
 
 It was there before, or another station has put it there.  It is read whole and verified like any
-other; from then on it is known as ours.  Then the gate decides on its start.
+other, and what it carries is judged as a client's; from then on it is known as ours.  Then the gate
+decides on its start.
 """
 
 from __future__ import annotations
 
+from gcs.bridge.guard.carried import refused_items
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import PlanError
@@ -46,6 +48,9 @@ class Adopt(PreparedJob, StartingJob):
         self._received = received
         if len(self._received) <= first_item(view.telemetry):
             return self.ask_gate()  # which knows of none
+        refused = refused_items(received, first_item(view.telemetry), view.policy.bridge)
+        if refused:
+            return self.refuse_for_all(refused[0], refused[1:])
         steps = prepare_items(SOURCE, self._received, view.telemetry)
         return self.prepare_with(steps, len(received) <= SMALL_ITEMS, view, now_ns)
 

@@ -10,6 +10,7 @@ Where the plan comes from is the subclass's: a file (`upload.py`), or a client (
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 
 from gcs.gate.effects import Level, OutcomeKind
 from gcs.gate.inputs import MissionLoaded
@@ -39,14 +40,16 @@ class BringMission(PreparedJob, BringingJob):
     def kept(self) -> list[JobWork]:
         """The plan as it came, for the record."""
 
+    def warned(self, warnings: Sequence[str]) -> list[JobWork]:
+        """It clears, and there is this to know about it: lines of the log."""
+        return [Log(Level.WARNING, NODE, f"{self.source}: {text}") for text in warnings]
+
     def verified(self, found: Verification, view: VehicleView, now_ns: int) -> list[JobWork]:
         """The verdict; a mission that clears is on its way."""
         answer = cleared(found)
         if isinstance(answer, Refusal):
             return self.refuse_path(found, answer)
-        work: list[JobWork] = [
-            Log(Level.WARNING, NODE, f"{self.source}: {text}") for text in answer.warnings
-        ]
+        work = self.warned(answer.warnings)
         self._flown = found.path
         work += [
             *self.kept(),

@@ -6,8 +6,12 @@ What leaves is the verified plan, written out anew: whatever the client's items 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
+from gcs.bridge.guard.carried import refused_items
+from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import PlanError
 from gcs.plan.writer import write
@@ -16,6 +20,8 @@ from gcs.session.effects import Record
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.bring import BringMission
 from gcs.session.jobs.job import Asked, JobWork, VehicleView
+from gcs.session.jobs.prepared import MOST_FINDINGS
+from gcs.session.jobs.starting import first_item
 from gcs.session.paths import autopilot_name
 from gcs.session.plans import prepare_items
 from gcs.session.work import Tell
@@ -34,6 +40,9 @@ class ClientUpload(BringMission):
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         items = self._plan.items
+        bridge = view.policy.bridge
+        if refused := refused_items(items, first_item(view.telemetry), bridge):
+            return self.refuse_for_all(refused[0], refused[1:])
         steps = prepare_items(self.source, items, view.telemetry)
         return self.prepare_with(steps, len(items) <= SMALL_ITEMS, view, now_ns)
 
@@ -55,6 +64,15 @@ class ClientUpload(BringMission):
         """The client reads each finding, too."""
         told = Tell(self.asked.request_id, ipc.Trouble(f"{refusal.code.value}: {refusal.sentence}"))
         return [*super().found(refusal), told]
+
+    def warned(self, warnings: Sequence[str]) -> list[JobWork]:
+        """The client reads them too, and those of the check before."""
+        remarks = [text for level, text in self.prepared.remarks if level is Level.WARNING]
+        told = [
+            Tell(self.asked.request_id, ipc.Trouble(f"warning: {text}"))
+            for text in (*remarks, *warnings)[:MOST_FINDINGS]
+        ]
+        return [*super().warned(warnings), *told]
 
     def kept(self) -> list[JobWork]:
         return [Record(AttachmentItem.of_file(self._name, self._as_file))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Refusal
@@ -95,8 +96,10 @@ class PreparedJob(VerifiedJob):
 
     def refuse_path(self, found: Verification, first: Refusal) -> list[JobWork]:
         """Refused for `first`; what else does not clear is told before it."""
-        others = dict.fromkeys(each.sentence for each in found.refusals[1:])
-        others.pop(first.sentence, None)
-        named = {each.sentence: each for each in found.refusals}
-        told = [work for text in list(others)[:MOST_FINDINGS] for work in self.found(named[text])]
+        return self.refuse_for_all(first, found.refusals[1:])
+
+    def refuse_for_all(self, first: Refusal, others: Sequence[Refusal]) -> list[JobWork]:
+        """Refused for `first`; the others are told before it, each sentence once."""
+        named = {each.sentence: each for each in others if each.sentence != first.sentence}
+        told = [work for each in list(named.values())[:MOST_FINDINGS] for work in self.found(each)]
         return [*told, *self.refuse(first)]

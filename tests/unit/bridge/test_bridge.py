@@ -26,13 +26,14 @@ from gcs.bridge.effects import (
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.meaning.meaning import Seen
 from gcs.gate.effects import Level
-from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.parse import DEFAULT, parse_policy
+from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.autopilot import ARDUPILOT, PX4
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import SPEC_TIMING
 from gcs.wire.frame import Frame, split
 from gcs.wire.ids import Cmd, Result
-from gcs.wire.messages import CommandAck, CommandLong, MissionRequestInt, Statustext
+from gcs.wire.messages import CommandAck, CommandLong, MissionAck, MissionRequestInt, Statustext
 from tests.unit.bridge.vehicles import flying, standing
 
 S = 1_000_000_000
@@ -49,11 +50,20 @@ def frame_of(message: Any, sysid: int = 245, compid: int = 190) -> Frame:
     return frame
 
 
+def with_rules(text: str) -> BridgeRules:
+    return parse_policy(f"[bridge]\n{text}\n", "my.toml").bridge
+
+
 class Table:
     """A bridge with clients on the links 1 to `clients`, before a PX4 that hovers."""
 
-    def __init__(self, clients: int = 1, seen: Seen | None = HOVERING) -> None:
-        self.bridge = Bridge(OWN, DEFAULT.bridge, {}, 10 * S, SPEC_TIMING, S // 2)
+    def __init__(
+        self,
+        clients: int = 1,
+        seen: Seen | None = HOVERING,
+        rules: BridgeRules = DEFAULT.bridge,
+    ) -> None:
+        self.bridge = Bridge(OWN, rules, {}, 10 * S, SPEC_TIMING, S // 2)
         self.seen, self.now_ns = seen, 1_000 * S
         for link in range(1, clients + 1):
             self.bridge.came(link, f"udp {link}")
@@ -297,3 +307,52 @@ def test_what_a_lost_client_had_the_vehicle_send_is_taken_back() -> None:
     assert isinstance(told, CommandLong)
     assert (told.command, told.param1, told.param2) == (Cmd.SET_MESSAGE_INTERVAL, 105.0, 0.0)
     assert (asked.source, told.target_system) == (OWN, 1)
+
+
+def told_of(table: Table, judged: Judged) -> str:
+    """The texts that a client reads once the station has recorded the refusal."""
+    return "".join(
+        texts(
+            table.bridge.told(
+                each.client,
+                ipc.VerdictEvent(
+                    each.ask.id, each.ask.word, "refused", each.refusal.code, each.refusal.sentence
+                ),
+                VEHICLE.sysid,
+                table.now_ns,
+            )
+        )
+        for each in of(Refuses, judged.effects)
+    )
+
+
+def test_a_command_that_the_policy_denies_by_its_name_is_told_so() -> None:
+    table = Table(rules=with_rules('extra_denied = ["DO_DIGICAM_CONTROL"]'))
+    photo = mavlink.MAVLink_command_long_message(1, 1, 203, 0, 0, 0, 0, 0, 1, 0, 0)
+    said = told_of(table, table.says(photo))
+    assert said.startswith("DO_DIGICAM_CONTROL: refused POLICY: ")
+    assert "extra_denied" in said
+    assert "camera" not in said
+    servo = mavlink.MAVLink_command_long_message(1, 1, 183, 0, 9, 1_900, 0, 0, 0, 0, 0)
+    assert "past the controllers" in told_of(table, table.says(servo)), "by the tables, as ever"
+
+
+def test_another_fence_that_is_refused_is_told_and_the_same_count_again_is_not() -> None:
+    table = Table()
+    said = [
+        told_of(table, table.says(mavlink.MAVLink_mission_count_message(1, 1, many, 1)))
+        for many in (4, 4, 5)
+    ]
+    assert [text.count("bridge.fence") for text in said] == [1, 0, 1]
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        mavlink.MAVLink_mission_count_message(1, 1, 3, 9),
+        mavlink.MAVLink_mission_clear_all_message(1, 1, 7),
+    ],
+)
+def test_a_type_of_plan_that_is_not_known_is_not_supported(message: Any) -> None:
+    answers = [each.message for each in of(Answers, Table().says(message).effects)]
+    assert [each.type for each in answers if isinstance(each, MissionAck)] == [3]

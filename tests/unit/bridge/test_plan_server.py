@@ -585,3 +585,37 @@ def test_clear_takes_the_place_of_an_upload_on_its_way() -> None:
 def test_set_current_is_motion() -> None:
     message = MissionSetCurrent(seq=4, target_system=1, target_component=1)
     assert Script().say(message) == [SetCurrent(4)]
+
+
+# ------------------------------------------------------------------- what was told already
+
+
+def test_the_same_finding_of_another_plan_is_told_again() -> None:
+    """A second later, as somebody has drawn it anew."""
+    script, finding = Script(), "item 2: 3.0 m outside of geofence"
+    for many in (3, 4, 4):
+        script.collected(many)
+        assert finding in texts(script.server.finding(finding, script.now_ns))
+        assert texts(script.server.finding(finding, script.now_ns)) == "", "once of each plan"
+        refused = script.refused(Code.TOO_FAR, "item 3: is too far")
+        assert results(refused) == [MissionResult.DENIED]
+        assert "item 3: is too far" in texts(refused)
+        script.wait(S)
+
+
+def test_another_clear_that_is_refused_is_told_too() -> None:
+    script = Script()
+    for clears in (MissionClearAll(target_system=1, target_component=1), count(0), count(0)):
+        script.say(clears)
+        assert "flown" in texts(script.refused(Code.BUSY, "the mission on board is being flown"))
+
+
+def test_the_same_count_again_is_told_once_and_another_one_again() -> None:
+    """It comes again where its acknowledgement is lost."""
+
+    def unknown(many: int) -> MissionCount:
+        return MissionCount(count=many, target_system=1, target_component=1, mission_type=7)
+
+    script = Script()
+    told = [texts(script.say(message)) for message in (unknown(2), unknown(2), unknown(3))]
+    assert [bool(text) for text in told] == [True, False, True]

@@ -263,6 +263,20 @@ ZONE = '[[fence]]\nname = "a"\n'
         ('[[fence]]\nkind = "file"', 1, "fence[1].path", "missing"),
         ("min_up_m = 50\nmax_up_m = 50", 2, "max_up_m", "not above min_up_m"),
         ("max_up_m = 20\n[takeoff]\nmax_up_m = 25", 3, "takeoff.max_up_m", "above the policy's"),
+        (
+            "[arrival]\nradius_m = 5\nmax_radius_m = 1",
+            3,
+            "arrival.max_radius_m",
+            "1 is less than radius_m of 5",
+        ),
+        ("[arrival]\nmax_radius_m = 0.4", 2, "arrival.max_radius_m", "less than radius_m of 0.5"),
+        (
+            "[bridge]\nmessages_hz = 1\nmessage_hz = 1000",
+            3,
+            "bridge.message_hz",
+            "1000 is more than messages_hz of 1",
+        ),
+        ("[bridge]\nmessage_hz = 501", 2, "bridge.message_hz", "more than messages_hz of 500"),
         ("[control]\nstream_s = 5\ntimeout_s = 5", 3, "control.timeout_s", "before the stream"),
         ("margin_h_m = 200", 1, "margin_h_m", "leaves nothing"),
         ("margin_v_m = 25", 1, "margin_v_m", "leaves nothing"),
@@ -277,6 +291,30 @@ def test_what_is_wrong_is_told_with_line_and_key(text: str, line: int, key: str,
 
 def test_a_lower_ceiling_alone_does_not_quarrel_with_the_default_take_off() -> None:
     assert parse_policy("max_up_m = 20", "my.toml").max_up_m == 20.0
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        (
+            "[arrival]\nradius_m = 5\nmax_radius_m = 1",
+            "max_radius_m = 5 leaves the radius as it is",
+        ),
+        ("[bridge]\nmessage_hz = 501", "messages_hz is what all messages together may have"),
+    ],
+)
+def test_a_contradiction_has_a_hint(text: str, hint: str) -> None:
+    assert error(text).hint == hint
+
+
+def test_a_wider_radius_and_a_lower_sum_alone_do_not_quarrel_with_the_defaults() -> None:
+    assert parse_policy("arrival.radius_m = 2", "my.toml").arrival.radius_m == 2.0
+    assert parse_policy("bridge.messages_hz = 20", "my.toml").bridge.messages_hz == 20.0
+
+
+def test_equal_limits_do_not_quarrel() -> None:
+    parse_policy("[arrival]\nradius_m = 2\nmax_radius_m = 2", "my.toml")
+    parse_policy("[bridge]\nmessage_hz = 20\nmessages_hz = 20", "my.toml")
 
 
 def test_lines_are_found_past_strings_comments_and_nested_lists() -> None:

@@ -43,7 +43,6 @@ def value(policy: Policy, key: str) -> object:
         ("stale_grace_s", 0.0, -0.001),
         ("arrival.dwell_s", 0.0, -0.001),
         ("arrival.radius_m", 0.01, 0.009),
-        ("arrival.max_radius_m", 0.01, 0.009),
         ("arrival.speed_m_s", 0.01, 0.009),
         ("speeds.cruise_m_s", 0.01, 0.009),
         ("speeds.climb_m_s", 0.01, 0.009),
@@ -103,6 +102,14 @@ def test_the_least_value(key: str, least: float, below: float) -> None:
 def test_no_number_is_larger_than_a_hundred_thousand(key: str) -> None:
     parse_policy(f"{key} = {MOST}", "my.toml")
     assert error(f"{key} = {MOST + 1}").key == key
+
+
+def test_an_arrival_s_radius_grows_to_a_hundredth_of_a_metre_at_least() -> None:
+    policy = parse_policy("arrival.radius_m = 0.01\narrival.max_radius_m = 0.01", "my.toml")
+    assert (policy.arrival.radius_m, policy.arrival.max_radius_m) == (0.01, 0.01)
+    found = error("arrival.radius_m = 0.01\narrival.max_radius_m = 0.009")
+    assert found.key == "arrival.max_radius_m"
+    assert "impossible" in found.what
 
 
 def test_control_waits_a_tenth_of_a_second_at_least() -> None:

@@ -162,8 +162,16 @@ def test_clearing_everything_needs_both() -> None:
     allowed(guard('fence = "forward"\nrally = "forward"').judge(clear(255), PARKED))
 
 
-def test_a_plan_of_an_unknown_type_is_refused() -> None:
-    refused(guard(LENIENT).judge(count(9), PARKED))
+@pytest.mark.parametrize("rules", ["", LENIENT])
+@pytest.mark.parametrize("message", [count(9), clear(7), count(255)])
+def test_a_plan_of_an_unknown_type_is_not_supported(message: Message, rules: str) -> None:
+    """All types at once are cleared, and never sent."""
+    judged = refused(guard(rules).judge(message, PARKED))
+    assert judged.refusal.code is Code.UNSUPPORTED
+    (answer,) = judged.answers
+    assert isinstance(answer, MissionAck)
+    assert answer.type == MissionResult.UNSUPPORTED
+    assert answer.mission_type == message.mission_type  # type: ignore[attr-defined]
 
 
 PLANS = {"MISSION_ITEM", "MISSION_ITEM_INT"}

@@ -14,6 +14,7 @@ import msgspec
 from gcs.gate.effects import Outcome, OutcomeKind, Ruling
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.policy.parse import DEFAULT
+from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.plan.item_messages import message_of
@@ -180,18 +181,19 @@ class JobScript:
         board: Board,
         telemetry: Telemetry | None = None,
         state: State = State.GROUNDED,
+        policy: Policy = DEFAULT,
     ) -> None:
         self.job, self.board = job, board
         self.now_ns = START_NS
         self.telemetry = telemetry or placed()
-        self.state = state
+        self.state, self.policy = state, policy
         self.work: list[JobWork] = []
         self._on_air: deque[Message] = deque()
         self._take(job.start(self.view, self.now_ns))
 
     @property
     def view(self) -> VehicleView:
-        return VehicleView(self.telemetry, self.state, DEFAULT)
+        return VehicleView(self.telemetry, self.state, self.policy)
 
     # ------------------------------------------------------------------------------ inputs
 

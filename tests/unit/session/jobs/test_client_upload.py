@@ -9,6 +9,8 @@ import pytest
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
 from gcs.gate.effects import OutcomeKind
+from gcs.gate.policy.parse import DEFAULT, parse_policy
+from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.plan.item_messages import message_of
 from gcs.plan.wire import WireItem
@@ -54,10 +56,11 @@ def upload(
     board: Board | None = None,
     telemetry: Telemetry | None = None,
     kind: MissionType = MissionType.MISSION,
+    policy: Policy = DEFAULT,
 ) -> JobScript:
     plan = ClientPlan(kind, items, SOURCE)
     job = ClientUpload if kind is MissionType.MISSION else RelayPlan
-    return JobScript(job(asked("mission_upload"), plan), board or Board(), telemetry)
+    return JobScript(job(asked("mission_upload"), plan), board or Board(), telemetry, policy=policy)
 
 
 def aborted(code: Code) -> tuple[OutcomeKind, Code]:
@@ -108,6 +111,33 @@ def test_every_leg_that_does_not_clear_is_told_with_its_item_and_its_metres() ->
     assert any("item 3" in text for text in findings)
     assert all(" m" in text for text in findings)
     assert script.sent(MissionCount) == []
+
+
+def test_what_is_doubtful_about_a_mission_that_clears_is_told_to_its_client() -> None:
+    again = item(3, Cmd.DO_JUMP, p1=1.0, frame=MavFrame.MISSION)._replace(param2=-1.0)
+    script = upload(*GOOD, again).run(5.0)
+    assert script.outcome == COMPLETE
+    (warning,) = told.events(script.work, ipc.Trouble)
+    assert warning.text == "warning: item 4 (DO_JUMP): repeats for ever"
+    assert told.events(upload(*GOOD).work, ipc.Trouble) == []
+
+
+def test_a_return_that_is_blocked_where_the_policy_only_warns_of_it_is_told_to_its_client() -> None:
+    board = Board()
+    board.parameters["RTL_RETURN_ALT"] = 130.0  # above max_up_m
+    policy = parse_policy('[mission]\nblocked_return = "warn"', "my.toml")
+    script = upload(*GOOD, board=board, policy=policy)
+    assert script.outcome == COMPLETE
+    (warning,) = told.events(script.work, ipc.Trouble)
+    assert warning.text.startswith("warning: the vehicle's own failsafe return cannot be gated")
+
+
+def test_of_a_mission_that_is_refused_the_reasons_are_told_alone() -> None:
+    again = item(2, Cmd.DO_JUMP, p1=1.0, frame=MavFrame.MISSION)._replace(param2=-1.0)
+    script = upload(item(0, Cmd.NAV_TAKEOFF), item(1, north_m=TOO_FAR_M), again).run(5.0)
+    assert script.job.over
+    assert not script.accepted
+    assert not any("for ever" in each.text for each in told.events(script.work, ipc.Trouble))
 
 
 @pytest.mark.parametrize(
