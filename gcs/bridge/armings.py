@@ -68,9 +68,11 @@ class Armings:
             each.keep_mode()
         return [*held, *self.not_standing(vehicle, "the vehicle is armed", now_ns)]
 
-    def mode_shown(self, mode_name: str, vehicle: int, now_ns: int) -> None:
-        """A heartbeat of that vehicle shows this mode."""
+    def shown(self, mode_name: str, vehicle: int, now_ns: int, *, armed: bool) -> None:
+        """A heartbeat of that vehicle shows this mode, and whether it is armed."""
         self._judges.of(vehicle).mission_mode.shown(mode_name, now_ns)
+        for each in self._exchanges(vehicle):
+            each.dialogue.shown(mode_name, armed=armed)
 
     def not_standing(self, vehicle: int, why: str, now_ns: int) -> list[BridgeEffect]:
         """Nothing that was chosen before is flown.  Disarmed, it may be said to fly for a moment;

@@ -209,7 +209,8 @@ class Bridge:
         if links and message_row(frame.msgid).kind is not Kind.DENIED:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
-            return Judged(False, [])
+            answered = self._refused_addresses.of_own(client, frame)
+            return Judged(bool(answered), answered)
         refused = self._refused_addresses.of_target(client, frame, vehicles, why_not_ours(sysid))
         return Judged(True, refused)
 

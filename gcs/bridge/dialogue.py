@@ -37,7 +37,9 @@ Over = TypeVar("Over", ipc.VerdictEvent, ipc.EndingEvent)
 AGAIN_NS: Final = 2_000_000_000
 """The command that was accepted last, sent again within this time, is a repetition of it, not a new
 one.  Anything else that was asked in between, by whomever, a refusal, or a stop is never answered
-from memory, and neither is what has ended otherwise: the vehicle may be flown otherwise by now."""
+from memory, and neither is what has ended otherwise: the vehicle may be flown otherwise by now.
+Nor is anything where a heartbeat has shown a change since: another mode, or that it is disarmed.  A
+repetition is told by the time because COMMAND_INT and items have no `confirmation` to count it."""
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
 DECIDED_BY_GATE: Final = frozenset({"goto", "orbit", "stream_begin", "stream_end"})
 """Words that no command to the vehicle stands for: they are answered with the verdict."""
@@ -103,6 +105,8 @@ class Dialogue:
     """The message that was asked for last."""
     _told: _Told | None = None
     """Its answer, if it was accepted."""
+    _shown: tuple[str, bool] | None = None
+    """The mode of the last heartbeat, and whether it showed the vehicle armed."""
     _texts: RecentTexts = field(default_factory=RecentTexts)
     _refusals: RecentTexts = field(default_factory=RecentTexts)
     """Of messages that are not acknowledged."""
@@ -175,6 +179,12 @@ class Dialogue:
         """Somebody else has asked for something: what was accepted may hold no more."""
         self._told = None
 
+    def shown(self, mode_name: str, *, armed: bool) -> None:
+        """A heartbeat of the vehicle: where it shows a change, what was accepted before may hold no
+        more."""
+        if self._shown != (mode_name, armed):
+            self._shown, self._told = (mode_name, armed), None
+
     @property
     def arming(self) -> bool:
         """This client has asked for an arming that has not ended, or waits for a check first."""
@@ -199,7 +209,7 @@ class Dialogue:
         self, asked_by: From, key: bytes, command: int, now_ns: int
     ) -> list[BridgeEffect] | None:
         """The answer to a repetition; None where this is something new."""
-        if not command:
+        if not key:
             return None
         for pending in self._pending.values():
             if pending.key == key and pending.asked_by == asked_by:
@@ -214,7 +224,7 @@ class Dialogue:
 
     def stream(self, asked_by: From, sample: ipc.Stream) -> list[BridgeEffect]:
         """One sample of a setpoint stream; it has no answer of its own."""
-        self._streams_from = asked_by
+        self._streams_from, self._told = asked_by, None
         self._orbit_replaced()
         return [Says(self.client, msgspec.structs.replace(sample, vehicle=self.vehicle))]
 

@@ -94,6 +94,18 @@ class RefusedAddresses:
             told.append(Answers(client.link, asked, denied))
         return told
 
+    def of_own(self, client: Client, frame: Frame) -> list[BridgeEffect]:
+        """What is answered to a frame for this station itself: a command is not supported, also one
+        for all components of its system.  Control is asked for of the vehicle (`control.py`)."""
+        message = decode(frame)
+        if not isinstance(message, CommandLong | CommandInt):
+            return []
+        if message.target_component not in (0, self._own.compid):
+            return []
+        sender = Address(frame.sysid, frame.compid)
+        unsupported = Result.UNSUPPORTED, sender, Code.UNSUPPORTED
+        return [Answers(client.link, self._own, acknowledgement(message.command, *unsupported))]
+
     def _namesake(self, link: int, frame: Frame, now_ns: int) -> list[BridgeEffect]:
         """Another bridge before this one, with the same address, is answered in our own name: it
         finds a second station of its address on its vehicle's link, and tells its people."""

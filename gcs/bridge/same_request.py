@@ -17,6 +17,14 @@ from gcs.wire.messages import (
     MissionItemInt,
 )
 
+KEYED: Final = (
+    CommandLong,
+    CommandInt,
+    MissionItem,
+    MissionItemInt,
+    MissionCount,
+    MissionClearAll,
+)
 GUIDED_ITEM: Final = -1
 """In the place of a command: a mission item to be flown to at once, which has a MISSION_ACK."""
 
@@ -30,14 +38,13 @@ def command_of(message: Message | None) -> int:
 
 
 def key_of(message: Message | None) -> bytes:
-    """Equal for the same command, all but the number of its repetition, and for the same first
-    message of a plan.
+    """Equal for the same command, all but the number of its repetition, for the same item, and for
+    the same first message of a plan.
 
     As bytes, because NaN is a value of its own on the wire and equals nothing here.  Empty for what
-    is not acknowledged; a text in such a message may be any bytes, and cannot be written again.
+    is not acknowledged, which repeats nothing: a text in such a message may be any bytes, and cannot
+    be written again.
     """
     if isinstance(message, CommandLong):
         message = msgspec.structs.replace(message, confirmation=0)
-    if isinstance(message, CommandLong | CommandInt | MissionCount | MissionClearAll):
-        return encode(message)
-    return b""
+    return encode(message) if isinstance(message, KEYED) else b""

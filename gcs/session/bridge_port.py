@@ -141,7 +141,7 @@ class BridgePort:
             done = self._armed_unasked(given, sysid, now_ns)
             if given.armed:
                 done += self.bridge.armings.seen(sysid, now_ns)
-            self.bridge.armings.mode_shown(given.mode_name, sysid, now_ns)
+            self.bridge.armings.shown(given.mode_name, sysid, now_ns, armed=given.armed)
             return done
         if isinstance(given, LandedSeen) and given.landed is not LandedState.ON_GROUND:
             return self.bridge.armings.not_standing(

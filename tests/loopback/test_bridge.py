@@ -139,6 +139,17 @@ def test_the_same_command_again_is_answered_and_not_done_twice(personality: Pers
     assert len([one for one in flight.decisions() if one.word == "goto"]) == 1
 
 
+def test_a_command_for_the_bridge_itself_is_answered_by_it(personality: Personality) -> None:
+    flight = BridgedFlight(personality)
+    client = flight.join()
+    flight.connected()
+    client.command(dialect.MAV_CMD_REQUEST_MESSAGE, 0.0, target=STATION)
+    flight.run(0.5)
+    (ack,) = client.acks(dialect.MAV_CMD_REQUEST_MESSAGE)
+    assert ack.result == dialect.MAV_RESULT_UNSUPPORTED
+    assert (ack.get_srcSystem(), ack.get_srcComponent()) == STATION
+
+
 def test_who_plays_the_vehicle_is_not_believed(personality: Personality) -> None:
     flight, client = flying(personality)
     position = flight.session.telemetry.pos_ned if flight.session.telemetry else None

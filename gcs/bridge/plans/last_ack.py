@@ -14,11 +14,14 @@ from gcs.bridge.plans.collecting import ItemMessage, question
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.replies import reply
 from gcs.protocol.transfer import SPEC_TIMING, Timing
-from gcs.wire.ids import MissionType
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import MissionAck
 
 ACK_REPEATED_NS: Final = 15_000_000_000
 """How long a client that sends its last item again is told the result again."""
+CLEAR_REPEATED_NS: Final = 2_000_000_000
+"""The same of a clear that was accepted, which clients repeat after 0.5 to 1.5 s.  Short, because
+somebody else may have put another plan on board since."""
 PROBE_NS: Final = 400_000_000
 PROBES: Final = 4
 """On a link that loses frames the last item is asked for once more after the ACK: a client that
@@ -67,23 +70,25 @@ class LastAck:
         lossy: bool,
     ) -> None:
         """This one was sent; `lossy` where the link was seen to lose frames."""
+        repeated_ns = ACK_REPEATED_NS if count else CLEAR_REPEATED_NS
         self._sent = _Sent(
             asked_by,
             ack,
             kind,
             count,
             as_int,
-            now_ns + self._scaled(ACK_REPEATED_NS),
+            now_ns + self._scaled(repeated_ns),
             PROBES,
             self._scaled(PROBE_NS) + now_ns if lossy and count else None,
         )
 
     def of_clear(self, kind: int, now_ns: int) -> MissionAck | None:
-        """Of the same MISSION_CLEAR_ALL, if that is what was answered last, and not long ago."""
+        """Of the same MISSION_CLEAR_ALL, if that was accepted last, and not long ago.  A refusal is
+        decided anew: what was in the way may be over."""
         sent = self._sent
         if sent is None or sent.count != 0 or sent.kind != kind or now_ns >= sent.until_ns:
             return None
-        return sent.ack
+        return sent.ack if sent.ack.type == MissionResult.ACCEPTED else None
 
     def item(self, message: ItemMessage, asked_by: From, now_ns: int) -> list[PlanEffect]:
         """The last item once more, after the answer: the answer has got lost."""

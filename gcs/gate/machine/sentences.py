@@ -89,7 +89,7 @@ def refusal_of(code: Code, request: Request, memory: Memory, policy: Policy) -> 
             "control"
         )
     elif code is Code.BUSY:
-        sentence += _what_is_under_way(request, memory, policy)
+        sentence = _what_is_under_way(request, memory, policy)
     elif code is Code.POLICY:
         sentence += _key_of_policy(request)
     elif code is Code.NOT_FLYING and isinstance(request, SetMode):
@@ -103,8 +103,17 @@ def _what_is_under_way(request: Request, memory: Memory, policy: Policy) -> str:
     flown = memory.goal or memory.hold
     goal = "" if flown is None else f", goal {place(flown.pos_ned)}"
     replace = isinstance(request, GoTo | BeginStream) and memory.state is State.MOVING
-    key = f' (policy: retarget = "{policy.retarget}")' if replace else ""
-    return f": {memory.state.name}{goal}{key}"
+    under_way = f"{REFUSED[Code.BUSY]}: {memory.state.name}{goal}"
+    if not replace:
+        return under_way
+    if policy.retarget != "replace":
+        return f'{under_way} (policy: retarget = "{policy.retarget}")'
+    if memory.pending is not None and not isinstance(request, GoTo):
+        return under_way  # a stream does not begin before the goal that waits is decided
+    return (
+        f"another operator's request is flown: {memory.state.name}{goal}: hold it first, or wait "
+        'for its end (retarget = "replace" is for one\'s own)'
+    )
 
 
 def _key_of_policy(request: Request) -> str:

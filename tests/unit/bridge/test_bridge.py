@@ -165,6 +165,35 @@ def test_a_command_for_all_components_is_answered_by_the_autopilot() -> None:
         table.now_ns += 10 * S
 
 
+def test_a_command_for_the_bridge_itself_is_answered_unsupported_in_its_own_name() -> None:
+    """Its sender waits for an answer.  No other component of its system is spoken for."""
+    table = Table(clients=2)
+    for compid in (191, 0):
+        command = mavlink.MAVLink_command_long_message(
+            255, compid, Cmd.REQUEST_MESSAGE, 0, *[0.0] * 7
+        )
+        judged = table.says(command)
+        assert judged.refused
+        assert acks(judged.effects) == [(Cmd.REQUEST_MESSAGE, Result.UNSUPPORTED)]
+        (answer,) = of(Answers, judged.effects)
+        assert (answer.link, answer.source) == (1, OWN)
+        assert (answer.message.target_system, answer.message.target_component) == (245, 190)
+    elsewhere = mavlink.MAVLink_command_long_message(255, 77, Cmd.REQUEST_MESSAGE, 0, *[0.0] * 7)
+    assert table.says(elsewhere) == Judged(False, [])
+
+
+def test_a_command_for_a_client_of_the_bridges_system_goes_to_that_client() -> None:
+    table = Table(clients=2)
+    table.says(HEARTBEAT, 2, sysid=255)
+    for compid in (190, 0):
+        command = mavlink.MAVLink_command_long_message(
+            255, compid, Cmd.REQUEST_MESSAGE, 0, *[0.0] * 7
+        )
+        judged = table.says(command)
+        assert [each.link for each in of(ToLink, judged.effects)] == [2]
+        assert not of(Answers, judged.effects)
+
+
 def test_before_a_vehicle_is_heard_nothing_moves_and_nothing_is_set_up() -> None:
     table = Table(seen=None)
     write = mavlink.MAVLink_param_set_message(1, 1, b"MPC_XY_CRUISE", 1.0, 9)

@@ -86,3 +86,32 @@ def test_a_refusal_is_decided_anew() -> None:
     client = Client()
     assert client.sends(Cmd.DO_REPOSITION, "goto", outcome="refused") == "asked"
     assert client.sends(Cmd.DO_REPOSITION, "goto") == "asked"
+
+
+def test_an_answer_holds_no_more_where_a_heartbeat_shows_a_change() -> None:
+    """Armed, disarmed by somebody past the bridge, and to be armed again; or a pilot's mode."""
+    for mode_name, armed in (("AUTO.LOITER", False), ("POSCTL", True)):
+        client = Client()
+        client.dialogue.shown("AUTO.LOITER", armed=True)
+        assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "asked"
+        client.dialogue.shown("AUTO.LOITER", armed=True)
+        assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "answered ACCEPTED"
+        client.dialogue.shown(mode_name, armed=armed)
+        assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm") == "asked"
+
+
+def test_what_is_under_way_is_not_asked_twice_whatever_heartbeats_show() -> None:
+    """A take-off's own mode is shown while it climbs."""
+    client = Client()
+    assert client.sends(Cmd.NAV_TAKEOFF, "takeoff", outcome="under way") == "asked"
+    client.dialogue.shown("AUTO.TAKEOFF", armed=True)
+    assert client.sends(Cmd.NAV_TAKEOFF, "takeoff") == "answered IN_PROGRESS"
+
+
+def test_a_sample_of_a_stream_in_between_makes_it_a_new_wish() -> None:
+    """It is not where its go-to has led any more."""
+    client = Client()
+    assert client.sends(Cmd.DO_REPOSITION, "goto") == "asked"
+    assert client.sends(Cmd.DO_REPOSITION, "goto") == "answered ACCEPTED"
+    client.dialogue.stream(CLIENT, ipc.Stream(v_enu=(1.0, 0.0, 0.0)))
+    assert client.sends(Cmd.DO_REPOSITION, "goto") == "asked"

@@ -568,6 +568,27 @@ def test_clear_is_asked_for_and_answered() -> None:
     assert results(script.say(message)) == [MissionResult.ACCEPTED]
 
 
+def test_a_clear_that_was_refused_is_decided_anew() -> None:
+    """The mission was flown a second ago, and is over."""
+    script = Script()
+    message = MissionClearAll(target_system=1, target_component=1)
+    assert script.say(message) == [Clear(MissionType.MISSION)]
+    assert results(script.refused(Code.BUSY, "it is flown")) == [MissionResult.DENIED]
+    assert script.say(message) == [Clear(MissionType.MISSION)]
+
+
+def test_a_clear_is_a_new_one_once_it_cannot_be_a_repetition() -> None:
+    """Another plan may be on board by then."""
+    script = Script()
+    message = MissionClearAll(target_system=1, target_component=1)
+    script.say(message)
+    script.ended()
+    script.wait(2 * S - 1)
+    assert results(script.say(message)) == [MissionResult.ACCEPTED]
+    script.wait(1)
+    assert script.say(message) == [Clear(MissionType.MISSION)]
+
+
 def test_a_plan_without_items_is_a_clear() -> None:
     assert Script().say(count(0)) == [Clear(MissionType.MISSION)]
 

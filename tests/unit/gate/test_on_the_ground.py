@@ -11,6 +11,7 @@ from gcs.gate.refusal import Code
 from gcs.gate.requests import (
     Abort,
     Arm,
+    BeginStream,
     Disarm,
     GoTo,
     Hold,
@@ -287,6 +288,28 @@ class TestKeysOfThePolicy:
         assert verdict.ruling is Ruling.REFUSED
         assert verdict.refusal is not None
         assert verdict.refusal.sentence.endswith('(policy: retarget = "refuse")')
+
+    @pytest.mark.parametrize("asked", [GoTo((0.0, 3.0, -2.0)), BeginStream()])
+    def test_another_operators_goal_is_not_replaced(self, asked: Request) -> None:
+        """The key that it would cite is the one that lets an operator replace its own."""
+        script = Script(default_policy(retarget="replace")).take_control(2.0)
+        script.goto(9.0, 0.0, 2.0)
+        script.tick()
+        refusal = script.verdict(script.ask(asked, source="somebody else")).refusal
+        assert refusal is not None
+        assert refusal.code is Code.BUSY
+        assert refusal.sentence.startswith("another operator's request is flown: MOVING, goal")
+        assert "hold it first, or wait for its end" in refusal.sentence
+
+    def test_a_stream_that_does_not_begin_before_ones_own_goal_is_decided(self) -> None:
+        script = Script(default_policy(retarget="replace")).take_control(2.0)
+        script.goto(9.0, 0.0, 2.0)
+        script.tick()
+        script.goto(5.0, 0.0, 2.0)
+        refusal = script.verdict(script.ask(BeginStream())).refusal
+        assert refusal is not None
+        assert refusal.sentence.startswith("another request is under way: MOVING, goal")
+        assert "retarget" not in refusal.sentence
 
 
 def test_an_arming_that_is_taken_back_is_not_sent_again() -> None:
