@@ -42,8 +42,8 @@ def key_of(message: Message | None) -> bytes:
     the same first message of a plan.
 
     As bytes, because NaN is a value of its own on the wire and equals nothing here.  Empty for what
-    is not acknowledged, which repeats nothing: a text in such a message may be any bytes, and cannot
-    be written again.
+    is not acknowledged, which repeats nothing: a text in such a message may be any bytes, and
+    cannot be written again.
     """
     if isinstance(message, CommandLong):
         message = msgspec.structs.replace(message, confirmation=0)
