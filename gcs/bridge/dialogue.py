@@ -23,14 +23,14 @@ from gcs.bridge.answers import (
     result_of,
     texts,
 )
+from gcs.bridge.commands_asked import GUIDED_ITEM, command_of, key_of
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
 from gcs.bridge.recent_texts import RecentTexts
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
-from gcs.wire.codec import encode
 from gcs.wire.ids import Result
-from gcs.wire.messages import CommandInt, CommandLong, Message, MissionItem, MissionItemInt
+from gcs.wire.messages import Message
 
 Over = TypeVar("Over", ipc.VerdictEvent, ipc.EndingEvent)
 
@@ -39,8 +39,6 @@ AGAIN_NS: Final = 2_000_000_000
 one.  Anything else that was asked in between, by whomever, a refusal, or a stop is never answered
 from memory, and neither is what has ended otherwise: the vehicle may be flown otherwise by now."""
 STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
-GUIDED_ITEM: Final = -1
-"""In the place of a command: a mission item to be flown to at once, which has a MISSION_ACK."""
 DECIDED_BY_GATE: Final = frozenset({"goto", "orbit", "stream_begin", "stream_end"})
 """Words that no command to the vehicle stands for: they are answered with the verdict."""
 SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
@@ -130,7 +128,7 @@ class Dialogue:
 
         `note` is told as soon as the first of them is accepted: of what is refused it is untrue.
         """
-        key, command = _key(message), _command(message)
+        key, command = key_of(message), command_of(message)
         done = self.text(asked_by, Level.INFO, note, now_ns) if note and not asks else []
         if not asks and not command:
             return done  # such as sticks in the middle, 25 a second: nothing came in between
@@ -142,17 +140,24 @@ class Dialogue:
         self._last_key, self._told = key, None
         if not asks:
             return [*done, self._acknowledge(asked_by, command, Result.ACCEPTED)]
+        if asks[0].word == "mission_check" and self._arming() is not None:
+            asks = asks[1:]  # too late: the start of the mission verifies it, too
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
         pending.answered_by, pending.note = answered_by, note
         if asks[-1].word == "orbit":
             self._orbit_from = self._streams_from = asked_by
-        arming = self._arming() if pending.rest and pending.word == "arm" else None
-        if arming is not None:
-            number = self.number()
-            self._pending[number] = pending
-            self._with_arm.setdefault(arming, []).append(number)
-            return []
-        return [Says(self.client, self._open(pending, asks[0]))]
+        return self._ask_or_wait(pending, asks[0])
+
+    def _ask_or_wait(self, pending: _Pending, ask: ipc.Ask) -> list[BridgeEffect]:
+        """Ask for `ask` now; an arming, after which something else is to be asked, waits for one
+        that is under way."""
+        arming = self._arming() if pending.rest and ask.word == "arm" else None
+        if arming is None:
+            return [Says(self.client, self._open(pending, ask))]
+        number = self.number()
+        self._pending[number] = pending
+        self._with_arm.setdefault(arming, []).append(number)
+        return []
 
     def refuse(
         self, asked_by: From, message: Message | None, name: str, refusal: Refusal, now_ns: int
@@ -163,7 +168,7 @@ class Dialogue:
         that are not acknowledged come in streams, as GPS_INPUT does: the same refusal is a decision
         once in some seconds.  The record has every refused frame.
         """
-        key, command = _key(message), _command(message)
+        key, command = key_of(message), command_of(message)
         if not command and not self._refusals.is_news(f"{name}: {refusal.sentence}", now_ns):
             return []
         repeated = self._repeated(asked_by, key, command, now_ns)
@@ -322,7 +327,7 @@ class Dialogue:
                 following = replace(
                     pending, rest=rest, name=ask.word, word=ask.word, vehicle_result=None
                 )
-                return [*answered, Says(self.client, self._open(following, ask))]
+                return [*answered, *self._ask_or_wait(following, ask)]
             done = self._answer(pending, Result.ACCEPTED, None, now_ns)
             if pending.answered_by:
                 text = f"{pending.name}: {event.ended}"
@@ -372,27 +377,6 @@ class Dialogue:
 def gates_line(event: ipc.EndingEvent) -> str:
     """What all clients are told of the ending of somebody's request (`Turn.end`)."""
     return f"gate: {event.word}: {event.ended}: {event.sentence}"
-
-
-def _command(message: Message | None) -> int:
-    """MAV_CMD; GUIDED_ITEM for an item that is flown to at once; 0 for a message that is not
-    acknowledged."""
-    if isinstance(message, MissionItem | MissionItemInt):
-        return GUIDED_ITEM
-    return message.command if isinstance(message, CommandLong | CommandInt) else 0
-
-
-def _key(message: Message | None) -> bytes:
-    """What makes a command the same as another one: all but the number of its repetition.
-
-    As bytes, because NaN is a value of its own on the wire and equals nothing here.  Empty for what
-    is not acknowledged; a text in such a message may be any bytes, and cannot be written again.
-    """
-    if not isinstance(message, CommandLong | CommandInt):
-        return b""
-    if isinstance(message, CommandLong):
-        message = msgspec.structs.replace(message, confirmation=0)
-    return encode(message)
 
 
 def _code(text: str) -> Code:
