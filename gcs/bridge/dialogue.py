@@ -144,17 +144,24 @@ class Dialogue:
         self._last_key, self._told = key, None
         if not asks:
             return [*done, self._acknowledge(asked_by, command, Result.ACCEPTED)]
+        if asks[0].word == "mission_check" and self._arming() is not None:
+            asks = asks[1:]  # too late: the start of the mission verifies it, too
         pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
         pending.answered_by, pending.note = answered_by, note
         if asks[-1].word == "orbit":
             self._orbit_from = self._streams_from = asked_by
-        arming = self._arming() if pending.rest and pending.word == "arm" else None
-        if arming is not None:
-            number = self.number()
-            self._pending[number] = pending
-            self._with_arm.setdefault(arming, []).append(number)
-            return []
-        return [Says(self.client, self._open(pending, asks[0]))]
+        return self._ask_or_wait(pending, asks[0])
+
+    def _ask_or_wait(self, pending: _Pending, ask: ipc.Ask) -> list[BridgeEffect]:
+        """Ask for `ask` now; an arming, after which something else is to be asked, waits for one
+        that is under way."""
+        arming = self._arming() if pending.rest and ask.word == "arm" else None
+        if arming is None:
+            return [Says(self.client, self._open(pending, ask))]
+        number = self.number()
+        self._pending[number] = pending
+        self._with_arm.setdefault(arming, []).append(number)
+        return []
 
     def refuse(
         self, asked_by: From, message: Message | None, name: str, refusal: Refusal, now_ns: int
@@ -331,7 +338,7 @@ class Dialogue:
                 following = replace(
                     pending, rest=rest, name=ask.word, word=ask.word, vehicle_result=None
                 )
-                return [*answered, Says(self.client, self._open(following, ask))]
+                return [*answered, *self._ask_or_wait(following, ask)]
             done = self._answer(pending, Result.ACCEPTED, None, now_ns)
             if pending.answered_by:
                 text = f"{pending.name}: {event.ended}"

@@ -122,6 +122,23 @@ def verify(plan: Plan, ground: Ground, verifier: Verifier) -> Verification:
     return verifying.result
 
 
+def bad_landings(ground: Ground, verifier: Verifier) -> tuple[Refusal, ...]:
+    """The rally points of `ground` where the vehicle must not land; each refusal names its own.
+
+    A rally point is inside the fence by the margin, from the height that it is flown to down to the
+    ground.  While the return height is not known its own height is asked about.
+    """
+    found: list[Refusal] = []
+    for landing in ground.rally:
+        way = returns.way_to(landing, ground, landing.ground_ned)
+        refusal = verifier.mission_leg(
+            way.over_ned, way.ground_ned, floor_applies=False
+        ) or verifier.mission_leg(way.over_ned, way.over_ned, floor_applies=False)
+        if refusal is not None:
+            found.append(replace(refusal, sentence=f"{landing.name}: {refusal.sentence}"))
+    return tuple(found)
+
+
 STEP_QUESTIONS = 80
 """Questions to the verifier in one step: some milliseconds."""
 ITEM_COST = 10
@@ -177,7 +194,7 @@ class Verifying:
                 LegVerdict(circle.item, "circle", at_ned, at_ned, circle.radius_m, refusal)
             )
             yield 1
-        self._judge_rally_points()
+        self._bad_landings += bad_landings(self._ground, self._verifier)
         yield 1
         if self._ground.return_up_m is None:
             return
@@ -205,20 +222,6 @@ class Verifying:
         )
         kind = region.kind.name.lower()
         return LegVerdict(region.item, kind, region.points[0], to_ned, 0.0, refusal)
-
-    def _judge_rally_points(self) -> None:
-        """Inside the fence by the margin, from the height that it is flown to down to the ground.
-
-        While the return height is not known the rally point's own height is asked about.
-        """
-        for landing in self._ground.rally:
-            way = returns.way_to(landing, self._ground, landing.ground_ned)
-            refusal = self._verifier.mission_leg(
-                way.over_ned, way.ground_ned, floor_applies=False
-            ) or self._verifier.mission_leg(way.over_ned, way.over_ned, floor_applies=False)
-            if refusal is not None:
-                sentence = f"{landing.name}: {refusal.sentence}"
-                self._bad_landings.append(replace(refusal, sentence=sentence))
 
     def _judge_return(self, leg: Leg) -> None:
         """Whether the vehicle's failsafe return, which no ground station can stop, leaves the

@@ -47,6 +47,7 @@ from gcs.session.links import Counts, Links
 from gcs.session.missions import timing_of
 from gcs.session.operator_lines import line
 from gcs.session.operators import Operators
+from gcs.session.return_places import why_not_rally_point
 from gcs.session.screen import lost_pct
 from gcs.session.settings import SPEED, TAKEOFF_HEIGHT
 from gcs.session.signatures import Signatures
@@ -86,6 +87,7 @@ class BridgePort:
         self._vehicles = vehicles
         self._operators = operators
         self._links = links
+        self._policy = policy
         self._max_takeoff_up_m = policy.takeoff.max_up_m
         self._stream = policy.stream
         self._endpoints = endpoints
@@ -115,6 +117,7 @@ class BridgePort:
             mission_items=vehicle.mission_items,
             land_starts=vehicle.land_starts,
             clears_takeoff=partial(_clears_takeoff, vehicle.gate),
+            why_not_rally=partial(why_not_rally_point, self._policy, vehicle.telemetry),
             why_not_resume=partial(vehicle.why_not_resume, now_ns),
         )
 

@@ -6,6 +6,7 @@ recorded PX4 1.14 and ArduCopter 4.7 give none.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 from gcs.session.plans import OnBoard
@@ -16,6 +17,16 @@ NO_ITEMS: Final = (0, 0xFFFF)
 """MISSION_CURRENT.total without a mission.  PX4 has told it since 1.14; 0 was "not told" before."""
 NEWS_NS: Final = 1_500_000_000
 """How long a MISSION_CURRENT may still be about the mission before: it comes once a second."""
+
+
+@dataclass(slots=True)
+class _Refused:
+    """A mission that was read and does not clear."""
+
+    items: int
+    why: str
+    number: int | None = None
+    """The number that the vehicle gives it (0: none), once it has told of as many items since."""
 
 
 class MissionTold:
@@ -31,10 +42,20 @@ class MissionTold:
         """The number that it gives the mission that was verified, and since when there is one."""
         self._seen = False
         """Whether it has told of that mission since."""
+        self._refused: _Refused | None = None
 
     def forget(self) -> None:
         """The vehicle restarted or was away."""
-        self._told = None
+        self._told = self._refused = None
+
+    def refused(self, items: int, why: str) -> None:
+        """The mission on board, of so many items that the vehicle counts, was read and does not
+        clear."""
+        self._refused = _Refused(items, why)
+
+    def forget_refused(self) -> None:
+        """Another mission is on board, or may be."""
+        self._refused = None
 
     def learn_anew(self) -> None:
         """Another mission was verified, or none is on board."""
@@ -46,6 +67,7 @@ class MissionTold:
         """Keep it, and the number of the verified mission, once it is told after that was brought
         on board.  `first_item`: of those that the vehicle counts."""
         self._told, self._first_item = told, first_item
+        self._look_at_refused(told)
         if known is None:
             self.learn_anew()
         elif self._verified_ns is None:
@@ -53,6 +75,17 @@ class MissionTold:
         elif now_ns - self._verified_ns >= self._times.real_ns(NEWS_NS):
             self._verified_id = self._verified_id or told.mission_id
             self._seen |= told.total == self._countable(known)
+
+    def _look_at_refused(self, told: MissionCurrent) -> None:
+        """Is it still the mission that was refused?"""
+        refused = self._refused
+        if refused is None:
+            return
+        if refused.number is None:
+            if told.total == refused.items:
+                refused.number = told.mission_id
+        elif (told.total, told.mission_id) != (refused.items, refused.number):
+            self._refused = None
 
     def unverified(self, known: OnBoard | None) -> str:
         """What is wrong with the mission on board: that it was not verified, or is another one.
@@ -63,7 +96,10 @@ class MissionTold:
         if told.total in NO_ITEMS:
             return ""
         if known is None:
-            return f"the mission on board ({told.total} items) was not verified: upload or clear it"
+            which = f"the mission on board ({told.total} items)"
+            if self._refused is not None and self._refused.items == told.total:
+                return f"{which} did not clear when it was read: {self._refused.why}"
+            return f"{which} was not verified: upload or clear it"
         if told.total != self._countable(known):
             which = f"{told.total} items, {self._countable(known)} were verified"
             return f"another mission is on board than was verified ({which})"

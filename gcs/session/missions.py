@@ -30,6 +30,7 @@ from gcs.session.jobs.job import (
     Job,
     JobWork,
     OnBoardChanged,
+    OnBoardRefused,
     VehicleView,
     refused,
 )
@@ -43,8 +44,8 @@ from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, Log, ToGate, Work
-from gcs.wire.ids import Cmd, MissionState, MissionType
-from gcs.wire.messages import MissionCurrent, MissionItemReached
+from gcs.wire.ids import Cmd, MissionResult, MissionState, MissionType
+from gcs.wire.messages import MissionAck, MissionCurrent, MissionItemReached
 
 TRANSFER_WORDS = frozenset(
     {"mission_upload", "mission_download", "mission_clear", "mission_set_current"}
@@ -241,6 +242,8 @@ class Missions:
                 self._was_active |= state == MissionState.ACTIVE
                 over = state == MissionState.COMPLETE and self._was_active
                 work += self._progress(seq, over)
+            case MissionAck(type=MissionResult.ACCEPTED, mission_type=MissionType.MISSION):
+                self._told.forget_refused()  # another one may be on board, of whomever
             case MissionItemReached(seq=seq):
                 work += self._reached(seq)
         if self._job is not None:
@@ -255,7 +258,10 @@ class Missions:
 
     def said(self, text: str, view: VehicleView) -> list[Work]:
         """A text of the vehicle: ArduPilot's of a mission that it was sent, by whomever."""
-        if text != PLAN_RECEIVED or self._on_board is None:
+        if text != PLAN_RECEIVED:
+            return []
+        self._told.forget_refused()
+        if self._on_board is None:
             return []
         return self._forget_flown(f'another mission was put on board ("{text}")', view)
 
@@ -312,8 +318,11 @@ class Missions:
             if isinstance(item, OnBoardChanged):
                 self._on_board, self._begin_seq = item.on_board, None
                 self._told.learn_anew()
+                self._told.forget_refused()
                 if item.on_board is not None:
                     self.total = len(item.on_board.sent)
+            elif isinstance(item, OnBoardRefused):
+                self._told.refused(item.items, item.why)
             elif isinstance(item, BeginsAt):
                 self._begin_seq = item.seq
             else:

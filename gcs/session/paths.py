@@ -13,7 +13,7 @@ from gcs.gate.states import LandedState
 from gcs.plan.legs import FlightSettings, Ground, LandingPlace
 from gcs.plan.model import AutopilotName, Geodetic, Plan
 from gcs.plan.place import georeference
-from gcs.plan.verify import Verification, Verifying
+from gcs.plan.verify import Verification, Verifying, bad_landings
 from gcs.plan.zones import zone_specs
 from gcs.session.telemetry import Telemetry
 
@@ -83,6 +83,20 @@ def verifying(
         zone_specs(plan.fence),
     )
     return Verifying(plan, ground, verifier)
+
+
+def bad_rally_points(
+    landings: tuple[LandingPlace, ...], policy: Policy, telemetry: Telemetry
+) -> tuple[Refusal, ...]:
+    """Those where the vehicle must not land by the policy's fence, as a mission with them is
+    judged; all of them where nobody knows yet where they lie."""
+    home_ned, origin = telemetry.home_ned, telemetry.origin
+    if origin is None or home_ned is None:
+        return (Refusal(Code.NO_ORIGIN, "the vehicle's origin and home are not known yet"),)
+    name = autopilot_name(telemetry)
+    ground = Ground(name, home_ned, home_ned, return_up_m=telemetry.return_up_m, rally=landings)
+    verifier = verifier_for(policy, telemetry.autopilot.name, home_ned, origin)
+    return bad_landings(ground, verifier)
 
 
 def cleared(found: Verification) -> ClearedMission | Refusal:

@@ -9,22 +9,29 @@ another value (PX4).  While they are not known, a return is refused.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Final
 
 from gcs.gate.airspace.return_place import ReturnPlace
 from gcs.gate.effects import Level
 from gcs.gate.inputs import ReturnPlacesSeen
+from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Refusal
+from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address, Heard
 from gcs.session.jobs.facts import landings_on_board
+from gcs.session.paths import bad_rally_points
 from gcs.session.plan_on_board import PlanOnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import Log, ToGate, Work
-from gcs.wire.ids import MissionType
+from gcs.wire.ids import Cmd, MavFrame, MissionType
+from gcs.wire.messages import RallyPoint
 
 NODE = "link"
 READING: Final = "its rally points are still being read (ask again in a second)"
 NO_ORIGIN: Final = "its origin is not known, so its rally points cannot be placed"
+ON_BOARD: Final = "rally point on board"
 
 JUDGED_TYPES: Final = frozenset({0, 5})
 """PX4's RTL_TYPE: straight to home or a rally point, or to a rally point only.  1 and 3 may lead to
@@ -34,10 +41,13 @@ the landing of the mission on board, 2 and 4 along that mission."""
 class ReturnPlaces:
     """Reads the rally points of one vehicle, and tells its gate where a return may end."""
 
-    def __init__(self, own: Address, times: Times) -> None:
+    def __init__(self, own: Address, times: Times, policy: Policy) -> None:
+        self._policy = policy
         self._rally = PlanOnBoard(own, times, MissionType.RALLY)
         self._return_type: int | None = None
         self._told: ReturnPlacesSeen | None = None
+        self._warned: frozenset[str] = frozenset()
+        """The rally points on board, by name, of which it was told that they are outside."""
 
     @property
     def deadline_ns(self) -> int | None:
@@ -98,7 +108,25 @@ class ReturnPlaces:
         if seen == self._told:
             return []
         self._told = seen
-        return [ToGate(seen), *_logged(seen)]
+        return [ToGate(seen), *_logged(seen), *self._outside(telemetry)]
+
+    def _outside(self, telemetry: Telemetry) -> list[Work]:
+        """Said once of each rally point where the policy lets nobody land: the vehicle's own
+        failsafe may return there, which no ground station can stop."""
+        items = self._rally.items
+        if not items:
+            self._warned = frozenset()
+            return []
+        if telemetry.origin is None or telemetry.home_ned is None:
+            return []
+        work: list[Work] = []
+        for landing in landings_on_board(items, telemetry, ON_BOARD):
+            for refusal in bad_rally_points((landing,), self._policy, telemetry):
+                if landing.name not in self._warned:
+                    self._warned |= {landing.name}
+                    text = f"{refusal.sentence}; its own failsafe may land there"
+                    work.append(Log(Level.WARNING, NODE, text))
+        return work
 
     def _seen(self, telemetry: Telemetry) -> ReturnPlacesSeen:
         items = self._rally.items
@@ -116,6 +144,17 @@ class ReturnPlaces:
         landings = landings_on_board(items, telemetry)
         places = (ReturnPlace(each.name, each.ground_ned, each.over_up_m) for each in landings)
         return ReturnPlacesSeen(tuple(places))
+
+
+def why_not_rally_point(policy: Policy, telemetry: Telemetry, point: RallyPoint) -> Refusal | None:
+    """Why the vehicle must not have it on board; a client of an ArduPilot sends them one by one."""
+    frame, place = MavFrame.GLOBAL_RELATIVE_ALT_INT, (point.lat, point.lng, float(point.alt))
+    item = WireItem(0, frame, Cmd.NAV_RALLY_POINT, 0, 1, 0, 0, 0, 0, *place, MissionType.RALLY)
+    landings = (
+        replace(landing, name=f"rally point {point.idx + 1}")
+        for landing in landings_on_board((item,), telemetry)
+    )
+    return next(iter(bad_rally_points(tuple(landings), policy, telemetry)), None)
 
 
 def _logged(seen: ReturnPlacesSeen) -> list[Work]:

@@ -72,7 +72,7 @@ class VehicleParts:
         )
         self.missions = Missions(own, times)
         self.orbits = Orbits(times)
-        self.returns = ReturnPlaces(own, times)
+        self.returns = ReturnPlaces(own, times, policy)
         self.fence = FenceOnBoard(own, times)
         self.words = Words(times)
         self.events = Events(own, self.words, times)

@@ -31,13 +31,13 @@ def stranger(flight: Flight, *messages: Any) -> list[Any]:
     return answers
 
 
-def stranger_uploads(flight: Flight, items: int) -> None:
-    """A mission past the gate, of waypoints 100 m apart."""
+def stranger_uploads(flight: Flight, items: int, north_e7: int = 9000) -> None:
+    """A mission past the gate, of waypoints 100 m apart, or so many degrees of latitude."""
     asked = stranger(flight, dialect.MAVLink_mission_count_message(1, 1, items, 0))
     for seq in range(items):
         assert asked, "the vehicle asks for the next item"
         item = dialect.MAVLink_mission_item_int_message(
-            1, 1, seq, 6, 16, 0, 1, 0, 0, 0, 0, 473977420 + 9000 * seq, 85455940, 20, 0
+            1, 1, seq, 6, 16, 0, 1, 0, 0, 0, 0, 473977420 + north_e7 * seq, 85455940, 20, 0
         )
         asked = stranger(flight, item)
     assert "MISSION_ACK" in {message.get_type() for message in asked}

@@ -142,6 +142,24 @@ def test_a_mission_past_the_gate_is_named() -> None:
     denied(flight, "the mission on board (3 items) was not verified")
 
 
+def test_what_was_found_in_a_mission_past_the_gate_is_named() -> None:
+    """The first of its findings, as long as that mission is on board: by its number, which PX4
+    gives since 1.15 (from memory)."""
+    flight = guarded(firmware="1.15")
+    stranger_uploads(flight, 4)
+    assert flight.done(flight.say("mission_check"), 5.0).startswith("refused")
+    refused = next(line for line in flight.lines("mission") if "mission_check: refused" in line)
+    finding = refused.partition(": refused ")[2].partition(": ")[2]
+    assert finding.startswith("item ")
+    denied(flight, "the mission on board (4 items)", finding)
+    flight.run(5.0)
+    stranger_arms(flight)
+    assert finding in flight.lines("state_and_safety")[-1]
+    stranger_uploads(flight, 4, north_e7=8000)
+    stranger_arms(flight)
+    assert "was not verified" in flight.lines("state_and_safety")[-1]
+
+
 def test_another_mission_in_the_place_of_the_verified_one_is_named() -> None:
     """By its number, which PX4 gives since 1.15 (from memory)."""
     flight = guarded(firmware="1.15")

@@ -12,6 +12,8 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
+from gcs.wire.codec import decode
+from gcs.wire.messages import CommandLong
 from tests.loopback.bridged import VEHICLE
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.lossy_link import Weather
@@ -31,9 +33,10 @@ from tests.loopback.plan_clients import (
     Upload,
     mission,
 )
+from vehicle_sim.autopilot.interface import PlanItem as OnBoard
 
-DENIED = 14
-ARM, MISSION_START, FENCE_CORNER, ALL = 400, 300, 5001, 255
+DENIED, DENIED_COMMAND = 14, 2
+ARM, MISSION_START, PAUSE, FENCE_CORNER, ALL = 400, 300, 193, 5001, 255
 FAR_E7 = 90_000
 """A kilometre north."""
 SQUARE = ((20.0, 0.0, 10.0), (20.0, 20.0, 10.0), (0.0, 20.0, 10.0))
@@ -152,6 +155,51 @@ def test_a_mission_put_on_board_past_the_bridge_is_verified_before_it_starts(
         client.command(MISSION_START)
         flight.beating(5.0)
         assert flight.is_in(State.FLYING_MISSION) is starts
+
+
+def good_and_bad_plan() -> tuple[PlanFlight, tuple[OnBoard, ...], tuple[OnBoard, ...]]:
+    """A PX4 with a client and nothing on board; a mission that clears, and one that leaves."""
+    other = connected("px4")
+    Mavsdk(other, other.clients[1], mission("px4", *SQUARE)).ended()
+    good = other.vehicle.plan
+    away = tuple(replace(item, x=item.x + FAR_E7) if item.x else item for item in good)
+    return connected("px4"), good, away
+
+
+def never_armed(flight: PlanFlight) -> None:
+    """Not by the bridge, and not for a moment."""
+    flight.beating(5.0)
+    commands = [decode(frame) for frame in flight.to_vehicle("COMMAND_LONG")]
+    assert ARM not in [each.command for each in commands if isinstance(each, CommandLong)]
+    assert not flight.vehicle.armed
+
+
+def test_a_mission_start_of_a_disarmed_px4_arms_only_what_has_cleared() -> None:
+    """PX4's MISSION_START arms, too: what is on board is verified before the motors run."""
+    flight, good, away = good_and_bad_plan()
+    client = flight.clients[1]
+    assert client.ask(MISSION_START) == DENIED_COMMAND
+    assert "NO_MISSION" in client.texts()
+    never_armed(flight)
+    flight.vehicle.load_plan(away)
+    assert client.ask(MISSION_START) == DENIED_COMMAND
+    assert "item " in client.texts()
+    never_armed(flight)
+    flight.vehicle.load_plan(good)
+    assert client.ask(MISSION_START) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
+    asked = [one.word for one in flight.decisions("accepted")]
+    assert asked[-3:] == ["mission_check", "arm", "mission_start"]
+
+
+def test_a_stop_while_the_mission_is_checked_keeps_the_vehicle_disarmed() -> None:
+    flight, good, _ = good_and_bad_plan()
+    client = flight.clients[1]
+    flight.vehicle.load_plan(good)
+    client.command(MISSION_START)
+    client.command(PAUSE, 0)
+    never_armed(flight)
+    assert client.acks(MISSION_START)[-1].result != ACCEPTED
 
 
 LOSSY = Weather(loss=0.25, delay_s=(0.001, 0.004))

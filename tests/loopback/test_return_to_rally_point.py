@@ -30,8 +30,8 @@ from tests.loopback.plan_clients import (
 from tests.loopback.test_set_current import ARM, DENIED, hovering, wait
 
 RETURN = 20
-RTL_BLOCKED = 21
-"""The reason's number in COMMAND_ACK.result_param2."""
+RTL_BLOCKED, MISSION_DENIED = 21, 14
+"""The reason's number in COMMAND_ACK.result_param2; MAV_MISSION_RESULT."""
 RALLY_NORTH_M = 50.0
 ON_THE_WAY, BESIDE_IT, MAST_RADIUS_M = (10.0, 45.0), (40.0, 20.0), 3.0
 """East and north of a mast: on the way to the rally point, or beside that and the way home."""
@@ -127,6 +127,56 @@ def test_a_zone_on_the_way_to_the_rally_point_refuses_it(personality: Personalit
     refused(flight, behind_the_mast(flight, personality))
 
 
+def points_north(personality: Personality, *norths_m: float) -> list[PlanItem]:
+    home = HOMES[personality]
+    return [
+        PlanItem(
+            RALLY_POINT, home.lat_deg + m * NORTH_DEG, home.lon_deg, _up_m(personality), kind=2
+        )
+        for m in norths_m
+    ]
+
+
+MAST_AT_50_M = (0.0, 50.0)
+NEAR_THE_MAST_M = 54.0
+"""Outside the mast by a metre, and within the margin."""
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize(
+    ("north_m", "says"),
+    [(50.0, "is inside"), (NEAR_THE_MAST_M, "margin"), (300.0, "m outside")],
+    ids=["in a zone", "within its margin", "outside the fence"],
+)
+def test_rally_points_where_nobody_may_land_never_reach_the_vehicle(
+    north_m: float, says: str, personality: Personality
+) -> None:
+    """Its own failsafe may return there, which no gate can refuse."""
+    flight = joined(personality, MAST_AT_50_M)
+    client = flight.clients[1]
+    asked = len(flight.to_vehicle("MISSION_COUNT"))
+    upload = Mavsdk(flight, client, points_north(personality, 20.0, north_m))
+    assert upload.ended() == f"refused {MISSION_DENIED}", client.texts()
+    assert len(flight.to_vehicle("MISSION_COUNT")) == asked
+    flight.run(0.5)
+    (line,) = [text for text in client.texts().splitlines() if "rally point 2: " in text]
+    assert says in line
+    assert ("mast" in line) is (north_m != 300.0)
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_points_on_board_where_nobody_may_land_are_told_once_when_they_are_read(
+    personality: Personality,
+) -> None:
+    flight = joined(personality, MAST_AT_50_M)
+    past_the_bridge(flight, points_north(personality, 20.0, 50.0))
+    flight.beating(5.0)
+    told = [line for line in flight.told() if "may land there" in line]
+    assert len(told) == 1, told
+    assert "rally point on board 2" in told[0]
+    assert "mast" in told[0]
+
+
 @pytest.mark.parametrize("personality", PERSONALITIES)
 def test_where_all_ways_are_clear_it_returns_to_the_rally_point(personality: Personality) -> None:
     flight = joined(personality, BESIDE_IT)
@@ -214,6 +264,17 @@ def test_a_rally_point_as_a_single_message_makes_them_be_read_again(
     flight.run(0.5)
     assert flight.to_vehicle("RALLY_POINT")
     assert len(flight.to_vehicle("MISSION_REQUEST_LIST")) == asked + 1
+
+
+def test_a_rally_point_as_a_single_message_is_refused_where_nobody_may_land() -> None:
+    flight = joined("ardupilot", MAST_AT_50_M)
+    client, (point,) = flight.clients[1], points_north("ardupilot", 50.0)
+    lat, lon = round(point.lat_deg * 1e7), round(point.lon_deg * 1e7)
+    client.send(dialect.MAVLink_rally_point_message(*VEHICLE, 1, 2, lat, lon, 20, 0, 0, 0))
+    flight.run(0.5)
+    assert not flight.to_vehicle("RALLY_POINT")
+    assert "rally point 2: " in client.texts()
+    assert "mast" in client.texts()
 
 
 def past_the_bridge(flight: PlanFlight, items: list[PlanItem]) -> None:

@@ -161,6 +161,27 @@ def test_before_a_start_in_the_air_it_says_where_the_mission_begins_once(
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
+def test_item_0_is_the_first_item_and_is_answered_at_once(personality: Personality) -> None:
+    """Item 0 is home for an ArduPilot, which goes on to the item after it."""
+    flight = with_square(personality)
+    client = hovering(flight)
+    assert client.ask(SET_CURRENT, seq(personality, 2), within_s=3.0) == ACCEPTED
+    assert client.ask(SET_CURRENT, 0, within_s=3.0) == ACCEPTED
+    flight.beating(1.5)
+    assert shown(flight) == seq(personality, 0)
+    assert client.ask(MISSION_START, within_s=5.0) == ACCEPTED
+    assert flight.is_in(State.FLYING_MISSION)
+
+
+def test_an_arducopter_that_flies_its_mission_begins_it_anew_by_item_0() -> None:
+    flight = flown(with_square("ardupilot"))
+    client = flight.clients[1]
+    assert client.ask(SET_CURRENT, 0, within_s=8.0) == ACCEPTED
+    wait(flight, lambda: flight.is_in(State.FLYING_MISSION), 3.0)
+    assert shown(flight) in (1, 2)
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_on_the_ground_a_mission_begins_with_its_first_item(personality: Personality) -> None:
     flight = with_square(personality)
     client = flight.clients[1]

@@ -49,6 +49,9 @@ class SetUpJudge:
         if seen is None or message is None:
             return refuse(given, message, row, Refusal(Code.POLICY, row.why))
         judged = self._guarded(message, given.by, seen, given.now_ns)
+        if isinstance(judged, Allowed) and isinstance(message, RallyPoint):
+            bad = seen.why_not_rally(message)
+            judged = judged if bad is None else Refused(bad)
         match judged:
             case Allowed(note):
                 self._log_read |= isinstance(message, LogRequestData)

@@ -101,7 +101,7 @@ COMMANDS: Final[Mapping[int, CommandRow]] = {
         mission.mission_start_px4,
         mission.mission_start_ardupilot,
         "mission start, from the first item or where it was set to begin. PX4: p1 above 0 sets "
-        "that, in the air; disarmed: arm, then start",
+        "that, in the air; disarmed: mission_check, arm, then start",
     ),
     Cmd.DO_SET_MISSION_CURRENT: _same(
         mission.do_set_mission_current,

@@ -15,9 +15,10 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.attitude import Attitude
 from gcs.gate.policy.policy import StreamRules
-from gcs.gate.refusal import Refusal
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 from gcs.protocol.autopilot import Autopilot
+from gcs.wire.messages import RallyPoint
 
 
 def _clears_nothing(up_m: float) -> bool:
@@ -26,6 +27,10 @@ def _clears_nothing(up_m: float) -> bool:
 
 def _resumes() -> Refusal | None:
     return None
+
+
+def _rally_points_unknown(point: RallyPoint) -> Refusal | None:
+    return Refusal(Code.NO_ORIGIN, "where the rally point lies is not known")
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +84,8 @@ class Seen:
     """The client who asks has sent sticks lately."""
     clears_takeoff: Callable[[float], bool] = _clears_nothing
     """Whether a climb from here, by so many metres, would be cleared if the vehicle were armed."""
+    why_not_rally: Callable[[RallyPoint], Refusal | None] = _rally_points_unknown
+    """Why the vehicle must not have a rally point there: its own failsafe would land there."""
     why_not_resume: Callable[[], Refusal | None] = _resumes
     """Why the gate would not hover under control here, once the vehicle is held; None: it would.
     The gate asks it again: this is so that what will be refused stops nothing first."""

@@ -21,7 +21,8 @@ STOPPED_FIRST: Final = "it is stopped first, and its way from there to that item
 
 
 def mission_start_px4(command: Command, seen: Seen) -> Meaning:
-    """p1 is the first item; the last one is ignored.  On the ground it arms, too (Commander.cpp).
+    """p1 is the first item; the last one is ignored.  On the ground it arms, too (Commander.cpp):
+    here not before the mission on board has cleared.
 
     0 and -1: where it was set to begin, or the first one.
     """
@@ -32,7 +33,7 @@ def mission_start_px4(command: Command, seen: Seen) -> Meaning:
     if number > 0:
         return _set_current(number, seen, start)
     if isinstance(start, Words) and start.asks and seen.on_ground and not seen.armed:
-        return Words((ipc.Ask(0, "arm"), *start.asks))
+        return Words((ipc.Ask(0, "mission_check"), ipc.Ask(0, "arm"), *start.asks))
     return start
 
 

@@ -16,7 +16,7 @@ from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload
 from gcs.report import MissionItem
 from gcs.session.effects import Record
-from gcs.session.jobs.job import Asked, JobWork, OnBoardChanged, VehicleView
+from gcs.session.jobs.job import Asked, JobWork, OnBoardChanged, OnBoardRefused, VehicleView
 from gcs.session.jobs.prepared import PreparedJob
 from gcs.session.jobs.starting import StartingJob, first_item
 from gcs.session.paths import cleared
@@ -33,6 +33,8 @@ class Adopt(PreparedJob, StartingJob):
     def __init__(self, asked: Asked) -> None:
         super().__init__(asked, SOURCE)
         self._received: tuple[WireItem, ...] = ()
+        self._countable = 0
+        """Items of it that the vehicle counts: all but home."""
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         download = MissionDownload(*self.parties(view), self.asked.timing)
@@ -46,7 +48,8 @@ class Adopt(PreparedJob, StartingJob):
     ) -> list[JobWork]:
         self.stop_transfer()
         self._received = received
-        if len(self._received) <= first_item(view.telemetry):
+        self._countable = len(received) - first_item(view.telemetry)
+        if self._countable <= 0:
             return self.ask_gate()  # which knows of none
         refused = refused_items(received, first_item(view.telemetry), view.policy.bridge)
         if refused:
@@ -55,7 +58,8 @@ class Adopt(PreparedJob, StartingJob):
         return self.prepare_with(steps, len(received) <= SMALL_ITEMS, view, now_ns)
 
     def bad_plan(self, error: PlanError) -> list[JobWork]:
-        return self.refuse(Refusal(Code.BAD_MISSION, str(error)))
+        refusal = Refusal(Code.BAD_MISSION, str(error))
+        return [OnBoardRefused(self._countable, refusal.sentence), *self.refuse(refusal)]
 
     def verify_anew(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         return self.verify(self.prepared.plan, view, now_ns)
@@ -63,7 +67,8 @@ class Adopt(PreparedJob, StartingJob):
     def verified(self, found: Verification, view: VehicleView, now_ns: int) -> list[JobWork]:
         answer = cleared(found)
         if isinstance(answer, Refusal):
-            return self.refuse_path(found, answer)
+            kept = OnBoardRefused(self._countable, answer.sentence)
+            return [kept, *self.refuse_path(found, answer)]
         self.note_path(found.path)
         plan = self.prepared.plan
         points = tuple(dict.fromkeys(end for leg in found.path.segments for end in leg))

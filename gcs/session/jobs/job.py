@@ -67,6 +67,17 @@ class OnBoardChanged:
 
 
 @dataclass(frozen=True, slots=True)
+class OnBoardRefused:
+    """A mission that this station did not bring was read, and does not clear: `why`.
+
+    `items` as MISSION_CURRENT counts them, without home.
+    """
+
+    items: int
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class BeginsAt:
     """In the air the next start of the mission begins at this item; None: at the first."""
 
@@ -85,7 +96,7 @@ class Asked:
     times: Times
 
 
-JobWork: TypeAlias = Work | OnBoardChanged | BeginsAt
+JobWork: TypeAlias = Work | OnBoardChanged | OnBoardRefused | BeginsAt
 
 
 class Job(ABC):

@@ -1,12 +1,16 @@
 """RelayPlan: a client's fence or rally points, brought on board whole and read back.
 
 They are settings of the vehicle, no path: the policy says whether a client may change them
-(`[bridge] fence`, `rally`).  What cannot be a fence or a list of rally points is refused first.
+(`[bridge] fence`, `rally`).  What cannot be a fence or a list of rally points is refused first.  So
+are rally points of which one lies where the policy lets nobody land: the vehicle's own failsafe may
+return there, which no ground station can stop.
 """
 
 from __future__ import annotations
 
+from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
+from gcs.gate.effects import Level as LogLevel
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import Level, PlanError
@@ -16,8 +20,12 @@ from gcs.plan.model import Plan
 from gcs.plan.wire import WireItem, items_from_wire
 from gcs.plan.wire_fence import fence_to_wire
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.jobs.job import Asked, JobWork, VehicleView
+from gcs.session.jobs.facts import landings_on_board
+from gcs.session.jobs.job import NODE, Asked, JobWork, VehicleView
+from gcs.session.jobs.prepared import MOST_FINDINGS
 from gcs.session.jobs.transfers import NAMES, BringingJob
+from gcs.session.paths import bad_rally_points
+from gcs.session.work import Log, Tell
 from gcs.wire.ids import MissionType
 
 
@@ -33,7 +41,19 @@ class RelayPlan(BringingJob):
             items = checked(self._plan)
         except PlanError as error:
             return self.refuse(Refusal(Code.BAD_MISSION, str(error)))
+        if self._plan.kind is MissionType.RALLY:
+            landings = landings_on_board(items, view.telemetry)
+            bad = bad_rally_points(landings, view.policy, view.telemetry)
+            if bad:
+                told = [each for refusal in bad[1:MOST_FINDINGS] for each in self._found(refusal)]
+                return [*told, *self.refuse(bad[0])]
         return [self.accept(), *self.bring([(self._plan.kind, items)], view, now_ns)]
+
+    def _found(self, refusal: Refusal) -> list[JobWork]:
+        """One more rally point that is refused: the log has it, and the client reads it."""
+        text = f"{refusal.code.value}: {refusal.sentence}"
+        log = Log(LogLevel.WARNING, NODE, f"{self._plan.source}: {text}")
+        return [log, Tell(self.asked.request_id, ipc.Trouble(text))]
 
     def on_board(self) -> list[JobWork]:
         name, many = NAMES[self._plan.kind], len(self._plan.items)

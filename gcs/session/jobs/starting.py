@@ -188,11 +188,14 @@ def first_item(telemetry: Telemetry) -> int:
 
 def shown_for(begin: int, items: Sequence[WireItem], telemetry: Telemetry) -> range:
     """What MISSION_CURRENT may show of a vehicle that is to begin at item `begin`: that one, up to
-    the next one that is flown to.  Before the first it is at the start as well."""
+    the next one that is flown to.  Before the first it is at the start as well, and an ArduCopter
+    that is sent to home goes on to the first (from memory of AP_Mission::set_current_cmd)."""
+    first = first_item(telemetry)
+    begin = max(begin, first)
     flown = (
         seq
         for seq, item in enumerate(items)
         if seq >= begin and item.command <= NAV_LAST and item.command != Cmd.NAV_ROI
     )
-    least = 0 if begin <= first_item(telemetry) else begin
+    least = 0 if begin == first else begin
     return range(least, next(flown, begin) + 1)

@@ -71,13 +71,39 @@ def test_a_refusal_of_the_last_is_what_the_client_hears_by_its_name(first: str) 
     assert texts(effects).startswith("mission_start: refused NO_MISSION")
 
 
+ARM = CommandLong(1, 0, 0, 0, 0, 0, 0, Cmd.COMPONENT_ARM_DISARM, 1, 1, 0)
+CHECKED = (ipc.Ask(0, "mission_check"), ipc.Ask(0, "arm"), ipc.Ask(0, "mission_start"))
+
+
+def asked_for(effects: list[BridgeEffect]) -> list[str]:
+    said = [each.command for each in effects if isinstance(each, Says)]
+    return [ask.word for ask in said if isinstance(ask, ipc.Ask)]
+
+
 def armed_before() -> tuple[Dialogue, int, list[BridgeEffect]]:
     """A client has asked to arm, and asks for a mission start before that has ended."""
     dialogue = Dialogue(1000)
-    arm = CommandLong(1, 0, 0, 0, 0, 0, 0, Cmd.COMPONENT_ARM_DISARM, 1, 1, 0)
-    asked = Start.number_of(dialogue.ask(CLIENT, arm, (ipc.Ask(0, "arm"),), 0))
-    asks = (ipc.Ask(0, "arm"), ipc.Ask(0, "mission_start"))
-    return dialogue, asked, dialogue.ask(CLIENT, START, asks, 0)
+    asked = Start.number_of(dialogue.ask(CLIENT, ARM, (ipc.Ask(0, "arm"),), 0))
+    return dialogue, asked, dialogue.ask(CLIENT, START, CHECKED, 0)
+
+
+def test_an_arming_that_comes_while_the_mission_is_checked_is_waited_for() -> None:
+    dialogue = Dialogue(1000)
+    check = Start.number_of(dialogue.ask(CLIENT, START, CHECKED, 0))
+    arming = Start.number_of(dialogue.ask(CLIENT, ARM, (ipc.Ask(0, "arm"),), 0))
+    assert dialogue.told(ipc.EndingEvent(check, "mission_check", "complete"), 0) == []
+    dialogue.told(ipc.VerdictEvent(arming, "arm", "accepted", operation=1), 0)
+    armed = dialogue.told(ipc.EndingEvent(arming, "arm", "complete"), 0)
+    assert asked_for(armed) == ["mission_start"]
+
+
+def test_a_mission_that_does_not_clear_is_not_armed_for() -> None:
+    dialogue = Dialogue(1000)
+    check = Start.number_of(dialogue.ask(CLIENT, START, CHECKED, 0))
+    refused = ipc.VerdictEvent(check, "mission_check", "refused", "NO_MISSION", "none")
+    effects = dialogue.told(refused, 0)
+    assert results(effects) == [Result.DENIED]
+    assert asked_for(effects) == []
 
 
 def test_a_start_waits_for_the_arming_that_is_under_way() -> None:
@@ -87,8 +113,7 @@ def test_a_start_waits_for_the_arming_that_is_under_way() -> None:
     dialogue.told(ipc.VerdictEvent(arming, "arm", "accepted", operation=1), 0)
     ended = dialogue.told(ipc.EndingEvent(arming, "arm", "complete"), 0)
     assert results(ended) == [Result.ACCEPTED], "the arming"
-    asked = [each.command for each in ended if isinstance(each, Says)]
-    assert [ask.word for ask in asked if isinstance(ask, ipc.Ask)] == ["mission_start"]
+    assert asked_for(ended) == ["mission_start"]
 
 
 def test_a_start_fails_with_the_arming_that_it_waits_for() -> None:

@@ -415,8 +415,9 @@ def test_a_mission_start_in_the_air_names_its_first_item_on_px4_alone() -> None:
 
 def test_px4_arms_for_a_mission_ardupilot_does_not() -> None:
     """Commander.cpp: switches to the mission and arms.  ArduCopter 4.7, recorded: ACCEPTED
-    disarmed, and nothing flies."""
-    assert words(meaning_of(command_long(300), standing(PX4))) == ["arm", "mission_start"]
+    disarmed, and nothing flies.  What is on board is verified before the motors run."""
+    start = ["mission_check", "arm", "mission_start"]
+    assert words(meaning_of(command_long(300), standing(PX4))) == start
     armed = standing(PX4, armed=True)
     assert words(meaning_of(command_long(300), armed)) == ["mission_start"]
     assert words(meaning_of(command_long(300), standing(ARDUPILOT))) == ["mission_start"]

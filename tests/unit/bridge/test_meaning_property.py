@@ -43,6 +43,7 @@ WORDS_OF_ASKS = frozenset(
         "resume",
         "mode",
         "mission_start",
+        "mission_check",
         "mission_set_current",
     ]
 )
@@ -115,7 +116,7 @@ def check(message: Message, vehicle: Seen) -> None:
                 for ask in asks:  # each is a request that the session understands
                     if ask.word == "mission_set_current":
                         assert 0 <= ask.item <= 0xFFFF
-                    else:
+                    elif ask.word != "mission_check":
                         request_of(ask, vehicle.autopilot)
                 if sample is not None:
                     check_sample(sample)

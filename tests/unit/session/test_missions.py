@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import pytest
 from msgspec import structs
@@ -18,14 +19,14 @@ from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.effects import ReadFile, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
-from gcs.session.missions import Missions
+from gcs.session.missions import PLAN_RECEIVED, Missions
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, Decide, ToGate, Work
-from gcs.wire.messages import Message, MissionCount, MissionCurrent, MissionItemReached
+from gcs.wire.messages import Message, MissionAck, MissionCount, MissionCurrent, MissionItemReached
 from tests.unit.plan import samples
-from tests.unit.session.jobs.script import START_NS, Board, placed
-from tests.unit.session.plans import BOX, LAT, LON, plan
+from tests.unit.session.jobs.script import START_NS, Board, brought, placed
+from tests.unit.session.plans import BOX, FAR, LAT, LON, plan
 from tests.unit.session.vehicles import SECOND_NS
 
 ACTIVE, COMPLETE = 3, 5
@@ -58,7 +59,7 @@ class Script:
         ask = ipc.Ask(100 + self._requests, word, path=path)
         policy, state = self.policy, self.state
         work = self.missions.ask(self._requests, ask, self.telemetry, state, policy, self.now_ns)
-        return self._with_replies(work)
+        return self.with_replies(work)
 
     @property
     def last(self) -> int:
@@ -66,30 +67,30 @@ class Script:
 
     def read(self, data: bytes, token: int | None = None) -> list[Work]:
         news = FileRead(self.last if token is None else token, "a.plan", data)
-        return self._with_replies(self.missions.file(news, self._view(), self.now_ns))
+        return self.with_replies(self.missions.file(news, self.view(), self.now_ns))
 
     def written(self, token: int) -> list[Work]:
         news = FileWritten(token, "out.plan")
-        return self._with_replies(self.missions.file(news, self._view(), self.now_ns))
+        return self.with_replies(self.missions.file(news, self.view(), self.now_ns))
 
     def hear(self, message: Message) -> list[Work]:
         heard = Heard(1, 1, message)
-        return self._with_replies(self.missions.heard(heard, self._view(), self.now_ns))
+        return self.with_replies(self.missions.heard(heard, self.view(), self.now_ns))
 
     def upload(self, data: bytes) -> None:
         self.ask("mission_upload", "a.plan")
         work = self.read(data)
         while (due_ns := self.missions.deadline_ns) is not None:
             self.now_ns = max(self.now_ns, due_ns)  # a long plan is verified in steps
-            work += self._with_replies(self.missions.wake(self._view(), self.now_ns))
+            work += self.with_replies(self.missions.wake(self.view(), self.now_ns))
         (ended,) = [item for item in work if isinstance(item, Outcome)]
         assert ended.code is None
 
-    def _view(self) -> VehicleView:
+    def view(self) -> VehicleView:
         assert self.telemetry is not None
         return VehicleView(self.telemetry, self.state, DEFAULT)
 
-    def _with_replies(self, work: list[Work]) -> list[Work]:
+    def with_replies(self, work: list[Work]) -> list[Work]:
         done: list[Work] = []
         agenda = list(work)
         while agenda:
@@ -98,7 +99,7 @@ class Script:
             if isinstance(item, Send):
                 for reply in self.board.hear(item.message):
                     heard = Heard(1, 1, reply)
-                    agenda += self.missions.heard(heard, self._view(), self.now_ns)
+                    agenda += self.missions.heard(heard, self.view(), self.now_ns)
         return done
 
 
@@ -355,3 +356,30 @@ def test_a_refused_upload_leaves_the_mission_on_board_as_it_is() -> None:
     script.ask("mission_upload", "b.plan")
     script.read(json.dumps({}).encode())
     assert seen(script.hear(current(2))) == [MissionSeen(2, FOUR, False)]
+
+
+def acknowledged(script: Script) -> None:
+    """An upload of anybody's, as the vehicle tells it."""
+    script.hear(MissionAck(target_system=254, target_component=190, type=0, mission_type=0))
+
+
+def said(script: Script) -> None:
+    script.missions.said(PLAN_RECEIVED, script.view())
+
+
+@pytest.mark.parametrize("uploaded", [acknowledged, said])
+def test_what_was_found_in_the_mission_on_board_is_named_until_another_is_brought(
+    uploaded: Callable[[Script], None],
+) -> None:
+    script = Script()
+    script.board = Board(brought(FAR, placed()))
+    items = len(script.board.items)
+    work = script.ask("mission_check")
+    while (due_ns := script.missions.deadline_ns) is not None:
+        script.now_ns = max(script.now_ns, due_ns)
+        work += script.with_replies(script.missions.wake(script.view(), script.now_ns))
+    assert refusals(work)
+    script.hear(MissionCurrent(0, items, 0, 0, 0, 0, 0))
+    assert "item 2" in script.missions.unverified
+    uploaded(script)
+    assert "was not verified" in script.missions.unverified

@@ -9,6 +9,7 @@ import pytest
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.return_place import ReturnPlace
 from gcs.gate.inputs import ReturnPlacesSeen
+from gcs.gate.policy.parse import DEFAULT
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.return_places import READING, ReturnPlaces
@@ -84,7 +85,7 @@ class Script:
     work: list[Work] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.part = ReturnPlaces(OWN, Times())
+        self.part = ReturnPlaces(OWN, Times(), DEFAULT)
         self.telemetry = Telemetry(1, 1, self.autopilot, 0)
         self.telemetry.origin = Origin(LAT, LON, AMSL_M)
         self.telemetry.home_ned = (0.0, 0.0, 2.0)

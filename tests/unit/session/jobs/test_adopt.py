@@ -8,6 +8,7 @@ from gcs.gate.refusal import Code
 from gcs.gate.requests import StartMission
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.jobs.adopt import Adopt
+from gcs.session.jobs.job import OnBoardRefused
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import AskGate, Decide
 from gcs.wire.messages import MissionRequestList
@@ -32,12 +33,17 @@ def test_a_mission_that_clears_is_known_as_ours_and_the_gate_decides(autopilot: 
     assert script.job.over
 
 
-def test_a_mission_that_leaves_the_fence_never_starts() -> None:
-    script = adopt(Board(brought(FAR, placed())))
+@pytest.mark.parametrize("autopilot", [PX4, ARDUPILOT])
+def test_a_mission_that_leaves_the_fence_never_starts(autopilot: Autopilot) -> None:
+    telemetry = placed(autopilot)
+    script = adopt(Board(brought(FAR, telemetry)), telemetry)
     assert script.refused in (Code.LEG_LEAVES_FENCE, Code.OUTSIDE_FENCE, Code.TOO_FAR)
     assert "item 2" in script.sentence
     assert script.loaded == []
     assert script.kept == []
+    home_items = autopilot is ARDUPILOT
+    counted = len(script.board.items) - home_items
+    assert script.of(OnBoardRefused) == [OnBoardRefused(counted, script.sentence)]
 
 
 def test_where_none_is_on_board_the_gate_says_so() -> None:

@@ -207,6 +207,30 @@ def test_rally_points_go_on_board_as_they_are() -> None:
     assert [each.x for each in script.board.lists[2]] == [point.x]
 
 
+def rally_points(*norths_m: float, telemetry: Telemetry | None = None) -> JobScript:
+    items = (
+        item(n, Cmd.NAV_RALLY_POINT, north_m, kind=MissionType.RALLY)
+        for n, north_m in enumerate(norths_m)
+    )
+    return upload(*items, kind=MissionType.RALLY, telemetry=telemetry)
+
+
+def test_rally_points_of_which_one_is_outside_the_fence_are_refused_whole() -> None:
+    """The vehicle's own failsafe may return there, which no ground station can stop."""
+    script = rally_points(20.0, 300.0, 400.0)
+    assert script.refused is Code.OUTSIDE_FENCE
+    assert script.sentence.startswith("rally point 2: ")
+    (other,) = told.events(script.work, ipc.Trouble)
+    assert "rally point 3: " in other.text
+    assert script.sent(MissionCount) == []
+
+
+def test_rally_points_are_refused_while_nobody_knows_where_they_lie() -> None:
+    telemetry = placed()
+    telemetry.home_ned = None
+    assert rally_points(20.0, telemetry=telemetry).refused is Code.NO_ORIGIN
+
+
 @pytest.mark.parametrize(
     "items",
     [

@@ -10,7 +10,7 @@ from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT
 from gcs.session.jobs.job import BeginsAt
 from gcs.session.jobs.set_current import SetCurrent
-from gcs.wire.messages import MissionSetCurrent
+from gcs.wire.messages import Message, MissionCurrent, MissionSetCurrent
 from tests.unit.session.jobs.script import Board, JobScript, asked, brought, placed
 from tests.unit.session.plans import BOX
 
@@ -66,10 +66,23 @@ def test_somebody_else_s_mission_is_not_made_to_jump() -> None:
     assert script.sent(MissionSetCurrent) == []
 
 
-def test_home_is_no_item_that_an_arducopter_begins_at() -> None:
+class SkipsHome(Board):
+    """An ArduCopter in the air goes on to its first item where it is sent to home (from memory of
+    AP_Mission::set_current_cmd; vehicle-sim does so)."""
+
+    def hear(self, message: Message) -> list[Message]:
+        if isinstance(message, MissionSetCurrent):
+            return [MissionCurrent(max(message.seq, 1), 0, 0, 0, 0, 0, 0)]
+        return super().hear(message)
+
+
+@pytest.mark.parametrize("seq", [0, 1])
+@pytest.mark.parametrize("known", [True, False])
+def test_home_is_no_item_that_an_arducopter_begins_at(seq: int, known: bool) -> None:
     telemetry = placed(ARDUPILOT)
     telemetry.mode_name, telemetry.armed = "GUIDED", True
     mission = brought(BOX, telemetry)
-    job = SetCurrent(asked("mission_set_current"), 1, mission)
-    script = JobScript(job, Board(mission), telemetry, State.HOVERING)
+    job = SetCurrent(asked("mission_set_current"), seq, mission if known else None)
+    script = JobScript(job, SkipsHome(mission), telemetry, State.HOVERING)
     assert BeginsAt(None) in script.work
+    assert script.outcome == (OutcomeKind.COMPLETE, None)
