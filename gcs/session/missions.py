@@ -282,6 +282,11 @@ class Missions:
         self._on_board = None
         return [ToGate(MissionLoaded("", 0))]
 
+    def restarted(self) -> list[Work]:
+        """The vehicle restarted under the job, which ends; nothing is known of what is on board."""
+        ended = [] if self._job is None else self._follow(self._job.stop())
+        return [*ended, *self.forget()]
+
     def stop(self, request_id: int) -> list[Work]:
         """Whoever asked for the transfer `request_id`, somebody stops it, if it is under way."""
         if self._job is None or self._job.asked.request_id != request_id:
