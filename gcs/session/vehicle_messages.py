@@ -17,7 +17,6 @@ from gcs.session import recorded, teller
 from gcs.session.delay import Delay
 from gcs.session.effects import Record
 from gcs.session.events import EVENT_MESSAGES
-from gcs.session.gate_port import NOT_FLYING
 from gcs.session.interpreted_messages import (
     CAMERA_MESSAGES,
     MISSION_MESSAGES,
@@ -208,14 +207,16 @@ class VehicleMessages:
 
     def _is_another(self, telemetry: Telemetry, beat: m.Heartbeat, now_ns: int) -> bool:
         """Whether its heartbeats have become those of another autopilot or kind of vehicle: two in
-        a row, and none of its own meanwhile.  In flight it must be lost, as it is flown here."""
+        a row, and none of its own meanwhile; of one that was armed, for as long as it takes to
+        lose it, as it may be flown here."""
         if is_its_kind(beat, telemetry):
             telemetry.others = 0
             return False
         telemetry.others += 1
         parts = self._parts
-        flying = parts.port.gate.state not in NOT_FLYING
-        silence_ns = parts.presence.gone_ns if flying else parts.times.real_ns(OWN_BEATS_NS)
+        silence_ns = (
+            parts.presence.gone_ns if telemetry.armed else parts.times.real_ns(OWN_BEATS_NS)
+        )
         return telemetry.others >= 2 and now_ns - telemetry.heartbeat_ns > silence_ns
 
     def _restarted(self, telemetry: Telemetry, sign: str, now_ns: int) -> list[Work]:
@@ -226,7 +227,7 @@ class VehicleMessages:
         """
         parts = self._parts
         work = parts.forget(telemetry)
-        if parts.port.gate.state in NOT_FLYING:
+        if not telemetry.armed:
             work.append(PlaceFence())  # else with its next position, which is that of a reset
         again_ns = parts.times.real_ns(TOLD_AGAIN_NS)
         if parts.restarted_ns and now_ns - parts.restarted_ns < again_ns:
