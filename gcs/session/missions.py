@@ -274,18 +274,15 @@ class Missions:
         return self._follow(self._job.wake(view, now_ns))
 
     def forget(self) -> list[Work]:
-        """The vehicle restarted or was away: nothing is known of what it has on board."""
+        """The vehicle restarted or was away: nothing is known of what it has on board, and no start
+        goes on that stands on what it was asked before."""
+        work = self._follow(self._job.stop()) if isinstance(self._job, Start | Adopt) else []
         self._told.forget()
         self._begin_seq = None
         if self._on_board is None:
-            return []
+            return work
         self._on_board = None
-        return [ToGate(MissionLoaded("", 0))]
-
-    def restarted(self) -> list[Work]:
-        """The vehicle restarted under the job, which ends; nothing is known of what is on board."""
-        ended = [] if self._job is None else self._follow(self._job.stop())
-        return [*ended, *self.forget()]
+        return [*work, ToGate(MissionLoaded("", 0))]
 
     def stop(self, request_id: int) -> list[Work]:
         """Whoever asked for the transfer `request_id`, somebody stops it, if it is under way."""

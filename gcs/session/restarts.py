@@ -2,9 +2,10 @@
 
 Three signs, each of which needs two messages, so that one that is late or forged is none:
 
-- its clock ran back: two stamps of one kind of message in a row that are a second and more older
-  than the newest of that kind, and follow each other.  Stamps of positions are judged in
-  `updates.py`, by the same rule.  After 49.7 days a stamp begins anew at 0, which looks the same
+- its clock ran back: the stamps of its positions and attitudes are a second and more older than the
+  newest of them, and for half a second and two of them none is newer.  (The gate is told of it with
+  the second position, by `updates.py`: a clock that ran back moves the local frame.)
+  After 49.7 days a stamp begins anew at 0, which looks the same
   and is taken for a restart, too: a restart after weeks must be noticed;
 - while it is disarmed, its answers to TIMESYNC: the vehicle read its clock between the question and
   the answer, so each bounds when that clock began, on ours, whatever the delay.  Two in a row that
@@ -17,7 +18,7 @@ Three signs, each of which needs two messages, so that one that is late or forge
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 from gcs.wire import messages as m
@@ -34,7 +35,7 @@ STARTING: Final = frozenset({MavState.UNINIT, MavState.BOOT})
 
 @dataclass(slots=True)
 class Clock:
-    """The stamps of one kind of message."""
+    """The stamps of the positions."""
 
     newest_ms: int = 0
     first_ms: int | None = None
@@ -71,19 +72,19 @@ class Restarts:
     _began: Began | None = None
     _began_anew: Began | None = None
     """What an answer says that does not agree with those before it."""
-    _clocks: dict[type[m.Message], Clock] = field(default_factory=dict)
+    _newest_ms: int = 0
+    _back: tuple[int, int] | None = None
+    """The first stamp of another time, and when it came; no newer one has come since."""
     _was_up: bool = False
     _starting: int = 0
 
-    def sign(self, message: m.Message) -> str:
+    def sign(self, message: m.Message, now_ns: int) -> str:
         """What shows that it has restarted, in words; told once.  Empty where nothing does."""
-        if isinstance(message, m.Attitude | m.GlobalPositionInt):
-            back = self._ran_back(type(message), message.time_boot_ms)
-        elif isinstance(message, m.Heartbeat):
+        if isinstance(message, m.Heartbeat):
             return self._beat(message)
-        else:
+        if not isinstance(message, m.LocalPositionNed | m.Attitude | m.GlobalPositionInt):
             return ""
-        if not back:
+        if not self._stays_back(message.time_boot_ms, now_ns):
             return ""
         self.begin()
         return "its clock ran back"
@@ -102,15 +103,18 @@ class Restarts:
 
     def begin(self) -> None:
         """A vehicle that has only just started: nothing that it sent before counts."""
-        self._clocks.clear()
+        self._newest_ms, self._back = 0, None
         self._began = self._began_anew = None
         self._was_up, self._starting = False, 0
 
-    def _ran_back(self, kind: type[m.Message], stamp_ms: int) -> bool:
-        clock = self._clocks.get(kind)
-        if clock is None:
-            clock = self._clocks[kind] = Clock()
-        return clock.ran_back(stamp_ms)
+    def _stays_back(self, stamp_ms: int, now_ns: int) -> bool:
+        if self._newest_ms - stamp_ms < BACK_MS:
+            self._newest_ms, self._back = max(stamp_ms, self._newest_ms), None
+            return False
+        if self._back is None or abs(stamp_ms - self._back[0]) > FOLLOWS_MS:
+            self._back = stamp_ms, now_ns
+        first_ms, since_ns = self._back
+        return stamp_ms != first_ms and now_ns - since_ns >= self.step_ns // 2
 
     def _beat(self, beat: m.Heartbeat) -> str:
         if beat.base_mode & ModeFlag.SAFETY_ARMED or beat.system_status not in STARTING:

@@ -155,7 +155,8 @@ def is_its_kind(beat: m.Heartbeat, telemetry: Telemetry) -> bool:
     """Whether a heartbeat tells the autopilot and the kind of vehicle that were met."""
     if beat.autopilot != telemetry.mav_autopilot:
         return False
-    return autopilot_of(beat.autopilot, beat.type) is telemetry.autopilot
+    told, met = autopilot_of(beat.autopilot, beat.type), telemetry.autopilot
+    return (told.name, told.commanded) == (met.name, met.commanded)
 
 
 def _finite(*values: float) -> bool:

@@ -38,8 +38,6 @@ NODE = "link"
 OWN_BEATS_NS: Final = 1_500_000_000
 """Heartbeats come once a second: two vehicles that share a number are not taken for each other in
 turn."""
-TOLD_AGAIN_NS: Final = 5_000_000_000
-"""A restart so soon after another one is not told, and begins no new questions."""
 
 
 class VehicleMessages:
@@ -110,10 +108,10 @@ class VehicleMessages:
         for update in updates(message, telemetry, now_ns):
             match update:
                 case ToGate(inputs.PositionSeen(reset=reset)):
-                    if reset and not telemetry.restart_known:
-                        work += self._restarted(telemetry, "its clock ran back", now_ns)
                     telemetry.restart_known = False
                     work.append(update)
+                    if reset:
+                        work = [*self._parts.missions.forget(), *work, *accuracy(telemetry)]
                 case ToGate(inputs.HomeSeen()) | PlaceFence():
                     work.append(update)
                     work += self._parts.returns.placed(telemetry)
@@ -126,7 +124,7 @@ class VehicleMessages:
         """What shows that it has restarted; empty where nothing does."""
         restarts = self._parts.restarts
         if not isinstance(message, m.Timesync):
-            return restarts.sign(message)
+            return restarts.sign(message, now_ns)
         if message.tc1 <= 0 or not telemetry.delay.awaits(message.ts1):
             return ""
         armed = bool(telemetry.armed)
@@ -220,19 +218,10 @@ class VehicleMessages:
         return telemetry.others >= 2 and now_ns - telemetry.heartbeat_ns > silence_ns
 
     def _restarted(self, telemetry: Telemetry, sign: str, now_ns: int) -> list[Work]:
-        """It has restarted, as `sign` shows: nothing that was known of it counts any more.
-
-        Where two vehicles have one number that is seen over and over: then all is forgotten each
-        time, and told and asked for now and then.
-        """
+        """It has restarted, as `sign` shows: nothing that was known of it counts any more."""
         parts = self._parts
         work = parts.forget(telemetry)
         if not telemetry.armed:
-            work.append(PlaceFence())  # else with its next position, which is that of a reset
-        again_ns = parts.times.real_ns(TOLD_AGAIN_NS)
-        if parts.restarted_ns and now_ns - parts.restarted_ns < again_ns:
-            read = parts.read_anew(telemetry, now_ns, at_once=False)
-            return [*work, *(each for each in read if not isinstance(each, Send))]
-        parts.restarted_ns = now_ns
+            work.append(PlaceFence())  # else with the position that is told as a reset
         text = f"vehicle {telemetry.label} has restarted ({sign}): it is read anew"
         return [*work, Log(Level.WARNING, NODE, text), *parts.read_anew(telemetry, now_ns)]

@@ -92,8 +92,6 @@ class VehicleParts:
         self.mission_paused = False
         """A mission was stopped by a hold, and nothing else was flown since."""
         self.restarts = Restarts(max(STEP_NS, times.real_ns(STEP_NS)))
-        self.restarted_ns = 0
-        """When it was told last that it has restarted; 0: it was not."""
 
     @property
     def sysid(self) -> int:
@@ -157,20 +155,19 @@ class VehicleParts:
         self.presence.begins_anew(telemetry)
         ends_m = telemetry.autopilot.climb_ends_within_m
         return [
-            *self.missions.restarted(),
+            *self.missions.forget(),
             ToGate(inputs.ClimbEndSeen(ends_m)),
             *accuracy(telemetry),
         ]
 
-    def read_anew(self, telemetry: Telemetry, now_ns: int, *, at_once: bool = True) -> list[Work]:
-        """All that is to be known of a vehicle that appears is asked for; its streams and its place
-        with the next second, where that is not to be at once."""
+    def read_anew(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """All that is to be known of a vehicle that appears is asked for."""
         self.discovery.start()
         self.events.start(Address(telemetry.sysid, telemetry.compid))
         work = self.learn(self.settings.start(telemetry, now_ns), telemetry)
         work += self.returns.start(telemetry, busy=self.missions.busy, now_ns=now_ns)
         self.fence.start(telemetry, now_ns)
-        return work + self.ask_for_missing(telemetry, now_ns) if at_once else work
+        return work + self.ask_for_missing(telemetry, now_ns)
 
     def leave_for_another(self, telemetry: Telemetry) -> list[Work]:
         """Another vehicle has the number of this one: what is under way ends, and nothing that was

@@ -8,7 +8,8 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.loopback.flight import MISSIONS, PERSONALITIES, Flight, Personality
+from tests.loopback.lossy_link import Weather
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 RETURNS_AT_70_M: dict[Personality, dict[str, float]] = {
@@ -81,3 +82,30 @@ def test_another_autopilot_with_the_same_number_is_another_vehicle(
     assert flight.done(flight.goto(10.0, 0.0, 3.0)) == "complete"
     flight.do("hold")
     assert flight.is_in(State.HOLDING)
+
+
+@both_personalities
+@pytest.mark.parametrize("latest_s", [0.5, 1.5])
+def test_a_link_that_loses_and_reorders_restarts_nothing(
+    personality: Personality, latest_s: float
+) -> None:
+    weather = Weather(loss=0.2, duplicate=0.2, corrupt=0.02, delay_s=(0.01, latest_s))
+    flight = Flight(personality, up=weather, down=weather)
+    flight.run(60.0)
+    assert flight.received
+    assert restarts(flight) == []
+
+
+@both_personalities
+def test_a_start_of_a_mission_does_not_outlive_a_restart(personality: Personality) -> None:
+    flight = Flight(personality).connected()
+    flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
+    flight.do("arm")
+    flight.do("takeoff", up_m=5.0)
+    start = flight.say("mission_start")
+    assert flight.outcome(start) is None
+    off_and_on(flight, 0.3)
+    flight.run(10.0)
+    assert flight.outcome(start) not in (None, "complete")
+    assert "FLYING_MISSION" not in flight.states()
+    assert flight.is_in(State.GROUNDED)
