@@ -91,6 +91,10 @@ class Delay:
         self._asked_ns = [*self._asked_ns[1 - ASKED_KEPT :], now_ns]
         return now_ns
 
+    def awaits(self, asked_ns: int) -> bool:
+        """Whether such a question was asked, and not answered yet."""
+        return asked_ns in self._asked_ns
+
     def answered(self, asked_ns: int, now_ns: int) -> None:
         """An answer to the question of `asked_ns`: its way bounds that of the latest position."""
         if asked_ns not in self._asked_ns:

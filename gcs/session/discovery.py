@@ -40,6 +40,8 @@ def needed_hz(times: Times) -> dict[int, float]:
 
 ASK_AGAIN_NS = 2_000_000_000
 """Wait between two requests for what did not come."""
+LONGEST_PAUSE_NS = 30_000_000_000
+"""Streams that have stopped are asked for again after a pause that doubles up to this."""
 
 
 class Discovery:
@@ -49,10 +51,29 @@ class Discovery:
         self._needed_hz = needed_hz(times)
         self._ask_again_ns = times.real_ns(ASK_AGAIN_NS)
         self._asked_ns = 0
+        self._longest_ns = times.real_ns(LONGEST_PAUSE_NS)
+        self._pause_ns = self._ask_again_ns
+        self._streams_asked_ns = 0
+        self._silence_told = False
 
     def start(self) -> None:
         """A vehicle appeared: `missing` tells which commands to send."""
         self._asked_ns = 0
+        self._pause_ns = self._ask_again_ns
+
+    def silence(self, telemetry: Telemetry, now_ns: int) -> str:
+        """That its positions stopped, though it is heard, where that is news: streams are asked
+        for again, as a vehicle that restarted sends none.  Before `missing`."""
+        if not self._silent(telemetry, now_ns):
+            self._silence_told, self._pause_ns = False, self._ask_again_ns
+            return ""
+        told, self._silence_told = self._silence_told, True
+        said = f"vehicle {telemetry.label} is heard and sends no positions any more"
+        return "" if told else f"{said}: it is asked for its streams again"
+
+    def _silent(self, telemetry: Telemetry, now_ns: int) -> bool:
+        came_ns = telemetry.position_came_ns
+        return 0 < came_ns < now_ns - self._ask_again_ns
 
     def missing(self, telemetry: Telemetry, now_ns: int) -> Iterator[CommandLong]:
         """Commands that ask for what is not there: all at first, then what did not come."""
@@ -66,10 +87,16 @@ class Discovery:
             yield _request(telemetry, MsgId.HOME_POSITION)
         if first:
             yield _request(telemetry, MsgId.AUTOPILOT_VERSION)
+        everything = first or telemetry.pos_ned is None
+        if self._silent(telemetry, now_ns) and now_ns - self._streams_asked_ns >= self._pause_ns:
+            everything = True
+            self._pause_ns = min(2 * self._pause_ns, self._longest_ns)
+        if everything:
+            self._streams_asked_ns = now_ns
         for msgid, rate_hz in self._needed_hz.items():
             silent = now_ns - telemetry.landed_ns > self._ask_again_ns
             unknown = silent and msgid == MsgId.EXTENDED_SYS_STATE
-            if first or telemetry.pos_ned is None or unknown:
+            if everything or unknown:
                 yield message_interval(telemetry, msgid, rate_hz)
 
     def again(self, telemetry: Telemetry, msgids: Iterable[int]) -> Iterator[CommandLong]:

@@ -25,6 +25,10 @@ from gcs.session.telemetry import Telemetry
 from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
 
 NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
+OF_THE_STATION: Final = frozenset(
+    {Condition.RECORDER_FAILED, Condition.TICK_LATE, Condition.OTHER_STATION}
+)
+"""Conditions that every vehicle's gate has, as they are no vehicle's own."""
 RETOLD: Final = frozenset({Condition.VEHICLE_FAILSAFE_WEAK})
 """Conditions that the gate is told of once more when their reason is another one.  The reasons of
 the others hold numbers, which are others with each message."""
@@ -47,14 +51,33 @@ class GatePort:
         self._fence_on = True
 
     def meet(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
-        """A vehicle was heard: a new gate, for its autopilot; what was wrong before still is."""
-        before = self.gate
+        """A vehicle was heard: a new gate, for its autopilot; what was wrong before still is, but
+        for what was wrong with another vehicle."""
+        before = self.gate.memory
         self.gate = Gate(self.policy, telemetry.autopilot.name, now_ns)
-        conditions = before.memory.conditions
+        conditions = [
+            each
+            for each in before.conditions
+            if not before.heard_before or each[0] in OF_THE_STATION
+        ]
         return [
             ToGate(inputs.ClimbEndSeen(telemetry.autopilot.climb_ends_within_m)),
             *(ToGate(inputs.ConditionChanged(name, True, text)) for name, text in conditions),
+            *([ToGate(inputs.OperatorLost("nobody is left"))] if before.operator_lost else []),
         ]
+
+    def lose_vehicle(self) -> list[Work]:
+        """Another vehicle has the number of this one: the gate hears that this one is lost, so that
+        what is under way has its ending, and sends nothing any more.  A new gate follows."""
+        heard_ns = self.gate.memory.heard_ns
+        if heard_ns is None:
+            return []
+        lost_ns = heard_ns + round(self.policy.heartbeat_age_s * 1e9)
+        ended = self.gate.handle(inputs.Tick(0), lost_ns)
+        self.bad_start = self.bad_home = self._verifier = None
+        self._start_checked = False
+        commanded = effects.SendCommand | effects.SendSetpoint
+        return [each for each in ended if not isinstance(each, commanded)]
 
     def handle(self, given: inputs.Input, now_ns: int) -> list[Work]:
         """The gate's effects, then what the session owes itself after such an input."""

@@ -280,13 +280,15 @@ class Missions:
         return self._follow(self._job.wake(view, now_ns))
 
     def forget(self) -> list[Work]:
-        """The vehicle restarted or was away: nothing is known of what it has on board."""
+        """The vehicle restarted or was away: nothing is known of what it has on board, and no start
+        goes on that stands on what it was asked before."""
+        work = self._follow(self._job.stop()) if isinstance(self._job, Start | Adopt) else []
         self._told.forget()
         self._begin_seq = None
         if self._on_board is None:
-            return []
+            return work
         self._on_board = None
-        return [ToGate(MissionLoaded("", 0))]
+        return [*work, ToGate(MissionLoaded("", 0))]
 
     def stop(self, request_id: int) -> list[Work]:
         """Whoever asked for the transfer `request_id`, somebody stops it, if it is under way."""

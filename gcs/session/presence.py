@@ -31,7 +31,7 @@ class Presence:
     def __init__(self, times: Times, gone_ns: int) -> None:
         self._link_silent_ns = times.real_ns(LINK_SILENT_NS)
         self._restart_silence_ns = times.real_ns(RESTART_SILENCE_NS)
-        self._gone_ns = gone_ns
+        self.gone_ns = gone_ns
         self._newest: dict[tuple[int, int], int] = {}
         self._heard_ns: dict[tuple[int, int], int] = {}
         self.losses = SequenceTracker()
@@ -104,9 +104,13 @@ class Presence:
 
     def is_gone(self, telemetry: Telemetry, now_ns: int) -> bool:
         """It was silent for so long that the gate has lost it."""
-        return 0 < telemetry.heard_ns < now_ns - self._gone_ns
+        return 0 < telemetry.heard_ns < now_ns - self.gone_ns
 
     def back(self, telemetry: Telemetry, now_ns: int) -> None:
         """It is heard again after it was gone: its numbers begin anew."""
         telemetry.was_gone, telemetry.heard_ns = False, now_ns
+        self.begins_anew(telemetry)
+
+    def begins_anew(self, telemetry: Telemetry) -> None:
+        """Its next frame follows its last one, whatever number it has."""
         self.losses.restart(telemetry.sysid, telemetry.compid)

@@ -30,6 +30,7 @@ from gcs.wire.messages import RallyPoint
 
 NODE = "link"
 READING: Final = "its rally points are still being read (ask again in a second)"
+HEIGHT: Final = "its return height is being read anew (ask again in a second)"
 NO_ORIGIN: Final = "its origin is not known, so its rally points cannot be placed"
 ON_BOARD: Final = "rally point on board"
 
@@ -91,6 +92,10 @@ class ReturnPlaces:
         self._return_type = return_type or 0
         return self._tell(telemetry)
 
+    def height_known(self, telemetry: Telemetry) -> list[Work]:
+        """The vehicle has told its return height, and the gate was told."""
+        return self._tell(telemetry)
+
     def placed(self, telemetry: Telemetry) -> list[Work]:
         """Home or the origin has changed."""
         return self._tell(telemetry) if self._rally.items else []
@@ -132,6 +137,8 @@ class ReturnPlaces:
         items = self._rally.items
         if items is None:
             return ReturnPlacesSeen(None, self._rally.failure or READING)
+        if telemetry.return_void:
+            return ReturnPlacesSeen(None, HEIGHT)
         if telemetry.autopilot.name == "px4":
             kind = self._return_type
             if kind is None:
@@ -162,6 +169,6 @@ def _logged(seen: ReturnPlacesSeen) -> list[Work]:
     if seen.places:
         names = ", ".join(each.name for each in seen.places)
         return [Log(Level.INFO, NODE, f"a return may end at home, {names}")]
-    if seen.places is None and seen.unknown != READING:
+    if seen.places is None and seen.unknown not in (READING, HEIGHT):
         return [Log(Level.WARNING, NODE, f"no return can be cleared: {seen.unknown}")]
     return []

@@ -16,6 +16,7 @@ from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
 from gcs.session.delay import Delay
 from gcs.session.position_health import Estimator, Gps, PositionHealth
+from gcs.session.restarts import Clock
 from gcs.wire.ids import MavAutopilot, MavType
 
 POSITION_RATE_WINDOW_NS = 2_000_000_000
@@ -40,6 +41,8 @@ class Telemetry:
     """Something came after a silence in which it was lost, and no heartbeat yet."""
     alive_told_ns: int = 0
     """When the gate was told of that for the last time."""
+    others: int = 0
+    """Heartbeats of another kind of vehicle, in its name, since its own last one."""
     armed: bool | None = None
     mode_name: str = ""
     custom_mode: int = 0
@@ -51,7 +54,11 @@ class Telemetry:
     position_ns: int = 0
     time_boot_ms: int = 0
     position_age_ns: int = 1_000_000_000
-    restart_ms: int | None = None
+    stamps: Clock = field(default_factory=Clock)
+    position_came_ns: int = 0
+    """When a position came, whether it was taken or not."""
+    restart_known: bool = False
+    """It has restarted, as other messages showed, and no position was taken since."""
     delay: Delay = field(default_factory=Delay)
 
     q_ned_from_frd: Quat = (1.0, 0.0, 0.0, 0.0)
@@ -68,6 +75,7 @@ class Telemetry:
     home_ned: Vec3 | None = None
     return_up_m: float | None = None
     return_told: bool = False  # its return height is known, or it says that it has none
+    return_void: bool = False  # it was known, and may be another one since a restart
     failsafes: tuple[str, ...] = ()
     """What it does by itself in each case, in words, once its settings were read."""
     accuracy_told: AccuracySeen | None = None
@@ -90,6 +98,14 @@ class Telemetry:
     def label(self) -> str:
         """Short name for a screen: ids, autopilot and type."""
         return f"{self.sysid}/{self.compid} {self.autopilot.name} {type_name(self.mav_type)}"
+
+    def forget(self) -> None:
+        """The vehicle restarted or was away: what it told of itself may be otherwise now."""
+        self.forget_place()
+        self.return_void |= self.return_up_m is not None
+        self.return_up_m, self.return_told = None, False
+        self.failsafes, self.acceptance_m, self.prearm_ok = (), None, None
+        self.mission_seq, self.mission_reached = None, -1
 
     def forget_place(self) -> None:
         """The vehicle restarted or was away: where its local frame lies is not known any more."""

@@ -14,10 +14,11 @@ from gcs.gate import inputs
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.condition import Condition
 from gcs.gate.states import LandedState
-from gcs.protocol.autopilot import mode_of
+from gcs.protocol.autopilot import autopilot_of, mode_of
 from gcs.report import GeodeticItem, PoseItem
 from gcs.session.effects import Record
 from gcs.session.gate_port import condition
+from gcs.session.restarts import Clock
 from gcs.session.telemetry import Telemetry, quat_from_euler
 from gcs.session.work import PlaceFence, ToGate
 from gcs.wire import messages as m
@@ -25,7 +26,6 @@ from gcs.wire.ids import MavState, ModeFlag, Sensor
 
 ORIGIN_DISAGREEMENT_M = 2.0
 MAX_PAIR_AGE_NS = 100_000_000
-CLOCK_STEP_BACK_MS = 1_000
 
 UPDATE_MESSAGES: Final = frozenset(
     {
@@ -55,7 +55,7 @@ Update: TypeAlias = ToGate | Record | PlaceFence
 def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[Update]:
     """Update `telemetry`; yield what the gate must hear and what the record wants of it."""
     match message:
-        case m.Heartbeat() if message.autopilot == telemetry.mav_autopilot:
+        case m.Heartbeat() if is_its_kind(message, telemetry):
             telemetry.heartbeat_ns = now_ns
             telemetry.armed = bool(message.base_mode & ModeFlag.SAFETY_ARMED)
             mode = mode_of(telemetry.autopilot, message.base_mode, message.custom_mode)
@@ -114,6 +114,7 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
 def _local_position(
     message: m.LocalPositionNed, telemetry: Telemetry, now_ns: int
 ) -> Sequence[Update]:
+    telemetry.position_came_ns = now_ns
     pos_ned = (message.x, message.y, message.z)
     v_ned = (message.vx, message.vy, message.vz)
     if not _finite(*pos_ned, *v_ned):
@@ -121,31 +122,22 @@ def _local_position(
         return ()
     restarted = False
     if telemetry.position_ns and message.time_boot_ms <= telemetry.time_boot_ms:
-        if not _restarted(message.time_boot_ms, telemetry):
+        if not telemetry.stamps.ran_back(message.time_boot_ms):
             # A duplicate or an overtaken datagram: older than what we have is not fresh.
             return ()
         restarted = True
-        telemetry.forget_place()
+        if not telemetry.restart_known:
+            telemetry.forget_place()
     if telemetry.delay.of(message.time_boot_ms, now_ns) > telemetry.position_age_ns:
         # It comes so late that it was too old when it arrived; the age will tell.
         return ()
-    telemetry.restart_ms = None
     telemetry.time_boot_ms = message.time_boot_ms
+    telemetry.stamps = Clock(message.time_boot_ms)
     telemetry.pos_ned, telemetry.v_ned, telemetry.position_ns = pos_ned, v_ned, now_ns
     return (
         ToGate(inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, reset=restarted)),
         Record(PoseItem(telemetry.sysid, pos_ned, v_ned, telemetry.q_ned_from_frd)),
     )
-
-
-def _restarted(time_boot_ms: int, telemetry: Telemetry) -> bool:
-    """Two positions in a row of a clock that went back: one alone may have lost its way."""
-    first_ms, telemetry.restart_ms = telemetry.restart_ms, time_boot_ms
-    far_back = telemetry.time_boot_ms - time_boot_ms >= CLOCK_STEP_BACK_MS
-    if not far_back:
-        telemetry.restart_ms = first_ms
-        return False
-    return first_ms is not None and 0 < time_boot_ms - first_ms < CLOCK_STEP_BACK_MS
 
 
 def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Update]:
@@ -157,6 +149,14 @@ def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Updat
         telemetry.battery_v = message.voltage_battery / 1e3
     if message.battery_remaining >= 0:
         telemetry.battery_pct = float(message.battery_remaining)
+
+
+def is_its_kind(beat: m.Heartbeat, telemetry: Telemetry) -> bool:
+    """Whether a heartbeat tells the autopilot and the kind of vehicle that were met."""
+    if beat.autopilot != telemetry.mav_autopilot:
+        return False
+    told, met = autopilot_of(beat.autopilot, beat.type), telemetry.autopilot
+    return (told.name, told.commanded) == (met.name, met.commanded)
 
 
 def _finite(*values: float) -> bool:

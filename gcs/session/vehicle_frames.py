@@ -77,14 +77,12 @@ class VehicleFrames:
         parts = self._parts
         work: list[Work] = []
         message = decode(frame) if frame.msgid in INTERPRETED else None
-        telemetry = parts.telemetry
-        if message is None or telemetry is None:
-            return work
         if isinstance(message, m.Heartbeat):
             work += self._messages.heartbeat(link, frame, message, now_ns)
         elif isinstance(message, m.RadioStatus):
             work += parts.watch.radio(message, now_ns)
-        if frame.sysid != telemetry.sysid:
+        telemetry = parts.telemetry
+        if message is None or telemetry is None or frame.sysid != telemetry.sysid:
             return work
         state = type(message) in STATE_MESSAGES
         if state and parts.presence.overtaken(frame, message, parts.presence.number_of(frame)):

@@ -5,6 +5,8 @@ A heartbeat of an autopilot may be that of a vehicle that is met, or is back.
 
 from __future__ import annotations
 
+from typing import Final
+
 from gcs.gate import inputs
 from gcs.gate.effects import Level
 from gcs.gate.machine.arming import why_not_arm
@@ -24,7 +26,7 @@ from gcs.session.interpreted_messages import (
 )
 from gcs.session.screen import lost_pct
 from gcs.session.telemetry import Telemetry
-from gcs.session.updates import updates
+from gcs.session.updates import is_its_kind, updates
 from gcs.session.vehicle_parts import VehicleParts, accuracy
 from gcs.session.words import logged
 from gcs.session.work import Log, PlaceFence, ToGate, Work
@@ -33,6 +35,9 @@ from gcs.wire.frame import Frame
 from gcs.wire.ids import Component
 
 NODE = "link"
+OWN_BEATS_NS: Final = 1_500_000_000
+"""Heartbeats come once a second: two vehicles that share a number are not taken for each other in
+turn."""
 
 
 class VehicleMessages:
@@ -97,15 +102,33 @@ class VehicleMessages:
     def updated(self, telemetry: Telemetry, message: m.Message, now_ns: int) -> list[Work]:
         """What the vehicle reports of itself, into `telemetry`."""
         work: list[Work] = []
+        if sign := self._restart_sign(telemetry, message, now_ns):
+            work += self._restarted(telemetry, sign, now_ns)
+            telemetry.restart_known = True
         for update in updates(message, telemetry, now_ns):
-            work.append(update)
             match update:
-                case ToGate(inputs.PositionSeen(reset=True)):
-                    work = [*self._parts.missions.forget(), *work, *accuracy(telemetry)]
+                case ToGate(inputs.PositionSeen(reset=reset)):
+                    telemetry.restart_known = False
+                    work.append(update)
+                    if reset:
+                        work = [*self._parts.missions.forget(), *work, *accuracy(telemetry)]
                 case ToGate(inputs.HomeSeen()) | PlaceFence():
+                    work.append(update)
                     work += self._parts.returns.placed(telemetry)
                     work += self._parts.look_at_fence(telemetry)
+                case _:
+                    work.append(update)
         return work
+
+    def _restart_sign(self, telemetry: Telemetry, message: m.Message, now_ns: int) -> str:
+        """What shows that it has restarted; empty where nothing does."""
+        restarts = self._parts.restarts
+        if not isinstance(message, m.Timesync):
+            return restarts.sign(message, now_ns)
+        if message.tc1 <= 0 or not telemetry.delay.awaits(message.ts1):
+            return ""
+        armed = bool(telemetry.armed)
+        return restarts.answered(message.ts1, message.tc1, now_ns, armed=armed)
 
     def _authorized(
         self, telemetry: Telemetry, heard: Heard, asked: m.CommandLong, now_ns: int
@@ -140,32 +163,65 @@ class VehicleMessages:
         if wanted not in (0, frame.sysid):
             return work
         telemetry = parts.telemetry
-        if telemetry is None:
-            autopilot = autopilot_of(beat.autopilot, beat.type)
-            telemetry = Telemetry(frame.sysid, frame.compid, autopilot, link)
-            telemetry.mav_autopilot, telemetry.mav_type = beat.autopilot, beat.type
-            telemetry.delay = Delay(parts.times)
-            telemetry.rx_window_start_ns = telemetry.link_ns = now_ns
-            telemetry.position_age_ns = round(parts.port.policy.position_age_s * 1e9)
-            parts.met_ns = now_ns
-            parts.telemetry = telemetry
-            work += parts.port.meet(telemetry, now_ns)
-            news = f"vehicle {telemetry.label} on link {link}"
-        elif telemetry.sysid == frame.sysid and (
-            telemetry.was_gone or parts.presence.is_gone(telemetry, now_ns)
-        ):
-            parts.presence.back(telemetry, now_ns)
-            news = f"vehicle {telemetry.label} is back"
-            telemetry.forget_place()
-            work += parts.missions.forget()
-            work.append(PlaceFence())
-        else:
+        if telemetry is not None and telemetry.sysid == frame.sysid:
+            if self._is_another(telemetry, beat, now_ns):
+                was = telemetry.label
+                work += parts.leave_for_another(telemetry)
+                work += self._meet(link, frame, beat, now_ns)
+                assert parts.telemetry is not None
+                text = f"another vehicle has the number of {was}, which is not there any more"
+                work.append(Log(Level.WARNING, NODE, f"{text}: {parts.telemetry.label}"))
+                return work + parts.read_anew(parts.telemetry, now_ns)
+            return work + self._back(telemetry, beat, now_ns)
+        if telemetry is not None:
             return work
-        work.append(Log(Level.INFO, NODE, news))
-        parts.discovery.start()
-        parts.events.start(Address(telemetry.sysid, telemetry.compid))
-        work += parts.learn(parts.settings.start(telemetry, now_ns), telemetry)
-        work += parts.returns.start(telemetry, busy=parts.missions.busy, now_ns=now_ns)
-        parts.fence.start(telemetry, now_ns)
-        work += parts.with_plans_on_board([], now_ns)
-        return work + parts.ask_for_missing(telemetry, now_ns)
+        work += self._meet(link, frame, beat, now_ns)
+        assert parts.telemetry is not None
+        work.append(Log(Level.INFO, NODE, f"vehicle {parts.telemetry.label} on link {link}"))
+        return work + parts.read_anew(parts.telemetry, now_ns)
+
+    def _meet(self, link: int, frame: Frame, beat: m.Heartbeat, now_ns: int) -> list[Work]:
+        """A vehicle that was not known: a new gate, for its autopilot."""
+        parts = self._parts
+        autopilot = autopilot_of(beat.autopilot, beat.type)
+        telemetry = Telemetry(frame.sysid, frame.compid, autopilot, link)
+        telemetry.mav_autopilot, telemetry.mav_type = beat.autopilot, beat.type
+        telemetry.delay = Delay(parts.times)
+        telemetry.rx_window_start_ns = telemetry.link_ns = now_ns
+        telemetry.position_age_ns = round(parts.port.policy.position_age_s * 1e9)
+        parts.met_ns = now_ns
+        parts.telemetry = telemetry
+        return parts.port.meet(telemetry, now_ns)
+
+    def _back(self, telemetry: Telemetry, beat: m.Heartbeat, now_ns: int) -> list[Work]:
+        """A heartbeat of a vehicle that is known: it may have been away."""
+        parts = self._parts
+        gone = telemetry.was_gone or parts.presence.is_gone(telemetry, now_ns)
+        if not gone or not is_its_kind(beat, telemetry):
+            return []
+        parts.presence.back(telemetry, now_ns)
+        log = Log(Level.INFO, NODE, f"vehicle {telemetry.label} is back")
+        return [*parts.forget(telemetry), PlaceFence(), log, *parts.read_anew(telemetry, now_ns)]
+
+    def _is_another(self, telemetry: Telemetry, beat: m.Heartbeat, now_ns: int) -> bool:
+        """Whether its heartbeats have become those of another autopilot or kind of vehicle: two in
+        a row, and none of its own meanwhile; of one that was armed, for as long as it takes to
+        lose it, as it may be flown here."""
+        if is_its_kind(beat, telemetry):
+            telemetry.others = 0
+            return False
+        telemetry.others += 1
+        parts = self._parts
+        silence_ns = (
+            parts.presence.gone_ns if telemetry.armed else parts.times.real_ns(OWN_BEATS_NS)
+        )
+        return telemetry.others >= 2 and now_ns - telemetry.heartbeat_ns > silence_ns
+
+    def _restarted(self, telemetry: Telemetry, sign: str, now_ns: int) -> list[Work]:
+        """It has restarted, as `sign` shows: nothing that was known of it counts any more."""
+        parts = self._parts
+        work = parts.forget(telemetry)
+        if not telemetry.armed:
+            work.append(PlaceFence())  # else with the position that is told as a reset
+        text = f"vehicle {telemetry.label} has restarted ({sign}): it is read anew"
+        return [*work, Log(Level.WARNING, NODE, text), *parts.read_anew(telemetry, now_ns)]

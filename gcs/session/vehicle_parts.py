@@ -29,6 +29,7 @@ from gcs.session.missions import Missions
 from gcs.session.orbits import Orbits
 from gcs.session.presence import Presence
 from gcs.session.reasons import Reasons
+from gcs.session.restarts import STEP_NS, Restarts
 from gcs.session.return_places import ReturnPlaces
 from gcs.session.roster import Roster
 from gcs.session.settings import Settings
@@ -55,6 +56,7 @@ class VehicleParts:
     ) -> None:
         """`shown`: it is the one that the screens of operators show."""
         self.config = config
+        self._policy = policy
         self.shown = shown
         self.times = times
         gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
@@ -89,6 +91,7 @@ class VehicleParts:
         """What it reports; None until it is heard."""
         self.mission_paused = False
         """A mission was stopped by a hold, and nothing else was flown since."""
+        self.restarts = Restarts(max(STEP_NS, times.real_ns(STEP_NS)))
 
     @property
     def sysid(self) -> int:
@@ -117,7 +120,9 @@ class VehicleParts:
                 case settings.ReturnHeightKnown(up_m):
                     telemetry.return_up_m, telemetry.return_told = up_m, True
                     if up_m is not None:
+                        telemetry.return_void = False
                         work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
+                        work += self.returns.height_known(telemetry)
                 case settings.ReturnTypeKnown(kind):
                     work += self.returns.returns_by(kind, telemetry)
                 case settings.AcceptanceKnown(radius_m):
@@ -135,8 +140,45 @@ class VehicleParts:
 
     def ask_for_missing(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """What of it is needed and did not come yet."""
-        commands = self.discovery.missing(telemetry, now_ns)
-        return [work for c in commands for work in self.commands.send_own(c, now_ns)]
+        told = self.discovery.silence(telemetry, now_ns)
+        work: list[Work] = [Log(Level.WARNING, NODE, told)] if told else []
+        for command in self.discovery.missing(telemetry, now_ns):
+            work += self.commands.send_own(command, now_ns)
+        return work
+
+    def forget(self, telemetry: Telemetry) -> list[Work]:
+        """The vehicle restarted or was away: what it told of itself may be otherwise now."""
+        telemetry.forget()
+        self.parameters.clear()
+        self.mission_paused = False
+        self.restarts.begin()
+        self.presence.begins_anew(telemetry)
+        ends_m = telemetry.autopilot.climb_ends_within_m
+        return [
+            *self.missions.forget(),
+            ToGate(inputs.ClimbEndSeen(ends_m)),
+            *accuracy(telemetry),
+        ]
+
+    def read_anew(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
+        """All that is to be known of a vehicle that appears is asked for."""
+        self.discovery.start()
+        self.events.start(Address(telemetry.sysid, telemetry.compid))
+        work = self.learn(self.settings.start(telemetry, now_ns), telemetry)
+        work += self.returns.start(telemetry, busy=self.missions.busy, now_ns=now_ns)
+        self.fence.start(telemetry, now_ns)
+        work += self.with_plans_on_board([], now_ns)
+        return work + self.ask_for_missing(telemetry, now_ns)
+
+    def leave_for_another(self, telemetry: Telemetry) -> list[Work]:
+        """Another vehicle has the number of this one: what is under way ends, and nothing that was
+        meant for this one reaches the other."""
+        work = [*self.forget(telemetry), *self.port.lose_vehicle()]
+        self.commands = Commands(self.own, self.times)
+        self.control = VehicleControl(self.own)
+        self.watch = Watch(self._policy, self.times)
+        self.telemetry = None
+        return work
 
     def with_plans_on_board(self, work: list[Work], now_ns: int) -> list[Work]:
         """What a job does, and what follows for rally points and fence: one transfer at a time."""

@@ -13,12 +13,12 @@ import msgspec
 
 from gcs.config import StationConfig
 from gcs.gate import inputs
-from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
+from gcs.session.gate_port import OF_THE_STATION
 from gcs.session.interpreted_messages import is_autopilot
 from gcs.session.presence import LINK_SILENT_NS
 from gcs.session.times import Times
@@ -31,11 +31,6 @@ FIRST: Final = 0
 MOST_VEHICLES: Final = 16
 """Each has a gate that ticks; of more than these nothing is met, whoever makes up their names."""
 NODE: Final = "link"
-
-OF_THE_STATION: Final = frozenset(
-    {Condition.RECORDER_FAILED, Condition.TICK_LATE, Condition.OTHER_STATION}
-)
-"""Conditions that every vehicle's gate has, as they are no vehicle's own."""
 
 
 class Vehicles:

@@ -130,6 +130,21 @@ class Flight(Looks):
         self.last_id = 0
         self._forged = 0
 
+    def restart(
+        self, params: dict[str, float] | None = None, personality: Personality | None = None
+    ) -> None:
+        """The vehicle is switched off and on; or another one, with its number, in its place."""
+        personality = personality or self.personality
+        parameters = Parameters(personality)
+        for name, value in (params or {}).items():
+            parameters.set(name, value)
+        self.vehicle = Autopilot(personality, HOMES[personality], 1, params=parameters)
+        profile = profile_of(personality, parameters.firmware)
+        server = VehicleServer(self.vehicle, profile, parameters, 1)
+        self.world = World(
+            [server], [LinkSpec((PEER,))], Fraction(1), self.now_ns, unix_start_ns=self.now_ns
+        )
+
     # ------------------------------------------------------------------------------- time
 
     def flown_by_hand(self) -> None:

@@ -39,6 +39,8 @@ class SetUpJudge:
     def __init__(self, rules: BridgeRules) -> None:
         self._rules = rules
         self._guard: Guard | None = None
+        self._guards = ""
+        """The autopilot that it is for; another vehicle may come to have the number."""
         self._log_read = self._log_sent = False
         """A client has begun to read a log, or had it sent as it is written, since the vehicle was
         armed last."""
@@ -93,8 +95,8 @@ class SetUpJudge:
         return [*(AsksVehicle(own, end) for end in ends), Notes(Level.INFO, text)]
 
     def _guard_of(self, autopilot: str) -> Guard:
-        if self._guard is None:
-            self._guard = Guard(self._rules, autopilot)
+        if self._guard is None or self._guards != autopilot:
+            self._guard, self._guards = Guard(self._rules, autopilot), autopilot
         return self._guard
 
     def _guarded(self, message: Message, by: From, seen: Seen, now_ns: int) -> Judgement:

@@ -42,7 +42,7 @@ UNREACHED: Final = (
     Unreached("lost", "NO_VEHICLE", "it is lost already"),
     Unreached("position aged", "NO_VEHICLE", "ages are looked at of what is heard"),
     Unreached("breach predicted", "NO_VEHICLE GROUNDED EXTERNAL", NO_CONTROL),
-    Unreached("clears no more", "NO_VEHICLE GROUNDED RETURNING LANDING EXTERNAL", NO_CONTROL),
+    Unreached("clears no more", "NO_VEHICLE GROUNDED EXTERNAL", NO_CONTROL),
     Unreached("armed", "NO_VEHICLE", HEARD_FIRST),
     Unreached("armed", "TAKING_OFF", "a take-off is accepted of what is armed"),
     Unreached("disarmed", "NO_VEHICLE", HEARD_FIRST),

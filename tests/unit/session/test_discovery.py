@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from gcs.session.discovery import Discovery
@@ -86,3 +88,41 @@ def test_a_sped_up_vehicle_is_asked_for_positions_so_much_more_often_up_to_a_lim
     discovery = Discovery(Times(speedup))
     commands = list(discovery.missing(vehicle(), SECOND_NS))
     assert rates_hz(commands)[MsgId.LOCAL_POSITION_NED] == pytest.approx(hz, rel=1e-4)
+
+
+# ------------------------------------------------------------------- streams that stopped
+
+
+def silent(script: Script) -> Script:
+    """All came that was asked for, until now; from here on the landed state alone comes."""
+    ask(script)
+    telemetry = script.telemetry
+    telemetry.origin, telemetry.home = HOME, (47.0, 8.0, 488.0)
+    telemetry.pos_ned, telemetry.position_came_ns = (0.0, 0.0, 0.0), script.now_ns
+    telemetry.landed_ns = script.now_ns + 1_000 * SECOND_NS
+    return script
+
+
+def test_positions_that_stop_are_asked_for_again_with_all_else_and_ever_more_seldom() -> None:
+    script = silent(Script())
+    began_ns = script.now_ns
+    asked_s = []
+    for _ in range(100):
+        commands = ask(script, 1.0)
+        if commands:
+            assert {MsgId.LOCAL_POSITION_NED, MsgId.ATTITUDE} <= set(rates_hz(commands))
+            asked_s.append((script.now_ns - began_ns) // SECOND_NS)
+    pauses_s = [later - before for before, later in pairwise(asked_s)]
+    assert asked_s[0] == 4
+    assert pauses_s == [4, 8, 16, 30, 30]
+
+
+def test_that_they_stopped_is_told_once() -> None:
+    script = silent(Script())
+    discovery, telemetry = script.discovery, script.telemetry
+    assert discovery.silence(telemetry, script.now_ns + 2 * SECOND_NS) == ""
+    assert "sends no positions" in discovery.silence(telemetry, script.now_ns + 3 * SECOND_NS)
+    assert discovery.silence(telemetry, script.now_ns + 9 * SECOND_NS) == ""
+    telemetry.position_came_ns = script.now_ns + 10 * SECOND_NS
+    assert discovery.silence(telemetry, script.now_ns + 11 * SECOND_NS) == ""
+    assert discovery.silence(telemetry, script.now_ns + 20 * SECOND_NS) != ""
