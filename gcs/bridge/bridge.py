@@ -14,6 +14,7 @@ from gcs.bridge.addressing import Given, Judges, LookAt
 from gcs.bridge.armings import Armings
 from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client, Exchange, of_vehicle
+from gcs.bridge.client_heartbeats import ClientHeartbeats
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
@@ -77,6 +78,7 @@ class Bridge:
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
         self._refused_addresses = RefusedAddresses(own)
+        self._heartbeats = ClientHeartbeats(self._routes)
         self._unheard = Unheard()
         self._in_control = 0
         self.armings = Armings(self._judges, self._exchanges)
@@ -100,6 +102,7 @@ class Bridge:
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:
         """It has gone, and its link's number is free."""
         self._routes.close(link)
+        self._heartbeats.gone(link)
         self._refused_addresses.gone(link)
         self._unheard.gone(link)
         client = self._by_link.pop(link, None)
@@ -191,8 +194,7 @@ class Bridge:
             given = Given(client, frame, look, self._in_control, now_ns)
             judged = self._judges.judge(given, addressed)
         if frame.msgid == MsgId.HEARTBEAT:
-            others = self._routes.between_clients(frame, link)
-            effects += [ToLink(other, frame.raw) for other in others]
+            effects += self._heartbeats.go_round(client, frame, now_ns)
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
 

@@ -94,6 +94,10 @@ class Routes:
             here.add((sysid, compid))
             self._of_system.setdefault(sysid, set()).add(link)
 
+    def was_heard(self, link: int, sysid: int, compid: int) -> bool:
+        """Whether that component has ever spoken on a client's link."""
+        return (sysid, compid) in self._of_link.get(link, ())
+
     def components(self, link: int) -> list[tuple[int, int]]:
         """Systems and components that were heard on a client's link."""
         return sorted(self._of_link.get(link, ()))
