@@ -87,9 +87,16 @@ class Routes:
         for links in self._of_system.values():
             links.discard(link)
 
+    @property
+    def links(self) -> list[int]:
+        """The links of clients to which anything goes."""
+        return list(self._of_link)
+
     def heard(self, link: int, sysid: int, compid: int) -> None:
         """A good frame of that component came in on a client's link."""
-        here = self._of_link[link]
+        here = self._of_link.get(link)
+        if here is None:
+            return
         if (sysid, compid) not in here and len(here) < MOST_COMPONENTS:
             here.add((sysid, compid))
             self._of_system.setdefault(sysid, set()).add(link)

@@ -273,6 +273,9 @@ class Incoming:
     def _vehicle_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         sysid, compid = self._own
         if frame.compid == compid and frame.sysid == sysid:
+            back = self._bridge.came_back(link, frame, now_ns)
+            if back is not None:
+                return back
             self.other_station_ns = now_ns
             who = f"another station on link {link} calls itself {sysid}/{compid}"
             text = f"{who}, as this one does: start one of the two with another --sysid"
@@ -283,6 +286,8 @@ class Incoming:
         """What a vehicle's frame is to the vehicle, and to clients and operators."""
         if frame.msgid == MsgId.PARAM_VALUE:
             work += self._bridge.parameter(frame, now_ns)
+        elif frame.msgid == MsgId.HEARTBEAT:
+            work += self._bridge.beat(frame, now_ns)
         if frame.sysid == self._vehicles.first.sysid:
             work += self._operators.heard(frame, now_ns)
         return work
