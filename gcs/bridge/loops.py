@@ -26,6 +26,8 @@ BEATS_NS: Final = 1_000_000_000
 ASK_AGAIN_NS: Final = 2_000_000_000
 """Between two questions."""
 QUESTIONS_KEPT: Final = 8
+LEFT_OUT_NS: Final = 5_000_000_000
+"""A vehicle's link that was left out is one as any other again once it was silent for so long."""
 CUT_NS: Final = 1_000_000_000
 """What was asked later than this after a proof, and comes back too: leaving out a peer of the
 vehicle's link did not end the loop."""
@@ -55,6 +57,8 @@ class Loops:
         """The last questions: when each was asked, and on which links it has not come back."""
         self._proved: dict[int, int] = {}
         """When a client's link was first proved to be part of a loop."""
+        self.left_out: dict[int, int] = {}
+        """Vehicles' links on which nothing is heard, and when something came on each last."""
 
     def beat(self, sysid: int, clients: Iterable[int], now_ns: int) -> list[Answers]:
         """A heartbeat of the autopilot of that system on any link; `clients` are the links of
@@ -70,6 +74,17 @@ class Loops:
         links = sorted(clients)
         self._asked[now_ns] = set(links)
         return [Answers(link, self._own, _question(link, now_ns)) for link in links]
+
+    def drops(self, link: int, now_ns: int) -> bool:
+        """Something came on a vehicle's link; whether that is left out."""
+        last_ns = self.left_out.get(link)
+        if last_ns is None:
+            return False
+        if now_ns - last_ns > LEFT_OUT_NS:
+            del self.left_out[link]
+            return False
+        self.left_out[link] = now_ns
+        return True
 
     def came_back(self, frame: Frame, now_ns: int) -> Loop | None:
         """A frame in the station's own name on a vehicle's link; None where it proves nothing."""

@@ -60,12 +60,10 @@ class ClientVerified(msgspec.Struct, frozen=True, gc=False):
 
 class LeaveOutPeer(msgspec.Struct, frozen=True, gc=False):
     """The peer that has just sent these bytes on a vehicle's link sends back what clients are sent:
-    hear it no more, and send it nothing.  Not where it is the only one that is heard there, unless
-    the vehicles are `elsewhere`."""
+    hear it no more, and send it nothing.  Not where it is the only one that is heard there."""
 
     link: int
     data: bytes
-    elsewhere: bool
 
 
 class Finish(msgspec.Struct, frozen=True, gc=False):

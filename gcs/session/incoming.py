@@ -84,6 +84,9 @@ class Incoming:
         """Frame by frame: what one leads to is done before the next is looked at.
 
         False: nothing was in it but what only passes through, so nothing else has changed."""
+        loops = self._bridge.loops
+        if loops.left_out and loops.drops(given.link, now_ns):
+            return False
         self._in_run = len(given.frames) > 1
         link, run = given.link, self._queue.run
         if given.as_recorded is None:

@@ -362,8 +362,8 @@ class Loop:
                 return _write(token, path, data)
             case ClientVerified(link) if self._client_ports is not None:
                 self._client_ports.verify(link, now_ns)
-            case LeaveOutPeer(link, data, elsewhere):
-                self._links[link].leave_out(data, elsewhere=elsewhere)
+            case LeaveOutPeer(link, data):
+                self._links[link].leave_out(data)
             case Finish():
                 self._finish = effect
         return None

@@ -65,9 +65,9 @@ class Link(ABC):
     def send(self, data: bytes) -> None:
         """Off at once, or counted as dropped."""
 
-    def leave_out(self, data: bytes, *, elsewhere: bool) -> None:  # noqa: B027 - one peer: nothing
+    def leave_out(self, data: bytes) -> None:  # noqa: B027 - of one peer nothing is left out
         """Where several peers share this link: neither hear nor answer the one that has just sent
-        `data` any more.  Not where no other one is there, unless who is meant is `elsewhere`."""
+        `data` any more.  Not where no other one is there."""
 
     @abstractmethod
     def describe(self) -> str:

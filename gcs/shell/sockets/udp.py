@@ -91,7 +91,7 @@ class UdpIn(_Udp):
         self._left_out[peer] = self._now_ns
         return True
 
-    def leave_out(self, data: bytes, *, elsewhere: bool) -> None:
+    def leave_out(self, data: bytes) -> None:
         sent = (at for at, each in enumerate(self._drained) if each[:1] in _BEGINS and data in each)
         number = next(sent, None)
         if number is None:
@@ -100,8 +100,7 @@ class UdpIn(_Udp):
         if peer is None or peer not in self._peers:
             return
         since_ns = self._now_ns - THERE_NS
-        others = [each for each, ns in self._peers.items() if each != peer and ns >= since_ns]
-        if not (others or elsewhere):
+        if not any(each != peer and ns >= since_ns for each, ns in self._peers.items()):
             return
         del self._peers[peer]
         self._latest = None

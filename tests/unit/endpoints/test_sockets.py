@@ -173,8 +173,8 @@ def test_a_peer_that_sends_back_is_left_out_until_it_is_silent(opened: Opener) -
     other.send(b"\xfd before, " + ODD)
     read(station)
     station.poke(now_ns)
-    station.leave_out(b"never sent", elsewhere=False)
-    station.leave_out(ODD, elsewhere=False)
+    station.leave_out(b"never sent")
+    station.leave_out(ODD)
     (news,) = station.poke(now_ns)
     assert "is left out, until it has been silent for 5 s: it sends back what clients" in news
     station.send(b"for the vehicle")
@@ -206,30 +206,34 @@ def test_the_only_peer_that_is_there_is_not_left_out(opened: Opener) -> None:
     station.poke(2 * THERE_NS + 1)
     other.send(b"\xfd" + ODD)
     assert read(station) == [b"\xfd" + ODD]
-    station.leave_out(ODD, elsewhere=False)
+    station.leave_out(ODD)
     assert len(station.poke(2 * THERE_NS + 1)) == 0
     other.send(FRAME)
     assert read(station) == [FRAME], "the other one has not been heard for more than 3 s"
+    gone.send(b"\xfd again")
+    read(station)
     other.send(ODD + FRAME)
     read(station)
-    station.leave_out(ODD, elsewhere=True)
+    station.leave_out(ODD)
     other.send(FRAME)
     assert read(station) == [FRAME], "what does not begin as MAVLink says nothing of its sender"
     other.send(FRAME + ODD)
     read(station)
-    station.leave_out(ODD, elsewhere=True)
+    station.leave_out(ODD)
     other.send(FRAME)
-    gone.send(b"\xfd again")
-    assert read(station) == [b"\xfd again"], "the vehicles are on another link"
+    gone.send(b"\xfd there")
+    assert read(station) == [b"\xfd there"], "now it is heard again, and the other one is not"
 
 
 def test_of_very_many_that_were_left_out_the_first_is_forgotten(opened: Opener) -> None:
     station = opened(udp_in())
+    vehicle = opened(udp_out(station.port))
     peers = [opened(udp_out(station.port)) for _ in range(MOST_LEFT_OUT + 1)]
     for peer in peers:
-        peer.send(FRAME)
+        vehicle.send(FRAME)
+        peer.send(b"\xfd" + ODD)
         read(station)
-        station.leave_out(FRAME, elsewhere=True)
+        station.leave_out(ODD)
     peers[1].send(FRAME)
     peers[0].send(b"\xfd first")
     assert read(station) == [b"\xfd first"]

@@ -107,7 +107,7 @@ class PaperLink(Link):
         self.pokes_ns: list[int] = []
         self.due_ns: int | None = None
         self.open = True
-        self.left_out: list[tuple[bytes, bool]] = []
+        self.left_out: list[bytes] = []
         self.send_fails = False
         self.drain_fails = False
 
@@ -136,8 +136,8 @@ class PaperLink(Link):
             raise RuntimeError("planted: send")
         self.sent.append(data)
 
-    def leave_out(self, data: bytes, *, elsewhere: bool) -> None:
-        self.left_out.append((data, elsewhere))
+    def leave_out(self, data: bytes) -> None:
+        self.left_out.append(data)
 
     def poke(self, now_ns: int) -> list[str]:
         self.pokes_ns.append(now_ns)
