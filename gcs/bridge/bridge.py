@@ -14,6 +14,7 @@ from gcs.bridge.addressing import Given, Judges, LookAt
 from gcs.bridge.armings import Armings
 from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client, Exchange, of_vehicle
+from gcs.bridge.client_heartbeats import ClientHeartbeats
 from gcs.bridge.control import ControlServer
 from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
@@ -70,13 +71,14 @@ class Bridge:
         self._timing = timing
         self._deadman_ns = deadman_ns
         self._rate_hz = rules.client_rate_hz
-        self._routes = Routes()
+        self.routes = Routes()
         self.unverified = Unverified()
         """Of the links that are there, those of peers who have not shown that they have the key."""
         self._by_link: dict[int, Client] = {}
         self._by_number: dict[int, Client] = {}
         self._next_number = FIRST_NUMBER
         self._refused_addresses = RefusedAddresses(own)
+        self._heartbeats = ClientHeartbeats(self.routes)
         self._unheard = Unheard()
         self._in_control = 0
         self.armings = Armings(self._judges, self._exchanges)
@@ -89,17 +91,18 @@ class Bridge:
         self._by_link[link] = Client(link, name, self._timing, self._deadman_ns)
         if not verified:
             return [*self.unverified.come(link, name)]
-        self._routes.open(link)
+        self.routes.open(link)
         return [Notes(Level.INFO, f"{name} has connected, on link {link}")]
 
     def verify(self, link: int) -> list[BridgeEffect]:
         """The first frame of a peer that was `unverified` is good."""
-        self._routes.open(link)
+        self.routes.open(link)
         return [*self.unverified.verify(link, self._by_link[link].name)]
 
     def gone(self, link: int, reason: str) -> list[BridgeEffect]:
         """It has gone, and its link's number is free."""
-        self._routes.close(link)
+        self.routes.close(link)
+        self._heartbeats.gone(link)
         self._refused_addresses.gone(link)
         self._unheard.gone(link)
         client = self._by_link.pop(link, None)
@@ -107,8 +110,7 @@ class Bridge:
             return []
         if link in self.unverified:
             return [*self.unverified.go(link, client.name, reason)]
-        note = Notes(Level.INFO, f"{client.name} has gone: {reason}")
-        return [*self._lose(client, reason), note]
+        return [*self._lose(client, reason), Notes(Level.INFO, f"{client.name} has gone: {reason}")]
 
     def flooded(self, link: int, dropped: int) -> list[BridgeEffect]:
         """It sends more than it may; so many datagrams were not looked at."""
@@ -116,8 +118,7 @@ class Bridge:
         if client is None:
             return []
         client.dropped.count += dropped
-        text = f"{client.name} sends too much: {dropped} datagrams dropped"
-        return [Notes(Level.WARNING, text)]
+        return [Notes(Level.WARNING, f"{client.name} sends too much: {dropped} datagrams dropped")]
 
     def second(self, vehicles: Sequence[Address], now_ns: int) -> list[BridgeEffect]:
         """Once a second: whoever says nothing any more is lost, and who sends too much is told, in
@@ -139,7 +140,7 @@ class Bridge:
         """Once a second, of a vehicle that does not hear everybody: who is not heard is told."""
         effects: list[BridgeEffect] = []
         for client in self._by_number.values():
-            sysids = [sysid for sysid, _ in self._routes.components(client.link)]
+            sysids = [sysid for sysid, _ in self.routes.components(client.link)]
             effects += self._unheard.told(client, sysids, vehicle, hears)
         return effects
 
@@ -160,6 +161,10 @@ class Bridge:
         self._next_number += 1
         self._by_number[client.number] = client
         return [Joined(client.number, f"MAVLink {frame.sysid}/{frame.compid}, {client.name}")]
+
+    def name_of_link(self, link: int) -> str:
+        """Of the client on it; else empty."""
+        return self._by_link[link].name if link in self._by_link else ""
 
     # -------------------------------------------------------------------- from clients
 
@@ -182,7 +187,7 @@ class Bridge:
             return Judged(True, refused)
         client.heard_ns = now_ns
         effects: list[BridgeEffect] = [] if client.joined else self._meet(client, frame)
-        self._routes.heard(link, frame.sysid, frame.compid)
+        self.routes.heard(link, frame.sysid, frame.compid)
         sysid, _ = target_of(frame)
         addressed = [each for each in vehicles if sysid in (0, each.sysid)]
         if sysid and not addressed:
@@ -191,8 +196,7 @@ class Bridge:
             given = Given(client, frame, look, self._in_control, now_ns)
             judged = self._judges.judge(given, addressed)
         if frame.msgid == MsgId.HEARTBEAT:
-            others = self._routes.between_clients(frame, link)
-            effects += [ToLink(other, frame.raw) for other in others]
+            effects += self._heartbeats.go_round(client, frame, now_ns)
         client.refused += judged.refused
         return Judged(judged.refused, [*effects, *judged.effects])
 
@@ -205,7 +209,7 @@ class Bridge:
         why_not_ours: WhyNotOurs,
     ) -> Judged:
         """A frame for a system that is no vehicle of ours: another client, or nobody."""
-        links = self._routes.between_clients(frame, client.link)
+        links = self.routes.between_clients(frame, client.link)
         if links and message_row(frame.msgid).kind is not Kind.DENIED:
             return Judged(False, [ToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
@@ -249,7 +253,7 @@ class Bridge:
     ) -> Iterable[tuple[int, Sequence[bytes]]]:
         """What goes to which client link of frames that came together from the vehicle's side, as
         they are and in their order."""
-        shares = self._routes.shares(frames)
+        shares = self.routes.shares(frames)
         if self.unverified:
             shares = [*shares, *self.unverified.shares(frames)]
         for link, raws in shares:
@@ -361,7 +365,7 @@ class Bridge:
         client = self._by_number.get(number)
         if client is None:
             return self._own.sysid if number else 0
-        heard = self._routes.components(client.link)
+        heard = self.routes.components(client.link)
         return heard[0][0] if heard else 0
 
     def _to_all(self, vehicle: Address, level: Level, text: str, now_ns: int) -> list[BridgeEffect]:
@@ -383,7 +387,7 @@ class Bridge:
                 client=client.number,
                 link=client.link,
                 name=client.name,
-                ids=[f"{s}/{c}" for s, c in self._routes.components(client.link)],
+                ids=[f"{s}/{c}" for s, c in self.routes.components(client.link)],
                 rx_hz=client.received.hz,
                 tx_hz=client.sent.hz,
                 refused=client.refused,

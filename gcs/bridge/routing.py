@@ -87,12 +87,23 @@ class Routes:
         for links in self._of_system.values():
             links.discard(link)
 
+    @property
+    def links(self) -> list[int]:
+        """The links of clients to which anything goes."""
+        return list(self._of_link)
+
     def heard(self, link: int, sysid: int, compid: int) -> None:
         """A good frame of that component came in on a client's link."""
-        here = self._of_link[link]
+        here = self._of_link.get(link)
+        if here is None:
+            return
         if (sysid, compid) not in here and len(here) < MOST_COMPONENTS:
             here.add((sysid, compid))
             self._of_system.setdefault(sysid, set()).add(link)
+
+    def was_heard(self, link: int, sysid: int, compid: int) -> bool:
+        """Whether that component has ever spoken on a client's link."""
+        return (sysid, compid) in self._of_link.get(link, ())
 
     def components(self, link: int) -> list[tuple[int, int]]:
         """Systems and components that were heard on a client's link."""

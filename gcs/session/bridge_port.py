@@ -25,6 +25,7 @@ from gcs.bridge.effects import (
     ToVehicle,
 )
 from gcs.bridge.judge.received import Judged
+from gcs.bridge.loops import LEFT_OUT_NS, Loops
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
 from gcs.frames import enu_from_ned
@@ -42,7 +43,7 @@ from gcs.protocol.enforced_sysid import hears_alone
 from gcs.protocol.parameter_names import names_of
 from gcs.session import teller
 from gcs.session.discovery import needed_hz
-from gcs.session.effects import Effect, Emit
+from gcs.session.effects import Effect, Emit, LeaveOutPeer
 from gcs.session.links import Counts, Links
 from gcs.session.missions import timing_of
 from gcs.session.operator_lines import line
@@ -95,6 +96,7 @@ class BridgePort:
         self._before: list[tuple[int, int]] = [(0, 0)] * len(endpoints)
         self._before_ns = 0
         self._told_in_control = 0
+        self.loops = Loops(own)
 
     def from_client(self, link: int, frame: Frame, now_ns: int) -> Judged:
         """A good frame on a client's link."""
@@ -102,6 +104,41 @@ class BridgePort:
         look = partial(self._seen, now_ns)
         why_not = partial(self._vehicles.why_not_ours, now_ns=now_ns)
         return self.bridge.from_client(link, frame, vehicles, look, now_ns, why_not)
+
+    def beat(self, frame: Frame, now_ns: int) -> list[Work]:
+        """A HEARTBEAT on a vehicle's link: far too many of one autopilot are a loop of links."""
+        if Address(frame.sysid, frame.compid) not in self._vehicles.addresses:
+            return []
+        return [*self.loops.beat(frame.sysid, self.bridge.routes.links, now_ns)]
+
+    def came_back(self, link: int, frame: Frame, now_ns: int) -> list[Work] | None:
+        """A frame in the station's own name on a vehicle's link; None where a client's link was not
+        sent it."""
+        loop = self.loops.came_back(frame, now_ns)
+        if loop is None or loop.told:
+            return None if loop is None else []
+        at, name = loop.client_link, self.bridge.name_of_link(loop.client_link)
+        if loop.goes_on:
+            self.bridge.routes.close(at)
+            text = (
+                f"the loop of links goes on: nothing that vehicles say is sent to {name} any more; "
+                "take the --client that leads back out of one of them, and start it again"
+            )
+            return [Log(Level.ERROR, NODE, text)]
+        place, _, _ = self._endpoints[link].partition(", receive")
+        text = (
+            f"a loop of links: what is sent to {name}, a client on link {at}, comes in again on "
+            f"link {link} ({place}): two bridges or routers send to one another; take the --client "
+            "that leads back out of one of them"
+        )
+        if link in self._vehicles.links:
+            return [Log(Level.ERROR, NODE, text), LeaveOutPeer(link, frame.raw)]
+        self.loops.left_out[link] = now_ns
+        self._links.wait_for_peer(link)
+        left_out = (
+            f"link {link} is left out, until it has been silent for {LEFT_OUT_NS / 1e9:.0f} s"
+        )
+        return [Log(Level.ERROR, NODE, text), Log(Level.INFO, NODE, left_out)]
 
     def _seen(self, now_ns: int, sysid: int) -> Seen | None:
         """How that vehicle is; None before it is heard."""

@@ -58,6 +58,14 @@ class ClientVerified(msgspec.Struct, frozen=True, gc=False):
     link: int
 
 
+class LeaveOutPeer(msgspec.Struct, frozen=True, gc=False):
+    """The peer that has just sent these bytes on a vehicle's link sends back what clients are sent:
+    hear it no more, and send it nothing.  Not where it is the only one that is heard there."""
+
+    link: int
+    data: bytes
+
+
 class Finish(msgspec.Struct, frozen=True, gc=False):
     """Nothing is left to do: close the log, stop our own vehicle, go."""
 
@@ -66,5 +74,13 @@ class Finish(msgspec.Struct, frozen=True, gc=False):
 
 
 Effect: TypeAlias = (
-    Transmit | Record | Emit | ShowTopics | ReadFile | WriteFile | ClientVerified | Finish
+    Transmit
+    | Record
+    | Emit
+    | ShowTopics
+    | ReadFile
+    | WriteFile
+    | ClientVerified
+    | LeaveOutPeer
+    | Finish
 )

@@ -84,6 +84,9 @@ class Incoming:
         """Frame by frame: what one leads to is done before the next is looked at.
 
         False: nothing was in it but what only passes through, so nothing else has changed."""
+        loops = self._bridge.loops
+        if loops.left_out and loops.drops(given.link, now_ns):
+            return False
         self._in_run = len(given.frames) > 1
         link, run = given.link, self._queue.run
         if given.as_recorded is None:
@@ -273,6 +276,9 @@ class Incoming:
     def _vehicle_frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         sysid, compid = self._own
         if frame.compid == compid and frame.sysid == sysid:
+            back = self._bridge.came_back(link, frame, now_ns)
+            if back is not None:
+                return back
             self.other_station_ns = now_ns
             who = f"another station on link {link} calls itself {sysid}/{compid}"
             text = f"{who}, as this one does: start one of the two with another --sysid"
@@ -283,6 +289,8 @@ class Incoming:
         """What a vehicle's frame is to the vehicle, and to clients and operators."""
         if frame.msgid == MsgId.PARAM_VALUE:
             work += self._bridge.parameter(frame, now_ns)
+        elif frame.msgid == MsgId.HEARTBEAT:
+            work += self._bridge.beat(frame, now_ns)
         if frame.sysid == self._vehicles.first.sysid:
             work += self._operators.heard(frame, now_ns)
         return work

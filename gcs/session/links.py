@@ -112,6 +112,10 @@ class Links:
         """A frame came in on `link`: from now on frames are sent there."""
         self._waiting.discard(link)
 
+    def wait_for_peer(self, link: int) -> None:
+        """Nothing is sent on a vehicle's link before a frame comes in on it."""
+        self._waiting.add(link)
+
     def open(self, link: int, stream: bool) -> None:
         """A client's link is there; its number may have been another one's before."""
         self._splitters.pop(link, None)

@@ -22,6 +22,7 @@ from gcs.session.effects import (
     Effect,
     Emit,
     Finish,
+    LeaveOutPeer,
     ReadFile,
     Record,
     ShowTopics,
@@ -361,6 +362,8 @@ class Loop:
                 return _write(token, path, data)
             case ClientVerified(link) if self._client_ports is not None:
                 self._client_ports.verify(link, now_ns)
+            case LeaveOutPeer(link, data):
+                self._links[link].leave_out(data)
             case Finish():
                 self._finish = effect
         return None

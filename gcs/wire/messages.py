@@ -77,6 +77,23 @@ class ChangeOperatorControlAck(Message, frozen=True, gc=False):
     ack: int
 
 
+class LinkNodeStatus(Message, frozen=True, gc=False):
+    """LINK_NODE_STATUS (8): 36 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.LINK_NODE_STATUS
+    timestamp: int
+    tx_rate: int
+    rx_rate: int
+    messages_sent: int
+    messages_received: int
+    messages_lost: int
+    rx_parse_err: int
+    tx_overflows: int
+    rx_overflows: int
+    tx_buf: int
+    rx_buf: int
+
+
 class SetMode(Message, frozen=True, gc=False):
     """SET_MODE (11): 6 bytes."""
 

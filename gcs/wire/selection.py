@@ -77,6 +77,7 @@ MESSAGES = (
     "PARAM_EXT_REQUEST_READ",
     "PARAM_EXT_ACK",
     "ORBIT_EXECUTION_STATUS",
+    "LINK_NODE_STATUS",
 )
 """Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
 

@@ -65,6 +65,10 @@ class Link(ABC):
     def send(self, data: bytes) -> None:
         """Off at once, or counted as dropped."""
 
+    def leave_out(self, data: bytes) -> None:  # noqa: B027 - of one peer nothing is left out
+        """Where several peers share this link: neither hear nor answer the one that has just sent
+        `data` any more.  Not where no other one is there."""
+
     @abstractmethod
     def describe(self) -> str:
         """One line for a person."""

@@ -10,6 +10,13 @@ from gcs.shell.sockets.base import MAX_READ, Link, bind, grow_buffer, resolve
 MAX_PEERS = 4
 """How many senders an open port answers; the one heard longest ago makes room."""
 _MAGICS = (0xFD, 0xFE)
+_BEGINS = (b"\xfd", b"\xfe")
+THERE_NS = 3_000_000_000
+"""How long after its last datagram a peer still counts as there."""
+LEFT_OUT_NS = 5_000_000_000
+"""A peer that was left out is one as any other again once it was silent for so long."""
+MOST_LEFT_OUT = 64
+_Peer = tuple[str, int]
 
 
 class _Udp(Link):
@@ -38,16 +45,24 @@ class UdpIn(_Udp):
         """Raises AddressInUse, or OSError."""
         super().__init__(endpoint)
         self._port = bind(self._socket, self._address, endpoint)
-        self._peers: dict[tuple[str, int], None] = {}
-        """Known peers, the one heard last at the end."""
-        self._latest: tuple[str, int] | None = None
+        self._peers: dict[_Peer, int] = {}
+        """Known peers, the one heard last at the end, and about when each was heard last."""
+        self._latest: _Peer | None = None
+        self._left_out: dict[_Peer, int] = {}
+        """Peers that are not heard, and when each sent something last."""
+        self._drained: list[bytes] = []
+        self._changes: list[tuple[int, _Peer | None]] = []
+        """From which of these datagrams on they are of which peer."""
+        self._now_ns = 0
+        """As it was when the loop last asked."""
 
     @property
     def port(self) -> int:
         return self._port
 
     def drain(self, limit: int) -> list[bytes]:
-        datagrams: list[bytes] = []
+        datagrams = self._drained = []
+        changes = self._changes = [(0, self._latest)]
         for _ in range(limit):
             try:
                 data, peer = self._socket.recvfrom(MAX_READ)
@@ -57,12 +72,53 @@ class UdpIn(_Udp):
                 # Windows reports here that an earlier datagram of ours found nobody.
                 self.counters.refused += 1
                 continue
+            if self._left_out and self._is_left_out(peer):
+                continue
             datagrams.append(data)
             if peer != self._latest and data[:1] and data[0] in _MAGICS:
+                changes.append((len(datagrams) - 1, peer))
                 self._meet(peer)
         return datagrams
 
-    def _meet(self, peer: tuple[str, int]) -> None:
+    def _is_left_out(self, peer: _Peer) -> bool:
+        """A datagram of it came."""
+        last_ns = self._left_out.get(peer)
+        if last_ns is None:
+            return False
+        if self._now_ns - last_ns > LEFT_OUT_NS:
+            del self._left_out[peer]
+            return False
+        self._left_out[peer] = self._now_ns
+        return True
+
+    def leave_out(self, data: bytes) -> None:
+        sent = (at for at, each in enumerate(self._drained) if each[:1] in _BEGINS and data in each)
+        number = next(sent, None)
+        if number is None:
+            return
+        peer = next(each for begin, each in reversed(self._changes) if begin <= number)
+        if peer is None or peer not in self._peers:
+            return
+        since_ns = self._now_ns - THERE_NS
+        if not any(each != peer and ns >= since_ns for each, ns in self._peers.items()):
+            return
+        del self._peers[peer]
+        self._latest = None
+        if len(self._left_out) == MOST_LEFT_OUT:
+            del self._left_out[next(iter(self._left_out))]
+        self._left_out[peer] = self._now_ns
+        why = "it sends back what clients are sent"
+        until = f"until it has been silent for {LEFT_OUT_NS / 1e9:.0f} s"
+        host, port = peer
+        self._news.append(f"{self.endpoint}: {host}:{port} is left out, {until}: {why}")
+
+    def poke(self, now_ns: int) -> list[str]:
+        self._now_ns = now_ns
+        return super().poke(now_ns)
+
+    def _meet(self, peer: _Peer) -> None:
+        if self._latest in self._peers:
+            self._peers[self._latest] = self._now_ns
         self._latest = peer
         if peer not in self._peers:
             self._news.append(f"{self.endpoint}: {peer[0]}:{peer[1]} sends to us")
@@ -70,7 +126,7 @@ class UdpIn(_Udp):
                 del self._peers[next(iter(self._peers))]
         else:
             del self._peers[peer]
-        self._peers[peer] = None
+        self._peers[peer] = self._now_ns
 
     def send(self, data: bytes) -> None:
         if not self._peers:

@@ -113,6 +113,51 @@ def test_a_peer_is_a_client_with_its_first_frame_and_lost_when_it_is_silent() ->
     assert of(Joined, table.says(HEARTBEAT).effects)[0].client == 1001, "it is another one then"
 
 
+def links_of(judged: Judged) -> list[int]:
+    """Where a client's frame goes on to."""
+    return [each.link for each in of(ToLink, judged.effects)]
+
+
+def test_a_heartbeat_that_a_client_sends_back_does_not_go_round_again() -> None:
+    table = Table(clients=3)
+    table.says(HEARTBEAT, 3)
+    assert links_of(table.says(HEARTBEAT, 1)) == [2, 3]
+    assert links_of(table.says(HEARTBEAT, 2, sysid=245)) == [], "a copy of the one on link 1"
+    table.now_ns += S
+    assert links_of(table.says(HEARTBEAT, 1)) == [3], "link 2 says that it is this one, too"
+    table.now_ns += 5 * S
+    assert links_of(table.says(HEARTBEAT, 2, sysid=245)) == []
+    table.now_ns += 1
+    assert links_of(table.says(HEARTBEAT, 2, sysid=245)) == [3], "it was silent on link 1"
+    table.bridge.gone(2, "closed")
+    assert links_of(table.says(HEARTBEAT, 1)) == [3], "it is nowhere else any more"
+
+
+def test_of_very_many_addresses_the_silent_ones_are_forgotten() -> None:
+    table = Table(clients=2)
+    for number in range(1100):
+        table.now_ns += S // 100
+        frame = frame_of(HEARTBEAT, 2 + number // 200, 1 + number % 200)
+        look = lambda _: table.seen  # noqa: E731
+        judged = table.bridge.from_client(1, frame, [VEHICLE], look, table.now_ns)
+        assert links_of(judged) == [2]
+
+
+def test_a_client_that_calls_itself_a_vehicle_is_none_for_the_others() -> None:
+    table = Table(clients=2)
+    played = mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 4, 3)
+    judged = table.says(played, 1, sysid=2)
+    assert links_of(judged) == []
+    told = of(Notes, judged.effects)
+    assert "it calls itself 2/190, a vehicle; a vehicle belongs on a --vehicle link" in told[0].text
+    assert told[0].level is Level.WARNING
+    again = table.says(played, 1, sysid=2)
+    assert not of(Notes, again.effects), "once"
+    assert links_of(again) == []
+    companion = mavlink.MAVLink_heartbeat_message(18, 12, 0, 0, 4, 3)
+    assert links_of(table.says(companion, 1, sysid=3)) == [2], "its type is no vehicle's"
+
+
 def test_a_heartbeat_goes_to_the_other_clients_and_nothing_else_does() -> None:
     table = Table(clients=3)
     for link in (1, 2, 3):

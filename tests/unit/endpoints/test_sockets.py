@@ -15,11 +15,12 @@ from gcs.shell.endpoints import Endpoint, Kind, parse_endpoint
 from gcs.shell.sockets import AddressInUse, Link, SerialUnavailable, TcpIn, TcpOut, UdpIn, open_link
 from gcs.shell.sockets.base import grow_buffer
 from gcs.shell.sockets.tcp import MAX_QUEUED, RECONNECT_NS
-from gcs.shell.sockets.udp import MAX_PEERS
+from gcs.shell.sockets.udp import LEFT_OUT_NS, MAX_PEERS, MOST_LEFT_OUT, THERE_NS
 
 pytestmark = pytest.mark.slow
 
 FRAME = b"\xfd\x01\x00\x00 a frame"
+ODD = b"these bytes alone"
 PATIENCE_S = 60.0
 
 Opener = Callable[[Endpoint], Link]
@@ -160,6 +161,82 @@ def test_draining_takes_no_more_than_asked_and_never_waits(opened: Opener) -> No
     assert len(read(station, limit=3)) == 3
     assert len(read(station, limit=3)) == 2
     assert station.drain(3) == []
+
+
+def test_a_peer_that_sends_back_is_left_out_until_it_is_silent(opened: Opener) -> None:
+    station = opened(udp_in())
+    vehicle, other = opened(udp_out(station.port)), opened(udp_out(station.port))
+    now_ns = 1_000 * LEFT_OUT_NS
+    station.poke(now_ns)
+    vehicle.send(FRAME)
+    assert read(station) == [FRAME]
+    other.send(b"\xfd before, " + ODD)
+    read(station)
+    station.poke(now_ns)
+    station.leave_out(b"never sent")
+    station.leave_out(ODD)
+    (news,) = station.poke(now_ns)
+    assert "is left out, until it has been silent for 5 s: it sends back what clients" in news
+    station.send(b"for the vehicle")
+    assert read(vehicle) == [b"for the vehicle"]
+    other.drain(1)
+    assert other.counters.refused == 0
+    for _ in range(3):
+        other.send(FRAME)
+        vehicle.send(b"\xfd of the vehicle")
+        assert read(station) == [b"\xfd of the vehicle"], "the other's came before it"
+        now_ns += LEFT_OUT_NS
+        station.poke(now_ns)
+    now_ns += 1
+    station.poke(now_ns)
+    other.send(FRAME)
+    assert read(station) == [FRAME], "it was silent for long enough"
+    station.send(b"for both")
+    assert read(other) == [b"for both"]
+
+
+def test_the_only_peer_that_is_there_is_not_left_out(opened: Opener) -> None:
+    station = opened(udp_in())
+    gone, other = opened(udp_out(station.port)), opened(udp_out(station.port))
+    station.poke(THERE_NS)
+    gone.send(FRAME)
+    read(station)
+    other.send(FRAME)
+    read(station)
+    station.poke(2 * THERE_NS + 1)
+    other.send(b"\xfd" + ODD)
+    assert read(station) == [b"\xfd" + ODD]
+    station.leave_out(ODD)
+    assert len(station.poke(2 * THERE_NS + 1)) == 0
+    other.send(FRAME)
+    assert read(station) == [FRAME], "the other one has not been heard for more than 3 s"
+    gone.send(b"\xfd again")
+    read(station)
+    other.send(ODD + FRAME)
+    read(station)
+    station.leave_out(ODD)
+    other.send(FRAME)
+    assert read(station) == [FRAME], "what does not begin as MAVLink says nothing of its sender"
+    other.send(FRAME + ODD)
+    read(station)
+    station.leave_out(ODD)
+    other.send(FRAME)
+    gone.send(b"\xfd there")
+    assert read(station) == [b"\xfd there"], "now it is heard again, and the other one is not"
+
+
+def test_of_very_many_that_were_left_out_the_first_is_forgotten(opened: Opener) -> None:
+    station = opened(udp_in())
+    vehicle = opened(udp_out(station.port))
+    peers = [opened(udp_out(station.port)) for _ in range(MOST_LEFT_OUT + 1)]
+    for peer in peers:
+        vehicle.send(FRAME)
+        peer.send(b"\xfd" + ODD)
+        read(station)
+        station.leave_out(ODD)
+    peers[1].send(FRAME)
+    peers[0].send(b"\xfd first")
+    assert read(station) == [b"\xfd first"]
 
 
 def test_nobody_listening_is_counted_and_no_error(opened: Opener) -> None:

@@ -107,6 +107,7 @@ class PaperLink(Link):
         self.pokes_ns: list[int] = []
         self.due_ns: int | None = None
         self.open = True
+        self.left_out: list[bytes] = []
         self.send_fails = False
         self.drain_fails = False
 
@@ -134,6 +135,9 @@ class PaperLink(Link):
         if self.send_fails:
             raise RuntimeError("planted: send")
         self.sent.append(data)
+
+    def leave_out(self, data: bytes) -> None:
+        self.left_out.append(data)
 
     def poke(self, now_ns: int) -> list[str]:
         self.pokes_ns.append(now_ns)

@@ -17,6 +17,7 @@ from gcs.session.effects import (
     ClientVerified,
     Emit,
     Finish,
+    LeaveOutPeer,
     ReadFile,
     Record,
     ShowTopics,
@@ -74,6 +75,12 @@ def test_frames_go_to_the_link_that_they_are_for(rig: Rig) -> None:
     rig.core.answers[FIRST] = [Transmit(1, b"to one"), Transmit(0, b"to nought")]
     assert rig.run(lambda: rig.links[0].bring(b"first")) == DONE
     assert [link.sent for link in rig.links] == [[b"to nought"], [b"to one"]]
+
+
+def test_a_peer_is_left_out_by_the_link_that_it_is_on(rig: Rig) -> None:
+    rig.core.answers[FIRST] = [LeaveOutPeer(1, b"sent back")]
+    assert rig.run(lambda: rig.links[0].bring(b"first")) == DONE
+    assert [link.left_out for link in rig.links] == [[], [b"sent back"]]
 
 
 def test_what_is_recorded_bears_the_time_that_the_core_was_told(rig: Rig) -> None:
