@@ -345,7 +345,7 @@ def home_moves(run: HostileRun) -> None:
     dice = run.dice
     x, y, _ = run.home_ned
     far_m = dice.choice((0.3, 3.0, 80.0))
-    run.home_ned = (x + far_m, y, 0.0)
+    run.home_ned = run.vehicle.home_ned = (x + far_m, y, 0.0)
     run.taken_away()
     run.feed(HomeSeen(run.home_ned))
     run.feed(VerifierChanged(run.verifier()))

@@ -64,6 +64,8 @@ class PointMass:
         self.mission: list[Vec3] = []
         """What is on board; `path` is what is left of what it flies by itself."""
         self.path: list[Vec3] = []
+        self.home_ned: Vec3 = (0.0, 0.0, 0.0)
+        """Where a return leads; as it tells it."""
         self.items_flown = 0
         self.pilot_v: Vec3 = (0.0, 0.0, 0.0)
         self.hold_react_s = 0.0
@@ -162,7 +164,7 @@ class PointMass:
             case CommandKind.RETURN:
                 north, east, down = self.reported()
                 up_m = max(TO_RETURN_UP_M, -down)
-                self.path = [(north, east, -up_m), (0.0, 0.0, -up_m)]
+                self.path = [(north, east, -up_m), (*self.home_ned[:2], -up_m)]
                 self._enter(FlightMode.RETURN)
             case CommandKind.START_MISSION:
                 if not self.mission:
