@@ -25,7 +25,7 @@ from gcs.bridge.answers import (
 )
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
 from gcs.bridge.recent_texts import RecentTexts
-from gcs.bridge.same_request import GUIDED_ITEM, command_of, key_of
+from gcs.bridge.repeated_requests import GUIDED_ITEM, command_of, key_of
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address

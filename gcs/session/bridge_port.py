@@ -25,7 +25,7 @@ from gcs.bridge.effects import (
     ToVehicle,
 )
 from gcs.bridge.judge.received import Judged
-from gcs.bridge.loops import LEFT_OUT_NS, Loops
+from gcs.bridge.link_loops import LEFT_OUT_NS, Loops
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
 from gcs.frames import enu_from_ned
@@ -132,7 +132,7 @@ class BridgePort:
             "that leads back out of one of them"
         )
         if link in self._vehicles.links:
-            return [Log(Level.ERROR, NODE, text), LeaveOutPeer(link, frame.raw)]
+            return [Log(Level.ERROR, NODE, text), LeaveOutPeer(link, frame.raw, LEFT_OUT_NS)]
         self.loops.left_out[link] = now_ns
         self._links.wait_for_peer(link)
         left_out = (

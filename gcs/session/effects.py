@@ -60,10 +60,12 @@ class ClientVerified(msgspec.Struct, frozen=True, gc=False):
 
 class LeaveOutPeer(msgspec.Struct, frozen=True, gc=False):
     """The peer that has just sent these bytes on a vehicle's link sends back what clients are sent:
-    hear it no more, and send it nothing.  Not where it is the only one that is heard there."""
+    hear it no more, and send it nothing, until it was silent for `silent_ns`.  Not where it is the
+    only one that is heard there."""
 
     link: int
     data: bytes
+    silent_ns: int
 
 
 class Finish(msgspec.Struct, frozen=True, gc=False):

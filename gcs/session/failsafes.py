@@ -18,7 +18,7 @@ from typing import Final, TypeAlias
 
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec, ZoneSpec
-from gcs.session.fence_on_board import NO_FENCE, UploadedFence
+from gcs.session.uploaded_fence import NO_FENCE, UploadedFence
 
 LONGEST_STATION_LOSS_S: Final = 30.0
 """Without a station for longer than this, it might as well be never.  A judgement of ours."""

@@ -17,10 +17,10 @@ from gcs.protocol.parameter_names import names_of
 from gcs.protocol.parameters import decode_value
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
 from gcs.session.failsafes import CASES, FENCE, FENCE_ACTION, Limits, findings, parameters_of
-from gcs.session.fence_on_board import UploadedFence
 from gcs.session.telemetry import Telemetry
 from gcs.session.thrust_meaning import NAMES_OF_THRUST
 from gcs.session.times import Times
+from gcs.session.uploaded_fence import UploadedFence
 from gcs.wire.ids import ParamType
 from gcs.wire.messages import ParamValue
 

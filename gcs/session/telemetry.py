@@ -16,7 +16,7 @@ from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
 from gcs.session.delay import Delay
 from gcs.session.position_health import Estimator, Gps, PositionHealth
-from gcs.session.restarts import Clock
+from gcs.session.vehicle_restarts import Clock
 from gcs.wire.ids import MavAutopilot, MavType
 
 POSITION_RATE_WINDOW_NS = 2_000_000_000

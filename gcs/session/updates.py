@@ -18,7 +18,6 @@ from gcs.protocol.autopilot import autopilot_of, mode_of
 from gcs.report import GeodeticItem, PoseItem
 from gcs.session.effects import Record
 from gcs.session.gate_port import condition
-from gcs.session.restarts import Clock
 from gcs.session.telemetry import Telemetry, quat_from_euler
 from gcs.session.work import PlaceFence, ToGate
 from gcs.wire import messages as m
@@ -132,7 +131,7 @@ def _local_position(
         # It comes so late that it was too old when it arrived; the age will tell.
         return ()
     telemetry.time_boot_ms = message.time_boot_ms
-    telemetry.stamps = Clock(message.time_boot_ms)
+    telemetry.stamps.take(message.time_boot_ms)
     telemetry.pos_ned, telemetry.v_ned, telemetry.position_ns = pos_ned, v_ned, now_ns
     return (
         ToGate(inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, reset=restarted)),

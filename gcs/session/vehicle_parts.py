@@ -22,19 +22,19 @@ from gcs.session.discovery import Discovery
 from gcs.session.effects import Record
 from gcs.session.events import Events
 from gcs.session.failsafes import limits_of
-from gcs.session.fence_on_board import FenceOnBoard
 from gcs.session.gate_port import GatePort, condition
 from gcs.session.jobs.job import VehicleView
 from gcs.session.missions import Missions
 from gcs.session.orbits import Orbits
 from gcs.session.presence import Presence
 from gcs.session.reasons import Reasons
-from gcs.session.restarts import STEP_NS, Restarts
 from gcs.session.return_places import ReturnPlaces
 from gcs.session.roster import Roster
 from gcs.session.settings import Settings
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
+from gcs.session.uploaded_fence import FenceOnBoard
+from gcs.session.vehicle_restarts import STEP_NS, Restarts
 from gcs.session.watch import Watch
 from gcs.session.words import Words
 from gcs.session.work import Log, ToGate, Work

@@ -362,8 +362,8 @@ class Loop:
                 return _write(token, path, data)
             case ClientVerified(link) if self._client_ports is not None:
                 self._client_ports.verify(link, now_ns)
-            case LeaveOutPeer(link, data):
-                self._links[link].leave_out(data)
+            case LeaveOutPeer(link, data, silent_ns):
+                self._links[link].leave_out(data, silent_ns)
             case Finish():
                 self._finish = effect
         return None

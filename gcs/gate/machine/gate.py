@@ -295,7 +295,7 @@ class Gate:
         goal = {
             Streams.HOLD_GOAL: memory.hold,
             Streams.ACTIVE_GOAL: memory.goal,
-            Streams.HOLD_GOAL_UNTIL_MODE: memory.hold if awaits_mode_in_guided(turn) else None,
+            Streams.HOLD_GOAL_UNTIL_MODE: memory.hold if _awaits_mode_in_guided(turn) else None,
         }.get(streams)
         if streams is Streams.SAMPLE:
             goal = memory.hold
@@ -340,7 +340,7 @@ class Gate:
         return draft
 
 
-def awaits_mode_in_guided(turn: Turn) -> bool:
+def _awaits_mode_in_guided(turn: Turn) -> bool:
     """The vehicle still follows setpoints, on a position that can be judged, and is to leave that
     mode."""
     memory = turn.memory

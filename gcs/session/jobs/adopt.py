@@ -7,7 +7,7 @@ decides on its start.
 
 from __future__ import annotations
 
-from gcs.bridge.guard.carried import refused_items
+from gcs.bridge.guard.mission_items import refused_items
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import PlanError

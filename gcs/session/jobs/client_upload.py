@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
-from gcs.bridge.guard.carried import refused_items
+from gcs.bridge.guard.mission_items import refused_items
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import PlanError

@@ -65,9 +65,9 @@ class Link(ABC):
     def send(self, data: bytes) -> None:
         """Off at once, or counted as dropped."""
 
-    def leave_out(self, data: bytes) -> None:  # noqa: B027 - of one peer nothing is left out
+    def leave_out(self, data: bytes, silent_ns: int) -> None:  # noqa: B027 - most have one peer
         """Where several peers share this link: neither hear nor answer the one that has just sent
-        `data` any more.  Not where no other one is there."""
+        `data` any more, until it was silent for `silent_ns`.  Not where no other one is there."""
 
     @abstractmethod
     def describe(self) -> str:

@@ -13,8 +13,6 @@ _MAGICS = (0xFD, 0xFE)
 _BEGINS = (b"\xfd", b"\xfe")
 THERE_NS = 3_000_000_000
 """How long after its last datagram a peer still counts as there."""
-LEFT_OUT_NS = 5_000_000_000
-"""A peer that was left out is one as any other again once it was silent for so long."""
 MOST_LEFT_OUT = 64
 _Peer = tuple[str, int]
 
@@ -50,6 +48,8 @@ class UdpIn(_Udp):
         self._latest: _Peer | None = None
         self._left_out: dict[_Peer, int] = {}
         """Peers that are not heard, and when each sent something last."""
+        self._left_out_ns = 0
+        """One of these is a peer as any other again once it was silent for so long."""
         self._drained: list[bytes] = []
         self._changes: list[tuple[int, _Peer | None]] = []
         """From which of these datagrams on they are of which peer."""
@@ -85,13 +85,13 @@ class UdpIn(_Udp):
         last_ns = self._left_out.get(peer)
         if last_ns is None:
             return False
-        if self._now_ns - last_ns > LEFT_OUT_NS:
+        if self._now_ns - last_ns > self._left_out_ns:
             del self._left_out[peer]
             return False
         self._left_out[peer] = self._now_ns
         return True
 
-    def leave_out(self, data: bytes) -> None:
+    def leave_out(self, data: bytes, silent_ns: int) -> None:
         sent = (at for at, each in enumerate(self._drained) if each[:1] in _BEGINS and data in each)
         number = next(sent, None)
         if number is None:
@@ -107,8 +107,9 @@ class UdpIn(_Udp):
         if len(self._left_out) == MOST_LEFT_OUT:
             del self._left_out[next(iter(self._left_out))]
         self._left_out[peer] = self._now_ns
+        self._left_out_ns = silent_ns
         why = "it sends back what clients are sent"
-        until = f"until it has been silent for {LEFT_OUT_NS / 1e9:.0f} s"
+        until = f"until it has been silent for {silent_ns / 1e9:.0f} s"
         host, port = peer
         self._news.append(f"{self.endpoint}: {host}:{port} is left out, {until}: {why}")
 

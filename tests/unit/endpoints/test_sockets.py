@@ -11,11 +11,12 @@ from contextlib import ExitStack, closing
 
 import pytest
 
+from gcs.bridge.link_loops import LEFT_OUT_NS
 from gcs.shell.endpoints import Endpoint, Kind, parse_endpoint
 from gcs.shell.sockets import AddressInUse, Link, SerialUnavailable, TcpIn, TcpOut, UdpIn, open_link
 from gcs.shell.sockets.base import grow_buffer
 from gcs.shell.sockets.tcp import MAX_QUEUED, RECONNECT_NS
-from gcs.shell.sockets.udp import LEFT_OUT_NS, MAX_PEERS, MOST_LEFT_OUT, THERE_NS
+from gcs.shell.sockets.udp import MAX_PEERS, MOST_LEFT_OUT, THERE_NS
 
 pytestmark = pytest.mark.slow
 
@@ -173,8 +174,8 @@ def test_a_peer_that_sends_back_is_left_out_until_it_is_silent(opened: Opener) -
     other.send(b"\xfd before, " + ODD)
     read(station)
     station.poke(now_ns)
-    station.leave_out(b"never sent")
-    station.leave_out(ODD)
+    station.leave_out(b"never sent", LEFT_OUT_NS)
+    station.leave_out(ODD, LEFT_OUT_NS)
     (news,) = station.poke(now_ns)
     assert "is left out, until it has been silent for 5 s: it sends back what clients" in news
     station.send(b"for the vehicle")
@@ -206,7 +207,7 @@ def test_the_only_peer_that_is_there_is_not_left_out(opened: Opener) -> None:
     station.poke(2 * THERE_NS + 1)
     other.send(b"\xfd" + ODD)
     assert read(station) == [b"\xfd" + ODD]
-    station.leave_out(ODD)
+    station.leave_out(ODD, LEFT_OUT_NS)
     assert len(station.poke(2 * THERE_NS + 1)) == 0
     other.send(FRAME)
     assert read(station) == [FRAME], "the other one has not been heard for more than 3 s"
@@ -214,12 +215,12 @@ def test_the_only_peer_that_is_there_is_not_left_out(opened: Opener) -> None:
     read(station)
     other.send(ODD + FRAME)
     read(station)
-    station.leave_out(ODD)
+    station.leave_out(ODD, LEFT_OUT_NS)
     other.send(FRAME)
     assert read(station) == [FRAME], "what does not begin as MAVLink says nothing of its sender"
     other.send(FRAME + ODD)
     read(station)
-    station.leave_out(ODD)
+    station.leave_out(ODD, LEFT_OUT_NS)
     other.send(FRAME)
     gone.send(b"\xfd there")
     assert read(station) == [b"\xfd there"], "now it is heard again, and the other one is not"
@@ -233,7 +234,7 @@ def test_of_very_many_that_were_left_out_the_first_is_forgotten(opened: Opener) 
         vehicle.send(FRAME)
         peer.send(b"\xfd" + ODD)
         read(station)
-        station.leave_out(ODD)
+        station.leave_out(ODD, LEFT_OUT_NS)
     peers[1].send(FRAME)
     peers[0].send(b"\xfd first")
     assert read(station) == [b"\xfd first"]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.session.failsafes import CASES, Finding, findings, limits_of, parameters_of
-from gcs.session.fence_on_board import UploadedFence
+from gcs.session.uploaded_fence import UploadedFence
 
 LIMITS = limits_of(DEFAULT, own_sysid=255)
 

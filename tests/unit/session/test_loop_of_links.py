@@ -13,7 +13,7 @@ import msgspec
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.loops import ASK_AGAIN_NS, LEFT_OUT_NS
+from gcs.bridge.link_loops import ASK_AGAIN_NS, LEFT_OUT_NS
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.report import LogEvent
@@ -108,7 +108,7 @@ class Circle:
                     self._send(FRONT, self.clients[FRONT], data)
                 case Transmit(_, data):
                     self._send(FRONT, self.leads_back, data, by_bridge=True)
-                case LeaveOutPeer(link, data):
+                case LeaveOutPeer(link, data, _):
                     assert link == VEHICLE_LINK
                     assert b"\x08\x00\x00" in data, "the LINK_NODE_STATUS itself"
                     self.left_out |= bridge == FRONT and not self.one_peer

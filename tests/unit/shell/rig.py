@@ -136,7 +136,7 @@ class PaperLink(Link):
             raise RuntimeError("planted: send")
         self.sent.append(data)
 
-    def leave_out(self, data: bytes) -> None:
+    def leave_out(self, data: bytes, silent_ns: int) -> None:
         self.left_out.append(data)
 
     def poke(self, now_ns: int) -> list[str]:

@@ -78,7 +78,7 @@ def test_frames_go_to_the_link_that_they_are_for(rig: Rig) -> None:
 
 
 def test_a_peer_is_left_out_by_the_link_that_it_is_on(rig: Rig) -> None:
-    rig.core.answers[FIRST] = [LeaveOutPeer(1, b"sent back")]
+    rig.core.answers[FIRST] = [LeaveOutPeer(1, b"sent back", 5)]
     assert rig.run(lambda: rig.links[0].bring(b"first")) == DONE
     assert [link.left_out for link in rig.links] == [[], [b"sent back"]]
 

@@ -11,9 +11,9 @@ import pytest
 from gcs.gate.airspace.projection import Origin
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
-from gcs.session.fence_on_board import NO_FENCE, FenceOnBoard, UploadedFence
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
+from gcs.session.uploaded_fence import NO_FENCE, FenceOnBoard, UploadedFence
 from gcs.session.work import Log, Work
 from gcs.wire.ids import Cmd, MavFrame, MissionResult, MissionType
 from gcs.wire.messages import (

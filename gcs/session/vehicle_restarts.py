@@ -4,9 +4,9 @@ Three signs, each of which needs two messages, so that one that is late or forge
 
 - its clock ran back: the stamps of its positions and attitudes are a second and more older than the
   newest of them, and for half a second and two of them none is newer.  (The gate is told of it with
-  the second position, by `updates.py`: a clock that ran back moves the local frame.)
-  After 49.7 days a stamp begins anew at 0, which looks the same
-  and is taken for a restart, too: a restart after weeks must be noticed;
+  the second position, by `updates.py`: a clock that ran back moves the local frame.)  After 49.7
+  days a stamp begins anew at 0, which looks the same and is taken for a restart, too: a restart
+  after weeks must be noticed;
 - while it is disarmed, its answers to TIMESYNC: the vehicle read its clock between the question and
   the answer, so each bounds when that clock began, on ours, whatever the delay.  Two in a row that
   agree with each other, and not with the one before them, are of another boot.  That shows a
@@ -40,6 +40,10 @@ class Clock:
     newest_ms: int = 0
     first_ms: int | None = None
     """One that is far back, which no newer one has followed yet."""
+
+    def take(self, stamp_ms: int) -> None:
+        """A position with this stamp was taken."""
+        self.newest_ms, self.first_ms = stamp_ms, None
 
     def ran_back(self, stamp_ms: int) -> bool:
         """Whether this stamp is the second one in a row of another time."""

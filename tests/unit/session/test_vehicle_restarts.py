@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.gate.states import State
-from gcs.session.restarts import Restarts
+from gcs.session.vehicle_restarts import Restarts
 from gcs.wire.messages import Attitude, Heartbeat
 from tests.unit.session import told, wire
 from tests.unit.session.station import Script
