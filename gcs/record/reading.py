@@ -141,7 +141,8 @@ class Reading:
     def _take(self, opcode: int, body: bytes) -> Iterator[Record]:
         try:
             record = _parse(opcode, body)
-        except (McapError, struct.error, UnicodeDecodeError):
+        except (McapError, struct.error, UnicodeDecodeError, OverflowError):
+            # The last one is what a read of more than 2^63 bytes raises: an attachment's length.
             self.condition.damaged += 1
         else:
             if record is not None:

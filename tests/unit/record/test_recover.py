@@ -17,6 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
+from mcap.records import Attachment
 
 from gcs.record import ros1
 from gcs.record.check import check
@@ -154,6 +155,21 @@ def test_a_whole_file_is_copied_with_attachments_and_metadata(tmp_path: Path) ->
     assert saved.condition.closed
     assert (saved.attachments, saved.metadata) == (1, 1)
     assert messages_of(tmp_path / "copy.mcap") == messages_of(source)
+
+
+def test_an_attachment_whose_length_is_damaged_is_left_out(tmp_path: Path) -> None:
+    """No bytes are as many as it says."""
+    path = record(tmp_path, a_flight())
+    data = bytearray(path.read_bytes())
+    whole = Reading(path)
+    others = [found for found in whole if not isinstance(found, Attachment)]
+    assert whole.condition.damaged == 0
+    length_at = data.index(b"text/toml") + len(b"text/toml")
+    data[length_at : length_at + 8] = b"\xff" * 8
+    path.write_bytes(data)
+    damaged = Reading(path)
+    assert list(damaged) == others
+    assert damaged.condition.damaged == 1
 
 
 def test_a_damaged_chunk_is_left_out_and_the_rest_is_saved(tmp_path: Path) -> None:
