@@ -63,7 +63,8 @@ TICK_NS: Final = 50_000_000
 MS_NS: Final = 1_000_000
 SECOND_NS: Final = 1_000_000_000
 SETTLED_S: Final = 3.0
-"""So long after an outage of the link its effects may last."""
+"""So long after an outage of the link its effects may last, beside the time that the vehicle needs
+to brake: told to hold at last, at 9 m/s, it rests six seconds later."""
 
 Told = tuple[int, State, object]
 """When, in which state, and what: a line of the trace."""
@@ -116,6 +117,7 @@ class HostileRun:
         self.promised = False
         self._stoppable = False
         self.deaf_until_ns = self.mute_until_ns = self.unanswered_until_ns = 0
+        self._settled_ns = 0
         self._down: deque[tuple[int, Input]] = deque()
         self._up: deque[tuple[int, SendSetpoint | SendCommand]] = deque()
         self._awaited: dict[tuple[int, CommandKind], Awaited] = {}
@@ -257,9 +259,11 @@ class HostileRun:
             self.promised = self.clearance(self.vehicle.at) > 0.0 and not self._hurled()
         if not self.vehicle.armed:
             self.promised = False  # it falls, or stands
-        if not self.promised or not self.fence_on:
-            return
-        if self.now_ns < max(self.deaf_until_ns, self.mute_until_ns) + SETTLED_S * SECOND_NS:
+        outage_ns = max(self.deaf_until_ns, self.mute_until_ns)
+        if self.now_ns < outage_ns:
+            brakes_s = self.vehicle.speed_m_s / self.vehicle.braking.a_brake_h_m_s2
+            self._settled_ns = outage_ns + round((SETTLED_S + brakes_s) * SECOND_NS)
+        if not self.promised or not self.fence_on or self.now_ns < self._settled_ns:
             return
         clear_m = self.clearance(self.vehicle.at)
         self.seen.under_promise += 1
