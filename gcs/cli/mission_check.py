@@ -11,6 +11,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.operator.errors import ExitError
 from gcs.plan.errors import Finding, Level
+from gcs.plan.flight_time import FlightTime, flight_time
 from gcs.plan.legs import Ground, LandingPlace
 from gcs.plan.lint import lint, worst
 from gcs.plan.model import AutopilotName, Geodetic, Plan
@@ -33,7 +34,8 @@ RETURN_UP_M: dict[AutopilotName, float] = {"px4": 30.0, "ardupilot": 15.0}
 @dataclass(frozen=True, slots=True)
 class Checked:
     """`verification` is None where there is nothing to fly, or it has errors: neither is put to
-    the fence.  `home` is None only where nobody gave one and nothing flies.
+    the fence.  `home` is None only where nobody gave one and nothing flies.  `flight` is how long
+    it is in the air, with a vehicle as it is delivered.
     """
 
     plan: Plan
@@ -43,6 +45,7 @@ class Checked:
     findings: tuple[Finding, ...]
     verification: Verification | None
     start_refusal: Refusal | None
+    flight: FlightTime | None = None
 
     @property
     def exit_code(self) -> ExitCode:
@@ -82,10 +85,12 @@ def check_plan(
         settings=USUAL[autopilot],
         rally=_landings(placed, projection, autopilot),
         on_ground=True,
+        battery_pct=100.0,
     )
     verification = verify(placed, ground, verifier)
     start = check_start(verifier, home_ned)
-    return Checked(plan, autopilot, policy, at_home, findings, verification, start)
+    time = flight_time(placed, ground)
+    return Checked(plan, autopilot, policy, at_home, findings, verification, start, time)
 
 
 def _landings(

@@ -17,6 +17,7 @@ from gcs.exit_codes import ExitCode
 from gcs.frames import enu_from_ned
 from gcs.plan import commands
 from gcs.plan.errors import Finding, Level
+from gcs.plan.flight_time import FlightTime
 from gcs.plan.model import Circle, Frame, Geodetic, Geographic, Item, Local, Plan, Zone
 from gcs.plan.verify import LegVerdict, Verification
 
@@ -53,6 +54,9 @@ def check_lines(checked: Checked) -> Iterator[str]:
         yield f"  refused  {problem.sentence}"
     for landing in checked.verification.bad_landings:
         yield f"  refused  {landing.sentence}"
+    if checked.verification.beyond_battery is not None:
+        refusal = checked.verification.beyond_battery
+        yield f"  refused  {refusal.code}: {refusal.sentence}"
     yield from _return_lines(checked.verification)
     yield f"verdict: {_summary(checked)}"
 
@@ -95,7 +99,12 @@ def _summary(checked: Checked) -> str:
         return f"refused by the gate: {checked.start_refusal.sentence}"
     if verification.refusal is not None:
         return "refused by the gate"
-    return f"may be flown, {verification.path.length_m:.0f} m of path"
+    text = f"may be flown, {verification.path.length_m:.0f} m of path"
+    flight = checked.flight
+    if flight is None or not flight.whole:
+        return f"{text}, for longer than a day"
+    minutes, seconds = divmod(round(flight.time_s), 60)
+    return f"{text}, about {minutes} min {seconds:02d} s in the air"
 
 
 def _told(plan: Plan, index: int) -> str:
@@ -110,6 +119,8 @@ def check_json(checked: Checked) -> str:
     if verification is not None:
         problems = [problem.sentence for problem in verification.path.problems]
         problems += [landing.sentence for landing in verification.bad_landings]
+        if verification.beyond_battery is not None:
+            problems.append(verification.beyond_battery.sentence)
     document = {
         "file": checked.plan.source,
         "name": checked.plan.name,
@@ -123,10 +134,16 @@ def check_json(checked: Checked) -> str:
         "returns_blocked_after": (
             [] if verification is None else [b.item + 1 for b in verification.blocked_returns]
         ),
+        "flight_s": _flight_s(checked.flight),
         "verdict": _summary(checked),
         "exit_code": int(checked.exit_code),
     }
     return json.dumps(document, indent=2, allow_nan=False)
+
+
+def _flight_s(flight: FlightTime | None) -> float | None:
+    """None where it has no end, or nothing flies."""
+    return flight.time_s if flight is not None and flight.whole else None
 
 
 def _home_json(home: Geodetic | None) -> list[float | None] | None:

@@ -53,6 +53,7 @@ class Code(StrEnum):
     UNSUPPORTED_VEHICLE = "UNSUPPORTED_VEHICLE"
     OTHER_OPERATOR = "OTHER_OPERATOR"
     NOT_RUNNING = "NOT_RUNNING"
+    BATTERY_REACH = "BATTERY_REACH"
 
 
 @dataclass(frozen=True, slots=True)

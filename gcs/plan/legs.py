@@ -150,6 +150,12 @@ class FlightSettings:
     """A return climbs so much at least (RTL_CLIMB_MIN)."""
     jerk_m_s3: float = math.inf
     """What limits the change of its acceleration on legs (MPC_JERK_AUTO)."""
+    climb_m_s: float = 1.5
+    """How fast it climbs (MPC_TKO_SPEED or MPC_Z_V_AUTO_UP, the slower one; WP_SPD_UP)."""
+    descend_m_s: float = 1.5
+    """How fast it descends (MPC_Z_V_AUTO_DN, WP_SPD_DN)."""
+    land_m_s: float = 0.5
+    """How fast it comes down to the ground (MPC_LAND_SPEED, LAND_SPD_MS)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +179,8 @@ class Ground:
     on_ground: bool = False
     begin_item: int = 0
     """Where the mission begins, counting into `Plan.items`: in the air it need not be the first."""
+    battery_pct: float | None = None
+    """How much charge the vehicle says is left; None: it has not said."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,11 +17,17 @@ USUAL: dict[AutopilotName, FlightSettings] = {
         speed_m_s=5.0,
         accel_m_s2=3.0,
         jerk_m_s3=4.0,
+        climb_m_s=1.5,
+        descend_m_s=1.5,
+        land_m_s=0.7,
     ),
     "ardupilot": FlightSettings(
         accept_m=2.0,
         return_low_within_m=5.0,
         speed_m_s=10.0,
         accel_m_s2=2.5,
+        climb_m_s=2.5,
+        descend_m_s=1.5,
+        land_m_s=0.5,
     ),
 }

@@ -1,5 +1,6 @@
 """Verification of a whole mission as it will be flown: every leg, every region beside the legs,
-every circle, the rally points, and the way to where a return lands from each leg.
+every circle, the rally points, the way to where a return lands from each leg, and whether the
+battery lasts.
 
 The gate's verifier judges; this module walks the plan and asks it.  A mission of 2,000 items takes
 a good part of a second: `Verifying` does it in steps, between which others may act.
@@ -15,6 +16,8 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan import returns
+from gcs.plan.battery_reach import battery_refusal, lasts_s
+from gcs.plan.flight_time import FlightTime, TimeWalk
 from gcs.plan.legs import FlightPath, Ground, Leg, LegKind, ProblemKind, Region
 from gcs.plan.model import Plan
 from gcs.plan.path import PathWalk
@@ -63,6 +66,11 @@ class Verification:
     blocked_returns: tuple[BlockedReturn, ...]
     bad_landings: tuple[Refusal, ...] = ()
     """Rally points where the vehicle must not land; each names its own."""
+    flight: FlightTime | None = None
+    """How long it is in the air, where the policy has that judged; None where its path has
+    problems."""
+    beyond_battery: Refusal | None = None
+    """Why its battery does not last for it."""
 
     @property
     def refusal(self) -> Refusal | None:
@@ -82,6 +90,8 @@ class Verification:
                 sentence = f"item {verdict.item + 1}: {verdict.refusal.sentence}"
                 yield replace(verdict.refusal, sentence=sentence)
         yield from self.bad_landings
+        if self.beyond_battery is not None:
+            yield self.beyond_battery
         for blocked in self.blocked_returns:
             if blocked.refuses:
                 sentence = (
@@ -93,7 +103,12 @@ class Verification:
     @property
     def evidence(self) -> tuple[tuple[str, float], ...]:
         """The numbers of a cleared mission; items count from 1."""
-        numbers = (("legs", float(len(self.path.legs))), ("length_m", self.path.length_m))
+        numbers: tuple[tuple[str, float], ...] = (
+            ("legs", float(len(self.path.legs))),
+            ("length_m", self.path.length_m),
+        )
+        if self.flight is not None and self.flight.whole:
+            numbers = (*numbers, ("flight_s", self.flight.time_s))
         if not self.blocked_returns:
             return numbers
         first = self.blocked_returns[0].item + 1.0
@@ -143,6 +158,8 @@ STEP_QUESTIONS = 80
 """Questions to the verifier in one step: some milliseconds."""
 ITEM_COST = 10
 """How an item of the path is flown takes as long to find out as so many questions."""
+TIMED_ITEMS = 20
+"""Of so many items the time is counted in the time of one question."""
 
 
 class Verifying:
@@ -156,7 +173,10 @@ class Verifying:
         self._verdicts: list[LegVerdict] = []
         self._blocked: dict[int, BlockedReturn] = {}
         self._bad_landings: list[Refusal] = []
+        self._plan = plan
         self._walk = PathWalk(plan, ground)
+        self._flight: FlightTime | None = None
+        self._beyond_battery: Refusal | None = None
         self._questions = self._ask_all()
         self.result: Verification | None = None
 
@@ -173,6 +193,8 @@ class Verifying:
                     tuple(self._verdicts),
                     tuple(self._blocked.values()),
                     tuple(self._bad_landings),
+                    self._flight,
+                    self._beyond_battery,
                 )
                 return
 
@@ -196,12 +218,26 @@ class Verifying:
             yield 1
         self._bad_landings += bad_landings(self._ground, self._verifier)
         yield 1
+        if not path.problems:
+            yield from self._judge_battery()
         if self._ground.return_up_m is None:
             return
         for leg in path.legs:
             if leg.kind is not LegKind.DESCENT and leg.item not in self._blocked:
                 self._judge_return(leg)
                 yield 1
+
+    def _judge_battery(self) -> Iterator[int]:
+        limits, left_pct = self._verifier.policy.battery, self._ground.battery_pct
+        most_s = lasts_s(limits, 100.0 if left_pct is None else left_pct)
+        if most_s is None:
+            return
+        walk = TimeWalk(self._plan, self._ground, most_s)
+        for number, _ in enumerate(walk.steps()):
+            yield 1 if number % TIMED_ITEMS == 0 else 0
+        self._flight = walk.result
+        if self._flight is not None:
+            self._beyond_battery = battery_refusal(self._flight, self._plan, limits, left_pct)
 
     def _leg(self, leg: Leg) -> LegVerdict:
         refusal = None

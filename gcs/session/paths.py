@@ -74,6 +74,7 @@ def verifying(
         rally,
         on_ground=telemetry.landed is LandedState.ON_GROUND,
         begin_item=begin_item,
+        battery_pct=telemetry.battery_pct,
     )
     verifier = verifier_for(
         policy,

@@ -78,7 +78,7 @@ def _build(
 ) -> Policy:
     table = _overlay(doc, defaults, doc.data)
     table["arrival"] = _without_none(table["arrival"], "speed_m_s")
-    table["battery"] = _without_none(table["battery"], "low_v", "critical_v")
+    table["battery"] = _without_none(table["battery"], "low_v", "critical_v", "endurance_s")
     table["severities"] = _severities(doc, table["severities"])
     zones = _read_fence(doc, table["fence"], fence_file)
     policy = _convert(doc, {**table, "fence": [written.zone for written in zones]})
@@ -103,7 +103,9 @@ def _overlay(doc: toml.Document, defaults: Table, own: Table, at: KeyPath = ()) 
     return merged
 
 
-_MAY_BE_NONE: Final = frozenset({"arrival.speed_m_s", "battery.low_v", "battery.critical_v"})
+_MAY_BE_NONE: Final = frozenset(
+    {"arrival.speed_m_s", "battery.low_v", "battery.critical_v", "battery.endurance_s"}
+)
 
 
 def _convert(doc: toml.Document, table: Table) -> Policy:

@@ -129,12 +129,17 @@ class MissionRules(_Section, frozen=True):
 
 class BatteryLimits(_Section, frozen=True):
     """From where on a battery is low, or critical: a share of its charge, and its voltage (None:
-    no voltage is).  What the vehicle itself calls low or critical is so, too."""
+    no voltage is).  What the vehicle itself calls low or critical is so, too.
+
+    A full battery flies for `endurance_s`: a mission is refused that would not be over before the
+    battery is low.  None: the time of a mission is not judged.
+    """
 
     low_pct: Annotated[float, Meta(ge=0.0, le=100.0)]
     critical_pct: Annotated[float, Meta(ge=0.0, le=100.0)]
     low_v: FromTenth | None
     critical_v: FromTenth | None
+    endurance_s: FromOne | None
 
 
 class LinkLimits(_Section, frozen=True):

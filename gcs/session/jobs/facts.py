@@ -49,6 +49,20 @@ QUANTITIES: dict[AutopilotName, tuple[Quantity, ...]] = {
         Quantity("cone", "RTL_CONE_SLOPE", needed=False),
     ),
 }
+SPEEDS_UP_AND_DOWN: dict[AutopilotName, tuple[Quantity, ...]] = {
+    "px4": (
+        Quantity("take_off_m_s", "MPC_TKO_SPEED", needed=False),
+        Quantity("climb_m_s", "MPC_Z_V_AUTO_UP", needed=False),
+        Quantity("descend_m_s", "MPC_Z_V_AUTO_DN", needed=False),
+        Quantity("land_m_s", "MPC_LAND_SPEED", needed=False),
+    ),
+    "ardupilot": (
+        Quantity("climb_m_s", "WP_SPD_UP", needed=False),
+        Quantity("descend_m_s", "WP_SPD_DN", needed=False),
+        Quantity("land_m_s", "LAND_SPD_MS", needed=False),
+    ),
+}
+"""Asked for beside the others where the policy has the time of a flight judged."""
 _FLATTEST_SLOPE = 0.5
 """ArduCopter: a smaller RTL_CONE_SLOPE is none."""
 
@@ -65,10 +79,20 @@ class Facts:
 class Learning:
     """Asks the vehicle; over once `facts` or `refusal` is there."""
 
-    def __init__(self, own: Address, telemetry: Telemetry, timing: Timing, times: Times) -> None:
+    def __init__(
+        self,
+        own: Address,
+        telemetry: Telemetry,
+        timing: Timing,
+        times: Times,
+        *,
+        flight_time: bool = False,
+    ) -> None:
         self._autopilot = autopilot_name(telemetry)
         target = Address(telemetry.sysid, telemetry.compid)
         quantities = QUANTITIES[self._autopilot]
+        if flight_time:
+            quantities += SPEEDS_UP_AND_DOWN[self._autopilot]
         encoding = telemetry.autopilot.param_encoding
         waits = Waits(
             times.real_ns(USUAL_WAITS.again_ns),
@@ -128,6 +152,7 @@ class Learning:
     def _learnt(self, items: tuple[MissionItemInt, ...]) -> None:
         values = self._reader.values
         usual = USUAL[self._autopilot]
+        climb_m_s = self._positive("climb_m_s", usual.climb_m_s)
         settings = replace(
             usual,
             accept_m=values["accept_m"],
@@ -139,6 +164,9 @@ class Learning:
             jerk_m_s3=self._positive("jerk_m_s3", usual.jerk_m_s3),
             return_climb_m=values.get("return_climb_m", usual.return_climb_m),
             accept_up_m=values.get("accept_up_m", usual.accept_up_m),
+            climb_m_s=min(climb_m_s, self._positive("take_off_m_s", climb_m_s)),
+            descend_m_s=self._positive("descend_m_s", usual.descend_m_s),
+            land_m_s=self._positive("land_m_s", usual.land_m_s),
         )
         rally = tuple(item_of(item) for item in items)
         self.facts = Facts(settings, values.get("return_up_m"), rally)

@@ -46,7 +46,10 @@ class VerifiedJob(Job):
     def learn(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         """Ask the vehicle for what shapes its flight."""
         asked = self.asked
-        self._learning = Learning(asked.own, view.telemetry, asked.timing, asked.times)
+        judged = view.policy.battery.endurance_s is not None
+        self._learning = Learning(
+            asked.own, view.telemetry, asked.timing, asked.times, flight_time=judged
+        )
         return [*self._learning.start(now_ns), *self._learn_on(view, now_ns)]
 
     def verify(

@@ -196,6 +196,8 @@ ZONE = '[[fence]]\nname = "a"\n'
             "bridge.extra_harmless[1]",
             "extra_denied, too",
         ),
+        ("[battery]\nendurance_s = 0", 2, "battery.endurance_s", "impossible"),
+        ('[battery]\nendurance_s = "long"', 2, "battery.endurance_s", "not a number"),
         ("x = [1,\n2", 2, "", "not TOML"),
         ("name = 'a'\nname = 'b'\n", 2, "", "not TOML"),
         ("fence = []", 1, "fence", "no inclusion zone"),

@@ -15,7 +15,7 @@ from gcs.gate.refusal import Code
 from gcs.plan.item_messages import message_of
 from gcs.plan.wire import WireItem
 from gcs.plan.wpl import read_wpl
-from gcs.protocol.autopilot import ARDUPILOT
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.jobs.clear import Clear
 from gcs.session.jobs.client_upload import ClientUpload
 from gcs.session.jobs.relay import RelayPlan
@@ -130,6 +130,52 @@ def test_a_return_that_is_blocked_where_the_policy_only_warns_of_it_is_told_to_i
     assert script.outcome == COMPLETE
     (warning,) = told.events(script.work, ipc.Trouble)
     assert warning.text.startswith("warning: the vehicle's own failsafe return cannot be gated")
+
+
+ENDURING = parse_policy("battery.endurance_s = 200", "my.toml")
+"""Good for 170 s, as 15 % are kept; GOOD takes about a minute, its return included."""
+
+
+@pytest.mark.parametrize(("autopilot", "good_pct"), [(PX4, 75.0), (ARDUPILOT, 75.0)])
+def test_a_mission_for_which_the_battery_does_not_last_is_refused(
+    autopilot: Autopilot, good_pct: float
+) -> None:
+    telemetry = placed(autopilot)
+    telemetry.battery_pct = good_pct
+    first = () if autopilot is PX4 else (item(0),)
+    items = tuple(one._replace(seq=n) for n, one in enumerate((*first, *GOOD)))
+    assert upload(*items, telemetry=telemetry, policy=ENDURING).outcome == COMPLETE
+    telemetry = placed(autopilot)
+    telemetry.battery_pct = 30.0
+    script = upload(*items, telemetry=telemetry, policy=ENDURING)
+    assert script.refused is Code.BATTERY_REACH
+    assert "30 % are left of 200 s, and 15 % are kept" in script.sentence
+    assert script.sent(MissionCount) == []
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "names"),
+    [
+        (PX4, {"MPC_TKO_SPEED", "MPC_Z_V_AUTO_UP", "MPC_Z_V_AUTO_DN", "MPC_LAND_SPEED"}),
+        (ARDUPILOT, {"WP_SPD_UP", "WP_SPD_DN", "LAND_SPD_MS"}),
+    ],
+)
+def test_how_fast_it_climbs_and_lands_is_asked_only_where_it_is_judged(
+    autopilot: Autopilot, names: set[str]
+) -> None:
+    for policy, wanted in ((DEFAULT, set[str]()), (ENDURING, names)):
+        script = upload(*GOOD, telemetry=placed(autopilot), policy=policy)
+        asked_for = {message.param_id for message in script.sent(ParamRequestRead)}
+        assert asked_for & names == wanted
+
+
+def test_a_vehicle_that_lands_slowly_needs_its_battery_for_longer() -> None:
+    telemetry = placed()
+    telemetry.battery_pct = 75.0
+    board = Board()
+    board.parameters["MPC_LAND_SPEED"] = 0.1
+    script = upload(*GOOD, board=board, telemetry=telemetry, policy=ENDURING)
+    assert script.refused is Code.BATTERY_REACH
 
 
 def test_of_a_mission_that_is_refused_the_reasons_are_told_alone() -> None:
