@@ -109,11 +109,6 @@ def codec(payload_length: int) -> Codec:
     return Codec(payload_length)
 
 
-def msgid_of(raw: bytes) -> int:
-    """Message id of a whole frame."""
-    return int.from_bytes(raw[7:10], "little") if raw[0] == MAGIC_V2 else raw[5]
-
-
 def source_of(raw: bytes) -> tuple[int, int]:
     """System and component id of a whole frame."""
     return (raw[5], raw[6]) if raw[0] == MAGIC_V2 else (raw[3], raw[4])

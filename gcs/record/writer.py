@@ -35,6 +35,7 @@ from gcs.report import (
     RecordItem,
 )
 from gcs.wire.blanking import SETUP_SIGNING, without_key, without_keys
+from gcs.wire.frame import msgid_in
 from gcs.wire.signing import Reason
 
 FLUSH_NS = 800_000_000
@@ -342,7 +343,7 @@ class Recorder:
         if len(self._frame_logs) >= MAX_FRAME_CHANNELS:
             crowd = ros1.codec(0)
             return self._watched_log(ros1.crowd_channel()), crowd.encode, crowd.pack_plain, 0
-        msgid = ros1.msgid_of(raw)
+        msgid = msgid_in(raw)
         log = self._watched_log(ros1.frame_channel(*ros1.source_of(raw), msgid))
         codec = ros1.codec(ros1.full_length(msgid))
         if msgid == SETUP_SIGNING:

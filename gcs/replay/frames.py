@@ -12,6 +12,7 @@ from mcap.records import Channel
 from gcs.record import ros1
 from gcs.record.reading import Message, Record
 from gcs.report import Direction
+from gcs.wire.frame import msgid_in
 
 HEARTBEAT = 0
 MAV_TYPE_GCS = 6
@@ -101,4 +102,4 @@ def _is_station(raw: bytes) -> bool:
     """A ground station's HEARTBEAT."""
     header = 10 if raw[0] == ros1.MAGIC_V2 else 6
     at = header + _TYPE_BYTE
-    return ros1.msgid_of(raw) == HEARTBEAT and at < len(raw) and raw[at] == MAV_TYPE_GCS
+    return msgid_in(raw) == HEARTBEAT and at < len(raw) and raw[at] == MAV_TYPE_GCS

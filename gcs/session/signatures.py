@@ -1,8 +1,12 @@
 """The signatures of a session's links: what is not rightly signed goes no further than here.
 
 Links of the vehicle's side have one key, links of clients another, either or both may have none.
-What leaves on a link with a key is signed, in our own link id; what comes in unsigned, signed with
+What leaves on a link with a key is signed, in our own link ids; what comes in unsigned, signed with
 another key, or a second time is counted, told and refused, before anything else looks at it.
+
+To whom a frame comes later than the next one of its link id, it is a replay.  Setpoints follow one
+another every 50 ms, so they have a link id of their own: on a link that reorders they would make a
+replay of the command that left beside them, and of its repetitions.
 """
 
 from __future__ import annotations
@@ -14,13 +18,24 @@ from typing import Final
 
 from gcs.gate.effects import Level
 from gcs.session.work import Log
-from gcs.wire.frame import Frame
+from gcs.wire.frame import Frame, msgid_in
 from gcs.wire.ids import MsgId
 from gcs.wire.signing import Bad, Checker, Key, Reason, Signer, SigningClock
 
 NODE: Final = "signing"
 LINK_ID_BASE: Final = 200
 """Link ids of ours count from here: autopilots and other stations use small ones."""
+SETPOINTS_LINK_ID_BASE: Final = 100
+"""So do those of the setpoints, to a vehicle."""
+SETPOINTS: Final = frozenset(
+    {
+        MsgId.SET_POSITION_TARGET_LOCAL_NED,
+        MsgId.SET_POSITION_TARGET_GLOBAL_INT,
+        MsgId.SET_ATTITUDE_TARGET,
+        MsgId.MANUAL_CONTROL,
+        MsgId.RC_CHANNELS_OVERRIDE,
+    }
+)
 TELL_EVERY_NS: Final = 10_000_000_000
 SOURCES_TOLD: Final = 4
 """Senders that one line names; there may be many, with forged names."""
@@ -102,7 +117,8 @@ class Signatures:
         side = self._side(link)
         if side is None:
             return raw
-        signed = side.signer(link, self._own).sign(raw, now_ns)
+        setpoint = side is self._vehicle and msgid_in(raw) in SETPOINTS
+        signed = side.signer(link, self._own, setpoint=setpoint).sign(raw, now_ns)
         if side is self._client:
             # A peer without the key that sends us back what it was sent is not to be verified.
             side.checker.sent(signed)
@@ -210,13 +226,13 @@ class _Side:
     def __init__(self, key: Key) -> None:
         self._key = key
         self._clock = SigningClock()
-        self._signers: dict[int, Signer] = {}
+        self._signers: dict[tuple[int, bool], Signer] = {}
         self.checker = Checker(key, self._clock)
 
-    def signer(self, link: int, own: tuple[int, int]) -> Signer:
-        signer = self._signers.get(link)
+    def signer(self, link: int, own: tuple[int, int], *, setpoint: bool) -> Signer:
+        signer = self._signers.get((link, setpoint))
         if signer is None:
-            link_id = (LINK_ID_BASE + link) % 256
-            signer = self._signers[link] = Signer(self._key, link_id, self._clock)
+            link_id = ((SETPOINTS_LINK_ID_BASE if setpoint else LINK_ID_BASE) + link) % 256
+            signer = self._signers[link, setpoint] = Signer(self._key, link_id, self._clock)
             self.checker.never(*own, link_id)
         return signer

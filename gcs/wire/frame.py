@@ -88,6 +88,11 @@ class Garbage(NamedTuple):
 Item: TypeAlias = Frame | Garbage
 
 
+def msgid_in(raw: bytes) -> int:
+    """Message id of a whole frame, of which nothing else is looked at."""
+    return int.from_bytes(raw[7:10], "little") if raw[0] == MAGIC_V2 else raw[5]
+
+
 def split(data: bytes) -> list[Item]:
     """The frames and garbage of one datagram, in order.  Every byte is in exactly one item."""
     if len(data) > MAX_DATAGRAM:

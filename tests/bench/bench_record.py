@@ -28,6 +28,7 @@ from gcs.record.backend import Backend, FoxgloveBackend, Log, McapBackend
 from gcs.record.guarded_file import GuardedFile, open_exclusive
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem
+from gcs.wire.frame import msgid_in
 
 FRAMES = 60_000
 ROUNDS = 7
@@ -76,7 +77,7 @@ def writer_ns(items: list[FrameItem], folder: Path, backend: Backend, encoded: b
     known: dict[int, tuple[Log, ros1.Encode]] = {}
     work: list[tuple[Log, ros1.Encode, bytes]] = []
     for item in items:
-        msgid = ros1.msgid_of(item.raw)
+        msgid = msgid_in(item.raw)
         if msgid not in known:
             log = backend.channel(ros1.frame_channel(1, 1, msgid))
             known[msgid] = log, ros1.codec(ros1.full_length(msgid)).encode

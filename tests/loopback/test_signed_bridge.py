@@ -22,7 +22,7 @@ from vehicle_sim.simulation.world import Datagram
 VEHICLE_KEY, CLIENT_KEY, OTHER = bytes(range(32)), bytes(32 * [5]), bytes(32 * [7])
 ACCEPTED = 0
 ARM, TAKE_OFF, LAND = 400, 22, 21
-LINK_IDS = {200}  # LINK_ID_BASE + the vehicle's link
+LINK_IDS = {100, 200}  # of setpoints and of all else, + the vehicle's link
 
 both = pytest.mark.parametrize("personality", PERSONALITIES)
 

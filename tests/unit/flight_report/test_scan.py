@@ -39,6 +39,7 @@ from gcs.report import (
     StatusItem,
 )
 from gcs.wire.dialect import MESSAGES
+from gcs.wire.frame import msgid_in
 from tests.unit.logfile import tlogs
 from tests.unit.record.flights import MS, START_NS, a_flight, frame_v2, record
 
@@ -247,7 +248,7 @@ class TestReaders:
         source = source_of(topic)
         assert source is not None
         assert source.read is not None
-        length = ros1.full_length(ros1.msgid_of(item.raw))
+        length = ros1.full_length(msgid_in(item.raw))
         return list(source.read(ros1.codec(length).encode(item.raw, 0, 0)))
 
     def test_gps_raw_int(self) -> None:

@@ -20,6 +20,7 @@ from gcs.record import ros1
 from gcs.report import Direction, FrameItem
 from gcs.wire.blanking import SETUP_SIGNING, without_key
 from gcs.wire.dialect import MESSAGES, TYPE_CODES, MessageDef
+from gcs.wire.frame import msgid_in
 from tests.each import each
 from tests.sample_files import elsewhere
 from tests.unit.record.flights import frame_v1, frame_v2, record
@@ -43,7 +44,7 @@ def some_payload(definition: MessageDef, seed: int) -> bytes:
 
 def encoded(raw: bytes, link: int, direction: int) -> bytes:
     """The message of a frame of any kind, as the recorder makes it."""
-    return ros1.codec(ros1.full_length(ros1.msgid_of(raw))).encode(raw, link, direction)
+    return ros1.codec(ros1.full_length(msgid_in(raw))).encode(raw, link, direction)
 
 
 def plain(value: Any) -> Any:
