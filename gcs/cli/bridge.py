@@ -20,7 +20,7 @@ Examples:
   gcs bridge --vehicle udpin://127.0.0.1:14540 --client udpout://127.0.0.1:14550
   gcs bridge --vehicle serial:///dev/ttyUSB0:57600 --client tcpin://127.0.0.1:5760 --policy lab
   gcs bridge --sim --client udpin://127.0.0.1:14551
-  gcs bridge --explain DO_REPOSITION
+  gcs bridge --explain DO_REPOSITION --policy my.toml
 
 A client speaks MAVLink with the bridge as if that were the vehicle. What moves the vehicle is
 verified by the gate, whoever sends it; what changes its settings is decided by [bridge] of the
@@ -32,33 +32,34 @@ a keyboard station on it.
 """
 
 
-def _explain(ctx: click.Context, _param: click.Parameter, name: str | None) -> None:
-    """Print the row of the classification, what a mode means, or why a parameter is guarded.
+def _explained(name: str, policy: str) -> str:
+    """The row of the classification, what a mode means, or whether a parameter may be written.
 
-    Raises ExitError where there is none.
+    Raises ExitError where there is none, and for a policy that is none.
     """
-    if name is None:
-        return
     from gcs.bridge.classes.explain import explain, explanation
-    from gcs.bridge.guard.explain import key_explanation, parameter_explanation
+    from gcs.bridge.guard.explain import parameter_explanation, policy_explanation
     from gcs.bridge.meaning.explain import meaning_explanation
     from gcs.bridge.meaning.explain_modes import mode_explanation
     from gcs.exit_codes import ExitCode
     from gcs.operator.errors import ExitError
+    from gcs.policy_file import PolicyFileError, load_policy
 
     try:
+        rules = load_policy(policy)[0].bridge
+    except PolicyFileError as error:
+        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
+    try:
         row = explain(name)
-        lines = explanation(name), key_explanation(row.name), meaning_explanation(row.name)
-        told = "\n".join(line for line in lines if line)
     except KeyError as error:
-        found = mode_explanation(name) or parameter_explanation(name)
+        found = mode_explanation(name, rules.manual_modes) or parameter_explanation(name, rules)
         if found is None:
             hint = "if it is a parameter: no table here knows it, so a client may not write it; "
             hint += "flight modes are called as the autopilot calls them: POSCTL, AUTO.RTL, LOITER"
             raise ExitError(ExitCode.USAGE, str(error.args[0]), hint) from None
-        told = found
-    click.echo(told)
-    ctx.exit()
+        return found
+    lines = explanation(name), policy_explanation(row, rules), meaning_explanation(row.name)
+    return "\n".join(line for line in lines if line)
 
 
 OWN_COMPID = 191
@@ -132,11 +133,8 @@ OWN_COMPID = 191
 @click.option(
     "--explain",
     metavar="NAME",
-    is_eager=True,
-    expose_value=False,
-    callback=_explain,
-    help="Say what becomes of a client's message, command, flight mode or parameter, and why; then "
-    "end.",
+    help="Say what becomes of a client's message, command, flight mode or parameter by the policy, "
+    "and why; then end.",
 )
 @click.option("--plain", is_flag=True, help="Lines on a terminal, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print the events as JSON, a line each.")
@@ -154,6 +152,7 @@ def bridge(
     set_fence: bool,
     enforce_sysid: bool,
     timeout: float | None,
+    explain: str | None,
     plain: bool,
     as_json: bool,
     verbose: bool,
@@ -163,6 +162,9 @@ def bridge(
     """MAVLink clients fly the vehicle, and the gate is in between."""
     import msgspec
 
+    if explain is not None:
+        click.echo(_explained(explain, of["policy"]))
+        ctx.exit()
     if not (of["sim"] or vehicles):
         hint = "such as --vehicle udpin://127.0.0.1:14540, or --sim for one of our own"
         raise click.UsageError(f"where is the vehicle? {hint}")

@@ -29,18 +29,24 @@ WHAT_IT_IS: Final = {
 }
 
 
-def mode_explanation(name: str) -> str | None:
-    """Some lines for a person, for each autopilot that has a mode called so; None: none has."""
+def mode_explanation(name: str, manual_modes: tuple[str, ...]) -> str | None:
+    """Some lines for a person, for each autopilot that has a mode called so; None: none has.
+
+    `manual_modes` are those of the policy.
+    """
     found = [(who, mode_named(who, name.strip())) for who in AUTOPILOTS]
-    told = [line for who, mode in found if mode is not None for line in _lines(who, mode)]
+    told = [
+        line for who, mode in found if mode is not None for line in _lines(who, mode, manual_modes)
+    ]
     return "\n".join(told) if told else None
 
 
-def _lines(autopilot: Autopilot, mode: Mode) -> Iterator[str]:
+def _lines(autopilot: Autopilot, mode: Mode, manual_modes: tuple[str, ...]) -> Iterator[str]:
     yield f"{mode.name}, a mode of {autopilot.name}: {WHAT_IT_IS[mode.meaning]}"
     yield "  from the client in control, what the gate is asked for, and then decides:"
     situations: dict[str, list[str]] = {}
-    for situation, seen in _situations(autopilot):
+    for situation, bare in _situations(autopilot):
+        seen = replace(bare, manual_modes=manual_modes)
         situations.setdefault(_said(for_mode(mode, seen)), []).append(situation)
     for said, where in situations.items():
         yield f"    {'; '.join(where)}: {said}"
@@ -85,7 +91,7 @@ def _said(meaning: Meaning) -> str:
                 return "refused by the gate"
             return ", then ".join(words) + (f" ({note})" if note else "")
         case Forward():
-            return "forwarded to the vehicle, where it moves nothing"
+            return "forwarded to the vehicle"
         case Reject(refusal):
             return f"refused {refusal.code.value}: {refusal.sentence}"
         case _:

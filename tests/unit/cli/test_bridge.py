@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -119,19 +120,22 @@ def test_a_missing_policy_is_a_bad_file(capsys: pytest.CaptureFixture[str]) -> N
             ("command 186: motion", "  the gate makes of it: PX4: goto straight up or down"),
         ),
         ("SET_MODE", ("message 11: motion", "  the gate makes of it: as DO_SET_MODE")),
-        ("SDLOG_MODE", ("SDLOG_MODE, a parameter that a client may write", "  px4: it says")),
+        ("SDLOG_MODE", ("that safety does not stand on", "  px4, from a client: written")),
         (
             "DO_FLIGHTTERMINATION",
             (
                 "command 185: configuration",
-                'policy: `termination` of [bridge], "refuse" by default',
+                'policy: `termination` of [bridge] is "refuse"',
             ),
         ),
         ("INJECT_FAILURE", ("policy: no key of [bridge] lets it through",)),
         ("PARAM_SET", ("PARAM_SET, message 23: configuration", "  why: ")),
         (
             "gf_action",
-            ("GF_ACTION, a parameter that safety", "px4: it is of the vehicle's own fence"),
+            (
+                "GF_ACTION, a parameter that safety",
+                "px4, from a client: not written: GF_ACTION is guarded: it is of",
+            ),
         ),
     ],
 )
@@ -178,8 +182,10 @@ def test_explain_knows_the_modes_of_both_autopilots(
 def test_every_mode_of_both_autopilots_can_be_explained() -> None:
     for autopilot in (PX4, ARDUPILOT):
         for mode in autopilot.modes:
-            assert f"{mode.name}, a mode of {autopilot.name}" in (mode_explanation(mode.name) or "")
-    assert mode_explanation("NO_SUCH") is None
+            assert f"{mode.name}, a mode of {autopilot.name}" in (
+                mode_explanation(mode.name, ()) or ""
+            )
+    assert mode_explanation("NO_SUCH", ()) is None
 
 
 def test_explain_of_what_there_is_not_names_what_is_close(
@@ -187,6 +193,18 @@ def test_explain_of_what_there_is_not_names_what_is_close(
 ) -> None:
     assert main.run(["bridge", "--explain", "DO_REPOSITON"]) == ExitCode.USAGE
     assert "DO_REPOSITION" in capsys.readouterr().err
+
+
+def test_explain_goes_by_the_policy(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    policy = tmp_path / "my.toml"
+    text = '[bridge]\nparameters_allowed = ["GF_*"]\nmanual_modes = ["POSCTL"]\n'
+    policy.write_text(text, encoding="utf-8")
+    for name, told in (("GF_ACTION", "px4, from a client: written"), ("POSCTL", "forwarded to")):
+        assert main.run(["bridge", "--explain", name, "--policy", str(policy)]) == ExitCode.DONE
+        assert told in capsys.readouterr().out
+    policy.write_text("[bridge]\nfenc = 1\n", encoding="utf-8")
+    assert main.run(["bridge", "--explain", "POSCTL", "--policy", str(policy)]) == ExitCode.BAD_FILE
+    assert "my.toml:2: bridge.fenc" in capsys.readouterr().err
 
 
 def test_explain_tells_that_an_unknown_parameter_is_guarded(
