@@ -13,6 +13,7 @@ from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.questions.braking import Breach
 from gcs.gate.airspace.verifier import Verifier
+from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import (
     AccuracySeen,
@@ -59,6 +60,8 @@ REFUSED_AS: Final = {
     CommandKind.DISARM: Event.DISARM_REFUSED,
 }
 """The commands whose refusal is an event of its own; of all others it is COMMAND_REFUSED."""
+
+NOT_OURS: Final = "; nothing is done about it: the vehicle flies, and not under our control"
 
 FLOOR_FREE = frozenset({State.GROUNDED, State.TAKING_OFF, State.LANDING, State.RETURNING})
 """States that begin or end on the ground: the fence's floor does not apply to their stop."""
@@ -318,6 +321,8 @@ def _condition(turn: Turn, changed: ConditionChanged) -> None:
         memory.conditions = others
     severity = turn.policy.severities[changed.condition]
     if changed.active:
-        turn.say(Level.WARNING, f"{severity.name}: {changed.condition.value}: {changed.text}")
+        idle = memory.state is State.EXTERNAL and severity > Severity.CAUTION
+        text = f"{severity.name}: {changed.condition.value}: {changed.text}"
+        turn.say(Level.WARNING, f"{text}{NOT_OURS}" if idle else text)
     else:
         turn.say(Level.INFO, f"No longer {severity.name}: {changed.condition.value}")

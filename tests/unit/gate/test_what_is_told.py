@@ -62,6 +62,16 @@ class TestLines:
         assert told == [Say(Level.WARNING, "goto: aborted: stopped by the operator")]
 
 
+    def test_of_a_vehicle_that_another_flies_it_is_told_that_nothing_is_done(self) -> None:
+        script, _ = flight(State.EXTERNAL, **severe(Severity.HOLD))
+        script.feed(WRONG)
+        (told,) = script.all(Say)
+        assert told.text.startswith("HOLD: battery_low: low; nothing is done about it")
+        script, _ = flight(State.EXTERNAL, **severe(Severity.CAUTION))
+        script.feed(WRONG)
+        assert [told.text for told in script.all(Say)] == ["CAUTION: battery_low: low"]
+
+
 class TestReasons:
     def test_the_severity_is_told_with_what_is_wrong(self) -> None:
         script, _ = flight(State.MOVING, **severe(Severity.HOLD))
