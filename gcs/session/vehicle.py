@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from gcs.config import StationConfig
+from gcs.frames import Vec3
 from gcs.gate import effects, inputs
 from gcs.gate.condition import Condition
 from gcs.gate.machine.gate import Gate
-from gcs.gate.machine.resuming import why_not_resume
+from gcs.gate.machine.resuming import why_not_go_to, why_not_resume
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import Autopilot
@@ -96,6 +97,10 @@ class Vehicle:
         """Why the gate would not fly it under control from here, once it is held."""
         port = self._parts.port
         return why_not_resume(port.policy, port.gate.memory, now_ns)
+
+    def why_not_go_to(self, goal_ned: Vec3, yaw_rad: float | None) -> Refusal | None:
+        """Why the gate would not fly it there, once its hold is lifted."""
+        return why_not_go_to(self._parts.port.gate.memory, goal_ned, yaw_rad)
 
     def flying(self, now_ns: int) -> Telemetry | None:
         """What it tells, if it flies and its position is fresh."""

@@ -76,6 +76,25 @@ def test_a_client_that_holds_flies_on_with_its_next_goal(personality: Personalit
 
 
 @both
+def test_a_goal_that_is_refused_lifts_no_hold(personality: Personality) -> None:
+    """Somebody who looks on has stopped it; the client in control clicks beyond the fence."""
+    flight, client = flying(personality)
+    other = flight.join(246, 190)
+    flight.run(1.5)
+    assert other.ask(PAUSE, 0) == ACCEPTED
+    flight.until(lambda: flight.is_in(State.HOLDING))
+    lat, lon, alt = north_of_home(flight, 400)
+    client.fly_to(lat, lon, alt + 5)
+    flight.beating(3.0)
+    assert [ack.result for ack in client.acks(REPOSITION)] == [dialect.MAV_RESULT_DENIED]
+    assert "OUTSIDE_FENCE" in client.texts() or "TOO_FAR" in client.texts()
+    assert flight.is_in(State.HOLDING)
+    lat, lon, alt = north_of_home(flight, 10)
+    client.fly_to(lat, lon, alt + 5)
+    arrives(flight, 10)
+
+
+@both
 def test_guided_takes_it_out_of_a_hold(personality: Personality) -> None:
     flight, client = flying(personality)
     assert client.ask(PAUSE, 0) == ACCEPTED

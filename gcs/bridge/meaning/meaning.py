@@ -29,6 +29,10 @@ def _resumes() -> Refusal | None:
     return None
 
 
+def _goes(goal_ned: Vec3, yaw_rad: float | None) -> Refusal | None:
+    return None
+
+
 def _rally_points_unknown(point: RallyPoint) -> Refusal | None:
     return Refusal(Code.NO_ORIGIN, "where the rally point lies is not known")
 
@@ -38,7 +42,7 @@ class Seen:
     """The vehicle as it was last reported, and what the gate does with it.
 
     `state` and the fields after it have defaults with which less is allowed, not more; but for
-    the last, which the gate decides anyway.
+    the last two, which the gate decides anyway.
     """
 
     autopilot: Autopilot
@@ -89,6 +93,9 @@ class Seen:
     why_not_resume: Callable[[], Refusal | None] = _resumes
     """Why the gate would not hover under control here, once the vehicle is held; None: it would.
     The gate asks it again: this is so that what will be refused stops nothing first."""
+    why_not_go_to: Callable[[Vec3, float | None], Refusal | None] = _goes
+    """Why the gate would not fly it to this place, with this heading, once its hold is lifted;
+    None: it would, or nobody knows.  So what will be refused lifts no hold first."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from gcs.bridge.meaning.command import Command
 from gcs.bridge.meaning.meaning import Meaning, Reject, Seen, Words
 from gcs.bridge.meaning.modes import hold, meaning_named
 from gcs.bridge.meaning.places import Datum, datum_of, down_of, place_of
-from gcs.bridge.meaning.says import ask, go_to, refuse, unsupported
+from gcs.bridge.meaning.says import ask, go_to, refuse, resume_and_go_to, unsupported
 from gcs.frames import Vec3
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import FlightMode
@@ -163,7 +163,8 @@ def _reposition(
 ) -> Meaning:
     if isinstance(goal_ned, Refusal):
         return Reject(goal_ned)
-    return go_to(seen, goal_ned, yaw_rad, OWN_SPEED if command.p1 > 0.0 else "", resume)
+    note = OWN_SPEED if command.p1 > 0.0 else ""
+    return (resume_and_go_to if resume else go_to)(seen, goal_ned, yaw_rad, note)
 
 
 # ------------------------------------------------------------------------ heights and headings
@@ -180,7 +181,7 @@ def change_altitude_px4(command: Command, seen: Seen) -> Meaning:
     goal_ned = place_of(seen, math.nan, math.nan, command.p1, datum)
     if isinstance(goal_ned, Refusal):
         return Reject(goal_ned)
-    return go_to(seen, goal_ned, None, resume=True)
+    return resume_and_go_to(seen, goal_ned, None)
 
 
 def condition_yaw(command: Command, seen: Seen) -> Meaning:

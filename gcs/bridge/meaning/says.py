@@ -51,24 +51,40 @@ def forward(seen: Seen) -> Forward | Words:
     return Forward() if seen.in_control else ask("control")
 
 
-def go_to(
-    seen: Seen, goal_ned: Vec3, yaw_rad: float | None, note: str = "", resume: bool = False
-) -> Words:
-    """Fly to a place.  `resume`: the message also asks to leave whatever mode the vehicle is in.
+def go_to(seen: Seen, goal_ned: Vec3, yaw_rad: float | None, note: str = "") -> Words:
+    """Fly to a place, in the mode that the vehicle is in.
 
     The goal is rounded as the wire carries it, so that what is asked for, shown and flown is one.
     A vehicle that is on its way there already is asked for nothing: a client that got no answer
     sends the same again.
     """
-    north, east, down = (as_on_the_wire(metres) for metres in goal_ned)
-    goal = (north, east, down)
+    goal = _as_sent(goal_ned)
     if _is_flown_to(seen, goal, yaw_rad):
         return Words((), note)
     degrees = None if yaw_rad is None else math.degrees(yaw_rad)
     wanted = ipc.Ask(0, "goto", goal_enu=enu_from_ned(goal), yaw_deg=degrees)
-    if resume and comes_back(seen):
-        return Words((ipc.Ask(0, "resume"), wanted), note)
     return Words((wanted,), note)
+
+
+def resume_and_go_to(
+    seen: Seen, goal_ned: Vec3, yaw_rad: float | None, note: str = ""
+) -> Words | Reject:
+    """The same of a message that also asks to leave whatever mode the vehicle is in.
+
+    A hold, which another client may have set, is not lifted for a goal that will be refused.
+    """
+    words = go_to(seen, goal_ned, yaw_rad, note)
+    if not comes_back(seen):
+        return words
+    refusal = seen.why_not_go_to(_as_sent(goal_ned), yaw_rad) if seen.in_control else None
+    if refusal is not None:
+        return Reject(refusal)
+    return Words((ipc.Ask(0, "resume"), *words.asks), note)
+
+
+def _as_sent(goal_ned: Vec3) -> Vec3:
+    north, east, down = (as_on_the_wire(metres) for metres in goal_ned)
+    return (north, east, down)
 
 
 def comes_back(seen: Seen) -> bool:

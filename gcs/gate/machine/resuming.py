@@ -1,4 +1,5 @@
-"""Whether the gate would give control of the vehicle back once it is held, asked before it is."""
+"""Whether the gate would give control of the vehicle back once it is held, and fly it to a goal
+from there: asked before anything is stopped, or a hold is lifted."""
 
 from __future__ import annotations
 
@@ -31,3 +32,15 @@ def why_not_resume(policy: Policy, memory: Memory, now_ns: int) -> Refusal | Non
         return no_fresh_position(memory)
     judged = memory.verifier.hold_point(memory.pos_ned, AT_REST, (), floor_applies=True)
     return judged if isinstance(judged, Refusal) else CHECKS[Check.SEVERITY](turn)
+
+
+def why_not_go_to(memory: Memory, goal_ned: Vec3, yaw_rad: float | None) -> Refusal | None:
+    """The refusal that a go-to would get after `resume`, from where the vehicle is; None: none, or
+    it is not known.
+
+    Changes nothing.  The vehicle is taken to be at rest: one that moves is refused no less.
+    """
+    if memory.verifier is None or memory.pos_ned is None:
+        return None
+    judged = memory.verifier.goal(goal_ned, yaw_rad, memory.pos_ned, AT_REST)
+    return judged if isinstance(judged, Refusal) else None

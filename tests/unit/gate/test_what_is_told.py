@@ -61,7 +61,6 @@ class TestLines:
         told = [said for said in script.all(Say) if said.level is not Level.INFO]
         assert told == [Say(Level.WARNING, "goto: aborted: stopped by the operator")]
 
-
     def test_of_a_vehicle_that_another_flies_it_is_told_that_nothing_is_done(self) -> None:
         script, _ = flight(State.EXTERNAL, **severe(Severity.HOLD))
         script.feed(WRONG)
