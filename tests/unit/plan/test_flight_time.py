@@ -272,3 +272,123 @@ def test_from_rest_to_rest() -> None:
     assert from_rest_s(100.0, 5.0, 2.0, math.inf) == pytest.approx(100.0 / 5.0 + 5.0 / 2.0)
     assert from_rest_s(2.0, 5.0, 2.0, math.inf) == pytest.approx(2.0)
     assert from_rest_s(2.0, 0.0, 2.0, math.inf) == math.inf
+
+
+# --------------------------------------------------------------------- by hand, to the second
+
+HIGH_HOME = replace(ground(), home_ned=(3.0, 4.0, -2.0), start_ned=(3.0, 4.0, -12.0))
+"""Home is 2 m above the local origin; the vehicle hovers 10 m above it."""
+PX4_LEVEL = (5.0, 0.6 * 3.0, 4.0)
+"""MPC_XY_CRUISE; 60 % of MPC_ACC_HOR; MPC_JERK_AUTO."""
+UP_DOWN = (1.5, 1.0, 4.0)
+"""MPC_TKO_SPEED and MPC_Z_V_AUTO_DN; WP_ACC_Z; MPC_JERK_AUTO."""
+
+
+def long_way_s(way_m: float, speed_m_s: float, accel_m_s2: float, jerk_m_s3: float) -> float:
+    return way_m / speed_m_s + speed_m_s / accel_m_s2 + accel_m_s2 / jerk_m_s3
+
+
+def test_a_leg_and_a_landing() -> None:
+    there = item(Cmd.NAV_WAYPOINT, 0.5, to=(100.0, 0.0, 10.0))
+    found = flight(there, item(Cmd.NAV_LAND, to=(100.0, 0.0, 0.0)), over=HIGH_HOME)
+    leg_s = long_way_s(100.0, *PX4_LEVEL) + 0.5 + 1.0
+    assert found.time_s == pytest.approx(leg_s + 10.0 / 0.7 + 5.0 + 1.0)
+
+
+def test_a_landing_from_high_above_is_slow_only_at_its_end() -> None:
+    over = replace(HIGH_HOME, start_ned=(3.0, 4.0, -42.0))
+    found = flight(item(Cmd.NAV_LAND, to=(0.0, 0.0, 0.0)), over=over)
+    assert found.time_s == pytest.approx(long_way_s(30.0, *UP_DOWN) + 10.0 / 0.7 + 5.0 + 1.0)
+
+
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_a_take_off_that_has_a_place(autopilot: AutopilotName) -> None:
+    """ArduCopter ignores it, and lands where it has climbed; PX4 flies there and back."""
+    over = ground(autopilot, HOME, on_ground=True)
+    up = item(Cmd.NAV_TAKEOFF, to=(100.0, 0.0, 10.0))
+    found = flight(up, DOWN, over=over)
+    climb = (1.5, 1.0, 4.0) if autopilot == "px4" else (2.5, 1.0, 1.0)
+    there_and_back_s = 2.0 * long_way_s(100.0, *PX4_LEVEL) if autopilot == "px4" else 0.0
+    land_m_s = 0.7 if autopilot == "px4" else 0.5
+    expected_s = 5.0 + long_way_s(10.0, *climb) + 1.0 + there_and_back_s
+    assert found.time_s == pytest.approx(expected_s + 10.0 / land_m_s + 5.0 + 1.0)
+
+
+@pytest.mark.parametrize(("up_m", "climbs_m"), [(1.0, 2.5), (20.0, 20.0)])
+def test_without_a_take_off_it_climbs_first_as_a_px4_does(up_m: float, climbs_m: float) -> None:
+    over = replace(HIGH_HOME, start_ned=(3.0, 4.0, -2.0), on_ground=True)
+    there = item(Cmd.NAV_WAYPOINT, to=(100.0, 0.0, up_m))
+    found = flight(there, item(Cmd.NAV_LAND, to=(100.0, 0.0, 0.0)), over=over)
+    slow_m, fast_m = min(up_m, 10.0), max(0.0, up_m - 10.0)
+    down_s = slow_m / 0.7 + (long_way_s(fast_m, *UP_DOWN) if fast_m else 0.0)
+    climb_s = 5.0 + long_way_s(climbs_m, *UP_DOWN)
+    leg_s = long_way_s(100.0, *PX4_LEVEL) + 1.0
+    assert found.time_s == pytest.approx(climb_s + leg_s + down_s + 5.0 + 1.0)
+
+
+def test_a_return_is_flown_at_the_vehicles_own_speed_and_hovers_before_it_lands() -> None:
+    faster = item(Cmd.DO_CHANGE_SPEED, 0.0, 10.0, -1.0)
+    over = replace(HIGH_HOME, start_ned=(103.0, 4.0, -12.0))
+    found = flight(faster, item(Cmd.NAV_RETURN_TO_LAUNCH), over=over)
+    up_s, back_s = long_way_s(20.0, *UP_DOWN), long_way_s(100.0, *PX4_LEVEL)
+    down_s = long_way_s(20.0, *UP_DOWN) + 10.0 / 0.7
+    assert found.time_s == pytest.approx(up_s + back_s + down_s + 5.0 + 5.0)
+
+
+@pytest.mark.parametrize("kind", [0.0, 1.0])
+def test_a_speed_over_ground_and_one_through_the_air_count(kind: float) -> None:
+    far = item(Cmd.NAV_WAYPOINT, to=(600.0, 0.0, 10.0))
+    slow = item(Cmd.DO_CHANGE_SPEED, kind, 2.0, -1.0)
+    down = item(Cmd.NAV_LAND, to=(600.0, 0.0, 0.0))
+    leg_s = long_way_s(600.0, 2.0, *PX4_LEVEL[1:]) + 1.0
+    assert flight(slow, far, down).time_s == pytest.approx(leg_s + 10.0 / 0.7 + 5.0 + 1.0)
+
+
+@pytest.mark.parametrize("p", [(2.0, 2.0), (3.0, 2.0), (0.0, math.nan)])
+def test_what_is_no_speed_over_ground_does_not_count(p: tuple[float, float]) -> None:
+    far, none = item(Cmd.NAV_WAYPOINT, to=(600.0, 0.0, 10.0)), item(Cmd.DO_CHANGE_SPEED, *p, -1.0)
+    assert flight(none, far, DOWN).time_s == pytest.approx(flight(far, DOWN).time_s)
+
+
+def test_a_wide_circle_is_flown_as_fast_as_half_the_acceleration_bends_it() -> None:
+    def turning(turns: float) -> float:
+        circle = item(Cmd.NAV_LOITER_TURNS, turns, 0.0, 40.0)
+        return flight(circle, DOWN, over=ground("ardupilot")).time_s
+
+    speed_m_s = math.sqrt(0.5 * 2.5 * 40.0)
+    assert turning(2.0) - turning(1.0) == pytest.approx(2.0 * math.pi * 40.0 / speed_m_s)
+
+
+@pytest.mark.parametrize("circle", [(1.0, 0.0, 0.0), (math.nan, 0.0, 8.0)])
+def test_a_circle_that_is_none_ends_the_count(circle: tuple[float, float, float]) -> None:
+    found = flight(item(Cmd.NAV_LOITER_TURNS, *circle), OUT, DOWN, over=ground("ardupilot"))
+    assert found.item == 0
+
+
+@pytest.mark.parametrize(
+    ("delay", "waits_s"),
+    [
+        ((0.5, -1.0, -1.0, -1.0), 0.5),
+        ((0.0, -1.0, -1.0, 0.0), DAY_S),
+        ((-1.0, 0.0, -1.0, -1.0), DAY_S),
+        ((-1.0, -1.0, -1.0, -1.0), 0.0),
+    ],
+)
+def test_a_delay_counts(delay: tuple[float, float, float, float], waits_s: float) -> None:
+    plain = flight(BACK, DOWN).time_s
+    found = flight(BACK, item(Cmd.NAV_DELAY, *delay), DOWN).time_s
+    assert found == pytest.approx(min(plain + waits_s, DAY_S))
+
+
+def test_a_jump_to_itself_without_end_is_one_without_end() -> None:
+    found = flight(BACK, item(Cmd.DO_JUMP, 2.0, -1.0), most_s=50.0)
+    assert (found.whole, found.endless) == (False, 1)
+    once = flight(BACK, OUT, BACK, item(Cmd.DO_JUMP, 2.0, 1.0), DOWN)
+    assert (once.whole, once.endless) == (True, None)
+
+
+def test_less_than_a_metre_takes_its_time_too() -> None:
+    assert from_rest_s(0.5, 5.0, 2.0, math.inf) == pytest.approx(1.0)
+    up = item(Cmd.NAV_WAYPOINT, to=(0.0, 0.0, 10.5))
+    slow_up = replace(ground(), settings=replace(USUAL["px4"], climb_m_s=0.01))
+    assert flight(up, DOWN, over=slow_up).time_s > 50.0
