@@ -125,6 +125,7 @@ class Session:
             config.compid,
             count,
             unsigned_taken=setup.policy.signing.unsigned == "warn",
+            since_ns=now_ns,
         )
         self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
         self._vehicles = Vehicles(config, setup.policy, self._times, now_ns)

@@ -45,7 +45,7 @@ _WHAT: Final = {
     Reason.UNSIGNED: "unsigned",
     Reason.WRONG_KEY: "signed with another key",
     Reason.REPLAYED: "sent a second time",
-    Reason.TOO_OLD: "signed more than a minute ago",
+    Reason.TOO_OLD: "signed before this station began, or more than a minute ago",
     Reason.TOO_MANY: "of too many senders",
 }
 _HINTS: Final = {
@@ -88,11 +88,13 @@ class Signatures:
         vehicle_links: int,
         *,
         unsigned_taken: bool = False,
+        since_ns: int = 0,
     ) -> None:
+        """`since_ns` is when the session began."""
         self._vehicle_links = vehicle_links
         self._own = (sysid, compid)
-        self._vehicle = _Side(keys.vehicle) if keys.vehicle else None
-        self._client = _Side(keys.client) if keys.client else None
+        self._vehicle = _Side(keys.vehicle, since_ns) if keys.vehicle else None
+        self._client = _Side(keys.client, since_ns) if keys.client else None
         self._unsigned_taken = unsigned_taken
         self._refused: dict[tuple[int, Reason], _Refused] = {}
         self._told_ns: dict[tuple[int, Reason], int] = {}
@@ -223,11 +225,11 @@ class Signatures:
 class _Side:
     """The links that share a key."""
 
-    def __init__(self, key: Key) -> None:
+    def __init__(self, key: Key, since_ns: int) -> None:
         self._key = key
         self._clock = SigningClock()
         self._signers: dict[tuple[int, bool], Signer] = {}
-        self.checker = Checker(key, self._clock)
+        self.checker = Checker(key, self._clock, since_ns)
 
     def signer(self, link: int, own: tuple[int, int], *, setpoint: bool) -> Signer:
         signer = self._signers.get((link, setpoint))

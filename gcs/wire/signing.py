@@ -95,7 +95,7 @@ class Reason(StrEnum):
     WRONG_KEY = "wrong key"
     REPLAYED = "replayed"
     TOO_OLD = "too old"
-    """The first frame of a stream, and more than a minute behind."""
+    """The first frame of a stream, and more than a minute behind, or from before we began."""
     TOO_MANY = "too many streams"
 
 
@@ -176,12 +176,14 @@ class Signer:
 class Checker:
     """Judges the signatures of all that came in under one key."""
 
-    __slots__ = ("_clock", "_key", "_sent", "_signers", "_streams")
+    __slots__ = ("_clock", "_key", "_sent", "_signers", "_since", "_streams")
 
-    def __init__(self, key: Key, clock: SigningClock | None = None) -> None:
-        """`clock`: as that of the key's `Signer`s."""
+    def __init__(self, key: Key, clock: SigningClock | None = None, since_ns: int = 0) -> None:
+        """`clock`: as that of the key's `Signer`s.  `since_ns` is when we began (unix time): what
+        was signed before may have been taken by who was here before us, and recorded by anybody."""
         self._key = key
         self._clock = clock or SigningClock()
+        self._since = timestamp_of(since_ns)
         self._streams: dict[tuple[int, int, int], int] = {}
         self._signers: set[tuple[int, int]] = set()
         self._sent: dict[tuple[int, int, int], int] = {}
@@ -218,7 +220,7 @@ class Checker:
         if last is not None:
             if timestamp <= last:
                 return _BAD[Reason.REPLAYED]
-        elif timestamp + LATE_MAX_TICKS < self._clock.now(unix_ns):
+        elif timestamp < max(self._since, self._clock.now(unix_ns) - LATE_MAX_TICKS):
             return _BAD[Reason.TOO_OLD]
         elif len(self._streams) >= STREAMS_MAX:
             return _BAD[Reason.TOO_MANY]

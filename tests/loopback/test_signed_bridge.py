@@ -22,6 +22,7 @@ from vehicle_sim.simulation.world import Datagram
 VEHICLE_KEY, CLIENT_KEY, OTHER = bytes(range(32)), bytes(32 * [5]), bytes(32 * [7])
 ACCEPTED = 0
 ARM, TAKE_OFF, LAND = 400, 22, 21
+EPOCH_NS = 1_420_070_400 * 10**9  # of signatures: 2015
 LINK_IDS = {100, 200}  # of setpoints and of all else, + the vehicle's link
 
 both = pytest.mark.parametrize("personality", PERSONALITIES)
@@ -31,7 +32,7 @@ def signing(client: Client, key: bytes, link_id: int = 0) -> Client:
     """The client signs from now on, and takes only what is signed."""
     client.mav.signing.secret_key = key
     client.mav.signing.link_id = link_id
-    client.mav.signing.timestamp = (client.flight.now_ns - 1_420_070_400 * 10**9) // 10_000
+    client.mav.signing.timestamp = (client.flight.now_ns - EPOCH_NS) // 10_000
     client.mav.signing.sign_outgoing = True
     return client
 
@@ -116,6 +117,50 @@ def test_of_clients_with_a_key_only_who_signs_is_heard_and_answered(
     assert "247/190 COMMAND_LONG" in lines
     status = flight.of(ipc.BridgeStatus)[-1].clients
     assert [row.signed for row in status] == ["2 unsigned", "1 unsigned, 1 wrong key", "1 unsigned"]
+
+
+@both
+def test_what_was_recorded_before_the_bridge_began_anew_is_refused(
+    personality: Personality,
+) -> None:
+    """Somebody without the key has listened to a client of the bridge before this one, and sends
+    again what it heard ten seconds ago."""
+    flight = BridgedFlight(
+        personality, vehicle_key=VEHICLE_KEY, station_key=VEHICLE_KEY, client_key=CLIENT_KEY
+    )
+    recorded = dialect.MAVLink(None, srcSystem=245, srcComponent=190)
+    recorded.signing.secret_key, recorded.signing.sign_outgoing = CLIENT_KEY, True
+    recorded.signing.timestamp = (flight.now_ns - EPOCH_NS) // 10_000 - 1_000_000
+    said = [
+        message.pack(recorded)
+        for message in (
+            dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3),
+            dialect.MAVLink_command_long_message(1, 1, ARM, 0, 1, 0, 0, 0, 0, 0, 0),
+        )
+    ]
+    flight.connected()
+    replayer = flight.join()
+    for data in said * 3:
+        replayer.send_raw(data)
+    flight.run(5.0)
+    assert not flight.vehicle.armed
+    assert not replayer.acks(ARM)
+    assert {item.reason for item in flight.garbage() if item.link == 1} == {"too old", "unsigned"}
+
+
+@both
+def test_a_client_whose_clock_is_behind_is_brought_on_by_what_it_hears(
+    personality: Personality,
+) -> None:
+    flight = BridgedFlight(
+        personality, vehicle_key=VEHICLE_KEY, station_key=VEHICLE_KEY, client_key=CLIENT_KEY
+    )
+    client = signing(flight.join(), CLIENT_KEY)
+    client.mav.signing.timestamp -= 2_000_000
+    client.beat()
+    flight.run(1.5)
+    client.beat()
+    flown(flight, client)
 
 
 def test_the_audit_of_a_bridge_with_two_keys(monkeypatch: pytest.MonkeyPatch) -> None:
