@@ -116,6 +116,9 @@ class HostileRun:
         self._verifiers: dict[tuple[Vec3, bool], Verifier] = {}
         self.promised = False
         self._stoppable = False
+        self._taken_ns = 0
+        self._told_anew = True
+        """The vehicle was told something that was sent after it was taken away."""
         self.deaf_until_ns = self.mute_until_ns = self.unanswered_until_ns = 0
         self._settled_ns = 0
         self._down: deque[tuple[int, Input]] = deque()
@@ -255,7 +258,7 @@ class HostileRun:
         """The promise begins where the gate flies the vehicle, or has it take off."""
         flown = self.gate.control is Control.OURS and self.vehicle.mode is FlightMode.GUIDED
         climbs = self.gate.state is State.TAKING_OFF and self.vehicle.speed_m_s == 0.0
-        if (flown or climbs) and not self.promised:
+        if (flown or climbs) and not self.promised and self._told_anew:
             self.promised = self.clearance(self.vehicle.at) > 0.0 and not self._hurled()
         if not self.vehicle.armed:
             self.promised = False  # it falls, or stands
@@ -274,8 +277,10 @@ class HostileRun:
 
     def taken_away(self) -> None:
         """Somebody else flies it, or the place or the fence has moved: no promise holds until we
-        have it again, and as one that can be stopped inside."""
+        have it again, and as one that can be stopped inside.  Until then it flies what it was told
+        last, which may be a place that is far outside now."""
         self.promised, self._stoppable = False, False
+        self._taken_ns, self._told_anew = self.now_ns, False
 
     def _hurled(self) -> bool:
         """Did others leave it so fast, so near to the edge, that no hold could stop it inside?"""
@@ -296,7 +301,10 @@ class HostileRun:
         vehicle.step()
         self._report()
         while self._up and self._up[0][0] <= self.now_ns:
-            self._deliver(self._up.popleft()[1])
+            due_ns, what = self._up.popleft()
+            self._deliver(what)
+            if due_ns - self.up_delay_ns >= self._taken_ns and self.now_ns >= self.deaf_until_ns:
+                self._told_anew = True
         self._send_again()
         while self._down and self._down[0][0] <= self.now_ns:
             self.feed(self._down.popleft()[1])
