@@ -156,6 +156,9 @@ class FlightSettings:
     """How fast it descends (MPC_Z_V_AUTO_DN, WP_SPD_DN)."""
     land_m_s: float = 0.5
     """How fast it comes down to the ground (MPC_LAND_SPEED, LAND_SPD_MS)."""
+    return_waits_s: float = 5.0
+    """How long a return hovers before it lands (RTL_LAND_DELAY, RTL_LOIT_TIME); inf: it does not
+    land."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ USUAL: dict[AutopilotName, FlightSettings] = {
         climb_m_s=1.5,
         descend_m_s=1.5,
         land_m_s=0.7,
+        return_waits_s=0.0,
     ),
     "ardupilot": FlightSettings(
         accept_m=2.0,
@@ -29,5 +30,6 @@ USUAL: dict[AutopilotName, FlightSettings] = {
         climb_m_s=2.5,
         descend_m_s=1.5,
         land_m_s=0.5,
+        return_waits_s=5.0,
     ),
 }

@@ -74,7 +74,7 @@ def verifying(
         rally,
         on_ground=telemetry.landed is LandedState.ON_GROUND,
         begin_item=begin_item,
-        battery_pct=telemetry.battery_pct,
+        battery_pct=telemetry.charge.left_pct(now_ns),
     )
     verifier = verifier_for(
         policy,

@@ -14,6 +14,7 @@ from gcs.gate.inputs import AccuracySeen
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
+from gcs.session.charge import Charge
 from gcs.session.delay import Delay
 from gcs.session.position_health import Estimator, Gps, PositionHealth
 from gcs.session.vehicle_restarts import Clock
@@ -85,6 +86,7 @@ class Telemetry:
     prearm_ok: bool | None = None
     battery_pct: float | None = None
     battery_v: float | None = None
+    charge: Charge = field(default_factory=Charge)
 
     mission_seq: int | None = None
     mission_reached: int = -1
@@ -102,6 +104,7 @@ class Telemetry:
     def forget(self) -> None:
         """The vehicle restarted or was away: what it told of itself may be otherwise now."""
         self.forget_place()
+        self.charge = Charge()
         self.return_void |= self.return_up_m is not None
         self.return_up_m, self.return_told = None, False
         self.failsafes, self.acceptance_m, self.prearm_ok = (), None, None

@@ -36,6 +36,7 @@ UPDATE_MESSAGES: Final = frozenset(
         m.GpsGlobalOrigin,
         m.HomePosition,
         m.SysStatus,
+        m.BatteryStatus,
         m.GpsRawInt,
         m.EstimatorStatus,
         m.EkfStatusReport,
@@ -89,7 +90,10 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
                 telemetry.home = home
                 yield from _home_in_local_frame(telemetry)
         case m.SysStatus():
+            telemetry.charge.system_status(message, now_ns)
             yield from _system_status(message, telemetry)
+        case m.BatteryStatus():
+            telemetry.charge.battery_status(message, now_ns)
         case m.GpsRawInt():
             yield from telemetry.health.gps_raw(message, bool(telemetry.armed), now_ns)
         case m.EstimatorStatus():

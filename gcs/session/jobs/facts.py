@@ -6,6 +6,7 @@ the flown path, other stations may change any of them, and on a bad link each ma
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from gcs.gate.airspace.projection import Projection
@@ -49,17 +50,19 @@ QUANTITIES: dict[AutopilotName, tuple[Quantity, ...]] = {
         Quantity("cone", "RTL_CONE_SLOPE", needed=False),
     ),
 }
-SPEEDS_UP_AND_DOWN: dict[AutopilotName, tuple[Quantity, ...]] = {
+OF_FLIGHT_TIME: dict[AutopilotName, tuple[Quantity, ...]] = {
     "px4": (
         Quantity("take_off_m_s", "MPC_TKO_SPEED", needed=False),
         Quantity("climb_m_s", "MPC_Z_V_AUTO_UP", needed=False),
         Quantity("descend_m_s", "MPC_Z_V_AUTO_DN", needed=False),
         Quantity("land_m_s", "MPC_LAND_SPEED", needed=False),
+        Quantity("return_waits_s", "RTL_LAND_DELAY", needed=False),
     ),
     "ardupilot": (
         Quantity("climb_m_s", "WP_SPD_UP", needed=False),
         Quantity("descend_m_s", "WP_SPD_DN", needed=False),
         Quantity("land_m_s", "LAND_SPD_MS", needed=False),
+        Quantity("return_waits_ms", "RTL_LOIT_TIME", needed=False),
     ),
 }
 """Asked for beside the others where the policy has the time of a flight judged."""
@@ -92,7 +95,7 @@ class Learning:
         target = Address(telemetry.sysid, telemetry.compid)
         quantities = QUANTITIES[self._autopilot]
         if flight_time:
-            quantities += SPEEDS_UP_AND_DOWN[self._autopilot]
+            quantities += OF_FLIGHT_TIME[self._autopilot]
         encoding = telemetry.autopilot.param_encoding
         waits = Waits(
             times.real_ns(USUAL_WAITS.again_ns),
@@ -167,6 +170,7 @@ class Learning:
             climb_m_s=min(climb_m_s, self._positive("take_off_m_s", climb_m_s)),
             descend_m_s=self._positive("descend_m_s", usual.descend_m_s),
             land_m_s=self._positive("land_m_s", usual.land_m_s),
+            return_waits_s=self._return_waits_s(usual),
         )
         rally = tuple(item_of(item) for item in items)
         self.facts = Facts(settings, values.get("return_up_m"), rally)
@@ -175,6 +179,16 @@ class Learning:
         """What a vehicle cannot fly with (zero, less, not a number) is not believed."""
         value = self._reader.values.get(name, usual)
         return value if value > 0.0 else usual
+
+    def _return_waits_s(self, usual: FlightSettings) -> float:
+        """RTL_LAND_DELAY is in seconds, and less than zero where a return does not land;
+        RTL_LOIT_TIME is in milliseconds."""
+        values = self._reader.values
+        if self._autopilot == "px4":
+            waits_s = values.get("return_waits_s", usual.return_waits_s)
+        else:
+            waits_s = values.get("return_waits_ms", 1e3 * usual.return_waits_s) / 1e3
+        return waits_s if waits_s >= 0.0 else math.inf
 
     def _low_within_m(self, usual: FlightSettings) -> float:
         """PX4 returns lower within RTL_MIN_DIST, ArduCopter within its cone."""

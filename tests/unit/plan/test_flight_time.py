@@ -326,13 +326,17 @@ def test_without_a_take_off_it_climbs_first_as_a_px4_does(up_m: float, climbs_m:
     assert found.time_s == pytest.approx(climb_s + leg_s + down_s + 5.0 + 1.0)
 
 
-def test_a_return_is_flown_at_the_vehicles_own_speed_and_hovers_before_it_lands() -> None:
+@pytest.mark.parametrize("waits_s", [0.0, 30.0, math.inf])
+def test_a_return_is_flown_at_the_vehicles_own_speed_and_hovers_before_it_lands(
+    waits_s: float,
+) -> None:
     faster = item(Cmd.DO_CHANGE_SPEED, 0.0, 10.0, -1.0)
-    over = replace(HIGH_HOME, start_ned=(103.0, 4.0, -12.0))
+    settings = replace(USUAL["px4"], return_waits_s=waits_s)
+    over = replace(HIGH_HOME, start_ned=(103.0, 4.0, -12.0), settings=settings)
     found = flight(faster, item(Cmd.NAV_RETURN_TO_LAUNCH), over=over)
     up_s, back_s = long_way_s(20.0, *UP_DOWN), long_way_s(100.0, *PX4_LEVEL)
     down_s = long_way_s(20.0, *UP_DOWN) + 10.0 / 0.7
-    assert found.time_s == pytest.approx(up_s + back_s + down_s + 5.0 + 5.0)
+    assert found.time_s == pytest.approx(min(up_s + back_s + down_s + 5.0 + waits_s, DAY_S))
 
 
 @pytest.mark.parametrize("kind", [0.0, 1.0])

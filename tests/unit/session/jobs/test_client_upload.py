@@ -22,9 +22,15 @@ from gcs.session.jobs.relay import RelayPlan
 from gcs.session.telemetry import Telemetry
 from gcs.steps import drained
 from gcs.wire.ids import Cmd, MavFrame, MissionResult, MissionType
-from gcs.wire.messages import MissionClearAll, MissionCount, MissionItemInt, ParamRequestRead
+from gcs.wire.messages import (
+    MissionClearAll,
+    MissionCount,
+    MissionItemInt,
+    ParamRequestRead,
+    SysStatus,
+)
 from tests.unit.session import told
-from tests.unit.session.jobs.script import Board, JobScript, asked, placed
+from tests.unit.session.jobs.script import START_NS, Board, JobScript, asked, placed
 from tests.unit.session.plans import LAT, LON
 
 COMPLETE = (OutcomeKind.COMPLETE, None)
@@ -136,17 +142,23 @@ ENDURING = parse_policy("battery.endurance_s = 200", "my.toml")
 """Good for 170 s, as 15 % are kept; GOOD takes about a minute, its return included."""
 
 
-@pytest.mark.parametrize(("autopilot", "good_pct"), [(PX4, 75.0), (ARDUPILOT, 75.0)])
+def with_charge(telemetry: Telemetry, left_pct: int) -> None:
+    """SYS_STATUS has told it."""
+    status = SysStatus(0, 0, 0, 0, 12_000, -1, 0, 0, 0, 0, 0, 0, left_pct)
+    telemetry.charge.system_status(status, START_NS)
+
+
+@pytest.mark.parametrize(("autopilot", "good_pct"), [(PX4, 75), (ARDUPILOT, 75)])
 def test_a_mission_for_which_the_battery_does_not_last_is_refused(
-    autopilot: Autopilot, good_pct: float
+    autopilot: Autopilot, good_pct: int
 ) -> None:
     telemetry = placed(autopilot)
-    telemetry.battery_pct = good_pct
+    with_charge(telemetry, good_pct)
     first = () if autopilot is PX4 else (item(0),)
     items = tuple(one._replace(seq=n) for n, one in enumerate((*first, *GOOD)))
     assert upload(*items, telemetry=telemetry, policy=ENDURING).outcome == COMPLETE
     telemetry = placed(autopilot)
-    telemetry.battery_pct = 30.0
+    with_charge(telemetry, 30)
     script = upload(*items, telemetry=telemetry, policy=ENDURING)
     assert script.refused is Code.BATTERY_REACH
     assert "30 % are left of 200 s, and 15 % are kept" in script.sentence
@@ -171,10 +183,31 @@ def test_how_fast_it_climbs_and_lands_is_asked_only_where_it_is_judged(
 
 def test_a_vehicle_that_lands_slowly_needs_its_battery_for_longer() -> None:
     telemetry = placed()
-    telemetry.battery_pct = 75.0
+    with_charge(telemetry, 75)
     board = Board()
     board.parameters["MPC_LAND_SPEED"] = 0.1
     script = upload(*GOOD, board=board, telemetry=telemetry, policy=ENDURING)
+    assert script.refused is Code.BATTERY_REACH
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "name", "waits"),
+    [
+        (PX4, "RTL_LAND_DELAY", 150.0),
+        (PX4, "RTL_LAND_DELAY", -1.0),
+        (ARDUPILOT, "RTL_LOIT_TIME", 150_000.0),
+    ],
+)
+def test_one_that_hovers_for_long_before_it_lands_does_too(
+    autopilot: Autopilot, name: str, waits: float
+) -> None:
+    telemetry = placed(autopilot)
+    with_charge(telemetry, 75)
+    board = Board()
+    board.parameters[name] = waits
+    first = () if autopilot is PX4 else (item(0),)
+    items = tuple(one._replace(seq=n) for n, one in enumerate((*first, *GOOD)))
+    script = upload(*items, board=board, telemetry=telemetry, policy=ENDURING)
     assert script.refused is Code.BATTERY_REACH
 
 
