@@ -50,7 +50,7 @@ contracts: $(TEST) ## import contracts
 clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVSDK 4 and 3, pymavlink, MAVProxy, DroneKit
 	$(BIN)/python -m pytest tests/clients -v
 
-soak: $(TEST) ## the properties on new random examples, and the random runs as a whole (about 2 hours on 2 cores)
+soak: $(TEST) ## the properties on new random examples, and the random runs as a whole (about 70 minutes and 15 GB on 2 cores)
 	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios tests/soak -n $(WORKERS)
 
 mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? ARGS="vehicle --share 1/20" another part
