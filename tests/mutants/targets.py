@@ -105,7 +105,16 @@ TARGETS: Final = {
             nearest=(
                 ("gcs/bridge/guard/names.py", ("tests/unit/test_policy_file.py",)),
                 ("gcs/bridge/guard", ("tests/unit/bridge/guard",)),
-                ("gcs/bridge/meaning", ("tests/unit/bridge/test_meaning",)),
+                (
+                    "gcs/bridge/meaning",
+                    (
+                        "tests/unit/bridge/test_meaning",
+                        "tests/unit/bridge/test_sticks.py",
+                        "tests/unit/bridge/test_attitudes.py",
+                        "tests/unit/bridge/test_chosen_before_arming.py",
+                        "tests/unit/bridge/test_mission_mode.py",
+                    ),
+                ),
                 ("gcs/bridge/plans", ("tests/unit/bridge/test_plan",)),
                 ("gcs/bridge/classes", ("tests/unit/bridge/test_classes.py",)),
             ),

@@ -46,6 +46,25 @@ def kinds(names: Iterable[str], rows: Mapping[int, Row]) -> dict[str, Kind]:
     return {name: by_name[name] for name in names}
 
 
+GOLDEN = Path(__file__).parent / "golden" / "kinds.txt"
+
+
+def all_kinds() -> str:
+    """A line for each message and each command: what it is, its number, its name, its kind."""
+    tables = (("message", message_rows()), ("command", command_rows()))
+    return "".join(
+        f"{word} {number} {row.name} {row.kind}\n"
+        for word, rows in tables
+        for number, row in sorted(rows.items())
+    )
+
+
+def test_no_entry_changes_its_kind_unseen() -> None:
+    """The file is read by people when it changes; `python -m tests.unit.bridge.test_classes` writes
+    it anew."""
+    assert all_kinds() == GOLDEN.read_text(encoding="utf-8")
+
+
 class TestTheTableIsTotal:
     def test_every_message_has_a_row_and_nothing_else_has(self) -> None:
         assert differences(MESSAGES, message_rows()) == []
@@ -321,3 +340,7 @@ def test_the_table_loads_neither_pymavlink_nor_the_dialect() -> None:
         [sys.executable, "-S", "-c", code], capture_output=True, text=True, check=False
     )
     assert (done.stdout, done.stderr) == ("\n", "")
+
+
+if __name__ == "__main__":
+    GOLDEN.write_text(all_kinds(), encoding="utf-8")
