@@ -45,6 +45,13 @@ DAY_S: Final = 86_400.0
 """No time is counted beyond it; NAV_DELAY until a time of day is as long."""
 MOST_ITEMS: Final = 100_000
 """So many items, those that are repeated counted again, are as long as a day."""
+_ENDS: Final[dict[AutopilotName, tuple[Cmd, ...]]] = {
+    "px4": (Cmd.NAV_LOITER_UNLIM,),
+    "ardupilot": (Cmd.NAV_LOITER_UNLIM, Cmd.NAV_LAND),
+}
+"""Nothing follows these.  An ArduCopter that has landed disarms; a PX4 amid its mission does not,
+and goes on.  Recorded of a landing as the last item alone; of one before others it is what
+vehicle-sim does, and from memory of both (ArduCopter's MIS_OPTIONS may let it go on)."""
 _CLIMB_M_S2: Final = 1.0
 """WP_ACC_Z as delivered; the recorded PX4 climbs no more gently."""
 _BRAKE_SHARE: Final = 0.6
@@ -130,7 +137,7 @@ class TimeWalk:
                     return None
         except PlaceUnknownError:
             return None  # the path has it among its problems
-        return None if item.command == Cmd.NAV_LOITER_UNLIM else index + 1
+        return None if item.command in _ENDS[self._ground.autopilot] else index + 1
 
     def _jump(self, index: int, item: Item) -> int | None:
         to, repeats, *_ = item.params

@@ -28,6 +28,7 @@ from gcs.plan.carry import Motion, Moving, not_stopped, still_moving
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.curves import Neighbours, pieces, splines
+from gcs.plan.feasible import never_starts
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import (
@@ -51,7 +52,6 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.MOVES_HOME: ProblemKind.HOME_MOVES,
     Flown.FENCE_PART: ProblemKind.NOT_OF_A_MISSION,
     Flown.REFUSED: ProblemKind.REFUSED,
-    Flown.NEVER_STARTS: ProblemKind.NEVER_STARTS,
 }
 _CURVE_BESIDE_M = 1.0
 """So far beside a curve the vehicle may be."""
@@ -110,6 +110,8 @@ class PathWalk:
 
     def steps(self) -> Iterator[None]:
         """One item a step; after the last one `path` is whole."""
+        for index, why in never_starts(self._plan, self._ground.autopilot):
+            self._problem(index, ProblemKind.NEVER_STARTS, why)
         begin = self._ground.begin_item
         for item in self._plan.items[:begin]:
             self._change_speed(item, faster_only=True)
@@ -177,9 +179,11 @@ class PathWalk:
         if index == len(self._plan.items):
             self._stop(index - 1, here)
 
-    def _problem(self, index: int, kind: ProblemKind) -> _DeadEndError:
+    def _problem(self, index: int, kind: ProblemKind, why: str = "") -> _DeadEndError:
         label = commands.name(self._plan.items[index].command)
         sentence = f"item {index + 1} ({label}): {kind.value}"
+        if why:
+            sentence += f": {why}"
         self._problems[Problem(index, kind, sentence)] = None
         return _DeadEndError()
 

@@ -314,6 +314,20 @@ def test_a_take_off_that_has_a_place(autopilot: AutopilotName) -> None:
     assert found.time_s == pytest.approx(expected_s + 10.0 / land_m_s + 5.0 + 1.0)
 
 
+def test_an_ardupilot_s_flight_is_over_where_it_lands_whatever_follows() -> None:
+    over = ground("ardupilot")
+    again = item(Cmd.NAV_TAKEOFF), item(Cmd.NAV_WAYPOINT, to=(90.0, 0.0, 10.0)), DOWN
+    found = flight(DOWN, *again, over=over)
+    assert (found.item, found.whole) == (0, True)
+    assert found.time_s == flight(DOWN, over=over).time_s
+
+
+def test_a_px4_that_lands_amid_its_mission_goes_on() -> None:
+    found = flight(DOWN, item(Cmd.NAV_WAYPOINT, to=(90.0, 0.0, 10.0)), DOWN)
+    assert (found.item, found.whole) == (2, True)
+    assert found.time_s > 2.0 * flight(DOWN).time_s
+
+
 @pytest.mark.parametrize(("up_m", "climbs_m"), [(1.0, 2.5), (20.0, 20.0)])
 def test_without_a_take_off_it_climbs_first_as_a_px4_does(up_m: float, climbs_m: float) -> None:
     over = replace(HIGH_HOME, start_ned=(3.0, 4.0, -2.0), on_ground=True)
