@@ -44,6 +44,7 @@ from gcs.plan.legs import (
 )
 from gcs.plan.model import Item, Plan
 from gcs.plan.onward import ways_on
+from gcs.plan.speeds import leg_speed_m_s
 from gcs.plan.turns import arrivals, blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
@@ -241,12 +242,12 @@ class PathWalk:
         self._branches.append((target, here, self._motion))
 
     def _change_speed(self, item: Item, *, faster_only: bool = False) -> None:
-        """DO_CHANGE_SPEED over ground or through the air; below zero: its own speed again.
+        """DO_CHANGE_SPEED of the legs; below zero: its own speed again.
 
         `faster_only`: of an item that was flown before, or was not: nobody knows which.
         """
-        kind, speed_m_s, *_ = item.params
-        if item.command == Cmd.DO_CHANGE_SPEED and kind in (0.0, 1.0) and not math.isnan(speed_m_s):
+        speed_m_s = leg_speed_m_s(item, self._ground.autopilot)
+        if speed_m_s is not None:
             own_m_s = self._ground.settings.speed_m_s
             least_m_s = self._motion.speed_m_s if faster_only else 0.0
             changed_m_s = max(speed_m_s, least_m_s)
