@@ -127,7 +127,7 @@ def none_of(value: object, words: Iterable[str]) -> tuple[str, str]:
     """What is wrong with a value that is not one of `words`, and a hint."""
     listed = list(words)
     near = difflib.get_close_matches(str(value), listed, n=1)
-    hint = f"did you mean {near[0]}?" if near else ""
+    hint = f"did you mean {near[0]}?" if near else "write one of them"
     return f"{shown(value)} is none of: {', '.join(listed)}", hint
 
 

@@ -29,6 +29,7 @@ from gcs.plan.item_places import ItemPlaces, PlaceUnknownError
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import Ground, ProblemKind
 from gcs.plan.model import AutopilotName, Item, Plan
+from gcs.plan.speeds import climb_and_descent_m_s, leg_speed_m_s
 from gcs.wire.ids import Cmd
 
 ITEM_S: Final = 1.0
@@ -43,6 +44,13 @@ DAY_S: Final = 86_400.0
 """No time is counted beyond it; NAV_DELAY until a time of day is as long."""
 MOST_ITEMS: Final = 100_000
 """So many items, those that are repeated counted again, are as long as a day."""
+_ENDS: Final[dict[AutopilotName, tuple[Cmd, ...]]] = {
+    "px4": (Cmd.NAV_LOITER_UNLIM,),
+    "ardupilot": (Cmd.NAV_LOITER_UNLIM, Cmd.NAV_LAND),
+}
+"""Nothing follows these.  An ArduCopter that has landed disarms; a PX4 amid its mission does not,
+and goes on.  Recorded of a landing as the last item alone; of one before others it is what
+vehicle-sim does, and from memory of both (ArduCopter's MIS_OPTIONS may let it go on)."""
 _CLIMB_M_S2: Final = 1.0
 """WP_ACC_Z as delivered; the recorded PX4 climbs no more gently."""
 _BRAKE_SHARE: Final = 0.6
@@ -80,6 +88,8 @@ class TimeWalk:
         self._pos_ned = ground.start_ned
         self._on_ground = ground.on_ground
         self._speed_m_s = ground.settings.speed_m_s
+        self._climb_m_s = ground.settings.climb_m_s
+        self._descend_m_s = ground.settings.descend_m_s
         self._jerk_m_s3 = _JERK_M_S3[ground.autopilot]
         self._jumps: dict[int, int] = {}
         self._endless: int | None = None
@@ -128,7 +138,7 @@ class TimeWalk:
                     return None
         except PlaceUnknownError:
             return None  # the path has it among its problems
-        return None if item.command == Cmd.NAV_LOITER_UNLIM else index + 1
+        return None if item.command in _ENDS[self._ground.autopilot] else index + 1
 
     def _jump(self, index: int, item: Item) -> int | None:
         to, repeats, *_ = item.params
@@ -143,8 +153,11 @@ class TimeWalk:
 
     def _change_speed(self, item: Item, *, slower_only: bool = False) -> None:
         """`slower_only`: of an item that was flown before, or was not: nobody knows which."""
-        kind, speed_m_s, *_ = item.params
-        if item.command != Cmd.DO_CHANGE_SPEED or kind not in (0.0, 1.0) or math.isnan(speed_m_s):
+        climb_m_s, descend_m_s = climb_and_descent_m_s(item, self._ground.autopilot)
+        self._climb_m_s = min(self._climb_m_s, climb_m_s)
+        self._descend_m_s = min(self._descend_m_s, descend_m_s)
+        speed_m_s = leg_speed_m_s(item, self._ground.autopilot)
+        if speed_m_s is None:
             return
         own_m_s = self._ground.settings.speed_m_s
         changed_m_s = min(speed_m_s, max(own_m_s, FASTEST_M_S)) if speed_m_s > 0.0 else own_m_s
@@ -198,7 +211,7 @@ class TimeWalk:
         settings, high_m = self._ground.settings, max(0.0, down_m - self._pos_ned[2])
         slow_m = min(high_m, LANDS_FROM_M)
         self._time_s += from_rest_s(
-            high_m - slow_m, settings.descend_m_s, _CLIMB_M_S2, self._jerk_m_s3
+            high_m - slow_m, self._descend_m_s, _CLIMB_M_S2, self._jerk_m_s3
         )
         self._time_s += slow_m / settings.land_m_s + GROUND_S
         self._pos_ned, self._on_ground = (*self._pos_ned[:2], down_m), True
@@ -240,7 +253,7 @@ class TimeWalk:
         """Straight there: over the ground, and up or down meanwhile."""
         settings, flat_m = self._ground.settings, math.dist(self._pos_ned[:2], to_ned[:2])
         up_m = self._pos_ned[2] - to_ned[2]
-        climb_m_s = settings.climb_m_s if up_m > 0.0 else settings.descend_m_s
+        climb_m_s = self._climb_m_s if up_m > 0.0 else self._descend_m_s
         brake_m_s2 = _BRAKE_SHARE * settings.accel_m_s2
         return max(
             from_rest_s(flat_m, self._speed_m_s, brake_m_s2, self._jerk_m_s3),

@@ -13,6 +13,7 @@ from typing import Protocol
 from gcs.plan import commands
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.errors import Finding, Level
+from gcs.plan.feasible import never_starts
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.lint_fence import lint_fence
 from gcs.plan.lint_jumps import lint_jumps
@@ -29,6 +30,14 @@ LOWEST_GROUND_AMSL_M = -430.0
 _HERE_ALLOWED = frozenset(
     {Cmd.NAV_LAND, Cmd.NAV_TAKEOFF, Cmd.NAV_LOITER_UNLIM, Cmd.NAV_LOITER_TIME}
 )
+
+_FLOWN = (Kind.MOVE, Kind.RETURN, Kind.WAIT)
+_ENDS: dict[int, str] = {
+    Cmd.NAV_RETURN_TO_LAUNCH: "ends the flight; what follows is only reached by a jump",
+    Cmd.NAV_LAND: "lands and stops its motors; what follows is only flown after a new start, or "
+    "is reached by a jump",
+}
+_LANDS_AND_GOES_ON = "lands, and takes off again by itself for what follows"
 
 
 class _Finder(Protocol):
@@ -76,21 +85,38 @@ def _whole_mission(plan: Plan, autopilot: AutopilotName | None) -> Iterator[Find
             )
         return
     kinds = [KINDS.get(item.command) for item in plan.items]
+    stuck = [] if autopilot is None else list(never_starts(plan, autopilot))
     moving = [i for i, kind in enumerate(kinds) if kind in (Kind.MOVE, Kind.RETURN)]
     if not moving:
         yield Finding(Level.WARNING, "", "mission", "no item flies anywhere")
-    elif plan.items[moving[0]].command != Cmd.NAV_TAKEOFF:
+    elif plan.items[moving[0]].command != Cmd.NAV_TAKEOFF and not stuck:
         yield _no_take_off(moving[0], plan.items[moving[0]], autopilot)
-    for index, kind in enumerate(kinds[:-1]):
-        if kind is Kind.RETURN:
-            item = plan.items[index]
-            what = "ends the flight; what follows is only reached by a jump"
-            yield Finding(Level.WARNING, item.where, item_label(index, item), what, index=index)
-            break
+    for index, why in stuck:
+        item = plan.items[index]
+        what = f"{autopilot} stores it and never starts the mission: {why}"
+        yield Finding(Level.WARNING, item.where, item_label(index, item), what, index=index)
+    yield from _ends_before_the_last(plan, autopilot)
     ids = [item.do_jump_id for item in plan.items]
     if ids != list(range(1, len(ids) + 1)) and any(kind is Kind.JUMP for kind in kinds):
         what = "do not count 1, 2, 3 ...; jumps go to the id, not to the position"
         yield Finding(Level.NOTE, "", "doJumpIds", what)
+
+
+def _ends_before_the_last(plan: Plan, autopilot: AutopilotName | None) -> Iterator[Finding]:
+    """The first return and the first landing that something is to be flown after.
+
+    What becomes of such a landing is from memory of the autopilots (and done so by vehicle-sim).
+    """
+    flown = [i for i, item in enumerate(plan.items) if KINDS.get(item.command) in _FLOWN]
+    told: set[int] = set()
+    for index in flown[:-1]:
+        item = plan.items[index]
+        if item.command not in _ENDS or item.command in told:
+            continue
+        told.add(item.command)
+        amid_px4 = autopilot == "px4" and item.command == Cmd.NAV_LAND
+        what = _LANDS_AND_GOES_ON if amid_px4 else _ENDS[item.command]
+        yield Finding(Level.WARNING, item.where, item_label(index, item), what, index=index)
 
 
 def _no_take_off(index: int, first: Item, autopilot: AutopilotName | None) -> Finding:
@@ -118,12 +144,8 @@ def _one_item(
     elif item.command == Cmd.DO_FENCE_ENABLE and item.params[0] != 1.0:
         what = "switches the vehicle's own fence off, in part or whole"
         yield finding(Level.WARNING, what, "the legs are verified here all the same")
-    if autopilot is not None:
-        match flown_as(item.command, autopilot):
-            case Flown.REFUSED:
-                yield finding(Level.WARNING, f"{autopilot} refuses this item at upload")
-            case Flown.NEVER_STARTS:
-                yield finding(Level.WARNING, f"{autopilot} stores it and never starts the mission")
+    if autopilot is not None and flown_as(item.command, autopilot) is Flown.REFUSED:
+        yield finding(Level.WARNING, f"{autopilot} refuses this item at upload")
     if item.frame is Frame.TERRAIN:
         what = "its height is above terrain, which is not known here"
         yield finding(Level.WARNING, what, "heights above home can be checked")

@@ -41,6 +41,8 @@ def _lint_jump(plan: Plan, index: int, item: Item) -> Iterator[Finding]:
         yield finding(Level.ERROR, f"its repeat count is {repeats:g}", hint)
     elif repeats == 0:
         yield finding(Level.NOTE, "repeats 0 times, so it never jumps")
+    elif repeats == -1 and target > index:
+        yield finding(Level.WARNING, _leads_ahead(index, target))
     elif repeats == -1:
         what = "repeats for ever"
         behind = index + 1 < len(plan.items)
@@ -50,3 +52,11 @@ def _lint_jump(plan: Plan, index: int, item: Item) -> Iterator[Finding]:
         if not any(KINDS.get(other.command) in _STAYS for other in passed):
             what = f"loops to item {target + 1} without a waypoint between them"
             yield finding(Level.ERROR, what)
+
+
+def _leads_ahead(index: int, target: int) -> str:
+    """What a jump does that is made every time and leads ahead: it repeats nothing."""
+    if target == index + 1:
+        return "goes on with the next item, as if it were not there"
+    passed = f"items {index + 2} to {target} are" if target > index + 2 else f"item {target} is"
+    return f"always goes on with item {target + 1}; {passed} only reached by another jump"

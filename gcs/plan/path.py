@@ -28,6 +28,7 @@ from gcs.plan.carry import Motion, Moving, not_stopped, still_moving
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.curves import Neighbours, pieces, splines
+from gcs.plan.feasible import never_starts
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import (
@@ -43,6 +44,7 @@ from gcs.plan.legs import (
 )
 from gcs.plan.model import Item, Plan
 from gcs.plan.onward import ways_on
+from gcs.plan.speeds import leg_speed_m_s
 from gcs.plan.turns import arrivals, blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
@@ -51,7 +53,6 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.MOVES_HOME: ProblemKind.HOME_MOVES,
     Flown.FENCE_PART: ProblemKind.NOT_OF_A_MISSION,
     Flown.REFUSED: ProblemKind.REFUSED,
-    Flown.NEVER_STARTS: ProblemKind.NEVER_STARTS,
 }
 _CURVE_BESIDE_M = 1.0
 """So far beside a curve the vehicle may be."""
@@ -110,6 +111,8 @@ class PathWalk:
 
     def steps(self) -> Iterator[None]:
         """One item a step; after the last one `path` is whole."""
+        for index, why in never_starts(self._plan, self._ground.autopilot):
+            self._problem(index, ProblemKind.NEVER_STARTS, why)
         begin = self._ground.begin_item
         for item in self._plan.items[:begin]:
             self._change_speed(item, faster_only=True)
@@ -177,9 +180,11 @@ class PathWalk:
         if index == len(self._plan.items):
             self._stop(index - 1, here)
 
-    def _problem(self, index: int, kind: ProblemKind) -> _DeadEndError:
+    def _problem(self, index: int, kind: ProblemKind, why: str = "") -> _DeadEndError:
         label = commands.name(self._plan.items[index].command)
         sentence = f"item {index + 1} ({label}): {kind.value}"
+        if why:
+            sentence += f": {why}"
         self._problems[Problem(index, kind, sentence)] = None
         return _DeadEndError()
 
@@ -237,12 +242,12 @@ class PathWalk:
         self._branches.append((target, here, self._motion))
 
     def _change_speed(self, item: Item, *, faster_only: bool = False) -> None:
-        """DO_CHANGE_SPEED over ground or through the air; below zero: its own speed again.
+        """DO_CHANGE_SPEED of the legs; below zero: its own speed again.
 
         `faster_only`: of an item that was flown before, or was not: nobody knows which.
         """
-        kind, speed_m_s, *_ = item.params
-        if item.command == Cmd.DO_CHANGE_SPEED and kind in (0.0, 1.0) and not math.isnan(speed_m_s):
+        speed_m_s = leg_speed_m_s(item, self._ground.autopilot)
+        if speed_m_s is not None:
             own_m_s = self._ground.settings.speed_m_s
             least_m_s = self._motion.speed_m_s if faster_only else 0.0
             changed_m_s = max(speed_m_s, least_m_s)

@@ -161,6 +161,6 @@ def test_the_words_of_a_severity_are_listed_once(policy: Path) -> None:
     assert str(found).endswith(
         '"orange" is none of: nominal, caution, hold, return, land, terminate'
     )
-    assert found.hint == ""
+    assert found.hint == "write one of them"
     policy.write_text('[severities]\nbattery_low = "retrun"\n')
     assert error(policy).hint == "did you mean return?"

@@ -41,8 +41,9 @@ class MissionSupport:
     def stop_pictures(self) -> None:
         self._camera.stop_pictures()
 
-    def cruise_at(self, speed_m_s: float | None) -> None:
-        self._state.change_speed(speed_m_s, SpeedType.GROUND)
+    def change_speed(self, kind: float, speed_m_s: float | None) -> None:
+        typed = self._state.rules.mission_speeds_have_type
+        self._state.change_speed(speed_m_s, SpeedType(int(kind)) if typed else SpeedType.GROUND)
 
     def move_home(self, where_ned: Vec3 | None) -> None:
         self._state.move_home(where_ned)

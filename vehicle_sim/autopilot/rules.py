@@ -65,6 +65,7 @@ class AutopilotRules:
     repositions_by_hold: bool  # DO_REPOSITION flies in the hold mode; else in GUIDED
     pauses: bool  # DO_PAUSE_CONTINUE is known
     changes_speed_on_ground: bool  # DO_CHANGE_SPEED; else in flight only
+    mission_speeds_have_type: bool  # an item's SPEED_TYPE counts; else each is the cruise speed
 
     # The parts of the autopilot: lifting off and landing.
     arming_delay_s: float  # ARMING_DELAY_SEC, by memory: the motors idle so long at first
@@ -199,6 +200,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         repositions_by_hold=True,
         pauses=False,
         changes_speed_on_ground=True,
+        mission_speeds_have_type=False,
         # The parts of the autopilot: lifting off and landing.
         arming_delay_s=0.0,
         tells_land_detector=True,
@@ -322,6 +324,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         repositions_by_hold=False,
         pauses=True,
         changes_speed_on_ground=False,
+        mission_speeds_have_type=True,
         # The parts of the autopilot: lifting off and landing.
         arming_delay_s=2.0,
         tells_land_detector=False,

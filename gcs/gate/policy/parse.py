@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final, NamedTuple, TypeAlias
@@ -18,6 +19,8 @@ from gcs.toml_lines import KeyPath
 Table: TypeAlias = dict[str, object]
 
 _PARAMETER = re.compile(r"[A-Z0-9_*]{1,16}")
+_UNPRINTABLE = frozenset({"Cc", "Cf", "Zl", "Zp"})
+"""Unicode's categories: control, format (of the direction of writing), new lines."""
 _BOUNDS = ("floor_up_m", "ceiling_up_m")
 NAME_HINT = "a refusal names its zone: give each a name of its own"
 FENCE_FILE_HINT = "the path of a plan, from the folder of this file"
@@ -87,6 +90,7 @@ def _build(
     _check_stream(doc, policy)
     _check_slack(doc, policy)
     _check_zones(doc, policy, zones)
+    _check_printable(doc, policy, zones)
     return policy
 
 
@@ -115,7 +119,7 @@ def _convert(doc: toml.Document, table: Table) -> Policy:
     except toml.TomlError as error:
         if error.key not in _MAY_BE_NONE:
             raise
-        hint = f'{error.hint}, or "none"'
+        hint = f'{error.hint or "a number"}, or "none"'
         raise toml.TomlError(error.file, error.line, error.key, error.what, hint) from None
 
 
@@ -226,14 +230,11 @@ def _check_bridge(doc: toml.Document, rules: BridgeRules, check_names: CheckName
             if not _PARAMETER.fullmatch(name):
                 hint = "up to 16 capital letters, digits and _; * stands for any letters"
                 raise doc.error(("bridge", key, number), f'"{name}" names no parameter', hint)
+    _check_parameters(doc, rules)
     for number, name in enumerate(rules.extra_harmless):
         if name in rules.extra_denied:
             what = f'"{name}" is in extra_denied, too'
             raise doc.error(("bridge", "extra_harmless", number), what)
-    for number, name in enumerate(rules.parameters_allowed):
-        if name in rules.parameters_guarded:
-            what = f'"{name}" is in parameters_guarded, too'
-            raise doc.error(("bridge", "parameters_allowed", number), what)
     if doc.has(("bridge", "message_hz")) and rules.message_hz > rules.messages_hz:
         what = f"{rules.message_hz:g} is more than messages_hz of {rules.messages_hz:g}"
         hint = "messages_hz is what all messages together may have"
@@ -241,6 +242,25 @@ def _check_bridge(doc: toml.Document, rules: BridgeRules, check_names: CheckName
     fault = None if check_names is None else check_names(rules)
     if fault is not None:
         raise doc.error(("bridge", fault.key, fault.entry), fault.what, fault.hint)
+
+
+def _check_parameters(doc: toml.Document, rules: BridgeRules) -> None:
+    """Names beside a choice with which they mean nothing, and names that take back the choice."""
+    does = {"refuse": "refuses them all", "forward": "forwards them all"}.get(rules.parameters)
+    for key, names in (
+        ("parameters_guarded", rules.parameters_guarded if does else ()),
+        ("parameters_allowed", rules.parameters_allowed if rules.parameters == "forward" else ()),
+    ):
+        if names:
+            what = f'means nothing beside parameters = "{rules.parameters}", which {does}'
+            raise doc.error(("bridge", key), what, 'leave it out, or write parameters = "guard"')
+    for number, name in enumerate(rules.parameters_allowed):
+        at = ("bridge", "parameters_allowed", number)
+        if name in rules.parameters_guarded:
+            raise doc.error(at, f'"{name}" is in parameters_guarded, too')
+        if rules.parameters == "refuse" and not name.strip("*"):
+            what = f'"{name}" allows every parameter, which parameters = "refuse" refuses'
+            raise doc.error(at, what, 'name some of them, or write parameters = "forward"')
 
 
 def _check_stream(doc: toml.Document, p: Policy) -> None:
@@ -302,6 +322,18 @@ def _check_zones(doc: toml.Document, p: Policy, zones: list[_Written]) -> None:
         if files:
             hint = f"{', '.join(files)} only says where it may not be: {hint}"
         raise doc.error(("fence",), "has no inclusion zone", hint)
+
+
+def _check_printable(doc: toml.Document, p: Policy, zones: list[_Written]) -> None:
+    """Names are shown on terminals, which obey what they cannot print."""
+    names: list[tuple[KeyPath, str]] = [(("name",), p.name)]
+    for at, zone, file in zones:
+        names.append((at if file else (*at, "name"), zone.name))
+    for at, name in names:
+        odd = sorted({f"U+{ord(c):04X}" for c in name if unicodedata.category(c) in _UNPRINTABLE})
+        if odd:
+            what = f"has characters that cannot be printed ({', '.join(odd)})"
+            raise doc.error(at, what, "write letters, digits, signs and spaces")
 
 
 # -------------------------------------------------------------------------------- defaults

@@ -24,10 +24,12 @@ MOST = 1.0e5
 
 FromZero: TypeAlias = Annotated[float, Meta(ge=0.0, le=MOST)]
 FromHundredth: TypeAlias = Annotated[float, Meta(ge=0.01, le=MOST)]
-FromTwentieth: TypeAlias = Annotated[float, Meta(ge=0.05, le=MOST)]
 FromTenth: TypeAlias = Annotated[float, Meta(ge=0.1, le=MOST)]
 FromOne: TypeAlias = Annotated[float, Meta(ge=1.0, le=MOST)]
 Deceleration: TypeAlias = Annotated[float, Meta(ge=0.1, le=50.0)]
+PositionAge: TypeAlias = Annotated[float, Meta(ge=0.05, le=10.0)]
+HeartbeatAge: TypeAlias = Annotated[float, Meta(ge=1.0, le=60.0)]
+"""The greatest ages: with older ones a vehicle that is not heard would be flown on."""
 Tilt: TypeAlias = Annotated[float, Meta(ge=0.0, le=45.0)]
 ThrustError: TypeAlias = Annotated[float, Meta(ge=0.0, le=0.5)]
 DeadBand: TypeAlias = Annotated[float, Meta(ge=0.0, le=0.9)]
@@ -267,9 +269,9 @@ class Policy(_Section, frozen=True):
     approach: Mapping[str, Approach]
     overshoot: Mapping[str, Overshoot]
 
-    position_age_s: FromTwentieth
+    position_age_s: PositionAge
     stale_grace_s: FromZero
-    heartbeat_age_s: FromOne
+    heartbeat_age_s: HeartbeatAge
     jump_speed_m_s: FromOne
 
     arrival: Arrival

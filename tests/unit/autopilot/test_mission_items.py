@@ -311,7 +311,7 @@ def test_px4_knows_no_splines() -> None:
         (item(1, 112, p1=-2.0), "time"),
         (item(1, 113, p1=1.0), "113"),
         (item(1, 114, p1=-2.0), "distance"),
-        (item(1, 178, p1=2.0, p2=3.0), "type 2"),
+        (item(1, 178, p1=2.0, p2=-3.0), "speed"),
         (item(1, 179, frame=2, p1=0.0), "missing"),
         (item(1, 18, 5.0, p1=float("inf")), "turns"),
         (item(1, 83, 5.0), "83"),
@@ -324,6 +324,36 @@ def test_more_that_is_refused(personality: Personality, bad: PlanItem, word: str
     assert refusal is not None
     assert refusal[0] == 1 + first
     assert word in refusal[1]
+
+
+def fastest_m_s(kind: float, there: PlanItem, personality: Personality) -> tuple[float, float]:
+    """Over ground and upwards, on the way there after DO_CHANGE_SPEED to 1 m/s."""
+    slow = item(2, 178, p1=kind, p2=1.0)
+    flight = started(personality, TAKE_OFF, item(1, 93, p1=2.0), slow, there)
+    first = 1 if personality == "ardupilot" else 0
+    flight.fly(60.0, lambda: flight.vehicle.mission_current == 3 + first)
+    level_m_s = up_m_s = 0.0
+    while flight.vehicle.mission_state == 3:
+        flight.fly(0.2)
+        n, e, d = flight.vehicle.truth.v_ned
+        level_m_s, up_m_s = max(level_m_s, hypot(n, e)), max(up_m_s, -d)
+        assert flight.vehicle.time_ns < 90e9
+    return level_m_s, up_m_s
+
+
+def test_an_ardupilot_s_mission_says_how_fast_it_climbs() -> None:
+    """Recorded of the command (H1_change_speed); that a mission's item does so is from memory."""
+    level_m_s, up_m_s = fastest_m_s(2.0, item(3, 16, 15.0, 0.0, 15.0), "ardupilot")
+    assert level_m_s > 1.2
+    assert up_m_s < 1.2
+    assert fastest_m_s(3.0, item(3, 16, 15.0, 0.0, 15.0), "ardupilot")[1] > 1.2
+
+
+@pytest.mark.parametrize("kind", [2.0, 3.0, 7.0])
+def test_a_px4_s_mission_changes_its_speed_whatever_type_it_says(kind: float) -> None:
+    """H1b_change_speed_type_ignored, of the command; of a mission's item from memory."""
+    level_m_s, _ = fastest_m_s(kind, item(3, 16, 20.0, 0.0, 5.0), "px4")
+    assert 0.8 < level_m_s < 1.3
 
 
 @either

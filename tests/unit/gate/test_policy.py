@@ -191,6 +191,39 @@ ZONE = '[[fence]]\nname = "a"\n'
             "parameters_guarded, too",
         ),
         (
+            '[bridge]\nparameters = "refuse"\nparameters_guarded = ["SDLOG_*"]',
+            3,
+            "bridge.parameters_guarded",
+            'means nothing beside parameters = "refuse", which refuses them all',
+        ),
+        (
+            '[bridge]\nparameters = "refuse"\nparameters_allowed = ["SDLOG_MODE", "*"]',
+            3,
+            "bridge.parameters_allowed[2]",
+            "allows every parameter, which",
+        ),
+        (
+            '[bridge]\nparameters = "forward"\nparameters_guarded = ["SDLOG_*"]',
+            3,
+            "bridge.parameters_guarded",
+            'means nothing beside parameters = "forward", which forwards them all',
+        ),
+        (
+            '[bridge]\nparameters_allowed = ["SDLOG_*"]\nparameters = "forward"',
+            2,
+            "bridge.parameters_allowed",
+            'means nothing beside parameters = "forward"',
+        ),
+        ("position_age_s = 10.1", 1, "position_age_s", "10.1 is impossible"),
+        ("heartbeat_age_s = 61", 1, "heartbeat_age_s", "61 is impossible"),
+        ('name = "a\\u0000b\\u001b[31m"', 1, "name", "cannot be printed (U+0000, U+001B)"),
+        (
+            '[[fence]]\nname = "a\\u202eb"\nradius_m = 5',
+            2,
+            "fence[1].name",
+            "cannot be printed (U+202E)",
+        ),
+        (
             '[bridge]\nextra_denied = ["X"]\nextra_harmless = ["X"]',
             3,
             "bridge.extra_harmless[1]",
@@ -430,3 +463,24 @@ def test_a_fence_file_is_held_to_the_margins_too() -> None:
 
 def test_a_fence_file_where_none_can_be_read_is_refused() -> None:
     assert (error(FILE).line, error(FILE).key) == (3, "fence[1].path")
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ('rtl_blocked = "x"', "write one of them"),
+        ("battery.endurance_s = true", 'a number, or "none"'),
+        ('[bridge]\nparameters = "forward"\nparameters_allowed = ["X"]', 'parameters = "guard"'),
+    ],
+)
+def test_what_to_write_in_its_place_is_in_the_hint(text: str, hint: str) -> None:
+    with pytest.raises(TomlError) as caught:
+        parse_policy(text, "my.toml")
+    assert hint in caught.value.hint
+
+
+def test_the_oldest_position_and_heartbeat_that_a_policy_may_take() -> None:
+    oldest = parse_policy("position_age_s = 10\nheartbeat_age_s = 60", "my.toml")
+    assert (oldest.position_age_s, oldest.heartbeat_age_s) == (10.0, 60.0)
+    named = parse_policy('[bridge]\nparameters = "refuse"\nparameters_allowed = ["X"]', "my.toml")
+    assert named.bridge.parameters_allowed == ("X",)

@@ -314,6 +314,20 @@ def test_a_take_off_that_has_a_place(autopilot: AutopilotName) -> None:
     assert found.time_s == pytest.approx(expected_s + 10.0 / land_m_s + 5.0 + 1.0)
 
 
+def test_an_ardupilot_s_flight_is_over_where_it_lands_whatever_follows() -> None:
+    over = ground("ardupilot")
+    again = item(Cmd.NAV_TAKEOFF), item(Cmd.NAV_WAYPOINT, to=(90.0, 0.0, 10.0)), DOWN
+    found = flight(DOWN, *again, over=over)
+    assert (found.item, found.whole) == (0, True)
+    assert found.time_s == flight(DOWN, over=over).time_s
+
+
+def test_a_px4_that_lands_amid_its_mission_goes_on() -> None:
+    found = flight(DOWN, item(Cmd.NAV_WAYPOINT, to=(90.0, 0.0, 10.0)), DOWN)
+    assert (found.item, found.whole) == (2, True)
+    assert found.time_s > 2.0 * flight(DOWN).time_s
+
+
 @pytest.mark.parametrize(("up_m", "climbs_m"), [(1.0, 2.5), (20.0, 20.0)])
 def test_without_a_take_off_it_climbs_first_as_a_px4_does(up_m: float, climbs_m: float) -> None:
     over = replace(HIGH_HOME, start_ned=(3.0, 4.0, -2.0), on_ground=True)
@@ -351,7 +365,30 @@ def test_a_speed_over_ground_and_one_through_the_air_count(kind: float) -> None:
 @pytest.mark.parametrize("p", [(2.0, 2.0), (3.0, 2.0), (0.0, math.nan)])
 def test_what_is_no_speed_over_ground_does_not_count(p: tuple[float, float]) -> None:
     far, none = item(Cmd.NAV_WAYPOINT, to=(600.0, 0.0, 10.0)), item(Cmd.DO_CHANGE_SPEED, *p, -1.0)
-    assert flight(none, far, DOWN).time_s == pytest.approx(flight(far, DOWN).time_s)
+    over = ground("ardupilot")
+    found = flight(none, far, DOWN, over=over)
+    assert found.time_s == pytest.approx(flight(far, DOWN, over=over).time_s)
+
+
+@pytest.mark.parametrize("kind", [2.0, 3.0])
+def test_a_px4_takes_any_speed_for_that_of_its_legs(kind: float) -> None:
+    far, slow = item(Cmd.NAV_WAYPOINT, to=(600.0, 0.0, 10.0)), (2.0, -1.0)
+    found = flight(item(Cmd.DO_CHANGE_SPEED, kind, *slow), far, DOWN)
+    assert found.time_s == flight(item(Cmd.DO_CHANGE_SPEED, 1.0, *slow), far, DOWN).time_s
+
+
+@pytest.mark.parametrize(("kind", "up_m"), [(2.0, 60.0), (3.0, 0.0)])
+def test_an_ardupilot_that_is_to_climb_or_to_descend_slowly_takes_longer(
+    kind: float, up_m: float
+) -> None:
+    over = ground("ardupilot", (0.0, 0.0, -30.0))
+    there = item(Cmd.NAV_WAYPOINT, to=(0.0, 0.0, up_m))
+
+    def time_s(speed_m_s: float) -> float:
+        return flight(item(Cmd.DO_CHANGE_SPEED, kind, speed_m_s, -1.0), there, over=over).time_s
+
+    assert time_s(0.05) - time_s(9.0) > 500.0
+    assert time_s(9.0) == flight(there, over=over).time_s
 
 
 def test_a_wide_circle_is_flown_as_fast_as_half_the_acceleration_bends_it() -> None:

@@ -69,6 +69,65 @@ def test_a_loop_without_a_waypoint() -> None:
     assert "without a waypoint" in only(found).what
 
 
+LAND = simple(9, 21, 3, [0, 0, 0, 0, 47.39785, 8.5456, 0])
+BACK = simple(9, 20, 2, [0] * 7)
+
+
+def in_order(*items: dict[str, Any]) -> list[dict[str, Any]]:
+    return [item | {"doJumpId": number} for number, item in enumerate(items, start=1)]
+
+
+@pytest.mark.parametrize(
+    ("items", "index", "words"),
+    [
+        ([AWAY, TAKEOFF, AWAY, BACK], 1, "a take-off must be the first item that is flown"),
+        ([TAKEOFF, TAKEOFF, AWAY, BACK], 1, "a take-off must be the first item that is flown"),
+        ([LAND, AWAY], 0, "a landing must not be the first item that is flown"),
+    ],
+)
+def test_what_px4_stores_and_never_starts(
+    items: list[dict[str, Any]], index: int, words: str
+) -> None:
+    found = [f for f in findings(*in_order(*items)) if "never starts the mission" in f.what]
+    assert [(f.level, f.index) for f in found] == [(Level.WARNING, index)]
+    assert words in found[0].what
+
+
+def test_no_px4_climbs_first_to_a_landing() -> None:
+    assert not [f for f in findings(*in_order(LAND, AWAY, BACK)) if "climbs first" in f.hint]
+
+
+def test_an_ardupilot_s_landing_ends_the_flight_unless_it_is_the_last() -> None:
+    def told(*items: dict[str, Any]) -> list[int | None]:
+        found = findings(*in_order(*items), who="ardupilot")
+        return [f.index for f in found if "lands and stops its motors" in f.what]
+
+    assert told(TAKEOFF, AWAY, LAND, AWAY, BACK) == [2]
+    assert told(TAKEOFF, AWAY, LAND) == []
+    assert told(TAKEOFF, AWAY, LAND, simple(4, 2001, 2, [0] * 7)) == []
+
+
+def test_that_a_px4_takes_off_again_after_a_landing_is_told() -> None:
+    (found,) = findings(*in_order(TAKEOFF, AWAY, LAND, AWAY, BACK))
+    assert (found.level, found.index) == (Level.WARNING, 2)
+    assert found.what == "lands, and takes off again by itself for what follows"
+    assert findings(*in_order(TAKEOFF, AWAY, LAND)) == []
+
+
+@pytest.mark.parametrize(
+    ("to", "words"),
+    [
+        (6, "always goes on with item 6; items 4 to 5 are only reached by another jump"),
+        (5, "always goes on with item 5; item 4 is only reached by another jump"),
+        (4, "goes on with the next item, as if it were not there"),
+    ],
+)
+def test_a_jump_ahead_for_ever_repeats_nothing(to: int, words: str) -> None:
+    jump = simple(3, 177, 2, [to, -1, 0, 0, 0, 0, 0])
+    found = findings(*in_order(TAKEOFF, AWAY, jump, AWAY, AWAY, BACK))
+    assert only(found).what == words
+
+
 def test_a_jump_for_ever_hides_what_follows() -> None:
     last = waypoint(4, 47.39775, 8.5456, 0, command=21)
     found = only(findings(TAKEOFF, AWAY, simple(3, 177, 2, [2, -1, 0, 0, 0, 0, 0]), last))

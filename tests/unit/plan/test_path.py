@@ -193,6 +193,32 @@ def test_what_cannot_be_known_is_a_problem(item: Item, ground: Ground, kind: Pro
     assert "item 1" in flown.problems[0].sentence
 
 
+@pytest.mark.parametrize(
+    ("items", "found"),
+    [
+        ((at(5, 0, 5), at(0, 0, 5, 22), at(0, 0, 0, 20)), (1, "take-off must be the first")),
+        ((at(0, 0, 5, 22), at(0, 0, 0, 21), at(0, 0, 5, 22)), (2, "take-off must be the first")),
+        ((at(0, 0, 5, 93), at(0, 0, 5, 22)), (1, "take-off must be the first")),
+        ((at(0, 0, 0, 178), at(0, 0, 0, 21), at(5, 0, 5)), (1, "landing must not be the first")),
+        ((at(0, 0, 5, 22), at(0, 0, 0, 20), at(0, 0, 0, 112)), (2, "it waits for a condition")),
+    ],
+    ids=["after a waypoint", "after a landing", "after a delay", "landing", "after the return"],
+)
+def test_px4_never_starts_it_and_ardupilot_does(
+    items: tuple[Item, ...], found: tuple[int, str]
+) -> None:
+    index, words = found
+    (problem,) = path(*items).problems
+    assert (problem.item, problem.kind) == (index, ProblemKind.NEVER_STARTS)
+    assert words in problem.sentence
+    assert path(*items, ground=COPTER).problems == ()
+
+
+def test_a_take_off_after_what_does_not_fly_is_the_first_item_that_is_flown() -> None:
+    speed = at(0, 0, 0, 178)
+    assert path(speed, at(0, 0, 5, 22), at(5, 0, 5), at(0, 0, 0, 21)).problems == ()
+
+
 def test_without_an_origin_a_plan_in_metres_still_has_a_path() -> None:
     ground = replace(GROUND, north_east_of=None, origin_alt_amsl_m=None)
 

@@ -162,7 +162,7 @@ _HERE_IF_ZERO_COPTER = _HERE_IF_ZERO | {
     Cmd.SPLINE,
     Cmd.PAYLOAD_PLACE,
 }
-_GROUND_SPEED = frozenset({0.0, 1.0})  # SPEED_TYPE: a multicopter has no other horizontal one
+_SPEED_TYPES = frozenset({0.0, 1.0, 2.0, 3.0})  # SPEED_TYPE: air, ground, climb, descent
 
 _GLOBAL = frozenset({0, 5})  # MAV_FRAME_GLOBAL, _INT: metres above mean sea level
 _RELATIVE = frozenset({3, 6})  # MAV_FRAME_GLOBAL_RELATIVE_ALT, _INT: metres above home
@@ -250,7 +250,9 @@ def _why_not_values(item: PlanItem, count: int, rules: AutopilotRules) -> str | 
             if not isfinite(item.p2) or item.p2 < -1:
                 return f"{item.p2:g} repetitions"
         case Cmd.CHANGE_SPEED:
-            if item.p1 not in _GROUND_SPEED:
+            # PX4 ignores the type (H1b_change_speed_type_ignored, as a command) and looks at none
+            # at upload (C8); ArduPilot knows these four (H1_change_speed, its AUTO from memory).
+            if rules.mission_speeds_have_type and item.p1 not in _SPEED_TYPES:
                 return f"speed of type {item.p1:g}"
             if not isfinite(item.p2) or (item.p2 <= 0.0 and item.p2 not in (-1.0, -2.0)):
                 return f"speed {item.p2:g} m/s"

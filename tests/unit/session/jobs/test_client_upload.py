@@ -128,6 +128,25 @@ def test_what_is_doubtful_about_a_mission_that_clears_is_told_to_its_client() ->
     assert told.events(upload(*GOOD).work, ipc.Trouble) == []
 
 
+def test_a_px4_is_brought_no_mission_that_it_would_never_start() -> None:
+    land = item(2, Cmd.NAV_LAND)
+    script = upload(*GOOD[:2], land, item(3, Cmd.NAV_TAKEOFF), item(4, north_m=10.0))
+    assert script.refused is Code.BAD_MISSION
+    assert "item 4 (NAV_TAKEOFF)" in script.sentence
+    assert "a take-off must be the first item that is flown" in script.sentence
+    assert script.sent(MissionCount) == []
+
+
+def test_that_an_ardupilot_ends_its_flight_with_the_first_landing_is_told_to_its_client() -> None:
+    home = item(0, z=488.0, frame=MavFrame.GLOBAL_INT)
+    again = (item(4, Cmd.NAV_TAKEOFF), item(5, north_m=10.0), item(6, Cmd.NAV_LAND))
+    items = (home, item(1, Cmd.NAV_TAKEOFF), item(2, north_m=20.0), item(3, Cmd.NAV_LAND), *again)
+    script = upload(*items, telemetry=placed(ARDUPILOT)).run(5.0)
+    assert script.outcome == COMPLETE
+    (warning,) = told.events(script.work, ipc.Trouble)
+    assert warning.text.startswith("warning: item 3 (NAV_LAND): lands and stops its motors")
+
+
 def test_a_return_that_is_blocked_where_the_policy_only_warns_of_it_is_told_to_its_client() -> None:
     board = Board()
     board.parameters["RTL_RETURN_ALT"] = 130.0  # above max_up_m

@@ -236,7 +236,7 @@ def test_no_command_that_is_refused_by_default_rides_in_a_mission(autopilot: Aut
     refused = (Kind.DENIED, Kind.CONFIGURATION, Kind.LOCAL)
     carried = {row.name: row.kind for n, row in command_rows().items() if is_carried(n, autopilot)}
     assert "DO_DIGICAM_CONTROL" in carried
-    assert "NAV_TAKEOFF" in carried
+    assert "NAV_LOITER_UNLIM" in carried
     unnoticed = {name for name, kind in carried.items() if kind in refused}
     assert unnoticed == JUDGED_BY_THE_VERIFIER[autopilot.name]
 
