@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from typing import Final
 
 from gcs.bridge.answers import texts
-from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers
+from gcs.bridge.pending import From
 from gcs.bridge.plans.collecting import acknowledgement
 from gcs.bridge.plans.effects import PlanEffect, Refused
 from gcs.bridge.recent_texts import RecentTexts
