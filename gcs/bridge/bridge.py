@@ -16,7 +16,6 @@ from gcs.bridge.classes import Kind, message_row
 from gcs.bridge.client import Client, Exchange, of_vehicle
 from gcs.bridge.client_heartbeats import ClientHeartbeats
 from gcs.bridge.control import ControlServer
-from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
     Answers,
     AsksVehicle,
@@ -31,6 +30,7 @@ from gcs.bridge.judge.climbs import asks_for_height, climbs
 from gcs.bridge.judge.plans import of_plan
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
+from gcs.bridge.pending import From
 from gcs.bridge.refused_addresses import RefusedAddresses, WhyNotOurs, nobody_else
 from gcs.bridge.routing import Routes, target_of
 from gcs.bridge.unheard_clients import Unheard
@@ -348,7 +348,7 @@ class Bridge:
         effects: list[BridgeEffect] = []
         for each in self._exchanges():
             if each.number != number:
-                effects += of_vehicle(each, each.forget_choice(who, now_ns))
+                effects += of_vehicle(each, each.control_lost(who, now_ns))
         for vehicle in vehicles:
             effects += self._to_all(vehicle, Level.INFO, f"gate: {who}", now_ns)
         return effects

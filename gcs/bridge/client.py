@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 
 from gcs import ipc
-from gcs.bridge.dialogue import Dialogue, From
+from gcs.bridge.dialogue import Dialogue
 from gcs.bridge.dropped_messages import DroppedMessages
 from gcs.bridge.effects import BridgeEffect, Notes, OfVehicle, Says
 from gcs.bridge.meaning.chosen_before_arming import (
@@ -24,6 +24,7 @@ from gcs.bridge.meaning.chosen_before_arming import (
 from gcs.bridge.meaning.meaning import Meaning, Seen, Settled, Sticks, Words
 from gcs.bridge.meaning.pace import Pace
 from gcs.bridge.meaning.stick_stream import StickStream
+from gcs.bridge.pending import From
 from gcs.bridge.plans.server import PlanServer
 from gcs.gate.effects import Level
 from gcs.protocol.transfer import Timing
@@ -180,6 +181,12 @@ class Exchange:
         self._chosen = None
         note = Notes(Level.INFO, f"{self.name}: {text}")
         return [note, *self.dialogue.text(self._chosen_by, Level.INFO, text, now_ns)]
+
+    def control_lost(self, why: str, now_ns: int) -> list[BridgeEffect]:
+        """Another one is in control, or nobody: what was chosen is not flown, and what was answered
+        is not answered from memory."""
+        self.dialogue.control_lost()
+        return self.forget_choice(why, now_ns)
 
     def keep_mode_for_now(self, now_ns: int) -> None:
         """An arming is asked for: if it is refused, the mode is taken back later."""

@@ -24,11 +24,11 @@ from gcs.bridge.answers import (
     texts,
 )
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
+from gcs.bridge.pending import From, Pending, Told
 from gcs.bridge.recent_texts import RecentTexts
 from gcs.bridge.repeated_requests import GUIDED_ITEM, command_of, key_of
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
-from gcs.protocol.effects import Address
 from gcs.wire.ids import Result
 from gcs.wire.messages import Message
 
@@ -48,44 +48,6 @@ SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
 sends next (a take-off, a go-to) is refused before.  All else is answered as the vehicle answers."""
 
 
-@dataclass(frozen=True, slots=True)
-class From:
-    """Who sent a message on which link, and which component it was for."""
-
-    link: int
-    source: Address
-    addressed: Address
-
-
-@dataclass(slots=True)
-class _Pending:
-    """A command, or another message that asks, whose answer is not given yet."""
-
-    asked_by: From
-    command: int
-    """MAV_CMD; GUIDED_ITEM; 0 for what is not acknowledged."""
-    key: bytes
-    rest: tuple[ipc.Ask, ...]
-    """What is to be asked after it."""
-    name: str
-    """For texts."""
-    word: str
-    operation: int = 0
-    answered: int | None = None
-    """MAV_RESULT that the client was told."""
-    vehicle_result: int | None = None
-    answered_by: str = ""
-    """The word whose completion answers the command, the end of the last being told as text; empty:
-    the last answers it."""
-    note: str = ""  # told when the first of what is asked is accepted
-
-
-@dataclass(slots=True)
-class _Told:
-    key: bytes
-    until_ns: int
-
-
 @dataclass(slots=True)
 class Dialogue:
     """One client's requests of one vehicle.
@@ -98,12 +60,12 @@ class Dialogue:
     vehicle: int = 0
     numbers: Iterator[int] = field(default_factory=lambda: count(1))
     _next_text: int = 1
-    _pending: dict[int, _Pending] = field(default_factory=dict)
+    _pending: dict[int, Pending] = field(default_factory=dict)
     _with_arm: dict[int, list[int]] = field(default_factory=dict)
     """By the number of an arming that is under way: the requests that were to arm first, too."""
     _last_key: bytes = b""
     """The message that was asked for last."""
-    _told: _Told | None = None
+    _told: Told | None = None
     """Its answer, if it was accepted."""
     _shown: tuple[str, bool] | None = None
     """The mode of the last heartbeat, and whether it showed the vehicle armed."""
@@ -146,13 +108,13 @@ class Dialogue:
             return [*done, self._acknowledge(asked_by, command, Result.ACCEPTED)]
         if asks[0].word == "mission_check" and self._arming() is not None:
             asks = asks[1:]  # too late: the start of the mission verifies it, too
-        pending = _Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
+        pending = Pending(asked_by, command, key, tuple(asks[1:]), asks[0].word, asks[0].word)
         pending.answered_by, pending.note = answered_by, note
         if asks[-1].word == "orbit":
             self._orbit_from = self._streams_from = asked_by
         return self._ask_or_wait(pending, asks[0])
 
-    def _ask_or_wait(self, pending: _Pending, ask: ipc.Ask) -> list[BridgeEffect]:
+    def _ask_or_wait(self, pending: Pending, ask: ipc.Ask) -> list[BridgeEffect]:
         """Ask for `ask` now; an arming, after which something else is to be asked, waits for one
         that is under way."""
         arming = self._arming() if pending.rest and ask.word == "arm" else None
@@ -179,12 +141,20 @@ class Dialogue:
         repeated = self._repeated(asked_by, key, command, now_ns)
         if repeated is not None:
             return repeated
-        pending = _Pending(asked_by, command, key, (), name, "")
+        pending = Pending(asked_by, command, key, (), name, "")
         return [Refuses(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
 
     def forget(self) -> None:
         """Somebody else has asked for something: what was accepted may hold no more."""
         self._told = None
+
+    def control_lost(self) -> None:
+        """Another client, or nobody, is in control: what this one was told of its requests holds no
+        more, though they may be flown on."""
+        self._told = None
+        for pending in self._pending.values():
+            if pending.answered is not None:
+                pending.key = b""
 
     def shown(self, mode_name: str, *, armed: bool) -> None:
         """A heartbeat of the vehicle: where it shows a change, what was accepted before may hold no
@@ -207,7 +177,7 @@ class Dialogue:
         """The next number of a request of this client."""
         return next(self.numbers)
 
-    def _open(self, pending: _Pending, ask: ipc.Ask) -> ipc.Ask:
+    def _open(self, pending: Pending, ask: ipc.Ask) -> ipc.Ask:
         number = self.number()
         self._pending[number] = pending
         return msgspec.structs.replace(ask, id=number, vehicle=self.vehicle)
@@ -358,14 +328,14 @@ class Dialogue:
         ]
 
     def _answer(
-        self, pending: _Pending, result: int, code: Code | None, now_ns: int
+        self, pending: Pending, result: int, code: Code | None, now_ns: int
     ) -> list[BridgeEffect]:
         """COMMAND_ACK, once."""
         if pending.answered is not None or not pending.command:
             return []
         pending.answered = result
         if result == Result.ACCEPTED and pending.key == self._last_key:
-            self._told = _Told(pending.key, now_ns + AGAIN_NS)
+            self._told = Told(pending.key, now_ns + AGAIN_NS)
         return [self._acknowledge(pending.asked_by, pending.command, result, code)]
 
     @staticmethod
@@ -393,7 +363,7 @@ def gates_line(event: ipc.EndingEvent) -> str:
     return f"gate: {event.word}: {event.ended}: {event.sentence}"
 
 
-def _plan_of(pending: _Pending) -> bytes:
+def _plan_of(pending: Pending) -> bytes:
     """Which plan it is about; empty for all else."""
     return b"" if pending.command else pending.key
 

@@ -28,7 +28,6 @@ from gcs.bridge.judge.received import Judged
 from gcs.bridge.link_loops import LEFT_OUT_NS, Loops
 from gcs.bridge.meaning.meaning import Seen
 from gcs.config import StationConfig
-from gcs.frames import enu_from_ned
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import CommandEnded, HeartbeatSeen, Input, LandedSeen, Requested
@@ -49,8 +48,9 @@ from gcs.session.missions import timing_of
 from gcs.session.operator_lines import line
 from gcs.session.operators import Operators
 from gcs.session.return_places import why_not_rally_point
-from gcs.session.screen import lost_pct
+from gcs.session.screen import bridge_row, lost_pct
 from gcs.session.settings import SPEED, TAKEOFF_HEIGHT
+from gcs.session.shown_commands import shown_commands
 from gcs.session.signatures import Signatures
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
@@ -172,8 +172,8 @@ class BridgePort:
         return self.bridge.parameter(message, autopilot, telemetry.sysid, now_ns)
 
     def before_gate(self, given: Input, sysid: int, now_ns: int) -> list[BridgeEffect]:
-        """The vehicle's own answer to a command is what the client is answered, too; and what one
-        asks for, the answers to the others are older than."""
+        """The vehicle's own answer to a command is what the client is answered, too, or the mode
+        that it shows; and what one asks for, the answers to the others are older than."""
         if isinstance(given, Requested):
             if isinstance(given.request, Arm):
                 self.bridge.armings.asked(sysid, now_ns)
@@ -183,6 +183,9 @@ class BridgePort:
             if given.armed:
                 done += self.bridge.armings.seen(sysid, now_ns)
             self.bridge.armings.shown(given.mode_name, sysid, now_ns, armed=given.armed)
+            vehicle = self._vehicles.of_sysid(sysid)
+            for request_id in [] if vehicle is None else shown_commands(vehicle.gate, given.mode):
+                done += self.bridge.command_answered(request_id, Result.ACCEPTED, now_ns)
             return done
         if isinstance(given, LandedSeen) and given.landed is not LandedState.ON_GROUND:
             return self.bridge.armings.not_standing(
@@ -234,7 +237,7 @@ class BridgePort:
                 for client in self.bridge.status(now_ns)
             ]
             rows = [
-                _vehicle_row(each, each.telemetry, now_ns)
+                bridge_row(each.gate, each.telemetry, each.losses, now_ns)
                 for each in self._vehicles
                 if each.telemetry is not None
             ]
@@ -328,26 +331,6 @@ class BridgePort:
         self._told_in_control = number
         name = in_control.name if in_control else ""
         return self.bridge.control_changed(number, name, self._vehicles.addresses, now_ns)
-
-
-def _vehicle_row(vehicle: Vehicle, telemetry: Telemetry, now_ns: int) -> ipc.BridgeVehicle:
-    gate = vehicle.gate
-    return ipc.BridgeVehicle(
-        vehicle=telemetry.sysid,
-        name=telemetry.label,
-        state=gate.state.name,
-        control=gate.control.name,
-        severity=gate.severity.name,
-        conditions=[each.value for each in gate.conditions],
-        mode=telemetry.mode_name,
-        armed=telemetry.armed,
-        link=telemetry.link,
-        lost_pct=lost_pct(vehicle.losses),
-        silent_s=(now_ns - telemetry.heard_ns) / 1e9,
-        pos_enu=None if telemetry.pos_ned is None else enu_from_ned(telemetry.pos_ned),
-        v_enu=None if telemetry.v_ned is None else enu_from_ned(telemetry.v_ned),
-        battery_pct=telemetry.battery_pct,
-    )
 
 
 def _clears_takeoff(gate: Gate, up_m: float) -> bool:

@@ -72,6 +72,28 @@ def snapshot(
     )
 
 
+def bridge_row(
+    gate: Gate, telemetry: Telemetry, losses: SequenceTracker, now_ns: int
+) -> ipc.BridgeVehicle:
+    """One vehicle of a bridge, as its page shows it."""
+    return ipc.BridgeVehicle(
+        vehicle=telemetry.sysid,
+        name=telemetry.label,
+        state=gate.state.name,
+        control=gate.control.name,
+        severity=gate.severity.name,
+        conditions=[each.value for each in gate.conditions],
+        mode=telemetry.mode_name,
+        armed=telemetry.armed,
+        link=telemetry.link,
+        lost_pct=lost_pct(losses),
+        silent_s=(now_ns - telemetry.heard_ns) / 1e9,
+        pos_enu=None if telemetry.pos_ned is None else enu_from_ned(telemetry.pos_ned),
+        v_enu=None if telemetry.v_ned is None else enu_from_ned(telemetry.v_ned),
+        battery_pct=telemetry.battery_pct,
+    )
+
+
 def lost_pct(losses: SequenceTracker) -> float:
     """Frames of the vehicle that never came, of all that it sent."""
     total = losses.received + losses.lost

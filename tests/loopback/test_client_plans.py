@@ -338,3 +338,54 @@ def test_who_is_not_in_control_brings_no_mission(personality: Personality) -> No
     assert upload.ended() == f"refused {DENIED}"
     assert "OTHER_OPERATOR" in second.texts()
     assert flight.vehicle.plan == before
+
+
+CANCELLED = 15
+FREE = structs.replace(
+    DEFAULT, bridge=structs.replace(DEFAULT.bridge, fence="forward", rally="forward")
+)
+
+
+class Silent(Upload):
+    """It sends its count, and nothing else."""
+
+    def hear(self, message: object) -> None:
+        pass
+
+    def late(self) -> None:
+        pass
+
+
+def test_an_upload_that_is_given_up_for_another_one_is_ended_and_on_the_record() -> None:
+    """A script that begins the next plan before it has the answer of the one before."""
+    flight = PlanFlight("px4", policy=FREE)
+    client = flight.join()
+    flight.connected()
+    abandoned = Silent(flight, client, mission("px4", *SQUARE))
+    flight.run(0.3)
+    rally = Mavsdk(flight, client, rally_point("px4"))
+    flight.run(0.1)
+    assert abandoned.acks == [CANCELLED]
+    assert "mission: given up after 0 of 5 items" in client.texts()
+    (decision,) = flight.decisions("refused")
+    assert (decision.word, decision.code) == ("mission_count", "SUPERSEDED")
+    assert rally.ended() == "complete"
+    flight.run(20.0)
+    assert abandoned.acks == [CANCELLED]
+    assert rally.acks == [ACCEPTED]
+
+
+def test_an_upload_of_rally_points_goes_on_while_the_mission_is_cleared() -> None:
+    flight = PlanFlight("px4", policy=FREE)
+    client = flight.join()
+    flight.connected()
+    assert Mavsdk(flight, client, mission("px4", *SQUARE)).ended() == "complete"
+    rally = Mavsdk(flight, client, rally_point("px4"))
+    heard = len(client.heard)
+    flight.run(0.0015)  # the count is here, its item is not
+    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, 0))
+    assert rally.ended() == "complete"
+    flight.run(20.0)
+    acks = [one.message for one in client.heard[heard:] if one.message.get_type() == "MISSION_ACK"]
+    assert sorted((ack.mission_type, ack.type) for ack in acks) == [(0, 0), (RALLY, ACCEPTED)]
+    assert not flight.vehicle.plan

@@ -49,7 +49,9 @@ class PlanJudge:
                 told.append(Answers(given.by.link, given.by.addressed, no))
             return Judged(True, told)
         effects = client.plans.handle(message, given.by, given.now_ns)
-        refused = any(isinstance(effect, plan_effects.Refused) for effect in effects)
+        refused = any(
+            isinstance(effect, plan_effects.Refused) and not effect.earlier for effect in effects
+        )
         return Judged(refused, of_plan(client, effects, given.frame))
 
     def gone(self, link: int) -> None:

@@ -8,9 +8,9 @@ from typing import TypeAlias
 
 from gcs.bridge.classes import Row
 from gcs.bridge.client import Exchange
-from gcs.bridge.dialogue import From
 from gcs.bridge.effects import BridgeEffect
 from gcs.bridge.meaning.meaning import Seen
+from gcs.bridge.pending import From
 from gcs.gate.refusal import Refusal
 from gcs.wire.frame import Frame
 from gcs.wire.messages import Message

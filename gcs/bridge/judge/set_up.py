@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from gcs.bridge.classes import Row
-from gcs.bridge.dialogue import From
 from gcs.bridge.effects import (
     Answers,
     AsksVehicle,
@@ -17,6 +16,7 @@ from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.meaning.meaning import Seen
+from gcs.bridge.pending import From
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal

@@ -170,7 +170,8 @@ def _flown_by_itself(wanted: Mode, seen: Seen) -> Words | Reject:
 
     A mission may be started, or gone on with, from a hold: its client has no word for `resume`.
     Out of a go-to that is not there yet an autopilot starts it at once, and clients rely on that;
-    the gate starts one from a hover, so the client in control stops first.
+    the gate starts one from a hover, so the client in control stops first.  Of a mission that is
+    flown already the client in control alone is told so: any other is refused by the station.
     """
     if wanted.name != _sent(seen.autopilot, wanted.meaning):
         return mode(wanted.name)
@@ -178,7 +179,7 @@ def _flown_by_itself(wanted: Mode, seen: Seen) -> Words | Reject:
     if wanted.meaning is not FlightMode.MISSION:
         return word
     if seen.state is State.FLYING_MISSION:
-        return DONE
+        return DONE if seen.in_control else word
     if seen.state in NOT_FLOWN_BY_US and not seen.on_ground:
         return Words((ipc.Ask(0, "resume"), *word.asks))
     if seen.state in UNDER_WAY and seen.in_control:

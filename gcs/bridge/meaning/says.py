@@ -56,10 +56,10 @@ def go_to(seen: Seen, goal_ned: Vec3, yaw_rad: float | None, note: str = "") -> 
 
     The goal is rounded as the wire carries it, so that what is asked for, shown and flown is one.
     A vehicle that is on its way there already is asked for nothing: a client that got no answer
-    sends the same again.
+    sends the same again.  One that is not in control asks all the same, and is refused.
     """
     goal = _as_sent(goal_ned)
-    if _is_flown_to(seen, goal, yaw_rad):
+    if seen.in_control and _is_flown_to(seen, goal, yaw_rad):
         return Words((), note)
     degrees = None if yaw_rad is None else math.degrees(yaw_rad)
     wanted = ipc.Ask(0, "goto", goal_enu=enu_from_ned(goal), yaw_deg=degrees)

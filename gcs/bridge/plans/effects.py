@@ -59,6 +59,8 @@ class Refused:
 
     name: str
     refusal: Refusal
+    earlier: bool = False
+    """It is not the message that was given: that one put an end to this one."""
 
 
 PlanEffect: TypeAlias = Answers | Upload | Clear | Withdraw | SetCurrent | Pass | Refused

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from typing import Final
 
 from gcs.bridge.answers import texts
-from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers
+from gcs.bridge.pending import From
 from gcs.bridge.plans.collecting import acknowledgement
 from gcs.bridge.plans.effects import PlanEffect, Refused
 from gcs.bridge.recent_texts import RecentTexts
@@ -19,11 +19,18 @@ from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.codec import encode
-from gcs.wire.ids import Component, MissionResult
+from gcs.wire.ids import Component, MissionResult, MissionType
 from gcs.wire.messages import Message, MissionClearAll, MissionCount, MissionWritePartialList
 
 MISSION_PLANNER: Final = 190
 """MAV_COMP_ID_MISSIONPLANNER: PX4 takes plans that are addressed to it (`mavlink_mission.cpp`)."""
+
+NAMES: Final = {
+    MissionType.MISSION: "mission",
+    MissionType.FENCE: "fence",
+    MissionType.RALLY: "rally points",
+}
+"""What plans are called in texts."""
 
 
 def reply(to: From, message: Message) -> Answers:
@@ -67,12 +74,14 @@ class Replies:
         code: Code,
         text: str,
         now_ns: int,
+        *,
+        earlier: bool = False,
     ) -> list[PlanEffect]:
-        """What is refused without the station's verdict."""
+        """What is refused without the station's verdict; `earlier` as `Refused` has it."""
         ack = acknowledgement(asked_by.source, result, message.mission_type)
         name = type(message).MSG_ID.name
         return [
-            Refused(name, Refusal(code, text)),
+            Refused(name, Refusal(code, text), earlier),
             *self.text(asked_by, Level.WARNING, text, now_ns, encode(message)),
             reply(asked_by, ack),
         ]

@@ -2,7 +2,7 @@
 
     COUNT ──▶ collecting ──all items──▶ Submission ──▶ Upload, to the station (`submissions`)
                  │
-                 │ silence, a bad item
+                 │ silence, a bad item, another plan or a clear
                  ▼
               MISSION_ACK, repeated where it gets lost (`last_ack`)
 
@@ -17,12 +17,12 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
-from gcs.bridge.dialogue import From
+from gcs.bridge.pending import From
 from gcs.bridge.plans.collecting import Collecting, ItemMessage
 from gcs.bridge.plans.effects import Pass, PlanEffect, SetCurrent
 from gcs.bridge.plans.following import Following
 from gcs.bridge.plans.last_ack import LastAck
-from gcs.bridge.plans.replies import MISSION_PLANNER, Replies, replies, reply
+from gcs.bridge.plans.replies import MISSION_PLANNER, NAMES, Replies, replies, reply
 from gcs.bridge.plans.submissions import Submission, Submissions
 from gcs.gate.refusal import Code
 from gcs.protocol.transfer import SPEC_TIMING, Timing
@@ -49,11 +49,6 @@ MOST_ITEMS: Final[Mapping[MissionType, int]] = {
 }
 """A mission of more items keeps the 20 Hz tick waiting (`session/plans.py`); the vehicle may have
 room for fewer, and says so itself."""
-NAMES: Final = {
-    MissionType.MISSION: "mission",
-    MissionType.FENCE: "fence",
-    MissionType.RALLY: "rally points",
-}
 PLAN_MESSAGES: Final[tuple[type[Message], ...]] = (
     MissionCount,
     MissionItem,
@@ -162,13 +157,16 @@ class PlanServer:
                 asked_by, message, MissionResult.NO_SPACE, Code.BAD_MISSION, text, now_ns
             )
         if message.count == 0:
-            return self._begin_clear(kind, asked_by)
+            return self._begin_clear(kind, asked_by, now_ns, begins_anew=True)
         collecting = self._collecting
         if collecting is not None and collecting.opened == message and not collecting.items:
             return replies(asked_by, collecting.again(now_ns))
+        given_up: list[PlanEffect] = []
+        if collecting is not None and collecting.kind != kind:
+            given_up = self._replaced(collecting, f"by another upload, of {NAMES[kind]}", now_ns)
         self._collecting = Collecting(message, asked_by, self._timing)
         self._replies.another_plan()
-        return replies(asked_by, self._collecting.start(now_ns))
+        return given_up + replies(asked_by, self._collecting.start(now_ns))
 
     def _cannot_take(
         self, message: MissionCount | MissionClearAll, asked_by: From, now_ns: int
@@ -200,14 +198,13 @@ class PlanServer:
 
     def _item(self, message: ItemMessage, asked_by: From, now_ns: int) -> list[PlanEffect]:
         collecting = self._collecting
-        if collecting is not None:
-            opened_by = collecting.opened_by
-            ours = asked_by.source == opened_by.source
-            if ours and message.mission_type == collecting.kind:
-                questions = collecting.item(message, now_ns)
-                return replies(opened_by, questions) + self._collected(collecting, now_ns)
+        if collecting is None or message.mission_type != collecting.kind:
+            return self._submissions.item(message, asked_by, now_ns)
+        opened_by = collecting.opened_by
+        if asked_by.source != opened_by.source:
             return []
-        return self._submissions.item(message, asked_by, now_ns)
+        questions = collecting.item(message, now_ns)
+        return replies(opened_by, questions) + self._collected(collecting, now_ns)
 
     def _collected(self, collecting: Collecting, now_ns: int) -> list[PlanEffect]:
         """Where the last item is here, ask the station; where one is bad, refuse."""
@@ -235,14 +232,15 @@ class PlanServer:
             as_int,
             lossy=collecting.repeated > 0,
         )
-        return self._submissions.submit(submission)
+        return self._submissions.submit(submission, now_ns)
 
     def _acknowledged(self, message: MissionAck, asked_by: From, now_ns: int) -> list[PlanEffect]:
         """The client ends a download (that is the vehicle's to hear), or its own upload."""
         if message.type == MissionResult.ACCEPTED:
             return [Pass()]
         collecting, current = self._collecting, self._submissions.current
-        if collecting is not None:
+        of_another = self._submissions.of(message.mission_type) is not None
+        if collecting is not None and (collecting.kind == message.mission_type or not of_another):
             opened_by = collecting.opened_by
             if opened_by.source != asked_by.source:
                 return [Pass()]
@@ -254,7 +252,9 @@ class PlanServer:
             return []
         if current is None or current.asked_by.source != asked_by.source:
             return [Pass()]
-        return [] if message.type == MissionResult.UNSUPPORTED else self._submissions.cancel()
+        if message.type == MissionResult.UNSUPPORTED:
+            return []
+        return self._submissions.cancel(message.mission_type)
 
     def _clear(self, message: MissionClearAll, asked_by: From, now_ns: int) -> list[PlanEffect]:
         refused = self._cannot_take(message, asked_by, now_ns)
@@ -264,15 +264,26 @@ class PlanServer:
         if again is not None:
             return [reply(asked_by, again)]
         self._last_ack.forget()
-        return self._begin_clear(MissionType(message.mission_type), asked_by)
+        kind = MissionType(message.mission_type)
+        return self._begin_clear(kind, asked_by, now_ns, begins_anew=False)
 
-    def _begin_clear(self, kind: MissionType, asked_by: From) -> list[PlanEffect]:
-        """A plan of no items, too, is none."""
+    def _begin_clear(
+        self, kind: MissionType, asked_by: From, now_ns: int, *, begins_anew: bool
+    ) -> list[PlanEffect]:
+        """A plan of no items is none.  It `begins_anew`, as each first message of an upload does:
+        it alone is acknowledged, and not what it replaces."""
         if self._submissions.clears(kind):
             return []
-        self._collecting = None
+        given_up: list[PlanEffect] = []
+        collecting = self._collecting
+        if collecting is not None and kind in (collecting.kind, MissionType.ALL):
+            self._collecting = None
+            if not begins_anew:
+                given_up = self._replaced(collecting, "as it is to be cleared", now_ns)
+        if not begins_anew:
+            given_up += self._submissions.give_up(kind, now_ns)
         self._replies.another_plan()
-        return self._submissions.submit(Submission(asked_by, kind))
+        return given_up + self._submissions.submit(Submission(asked_by, kind), now_ns)
 
     # ----------------------------------------------------------------------------- time
 
@@ -287,15 +298,24 @@ class PlanServer:
         return effects + self._submissions.wake(now_ns) + self._last_ack.wake(now_ns)
 
     def _silent(self, collecting: Collecting, now_ns: int) -> list[PlanEffect]:
-        self._collecting = None
-        if self._submissions.current is not None:
-            return []  # it was the first message of the plan that is on its way, once more
         had, count = len(collecting.items), collecting.opened.count
+        text = f"{NAMES[collecting.kind]}: item {had} of {count} did not come"
+        return self._give_up(collecting, Code.NO_ANSWER, text, now_ns)
+
+    def _replaced(self, collecting: Collecting, why: str, now_ns: int) -> list[PlanEffect]:
+        had, count = len(collecting.items), collecting.opened.count
+        text = f"{NAMES[collecting.kind]}: given up after {had} of {count} items, {why}"
+        return self._give_up(collecting, Code.SUPERSEDED, text, now_ns)
+
+    def _give_up(
+        self, collecting: Collecting, code: Code, text: str, now_ns: int
+    ) -> list[PlanEffect]:
+        """An upload ends before all of it is here, and its client is told."""
+        self._collecting = None
+        opened = collecting.opened
+        if self._submissions.began_with(opened):
+            return []  # it was the first message of a plan that is on its way, once more
+        cancelled = MissionResult.OPERATION_CANCELLED
         return self._replies.refuse(
-            collecting.opened_by,
-            collecting.opened,
-            MissionResult.OPERATION_CANCELLED,
-            Code.NO_ANSWER,
-            f"{NAMES[collecting.kind]}: item {had} of {count} did not come",
-            now_ns,
+            collecting.opened_by, opened, cancelled, code, text, now_ns, earlier=True
         )

@@ -5,6 +5,9 @@ submitted: Upload, Clear ──▶ decided: refused ──▶ MISSION_ACK, texts
                │                     `following` keeps the client waiting
                │                     └──▶ ended ──▶ MISSION_ACK, once
                └ cancelled, replaced ──▶ Withdraw ──▶ ended ──▶ the next one
+
+The station works on one at a time.  One of another type waits for that; one of the same type takes
+its place, and a clear of all that of every upload.
 """
 
 from __future__ import annotations
@@ -14,14 +17,15 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
-from gcs.bridge.dialogue import From
+from gcs.bridge.pending import From
 from gcs.bridge.plans.collecting import ItemMessage, acknowledgement
 from gcs.bridge.plans.effects import Clear, PlanEffect, Upload, Withdraw
 from gcs.bridge.plans.following import Following
 from gcs.bridge.plans.last_ack import LastAck
-from gcs.bridge.plans.replies import Replies, replies, reply
+from gcs.bridge.plans.replies import NAMES, Replies, replies, reply
 from gcs.bridge.plans.results import result_of
 from gcs.gate.effects import Level
+from gcs.gate.refusal import Code
 from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import MissionCount
 
@@ -50,14 +54,14 @@ class Submission:
 
 
 class Submissions:
-    """The one that the station works on, and the one that waits until that is over."""
+    """The one that the station works on, and those that wait until that is over."""
 
     def __init__(self, replies_to_client: Replies, last_ack: LastAck) -> None:
         self._replies = replies_to_client
         self._last_ack = last_ack
         self._current: Submission | None = None
-        self._next: Submission | None = None
-        """Collected while the one before is still being stopped."""
+        self._waiting: list[Submission] = []
+        """Of other types, or of the one that is still being stopped; one of each at the most."""
 
     @property
     def current(self) -> Submission | None:
@@ -65,62 +69,106 @@ class Submissions:
         return self._current
 
     @property
-    def _following(self) -> Following | None:
-        """What keeps the client waiting, if anything does."""
-        return self._current.following if self._current is not None else None
+    def _wanted(self) -> list[Submission]:
+        """What the client still waits for."""
+        first = [] if self._current is None or self._current.withdrawn else [self._current]
+        return [*first, *self._waiting]
 
     @property
     def deadline_ns(self) -> int | None:
         """When `wake` is due; None: nothing is waited for."""
-        return self._following.deadline_ns if self._following is not None else None
+        times = [each.following.deadline_ns for each in self._wanted if each.following is not None]
+        return min((time for time in times if time is not None), default=None)
 
     # ----------------------------------------------------------------------- the client
 
-    def submit(self, new: Submission) -> list[PlanEffect]:
-        """The client asks for this, now or when the one before it has been stopped."""
+    def submit(self, new: Submission, now_ns: int) -> list[PlanEffect]:
+        """The client asks for this, now or when what is before it is over."""
         before = self._current
         if before is None:
             self._current = new
             return [_to_station(new)]
-        if new.plan is not None and before.plan == new.plan and not before.withdrawn:
+        same = self.of(new.kind)
+        if same is not None and new.plan is not None and same.plan == new.plan:
             # The same plan once more: it is on its way already.
-            before.following = new.following
+            same.following = new.following
             return []
-        self._next = new
-        if before.withdrawn:
+        self._waiting = [each for each in self._waiting if not _replaces(new, each)]
+        self._waiting.append(new)
+        if before.withdrawn or not _replaces(new, before):
             return []
         wanted = "wants it cleared" if new.plan is None else "has sent another plan"
-        return _withdraw(before, f"the client {wanted}")
+        return self._stop(before, f"the client {wanted}")
+
+    def of(self, kind: int) -> Submission | None:
+        """The one of this type that the client waits for."""
+        return next((each for each in self._wanted if each.kind == kind), None)
+
+    def began_with(self, opened: MissionCount) -> bool:
+        """One of those that the client waits for began with this message."""
+        return any(each.opened == opened for each in self._wanted)
 
     def clears(self, kind: MissionType) -> bool:
-        """A clear of this kind is being done."""
-        current = self._current
-        return current is not None and current.plan is None and current.kind == kind
+        """A clear of this kind is being done, or waits."""
+        same = self.of(kind)
+        return same is not None and same.plan is None
 
-    def cancel(self) -> list[PlanEffect]:
-        """The client does not want the current one any more."""
-        if self._current is None or self._current.withdrawn:
+    def give_up(self, kind: MissionType, now_ns: int) -> list[PlanEffect]:
+        """The plans of this type are to be cleared: who waits for one of them is told.  Of what the
+        station is asked to stop, it says so itself for the log."""
+        effects: list[PlanEffect] = []
+        for each in self._wanted:
+            if each.opened is None or kind not in (each.kind, MissionType.ALL):
+                continue
+            text = f"{NAMES[each.kind]}: given up, as it is to be cleared"
+            to, opened, cancelled = each.asked_by, each.opened, MissionResult.OPERATION_CANCELLED
+            if each is not self._current:
+                effects += self._replies.refuse(
+                    to, opened, cancelled, Code.SUPERSEDED, text, now_ns, earlier=True
+                )
+            elif each.result is None:
+                effects += self._replies.text(to, Level.WARNING, text, now_ns)
+                effects.append(reply(to, acknowledgement(to.source, cancelled, each.kind)))
+            else:
+                effects.append(reply(to, acknowledgement(to.source, each.result, each.kind)))
+        return effects
+
+    def cancel(self, kind: int) -> list[PlanEffect]:
+        """The client does not want the one of this type any more, or, without one, the current."""
+        over = self.of(kind) or self._current
+        if over is None or over.withdrawn:
             return []
-        return _withdraw(self._current, "the client has cancelled it")
+        if over is self._current:
+            return self._stop(over, "the client has cancelled it")
+        self._waiting.remove(over)
+        return []
+
+    def _stop(self, current: Submission, reason: str) -> list[PlanEffect]:
+        """Its client is asked for nothing any more; the station says when it has stopped it, unless
+        it has done it already."""
+        if current.result is not None:
+            return self._go_on()
+        current.withdrawn, current.following = True, None
+        return [Withdraw(reason)]
 
     def item(self, message: ItemMessage, asked_by: From, now_ns: int) -> list[PlanEffect]:
         """An item of a plan that is here already: it was asked for once more, or its
         acknowledgement has got lost."""
-        current, following = self._current, self._following
-        if current is None or following is None:
+        found = self.of(message.mission_type)
+        if found is None or found.following is None:
             return self._last_ack.item(message, asked_by, now_ns)
-        if asked_by.source != current.asked_by.source or message.mission_type != current.kind:
+        if asked_by.source != found.asked_by.source:
             return []
-        questions = following.item(message.seq, now_ns)
-        return replies(current.asked_by, questions) + self._acknowledge_if_ready(now_ns)
+        questions = found.following.item(message.seq, now_ns)
+        return replies(found.asked_by, questions) + self._acknowledge_if_ready(now_ns)
 
     def wake(self, now_ns: int) -> list[PlanEffect]:
         """`deadline_ns` has passed."""
-        current, following = self._current, self._following
-        if current is None or following is None:
-            return []
-        questions = following.wake(now_ns)
-        return replies(current.asked_by, questions) + self._acknowledge_if_ready(now_ns)
+        effects: list[PlanEffect] = []
+        for each in self._wanted:
+            if each.following is not None:
+                effects += replies(each.asked_by, each.following.wake(now_ns))
+        return effects + self._acknowledge_if_ready(now_ns)
 
     # ----------------------------------------------------------------------- the station
 
@@ -191,11 +239,13 @@ class Submissions:
 
     def _go_on(self) -> list[PlanEffect]:
         """With what the client has asked for since."""
-        self._current, self._next = self._next, None
-        if self._current is None:
+        over, self._current = self._current, None
+        if not self._waiting:
             return []
-        self._last_ack.forget()
-        return [_to_station(self._current)]
+        following = self._current = self._waiting.pop(0)
+        if over is None or over.plan is None or over.kind == following.kind:
+            self._last_ack.forget()
+        return [_to_station(following)]
 
 
 def _to_station(submission: Submission) -> PlanEffect:
@@ -203,7 +253,6 @@ def _to_station(submission: Submission) -> PlanEffect:
     return Clear(submission.kind) if plan is None else Upload(plan)
 
 
-def _withdraw(submission: Submission, reason: str) -> list[PlanEffect]:
-    """Its client is asked for nothing any more; the station says when it has stopped it."""
-    submission.withdrawn, submission.following = True, None
-    return [Withdraw(reason)]
+def _replaces(new: Submission, before: Submission) -> bool:
+    """Whether `before` is not wanted any more."""
+    return new.kind == before.kind or (new.kind == MissionType.ALL and before.plan is not None)

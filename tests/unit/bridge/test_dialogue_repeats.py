@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.bridge.dialogue import Dialogue, From
+from gcs.bridge.dialogue import Dialogue
 from gcs.bridge.effects import Answers, Says
+from gcs.bridge.pending import From
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong, ManualControl
@@ -115,3 +116,13 @@ def test_a_sample_of_a_stream_in_between_makes_it_a_new_wish() -> None:
     assert client.sends(Cmd.DO_REPOSITION, "goto") == "answered ACCEPTED"
     client.dialogue.stream(CLIENT, ipc.Stream(v_enu=(1.0, 0.0, 0.0)))
     assert client.sends(Cmd.DO_REPOSITION, "goto") == "asked"
+
+
+def test_who_is_not_in_control_any_more_is_told_nothing_from_memory() -> None:
+    """Its mission is flown on for somebody else."""
+    client = Client()
+    assert client.sends(Cmd.MISSION_START, "mission_start", outcome="under way") == "asked"
+    client.dialogue.command_answered(client.operation, Result.ACCEPTED, client.now_ns)
+    assert client.sends(Cmd.MISSION_START, "mission_start") == "answered ACCEPTED"
+    client.dialogue.control_lost()
+    assert client.sends(Cmd.MISSION_START, "mission_start", outcome="refused") == "asked"

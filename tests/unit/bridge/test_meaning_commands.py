@@ -327,6 +327,14 @@ def test_a_repeated_reposition_asks_for_nothing_more() -> None:
     assert words(meaning_of(message, aborted)) == ["resume", "goto"]
 
 
+def test_a_goal_that_another_client_flies_to_is_asked_for_and_so_refused() -> None:
+    message = command_long(192, -1.0, CHANGE_MODE, 0.0, NAN, PX4_LAT, PX4_LON, 505.0)
+    first = goal(meaning_of(message, flying(PX4)))
+    here = {"goal_ned": (first[1], first[0], -first[2]), "in_control": False}
+    for state in (State.MOVING, State.HOVERING):
+        assert words(meaning_of(message, flying(PX4, state=state, **here))) == ["goto"]
+
+
 # ----------------------------------------------------------------- heights, headings, circles
 
 

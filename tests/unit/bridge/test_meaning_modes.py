@@ -202,6 +202,16 @@ def test_a_mission_that_is_flown_need_not_start() -> None:
     assert words(meaning_of(px4("MISSION"), flown)) == []
 
 
+@pytest.mark.parametrize("autopilot", [PX4, ARDUPILOT], ids=lambda a: a.name)
+def test_a_mission_that_another_client_flies_is_asked_for_and_so_refused(
+    autopilot: Autopilot,
+) -> None:
+    flown = flying(autopilot, state=State.FLYING_MISSION, in_control=False)
+    mode = px4("MISSION") if autopilot is PX4 else copter("AUTO")
+    for message in (mode, command_long(300), command_long(262, 6.0)):
+        assert words(meaning_of(message, flown)) == ["mission_start"]
+
+
 UNDER_WAY = [State.TAKING_OFF, State.MOVING, State.STREAMING, State.RETURNING]
 
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import pytest
 
 from gcs import ipc
-from gcs.bridge.dialogue import From
 from gcs.bridge.effects import Answers
+from gcs.bridge.pending import From
 from gcs.bridge.plans.effects import (
     Clear,
     Pass,
@@ -546,6 +546,174 @@ def test_a_late_duplicate_of_the_count_does_no_harm() -> None:
     assert results(script.ended() + script.wait(2 * S)) == [MissionResult.ACCEPTED]
 
 
+# --------------------------------------------------------------------- several types at once
+
+
+def clear(kind: MissionType) -> MissionClearAll:
+    return MissionClearAll(target_system=1, target_component=1, mission_type=kind)
+
+
+def endings(effects: Sequence[PlanEffect]) -> list[tuple[int, int]]:
+    """The type and the result of every MISSION_ACK."""
+    acks = [each for each in messages(effects) if isinstance(each, MissionAck)]
+    return [(each.mission_type, each.type) for each in acks]
+
+
+def refusals(effects: Sequence[PlanEffect]) -> list[tuple[str, Code]]:
+    refused = [each for each in effects if isinstance(each, Refused)]
+    assert all(each.earlier for each in refused), "the message that came is not refused"
+    return [(each.name, each.refusal.code) for each in refused]
+
+
+MISSION, FENCE, RALLY = MissionType.MISSION, MissionType.FENCE, MissionType.RALLY
+CANCELLED, ACCEPTED = MissionResult.OPERATION_CANCELLED, MissionResult.ACCEPTED
+
+
+def test_an_upload_that_another_type_replaces_is_ended_and_told() -> None:
+    script = Script()
+    script.say(count(3))
+    script.say(item(0))
+    effects = script.say(count(2, FENCE))
+    assert endings(effects) == [(MISSION, CANCELLED)]
+    assert refusals(effects) == [("MISSION_COUNT", Code.SUPERSEDED)]
+    assert "mission: given up after 1 of 3 items, by another upload, of fence" in texts(effects)
+    assert questions(effects) == [0]
+    script.say(item(0, FENCE))
+    assert isinstance(script.say(item(1, FENCE))[-1], Upload)
+    assert endings(script.ended() + script.wait(20 * S)) == [(FENCE, ACCEPTED)]
+
+
+@pytest.mark.parametrize("kind", [MISSION, MissionType.ALL])
+def test_an_upload_that_is_cleared_is_ended_and_told(kind: MissionType) -> None:
+    script = Script()
+    script.say(count(3))
+    effects = script.say(clear(kind))
+    assert endings(effects) == [(MISSION, CANCELLED)]
+    assert refusals(effects) == [("MISSION_COUNT", Code.SUPERSEDED)]
+    assert "mission: given up after 0 of 3 items, as it is to be cleared" in texts(effects)
+    assert effects[-1] == Clear(kind)
+    assert endings(script.ended() + script.wait(20 * S)) == [(kind, ACCEPTED)]
+
+
+def test_a_count_of_the_same_type_begins_anew_and_ends_nothing() -> None:
+    script = Script()
+    script.say(count(3))
+    script.say(item(0))
+    assert endings(script.say(count(2))) == []
+    assert script.say(count(0)) == [Clear(MISSION)]
+    assert endings(script.ended() + script.wait(20 * S)) == [(MISSION, ACCEPTED)]
+
+
+def test_a_clear_of_another_type_leaves_an_upload_alone() -> None:
+    script = Script()
+    script.say(count(2, RALLY))
+    assert script.say(clear(MISSION)) == [Clear(MISSION)]
+    assert questions(script.say(item(0, RALLY))) == [1]
+    assert script.say(item(1, RALLY)) == [], "it waits until the clear is over"
+    effects = script.ended()
+    assert endings(effects) == [(MISSION, ACCEPTED)]
+    assert isinstance(effects[-1], Upload)
+    assert endings(script.ended()) == [(RALLY, ACCEPTED)]
+    assert not script.server.busy
+
+
+@pytest.mark.parametrize("refused", [False, True])
+def test_a_plan_of_another_type_waits_for_the_one_on_its_way(refused: bool) -> None:
+    script = Script()
+    script.collected(3)
+    script.accepted()
+    assert script.collected(2, FENCE) == []
+    assert script.say(clear(RALLY)) == []
+    effects = script.ended("aborted", "NO_ANSWER", "silent") if refused else script.ended()
+    assert endings(effects) == [(MISSION, MissionResult.ERROR if refused else ACCEPTED)]
+    (upload,) = [each for each in effects if isinstance(each, Upload)]
+    assert upload.plan.kind is FENCE
+    effects = script.ended()
+    assert endings(effects) == [(FENCE, ACCEPTED)]
+    assert effects[-1] == Clear(RALLY)
+    assert endings(script.ended()) == [(RALLY, ACCEPTED)]
+    assert script.wait(20 * S) == []
+
+
+def test_items_of_a_plan_on_its_way_are_taken_while_another_one_is_collected() -> None:
+    """They keep its client waiting, and tell when its acknowledgement is due."""
+    script = Script()
+    script.collected(3)
+    script.say(count(2, FENCE))
+    script.wait(200 * MS)
+    assert questions(script.say(item(0))) == [1], "the next of the mission"
+    assert questions(script.say(item(0, FENCE))) == [1]
+
+
+def test_who_waits_while_another_plan_is_brought_on_board_is_kept_waiting() -> None:
+    script = Script()
+    script.collected(3)
+    script.collected(2, FENCE)
+    asked = [
+        each for each in messages(script.wait(210 * MS)) if isinstance(each, MissionRequestInt)
+    ]
+    assert {each.mission_type for each in asked} == {MISSION, FENCE}
+
+
+def test_a_plan_on_its_way_that_is_cleared_is_ended_and_stopped() -> None:
+    script = Script()
+    script.collected(3)
+    script.accepted()
+    effects = script.say(clear(MISSION))
+    assert endings(effects) == [(MISSION, CANCELLED)]
+    assert "mission: given up, as it is to be cleared" in texts(effects)
+    assert isinstance(effects[-1], Withdraw)
+    assert script.say(clear(MISSION)) == [], "once more, as no answer came"
+    assert script.ended("aborted", "OPERATOR", "stopped") == [Clear(MISSION)]
+    assert endings(script.ended() + script.wait(20 * S)) == [(MISSION, ACCEPTED)]
+
+
+def test_a_plan_that_waits_and_is_cleared_is_ended() -> None:
+    script = Script()
+    script.collected(3)
+    script.accepted()
+    script.collected(2, FENCE)
+    effects = script.say(clear(FENCE))
+    assert endings(effects) == [(FENCE, CANCELLED)]
+    assert refusals(effects) == [("MISSION_COUNT", Code.SUPERSEDED)]
+    assert not any(isinstance(each, Withdraw) for each in effects), "the mission goes on"
+    effects = script.ended()
+    assert endings(effects) == [(MISSION, ACCEPTED)]
+    assert effects[-1] == Clear(FENCE)
+
+
+def test_all_plans_are_cleared_after_the_clear_of_one() -> None:
+    script = Script()
+    script.say(clear(MISSION))
+    assert script.say(clear(MissionType.ALL)) == []
+    effects = script.ended()
+    assert endings(effects) == [(MISSION, ACCEPTED)]
+    assert effects[-1] == Clear(MissionType.ALL)
+    assert endings(script.ended()) == [(MissionType.ALL, ACCEPTED)]
+
+
+def test_a_plan_that_is_on_board_already_stops_nothing_when_it_is_sent_anew() -> None:
+    """Only its acknowledgement was not due yet: there is nothing that the station could stop."""
+    script = Script()
+    script.collected(20)
+    answered(script, 900 * MS, 300 * MS)
+    assert results(script.ended()) == []
+    (upload,) = script.collected(2)
+    assert isinstance(upload, Upload)
+    assert results(script.ended()) == [MissionResult.ACCEPTED]
+
+
+def test_a_plan_that_waits_can_be_cancelled() -> None:
+    script = Script()
+    script.collected(3)
+    script.accepted()
+    script.collected(2, FENCE)
+    assert script.say(ack(CANCELLED, FENCE)) == []
+    effects = script.ended()
+    assert endings(effects) == [(MISSION, ACCEPTED)]
+    assert not script.server.busy
+
+
 # ------------------------------------------------------------------------ all other messages
 
 
@@ -597,8 +765,7 @@ def test_clear_takes_the_place_of_an_upload_on_its_way() -> None:
     script = Script()
     script.collected(3)
     message = MissionClearAll(target_system=1, target_component=1)
-    (effect,) = script.say(message)
-    assert isinstance(effect, Withdraw)
+    assert isinstance(script.say(message)[-1], Withdraw)
     assert script.refused(Code.OPERATOR, "stopped") == [Clear(MissionType.MISSION)]
     assert results(script.ended()) == [MissionResult.ACCEPTED]
 
