@@ -8,7 +8,7 @@ from typing import Final
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
 from gcs.bridge.meaning.meaning import Meaning, Reject, Seen, Words
-from gcs.bridge.meaning.modes import meaning_named
+from gcs.bridge.meaning.modes import mission_started
 from gcs.bridge.meaning.says import forward, hover_again, refuse, unsupported
 from gcs.gate.refusal import Code
 from gcs.gate.states import FlightMode, State
@@ -29,7 +29,7 @@ def mission_start_px4(command: Command, seen: Seen) -> Meaning:
     number = command.whole(command.p1)
     if number is None or number < -1 or (number > 0 and seen.on_ground):
         return unsupported(f"a start at item {command.p1:g}: {ON_GROUND}")
-    start = meaning_named(seen, FlightMode.MISSION)
+    start = mission_started(seen)
     if number > 0:
         return _set_current(number, seen, start)
     if isinstance(start, Words) and start.asks and seen.on_ground and not seen.armed:
@@ -41,7 +41,7 @@ def mission_start_ardupilot(command: Command, seen: Seen) -> Meaning:
     """With a first or last item it is denied (GCS_Mavlink.cpp)."""
     if (command.p1, command.p2) != (0.0, 0.0):
         return unsupported(f"ArduCopter takes no items in MISSION_START ({command.p1:g})")
-    return meaning_named(seen, FlightMode.MISSION)
+    return mission_started(seen)
 
 
 def do_set_mission_current(command: Command, seen: Seen) -> Meaning:
@@ -93,7 +93,7 @@ def do_land_start(command: Command, seen: Seen) -> Meaning:
         case ():
             return refuse(Code.BAD_MISSION, "the mission on board has no DO_LAND_START item")
         case (only,):
-            return _set_current(only, seen, meaning_named(seen, FlightMode.MISSION))
+            return _set_current(only, seen, mission_started(seen))
         case several:
             numbers = ", ".join(map(str, several))
             sentence = f"DO_LAND_START is at items {numbers}: name one, by DO_SET_MISSION_CURRENT"

@@ -9,6 +9,7 @@ from gcs.bridge.meaning.says import (
     DONE,
     NOT_FLOWN_BY_US,
     ask,
+    comes_back,
     forward,
     hover_again,
     mode,
@@ -198,3 +199,11 @@ def meaning_named(seen: Seen, meaning: FlightMode) -> Meaning:
         if known.name == name or (not name and known.meaning is meaning):
             return for_mode(known, seen)
     return unsupported(f"{seen.autopilot.name} has no such mode")
+
+
+def mission_started(seen: Seen) -> Meaning:
+    """What a command that starts a mission asks for: as its mode does, but that it takes no vehicle
+    from a pilot who flies it with sticks.  Then the gate refuses it."""
+    if seen.state is State.EXTERNAL and not seen.on_ground and not comes_back(seen):
+        return ask("mission_start")
+    return meaning_named(seen, FlightMode.MISSION)

@@ -9,7 +9,7 @@ from typing import Final
 from gcs import ipc
 from gcs.bridge.meaning.command import Command
 from gcs.bridge.meaning.meaning import Meaning, Reject, Seen, Words
-from gcs.bridge.meaning.modes import hold, meaning_named
+from gcs.bridge.meaning.modes import hold, meaning_named, mission_started
 from gcs.bridge.meaning.places import Datum, datum_of, down_of, place_of
 from gcs.bridge.meaning.says import ask, go_to, refuse, resume_and_go_to, unsupported
 from gcs.frames import Vec3
@@ -216,7 +216,7 @@ def pause_or_continue(command: Command, seen: Seen) -> Meaning:
 def go_on(seen: Seen) -> Meaning:
     """After a stop: the mission, if one was stopped.  A goal that was stopped is gone."""
     if seen.mission_paused:
-        start = meaning_named(seen, FlightMode.MISSION)
+        start = mission_started(seen)
         return replace(start, note=ANEW) if isinstance(start, Words) else start
     return ask("resume", "hovers under control; a goal that was stopped is gone")
 

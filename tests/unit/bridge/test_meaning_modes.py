@@ -235,6 +235,16 @@ def test_a_mission_goes_on_after_a_hold(state: State) -> None:
     assert words(meaning_of(command_long(300), copter_held)) == ["resume", "mission_start"]
 
 
+def test_a_command_that_starts_a_mission_takes_no_vehicle_from_a_pilot() -> None:
+    """As a click on the map does not; the mode, which is asked for by itself, does."""
+    flown = flying(PX4, state=State.EXTERNAL, mode_name="POSCTL")
+    assert words(meaning_of(command_long(300), flown)) == ["mission_start"]
+    assert words(meaning_of(px4("MISSION"), flown)) == ["resume", "mission_start"]
+    flown = flying(ARDUPILOT, state=State.EXTERNAL, mode_name="STABILIZE")
+    assert words(meaning_of(command_long(300), flown)) == ["mission_start"]
+    assert words(meaning_of(copter("AUTO"), flown)) == ["resume", "mission_start"]
+
+
 def test_modes_that_do_not_exist() -> None:
     assert refusal(meaning_of(command_long(176, CUSTOM, 99.0), flying(ARDUPILOT)))
     assert refusal(meaning_of(command_long(176, CUSTOM, 4.0, 99.0), flying(PX4)))
