@@ -170,6 +170,7 @@ def recover(file: Path, output: Path, as_json: bool) -> None:
             "source_closed": condition.closed,
             "broken_chunk": condition.broken_chunk,
             "damaged": condition.damaged,
+            "unread_bytes": condition.unread_bytes,
             "orphans": saved.orphans,
         }
         click.echo(json.dumps(values))
@@ -181,6 +182,9 @@ def recover(file: Path, output: Path, as_json: bool) -> None:
         click.echo("the last chunk breaks off: what could be decompressed of it is included")
     if condition.damaged or saved.orphans:
         click.echo(f"left out: {condition.damaged} damaged records, {saved.orphans} messages")
+    if condition.unread_bytes:
+        last = f"its last {condition.unread_bytes} bytes of {condition.size}"
+        click.echo(f"the rest of the file could not be read: {last}")
 
 
 def _print(flight: FlightInfo) -> None:

@@ -43,7 +43,7 @@ def report(file: Path, output: Path | None, vehicle: int | None, as_json: bool) 
     from gcs.flight_report.findings_json import report_json
     from gcs.flight_report.render import page
     from gcs.flight_report.scan import scan
-    from gcs.flight_report.summary import what_happened, what_went_wrong
+    from gcs.flight_report.summary import what_happened, what_is_damaged, what_went_wrong
 
     if output is None and not as_json:
         output = file.with_suffix(".html")
@@ -63,9 +63,13 @@ def report(file: Path, output: Path | None, vehicle: int | None, as_json: bool) 
         click.echo(report_json(flight).decode())
         return
     shown = flight.main_vehicle()
-    for line in (what_happened(flight, shown), what_went_wrong(shown)):
-        if line:
-            click.echo(line)
+    said = (
+        what_happened(flight, shown),
+        what_is_damaged(flight),
+        what_went_wrong(flight, shown),
+    )
+    for line in filter(None, said):
+        click.echo(line)
     click.echo(f"{output}: open it in a browser")
 
 

@@ -36,6 +36,7 @@ class ReportJson(msgspec.Struct):
     size_bytes: int
     closed: bool
     damaged: int
+    unread_bytes: int
     started: str
     seconds: float
     messages: int
@@ -53,16 +54,17 @@ def report_json(flight: Flight) -> bytes:
         flight.size,
         flight.closed,
         flight.damaged,
+        flight.unread_bytes,
         utc(flight.start_ns),
         flight.seconds,
         flight.messages,
         what_happened(flight, main),
-        [_vehicle(vehicle) for vehicle in vehicles],
+        [_vehicle(flight, vehicle) for vehicle in vehicles],
     )
     return msgspec.json.encode(report)
 
 
-def _vehicle(vehicle: VehicleFlight) -> VehicleReport:
+def _vehicle(flight: Flight, vehicle: VehicleFlight) -> VehicleReport:
     return VehicleReport(
         vehicle.sysid,
         vehicle_name(vehicle),
@@ -71,7 +73,7 @@ def _vehicle(vehicle: VehicleFlight) -> VehicleReport:
         vehicle.track.length_m,
         len(vehicle.requests) + vehicle.requests_left_out,
         sum(request.outcome == "refused" for request in vehicle.requests),
-        what_went_wrong(vehicle),
+        what_went_wrong(flight, vehicle),
         first_trouble(vehicle),
         vehicle.findings,
         vehicle.checks,

@@ -145,6 +145,8 @@ class Flight:
     size: int
     closed: bool = True
     damaged: int = 0
+    unread_bytes: int = 0
+    """At the end of the file, behind a damage."""
     start_ns: int | None = None
     seconds: float = 0.0
     messages: int = 0

@@ -22,11 +22,12 @@ from gcs.flight_report.summary import (
     other_vehicles,
     vehicle_name,
     what_happened,
+    what_is_damaged,
     what_was_asked,
     what_went_wrong,
 )
 from gcs.flight_report.timeline_html import timeline
-from gcs.flight_report.words import count, duration, metres, utc
+from gcs.flight_report.words import duration, metres, utc
 
 _PLACE = re.compile(r"\{\{(\w+)\}\}")
 
@@ -117,7 +118,7 @@ def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
     asked = what_was_asked(vehicle) if vehicle else ""
     asked = f'<p class="asked">{text(asked)}</p>' if asked else ""
     happened = f'<p class="lead">{text(what_happened(flight, vehicle))}</p>{asked}'
-    wrong = what_went_wrong(vehicle)
+    wrong = what_went_wrong(flight, vehicle)
     first = first_trouble(vehicle)
     chain = ""
     if vehicle is not None and first is not None:
@@ -145,8 +146,8 @@ def _record_notes(flight: Flight, vehicle: VehicleFlight | None) -> list[str]:
     notes = []
     if not flight.closed:
         notes.append("The file was not closed: its writer was killed, or is still writing.")
-    if flight.damaged:
-        notes.append(f"{count(flight.damaged, 'damaged record')} could not be read.")
+    if damage := what_is_damaged(flight):
+        notes.append(damage)
     others = other_vehicles(flight, vehicle)
     if others:
         notes.append("Also in the record: " + "; ".join(others[:20]) + ".")

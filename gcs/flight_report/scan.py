@@ -145,6 +145,7 @@ class Scan:
         flight = self.flight
         flight.closed = condition.closed
         flight.damaged += condition.damaged
+        flight.unread_bytes = condition.unread_bytes
         if flight.start_ns is not None:
             flight.seconds = (self._last_ns - flight.start_ns) / 1e9
         for sysid, vehicle in self._vehicles.items():

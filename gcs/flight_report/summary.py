@@ -20,6 +20,8 @@ def vehicle_name(vehicle: VehicleFlight) -> str:
 
 def what_happened(flight: Flight, vehicle: VehicleFlight | None) -> str:
     """One sentence about the flight itself."""
+    if flight.messages == 0 and what_is_damaged(flight):
+        return "No message of the record could be read."
     if flight.messages == 0:
         return "The record is empty: nothing was written into it."
     if vehicle is None:
@@ -39,6 +41,16 @@ def what_happened(flight: Flight, vehicle: VehicleFlight | None) -> str:
         parts.append(f"in {totals.take_offs} flights")
     end = "and landed" if totals.landed_s is not None else "and was in the air at the record's end"
     return f"{', '.join(parts)}, {end}."
+
+
+def what_is_damaged(flight: Flight) -> str:
+    """One sentence: how much of the record could not be read; empty where all of it was."""
+    parts = []
+    if flight.damaged:
+        parts.append(count(flight.damaged, "damaged record"))
+    if flight.unread_bytes:
+        parts.append(f"its last {count(flight.unread_bytes, 'byte')}")
+    return f"The record is damaged: {' and '.join(parts)} could not be read." if parts else ""
 
 
 def what_was_asked(vehicle: VehicleFlight) -> str:
@@ -75,7 +87,7 @@ def consequences(vehicle: VehicleFlight, first: Finding) -> list[Finding]:
     return later[:MAX_CONSEQUENCES]
 
 
-def what_went_wrong(vehicle: VehicleFlight | None) -> str:
+def what_went_wrong(flight: Flight, vehicle: VehicleFlight | None) -> str:
     """One sentence: the first trouble, with its time."""
     first = first_trouble(vehicle)
     if vehicle is None:
@@ -84,7 +96,8 @@ def what_went_wrong(vehicle: VehicleFlight | None) -> str:
         looked = sum(check.level is not None for check in vehicle.checks)
         if not looked:
             return "Nothing is known of its health: the record has none of the values looked at."
-        return f"Nothing went wrong. Values that were looked at: {looked}, none of them bad."
+        where = " in what could be read" if what_is_damaged(flight) else ""
+        return f"Nothing went wrong{where}. Values that were looked at: {looked}, none of them bad."
     detail = f" ({first.detail})" if first.detail else ""
     return f"At {clock(first.t_s)} {first.title}{detail}."
 

@@ -72,6 +72,8 @@ class Condition:
     """The last chunk breaks off."""
     damaged: int = 0
     """Records and chunks in the middle that could not be used."""
+    unread_bytes: int = 0
+    """The end of the file, where a damaged record does not tell where the next one begins."""
 
 
 class Reading:
@@ -107,10 +109,12 @@ class Reading:
             end = body + length
             if opcode == Opcode.FOOTER:
                 condition.closed = data[end : end + len(MAGIC)] == MAGIC
+                start = condition.size if condition.closed else end + len(MAGIC)
                 break
             if end > condition.size:
                 if opcode == Opcode.CHUNK and self._chunks:
                     condition.broken_chunk = True
+                    start = condition.size
                     yield from self._inner(_inflate_what_is_there(data[body:]))
                 break
             if opcode == Opcode.CHUNK and not self._chunks:
@@ -126,6 +130,7 @@ class Reading:
             start = condition.position = end
             if end - kept_from >= _KEPT_BYTES:
                 kept_from = _release(data, kept_from, end)
+        condition.unread_bytes = max(0, condition.size - start)
         condition.position = condition.size
 
     def _inner(self, records: bytes) -> Iterator[Record]:

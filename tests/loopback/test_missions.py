@@ -139,6 +139,43 @@ def test_a_mission_that_leaves_the_fence_is_refused_before_the_first_frame(tmp_p
     assert not {"MISSION_COUNT", "MISSION_ITEM_INT"} & set(flight.sent_types())
 
 
+def over_home(path: Path, personality: Personality, *rows: tuple[int, float, float, float]) -> Path:
+    """A .waypoints file of items over home: command, its first two numbers, and the height."""
+    home = HOMES[personality]
+    first = f"0\t1\t0\t16\t0\t0\t0\t0\t{home.lat_deg}\t{home.lon_deg}\t{home.alt_amsl_m}\t1"
+    lines = ["QGC WPL 110", first]
+    for number, (command, p1, p2, up_m) in enumerate(rows, start=1):
+        at = f"{home.lat_deg}\t{home.lon_deg}\t{up_m}"
+        lines.append(f"{number}\t0\t3\t{command}\t{p1}\t{p2}\t0\t0\t{at}\t1")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_a_speed_of_every_type_is_brought_on_board(
+    personality: Personality, tmp_path: Path
+) -> None:
+    speeds = ((178, kind, 2.0, 0.0) for kind in (0.0, 1.0, 2.0, 3.0))
+    rows = (22, 0.0, 0.0, 5.0), *speeds, (16, 0.0, 0.0, 8.0)
+    path = over_home(tmp_path / "a.waypoints", personality, *rows)
+    flight = Flight(personality).connected()
+    ask = flight.say("mission_upload", path=str(path))
+    assert flight.done(ask) == "complete"
+    kinds = [item.p1 for item in flight.vehicle.plan if item.command == 178]
+    assert kinds == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_what_a_px4_never_starts_is_refused_before_the_first_frame(tmp_path: Path) -> None:
+    rows = (22, 0.0, 0.0, 5.0), (21, 0.0, 0.0, 0.0), (22, 0.0, 0.0, 5.0), (20, 0.0, 0.0, 0.0)
+    flight = Flight("px4").connected()
+    path = over_home(tmp_path / "a.waypoints", "px4", *rows)
+    ask = flight.say("mission_upload", path=str(path))
+    assert flight.done(ask) == "refused BAD_MISSION"
+    [verdict] = flight.verdicts(ask)
+    assert verdict.sentence.startswith("item 3 (NAV_TAKEOFF): this autopilot stores it")
+    assert not {"MISSION_COUNT", "MISSION_ITEM_INT"} & set(flight.sent_types())
+
+
 ROUND_A_TOWER = """
 schema = 1
 frame = "home"

@@ -357,6 +357,19 @@ def test_a_px4_s_mission_changes_its_speed_whatever_type_it_says(kind: float) ->
 
 
 @either
+def test_a_landing_amid_a_mission_ends_the_flight_of_an_ardupilot_alone(
+    personality: Personality,
+) -> None:
+    """From memory: PX4's commander does not disarm amid a mission, AP_Mission's landing does."""
+    land, on = item(2, 21, 6.0), item(3, 16, 0.0, 0.0, 5.0)
+    flight = started(personality, TAKE_OFF, item(1, 16, 6.0, 0.0, 5.0), land, on)
+    flight.fly(60.0, lambda: reached_now(flight)[-1:] == [2] or not flight.vehicle.armed)
+    flight.fly(30.0)
+    flies_on = personality == "px4"
+    assert (flight.vehicle.armed, flight.up_m > 3.0) == (flies_on, flies_on)
+
+
+@either
 def test_a_mission_that_is_changed_in_flight_starts_from_its_beginning(
     personality: Personality,
 ) -> None:

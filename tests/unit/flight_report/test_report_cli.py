@@ -6,11 +6,12 @@ import json
 from pathlib import Path
 
 import pytest
+from mcap.opcode import Opcode
 
 from gcs.report import PoseItem, StatusItem
 from tests.unit.cli.command_line import gcs
 from tests.unit.flight_report.test_scan import a_flight_that_loses_gps
-from tests.unit.record.flights import MS, record
+from tests.unit.record.flights import MS, a_flight, record, without_a_record_s_head
 
 
 @pytest.fixture
@@ -97,3 +98,30 @@ def test_a_folder_that_is_not_there(flight: Path, tmp_path: Path) -> None:
     ended = gcs("log", "report", flight, "-o", tmp_path / "no" / "page.html")
     assert ended.exit_code == 7
     assert "cannot write" in ended.output
+
+
+def test_a_damaged_record_is_called_damaged_on_the_terminal(flight: Path) -> None:
+    whole = gcs("log", "report", flight).output
+    assert "record is damaged" not in whole
+    unread = without_a_record_s_head(flight, Opcode.STATISTICS)
+    ended = gcs("log", "report", flight)
+    assert f"The record is damaged: its last {unread} bytes could not be read." in ended.output
+    assert f"its last {unread} bytes" in flight.with_suffix(".html").read_text(encoding="utf-8")
+    assert json.loads(gcs("log", "report", flight, "--json").output)["unread_bytes"] == unread
+
+
+def test_a_record_of_which_no_message_could_be_read_is_not_called_empty(flight: Path) -> None:
+    unread = without_a_record_s_head(flight, Opcode.CHUNK)
+    ended = gcs("log", "report", flight).output
+    assert "nothing was written" not in ended
+    assert "No message of the record could be read." in ended
+    assert f"The record is damaged: its last {unread} bytes could not be read." in ended
+
+
+def test_of_a_damaged_record_nothing_went_wrong_in_what_could_be_read(tmp_path: Path) -> None:
+    path = record(tmp_path, a_flight(), step_ns=125 * MS)
+    good = gcs("log", "report", path).output
+    assert "Nothing went wrong." in good
+    without_a_record_s_head(path, Opcode.STATISTICS)
+    ended = gcs("log", "report", path).output
+    assert "Nothing went wrong in what could be read." in ended

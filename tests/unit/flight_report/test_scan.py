@@ -119,7 +119,7 @@ class TestFlight:
         assert [then.title for then in consequences(vehicle, first)] == [
             "the vehicle's failsafe acted"
         ]
-        assert "the GPS lost its fix" in what_went_wrong(vehicle)
+        assert "the GPS lost its fix" in what_went_wrong(flight, vehicle)
         assert "was in the air at the record's end" in what_happened(flight, vehicle)
 
     def test_its_fence_with_the_margin_of_its_policy(self, flight: Flight) -> None:

@@ -11,7 +11,7 @@ from mcap.records import Channel
 from pymavlink.dialects.v20 import all as dialect
 from pymavlink.generator.mavcrc import x25crc
 
-from gcs.record.reading import Message, Reading
+from gcs.record.reading import MAGIC, RECORD_HEAD, Message, Reading
 from gcs.record.writer import Recorder
 from gcs.report import (
     AttachmentItem,
@@ -95,6 +95,17 @@ def record(directory: Path, items: Iterable[RecordItem], step_ns: int = 20 * MS)
             assert recorder.tick(now_ns) == []
     assert recorder.close(now_ns)
     return recorder.path
+
+
+def without_a_record_s_head(path: Path, opcode: int) -> int:
+    """The first record of that kind begins with zeros; gives the bytes from there on."""
+    data = bytearray(path.read_bytes())
+    at = len(MAGIC)
+    while data[at] != opcode:
+        at += RECORD_HEAD.size + RECORD_HEAD.unpack_from(data, at)[1]
+    data[at : at + RECORD_HEAD.size] = bytes(RECORD_HEAD.size)
+    path.write_bytes(data)
+    return len(data) - at
 
 
 def a_flight() -> list[RecordItem]:

@@ -9,12 +9,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
 
 from gcs.record.layout import ANY_FLIGHT, layout
 from gcs.record.writer import Recorder
 from tests.unit.cli.command_line import Ended, gcs
-from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
+from tests.unit.record.flights import (
+    MS,
+    SECOND,
+    START_NS,
+    a_flight,
+    messages_of,
+    record,
+    without_a_record_s_head,
+)
 
 
 def gcs_log(*args: str | Path) -> Ended:
@@ -286,3 +295,21 @@ def test_recover_of_what_is_no_record(tmp_path: Path) -> None:
 def test_a_copy_of_a_complete_file_is_said_to_be_one(flight: Path, tmp_path: Path) -> None:
     result = gcs_log("recover", flight, "-o", tmp_path / "copy.mcap")
     assert "complete already" in result.output
+
+
+def test_recover_says_how_much_behind_the_damage_could_not_be_read(
+    flight: Path, tmp_path: Path
+) -> None:
+    unread = without_a_record_s_head(flight, Opcode.CHUNK)
+    ended = gcs("log", "recover", flight, "-o", tmp_path / "whole.mcap")
+    assert f"the rest of the file could not be read: its last {unread} bytes" in ended.output
+    again = gcs("log", "recover", flight, "-o", tmp_path / "again.mcap", "--json")
+    assert json.loads(again.output)["unread_bytes"] == unread
+
+
+def test_of_a_file_whose_end_alone_is_missing_everything_was_read(
+    flight: Path, tmp_path: Path
+) -> None:
+    flight.write_bytes(flight.read_bytes()[:-3])
+    ended = gcs("log", "recover", flight, "-o", tmp_path / "whole.mcap")
+    assert "could not be read" not in ended.output
