@@ -61,8 +61,9 @@ class Dialogue:
     numbers: Iterator[int] = field(default_factory=lambda: count(1))
     _next_text: int = 1
     _pending: dict[int, Pending] = field(default_factory=dict)
-    _with_arm: dict[int, list[int]] = field(default_factory=dict)
-    """By the number of an arming that is under way: the requests that were to arm first, too."""
+    _with: dict[int, list[int]] = field(default_factory=dict)
+    """By the number of a request that is under way, those that end as it does: what was to arm
+    first, too, and the same stop that was asked for before it."""
     _last_key: bytes = b""
     """The message that was asked for last."""
     _told: Told | None = None
@@ -100,7 +101,9 @@ class Dialogue:
             return done  # such as sticks in the middle, 25 a second: nothing came in between
         if asks and asks[0].word in STOPS:
             self._told = None
-        repeated = self._repeated(asked_by, key, command, now_ns)
+        stops = len(asks) == 1 and asks[0].word in STOPS
+        between = stops and key != self._last_key  # it is a stop of its own
+        repeated = None if between else self._repeated(asked_by, key, command, now_ns)
         if repeated is not None:
             return repeated
         self._last_key, self._told = key, None
@@ -122,7 +125,7 @@ class Dialogue:
             return [Says(self.client, self._open(pending, ask))]
         number = self.number()
         self._pending[number] = pending
-        self._with_arm.setdefault(arming, []).append(number)
+        self._with.setdefault(arming, []).append(number)
         return []
 
     def refuse(
@@ -225,13 +228,16 @@ class Dialogue:
 
     def command_answered(self, operation: int, result: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle answered a command that the gate sent for a request of this client."""
-        for pending in self._pending.values():
+        for number, pending in self._pending.items():
             if pending.operation == operation and operation:
                 pending.vehicle_result = result
                 if pending.rest:
                     return []  # the last of what was asked for answers the command
                 if result == Result.ACCEPTED and pending.word not in SEEN_SOON:
-                    return self._answer(pending, Result.ACCEPTED, None, now_ns)
+                    both = [pending, *(self._pending[each] for each in self._with.get(number, ()))]
+                    return [
+                        done for each in both for done in self._answer(each, result, None, now_ns)
+                    ]
         return []
 
     def _each_with(
@@ -240,9 +246,9 @@ class Dialogue:
         told: Callable[[Over, int], list[BridgeEffect]],
         now_ns: int,
     ) -> list[BridgeEffect]:
-        """What became of a request, and of those that waited for the same arming."""
+        """What became of a request, and of those that end as it does."""
         effects = told(event, now_ns)
-        for number in self._with_arm.pop(event.id, ()):
+        for number in self._with.pop(event.id, ()):
             effects += told(msgspec.structs.replace(event, id=number), now_ns)
         return effects
 
@@ -299,6 +305,9 @@ class Dialogue:
         pending = self._pending.pop(event.id, None)
         if pending is None:
             return []
+        replaced = event.code in (Code.SUPERSEDED, Code.OPERATOR)
+        if replaced and self._waits_for_same(event.id, pending):
+            return []
         if event.ended == "complete":
             if pending.rest:
                 ask, rest = pending.rest[0], pending.rest[1:]
@@ -326,6 +335,20 @@ class Dialogue:
             *self._answer(pending, result, code, now_ns),
             *self.text(pending.asked_by, Level.WARNING, text, now_ns),
         ]
+
+    def _waits_for_same(self, number: int, pending: Pending) -> bool:
+        """A stop whose place the same stop of this client has taken is answered as that one is: it
+        was not refused."""
+        if pending.answered is not None or pending.word not in STOPS or not pending.key:
+            return False
+        for later, each in self._pending.items():
+            same = each.key == pending.key and each.word == pending.word
+            if same and later > number and each.answered is None:
+                pending.key = b""  # from now on it follows, and nothing repeats or follows it
+                self._pending[number] = pending
+                self._with.setdefault(later, []).extend((number, *self._with.pop(number, ())))
+                return True
+        return False
 
     def _answer(
         self, pending: Pending, result: int, code: Code | None, now_ns: int

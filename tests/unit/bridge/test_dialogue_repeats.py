@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from gcs import ipc
 from gcs.bridge.dialogue import Dialogue
-from gcs.bridge.effects import Answers, Says
+from gcs.bridge.effects import Answers, BridgeEffect, Says
 from gcs.bridge.pending import From
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, Result
@@ -42,6 +44,11 @@ class Client:
         if outcome == "complete":
             self.dialogue.told(ipc.EndingEvent(number, word, "complete"), self.now_ns)
         return "asked"
+
+
+def results(effects: Sequence[BridgeEffect]) -> list[int]:
+    messages = [each.message for each in effects if isinstance(each, Answers)]
+    return [each.result for each in messages if isinstance(each, CommandAck)]
 
 
 def test_a_repetition_is_answered_and_not_asked_twice() -> None:
@@ -126,3 +133,48 @@ def test_who_is_not_in_control_any_more_is_told_nothing_from_memory() -> None:
     assert client.sends(Cmd.MISSION_START, "mission_start") == "answered ACCEPTED"
     client.dialogue.control_lost()
     assert client.sends(Cmd.MISSION_START, "mission_start", outcome="refused") == "asked"
+
+
+def test_a_stop_after_something_else_is_no_repetition_of_one_under_way() -> None:
+    """It was refused, but who stops again means to stop."""
+    client = Client()
+    assert client.sends(Cmd.DO_PAUSE_CONTINUE, "hold", outcome="under way") == "asked"
+    assert client.sends(Cmd.DO_PAUSE_CONTINUE, "hold") == "answered IN_PROGRESS", "sent again"
+    assert client.sends(Cmd.DO_SET_MODE, "control", outcome="refused") == "asked"
+    assert client.sends(Cmd.DO_PAUSE_CONTINUE, "hold", outcome="under way") == "asked"
+
+
+def test_a_stop_that_the_same_stop_replaces_is_answered_as_that_one() -> None:
+    client = Client()
+    assert client.sends(Cmd.DO_PAUSE_CONTINUE, "hold", outcome="under way") == "asked"
+    assert client.sends(Cmd.DO_SET_MODE, "control", outcome="refused") == "asked"
+    assert client.sends(Cmd.DO_PAUSE_CONTINUE, "hold", outcome="under way") == "asked"
+    over = ipc.EndingEvent(1, "hold", "superseded", "SUPERSEDED", "a later request took its place")
+    assert client.dialogue.told(over, client.now_ns) == []
+    both = client.dialogue.told(ipc.EndingEvent(3, "hold", "complete"), client.now_ns)
+    assert results(both) == [0, 0]
+
+
+def test_a_return_that_the_same_return_replaces_is_answered_with_that_one() -> None:
+    """By the vehicle's answer, long before either ends."""
+    client = Client()
+    assert client.sends(Cmd.NAV_RETURN_TO_LAUNCH, "rtl", outcome="under way") == "asked"
+    assert client.sends(Cmd.DO_SET_MODE, "control", outcome="refused") == "asked"
+    assert client.sends(Cmd.NAV_RETURN_TO_LAUNCH, "rtl", outcome="under way") == "asked"
+    over = ipc.EndingEvent(1, "rtl", "superseded", "SUPERSEDED", "a later request took its place")
+    assert client.dialogue.told(over, client.now_ns) == []
+    both = client.dialogue.command_answered(client.operation, Result.ACCEPTED, client.now_ns)
+    assert results(both) == [0, 0]
+
+
+def test_three_stops_are_answered_as_the_last_one_is() -> None:
+    """A request of somebody else takes its place in the end."""
+    client = Client()
+    for number in (1, 3, 5):
+        assert client.sends(Cmd.DO_PAUSE_CONTINUE, "hold", outcome="under way") == "asked"
+        over = ipc.EndingEvent(number - 2, "hold", "aborted", "OPERATOR", "stopped")
+        assert client.dialogue.told(over, client.now_ns) == []
+        assert client.sends(Cmd.DO_SET_MODE, "control", outcome="refused") == "asked"
+    over = ipc.EndingEvent(5, "hold", "superseded", "SUPERSEDED", "a later request took its place")
+    assert len(results(client.dialogue.told(over, client.now_ns))) == 3
+    assert client.dialogue.told(over, client.now_ns) == []
