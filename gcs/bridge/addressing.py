@@ -117,6 +117,7 @@ class Judges:
             frame,
             self._look(given, vehicle.sysid),
             given.now_ns,
+            vehicle,
             client.number == given.in_control,
         )
         return self.of(vehicle.sysid).judge(received)

@@ -17,10 +17,15 @@ ENFORCE: Final = 0b1
 """The bit of MAV_OPTIONS, and the value of SYSID_ENFORCE."""
 HEIGHT_AND_CIRCLE: Final = 0b11
 """Of FENCE_TYPE."""
-PX4_HOLD: Final = 2
-"""GF_ACTION: hold; what is less does nothing."""
-COPTER_RETURN: Final = 1
-"""FENCE_ACTION: return, or land; 0 reports only."""
+PX4_BREACH: Final = range(2, 6)
+"""GF_ACTION: hold, return, terminate, land; 0 and 1 do nothing, and PX4 1.14 knows no other."""
+COPTER_BREACH: Final = range(1, 6)
+"""FENCE_ACTION: return, land, smart return, brake and smart return, or land; 0 reports only.  That
+ArduCopter knows no other is from memory."""
+COPTER_FENCE_ON: Final = 1
+"""FENCE_ENABLE."""
+_MOST_BITS: Final = 1 << 24
+"""A float has every whole number below."""
 _STEP_M: Final = 0.5
 
 
@@ -72,7 +77,7 @@ def _px4_fence(fence: FenceSize) -> tuple[Wanted, ...]:
     return (
         Wanted("GF_MAX_HOR_DIST", _no_wider(fence.reach_m)),
         Wanted("GF_MAX_VER_DIST", _no_wider(fence.ceiling_up_m)),
-        Wanted("GF_ACTION", _at_least(PX4_HOLD)),
+        Wanted("GF_ACTION", _one_of(PX4_BREACH)),
     )
 
 
@@ -81,8 +86,8 @@ def _copter_fence(fence: FenceSize) -> tuple[Wanted, ...]:
         Wanted("FENCE_RADIUS", _no_wider(fence.reach_m)),
         Wanted("FENCE_ALT_MAX", _no_wider(fence.ceiling_up_m)),
         Wanted("FENCE_TYPE", _with_bits(HEIGHT_AND_CIRCLE)),
-        Wanted("FENCE_ACTION", _at_least(COPTER_RETURN)),
-        Wanted("FENCE_ENABLE", _at_least(1)),
+        Wanted("FENCE_ACTION", _one_of(COPTER_BREACH)),
+        Wanted("FENCE_ENABLE", _always(COPTER_FENCE_ON)),
     )
 
 
@@ -96,10 +101,16 @@ def _no_wider(most_m: float) -> Callable[[float], float]:
     return lambda is_m: is_m if 0.0 < is_m <= limit_m else limit_m
 
 
-def _at_least(least: int) -> Callable[[float], float]:
-    return lambda value: value if value >= least else float(least)
+def _one_of(known: range) -> Callable[[float], float]:
+    """A value that the autopilot knows stays; else the first of them."""
+    return lambda value: value if value in known else float(known[0])
 
 
 def _with_bits(bits: int) -> Callable[[float], float]:
-    """Not a number, which no whole number is made of, has none."""
-    return lambda value: float((int(value) if math.isfinite(value) else 0) | bits)
+    return lambda value: float(bits_of(value) | bits)
+
+
+def bits_of(value: float) -> int:
+    """The bits of a parameter that is a set of them: none, where it is not a number, below 0, or
+    greater than a float has every whole number of."""
+    return int(value) if 0.0 <= value < _MOST_BITS else 0

@@ -157,6 +157,7 @@ class BridgePort:
             why_not_rally=partial(why_not_rally_point, self._policy, vehicle.telemetry),
             why_not_resume=partial(vehicle.why_not_resume, now_ns),
             why_not_go_to=vehicle.why_not_go_to,
+            hears=vehicle.hears_component,
         )
 
     def parameter(self, frame: Frame, now_ns: int) -> list[BridgeEffect]:

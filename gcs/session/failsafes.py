@@ -5,8 +5,10 @@ or weaker than the policy, is told (`Condition.VEHICLE_FAILSAFE_WEAK`).  A fence
 counts as far as it keeps the vehicle near home; the policy's exclusion zones are not looked for in
 it.
 
-Meanings of values: parameter references of PX4 1.14 and ArduCopter 4.7; those that vehicle-sim has
-too are checked against the recorded autopilots there.
+Meanings of values: parameter references of PX4 1.14 and ArduCopter 4.7, from memory; those that
+vehicle-sim has too are checked against the recorded autopilots there.  A number that an autopilot's
+reference does not name is no action that is known, and counts as weak: what an autopilot does then
+is written nowhere.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from typing import Final, TypeAlias
 
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import BoxSpec, CircleSpec, PolygonSpec, ZoneSpec
+from gcs.protocol.lock_parameters import COPTER_BREACH, COPTER_FENCE_ON, PX4_BREACH, bits_of
 from gcs.session.uploaded_fence import NO_FENCE, UploadedFence
 
 LONGEST_STATION_LOSS_S: Final = 30.0
@@ -32,6 +35,8 @@ SLACK_M: Final = 0.5
 
 Values: TypeAlias = Mapping[str, float]
 """By the newest names, units of the newest firmware."""
+Words: TypeAlias = Mapping[float, str]
+"""What the values of a parameter mean."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +126,11 @@ def _off(name: str, value: float, word: str = "off") -> str:
     return f"{word} ({_named(name, value)})"
 
 
-def _word(words: Mapping[int, str], value: float) -> str:
-    return words.get(int(value), f"action {value:g}") if math.isfinite(value) else "unknown"
+def _action(words: Words, name: str, value: float) -> tuple[str, bool]:
+    """What an action is called, and whether it is weak, as one without a name is: a number that
+    is not in the reference, a fraction or not a number."""
+    known = words.get(value)
+    return (_off(name, value, "unknown action"), True) if known is None else (known, False)
 
 
 def _after(values: Values, name: str) -> str:
@@ -165,14 +173,14 @@ def _fence(
 
 # --------------------------------------------------------------------------------------- PX4
 
-_PX4_LOSS: Final = {0: "off", 1: "hold", 2: "return", 3: "land", 5: "terminate", 6: "disarm"}
-_PX4_BATTERY: Final = {
+_PX4_LOSS: Final[Words] = {0: "off", 1: "hold", 2: "return", 3: "land", 5: "terminate", 6: "disarm"}
+_PX4_BATTERY: Final[Words] = {
     0: "warns only",
     1: "return",
     2: "land when critical",
     3: "return, land when critical",
 }
-_PX4_OFFBOARD: Final = {
+_PX4_OFFBOARD: Final[Words] = {
     0: "position mode",
     1: "altitude mode",
     2: "manual mode",
@@ -182,45 +190,55 @@ _PX4_OFFBOARD: Final = {
     6: "terminate",
     7: "disarm",
 }
-_PX4_FENCE: Final = {0: "off", 1: "warns only", 2: "hold", 3: "return", 4: "terminate", 5: "land"}
+_PX4_FENCE: Final[Words] = {
+    0: "off",
+    1: "warns only",
+    2: "hold",
+    3: "return",
+    4: "terminate",
+    5: "land",
+}
 
 
 def _px4_station(values: Values, _limits: Limits) -> tuple[str, bool]:
     action = values["NAV_DLL_ACT"]
-    if action < 1.0:
+    if action == 0.0:
         return _off("NAV_DLL_ACT", action), True
+    said, weak = _action(_PX4_LOSS, "NAV_DLL_ACT", action)
     long = _too_long(values, "COM_DL_LOSS_T", LONGEST_STATION_LOSS_S)
-    return _word(_PX4_LOSS, action) + _after(values, "COM_DL_LOSS_T"), long
+    return said + _after(values, "COM_DL_LOSS_T"), weak or long
 
 
 def _px4_sticks(values: Values, _limits: Limits) -> tuple[str, bool]:
     action = values["NAV_RCL_ACT"]
-    if action < 1.0:
+    if action == 0.0:
         return _off("NAV_RCL_ACT", action), True
-    return _word(_PX4_LOSS, action), False
+    return _action(_PX4_LOSS, "NAV_RCL_ACT", action)
 
 
 def _px4_offboard(values: Values, _limits: Limits) -> tuple[str, bool]:
     """Altitude and manual mode hold no place."""
     action = values["COM_OBL_RC_ACT"]
-    said = _word(_PX4_OFFBOARD, action) + _after(values, "COM_OF_LOSS_T")
+    said, weak = _action(_PX4_OFFBOARD, "COM_OBL_RC_ACT", action)
+    said += _after(values, "COM_OF_LOSS_T")
     if action in (1.0, 2.0):
         return f"{said} ({_named('COM_OBL_RC_ACT', action)}), which holds no place", True
-    return said, _too_long(values, "COM_OF_LOSS_T", LONGEST_SETPOINT_LOSS_S)
+    return said, weak or _too_long(values, "COM_OF_LOSS_T", LONGEST_SETPOINT_LOSS_S)
 
 
 def _px4_battery(values: Values, _limits: Limits) -> tuple[str, bool]:
     action = values["COM_LOW_BAT_ACT"]
-    if action < 1.0:
+    if action == 0.0:
         return _off("COM_LOW_BAT_ACT", action), True
-    return _word(_PX4_BATTERY, action), False
+    return _action(_PX4_BATTERY, "COM_LOW_BAT_ACT", action)
 
 
 def _px4_breach(values: Values, _limits: Limits) -> tuple[str, bool]:
     action = values["GF_ACTION"]
-    if action < 2.0:
-        return _off("GF_ACTION", action, _word(_PX4_FENCE, action)), True
-    return _word(_PX4_FENCE, action), False
+    said, weak = _action(_PX4_FENCE, "GF_ACTION", action)
+    if not weak and action not in PX4_BREACH:
+        return _off("GF_ACTION", action, said), True
+    return said, weak
 
 
 def _px4_fence(values: Values, limits: Limits) -> tuple[str, bool]:
@@ -233,7 +251,7 @@ def _px4_fence(values: Values, limits: Limits) -> tuple[str, bool]:
 
 # -------------------------------------------------------------------------------- ArduCopter
 
-_COPTER_STATION: Final = {
+_COPTER_STATION: Final[Words] = {
     1: "return",
     2: "go on with a mission, else return",
     3: "smart return, or return",
@@ -242,7 +260,7 @@ _COPTER_STATION: Final = {
     6: "land at a landing sequence, or return",
     7: "brake, or land",
 }
-_COPTER_STICKS: Final = {
+_COPTER_STICKS: Final[Words] = {
     1: "return",
     2: "go on with a mission, else return",
     3: "land",
@@ -251,7 +269,7 @@ _COPTER_STICKS: Final = {
     6: "land at a landing sequence, or return",
     7: "brake, or land",
 }
-_COPTER_BATTERY: Final = {
+_COPTER_BATTERY: Final[Words] = {
     1: "land",
     2: "return",
     3: "smart return, or return",
@@ -260,8 +278,9 @@ _COPTER_BATTERY: Final = {
     6: "land at a landing sequence, or return",
     7: "brake, or land",
 }
-_COPTER_ESTIMATE: Final = {1: "land", 2: "altitude hold", 3: "land, from every mode"}
-_COPTER_FENCE: Final = {
+_COPTER_ESTIMATE: Final[Words] = {1: "land", 2: "altitude hold", 3: "land, from every mode"}
+_COPTER_FENCE: Final[Words] = {
+    0: "reports only",
     1: "return, or land",
     2: "land",
     3: "smart return, or return, or land",
@@ -274,22 +293,23 @@ _HEIGHT, _CIRCLE, _ZONES = 1, 2, 4
 
 def _copter_station(values: Values, limits: Limits) -> tuple[str, bool]:
     action = values["FS_GCS_ENABLE"]
-    if action < 1.0:
+    if action == 0.0:
         return _off("FS_GCS_ENABLE", action), True
     first = values.get("MAV_GCS_SYSID", float(limits.own_sysid))
     last = max(first, values.get("MAV_GCS_SYSID_HI", 0.0))
     if not first <= limits.own_sysid <= last:
         watched = _named("MAV_GCS_SYSID", first)
         return f"it watches another station than this one, {limits.own_sysid} ({watched})", True
+    said, weak = _action(_COPTER_STATION, "FS_GCS_ENABLE", action)
     long = _too_long(values, "FS_GCS_TIMEOUT", LONGEST_STATION_LOSS_S)
-    return _word(_COPTER_STATION, action) + _after(values, "FS_GCS_TIMEOUT"), long
+    return said + _after(values, "FS_GCS_TIMEOUT"), weak or long
 
 
 def _copter_sticks(values: Values, _limits: Limits) -> tuple[str, bool]:
     action = values["FS_THR_ENABLE"]
-    if action < 1.0:
+    if action == 0.0:
         return _off("FS_THR_ENABLE", action), True
-    return _word(_COPTER_STICKS, action), False
+    return _action(_COPTER_STICKS, "FS_THR_ENABLE", action)
 
 
 def _copter_offboard(values: Values, _limits: Limits) -> tuple[str, bool]:
@@ -300,32 +320,34 @@ def _copter_offboard(values: Values, _limits: Limits) -> tuple[str, bool]:
 
 def _copter_battery(values: Values, _limits: Limits) -> tuple[str, bool]:
     action = values["BATT_FS_LOW_ACT"]
-    if action < 1.0:
+    if action == 0.0:
         return _off("BATT_FS_LOW_ACT", action), True
     thresholds = [values[n] for n in ("BATT_LOW_VOLT", "BATT_LOW_MAH") if n in values]
     if thresholds and not any(limit > 0.0 for limit in thresholds):
         return "never noticed (BATT_LOW_VOLT and BATT_LOW_MAH are 0)", True
-    return _word(_COPTER_BATTERY, action), False
+    return _action(_COPTER_BATTERY, "BATT_FS_LOW_ACT", action)
 
 
 def _copter_estimate(values: Values, _limits: Limits) -> tuple[str, bool]:
     action = values["FS_EKF_ACTION"]
-    if action < 1.0:
+    if action == 0.0:
         return _off("FS_EKF_ACTION", action), True
-    return _word(_COPTER_ESTIMATE, action), False
+    return _action(_COPTER_ESTIMATE, "FS_EKF_ACTION", action)
 
 
 def _copter_breach(values: Values, _limits: Limits) -> tuple[str, bool]:
-    if values["FENCE_ENABLE"] < 1.0:
-        return _off("FENCE_ENABLE", values["FENCE_ENABLE"]), True
+    enabled = values["FENCE_ENABLE"]
+    if enabled != COPTER_FENCE_ON:
+        return _off("FENCE_ENABLE", enabled, "off" if enabled == 0.0 else "unknown value"), True
     action = values.get("FENCE_ACTION", 1.0)
-    if action < 1.0:
-        return _off("FENCE_ACTION", action, "reports only"), True
-    return _word(_COPTER_FENCE, action), False
+    said, weak = _action(_COPTER_FENCE, "FENCE_ACTION", action)
+    if not weak and action not in COPTER_BREACH:
+        return _off("FENCE_ACTION", action, said), True
+    return said, weak
 
 
 def _copter_fence(values: Values, limits: Limits) -> tuple[str, bool]:
-    kinds = int(values["FENCE_TYPE"]) if math.isfinite(values["FENCE_TYPE"]) else 0
+    kinds = bits_of(values["FENCE_TYPE"])
     on = _named("FENCE_TYPE", values["FENCE_TYPE"])
     radius: tuple[str, bool] = f"no circle ({on})", True
     height: tuple[str, bool] = f"no height ({on})", True

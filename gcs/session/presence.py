@@ -54,6 +54,10 @@ class Presence:
             self._heard_ns[sender] = now_ns
         return in_turn
 
+    def hears(self, sysid: int, compid: int) -> bool:
+        """Whether that component was ever heard."""
+        return (sysid, compid) in self._heard_ns
+
     def number_of(self, frame: Frame) -> int:
         """The same as `number` says, of one of the last 100 that were counted in turn."""
         return self.losses.number(frame.sysid, frame.compid, frame.seq)

@@ -136,6 +136,11 @@ class Vehicle:
         """Those of its parameters that are known."""
         return self._parts.parameters
 
+    def hears_component(self, compid: int) -> bool:
+        """Whether that component of its system was ever heard on a vehicle's link."""
+        telemetry = self._parts.telemetry
+        return telemetry is not None and self._parts.presence.hears(telemetry.sysid, compid)
+
     @property
     def losses(self) -> SequenceTracker:
         """Frames that were lost on the way."""

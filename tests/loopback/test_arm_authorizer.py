@@ -87,6 +87,10 @@ def test_a_fence_that_does_nothing_is_named() -> None:
     denied(guarded(GF_ACTION=1.0), "geofence breach", "GF_ACTION = 1")
 
 
+def test_a_breach_action_that_px4_does_not_know_is_named() -> None:
+    denied(guarded(GF_ACTION=77.0), "geofence breach", "GF_ACTION = 77")
+
+
 def test_no_fence_on_board_is_named() -> None:
     denied(guarded(GF_MAX_HOR_DIST=0.0), "geofence", "GF_MAX_HOR_DIST")
 

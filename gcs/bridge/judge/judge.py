@@ -14,6 +14,7 @@ from gcs.bridge.classes import Kind, Row, command_row, message_row
 from gcs.bridge.control import ControlServer
 from gcs.bridge.effects import AsksForStreams, AsksVehicle, BridgeEffect, ToVehicle
 from gcs.bridge.guard.names import DENIED_BY_NAME, kinds_by_name
+from gcs.bridge.judge.components import why_not_component
 from gcs.bridge.judge.motion import MotionJudge
 from gcs.bridge.judge.plans import PlanJudge
 from gcs.bridge.judge.received import Judged, Received, refuse
@@ -88,6 +89,10 @@ class Judge:
         row, message, kind = self._classified(frame)
         if message is not None and kind is not Kind.DENIED and _is_of_plan(message):
             return self._plans.judge(given, message, row)
+        if kind in (Kind.MOTION, Kind.CONFIGURATION):
+            nobody = why_not_component(given, message)
+            if nobody is not None:
+                return refuse(given, message, row, nobody)
         if kind is Kind.CONFIGURATION and _is_flown_to_at_once(message):
             return self._motion.judge(given, message, row)
         match kind:

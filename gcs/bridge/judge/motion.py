@@ -8,6 +8,7 @@ from typing import Final
 from gcs.bridge.classes import Row
 from gcs.bridge.effects import BridgeEffect, ToVehicle
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN, asks_for_height, climbs
+from gcs.bridge.judge.components import is_for_another, only_autopilot
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.judge.set_up import SetUpJudge
 from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Settled, Sticks, Words
@@ -37,6 +38,8 @@ class MotionJudge:
         if message is None:
             return refuse(given, message, row, Refusal(Code.UNSUPPORTED, row.why))
         meant = meaning_of(message, seen)
+        if is_for_another(given, message) and not isinstance(meant, Forward):
+            return refuse(given, message, row, only_autopilot(given))
         ignored = client.sticks.news(meant) if isinstance(meant, Sticks) else ""
         told = client.dialogue.text(given.by, Level.INFO, ignored, now_ns) if ignored else []
         settled = client.settle(meant, seen, now_ns)

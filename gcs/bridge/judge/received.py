@@ -12,6 +12,7 @@ from gcs.bridge.effects import BridgeEffect
 from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.pending import From
 from gcs.gate.refusal import Refusal
+from gcs.protocol.effects import Address
 from gcs.wire.frame import Frame
 from gcs.wire.messages import Message
 
@@ -36,6 +37,8 @@ class Received:
     frame: Frame
     look: Look
     now_ns: int
+    autopilot: Address
+    """Of the vehicle; `by.addressed` is another component of it where the client names one."""
     in_control: bool = False
     """The client is the one in control."""
 

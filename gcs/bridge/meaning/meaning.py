@@ -37,6 +37,10 @@ def _rally_points_unknown(point: RallyPoint) -> Refusal | None:
     return Refusal(Code.NO_ORIGIN, "where the rally point lies is not known")
 
 
+def _hears_nobody(_compid: int) -> bool:
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class Seen:
     """The vehicle as it was last reported, and what the gate does with it.
@@ -96,6 +100,8 @@ class Seen:
     why_not_go_to: Callable[[Vec3, float | None], Refusal | None] = _goes
     """Why the gate would not fly it to this place, with this heading, once its hold is lifted;
     None: it would, or nobody knows.  So what will be refused lifts no hold first."""
+    hears: Callable[[int], bool] = _hears_nobody
+    """Whether a component of the vehicle's system, by its id, was ever heard on a vehicle link."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -150,6 +150,51 @@ def test_a_fence_of_the_vehicle_that_only_reports() -> None:
     assert found == Finding("geofence breach", "reports only (FENCE_ACTION = 0)", weak=True)
 
 
+@pytest.mark.parametrize("value", [77.0, 2.5, -1.0, 0.5, 1e20, -1e20, math.inf, math.nan])
+@pytest.mark.parametrize(
+    ("autopilot", "about", "name"),
+    [
+        ("px4", "ground-station loss", "NAV_DLL_ACT"),
+        ("px4", "stick loss", "NAV_RCL_ACT"),
+        ("px4", "offboard loss", "COM_OBL_RC_ACT"),
+        ("px4", "low battery", "COM_LOW_BAT_ACT"),
+        ("px4", "geofence breach", "GF_ACTION"),
+        ("ardupilot", "ground-station loss", "FS_GCS_ENABLE"),
+        ("ardupilot", "stick loss", "FS_THR_ENABLE"),
+        ("ardupilot", "low battery", "BATT_FS_LOW_ACT"),
+        ("ardupilot", "position lost", "FS_EKF_ACTION"),
+        ("ardupilot", "geofence breach", "FENCE_ACTION"),
+        ("ardupilot", "geofence breach", "FENCE_ENABLE"),
+    ],
+)
+def test_a_number_that_the_autopilot_does_not_know_is_no_action(
+    autopilot: str, about: str, name: str, value: float
+) -> None:
+    found = said(autopilot, about, **{"FENCE_ENABLE": 1.0, name: value})
+    assert found.weak
+    assert f"({name} = {value:g})" in found.says
+    assert "unknown" in found.says
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "name", "values"),
+    [("px4", "GF_ACTION", (2, 3, 4, 5)), ("ardupilot", "FENCE_ACTION", (1, 2, 3, 4, 5))],
+)
+def test_every_breach_action_that_is_known_is_one(
+    autopilot: str, name: str, values: tuple[int, ...]
+) -> None:
+    for value in range(10):
+        found = said(autopilot, "geofence breach", **{"FENCE_ENABLE": 1.0, name: float(value)})
+        assert found.weak == (value not in values), value
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0, 1e20])
+def test_bits_of_what_is_no_set_of_bits_are_none(value: float) -> None:
+    found = said("ardupilot", "geofence", FENCE_TYPE=value, FENCE_ALT_MAX=50.0)
+    assert found.weak
+    assert found.says.startswith("no circle")
+
+
 def test_a_fence_of_the_vehicle_is_as_narrow_as_the_policys_or_it_is_weak() -> None:
     assert not said("px4", "geofence", GF_MAX_HOR_DIST=150.4, GF_MAX_VER_DIST=50.0).weak
     assert said("px4", "geofence", GF_MAX_HOR_DIST=151.0, GF_MAX_VER_DIST=50.0).weak
