@@ -116,6 +116,10 @@ GOOD: Final = Good()
 _BAD: Final = {reason: Bad(reason) for reason in Reason}
 
 
+WAITING_NS: Final = 200_000_000
+"""What a socket holds when we begin may be so old: no station ends and begins anew that fast."""
+
+
 def timestamp_of(unix_ns: int) -> int:
     """In units of 10 us since 2015; 0 before."""
     return min(max(0, unix_ns - EPOCH_NS) // TICK_NS, TIMESTAMP_MAX)
@@ -183,7 +187,7 @@ class Checker:
         was signed before may have been taken by who was here before us, and recorded by anybody."""
         self._key = key
         self._clock = clock or SigningClock()
-        self._since = timestamp_of(since_ns)
+        self._since = timestamp_of(max(0, since_ns - WAITING_NS))
         self._streams: dict[tuple[int, int, int], int] = {}
         self._signers: set[tuple[int, int]] = set()
         self._sent: dict[tuple[int, int, int], int] = {}

@@ -236,6 +236,13 @@ def test_streams_have_times_of_their_own() -> None:
         assert reason(checker, raw) is Reason.REPLAYED
 
 
+def test_what_was_signed_before_we_began_is_too_old_but_for_what_waits_in_a_socket() -> None:
+    for early_ms, taken in ((0, True), (190, True), (210, False), (30_000, False)):
+        checker = Checker(KEY, since_ns=NOW_NS)
+        said = Peer(timestamp=timestamp_of(NOW_NS - early_ms * 1_000_000)).says()
+        assert reason(checker, said) is (None if taken else Reason.TOO_OLD), early_ms
+
+
 def test_a_new_stream_may_be_a_minute_behind_and_no_more() -> None:
     at_limit = NOW - LATE_MAX_TICKS
     assert reason(Checker(KEY), Peer(timestamp=at_limit).says()) is None
