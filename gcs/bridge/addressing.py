@@ -18,7 +18,7 @@ from gcs.bridge.judge.judge import Judge
 from gcs.bridge.judge.received import Judged, Look, Received
 from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.needed_rates import Rates
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.bridge.routing import TARGETS, readdressed, target_of
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address

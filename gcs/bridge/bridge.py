@@ -30,7 +30,7 @@ from gcs.bridge.judge.climbs import asks_for_height, climbs
 from gcs.bridge.judge.plans import of_plan
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.needed_rates import Rates
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.bridge.refused_addresses import RefusedAddresses, WhyNotOurs, nobody_else
 from gcs.bridge.routing import Routes, target_of
 from gcs.bridge.unheard_clients import Unheard

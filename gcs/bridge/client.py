@@ -24,7 +24,7 @@ from gcs.bridge.meaning.chosen_before_arming import (
 from gcs.bridge.meaning.meaning import Meaning, Seen, Settled, Sticks, Words
 from gcs.bridge.meaning.pace import Pace
 from gcs.bridge.meaning.stick_stream import StickStream
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.bridge.plans.server import PlanServer
 from gcs.gate.effects import Level
 from gcs.protocol.transfer import Timing

@@ -13,7 +13,7 @@ from typing import Final
 from gcs import ipc
 from gcs.bridge.client import Exchange
 from gcs.bridge.effects import Answers, BridgeEffect
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.gate.refusal import Code, Refusal
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import (

@@ -24,7 +24,7 @@ from gcs.bridge.answers import (
     texts,
 )
 from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
-from gcs.bridge.pending import From, Pending, Told
+from gcs.bridge.pending_requests import From, Pending, Told
 from gcs.bridge.recent_texts import RecentTexts
 from gcs.bridge.repeated_requests import GUIDED_ITEM, command_of, key_of
 from gcs.gate.effects import Level

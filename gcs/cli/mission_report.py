@@ -108,7 +108,7 @@ def _summary(checked: Checked) -> str:
 
 
 def _told(plan: Plan, index: int) -> str:
-    return f"item {index + 1} ({commands.name(plan.items[index].command)})"
+    return commands.item_label(index, plan.items[index].command)
 
 
 def check_json(checked: Checked) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from gcs.gate.policy.policy import BatteryLimits
 from gcs.gate.refusal import Code, Refusal
-from gcs.plan import commands
+from gcs.plan.commands import item_label
 from gcs.plan.flight_time import DAY_S, FlightTime
 from gcs.plan.model import Plan
 
@@ -19,11 +19,10 @@ _NOT_TOLD = (
 )
 
 
-def lasts_s(limits: BatteryLimits, battery_pct: float) -> float | None:
-    """For how long it flies before it is low; None where the policy does not say."""
-    if limits.endurance_s is None:
-        return None
-    return limits.endurance_s * max(0.0, battery_pct - limits.low_pct) / 100.0
+def lasts_s(endurance_s: float, limits: BatteryLimits, battery_pct: float | None) -> float:
+    """For how long it flies before it is low; a battery of which nothing is told, as a full one."""
+    left_pct = 100.0 if battery_pct is None else battery_pct
+    return endurance_s * max(0.0, left_pct - limits.low_pct) / 100.0
 
 
 def battery_refusal(
@@ -34,7 +33,7 @@ def battery_refusal(
         return None
     if battery_pct is None:
         return Refusal(Code.BATTERY_REACH, _NOT_TOLD)
-    most_s = lasts_s(limits, battery_pct) or 0.0
+    most_s = lasts_s(limits.endurance_s, limits, battery_pct)
     if flight.whole and flight.time_s <= most_s:
         return None
     sentence = (
@@ -60,4 +59,4 @@ def _what(flight: FlightTime, plan: Plan) -> str:
 
 
 def _named(plan: Plan, index: int) -> str:
-    return f"item {index + 1} ({commands.name(plan.items[index].command)})"
+    return item_label(index, plan.items[index].command)

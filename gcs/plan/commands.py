@@ -57,6 +57,9 @@ KINDS: dict[int, Kind] = {
 }
 """Every item that is flown; what is not in it, a vehicle is expected to refuse."""
 
+FLOWN = (Kind.MOVE, Kind.RETURN, Kind.WAIT)
+"""What takes its time in the air."""
+
 WITH_PLACE: frozenset[int] = frozenset(
     {
         *(command for command, kind in KINDS.items() if kind in (Kind.MOVE, Kind.FENCE)),
@@ -74,6 +77,11 @@ _KNOWN = frozenset(int(command) for command in Cmd)
 def name(command: int) -> str:
     """`NAV_WAYPOINT`, or `MAV_CMD 30001` for a command that is not known here."""
     return Cmd(command).name if command in _KNOWN else f"MAV_CMD {command}"
+
+
+def item_label(index: int, command: int) -> str:
+    """How people are told of an item, which they count from 1: `item 3 (NAV_WAYPOINT)`."""
+    return f"item {index + 1} ({name(command)})"
 
 
 def has_place(command: int, frame_number: int) -> bool:

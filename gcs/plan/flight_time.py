@@ -23,13 +23,13 @@ from typing import Final
 from gcs.frames import Vec3
 from gcs.plan import returns
 from gcs.plan.carry import Motion
+from gcs.plan.change_speed import climb_and_descent_m_s, leg_speed_m_s
 from gcs.plan.circles import circle_ends, entries
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import Ground, ProblemKind
 from gcs.plan.model import AutopilotName, Item, Plan
-from gcs.plan.speeds import climb_and_descent_m_s, leg_speed_m_s
 from gcs.wire.ids import Cmd
 
 ITEM_S: Final = 1.0
@@ -108,14 +108,15 @@ class TimeWalk:
             yield
             last, index = index, self._fly(index)
             if self._time_s > self._most_s:
-                self.result = FlightTime(min(self._time_s, DAY_S), last, False, self._endless)
-                return
+                return self._end(self._time_s, last, whole=False)
         else:
-            self.result = FlightTime(DAY_S, last, False, self._endless)
-            return
+            return self._end(DAY_S, last, whole=False)
         if not self._on_ground:
             self._return()
-        self.result = FlightTime(min(self._time_s, DAY_S), last, True, self._endless)
+        return self._end(self._time_s, last, whole=True)
+
+    def _end(self, time_s: float, last: int, *, whole: bool) -> None:
+        self.result = FlightTime(min(time_s, DAY_S), last, whole, self._endless)
 
     def _fly(self, index: int) -> int | None:
         """The item that follows; None: nothing does."""
@@ -184,8 +185,7 @@ class TimeWalk:
         if flown is Flown.CIRCLE:
             self._circle(item, to_ned)
             return
-        self._time_s += self._leg_s(to_ned)
-        self._pos_ned = to_ned
+        self._straight(to_ned)
         if item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_LOITER_TIME):
             self._time_s += _positive(item.params[0])
 
@@ -197,12 +197,12 @@ class TimeWalk:
 
     def _height(self, down_m: float) -> None:
         """Straight up or down to it."""
-        to_ned = (*self._pos_ned[:2], down_m)
-        self._time_s += self._leg_s(to_ned)
-        self._pos_ned = to_ned
+        self._straight((*self._pos_ned[:2], down_m))
 
     def _level(self, north_east: tuple[float, float]) -> None:
-        to_ned = (*north_east, self._pos_ned[2])
+        self._straight((*north_east, self._pos_ned[2]))
+
+    def _straight(self, to_ned: Vec3) -> None:
         self._time_s += self._leg_s(to_ned)
         self._pos_ned = to_ned
 

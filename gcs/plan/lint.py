@@ -10,10 +10,9 @@ import math
 from collections.abc import Iterator
 from typing import Protocol
 
-from gcs.plan import commands
-from gcs.plan.commands import KINDS, Kind
+from gcs.plan.commands import FLOWN, KINDS, Kind, item_label
 from gcs.plan.errors import Finding, Level
-from gcs.plan.feasible import never_starts
+from gcs.plan.feasibility import never_starts
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.lint_fence import lint_fence
 from gcs.plan.lint_jumps import lint_jumps
@@ -31,7 +30,6 @@ _HERE_ALLOWED = frozenset(
     {Cmd.NAV_LAND, Cmd.NAV_TAKEOFF, Cmd.NAV_LOITER_UNLIM, Cmd.NAV_LOITER_TIME}
 )
 
-_FLOWN = (Kind.MOVE, Kind.RETURN, Kind.WAIT)
 _ENDS: dict[int, str] = {
     Cmd.NAV_RETURN_TO_LAUNCH: "ends the flight; what follows is only reached by a jump",
     Cmd.NAV_LAND: "lands and stops its motors; what follows is only flown after a new start, or "
@@ -72,11 +70,6 @@ def worst(findings: list[Finding]) -> Level | None:
     return max((finding.level for finding in findings), default=None)
 
 
-def item_label(index: int, item: Item) -> str:
-    """How findings call an item: `item 3 (NAV_WAYPOINT)`."""
-    return f"item {index + 1} ({commands.name(item.command)})"
-
-
 def _whole_mission(plan: Plan, autopilot: AutopilotName | None) -> Iterator[Finding]:
     if not plan.items:
         if not plan.fence.zones and not plan.rally:
@@ -94,7 +87,7 @@ def _whole_mission(plan: Plan, autopilot: AutopilotName | None) -> Iterator[Find
     for index, why in stuck:
         item = plan.items[index]
         what = f"{autopilot} stores it and never starts the mission: {why}"
-        yield Finding(Level.WARNING, item.where, item_label(index, item), what, index=index)
+        yield Finding(Level.WARNING, item.where, item_label(index, item.command), what, index=index)
     yield from _ends_before_the_last(plan, autopilot)
     ids = [item.do_jump_id for item in plan.items]
     if ids != list(range(1, len(ids) + 1)) and any(kind is Kind.JUMP for kind in kinds):
@@ -107,7 +100,7 @@ def _ends_before_the_last(plan: Plan, autopilot: AutopilotName | None) -> Iterat
 
     What becomes of such a landing is from memory of the autopilots (and done so by vehicle-sim).
     """
-    flown = [i for i, item in enumerate(plan.items) if KINDS.get(item.command) in _FLOWN]
+    flown = [i for i, item in enumerate(plan.items) if KINDS.get(item.command) in FLOWN]
     told: set[int] = set()
     for index in flown[:-1]:
         item = plan.items[index]
@@ -116,7 +109,7 @@ def _ends_before_the_last(plan: Plan, autopilot: AutopilotName | None) -> Iterat
         told.add(item.command)
         amid_px4 = autopilot == "px4" and item.command == Cmd.NAV_LAND
         what = _LANDS_AND_GOES_ON if amid_px4 else _ENDS[item.command]
-        yield Finding(Level.WARNING, item.where, item_label(index, item), what, index=index)
+        yield Finding(Level.WARNING, item.where, item_label(index, item.command), what, index=index)
 
 
 def _no_take_off(index: int, first: Item, autopilot: AutopilotName | None) -> Finding:
@@ -125,13 +118,13 @@ def _no_take_off(index: int, first: Item, autopilot: AutopilotName | None) -> Fi
     level, hint = Level.WARNING, "a vehicle on the ground will not start this mission"
     if autopilot == "px4":
         level, hint = Level.NOTE, "on the ground, px4 climbs first to the height of this item"
-    return Finding(level, first.where, item_label(index, first), what, hint, index)
+    return Finding(level, first.where, item_label(index, first.command), what, hint, index)
 
 
 def _one_item(
     index: int, item: Item, autopilot: AutopilotName | None, home: Geodetic | None
 ) -> Iterator[Finding]:
-    label = item_label(index, item)
+    label = item_label(index, item.command)
 
     def finding(level: Level, what: str, hint: str = "") -> Finding:
         return Finding(level, item.where, label, what, hint, index)
@@ -226,5 +219,5 @@ def _distances(plan: Plan, home: Geodetic | None) -> Iterator[Finding]:
                 level = Level.ERROR if far_m > ABSURD_M else Level.WARNING
                 what = f"is {far_m / 1000:.1f} km from {before_told}"
                 hint = "are latitude and longitude in this order, and home right?"
-                yield Finding(level, item.where, item_label(index, item), what, hint, index)
+                yield Finding(level, item.where, item_label(index, item.command), what, hint, index)
         before, before_told = here, f"item {index + 1}"

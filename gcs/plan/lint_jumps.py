@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcs.plan.commands import KINDS, Kind
+from gcs.plan.commands import FLOWN, KINDS
 from gcs.plan.errors import Finding, Level
 from gcs.plan.model import Item, Plan
 from gcs.wire.ids import Cmd
-
-_STAYS = (Kind.MOVE, Kind.RETURN, Kind.WAIT)
 
 
 def lint_jumps(plan: Plan) -> Iterator[Finding]:
@@ -49,7 +47,7 @@ def _lint_jump(plan: Plan, index: int, item: Item) -> Iterator[Finding]:
         yield finding(Level.WARNING, f"{what}; what follows is never flown" if behind else what)
     if target < index:
         passed = plan.items[target:index]
-        if not any(KINDS.get(other.command) in _STAYS for other in passed):
+        if not any(KINDS.get(other.command) in FLOWN for other in passed):
             what = f"loops to item {target + 1} without a waypoint between them"
             yield finding(Level.ERROR, what)
 

@@ -25,10 +25,11 @@ from dataclasses import dataclass, replace
 from gcs.frames import Vec3
 from gcs.plan import commands, returns
 from gcs.plan.carry import Motion, Moving, not_stopped, still_moving
+from gcs.plan.change_speed import leg_speed_m_s
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.curves import Neighbours, pieces, splines
-from gcs.plan.feasible import never_starts
+from gcs.plan.feasibility import never_starts
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.legs import (
@@ -44,7 +45,6 @@ from gcs.plan.legs import (
 )
 from gcs.plan.model import Item, Plan
 from gcs.plan.onward import ways_on
-from gcs.plan.speeds import leg_speed_m_s
 from gcs.plan.turns import arrivals, blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
@@ -181,8 +181,8 @@ class PathWalk:
             self._stop(index - 1, here)
 
     def _problem(self, index: int, kind: ProblemKind, why: str = "") -> _DeadEndError:
-        label = commands.name(self._plan.items[index].command)
-        sentence = f"item {index + 1} ({label}): {kind.value}"
+        label = commands.item_label(index, self._plan.items[index].command)
+        sentence = f"{label}: {kind.value}"
         if why:
             sentence += f": {why}"
         self._problems[Problem(index, kind, sentence)] = None

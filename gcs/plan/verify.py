@@ -229,10 +229,9 @@ class Verifying:
 
     def _judge_battery(self) -> Iterator[int]:
         limits, left_pct = self._verifier.policy.battery, self._ground.battery_pct
-        most_s = lasts_s(limits, 100.0 if left_pct is None else left_pct)
-        if most_s is None:
+        if limits.endurance_s is None:
             return
-        walk = TimeWalk(self._plan, self._ground, most_s)
+        walk = TimeWalk(self._plan, self._ground, lasts_s(limits.endurance_s, limits, left_pct))
         for number, _ in enumerate(walk.steps()):
             yield 1 if number % TIMED_ITEMS == 0 else 0
         self._flight = walk.result

@@ -44,13 +44,13 @@ from gcs.session import teller
 from gcs.session.discovery import needed_hz
 from gcs.session.effects import Effect, Emit, LeaveOutPeer
 from gcs.session.links import Counts, Links
+from gcs.session.lost_acks import shown_commands
 from gcs.session.missions import timing_of
 from gcs.session.operator_lines import line
 from gcs.session.operators import Operators
 from gcs.session.return_places import why_not_rally_point
 from gcs.session.screen import bridge_row, lost_pct
 from gcs.session.settings import SPEED, TAKEOFF_HEIGHT
-from gcs.session.shown_commands import shown_commands
 from gcs.session.signatures import Signatures
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times

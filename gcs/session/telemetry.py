@@ -14,7 +14,7 @@ from gcs.gate.inputs import AccuracySeen
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
-from gcs.session.charge import Charge
+from gcs.session.battery_charge import Charge
 from gcs.session.delay import Delay
 from gcs.session.position_health import Estimator, Gps, PositionHealth
 from gcs.session.vehicle_restarts import Clock

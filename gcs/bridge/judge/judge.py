@@ -14,11 +14,11 @@ from gcs.bridge.classes import Kind, Row, command_row, message_row
 from gcs.bridge.control import ControlServer
 from gcs.bridge.effects import AsksForStreams, AsksVehicle, BridgeEffect, ToVehicle
 from gcs.bridge.guard.names import DENIED_BY_NAME, kinds_by_name
-from gcs.bridge.judge.components import why_not_component
 from gcs.bridge.judge.motion import MotionJudge
 from gcs.bridge.judge.plans import PlanJudge
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.judge.set_up import SetUpJudge
+from gcs.bridge.judge.target_component import why_not_component
 from gcs.bridge.mission_mode import MissionMode
 from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans.server import PLAN_MESSAGES

@@ -10,7 +10,7 @@ from gcs.bridge.classes import Row
 from gcs.bridge.client import Exchange
 from gcs.bridge.effects import BridgeEffect
 from gcs.bridge.meaning.meaning import Seen
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.gate.refusal import Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.frame import Frame

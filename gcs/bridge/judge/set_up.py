@@ -16,7 +16,7 @@ from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
 from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.meaning.meaning import Seen
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal

@@ -11,7 +11,7 @@ from typing import Final
 
 from gcs.bridge.answers import texts
 from gcs.bridge.effects import Answers
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.bridge.plans.collecting import acknowledgement
 from gcs.bridge.plans.effects import PlanEffect, Refused
 from gcs.bridge.recent_texts import RecentTexts

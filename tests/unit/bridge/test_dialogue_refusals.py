@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.bridge.dialogue import Dialogue
 from gcs.bridge.effects import Refuses
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.bridge.recent_texts import MOST_TEXTS
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address

@@ -8,7 +8,7 @@ from gcs.bridge.effects import Says
 from gcs.bridge.meaning.chosen_before_arming import KEPT_NS
 from gcs.bridge.meaning.says import ask
 from gcs.bridge.mission_mode import LATE_NS, NOT_SHOWN, RECENT_NS, SHOWN_NS, MissionMode
-from gcs.bridge.pending import From
+from gcs.bridge.pending_requests import From
 from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import SPEC_TIMING

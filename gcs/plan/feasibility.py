@@ -16,12 +16,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcs.plan.commands import KINDS, Kind
+from gcs.plan.commands import FLOWN, KINDS
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.model import AutopilotName, Plan
 from gcs.wire.ids import Cmd
-
-_FLOWN = (Kind.MOVE, Kind.RETURN, Kind.WAIT)
 
 
 def never_starts(plan: Plan, autopilot: AutopilotName) -> Iterator[tuple[int, str]]:
@@ -30,7 +28,7 @@ def never_starts(plan: Plan, autopilot: AutopilotName) -> Iterator[tuple[int, st
     for index, item in enumerate(plan.items):
         if flown_as(item.command, autopilot) is Flown.NEVER_STARTS:
             yield index, "it waits for a condition"
-        if autopilot != "px4" or KINDS.get(item.command) not in _FLOWN:
+        if autopilot != "px4" or KINDS.get(item.command) not in FLOWN:
             continue
         if item.command == Cmd.NAV_TAKEOFF and flown:
             yield index, "a take-off must be the first item that is flown"
