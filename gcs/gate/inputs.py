@@ -75,13 +75,15 @@ class PositionSeen:
     """LOCAL_POSITION_NED.  `time_boot_ms` is the vehicle's own time stamp.
 
     `reset` says that the vehicle's clock went backwards or that one of its reset counters
-    changed: the origin of the local frame may have moved.
+    changed: the origin of the local frame may have moved.  `late_s` is how old the position was
+    when it came: as late is what is sent now.
     """
 
     pos_ned: Vec3
     v_ned: Vec3
     time_boot_ms: int
     reset: bool = False
+    late_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

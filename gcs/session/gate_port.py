@@ -10,7 +10,7 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate import effects, inputs
-from gcs.gate.airspace.stopping import predicted_stop, stops_of
+from gcs.gate.airspace.stopping import ways_to_stop
 from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
 from gcs.gate.condition import Condition
 from gcs.gate.machine.gate import Gate
@@ -141,9 +141,10 @@ class GatePort:
         """Where the gate predicts that the vehicle comes to rest; in flight only."""
         if telemetry.pos_ned is None or self.gate.state in NOT_FLYING:
             return []
-        stops = stops_of(self.policy, telemetry.autopilot.name)
-        path = self.gate.memory.path
-        stop_ned = predicted_stop(telemetry.pos_ned, telemetry.v_ned, path, stops)
+        path, name = self.gate.memory.path, telemetry.autopilot.name
+        (_, stop_ned), *_ = ways_to_stop(
+            telemetry.pos_ned, telemetry.v_ned, path, self.policy, name
+        )
         return [Record(StopItem(telemetry.sysid, telemetry.pos_ned, stop_ned))]
 
     # -------------------------------------------------------------------------- the fence

@@ -131,14 +131,15 @@ def _local_position(
         restarted = True
         if not telemetry.restart_known:
             telemetry.forget_place()
-    if telemetry.delay.of(message.time_boot_ms, now_ns) > telemetry.position_age_ns:
+    late_ns = telemetry.delay.of(message.time_boot_ms, now_ns)
+    if late_ns > telemetry.position_age_ns:
         # It comes so late that it was too old when it arrived; the age will tell.
         return ()
     telemetry.time_boot_ms = message.time_boot_ms
     telemetry.stamps.take(message.time_boot_ms)
     telemetry.pos_ned, telemetry.v_ned, telemetry.position_ns = pos_ned, v_ned, now_ns
     return (
-        ToGate(inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, reset=restarted)),
+        ToGate(inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, restarted, late_ns / 1e9)),
         Record(PoseItem(telemetry.sysid, pos_ned, v_ned, telemetry.q_ned_from_frd)),
     )
 

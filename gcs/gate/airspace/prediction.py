@@ -13,15 +13,17 @@ from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.clearance import Measure
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.judge import FenceJudge
-from gcs.gate.airspace.stopping import Path
+from gcs.gate.airspace.stopping import Path, StopBy
 from gcs.gate.policy.policy import Overshoot
 from gcs.gate.refusal import Code, Refusal
 
 
 @dataclass(frozen=True, slots=True)
 class BadStop:
-    """A predicted stop that breaks a limit: where it is, and which measure breaks it."""
+    """No way of stopping keeps the limits of the fence: the best of them, where it ends, and which
+    measure breaks its limit."""
 
+    by: StopBy
     stop_ned: Vec3
     measure: Measure
     sentence: str
@@ -29,36 +31,61 @@ class BadStop:
 
 
 def bad_stop(
-    bounds: Bounds, pos_ned: Vec3, v_ned: Vec3, path: Path, *, floor_applies: bool
+    bounds: Bounds,
+    pos_ned: Vec3,
+    v_ned: Vec3,
+    path: Path,
+    late_s: float = 0.0,
+    *,
+    floor_applies: bool,
 ) -> BadStop | None:
-    """The predicted stop, if it or the way to it breaks a limit of the fence; else None.
+    """None where the vehicle can come to rest inside; else the way that ends nearest to it.
 
-    Where the floor does not apply, the stop is no lower than the ground, at home's height.
+    Where the floor does not apply, a stop is no lower than the ground, at home's height.  The
+    numbers have where each way would end: how far from the limit, negative beyond it.
     """
     judge, home_ned = bounds.judge, bounds.home_ned
-    stops = stopping.stops_of(bounds.policy, bounds.autopilot)
-    north_m, east_m, down_m = stopping.predicted_stop(pos_ned, v_ned, path, stops)
-    if not floor_applies and home_ned is not None:
-        down_m = min(down_m, max(pos_ned[2], home_ned[2]))
-    stop_ned = (north_m, east_m, down_m)
-    measure = judge.broken_stop(pos_ned, stop_ned, floor_applies=floor_applies)
-    if measure is None:
-        return None
+    policy, autopilot = bounds.policy, bounds.autopilot
+    found: list[tuple[float, StopBy, Vec3, Measure]] = []
+    for by, (north_m, east_m, down_m) in stopping.ways_to_stop(
+        pos_ned, v_ned, path, policy, autopilot, late_s
+    ):
+        if not floor_applies and home_ned is not None:
+            down_m = min(down_m, max(pos_ned[2], home_ned[2]))
+        stop_ned = (north_m, east_m, down_m)
+        measure = judge.broken_stop(pos_ned, stop_ned, floor_applies=floor_applies)
+        if measure is None:
+            return None
+        over_m = measure.least_m - judge.stop_limit(measure.face).limit_m
+        found.append((over_m, by, stop_ned, measure))
+    _, by, stop_ned, measure = max(found, key=lambda way: way[0])
     limit_m, rest_m = judge.stop_limit(measure.face).limit_m, measure.least_m
     sentence = (
         f"at {fixed(math.hypot(*v_ned), 1)} m/s it would come to rest {metres(abs(rest_m))} m "
         f"{'past' if rest_m < 0.0 else 'from'} the edge of {measure.zone.title}, "
         f"{metres(abs(limit_m))} m {'asked' if limit_m >= 0.0 else 'past it allowed'}"
     )
-    numbers = (("clear_m", measure.start_m), ("stop_clear_m", rest_m), ("limit_m", limit_m))
-    return BadStop(stop_ned, measure, sentence, (*numbers, *stopping_numbers(judge, v_ned)))
+    numbers = (
+        ("clear_m", measure.start_m),
+        ("stop_clear_m", rest_m),
+        ("limit_m", limit_m),
+        *((f"{way.value}_over_limit_m", over_m) for over_m, way, _, _ in found),
+        *stopping_numbers(judge, v_ned),
+    )
+    return BadStop(by, stop_ned, measure, sentence, numbers)
 
 
 def cannot_stop(
-    bounds: Bounds, pos_ned: Vec3, v_ned: Vec3, path: Path, *, floor_applies: bool
+    bounds: Bounds,
+    pos_ned: Vec3,
+    v_ned: Vec3,
+    path: Path,
+    late_s: float = 0.0,
+    *,
+    floor_applies: bool,
 ) -> Refusal | None:
     """Refuses a position and velocity from which the vehicle could not stop inside."""
-    bad = bad_stop(bounds, pos_ned, v_ned, path, floor_applies=floor_applies)
+    bad = bad_stop(bounds, pos_ned, v_ned, path, late_s, floor_applies=floor_applies)
     if bad is None:
         return None
     return Refusal(Code.CANNOT_STOP, bad.sentence, bad.numbers, bad.measure.zone.name)

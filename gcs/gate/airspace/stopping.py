@@ -5,19 +5,16 @@ terms are the way that it travels, along its velocity; the last two are a distan
 direction.
 
 Two sets of figures: the policy's braking, what a hold takes from the command on, and its approach,
-what a vehicle takes that slows down by itself for a goal it was sent.  `predicted_stop` chooses.
-
-A vehicle that is outside the box round its verified mission slows down for nothing that is known.
-
-What a vehicle slows down for is its goal and nothing that stands before it.  A leg is clear of
-everything at all heights between those of its ends; what the vehicle flies towards above or below
-those is judged by its braking.
+what a vehicle takes that slows down by itself, for a position that it is sent or on a path of its
+own.  A vehicle that is outside the box round its verified mission slows down for nothing that is
+known.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 from typing import TypeAlias, assert_never
 
 from gcs.frames import Vec3
@@ -25,15 +22,17 @@ from gcs.gate.airspace.mission_box import MissionBox
 from gcs.gate.policy.policy import Approach, Braking, Overshoot, Policy
 
 
+class StopBy(Enum):
+    """How a vehicle comes to rest; the values are parts of names and sentences."""
+
+    HOLD = "hold"  # it is told its hold mode
+    SETPOINT = "setpoint"  # it is sent a position at which to stop, then told its hold mode
+    ITSELF = "itself"  # on a path of its own
+
+
 @dataclass(frozen=True, slots=True)
-class Leg:
-    """The vehicle flies straight to a goal that was accepted from where it was then.
-
-    One that hovers is on the leg from where it hovers to the same place.
-    """
-
-    from_ned: Vec3
-    goal_ned: Vec3
+class Setpoints:
+    """The vehicle flies to the positions that it is sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,24 +45,8 @@ class OwnPath:
     within: MissionBox | None = None
 
 
-Path: TypeAlias = Leg | OwnPath | None
+Path: TypeAlias = Setpoints | OwnPath | None
 """What the vehicle flies; None: nothing that it would slow down for by itself."""
-
-
-@dataclass(frozen=True, slots=True)
-class Stops:
-    """All that one autopilot's stops are predicted by."""
-
-    braking: Braking
-    approach: Approach
-    overshoot: Overshoot
-
-
-def stops_of(policy: Policy, autopilot: str) -> Stops:
-    """The policy's figures for an autopilot."""
-    return Stops(
-        policy.braking_of(autopilot), policy.approach_of(autopilot), policy.overshoot_of(autopilot)
-    )
 
 
 def travel_m(speed_m_s: float, react_s: float, a_brake_m_s2: float) -> float:
@@ -84,13 +67,18 @@ def distance_v_m(v_ned: Vec3, braking: Braking, margin_m: float) -> float:
     return travel + braking.position_error_v_m + margin_m
 
 
-def stop_point(pos_ned: Vec3, v_ned: Vec3, braking: Braking | Approach) -> Vec3:
-    """Where the vehicle would stop if it were told to now: its position plus the way it travels."""
+def stop_point(
+    pos_ned: Vec3, v_ned: Vec3, braking: Braking | Approach, late_s: float = 0.0
+) -> Vec3:
+    """Where the vehicle would stop if it were told to now: its position plus the way it travels.
+
+    It hears of it `late_s` later, too: the position is as old.
+    """
     north, east, down = v_ned
-    speed_h = math.hypot(north, east)
-    run_h = travel_m(speed_h, braking.react_s, braking.a_brake_h_m_s2)
+    speed_h, react_s = math.hypot(north, east), braking.react_s + late_s
+    run_h = travel_m(speed_h, react_s, braking.a_brake_h_m_s2)
     per_speed = run_h / speed_h if speed_h > 0.0 else 0.0
-    run_v = math.copysign(travel_m(down, braking.react_s, braking.a_brake_v_m_s2), down)
+    run_v = math.copysign(travel_m(down, react_s, braking.a_brake_v_m_s2), down)
     return (pos_ned[0] + north * per_speed, pos_ned[1] + east * per_speed, pos_ned[2] + run_v)
 
 
@@ -108,73 +96,22 @@ def overshoot_point(pos_ned: Vec3, goal_ned: Vec3, overshoot: Overshoot) -> Vec3
     )
 
 
-def predicted_stop(pos_ned: Vec3, v_ned: Vec3, path: Path, stops: Stops) -> Vec3:
-    """Where the vehicle comes to rest: by its approach where it slows down for a goal of its own,
-    else by its braking.  On a leg, horizontal and vertical are decided apart.  Above or below both
-    ends of the leg it is braked for what is before the goal, but not for what is behind it."""
-    held_ned = stop_point(pos_ned, v_ned, stops.braking)
-    own_ned = stop_point(pos_ned, v_ned, stops.approach)
+def ways_to_stop(
+    pos_ned: Vec3, v_ned: Vec3, path: Path, policy: Policy, autopilot: str, late_s: float = 0.0
+) -> tuple[tuple[StopBy, Vec3], ...]:
+    """How the vehicle on this path can come to rest, and where: the first of them is the usual one.
+
+    One that follows setpoints is slowed down by them at every tick; its hold mode is the other way.
+    """
+    held = (StopBy.HOLD, stop_point(pos_ned, v_ned, policy.braking_of(autopilot), late_s))
+    own_ned = stop_point(pos_ned, v_ned, policy.approach_of(autopilot), late_s)
     match path:
         case None:
-            return held_ned
+            return (held,)
         case OwnPath(within):
             on_path = within is None or within.holds(pos_ned)
-            return own_ned if on_path else held_ned
-        case Leg():
-            north, east, _ = held_ned
-            if _along_leg(own_ned, v_ned, path, stops):
-                north, east, _ = own_ned
-                if not _at_a_height_of_leg(own_ned, path, stops):
-                    north, east = _no_farther_than_goal(pos_ned, own_ned, held_ned, path)
-            down = (own_ned if _between_heights(own_ned, v_ned, path, stops) else held_ned)[2]
-            return (north, east, down)
+            return ((StopBy.ITSELF, own_ned),) if on_path else (held,)
+        case Setpoints():
+            return (held, (StopBy.SETPOINT, own_ned))
         case _:
             assert_never(path)
-
-
-def _at_a_height_of_leg(stop_ned: Vec3, leg: Leg, stops: Stops) -> bool:
-    """Is the stop between the heights of the leg's ends, but for the error of its position?"""
-    error_m = stops.braking.position_error_v_m
-    low, high = sorted((leg.from_ned[2], leg.goal_ned[2]))
-    return low - error_m <= stop_ned[2] <= high + error_m
-
-
-def _no_farther_than_goal(pos: Vec3, own: Vec3, held: Vec3, leg: Leg) -> tuple[float, float]:
-    """The own stop, and on from there along the leg: as far as a hold takes, or to the goal."""
-    leg_n, leg_e = leg.goal_ned[0] - leg.from_ned[0], leg.goal_ned[1] - leg.from_ned[1]
-    leg_m = math.hypot(leg_n, leg_e)
-    n, e = (leg_n / leg_m, leg_e / leg_m) if leg_m > 0.0 else (0.0, 0.0)
-    left_m = (leg.goal_ned[0] - own[0]) * n + (leg.goal_ned[1] - own[1]) * e
-    more_m = math.dist(pos[:2], held[:2]) - math.dist(pos[:2], own[:2])
-    on_m = max(0.0, min(left_m, more_m))
-    return (own[0] + on_m * n, own[1] + on_m * e)
-
-
-def _along_leg(stop_ned: Vec3, v_ned: Vec3, leg: Leg, stops: Stops) -> bool:
-    """Horizontally: is the stop on the leg or its overshoot, and the velocity along it?"""
-    approach, overshoot = stops.approach, stops.overshoot
-    leg_n, leg_e = leg.goal_ned[0] - leg.from_ned[0], leg.goal_ned[1] - leg.from_ned[1]
-    leg_m = math.hypot(leg_n, leg_e)
-    n, e = (leg_n / leg_m, leg_e / leg_m) if leg_m > 0.0 else (0.0, 0.0)
-    stop_n, stop_e = stop_ned[0] - leg.from_ned[0], stop_ned[1] - leg.from_ned[1]
-    along_m = stop_n * n + stop_e * e
-    beside_m = math.hypot(stop_n - along_m * n, stop_e - along_m * e)
-    ahead_m_s = max(0.0, v_ned[0] * n + v_ned[1] * e)
-    aside_m_s = math.hypot(v_ned[0] - ahead_m_s * n, v_ned[1] - ahead_m_s * e)
-    past_m = min(overshoot.share_h * leg_m, overshoot.most_h_m)
-    return (
-        beside_m <= approach.cross_track_m
-        and -approach.cross_track_m <= along_m <= leg_m + past_m + approach.cross_track_m
-        and aside_m_s <= approach.cross_track_m_s
-    )
-
-
-def _between_heights(stop_ned: Vec3, v_ned: Vec3, leg: Leg, stops: Stops) -> bool:
-    """Vertically: is the stop between the ends of the leg, or its overshoot, and the velocity
-    towards the goal?"""
-    approach = stops.approach
-    past_down = overshoot_point(leg.from_ned, leg.goal_ned, stops.overshoot)[2]
-    low, high = sorted((leg.from_ned[2], past_down))
-    within = low - approach.cross_track_m <= stop_ned[2] <= high + approach.cross_track_m
-    towards = (leg.goal_ned[2] - leg.from_ned[2]) * v_ned[2] > 0.0
-    return within and (towards or abs(v_ned[2]) <= approach.cross_track_m_s)

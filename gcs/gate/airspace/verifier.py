@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
+from gcs.gate.airspace import pace
 from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.questions import braking, goals, missions, positions, returns, streams
@@ -41,6 +42,7 @@ class Verifier(Bounds):
 
     predicted_stop = braking.predicted_stop
     hold_ahead = braking.hold_ahead
+    paced = pace.paced
 
     return_paths = returns.return_paths
     return_path = returns.return_path

@@ -16,7 +16,6 @@ from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, Level, OutcomeKind, Ruling, SwitchedFence
 from gcs.gate.machine import commanding, holding, streaming, verifying
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.gained_speed import leg_begins, leg_left
 from gcs.gate.machine.memory import Goal, Task
 from gcs.gate.machine.progress import within_arrival
 from gcs.gate.machine.rules import Action, End
@@ -76,9 +75,7 @@ def _fly_to_top(turn: Turn) -> None:
 def _fly_to(turn: Turn, goal: Goal) -> None:
     memory = turn.memory
     assert memory.pos_ned is not None
-    leg_left(turn)
-    memory.goal = replace(goal, from_ned=memory.pos_ned)
-    leg_begins(turn)
+    memory.goal = goal
     memory.within_since_ns = turn.now_ns if within_arrival(turn, goal.pos_ned) else None
     turn.set_deadline(_flight_s(turn, memory.pos_ned, goal.pos_ned))
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.machine import verifying
-from gcs.gate.machine.gained_speed import may_have_gained
+from gcs.gate.machine.pacing import may_have
 from gcs.gate.machine.rules import Check
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
@@ -54,7 +54,7 @@ def _position(turn: Turn) -> Refusal | None:
     """Taken off its leg, the vehicle stops from the speed that it has gained there; one that is
     held already does not stop worse."""
     flies = turn.memory.goal is not None
-    return verifying.position(turn, may_have_gained(turn, None) if flies else ())
+    return verifying.position(turn, may_have(turn, None) if flies else ())
 
 
 CHECKS: Final[Mapping[Check, Callable[[Turn], Refusal | None]]] = MappingProxyType(

@@ -39,7 +39,6 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.events import SAW, Event, event_of
-from gcs.gate.machine.gained_speed import velocity_seen
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS
 from gcs.gate.machine.progress import arrival_radius_h_m, within_arrival
 from gcs.gate.machine.sentences import ASKED_FOR, result_word
@@ -235,7 +234,7 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
         memory.ground_down_m = None
     memory.pos_ned, memory.v_ned = seen.pos_ned, seen.v_ned
     memory.pos_ns, memory.boot_ms = turn.now_ns, seen.time_boot_ms
-    velocity_seen(turn)
+    memory.late_s = seen.late_s
     if memory.goal is None or not within_arrival(turn, memory.goal.pos_ned):
         memory.within_since_ns = None
     elif memory.within_since_ns is None:
@@ -244,7 +243,11 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
         yield Occurrence(Event.POSITION_JUMPED)
     if memory.verifier is not None and memory.control is not Control.NONE:
         breach = memory.verifier.predicted_stop(
-            seen.pos_ned, seen.v_ned, memory.path, floor_applies=_floor_applies(turn)
+            seen.pos_ned,
+            seen.v_ned,
+            memory.path,
+            seen.late_s,
+            floor_applies=_floor_applies(turn),
         )
         if breach is not None:
             why = Refusal(Code.FENCE_BREACH, breach.sentence, breach.numbers, breach.zone)

@@ -32,6 +32,7 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.facts import events_from
 from gcs.gate.machine.guards import GUARDS
 from gcs.gate.machine.memory import SECOND_NS, Memory
+from gcs.gate.machine.pacing import towards
 from gcs.gate.machine.rules import BACK, STAY, Branch, Next, Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
 from gcs.gate.machine.turn import CommandDraft, Draft, SampleDraft, SetpointDraft, Turn
@@ -310,13 +311,15 @@ class Gate:
         now_ns = self._turn.now_ns
         if isinstance(draft, SetpointDraft):
             goal = draft.goal
-            assert all(map(math.isfinite, goal.pos_ned))
-            return SendSetpoint(permit.issue(goal.pos_ned, goal.yaw_rad, now_ns, draft.reason))
+            target_ned = towards(self._turn, goal.pos_ned)
+            assert all(map(math.isfinite, target_ned))
+            return SendSetpoint(permit.issue(target_ned, goal.yaw_rad, now_ns, draft.reason))
         if isinstance(draft, SampleDraft):
             asked = draft.sample
+            to_ned = asked.pos_ned
             return SendSetpoint(
                 permit.issue(
-                    asked.pos_ned,
+                    None if to_ned is None else towards(self._turn, to_ned, asked.v_ned),
                     asked.yaw_rad,
                     now_ns,
                     draft.reason,

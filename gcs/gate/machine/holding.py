@@ -7,11 +7,14 @@ Beside it the held position is sent as a setpoint, where it was verified.
 
 from __future__ import annotations
 
+import math
+
 from gcs.enu_text import place
+from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.stopping import StopBy
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.gained_speed import leg_left
 from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.turn import SetpointDraft, Turn
 from gcs.gate.refusal import Code, Refusal
@@ -26,14 +29,27 @@ def hold(turn: Turn) -> None:
     memory = turn.memory
     turn.cancel_commands()
     memory.ask_control_ns = None
-    leg_left(turn)
     memory.goal = None
     braking = turn.breach is not None and turn.breach.brake_pos_ned is not None
     if not braking:
         verify_held_point(turn)
     memory.control = Control.OURS
-    turn.set_deadline(turn.policy.control.timeout_s)
-    repeat_hold(turn)
+    if turn.breach is None or turn.breach.by is not StopBy.SETPOINT or not braking:
+        turn.set_deadline(turn.policy.control.timeout_s)
+        repeat_hold(turn)
+        return
+    # Setpoints stop it sooner than its hold mode does: that comes when it is slow.
+    slow_s = _slow_after_s(turn)
+    turn.set_deadline(slow_s + turn.policy.control.timeout_s)
+    memory.hold_again_ns = turn.after_ns(slow_s)
+
+
+def _slow_after_s(turn: Turn) -> float:
+    """How long a vehicle takes that is stopped by setpoints."""
+    memory, approach = turn.memory, turn.policy.approach_of(turn.memory.autopilot)
+    north, east, down = memory.v_ned or STANDING
+    level_s = math.hypot(north, east) / approach.a_brake_h_m_s2
+    return approach.react_s + max(level_s, abs(down) / approach.a_brake_v_m_s2)
 
 
 def verify_held_point(turn: Turn) -> None:

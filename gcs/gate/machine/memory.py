@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis
 from gcs.gate.airspace.mission_box import MissionBox
+from gcs.gate.airspace.pace import Paced
 from gcs.gate.airspace.return_place import HOME, ReturnPlace
-from gcs.gate.airspace.stopping import Leg, OwnPath, Path
+from gcs.gate.airspace.stopping import OwnPath, Path, Setpoints
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.condition import Condition
@@ -43,15 +44,12 @@ returns."""
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """A verified position with the numbers it was cleared on.  Only these are sent as setpoints.
-
-    `from_ned` is where the leg to it began; None for a position that was never flown to.
-    """
+    """A verified position with the numbers it was cleared on.  Only these, and positions on the way
+    there, are sent as setpoints."""
 
     pos_ned: Vec3
     yaw_rad: float | None
     evidence: tuple[tuple[str, float], ...]
-    from_ned: Vec3 | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,13 +68,9 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class FlownSample:
-    """The sample of a client's stream that is flown, with the numbers it was cleared on.
-
-    `from_ned` is where the vehicle was when it came: there the leg to its position begins.
-    """
+    """The sample of a client's stream that is flown, with the numbers it was cleared on."""
 
     sample: StreamSample
-    from_ned: Vec3
     evidence: tuple[tuple[str, float], ...]
 
 
@@ -104,6 +98,7 @@ class Memory:
     pos_ned: Vec3 | None = None
     v_ned: Vec3 | None = None
     pos_ns: int | None = None
+    late_s: float = 0.0  # how old it was when it came
     boot_ms: int = 0  # the vehicle's own time stamp of the last position
     home_ned: Vec3 | None = None
     arrival_h_m: float | None = None  # how near beside a goal is there; None: the policy's radius
@@ -128,10 +123,8 @@ class Memory:
     hold: Goal | None = None  # where the vehicle hovers
     goal: Goal | None = None  # where the vehicle flies to
     within_since_ns: int | None = None  # inside the arrival radius of `goal` since then
-    leg_fastest_m_s: float = 0.0  # horizontally, of what was reported since it flies there
-    gains_ns: int = 0  # when it was sent there, or was reported faster than before
-    gained_ned: Vec3 | None = None  # the velocity that it may have had when another leg was left
-    gained_until_ns: int = 0  # until then that counts
+    paced: Paced | None = None  # what was sent last on the way to a position
+    paced_ns: int = 0  # when that was
 
     # a client's setpoint stream
     streamer: str = ""  # whose it is; it means nothing but in STREAMING
@@ -196,19 +189,17 @@ class Memory:
     def path(self) -> Path:
         """What the vehicle flies, or has flown and settles at; None where it is sent to no place.
 
-        A client's velocities lead to no place.  A vehicle that hovers where it never flew to is on
-        a leg without length.
+        A client's velocities lead to no place.  A vehicle that is held obeys its hold mode.
         """
         if self.flown_state is State.FLYING_MISSION:
             return OwnPath(self.mission_within)
         if self.flown_state in OWN_PATHS:
             return OwnPath()
         if self.flown_state is State.STREAMING and self.flown is not None:
-            to_ned = self.flown.sample.pos_ned
-            own = to_ned is not None and self.flown.sample.v_ned is None
-            return Leg(self.flown.from_ned, to_ned) if to_ned is not None and own else None
-        goal = self.goal or self.hold
-        return None if goal is None else Leg(goal.from_ned or goal.pos_ned, goal.pos_ned)
+            sample = self.flown.sample
+            return Setpoints() if sample.pos_ned is not None and sample.v_ned is None else None
+        follows = self.control is Control.OURS and self.flown_state is not State.HOLDING
+        return Setpoints() if follows and (self.goal or self.hold) is not None else None
 
     @property
     def returns_to(self) -> tuple[ReturnPlace, ...]:

@@ -12,7 +12,6 @@ import math
 from gcs.gate.effects import Level, OutcomeKind, StreamVerdict
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.gained_speed import leg_begins, leg_left
 from gcs.gate.machine.memory import SECOND_NS, FlownSample, Goal
 from gcs.gate.machine.rules import End
 from gcs.gate.machine.sentences import no_fresh_position
@@ -87,7 +86,6 @@ def begin(turn: Turn) -> None:
     memory.flown, memory.stream_refused, memory.good_since_ns = None, False, None
     memory.refused_elsewhere = ()
     if memory.goal is not None:
-        leg_left(turn)
         memory.goal = None
         if turn.policy.stream.tilt_deg > 0.0:
             memory.leant = ((turn.now_ns, None),)
@@ -98,19 +96,13 @@ def fly(turn: Turn) -> None:
     """Send the sample that came, and nothing else, from the next tick on."""
     memory = turn.memory
     assert turn.streamed is not None
-    assert memory.pos_ned is not None
     if memory.flown is None:
         turn.out.append(StreamVerdict(memory.streamer, None, turn.evidence))
         turn.say(Level.INFO, f"The stream of {memory.streamer} is flown")
     sample = verifying.sample_of(turn.streamed)
     if sample.attitude is not None:
         memory.leant = verifying.leaning_on(turn, sample.attitude)
-    elsewhere = memory.flown is None or memory.flown.sample.pos_ned != sample.pos_ned
-    if elsewhere:
-        leg_left(turn)
-    memory.flown = FlownSample(sample, memory.pos_ned, turn.evidence)
-    if elsewhere:
-        leg_begins(turn)
+    memory.flown = FlownSample(sample, turn.evidence)
     memory.sample_ns = memory.streamed_ns = turn.now_ns
     memory.stream_refused, memory.good_since_ns = False, None
     memory.hold = None
@@ -159,4 +151,4 @@ def _hold_ahead(turn: Turn) -> None:
         turn.raised.append(Event.CLEARS_NO_MORE)
         return
     evidence = (("ahead_m", math.dist(memory.pos_ned, hold_ned)),)
-    memory.hold = Goal(hold_ned, None, evidence, memory.pos_ned)
+    memory.hold = Goal(hold_ned, None, evidence)

@@ -20,8 +20,8 @@ from gcs.gate.airspace.zones import Zone
 from gcs.gate.attitude import Attitude
 from gcs.gate.geometry import Circle
 from gcs.gate.inputs import StreamSeen
-from gcs.gate.machine.gained_speed import may_have_gained
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS, Memory
+from gcs.gate.machine.pacing import may_have
 from gcs.gate.machine.sentences import no_fresh_position
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
@@ -91,7 +91,7 @@ def goal(turn: Turn, request: GoTo) -> Refusal | None:
             request.yaw_rad,
             memory.pos_ned,
             memory.v_ned,
-            gained_ned=may_have_gained(turn, request.goal_ned),
+            gained_ned=may_have(turn, request.goal_ned),
         ),
     )
 
@@ -125,7 +125,7 @@ def _sample(turn: Turn, sample: StreamSample) -> Refusal | None:
     if age_s is None or turn.stale or memory.pos_ned is None or memory.v_ned is None:
         return _keep(turn, no_fresh_position(memory))
     before = leans_before(turn, sample, age_s)
-    gained = may_have_gained(turn, sample.pos_ned)
+    gained = may_have(turn, sample.pos_ned)
     judged = memory.verifier.stream_sample(
         sample, memory.pos_ned, memory.v_ned, age_s, before, gained
     )

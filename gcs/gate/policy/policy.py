@@ -11,7 +11,7 @@ unless a zone says otherwise.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, TypeAlias
 
 from msgspec import Meta, Struct
@@ -64,19 +64,37 @@ class Braking(_Section, frozen=True):
 
 
 class Approach(_Section, frozen=True):
-    """How an autopilot is trusted to slow down for its own goal; see `stopping.py`.
-
-    It is on the leg to its goal while it would stop within `cross_track_m` of it and moves across
-    it, or back, no faster than `cross_track_m_s`.  It gains speed on its way there by
-    `a_gain_h_m_s2` at the most; see `gained_speed.py`.
-    """
+    """How an autopilot slows down by itself: for a position that it is sent, and on a path of its
+    own; see `stopping.py`."""
 
     react_s: Annotated[float, Meta(ge=0.0, le=10.0)]
     a_brake_h_m_s2: Deceleration
     a_brake_v_m_s2: Deceleration
-    cross_track_m: FromZero
-    cross_track_m_s: FromZero
-    a_gain_h_m_s2: FromZero
+
+
+class Pace(_Section, frozen=True):
+    """How the speed of a vehicle that is sent to a position is governed, along one axis: level, or
+    vertical; see `pace.py`.
+
+    The speed asked for is at most `most_m_s`, no more than `gain_m_s` above the vehicle's own, and
+    so low that the vehicle can slow down for its goal by `end_m_s2`.  The vehicle takes `lag_s` to
+    follow a speed that falls.  The autopilot flies towards a position `d` metres away at
+    `follow_per_s` d, and no faster than it can slow down for it by `follow_m_s2`.
+    """
+
+    most_m_s: FromTenth
+    gain_m_s: FromTenth
+    end_m_s2: Deceleration
+    lag_s: Annotated[float, Meta(ge=0.0, le=10.0)]
+    follow_per_s: Annotated[float, Meta(ge=0.05, le=10.0)]
+    follow_m_s2: Deceleration
+
+
+class Paces(_Section, frozen=True):
+    """Along the ground, and up or down."""
+
+    level: Pace
+    vertical: Pace
 
 
 class Overshoot(_Section, frozen=True):
@@ -245,8 +263,8 @@ class StreamRules(_Section, frozen=True):
 class Policy(_Section, frozen=True):
     """Everything the gate decides by; `default.toml` says what each key means.
 
-    `braking`, `approach` and `overshoot` are by the autopilot's name; `severities` has every
-    `Condition`.
+    `braking`, `approach`, `overshoot` and `pace` are by the autopilot's name; `severities` has
+    every `Condition`.
     """
 
     name: Text
@@ -268,6 +286,7 @@ class Policy(_Section, frozen=True):
     braking: Mapping[str, Braking]
     approach: Mapping[str, Approach]
     overshoot: Mapping[str, Overshoot]
+    pace: Mapping[str, Paces]
 
     position_age_s: PositionAge
     stale_grace_s: FromZero
@@ -322,10 +341,15 @@ class Policy(_Section, frozen=True):
             react_s=max(a.react_s for a in every),
             a_brake_h_m_s2=min(a.a_brake_h_m_s2 for a in every),
             a_brake_v_m_s2=min(a.a_brake_v_m_s2 for a in every),
-            cross_track_m=min(a.cross_track_m for a in every),
-            cross_track_m_s=min(a.cross_track_m_s for a in every),
-            a_gain_h_m_s2=max(a.a_gain_h_m_s2 for a in every),
         )
+
+    def pace_of(self, autopilot: str) -> Paces:
+        """The autopilot's own; for one that is not listed, the slowest of every entry."""
+        own = self.pace.get(autopilot)
+        if own is not None:
+            return own
+        every = tuple(self.pace.values())
+        return Paces(_slowest([p.level for p in every]), _slowest([p.vertical for p in every]))
 
     def overshoot_of(self, autopilot: str) -> Overshoot:
         """The autopilot's own; for one that is not listed, the worst of every entry."""
@@ -339,3 +363,15 @@ class Policy(_Section, frozen=True):
             share_v=max(o.share_v for o in every),
             most_v_m=max(o.most_v_m for o in every),
         )
+
+
+def _slowest(every: Sequence[Pace]) -> Pace:
+    return Pace(
+        most_m_s=min(p.most_m_s for p in every),
+        gain_m_s=min(p.gain_m_s for p in every),
+        end_m_s2=min(p.end_m_s2 for p in every),
+        lag_s=max(p.lag_s for p in every),
+        # Which autopilot follows faster: to it a position is nearer at the same speed.
+        follow_per_s=max(p.follow_per_s for p in every),
+        follow_m_s2=max(p.follow_m_s2 for p in every),
+    )

@@ -57,6 +57,7 @@ class StepCheck:
 
 STEP_CHECKS: Final = (
     StepCheck(1, invariants_motion.streams_what_was_verified, (SendSetpoint,)),
+    StepCheck(6, invariants_motion.leaves_room_for_a_hold, (SendSetpoint,)),
     StepCheck(2, invariants_motion.flies_what_clears, (VerifierChanged,)),
     StepCheck(2, invariants_motion.flies_the_mission_that_was_verified, (MissionLoaded,)),
     StepCheck(2, invariants_motion.holds_when_home_moves, (HomeSeen,)),

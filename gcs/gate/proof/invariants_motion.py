@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from typing import Final
 
 from gcs.gate.airspace.limits import STANDING
-from gcs.gate.airspace.stopping import Leg, OwnPath, Path
+from gcs.gate.airspace.stopping import OwnPath, Path, Setpoints, StopBy
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Outcome, OutcomeKind, Transition
 from gcs.gate.inputs import HomeSeen, MissionLoaded, PositionSeen, Tick, VerifierChanged
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.edge import Edge, severity_of
-from gcs.gate.proof.invariants_stream import is_sample
+from gcs.gate.proof.invariants_stream import EXACT_M, is_sample, on_the_way
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo, TakeOff
 from gcs.gate.states import Control, FlightMode, LandedState, State
@@ -48,6 +48,7 @@ are the vehicle's own."""
 BRAKED: Final = FLOWN_BY_US | {State.RETURNING}
 """Where a predicted breach is braked: a landing ends by itself, a held vehicle brakes already."""
 
+CRAWL_M_S: Final = 1.0
 HEIGHT_WITHIN_M: Final = 0.2
 LIFT_OFF_M: Final = 0.5
 """A mission begins on the ground: so low above where it stood the floor does not apply."""
@@ -98,10 +99,24 @@ def streams_what_was_verified(edge: Edge) -> Iterator[str]:
             continue
         if pos_ned is None or not all(map(math.isfinite, pos_ned)):
             yield "a setpoint that is no number leaves"
-        elif pos_ned not in known:
+        elif not any(on_the_way(edge, pos_ned, goal_ned) for goal_ned in known):
             yield f"a setpoint to {pos_ned} leaves, which nobody verified"
         if not isinstance(edge.given, Tick | PositionSeen):
             yield "a setpoint leaves between the ticks"
+
+
+def leaves_room_for_a_hold(edge: Edge) -> Iterator[str]:
+    """6: the speed at which the vehicle is sent somewhere is one from which a hold ends inside."""
+    after, paced = edge.after, edge.after.paced
+    if paced is None or after.paced_ns != edge.now_ns or after.verifier is None:
+        return
+    assert after.pos_ned is not None
+    here_ned, verifier = after.pos_ned, after.verifier
+    if verifier.predicted_stop(here_ned, STANDING, floor_applies=True) is not None:
+        if math.hypot(*paced.v_ned) > CRAWL_M_S + EXACT_M:
+            yield "the vehicle is sent from outside, and faster than at a crawl"
+    elif verifier.predicted_stop(here_ned, paced.v_ned, floor_applies=True) is not None:
+        yield f"the vehicle is sent at {paced.v_ned} m/s, and its hold does not fit"
 
 
 def _may_stream(after: Memory) -> bool:
@@ -214,7 +229,10 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
     )
     if breach is None:
         return
-    if CommandKind.HOLD not in edge.commands:
+    slowed = breach.by is StopBy.SETPOINT and breach.brake_pos_ned is not None
+    if CommandKind.HOLD not in edge.commands and not (
+        slowed and edge.after.hold_again_ns is not None
+    ):
         yield f"a breach is predicted in {before.state.name} and not held"
     if edge.after.state is not State.HOLDING:
         yield f"a breach is predicted and {edge.after.state.name} goes on"
@@ -252,11 +270,10 @@ def _flown(memory: Memory) -> Path:
         asked = memory.flown.sample
         if asked.pos_ned is None or asked.v_ned is not None:
             return None
-        return Leg(memory.flown.from_ned, asked.pos_ned)
-    goal = memory.hold if memory.goal is None else memory.goal
-    if goal is None:
+        return Setpoints()
+    if memory.control is not Control.OURS or memory.flown_state is State.HOLDING:
         return None
-    return Leg(goal.pos_ned if goal.from_ned is None else goal.from_ned, goal.pos_ned)
+    return None if memory.goal is None and memory.hold is None else Setpoints()
 
 
 def moves_on_fresh_positions(edge: Edge) -> Iterator[str]:

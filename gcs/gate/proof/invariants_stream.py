@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Final
 
+from gcs.frames import Vec3
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.condition import Severity
 from gcs.gate.effects import SendSetpoint, StreamVerdict, Transition
@@ -15,8 +17,26 @@ from gcs.gate.proof.edge import Edge, same
 from gcs.gate.refusal import Refusal
 from gcs.gate.states import Control, State
 
+EXACT_M: Final = 1e-6
 DEADMAN_NS: Final = SECOND_NS // 2
 """So long a sample counts: the default policy's dead-man's time, which every world here has."""
+
+
+def on_the_way(edge: Edge, sent_ned: Vec3, goal_ned: Vec3) -> bool:
+    """Straight between the vehicle and the goal, level and up or down apart; or as it was before,
+    where the position is too old."""
+    here_ned, last = edge.after.pos_ned, edge.before.paced
+    if here_ned is None or sent_ned == goal_ned:
+        return sent_ned == goal_ned
+    if edge.stale and last is not None and sent_ned == last.target_ned:
+        return True
+    between = all(
+        min(a, b) - EXACT_M <= x <= max(a, b) + EXACT_M
+        for a, x, b in zip(here_ned, sent_ned, goal_ned, strict=True)
+    )
+    north_m, east_m = goal_ned[0] - here_ned[0], goal_ned[1] - here_ned[1]
+    n_m, e_m = sent_ned[0] - here_ned[0], sent_ned[1] - here_ned[1]
+    return between and abs(north_m * e_m - east_m * n_m) <= EXACT_M * math.hypot(north_m, east_m)
 
 
 def is_sample(edge: Edge, sent: SendSetpoint) -> bool:
@@ -25,13 +45,17 @@ def is_sample(edge: Edge, sent: SendSetpoint) -> bool:
     return (
         edge.after.state is State.STREAMING
         and flown is not None
-        and _asks(sent.permit) == (flown.sample)
+        and _asks(edge, sent.permit, flown.sample) == flown.sample
     )
 
 
-def _asks(permit: Permit) -> StreamSample:
+def _asks(edge: Edge, permit: Permit, sample: StreamSample) -> StreamSample:
+    """What is sent, with the position that it is on the way to."""
+    sent_ned, to_ned = permit.pos_ned, sample.pos_ned
+    if sent_ned is not None and to_ned is not None and on_the_way(edge, sent_ned, to_ned):
+        sent_ned = to_ned
     return StreamSample(
-        permit.pos_ned,
+        sent_ned,
         permit.v_ned,
         permit.a_ned,
         permit.yaw_rad,
@@ -58,7 +82,8 @@ def sends_samples_that_clear(edge: Edge) -> Iterator[str]:
         age_ns = after.position_age_ns(edge.now_ns)
         if age_ns is None or age_ns > DEADMAN_NS:
             yield "a sample is sent by a position too old"
-        yield from _refused(edge, _asks(permit))
+        assert after.flown is not None
+        yield from _refused(edge, after.flown.sample)
 
 
 def _refused(edge: Edge, sample: StreamSample) -> Iterator[str]:

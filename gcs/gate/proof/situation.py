@@ -168,17 +168,14 @@ def _clocks(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Ha
         state in apart.late_take_off and now_ns < memory.takeoff_until_ns,
         force_ns is not None and now_ns - force_ns <= FORCE_WINDOW_NS,
         _stream_clocks(policy, memory, now_ns) if state is State.STREAMING else None,
-        _gains_clocks(policy, memory, now_ns),
+        _pace_clock(policy, memory, now_ns),
     )
 
 
-def _gains_clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
-    """May it be faster than it is reported, on its leg or on the one that was left?"""
+def _pace_clock(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
+    """May it be as fast as it was asked to, though it is not reported so?"""
     react_ns = round(policy.braking_of(memory.autopilot).react_s * SECOND_NS)
-    return (
-        memory.goal is not None and now_ns < memory.gains_ns + react_ns,
-        memory.gained_ned is not None and now_ns < memory.gained_until_ns,
-    )
+    return memory.paced is not None and now_ns < memory.paced_ns + react_ns
 
 
 def _stream_clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:

@@ -12,7 +12,7 @@ from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.limits import STANDING, beyond_reach
 from gcs.gate.airspace.prediction import bad_stop
 from gcs.gate.airspace.questions.positions import hold_point
-from gcs.gate.airspace.stopping import Path
+from gcs.gate.airspace.stopping import Path, StopBy
 
 BRAKE_STEPS: Final = 16
 """How many positions between the predicted stop and the vehicle are tried for the brake."""
@@ -22,13 +22,14 @@ BRAKE_STEPS: Final = 16
 class Breach:
     """The vehicle would stop outside the fence, or is outside already.
 
-    `towards` is the way to the predicted stop, and what it was judged by; None where that is not
-    finite.
+    `by` is the best way of stopping.  `towards` is the way to where that ends, and what it was
+    judged by; None where that is not finite.
     """
 
     zone: str
     sentence: str
     numbers: tuple[tuple[str, float], ...]
+    by: StopBy
     towards: WayToStop | None
 
     @cached_property
@@ -55,20 +56,28 @@ class WayToStop:
 
 
 def predicted_stop(
-    bounds: Bounds, pos_ned: Vec3, v_ned: Vec3, path: Path = None, *, floor_applies: bool
+    bounds: Bounds,
+    pos_ned: Vec3,
+    v_ned: Vec3,
+    path: Path = None,
+    late_s: float = 0.0,
+    *,
+    floor_applies: bool,
 ) -> Breach | None:
-    """Would the vehicle on this `path` come to rest outside, or is it outside already?
+    """Would the vehicle on this `path` come to rest outside however it is stopped, or is it outside
+    already?
 
-    Where the floor does not apply, the stop is no lower than the ground: a landing ends there.
+    `late_s` is how old the position is, and how late it would hear of a stop.  Where the floor does
+    not apply, the stop is no lower than the ground: a landing ends there.
     """
     unusable = bounds.unusable(position=pos_ned, velocity=v_ned) or beyond_reach(pos_ned, v_ned)
     if unusable is not None:
-        return Breach(unusable.zone, unusable.sentence, unusable.numbers, None)
-    bad = bad_stop(bounds, pos_ned, v_ned, path, floor_applies=floor_applies)
+        return Breach(unusable.zone, unusable.sentence, unusable.numbers, StopBy.HOLD, None)
+    bad = bad_stop(bounds, pos_ned, v_ned, path, late_s, floor_applies=floor_applies)
     if bad is None:
         return None
     way = WayToStop(bounds, pos_ned, bad.stop_ned, floor_applies)
-    return Breach(bad.measure.zone.name, bad.sentence, bad.numbers, way)
+    return Breach(bad.measure.zone.name, bad.sentence, bad.numbers, bad.by, way)
 
 
 def hold_ahead(bounds: Bounds, pos_ned: Vec3, v_ned: Vec3, age_s: float) -> Vec3 | None:
