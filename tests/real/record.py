@@ -13,7 +13,8 @@ import math
 from pathlib import Path
 from typing import Any
 
-from tests.real.vehicle import Sample, Vector, Vehicle
+from tests.real.truth import Sample, Vector
+from tests.real.vehicle import Vehicle
 
 HEIGHT_M = 60.0
 REST_M_S = 0.25  # slower than this beside its goal has arrived

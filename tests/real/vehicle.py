@@ -1,74 +1,17 @@
-"""A real vehicle flown without the gate: its truth, its estimate, and setpoints to its own loops.
+"""A real vehicle flown without the gate: its truth, its estimate, and setpoints to its own loops."""
 
-Truth is what the simulation integrates, never what the vehicle believes: HIL_STATE_QUATERNION of
-PX4's SIH, SIM_STATE of ArduCopter's SITL.  Positions are east, north, up of where it stood first, in
-metres; times are the vehicle's own, since boot.
-"""
-
-import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from pymavlink import mavutil
 
 from tests.real.autopilots import PX4, Kind
+from tests.real.truth import MESSAGES, Sample, Truth, Vector
 
-Vector = tuple[float, float, float]
-RADIUS_M = 6_378_137.0
 SETPOINTS_HZ = 20.0
 POSITION_ONLY = 0b110111111000
 VELOCITY_ONLY = 0b110111000111
-TRUTH = {"HIL_STATE_QUATERNION": 115, "SIM_STATE": 108}
-
-
-@dataclass(frozen=True)
-class Sample:
-    at_s: float
-    position_enu: Vector
-    velocity_enu: Vector
-    tilt_deg: float
-
-    @property
-    def speed_m_s(self) -> float:
-        return math.hypot(*self.velocity_enu)
-
-
-class Truth:
-    """Takes the messages that tell the truth; `samples` are all that came."""
-
-    def __init__(self) -> None:
-        self.samples: list[Sample] = []
-        self.origin: tuple[float, float, float] | None = None
-        self.clock_s = 0.0
-
-    def take(self, message: Any) -> None:
-        match message.get_type():
-            case "LOCAL_POSITION_NED" | "ATTITUDE":
-                self.clock_s = message.time_boot_ms / 1e3
-                return
-            case "HIL_STATE_QUATERNION":
-                w, x, y, z = message.attitude_quaternion
-                tilt = math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y))))
-                velocity = (message.vy / 100.0, message.vx / 100.0, -message.vz / 100.0)
-                lat, lon, alt = message.lat / 1e7, message.lon / 1e7, message.alt / 1e3
-                at_s = self.clock_s
-            case "SIM_STATE":
-                tilt = math.acos(math.cos(message.roll) * math.cos(message.pitch))
-                velocity = (message.ve, message.vn, -message.vd)
-                lat, lon, alt = message.lat_int / 1e7, message.lon_int / 1e7, message.alt
-                at_s = self.clock_s
-            case _:
-                return
-        if self.origin is None:
-            self.origin = (lat, lon, alt)
-        lat0, lon0, alt0 = self.origin
-        east = math.radians(lon - lon0) * RADIUS_M * math.cos(math.radians(lat0))
-        north = math.radians(lat - lat0) * RADIUS_M
-        self.samples.append(
-            Sample(at_s, (east, north, alt - alt0), velocity, math.degrees(tilt))
-        )
 
 
 class Vehicle:
@@ -117,7 +60,6 @@ class Vehicle:
                     message.time_boot_ms / 1e3,
                     (message.y, message.x, -message.z),
                     (message.vy, message.vx, -message.vz),
-                    0.0,
                 )
             case "AUTOPILOT_VERSION":
                 number = message.flight_sw_version
@@ -184,7 +126,7 @@ class Vehicle:
     def take_off(self, up_m: float) -> None:
         """From power on: asks for its messages, waits for its position, arms, climbs."""
         self.link.wait_heartbeat(timeout=60)
-        for number, hertz in ((32, 50.0), (30, 10.0), *((n, 50.0) for n in TRUTH.values())):
+        for number, hertz in ((32, 50.0), (30, 10.0), *((n, 50.0) for n in MESSAGES.values())):
             self.ask(511, number, 1e6 / hertz)
             self.pass_time(0.05)
         self.ask(512, 148)
@@ -212,7 +154,7 @@ class Vehicle:
 
     @property
     def now(self) -> Sample:
-        return self.truth.samples[-1]
+        return self.truth.now
 
     @property
     def up_m(self) -> float:
