@@ -44,21 +44,21 @@ def command(kind: Kind) -> list[str] | None:
     return [str(run), kind.name] if run.is_file() else None
 
 
-def start(kind: Kind, folder: Path, *, instance: int = 0, speedup: int = 1) -> subprocess.Popen[bytes]:
+def start(kind: Kind, folder: Path) -> subprocess.Popen[bytes]:
     """Starts it in this network; what it prints goes to `folder/output.txt`."""
     found = command(kind)
     if found is None:
         raise SystemExit(f"{kind.name}: none is there; {kind.variable} names one (docs/real.md)")
     folder.mkdir(parents=True, exist_ok=True)
     if kind is PX4:
-        arguments = [str(instance)]
+        arguments = ["0"]
     else:
         second = f"udpclient:127.0.0.1:{ONBOARD_PORT}"
         arguments = [str(GROUND_PORT), "--serial1", second]
     with (folder / "output.txt").open("wb") as output:
         return subprocess.Popen(
             [*found, str(folder), *arguments],
-            env={**os.environ, "SPEEDUP": str(speedup)},
+            env={**os.environ, "TMPDIR": str(folder)},  # for PX4's lock: there may be others
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,

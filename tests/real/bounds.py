@@ -1,7 +1,7 @@
 """What the facts say of the policy's bounds: how far a stop went, beside what is predicted for it.
 
-A stop from v is predicted to take v * react_s + v^2 / (2 a_brake).  Judged by what a gate knows: the
-vehicle's own speed.  How far its own position was from the truth meanwhile is position_error.
+A stop from v is predicted to take v * react_s + v^2 / (2 a_brake).  Judged by what a gate knows:
+the vehicle's own speed.  How far its own position was from the truth meanwhile is position_error.
 """
 
 import json
@@ -41,8 +41,48 @@ def fit(pairs: Iterable[tuple[float, float]], room: float, top: float) -> tuple[
     return best[1], best[2]
 
 
-def judged(records: list[Fact], predict: Callable[[float], float]) -> tuple[int, float, Fact]:
-    """How many, and the worst share of what is predicted that was seen."""
-    shares = [(r["estimated_stop_m"] / predict(r["estimated_m_s"]), i) for i, r in enumerate(records)]
-    worst, index = max(shares)
-    return len(records), worst, records[index]
+Group = tuple[str, tuple[str, ...], Callable[[Fact], bool]]
+GROUPS: tuple[Group, ...] = (
+    ("a_brake_h_m_s2", ("steady",), lambda fact: fact["direction"] not in ("up", "down")),
+    ("a_brake_h_m_s2", ("gaining",), lambda fact: fact["direction"] not in ("up", "down")),
+    ("a_brake_v_m_s2 up", ("steady", "gaining"), lambda fact: fact["direction"] == "up"),
+    ("a_brake_v_m_s2 down", ("steady", "gaining"), lambda fact: fact["direction"] == "down"),
+)
+SLOW_M_S = 2.0
+"""Below it a PX4's wandering, and what a vehicle that leans still gains, are more than the stop."""
+
+
+def report() -> str:
+    """A line for each of the policy's bounds: how many stops, and the worst of seen / predicted."""
+    lines = []
+    for personality in ("px4", "ardupilot"):
+        braking = DEFAULT.braking_of(personality)
+        for name, kinds, chosen in GROUPS:
+            records = [f for f in facts(personality) if f["kind"] in kinds and chosen(f)]
+            level = "_h_" in name
+            brake = braking.a_brake_h_m_s2 if level else braking.a_brake_v_m_s2
+            error = braking.position_error_h_m if level else braking.position_error_v_m
+            lines.append(f"[braking.{personality}] {name} {brake}, react_s {braking.react_s}:")
+            for few, part in (
+                (f"from {SLOW_M_S} m/s", [f for f in records if f["estimated_m_s"] >= SLOW_M_S]),
+                ("slower", [f for f in records if f["estimated_m_s"] < SLOW_M_S]),
+            ):
+                if part:
+                    told = judged(part, braking.react_s, brake, error)
+                    lines.append(f"    {'+'.join(kinds):15s} {few:13s} {told}")
+    return "\n".join(lines)
+
+
+def judged(records: list[Fact], react: float, brake: float, error: float) -> str:
+    def share(fact: Fact) -> float:
+        speed = max(0.1, fact["estimated_m_s"])
+        return float(fact["stop_m"]) / (way(speed, react, brake) + error)
+
+    worst = max(records, key=share)
+    pairs = [(f["estimated_m_s"], f["stop_m"] - error) for f in records]
+    fitted, fitted_brake = fit(pairs, 0.05, max(speed for speed, _ in pairs))
+    return (
+        f"{len(records):3d} stops, worst {share(worst):.2f} of what is predicted"
+        f" ({worst['stop_m']} m from {worst['estimated_m_s']} m/s {worst['direction']});"
+        f" {fitted:.2f} s and {fitted_brake:.2f} m/s2 hold all, with 5 %"
+    )

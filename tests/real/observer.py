@@ -72,7 +72,9 @@ class Observer:
                 east, north, _ = self.truth.enu(message.lat / 1e7, message.lon / 1e7, 0)
                 self.estimate = (east, north, message.relative_alt / 1e3)
                 here = self.position
-                self.off_m.append(math.hypot(*(a - b for a, b in zip(self.estimate[:2], here[:2], strict=True))))
+                self.off_m.append(
+                    math.hypot(*(a - b for a, b in zip(self.estimate[:2], here[:2], strict=True)))
+                )
             case "STATUSTEXT":
                 self.texts.append(message.text)
 
@@ -145,6 +147,10 @@ class Observer:
         lat = lat0 + (from_home[1] + self.home_truth[1]) / metres
         lon = lon0 + (from_home[0] + self.home_truth[0]) / metres / math.cos(math.radians(lat0))
         if self.kind is not PX4:
+            # A station that streams in GUIDED gives up control when it sees another mode.
+            self.mode(self.kind.hold_custom_mode)
+            self.wait(lambda: self.custom_mode == self.kind.hold_custom_mode, 3.0)
+            time.sleep(0.5)
             self.mode(self.kind.guided_custom_mode)
             time.sleep(0.5)
         frame, up = GLOBAL_RELATIVE, from_home[2]
@@ -154,7 +160,9 @@ class Observer:
         self._link.mav.command_int_send(
             1, 1, frame, 192, 0, 0, -1.0, 1.0, 0.0, math.nan, round(lat * 1e7), round(lon * 1e7), up
         )
-        there = self.wait(lambda: math.dist(self.from_home(self.position), from_home) < 2.5, seconds)
+        there = self.wait(
+            lambda: math.dist(self.from_home(self.position), from_home) < 2.5, seconds
+        )
         self.mode(self.kind.hold_custom_mode)
         self.at_rest(20.0)
         return there

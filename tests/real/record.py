@@ -17,6 +17,7 @@ from tests.real.truth import Sample, Vector
 from tests.real.vehicle import Vehicle
 
 HEIGHT_M = 60.0
+HOME = (0.0, 0.0, HEIGHT_M)
 REST_M_S = 0.25  # slower than this beside its goal has arrived
 STOPPED_M_S = 0.1  # no faster than this along its way for a second has stopped
 COMPASS = {
@@ -30,6 +31,8 @@ SPEEDS_H = tuple(range(1, 13))
 SPEEDS_UP = (1.0, 2.0, 3.0)
 SPEEDS_DOWN = (0.7, 1.0, 1.5)
 LEGS_M = (5, 10, 20, 40, 58, 100)
+
+PARTS = ("steady", "gaining", "vertical", "legs")
 
 Fact = dict[str, Any]
 
@@ -123,9 +126,7 @@ def leg(vehicle: Vehicle, direction: str, length_m: float) -> Fact:
     assert vehicle.estimate is not None
     unit, first, believed = UNITS[direction], vehicle.now, vehicle.estimate
     index = len(vehicle.truth.samples) - 1
-    goal = tuple(
-        a + b for a, b in zip(believed.position_enu, times(unit, length_m), strict=True)
-    )
+    goal = tuple(a + b for a, b in zip(believed.position_enu, times(unit, length_m), strict=True))
     vehicle.to_position((goal[0], goal[1], goal[2]))
     seen: list[float] = []
 
@@ -192,11 +193,14 @@ def record(vehicle: Vehicle, part: str, repeats: int, target: Path) -> None:
             assert vehicle.estimate is not None
             east, north, up = vehicle.estimate.position_enu
             if abs(up - HEIGHT_M) > 15.0 or math.hypot(east, north) > 250.0:
-                home = (0.0, 0.0, HEIGHT_M)
-                vehicle.to_position(home)
-                vehicle.until(lambda: math.dist(vehicle.now.position_enu, home) < 3.0, 120.0)
+                vehicle.to_position(HOME)
+                vehicle.until(lambda: math.dist(vehicle.now.position_enu, HOME) < 3.0, 120.0)
             vehicle.pass_time(1.5)
-            fact = leg(vehicle, direction, figure) if kind == "leg" else stop(vehicle, direction, figure, kind)
+            fact = (
+                leg(vehicle, direction, figure)
+                if kind == "leg"
+                else stop(vehicle, direction, figure, kind)
+            )
             print(json.dumps({k: v for k, v in fact.items() if k != "track"}), flush=True)
             out.write(json.dumps({"version": vehicle.version, **fact}) + "\n")
             out.flush()

@@ -1,4 +1,4 @@
-"""A real vehicle flown without the gate: its truth, its estimate, and setpoints to its own loops."""
+"""A real vehicle flown without the gate: its truth, its estimate, setpoints to its own loops."""
 
 import time
 from collections.abc import Callable
@@ -17,7 +17,6 @@ VELOCITY_ONLY = 0b110111000111
 class Vehicle:
     def __init__(self, kind: Kind, url: str) -> None:
         self.kind = kind
-        self.sysid = 1
         self.link: Any = mavutil.mavlink_connection(url, source_system=255)
         self.truth = Truth()
         self.estimate: Sample | None = None
@@ -32,7 +31,7 @@ class Vehicle:
     # -- the link -----------------------------------------------------------------------------
 
     def pump(self, seconds: float = 0.01) -> None:
-        """Takes what has come, waiting so long for the first; sends setpoint and heartbeat when due."""
+        """Takes what has come, waiting so long for the first, and sends what is due."""
         message = self.link.recv_match(blocking=True, timeout=seconds)
         self._send_what_is_due()
         while message is not None:
@@ -80,7 +79,7 @@ class Vehicle:
         self.until(lambda: False, seconds)
 
     def ask(self, command: int, *params: float) -> None:
-        self.link.mav.command_long_send(self.sysid, 1, command, 0, *params, *[0.0] * (7 - len(params)))
+        self.link.mav.command_long_send(1, 1, command, 0, *params, *[0.0] * (7 - len(params)))
 
     # -- what it is told ----------------------------------------------------------------------
 
@@ -95,7 +94,7 @@ class Vehicle:
     def _stream(self, mask: int, position_ned: Vector, velocity_ned: Vector) -> None:
         def send() -> None:
             self.link.mav.set_position_target_local_ned_send(
-                0, self.sysid, 1, 1, mask, *position_ned, *velocity_ned, 0, 0, 0, 0, 0
+                0, 1, 1, 1, mask, *position_ned, *velocity_ned, 0, 0, 0, 0, 0
             )
 
         self._setpoint = send
