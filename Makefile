@@ -18,7 +18,7 @@ FEWER   := --hypothesis-profile quick
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo quick test thorough check lint types contracts clients soak mutants bench messages wheel clean
+.PHONY: help demo quick test thorough check lint types contracts clients real soak mutants bench messages wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -49,6 +49,9 @@ contracts: $(TEST) ## import contracts
 
 clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVSDK 4 and 3, pymavlink, MAVProxy, DroneKit
 	$(BIN)/python -m pytest tests/clients -v
+
+real: $(TEST) ## fly a real PX4 and a real ArduCopter (docs/real.md), judged by their simulations; ARGS="--smoke" is short
+	$(BIN)/python -m tests.real $(ARGS)
 
 soak: $(TEST) ## the properties on new random examples, and the random runs as a whole (about 70 minutes and 15 GB on 2 cores)
 	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios tests/soak -n $(WORKERS)

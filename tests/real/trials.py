@@ -1,0 +1,291 @@
+"""How a row is flown, and what must be so; each returns what became of it, and what is wrong."""
+
+import math
+import threading
+import time
+from collections.abc import Callable
+
+from gcs.gate.policy.parse import DEFAULT
+from tests.real.autopilots import PX4
+from tests.real.flight import Flight
+from tests.real.pilots import Bridge, outcome_of
+from tests.real.rows import HEIGHT_M, Row
+from tests.real.truth import Vector
+
+Told = tuple[str, str]
+"""The outcome, and what is wrong with it: empty if nothing."""
+REST_S = 60.0
+TAKEOFF_M = 0.2
+RETURN_M = 2.0
+
+
+def approach(flight: Flight, row: Row) -> Told:
+    """A leg towards the fence.  Refused or flown: never outside, whatever goes wrong meanwhile."""
+    flight.in_air_at(row, row.start)
+    if row.by == "bridge":
+        bridge = flight.bridge(row)
+        try:
+            told = bridge.goto_from_home(row.at(row.goal_m))
+            flight.observer.wait(lambda: flight.observer.now.speed_m_s > 1.0, 5.0)
+            flight.observer.at_rest(REST_S)
+        finally:
+            bridge.close()
+        return told, ""
+    goal = flight.local(row.at(row.goal_m))
+    if row.by == "one-shot":
+        return flight.one_shot(row).goto(goal), ""
+    pilot = flight.library(row)
+    taken = pilot.take()
+    if taken != "complete":
+        return taken, f"control: {taken}"
+    length_s = 2.0 + row.leg_m / 6.0
+    timer = threading.Timer(row.figure * length_s, lambda: trouble(flight, row))
+    if row.trouble in ("delay", "loss"):
+        trouble(flight, row)
+    elif row.trouble:
+        if row.trouble == "blackout":  # its figure is how long it is
+            timer = threading.Timer(length_s * (row.goal_m % 1.0), lambda: trouble(flight, row))
+        timer.start()
+    told = pilot.goto(goal)
+    timer.cancel()
+    wrong = ""
+    if row.trouble == "other-station" and told == "complete" and timer.finished.is_set():
+        wrong = "" if flight.observer.now.speed_m_s < 1.0 else "complete, though another one flies"
+    if row.trouble == "gps":
+        wrong = gps_is_told(flight)
+    flight.observer.at_rest(REST_S)
+    flight.relay.trouble()
+    if row.trouble == "kill":
+        flight.leave()
+        flight.observer.wait(lambda: not flight.observer.armed, 20.0)
+    return told, wrong
+
+
+def trouble(flight: Flight, row: Row) -> None:
+    match row.trouble:
+        case "delay":
+            flight.relay.trouble(delay_s=row.figure)
+        case "loss":
+            flight.relay.trouble(loss=row.figure)
+        case "blackout":
+            flight.relay.trouble(silent_s=row.figure)
+        case "kill":
+            flight.library(row).kill()
+        case "other-station":
+            flight.observer.mode(flight.kind.hold_custom_mode)
+        case "gps":
+            gps(flight, works=False)
+
+
+def gps(flight: Flight, *, works: bool) -> None:
+    if flight.kind is PX4:
+        flight.observer.set("SIM_GPS_USED", 10.0 if works else 0.0, integer=True)
+    else:
+        flight.observer.set("SIM_GPS1_ENABLE", 1.0 if works else 0.0)
+
+
+def gps_is_told(flight: Flight) -> str:
+    """Within 15 s of its loss; then it comes back."""
+    assert flight.current is not None
+    station = flight.current.station
+    told = flight.observer.wait(lambda: station.snapshot.severity.upper() != "NOMINAL", 15.0)
+    gps(flight, works=True)
+    time.sleep(15.0)
+    return "" if told else "the lost GPS is not told"
+
+
+def stop(flight: Flight, row: Row) -> Told:
+    """Told to stop at a speed: no farther than the policy predicts, from truth's speed then."""
+    flight.in_air_at(row, row.start)
+    pilot, observer = flight.library(row), flight.observer
+    taken = pilot.take()
+    if taken != "complete":
+        return taken, f"control: {taken}"
+    goal = flight.local(row.at(row.goal_m))
+    began = outcome_of(lambda: pilot.station.goto(*goal, wait=False))
+    if began != "complete":
+        return began, began
+    observer.wait(lambda: observer.now.speed_m_s >= row.figure, 12.0)
+    first = observer.now
+    ask = pilot.station.abort if row.word == "abort" else pilot.station.hold
+    told = outcome_of(lambda: ask(timeout_s=30.0))
+    observer.at_rest(30.0)
+    unit, speed = row.unit, first.speed_m_s
+    ways = [
+        sum(u * (b - a) for u, a, b in zip(unit, first.position_enu, s.position_enu, strict=True))
+        for s in observer.truth.samples
+        if s.at_s >= first.at_s
+    ]
+    braking = DEFAULT.braking_of(flight.kind.personality)
+    most = speed * braking.react_s + speed**2 / (2.0 * braking.a_brake_h_m_s2)
+    most += braking.position_error_h_m
+    text = f"{told}: {max(ways):.1f} m from {speed:.1f} m/s, at most {most:.1f}"
+    return text, "" if max(ways) <= most and told == "complete" else text
+
+
+def takeoff(flight: Flight, row: Row) -> Told:
+    """Ends at the height that was asked for, by the vehicle's own estimate; the truth is told."""
+    flight.on_ground(row)
+    flight.mark()
+    if row.by == "one-shot":
+        pilot = flight.one_shot(row)
+        told = pilot.ask("arm")
+        told = pilot.ask("takeoff", row.figure) if told == "complete" else f"arm: {told}"
+    else:
+        told = flight.take_off(row, row.figure)
+    estimate = flight.observer.estimate
+    assert estimate is not None
+    text = f"{told}: {flight.from_home[2]:.2f} m up, {estimate[2]:.2f} by its own estimate"
+    right = told == "complete" and abs(estimate[2] - row.figure) <= TAKEOFF_M
+    return text, "" if right else text
+
+
+def landing(flight: Flight, row: Row) -> Told:
+    """Landed and disarmed, and the station knows it at once."""
+    if not flight.flying:
+        flight.in_air_at(row, (0.0, 0.0, 5.0))
+    flight.mark()
+    if row.by == "one-shot":
+        told = flight.one_shot(row).ask("land")
+        return told, "" if told == "complete" and not flight.observer.armed else f"land: {told}"
+    pilot = flight.library(row)
+    if row.word == "other":
+        flight.observer.command(21)
+        told = "by another"
+    elif row.word == "mission":
+        told = fly_mission(flight, row)
+    else:
+        told = pilot.take()
+        if told == "complete":
+            ask = pilot.station.rtl if row.word == "rtl" else pilot.station.land
+            told = outcome_of(lambda: ask(timeout_s=150.0))
+            if told == "complete" and pilot.station.armed:
+                return told, f"armed is True, right after {row.word}"
+    landed = flight.observer.wait(lambda: not flight.observer.armed, 120.0)
+    if not landed or told not in ("complete", "by another"):
+        return told, f"{told}; armed {flight.observer.armed}"
+    e, n, _ = flight.from_home
+    if row.word in ("rtl", "mission") and math.hypot(e, n) > RETURN_M:
+        return told, f"landed {math.hypot(e, n):.1f} m from home"
+    return told, ""
+
+
+def fly_mission(flight: Flight, row: Row) -> str:
+    """A square, 40 m out, that ends with a return."""
+    path = flight.folder / "square.toml"
+    head = 'schema = 1\nname = "square"\nframe = "home"\nspeed_m_s = 5.0\nend = "return"\n'
+    corners = [(40, 0), (0, 40), (-40, 0)]
+    path.write_text(head + "".join(
+        f"[[waypoint]]\nnorth_m = {n}.0\neast_m = {e}.0\nup_m = {HEIGHT_M}\n" for n, e in corners
+    ))  # fmt: skip
+    station = flight.library(row).station
+    sent = outcome_of(lambda: station.upload(str(path), timeout_s=90.0))
+    if sent != "complete":
+        return f"upload {sent}"
+    return outcome_of(lambda: station.start_mission(timeout_s=240.0))
+
+
+def mission(flight: Flight, row: Row) -> Told:
+    """Uploaded in spite of the trouble, then flown without it."""
+    flight.in_air_at(row, (0.0, 0.0, HEIGHT_M))
+    pilot = flight.library(row)
+    taken = pilot.take()
+    if taken != "complete":
+        return taken, f"control: {taken}"
+    if row.trouble:
+        trouble(flight, row)
+    told = fly_mission(flight, row)
+    flight.relay.trouble()
+    return told, "" if told == "complete" else told
+
+
+def hold_in(flight: Flight, row: Row) -> Told:
+    """Asked for in a state, hold ends at rest in the vehicle's own hold mode."""
+    flight.in_air_at(row, (-30.0, 0.0, HEIGHT_M))
+    pilot, observer = flight.library(row), flight.observer
+    station = pilot.station
+    taken = pilot.take()
+    if taken != "complete":
+        return taken, f"control: {taken}"
+    goal = flight.local((40.0, 0.0, HEIGHT_M))
+    begin: dict[str, Callable[[], object]] = {
+        "HOVERING": lambda: None,
+        "MOVING": lambda: station.goto(*goal, wait=False),
+        "RETURNING": lambda: station.rtl(wait=False),
+        "LANDING": lambda: station.land(wait=False),
+    }
+    begun = outcome_of(begin[row.word])
+    time.sleep(3.0)
+    state = station.state
+    told = outcome_of(lambda: station.hold(timeout_s=30.0))
+    rest = observer.at_rest(20.0)
+    right = begun == "complete" and state == row.word and told == "complete" and rest
+    text = f"{told} in {state}"
+    return text, "" if right and observer.custom_mode == flight.kind.hold_custom_mode else text
+
+
+def hostile(flight: Flight, row: Row) -> Told:
+    """A client tries to leave: it never is outside, and what it set is as it was."""
+    flight.in_air_at(row, row.at(row.goal_m))
+    bridge = flight.bridge(row)
+    try:
+        told = attempt(flight, row, bridge)
+        flight.observer.at_rest(30.0)
+    finally:
+        bridge.close()
+    return told, "" if flight.observer.armed else f"disarmed: {told}"
+
+
+def attempt(flight: Flight, row: Row, bridge: Bridge) -> str:
+    peer = bridge.peer
+    east, north, _ = row.unit
+    far: Vector = (300.0 * east, 300.0 * north, HEIGHT_M)
+    velocity = (0b110111000111, (0, 0, 0), (10.0 * north, 10.0 * east, 0))
+    position = (0b110111111000, (far[1], far[0], -HEIGHT_M), (0, 0, 0))
+    match row.word:
+        case "velocity":
+            peer.stream(12.0, *velocity)
+        case "position":
+            peer.stream(12.0, *position)
+        case "reposition":
+            return bridge.goto_from_home(far)
+        case "stick":
+            end = time.monotonic() + 12.0
+            while time.monotonic() < end:
+                peer.link.mav.manual_control_send(1, 1000, 0, 500, 0, 0)
+                peer.rest(0.05)
+        case "guided":
+            guided = flight.kind.guided_custom_mode
+            main = guided >> 16 & 255 if flight.kind is PX4 else guided
+            told = peer.long(176, 1.0, float(main)).result
+            peer.stream(8.0, *velocity)
+            return f"mode: {told}"
+        case "parameters":
+            names = (
+                ("GF_ACTION", "MPC_XY_VEL_MAX")
+                if flight.kind is PX4
+                else ("FENCE_ENABLE", "WP_SPD")
+            )
+            for name in names:
+                peer.link.mav.param_set_send(1, 1, name.encode(), 0.0, 9)
+                peer.rest(0.5)
+            return f"refused {peer.refusal_since(0)}" if peer.refusal_since(0) else "no word"
+        case "mission":
+            result = peer.upload(peer.mission((far[1], far[0], HEIGHT_M, 1), last=21))
+            return f"mission: {result}"
+        case "terminate":
+            told = [peer.long(number, *words).result for number, words in
+                    ((185, (1.0,)), (400, (0.0, 21196.0)), (246, (1.0,)))]  # fmt: skip
+            return f"results {told}"
+    return peer.last_text() or "no word"
+
+
+KINDS: dict[str, Callable[[Flight, Row], Told]] = {
+    "approach": approach,
+    "stop": stop,
+    "takeoff": takeoff,
+    "landing": landing,
+    "mission": mission,
+    "hold in": hold_in,
+    "hostile": hostile,
+}
