@@ -38,7 +38,7 @@ def demo(
     log_dir: str,
     timeout: float,
 ) -> None:
-    """Fly a whole flight in about a minute: goals, refusals, a picture, an abort, a brake."""
+    """Fly a whole flight in about a minute: goals, refusals, a picture, an abort."""
     from rich.console import Console
 
     from gcs import resources

@@ -42,13 +42,15 @@ class FenceJudge:
 
     `subject` is what a refusal's sentence begins with.  `floor_applies` says whether the floors of
     inclusion zones are considered.  `least_h_m`: the margin beside zones is no less, whatever the
-    policy's.
+    policy's.  `no_slack`: of the slack of a stop only the error of the position is taken, so that
+    one at the margin is the last that keeps its limit.
     """
 
     zones: tuple[Zone, ...]
     policy: Policy
     braking: Braking
     least_h_m: float = 0.0
+    no_slack: bool = False
 
     @property
     def margins(self) -> Margins:
@@ -153,8 +155,13 @@ class FenceJudge:
         enter an exclusion zone."""
         p, b = self.policy, self.braking
         if face in (Face.CEILING, Face.FLOOR):
-            return StopLimit(b.position_error_v_m, p.margin_v_m, p.brake_slack_v_m, p.creep_m)
+            slack_m = p.brake_slack_v_m
+            if self.no_slack:
+                slack_m = min(slack_m, b.position_error_v_m)
+            return StopLimit(b.position_error_v_m, p.margin_v_m, slack_m, p.creep_m)
         slack_m = p.brake_slack_h_m
+        if self.no_slack:
+            slack_m = min(slack_m, b.position_error_h_m)
         if face is Face.BODY:
             slack_m = min(slack_m, b.position_error_h_m + p.margin_h_m)
         return StopLimit(b.position_error_h_m, p.margin_h_m, slack_m, p.creep_m)

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from gcs.frames import Vec3
@@ -84,6 +84,8 @@ def paced(
     react_h_s = braking.react_s + rules.level.lag_s
     react_v_s = braking.react_s + rules.vertical.lag_s
 
+    judge = replace(bounds.judge, no_slack=True)
+
     def stop_fits(share: float) -> bool:
         fast_h_m_s = share * level_m_s + beside_h_m_s
         fast_v_m_s = share * vertical_m_s + beside_v_m_s
@@ -95,7 +97,7 @@ def paced(
             here_ned[2] + sign * run_v_m,
         )
         return (
-            bounds.judge.broken_stop(here_ned, stop_ned, floor_applies=True) is None
+            judge.broken_stop(here_ned, stop_ned, floor_applies=True) is None
             and bounds.beyond_limits("", stop_ned, allow=bounds.position_error) is None
         )
 
