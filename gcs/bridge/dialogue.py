@@ -48,9 +48,9 @@ SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
 sends next (a take-off, a go-to) is refused before.  All else is answered as the vehicle answers."""
 
 ANSWERED_ONCE: Final = frozenset({GUIDED_ITEM, Cmd.DO_SET_MODE})
-"""What no answer says of that it is under way.  MISSION_ACK has no word for it; and no autopilot answers
-DO_SET_MODE so: MAVSDK's `start_mission` takes it for the last answer, and raises BUSY.  Other commands
-MAVSDK waits for, once it has read IN_PROGRESS, longer than its two seconds."""
+"""What is not told that it is under way.  MISSION_ACK has no word for it; and no autopilot answers
+DO_SET_MODE so: MAVSDK's `start_mission` takes it for the last answer, and raises BUSY.  For other
+commands MAVSDK waits, once it has read IN_PROGRESS, longer than its two seconds."""
 
 
 @dataclass(slots=True)

@@ -103,7 +103,6 @@ def _position_mode(wanted: Mode, seen: Seen) -> Meaning:
         sentence = f"{wanted.name}: no MANUAL_CONTROL comes from this client, so nothing flies it"
         return refuse(Code.POLICY, f"{sentence} (policy: bridge.manual_modes)")
     note = _by_sticks(wanted, seen)
-    guided = _sent(seen.autopilot, FlightMode.GUIDED)
     if not seen.in_control:
         return ask("control")
     if seen.state in NOT_FLOWN_BY_US:

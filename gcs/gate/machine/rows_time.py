@@ -111,9 +111,7 @@ TIME_ROWS: Final[Mapping[Event, Row]] = {
     Event.TICK: row(
         during(NO_VEHICLE, STALE, GROUNDED, then=unchanged),
         during(TAKING_OFF, then=climb),
-        during(
-            HOVERING, then=(unchanged_while_taking_control, verify_if_goal_pending, unchanged)
-        ),
+        during(HOVERING, then=(unchanged_while_taking_control, verify_if_goal_pending, unchanged)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, then=(verify_if_goal_pending, complete_if_arrived, unchanged)),
         during(STREAMING, then=stream),
