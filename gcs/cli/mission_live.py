@@ -40,8 +40,8 @@ WAIT = click.Option(
     help="Seconds to wait for the effect.",
 )
 SETTLE_S = 30.0
-"""A mission cannot be placed without the vehicle's origin and home; on a link that loses frames each
-may have to be asked for some times, every two seconds."""
+"""A mission cannot be placed without the vehicle's origin and home; on a link that loses frames
+each may have to be asked for some times, every two seconds."""
 LINK_OPTIONS = (LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
 
 
