@@ -34,8 +34,8 @@ SENT_BY: dict[int, str] = {
     MsgId.EKF_STATUS_REPORT: "ardupilot",
     MsgId.FENCE_STATUS: "ardupilot",
 }
-"""Which of the two knows it.  An ArduCopter that is asked for ESTIMATOR_STATUS answers with a text, "No
-ap_message for mavlink id (230)", to everybody (recorded of 4.7)."""
+"""Which of the two knows it.  An ArduCopter that is asked for ESTIMATOR_STATUS answers to everybody
+with a text, "No ap_message for mavlink id (230)" (recorded of 4.7)."""
 
 FASTEST_HZ = 200.0
 """Of real seconds; a sped-up vehicle is asked for its positions that much more often."""

@@ -21,8 +21,8 @@ HEADER: Final = 12
 _OPCODE, _SIZE = 3, 4
 
 LIST_WITH_TIME: Final = 16
-"""ListDirectoryWithTime, which pymavlink has and the dialect not yet.  MAVProxy 1.8.75 tries it first:
-a vehicle that does not know it says so itself (NAK, UnknownCommand), and it lists without times."""
+"""ListDirectoryWithTime, which pymavlink has and the dialect not yet.  MAVProxy 1.8.75 tries it
+first: a vehicle that does not know it says so (NAK, UnknownCommand), and it lists without times."""
 READS: Final = frozenset(
     {
         FtpOpcode.NONE,

@@ -66,8 +66,8 @@ class StreamSample:
 
 
 ROUNDED_UP: Final = 1.0 + 2.0**-22
-"""Parts of a vector that is as long as allowed are rounded to float32 each, by 2**-24 at most.  It is
-judged, where it leads to, as it is."""
+"""Parts of a vector that is as long as allowed are rounded to float32 each, by 2**-24 at most.  Where
+it leads to is judged by what it is."""
 
 
 def beyond_rules(sample: StreamSample, rules: StreamRules) -> Refusal | None:
