@@ -66,7 +66,7 @@ class StreamSample:
 
 
 ROUNDED_UP: Final = 1.0 + 2.0**-22
-"""Parts of a vector that is as long as allowed are rounded to float32 each, by 2**-24 at most.  Where
+"""Parts of a vector as long as allowed are rounded to float32 each, by 2**-24 at most.  Where
 it leads to is judged by what it is."""
 
 
