@@ -3,7 +3,7 @@
 A command, or a mission item that is to be flown to at once, is acknowledged once: with a refusal's
 reason; at the verdict where the gate alone decides (a go-to); else with what the vehicle itself
 answered.  The same command again, sent because no answer came, is not asked a second time: it gets
-IN_PROGRESS (but for what is in `ANSWERED_ONCE`), or the answer that it had.
+IN_PROGRESS, but for what `Pending.answered_once` names, or the answer that it had.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from gcs.bridge.recent_texts import RecentTexts
 from gcs.bridge.repeated_requests import GUIDED_ITEM, command_of, key_of
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
-from gcs.wire.ids import Cmd, Result
+from gcs.wire.ids import Result
 from gcs.wire.messages import Message
 
 Over = TypeVar("Over", ipc.VerdictEvent, ipc.EndingEvent)
@@ -46,11 +46,6 @@ DECIDED_BY_GATE: Final = frozenset({"goto", "orbit", "stream_begin", "stream_end
 SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
 """Words that are answered when the vehicle shows it, within a second or two, because what a client
 sends next (a take-off, a go-to) is refused before.  All else is answered as the vehicle answers."""
-
-ANSWERED_ONCE: Final = frozenset({GUIDED_ITEM, Cmd.DO_SET_MODE})
-"""What is not told that it is under way.  MISSION_ACK has no word for it; and no autopilot answers
-DO_SET_MODE so: MAVSDK's `start_mission` takes it for the last answer, and raises BUSY.  For other
-commands MAVSDK waits, once it has read IN_PROGRESS, longer than its two seconds."""
 
 
 @dataclass(slots=True)
@@ -198,7 +193,7 @@ class Dialogue:
             return None
         for pending in self._pending.values():
             if pending.key == key and pending.asked_by == asked_by:
-                if pending.answered is None and command in ANSWERED_ONCE:
+                if pending.answered is None and pending.answered_once:
                     return []
                 result = Result.IN_PROGRESS if pending.answered is None else pending.answered
                 return [self._acknowledge(asked_by, command, result)]
