@@ -71,6 +71,10 @@ class Judges:
                 done.append(OfVehicle(sysid, tuple(effects)))
         return done
 
+    def asked_once(self, now_ns: int) -> list[Received]:
+        """What was held back, of any vehicle, and is to be judged once more."""
+        return [each for judge in self._by_sysid.values() for each in judge.asked_once(now_ns)]
+
     def judge(self, given: Given, vehicles: Sequence[Address]) -> Judged:
         """A frame that reaches these vehicles; none: no vehicle is heard yet.
 

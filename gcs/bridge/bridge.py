@@ -136,6 +136,15 @@ class Bridge:
                 effects += [Answers(client.link, speaker, text) for text in flooded]
         return effects
 
+    def ask_again(self, look: LookAt, now_ns: int) -> list[BridgeEffect]:
+        """Once a second: what was held back, and its client does not ask for again by itself."""
+        effects: list[BridgeEffect] = []
+        for asked in self._judges.asked_once(now_ns):
+            client = self._by_link[asked.by.link]
+            given = Given(client, asked.frame, look, self._in_control, now_ns)
+            effects += self._judges.judge(given, [asked.autopilot]).effects
+        return effects
+
     def hears_alone(self, vehicle: Address, hears: Hears) -> list[BridgeEffect]:
         """Once a second, of a vehicle that does not hear everybody: who is not heard is told."""
         effects: list[BridgeEffect] = []

@@ -3,7 +3,7 @@
 A command, or a mission item that is to be flown to at once, is acknowledged once: with a refusal's
 reason; at the verdict where the gate alone decides (a go-to); else with what the vehicle itself
 answered.  The same command again, sent because no answer came, is not asked a second time: it gets
-IN_PROGRESS, or the answer that it had.
+IN_PROGRESS, but for what `Pending.answered_once` names, or the answer that it had.
 """
 
 from __future__ import annotations
@@ -193,8 +193,8 @@ class Dialogue:
             return None
         for pending in self._pending.values():
             if pending.key == key and pending.asked_by == asked_by:
-                if pending.answered is None and command == GUIDED_ITEM:
-                    return []  # MISSION_ACK has no word for that it is under way
+                if pending.answered is None and pending.answered_once:
+                    return []
                 result = Result.IN_PROGRESS if pending.answered is None else pending.answered
                 return [self._acknowledge(asked_by, command, result)]
         told = self._told

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs import ipc
+from gcs.bridge.repeated_requests import GUIDED_ITEM
 from gcs.protocol.effects import Address
+from gcs.wire.ids import Cmd
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +40,18 @@ class Pending:
     """The word whose completion answers the command, the end of the last being told as text; empty:
     the last answers it."""
     note: str = ""  # told when the first of what is asked is accepted
+
+    @property
+    def answered_once(self) -> bool:
+        """Its sender is not told that it is under way.
+
+        MISSION_ACK has no word for it.  And IN_PROGRESS, which no autopilot answers DO_SET_MODE,
+        MAVSDK's `start_mission` takes for the last answer: it raises BUSY while the mission flies.
+        After any other command MAVSDK waits for longer than its 2 s once it has read it.
+        """
+        words = (self.word, *(ask.word for ask in self.rest))
+        starts = self.command == Cmd.DO_SET_MODE and "mission_start" in words
+        return starts or self.command == GUIDED_ITEM
 
 
 @dataclass(slots=True)

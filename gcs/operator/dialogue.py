@@ -167,8 +167,8 @@ class Dialogue:
         if self._watched is not None and self._watched[0] in polled.ready:
             self._watched[1]()
 
-    def wait_for_vehicle(self, timeout_s: float) -> ipc.Snapshot:
-        """Wait for a vehicle with a position, a home and a landed state.
+    def wait_for_vehicle(self, timeout_s: float, settle_s: float = SETTLE_WAIT_S) -> ipc.Snapshot:
+        """Wait for a vehicle with a position, then for `settle_s` for its home and landed state.
 
         The time counts from the station's first word: until then it opens its links, or fails to.
         Raises ExitError with NO_VEHICLE if none is heard.  A vehicle that was heard but is not
@@ -177,7 +177,7 @@ class Dialogue:
         self._wait_for_hello()
         self.wait_until(self._position_known, timeout_s)
         seen = self._heard(timeout_s)
-        self.wait_until(self._can_be_judged, SETTLE_WAIT_S)
+        self.wait_until(self._can_be_judged, settle_s)
         return self.snapshot or seen
 
     def wait_until_heard(self, timeout_s: float, hints: Hints = OPERATOR_HINTS) -> ipc.Snapshot:

@@ -218,6 +218,7 @@ class BridgePort:
         """Once a second: who is lost, and how it stands for whoever watches the bridge."""
         vehicles = self._vehicles.addresses
         done: list[BridgeEffect | Emit] = [*self.bridge.second(vehicles, now_ns)]
+        done += self.bridge.ask_again(partial(self._seen, now_ns), now_ns)
         done += self.bridge.control_status(vehicles)
         for each in self._vehicles:
             telemetry = each.telemetry

@@ -22,12 +22,20 @@ WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
     (MsgId.SYS_STATUS, 2.0),
     (MsgId.MISSION_CURRENT, 2.0),
     (MsgId.GPS_RAW_INT, 2.0),
-    (MsgId.ESTIMATOR_STATUS, 2.0),  # PX4's
-    (MsgId.EKF_STATUS_REPORT, 2.0),  # ArduPilot's
+    (MsgId.ESTIMATOR_STATUS, 2.0),
+    (MsgId.EKF_STATUS_REPORT, 2.0),
     (MsgId.BATTERY_STATUS, 1.0),
     (MsgId.POSITION_TARGET_LOCAL_NED, 5.0),
-    (MsgId.FENCE_STATUS, 1.0),  # ArduPilot's
+    (MsgId.FENCE_STATUS, 1.0),
 )
+
+SENT_BY: dict[int, str] = {
+    MsgId.ESTIMATOR_STATUS: "px4",
+    MsgId.EKF_STATUS_REPORT: "ardupilot",
+    MsgId.FENCE_STATUS: "ardupilot",
+}
+"""Which of the two knows it.  An ArduCopter that is asked for ESTIMATOR_STATUS answers to everybody
+with a text, "No ap_message for mavlink id (230)" (recorded of 4.7)."""
 
 FASTEST_HZ = 200.0
 """Of real seconds; a sped-up vehicle is asked for its positions that much more often."""
@@ -93,16 +101,17 @@ class Discovery:
             self._pause_ns = min(2 * self._pause_ns, self._longest_ns)
         if everything:
             self._streams_asked_ns = now_ns
-        for msgid, rate_hz in self._needed_hz.items():
-            silent = now_ns - telemetry.landed_ns > self._ask_again_ns
-            unknown = silent and msgid == MsgId.EXTENDED_SYS_STATE
-            if everything or unknown:
-                yield message_interval(telemetry, msgid, rate_hz)
+        if everything:
+            yield from self.again(telemetry, self._needed_hz)
+        elif now_ns - telemetry.landed_ns > self._ask_again_ns:
+            yield from self.again(telemetry, (MsgId.EXTENDED_SYS_STATE,))
 
     def again(self, telemetry: Telemetry, msgids: Iterable[int]) -> Iterator[CommandLong]:
-        """Commands that ask for these streams once more."""
+        """Commands that ask for these streams, as far as its autopilot has them."""
+        other = {"px4": "ardupilot", "ardupilot": "px4"}.get(telemetry.autopilot.name)
         for msgid in msgids:
-            yield message_interval(telemetry, msgid, self._needed_hz[msgid])
+            if other is None or SENT_BY.get(msgid) != other:
+                yield message_interval(telemetry, msgid, self._needed_hz[msgid])
 
 
 def _request(telemetry: Telemetry, msgid: MsgId) -> CommandLong:

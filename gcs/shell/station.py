@@ -14,6 +14,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
+
+import msgspec
 
 from gcs import __version__, config, ipc
 from gcs.config import StationConfig
@@ -73,7 +76,7 @@ def main(argument: str) -> int:
 
 
 def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
-    policy, policy_text = _read_policy(setup.policy_path)
+    policy, policy_text = _read_policy(setup)
     keys = _read_keys(setup)
     clock = Clock(setup.speedup)
     with ExitStack() as opened:
@@ -133,12 +136,16 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
     return exit_code
 
 
-def _read_policy(path: str) -> tuple[Policy, str]:
-    """The policy, and its text for the record."""
+def _read_policy(setup: StationConfig) -> tuple[Policy, str]:
+    """The policy as it holds in this station, and its text for the record."""
     try:
-        return load_policy(path or "default")
+        policy, text = load_policy(setup.policy_path or "default")
     except PolicyFileError as error:
         raise CannotStartError(ExitCode.BAD_FILE, str(error), error.hint) from error
+    if policy.retarget == "clients":
+        retarget: Literal["refuse", "replace"] = "replace" if setup.clients else "refuse"
+        policy = msgspec.structs.replace(policy, retarget=retarget)
+    return policy, text
 
 
 def _read_keys(setup: StationConfig) -> Keys:

@@ -20,6 +20,9 @@ PAYLOAD: Final = 251
 HEADER: Final = 12
 _OPCODE, _SIZE = 3, 4
 
+LIST_WITH_TIME: Final = 16
+"""ListDirectoryWithTime, which pymavlink has and the dialect not yet.  MAVProxy 1.8.75 tries it
+first: a vehicle that does not know it says so (NAK, UnknownCommand), and it lists without times."""
 READS: Final = frozenset(
     {
         FtpOpcode.NONE,
@@ -30,6 +33,7 @@ READS: Final = frozenset(
         FtpOpcode.READFILE,
         FtpOpcode.CALCFILECRC,
         FtpOpcode.BURSTREADFILE,
+        LIST_WITH_TIME,
     }
 )
 CONTENT: Final = frozenset(

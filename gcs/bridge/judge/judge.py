@@ -114,6 +114,10 @@ class Judge:
             case Kind.CONFIGURATION:
                 return self.set_up.judge(given, message, row)
 
+    def asked_once(self, now_ns: int) -> list[Received]:
+        """What was held back and is to be judged once more."""
+        return self._plans.asked_once(now_ns)
+
     def _forward(self, given: Received, message: Message | None, row: Row) -> Judged:
         """What is harmless, but for the rates that the gate needs and those that fill the link."""
         if not isinstance(message, CommandLong | CommandInt | RequestDataStream):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from gcs import ipc
 from gcs.bridge.classes import Row
@@ -13,12 +14,15 @@ from gcs.bridge.judge.received import Judged, Received
 from gcs.bridge.judge.set_up import SetUpJudge
 from gcs.bridge.plans import effects as plan_effects
 from gcs.bridge.plans.collecting import acknowledgement
-from gcs.bridge.plans.downloads import Downloads
+from gcs.bridge.plans.downloads import ASKS_ON_NS, Downloads, Reader
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.gate.effects import Level
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MissionResult, MissionType
-from gcs.wire.messages import Message, MissionClearAll, MissionCount
+from gcs.wire.messages import Message, MissionClearAll, MissionCount, MissionRequestList
+
+KEPT_NS: Final = 30_000_000_000
+"""DroneKit asks for a list once, and waits for it as long as this."""
 
 
 class PlanJudge:
@@ -27,6 +31,8 @@ class PlanJudge:
     def __init__(self, set_up: SetUpJudge) -> None:
         self._set_up = set_up
         self._downloads = Downloads()
+        self._held: dict[Reader, tuple[Received, bool]] = {}
+        """Lists that were held back, and whether their clients ask again by themselves."""
 
     def judge(self, given: Received, message: Message, row: Row) -> Judged:
         """What a client says about missions, fences and rally points."""
@@ -40,10 +46,17 @@ class PlanJudge:
         held = self._downloads.holds(
             message, reader, busy, given.now_ns, in_control=given.in_control
         )
+        before, _ = self._held.get(reader, (None, False))
+        again = before is not None and before.frame is given.frame
+        if not held:
+            self._held.pop(reader, None)
+        elif isinstance(message, MissionRequestList) and not again:
+            asks_on = before is not None and given.now_ns - before.now_ns <= ASKS_ON_NS
+            self._held[reader] = (given, asks_on)
         if held:
             text = f"{row.name}: not now: {held}"
             told = client.dialogue.text(given.by, Level.INFO, text, given.now_ns)
-            if self._downloads.answers(reader, given.now_ns):
+            if not again and self._downloads.answers(reader, given.now_ns):
                 kind = getattr(message, "mission_type", MissionType.MISSION)
                 no = acknowledgement(given.by.source, MissionResult.ERROR, kind)
                 told.append(Answers(given.by.link, given.by.addressed, no))
@@ -54,9 +67,15 @@ class PlanJudge:
         )
         return Judged(refused, of_plan(client, effects, given.frame))
 
+    def asked_once(self, now_ns: int) -> list[Received]:
+        """Lists that are to be judged once more: nobody else asks for them again."""
+        lists = (asked for asked, asks_on in self._held.values() if not asks_on)
+        return [asked for asked in lists if now_ns - asked.now_ns <= KEPT_NS]
+
     def gone(self, link: int) -> None:
         """Nobody who was heard on that link is there any more: its turn to read is over."""
         self._downloads.gone(link)
+        self._held = {who: held for who, held in self._held.items() if who[0] != link}
 
 
 def of_plan(

@@ -103,15 +103,12 @@ def _position_mode(wanted: Mode, seen: Seen) -> Meaning:
         sentence = f"{wanted.name}: no MANUAL_CONTROL comes from this client, so nothing flies it"
         return refuse(Code.POLICY, f"{sentence} (policy: bridge.manual_modes)")
     note = _by_sticks(wanted, seen)
-    guided = _sent(seen.autopilot, FlightMode.GUIDED)
     if not seen.in_control:
         return ask("control")
     if seen.state in NOT_FLOWN_BY_US:
         return ask("resume", note)
-    if seen.state is State.STREAMING or (seen.state is State.HOVERING and seen.mode_name == guided):
-        return Words((), note)
-    if seen.state is State.HOVERING:
-        return ask("control", note)
+    if seen.state in (State.STREAMING, State.HOVERING):
+        return Words((), note)  # in a hover the mode is shown, or the gate has asked for it
     return hover_again(seen, note=note)
 
 
@@ -151,8 +148,8 @@ def guided(wanted: Mode, seen: Seen) -> Meaning:
     if seen.state in FLIES_ITSELF:
         # The heartbeat may still show the mode before: `mode_name` counts for nothing here.
         return hover_again(seen) if seen.in_control else ask("control")
-    if seen.mode_name == wanted.name and seen.in_control:
-        return DONE
+    if seen.in_control and (seen.mode_name == wanted.name or seen.state is State.HOVERING):
+        return DONE  # in a hover the mode is shown, or the gate has asked for it
     return ask("control")
 
 

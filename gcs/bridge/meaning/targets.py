@@ -137,12 +137,17 @@ def _after_mask(
         place if position else None,
         (message.vx, message.vy, message.vz) if velocity else None,
         (message.afx, message.afy, message.afz) if acceleration else None,
-        None if mask & TypeMask.YAW_IGNORE else message.yaw,
-        None if mask & TypeMask.YAW_RATE_IGNORE else message.yaw_rate,
+        None if mask & TypeMask.YAW_IGNORE else _turned(message.yaw, px4),
+        None if mask & TypeMask.YAW_RATE_IGNORE else _turned(message.yaw_rate, px4),
     )
     if not _is_finite(target):
         return refuse(Code.NON_FINITE, "a setpoint with a number that is not finite")
     return target
+
+
+def _turned(angle: float, px4: bool) -> float | None:
+    """PX4 takes NaN as not given, as it writes it for what the mask leaves out."""
+    return None if px4 and math.isnan(angle) else angle
 
 
 def _given(mask: int, bits: int) -> _Given:

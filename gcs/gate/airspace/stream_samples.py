@@ -65,6 +65,11 @@ class StreamSample:
         }
 
 
+ROUNDED_UP: Final = 1.0 + 2.0**-22
+"""Parts of a vector as long as allowed are rounded to float32 each, by 2**-24 at most.  Where
+it leads to is judged by what it is."""
+
+
 def beyond_rules(sample: StreamSample, rules: StreamRules) -> Refusal | None:
     """Refuses a sample that asks for nothing that can be judged, or for more than the policy's
     most."""
@@ -88,10 +93,11 @@ def beyond_rules(sample: StreamSample, rules: StreamRules) -> Refusal | None:
             " acceleration need a velocity between them",
         )
     for value, most, key, unit in _asked(sample, rules):
-        if value > most:
+        if value > most * ROUNDED_UP:
+            digits = next((n for n in (1, 3) if fixed(value, n) != fixed(most, n)), 6)
             return Refusal(
                 Code.POLICY,
-                f"{fixed(value, 1)} {unit} is asked for, at most {fixed(most, 1)} {unit} "
+                f"{fixed(value, digits)} {unit} is asked for, at most {fixed(most, digits)} {unit} "
                 f"(policy: stream.{key})",
                 (("asked", value), (key, most)),
             )

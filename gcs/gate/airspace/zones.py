@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.projection import Projection
@@ -68,7 +69,8 @@ def _place(spec: ZoneSpec, home_ned: Vec3 | None, projection: Projection | None)
         return _unplaced(spec, "the vehicle's origin (GPS_GLOBAL_ORIGIN) is not known yet")
 
     if projection is not None and spec.frame == "geographic":
-        far = next((p for p in geographic_points(spec) if not projection.holds_at(p[0])), None)
+        points = geographic_points(spec) + (((90.0, 0.0),) if _round_a_pole(spec) else ())
+        far = next((p for p in points if not projection.holds_at(p[0])), None)
         if far is not None:
             what = (
                 f"fence zone '{spec.name}': the vehicle's own map does not hold at {far[0]:g} deg"
@@ -106,6 +108,15 @@ def _place(spec: ZoneSpec, home_ned: Vec3 | None, projection: Projection | None)
         -math.inf if spec.floor_up_m is None else datum_up_m + spec.floor_up_m,
         math.inf if spec.ceiling_up_m is None else datum_up_m + spec.ceiling_up_m,
     )
+
+
+def _round_a_pole(spec: ZoneSpec) -> bool:
+    """Its longitudes go once round the Earth, so that a pole is in it."""
+    if not isinstance(spec, PolygonSpec):
+        return False
+    lons_deg = [lon_deg for _, lon_deg in open_ring(spec.corners)]
+    turns = (math.remainder(b - a, 360.0) for a, b in pairwise([*lons_deg, lons_deg[0]]))
+    return abs(sum(turns)) > 180.0
 
 
 def _unplaced(spec: ZoneSpec, why: str) -> Refusal:

@@ -45,6 +45,7 @@ resume_first: Final[Cell] = (
 )
 """Where the held position clears, and where it does not: the guard leaves the reason."""
 
+# While control is being taken, the tick waits for it too (`rows_time.py`).
 wait_for_tick: Final = Branch(needs=(Check.SEVERITY,), reply=Reply.PENDING)
 replace_goal_if_policy_allows: Final = Branch(
     when=(Guard.RETARGET_ALLOWED,), needs=(Check.SEVERITY,), reply=Reply.PENDING
@@ -116,7 +117,7 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(STALE, then=refuse(Code.STALE)),
         during(GROUNDED, then=refuse(Code.NOT_FLYING)),
         during(TAKING_OFF, then=refuse(Code.BUSY)),
-        during(HOVERING, then=(refuse_while_taking_control, wait_for_tick)),
+        during(HOVERING, then=wait_for_tick),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, then=(replace_goal_if_policy_allows, refuse(Code.BUSY))),
         during(STREAMING, then=(end_own_stream_and_wait_for_tick, refuse(Code.BUSY))),

@@ -50,6 +50,8 @@ STREAM_OVER: Final = End(OutcomeKind.TIMED_OUT, judged=True)
 
 # ------------------------------------------------------------------------------------ tick
 
+# A goal that came meanwhile waits, until the mode is shown or its time is over.
+unchanged_while_taking_control: Final = Branch(when=(Guard.TAKING_CONTROL,))
 verify_if_goal_pending: Final = Branch(
     when=(Guard.GOAL_PENDING,), do=(Action.VERIFY_GOAL,), to=VERIFYING
 )
@@ -109,7 +111,7 @@ TIME_ROWS: Final[Mapping[Event, Row]] = {
     Event.TICK: row(
         during(NO_VEHICLE, STALE, GROUNDED, then=unchanged),
         during(TAKING_OFF, then=climb),
-        during(HOVERING, then=(verify_if_goal_pending, unchanged)),
+        during(HOVERING, then=(unchanged_while_taking_control, verify_if_goal_pending, unchanged)),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, then=(verify_if_goal_pending, complete_if_arrived, unchanged)),
         during(STREAMING, then=stream),

@@ -93,7 +93,10 @@ def refusal_of(code: Code, request: Request, memory: Memory, policy: Policy) -> 
     elif code is Code.POLICY:
         sentence += _key_of_policy(request)
     elif code is Code.NOT_FLYING and isinstance(request, SetMode):
-        sentence = f"{request.name} is not sent to a vehicle that stands on the ground"
+        sentence = (
+            f"{request.name} is not sent to a vehicle that stands on the ground: take off first "
+            "(NAV_TAKEOFF, MAVSDK's action.takeoff), then ask for it again"
+        )
     elif code is Code.UNSUPPORTED and isinstance(request, SetMode):
         sentence = _mode_not_sent(request)
     return Refusal(code, sentence)

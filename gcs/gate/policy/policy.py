@@ -313,7 +313,7 @@ class Policy(_Section, frozen=True):
     bridge: BridgeRules
     signing: SigningRules
     stream: StreamRules
-    retarget: Literal["refuse", "replace"]
+    retarget: Literal["refuse", "replace", "clients"]
     allow_force_disarm: bool
     arm_requires_recording: bool
 

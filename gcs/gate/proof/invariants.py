@@ -68,6 +68,7 @@ STEP_CHECKS: Final = (
     StepCheck(3, invariants_request.leaves_no_request_open, (OperatorLost,)),
     StepCheck(4, invariants_request.keeps_nothing_refused, (Verdict,)),
     StepCheck(4, invariants_request.takes_goals_where_it_hovers, (Requested,)),
+    StepCheck(4, invariants_request.decides_goals_under_control, (Verdict,)),
     StepCheck(5, invariants_request.aborts_at_once, (Requested,)),
     StepCheck(5, invariants_request.stays_aborted, (Transition,)),
     StepCheck(6, invariants_motion.brakes_for_a_breach, (PositionSeen,)),

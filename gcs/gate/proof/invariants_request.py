@@ -104,6 +104,18 @@ def takes_goals_where_it_hovers(edge: Edge) -> Iterator[str]:
         yield f"a goal is taken in {state.name} from {edge.given.source}, flown for {owner}"
 
 
+def decides_goals_under_control(edge: Edge) -> Iterator[str]:
+    """4: a goal that came while control was being taken waits until the vehicle shows its mode."""
+    accepted = any(
+        isinstance(effect, Verdict)
+        and isinstance(effect.request, GoTo)
+        and effect.ruling is Ruling.ACCEPTED
+        for effect in edge.effects
+    )
+    if accepted and edge.before.control is not Control.OURS:
+        yield "a goal is accepted before control is had"
+
+
 def aborts_at_once(edge: Edge) -> Iterator[str]:
     """5: abort is legal in every state and takes effect at once."""
     before, after = edge.before, edge.after

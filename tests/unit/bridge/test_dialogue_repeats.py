@@ -61,6 +61,21 @@ def test_a_repetition_is_answered_and_not_asked_twice() -> None:
     assert client.sends(Cmd.COMPONENT_ARM_DISARM, "arm", after_ms=2500) == "asked"
 
 
+def test_the_mode_of_a_mission_that_begins_is_answered_once() -> None:
+    """MAVSDK 3.17 asks again after half a second, and takes IN_PROGRESS for the last answer; not
+    so in `offboard.start`, which would give up after 2 s without."""
+    client = Client()
+    assert client.sends(Cmd.DO_SET_MODE, "mission_start", outcome="under way") == "asked"
+    again = CommandLong(0, 0, 0, 0, 0, 0, 0, Cmd.DO_SET_MODE, 1, 1, 1)
+    asks = (ipc.Ask(0, "mission_start"),)
+    assert client.dialogue.ask(CLIENT, again, asks, client.now_ns + 500 * MS) == []
+    done = client.dialogue.command_answered(client.operation, Result.ACCEPTED, client.now_ns)
+    assert results(done) == [Result.ACCEPTED]
+    client = Client()
+    assert client.sends(Cmd.DO_SET_MODE, "resume", outcome="under way") == "asked"
+    assert client.sends(Cmd.DO_SET_MODE, "resume") == "answered IN_PROGRESS"
+
+
 def test_what_asks_for_nothing_is_nothing_in_between() -> None:
     """Sticks in the middle, 25 times a second."""
     client = Client()

@@ -125,7 +125,7 @@ GUIDED = pytest.mark.parametrize(
         (State.RETURNING, "", ["hold", "resume"]),
         (State.RETURNING, "guided", ["hold", "resume"]),
         (State.LANDING, "", ["hold", "resume"]),
-        (State.HOVERING, "", ["control"]),
+        (State.HOVERING, "", []),
         (State.HOVERING, "guided", []),
         (State.MOVING, "guided", []),
         (State.TAKING_OFF, "guided", []),

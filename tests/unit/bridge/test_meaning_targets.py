@@ -222,11 +222,24 @@ def test_numbers_that_are_none(autopilot: Autopilot, bad: float) -> None:
     for message in (
         local(VELOCITY, velocity=(0.0, bad, 0.0)),
         local(POSITION, (0.0, 0.0, bad)),
-        local(VELOCITY & YAW_GIVEN, yaw=bad),
-        local(VELOCITY & YAW_RATE_GIVEN, yaw_rate=bad),
         on_the_map(POSITION, 47.397742, 8.545594, bad),
     ):
         assert refusal(meaning_of(message, seen)).startswith("NON_FINITE")
+
+
+@BOTH
+@pytest.mark.parametrize("bad", [NAN, math.inf, -math.inf])
+def test_a_heading_that_is_no_number(autopilot: Autopilot, bad: float) -> None:
+    """PX4 1.14 takes NaN as no heading, as mavpilot 0.3.0 sends it; an infinite one it may fly."""
+    for message in (
+        local(VELOCITY & YAW_GIVEN, velocity=(1.0, 0.0, 0.0), yaw=bad),
+        local(VELOCITY & YAW_RATE_GIVEN, velocity=(1.0, 0.0, 0.0), yaw_rate=bad),
+    ):
+        meaning = meaning_of(message, flying(autopilot))
+        if autopilot is PX4 and math.isnan(bad):
+            assert meaning == Sample(v_ned=(1.0, 0.0, 0.0))
+        else:
+            assert refusal(meaning).startswith("NON_FINITE")
 
 
 @BOTH

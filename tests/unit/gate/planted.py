@@ -408,6 +408,14 @@ FAULTS = [
         7,
         "ask: control",
     ),
+    planted(
+        "a goal does not wait for control that is being taken",
+        State.HOVERING,
+        Event.TICK,
+        without(State.HOVERING, Event.TICK, Guard.TAKING_CONTROL),
+        4,
+        "tick",
+    ),
     # --------------------------------------------------------------------------- take-off
     planted(
         "a take-off is complete where the vehicle ends its climb",

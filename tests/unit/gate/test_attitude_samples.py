@@ -9,6 +9,7 @@ policy's figures; it turns from one attitude to the next within the time that th
 from __future__ import annotations
 
 import math
+import struct
 from dataclasses import dataclass
 
 import pytest
@@ -82,9 +83,9 @@ def test_none_is_flown_by_default() -> None:
         (tilted(pitch_deg=15.1), Code.POLICY, "15.1 degrees of tilt is asked for, at most 15.0"),
         (tilted(roll_deg=11.0, pitch_deg=-11.0), Code.POLICY, "tilt_deg"),
         (tilted(roll_deg=180.0), Code.POLICY, "180.0 degrees of tilt"),
-        (tilted(thrust=0.615), Code.POLICY, "5.0 m/s2 by this attitude and thrust"),
+        (tilted(thrust=0.615), Code.POLICY, "5.030 m/s2 by this attitude and thrust"),
         (tilted(thrust=0.61), None, ""),
-        (tilted(thrust=0.35), Code.POLICY, "5.0 m/s2 by this attitude and thrust"),
+        (tilted(thrust=0.35), Code.POLICY, "5.001 m/s2 by this attitude and thrust"),
         (tilted(thrust=0.36), None, ""),
         (tilted(thrust=0.0), Code.POLICY, "9.8 m/s2"),
         (tilted(thrust=1.01), Code.UNSUPPORTED, "1.010 is not from 0 to 1"),
@@ -357,3 +358,16 @@ def test_how_much_room_a_hovering_vehicle_needs(
     assert max(e for _, e, _ in rest) == pytest.approx(beside_m, abs=0.051)
     assert -min(d for *_, d in rest) == pytest.approx(above_m, abs=0.051)
     assert max(d for *_, d in rest) == pytest.approx(below_m, abs=0.051)
+
+
+@pytest.mark.parametrize("degrees", range(0, 360, 7))
+def test_a_velocity_as_great_as_allowed_is_rounded_for_the_wire(degrees: int) -> None:
+    """10 m/s to any side in float32 are up to 10.0000005."""
+    north, east = (
+        struct.unpack("<f", struct.pack("<f", 10.0 * part(math.radians(degrees))))[0]
+        for part in (math.cos, math.sin)
+    )
+    assert beyond_rules(StreamSample(v_ned=(north, east, 0.0)), DEFAULT.stream) is None
+    refusal = beyond_rules(StreamSample(v_ned=(north * 1.001, east * 1.001, 0.0)), DEFAULT.stream)
+    assert refusal is not None
+    assert refusal.sentence.startswith("10.010 m/s is asked for, at most 10.000 m/s")

@@ -159,7 +159,7 @@ def test_a_pilots_hold_takes_over_whatever_is_under_way_in_a_hover() -> None:
 def test_control_is_being_taken_whether_or_not_a_request_asks_for_it() -> None:
     script, _ = flight(State.HOVERING)
     remember(script, task=None)
-    assert script.refusal(script.ask(GOAL)) is Code.CONTROL_PENDING
+    assert script.refusal(script.ask(TakePhoto())) is Code.CONTROL_PENDING
 
 
 def test_without_a_fence_no_stop_is_predicted() -> None:

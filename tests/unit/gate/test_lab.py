@@ -309,17 +309,21 @@ def test_arrival_by_the_expert_rules_waits_for_speed_and_dwell() -> None:
     assert script.outcome(requested).kind is OutcomeKind.COMPLETE
 
 
-def test_the_heartbeat_confirms_control_and_a_goal_before_that_is_refused() -> None:
+def test_the_heartbeat_confirms_control_and_a_goal_before_that_waits_for_it() -> None:
     script = Script(policy("lab")).fly()
     control = script.ask(TakeControl())
     script.tick()
     early = script.goto(1.0, 0.0, 0.5)
-    assert script.refusal(early) is Code.CONTROL_PENDING
+    assert not script.all(Verdict)[1:]
     script.wait(0.9)
     assert not script.commands()
     script.wait(0.1)
     assert script.commands() == [CommandKind.GUIDED]
     script.answer(CommandKind.GUIDED, 0)
     assert not script.ended(control)
+    assert script.gate.state is State.HOVERING
     script.heartbeat(FlightMode.GUIDED)
     assert script.outcome(control).kind is OutcomeKind.COMPLETE
+    script.tick()
+    assert script.verdict(early).ruling is Ruling.ACCEPTED
+    assert script.gate.state is State.MOVING

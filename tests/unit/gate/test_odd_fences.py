@@ -64,8 +64,9 @@ def test_a_fence_round_the_pole(lat_deg: float) -> None:
     [
         (ROUND_THE_POLE, 89.995),
         ("corners = [[88.9, -170], [88.9, 170], [89.1, 170], [89.1, -170]]", 89.0),
+        ("corners = [[85, -120], [85, 0], [85, 120]]", 85.0),
     ],
-    ids=["round the pole", "behind the pole"],
+    ids=["round the pole", "behind the pole", "round it, 560 km away"],
 )
 def test_near_a_pole_ardupilots_own_map_is_torn(corners: str, lat_deg: float) -> None:
     """In that map the second zone reaches all round the pole, and is a 20 degrees' part of it."""

@@ -287,7 +287,7 @@ class TestKeysOfThePolicy:
         verdict = script.verdict(script.goto(3.0, 0.0, 2.0))
         assert verdict.ruling is Ruling.REFUSED
         assert verdict.refusal is not None
-        assert verdict.refusal.sentence.endswith('(policy: retarget = "refuse")')
+        assert verdict.refusal.sentence.endswith('(policy: retarget = "clients")')
 
     @pytest.mark.parametrize("asked", [GoTo((0.0, 3.0, -2.0)), BeginStream()])
     def test_another_operators_goal_is_not_replaced(self, asked: Request) -> None:

@@ -84,7 +84,7 @@ REFUSED: dict[State, dict[str, str]] = {
     },
     State.TAKING_OFF: {**BUSY, **IN_FLIGHT, "control": "BUSY", **ALWAYS},
     State.HOVERING: {
-        **each("CONTROL_PENDING", "goto", "control", "resume", "photo", "mission"),
+        **each("CONTROL_PENDING", "control", "resume", "photo", "mission"),
         **IN_FLIGHT,
         **ALWAYS,
     },

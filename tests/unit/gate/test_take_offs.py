@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.gate.effects import CommandKind, SendCommand
+from gcs.gate.effects import CommandKind, Ruling, SendCommand, Verdict
 from gcs.gate.machine.memory import Memory
+from gcs.gate.refusal import Code
 from gcs.gate.requests import Hold, Land, TakeOff
 from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
@@ -145,6 +146,25 @@ class TestTheEndOfTheClimb:
         script.position()
         script.heartbeat(FlightMode.GUIDED)
         assert (state_of(script), ended(script, request_id)) == (State.MOVING, "")
+
+    def test_a_goal_that_comes_while_control_is_taken_waits_for_the_mode(self) -> None:
+        """MAVSDK's examples send one five seconds after the take-off, wherever that is."""
+        script, request_id = self.climbed(4.25)
+        goal = script.goto(3.0, 0.0, 5.0)
+        script.wait(1.1)
+        assert goal not in {verdict.request_id for verdict in script.all(Verdict)}
+        assert {place for _, place in script.setpoints()} == {(0.0, 0.0, 5.0)}
+        script.heartbeat(FlightMode.GUIDED)
+        script.tick()
+        assert script.verdict(goal).ruling is Ruling.ACCEPTED
+        assert script.gate.active_goal_ned == (0.0, 3.0, -5.0)
+        assert ended(script, request_id) == "superseded SUPERSEDED"
+
+    def test_it_is_refused_where_control_is_not_had_in_time(self) -> None:
+        script, _ = self.climbed(4.25)
+        goal = script.goto(3.0, 0.0, 5.0)
+        script.wait(1.0 + script.policy.control.timeout_s + 0.1)
+        assert script.refusal(goal) is Code.NO_ANSWER
 
 
 class TestWhetherItStands:

@@ -215,7 +215,7 @@ def test_silence_ends_an_upload_and_says_where(asked: int, words: str) -> None:
     flight = upload()
     for seq in range(asked):
         flight.hear(request(seq))
-    flight.wait(20 * WAIT_NS)
+    flight.wait(22 * WAIT_NS)
     ending = flight.ending
     assert isinstance(ending, TransferFailed)
     assert ending.result is None
@@ -376,7 +376,7 @@ def test_silence_ends_a_download_and_says_where(items: int | None) -> None:
         flight.hear(count(items))
         flight.hear(item(0, OWN))
         words = "the vehicle did not send item 1 of 2"
-    flight.wait(20 * WAIT_NS)
+    flight.wait(22 * WAIT_NS)
     assert flight.ending == TransferFailed(PLAN, None, words)
 
 

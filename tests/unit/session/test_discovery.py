@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pytest
 
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.discovery import Discovery
 from gcs.session.times import Times
 from gcs.wire.ids import Cmd, MsgId
@@ -126,3 +127,24 @@ def test_that_they_stopped_is_told_once() -> None:
     telemetry.position_came_ns = script.now_ns + 10 * SECOND_NS
     assert discovery.silence(telemetry, script.now_ns + 11 * SECOND_NS) == ""
     assert discovery.silence(telemetry, script.now_ns + 20 * SECOND_NS) != ""
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "sent", "unknown"),
+    [
+        (PX4, {MsgId.ESTIMATOR_STATUS}, {MsgId.EKF_STATUS_REPORT, MsgId.FENCE_STATUS}),
+        (ARDUPILOT, {MsgId.EKF_STATUS_REPORT, MsgId.FENCE_STATUS}, {MsgId.ESTIMATOR_STATUS}),
+    ],
+    ids=lambda given: getattr(given, "name", ""),
+)
+def test_no_autopilot_is_asked_for_what_it_does_not_know(
+    autopilot: Autopilot, sent: set[MsgId], unknown: set[MsgId]
+) -> None:
+    """An ArduCopter 4.7 tells everybody "No ap_message for mavlink id (230)", each time."""
+    script = Script()
+    script.telemetry = vehicle(autopilot)
+    asked = set(rates_hz(ask(script)))
+    assert sent <= asked
+    assert asked.isdisjoint(unknown)
+    again = script.discovery.again(script.telemetry, sorted(sent | unknown))
+    assert set(rates_hz(list(again))) == sent

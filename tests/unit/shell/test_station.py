@@ -23,7 +23,7 @@ from gcs.shell import sockets, station
 from gcs.shell.endpoints import Endpoint
 from gcs.shell.pipes import LineSink
 from gcs.shell.signals import SignalSource
-from gcs.shell.station import CannotStartError, _open_client_ports, _open_links
+from gcs.shell.station import CannotStartError, _open_client_ports, _open_links, _read_policy
 
 
 def test_a_serial_line_that_cannot_be_used_is_told_with_its_own_hint(
@@ -94,3 +94,20 @@ def test_what_is_there_at_the_start_is_left_out_of_every_later_garbage_collectio
 
 def _none(*_: object, **__: object) -> None:
     raise OSError("not in this test")
+
+
+@pytest.mark.parametrize(
+    ("text", "clients", "retarget"),
+    [
+        ("", [], "refuse"),
+        ("", ["udpin://127.0.0.1:14551"], "replace"),
+        ('retarget = "refuse"', ["udpin://127.0.0.1:14551"], "refuse"),
+        ('retarget = "replace"', [], "replace"),
+    ],
+)
+def test_clients_replace_their_own_goals_unless_the_policy_says_otherwise(
+    text: str, clients: list[str], retarget: str, tmp_path: Path
+) -> None:
+    (tmp_path / "my.toml").write_text(text)
+    setup = StationConfig(clients=clients, policy_path=str(tmp_path / "my.toml"))
+    assert _read_policy(setup)[0].retarget == retarget

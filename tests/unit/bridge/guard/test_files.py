@@ -37,6 +37,7 @@ READS = (
     FtpOpcode.READFILE,
     FtpOpcode.CALCFILECRC,
     FtpOpcode.BURSTREADFILE,
+    16,  # ListDirectoryWithTime (pymavlink 2.4.50, `mavftp_op.py`)
 )
 
 
@@ -126,7 +127,7 @@ def test_data_that_looks_like_a_path_may_be_written() -> None:
     allowed(guard(FORWARD).judge(ftp(FtpOpcode.WRITEFILE, b"@PARAM/param.pck"), PARKED))
 
 
-@pytest.mark.parametrize("opcode", [16, 64, 127, 130, 255])
+@pytest.mark.parametrize("opcode", [17, 64, 127, 130, 255])
 def test_an_opcode_that_is_not_known_is_answered(opcode: int) -> None:
     found = refused(guard(FORWARD).judge(ftp(opcode), PARKED))
     assert negative(found.answers)[-1] == FtpError.UNKNOWNCOMMAND
