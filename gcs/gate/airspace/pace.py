@@ -45,8 +45,10 @@ HALVINGS: Final = 7
 
 @dataclass(frozen=True, slots=True)
 class Paced:
-    """A position to send, and the velocity at which the autopilot is to fly there; local NED."""
+    """A position to send on the way to a goal, and the velocity at which the autopilot is to fly
+    there; local NED."""
 
+    goal_ned: Vec3
     target_ned: Vec3
     v_ned: Vec3
 
@@ -109,7 +111,7 @@ def paced(
         goal_ned[1] if ahead_m >= away_m else pos_ned[1] + e * ahead_m,
         goal_ned[2] if up_or_down_m >= abs(down) else pos_ned[2] + sign * up_or_down_m,
     )
-    return Paced(target_ned, (n * level_m_s, e * level_m_s, sign * vertical_m_s))
+    return Paced(goal_ned, target_ned, (n * level_m_s, e * level_m_s, sign * vertical_m_s))
 
 
 @dataclass(frozen=True, slots=True)
