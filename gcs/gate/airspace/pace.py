@@ -36,7 +36,7 @@ from gcs.gate.policy.policy import Pace
 FIRM: Final = 1.0
 """One that is faster than asked is asked for less, by this times the difference."""
 LAST_M: Final = 0.5
-"""So near to its goal the goal itself is sent."""
+"""So near to its goal the goal itself is sent, where the stop from the speed of that fits."""
 CRAWL_M_S: Final = 1.0
 """The speed of one that is where no stop fits, such as outside: its verified way leads inside."""
 HALVINGS: Final = 7
@@ -45,8 +45,10 @@ HALVINGS: Final = 7
 
 @dataclass(frozen=True, slots=True)
 class Paced:
-    """A position to send, and the velocity at which the autopilot is to fly there; local NED."""
+    """A position to send on the way to a goal, and the velocity at which the autopilot is to fly
+    there; local NED."""
 
+    goal_ned: Vec3
     target_ned: Vec3
     v_ned: Vec3
 
@@ -103,15 +105,17 @@ def paced(
             and bounds.beyond_limits("", stop_ned, allow=bounds.position_error) is None
         )
 
-    share = _largest_share(stop_fits, max(level_m_s, vertical_m_s))
+    share = _largest_share(stop_fits, math.hypot(level_m_s, vertical_m_s))
     level_m_s, vertical_m_s = share * level_m_s, share * vertical_m_s
-    ahead_m, up_or_down_m = level.ahead_m(level_m_s), vertical.ahead_m(vertical_m_s)
+    last_m = LAST_M if share >= 1.0 else 0.0
+    ahead_m = level.ahead_m(level_m_s, last_m)
+    up_or_down_m = vertical.ahead_m(vertical_m_s, last_m)
     target_ned = (
         goal_ned[0] if ahead_m >= away_m else pos_ned[0] + n * ahead_m,
         goal_ned[1] if ahead_m >= away_m else pos_ned[1] + e * ahead_m,
         goal_ned[2] if up_or_down_m >= abs(down) else pos_ned[2] + sign * up_or_down_m,
     )
-    return Paced(target_ned, (n * level_m_s, e * level_m_s, sign * vertical_m_s))
+    return Paced(goal_ned, target_ned, (n * level_m_s, e * level_m_s, sign * vertical_m_s))
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,9 +142,10 @@ class _Axis:
         end_m_s = p * left_m if left_m <= near_m else math.sqrt(2.0 * a * (left_m - near_m / 2.0))
         return min(pace.most_m_s, max(0.0, self.speed_m_s) + pace.gain_m_s, end_m_s)
 
-    def ahead_m(self, speed_m_s: float) -> float:
-        """How far ahead of the reported position to send it, so that it flies at `speed_m_s`."""
-        if self.left_m <= LAST_M:
+    def ahead_m(self, speed_m_s: float, last_m: float) -> float:
+        """How far ahead of the reported position to send it, so that it flies at `speed_m_s`; to
+        the goal where that is within `last_m`."""
+        if self.left_m <= last_m:
             return self.left_m
         pace = self.pace
         p, a = pace.follow_per_s, pace.follow_m_s2

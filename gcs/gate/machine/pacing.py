@@ -16,13 +16,14 @@ def towards(turn: Turn, goal_ned: Vec3, beside_ned: Vec3 | None = None) -> Vec3:
     with it.
 
     It goes on from the last report: without another one it stays where it is, and the vehicle slows
-    down for it.  Where the report is too old, it is what was sent last.
+    down for it.  Where the report is too old, it is what was sent last on this way.
     """
     memory = turn.memory
     if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
         return goal_ned
     if turn.stale:
-        return memory.pos_ned if memory.paced is None else memory.paced.target_ned
+        last = memory.paced
+        return last.target_ned if last and last.goal_ned == goal_ned else memory.pos_ned
     memory.paced = memory.verifier.paced(
         goal_ned, memory.pos_ned, memory.v_ned, memory.late_s, beside_ned or STANDING
     )

@@ -29,7 +29,7 @@ def on_the_way(edge: Edge, sent_ned: Vec3, goal_ned: Vec3) -> bool:
     if here_ned is None or sent_ned == goal_ned:
         return sent_ned == goal_ned
     if edge.stale and last is not None and sent_ned == last.target_ned:
-        return True
+        return goal_ned == last.goal_ned
     between = all(
         min(a, b) - EXACT_M <= x <= max(a, b) + EXACT_M
         for a, x, b in zip(here_ned, sent_ned, goal_ned, strict=True)

@@ -10,6 +10,7 @@ times as many situations.  `FINER` tells most of it apart; `left_out.py` samples
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -175,7 +176,9 @@ def _clocks(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Ha
 def _pace_clock(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     """May it be as fast as it was asked to, though it is not reported so?"""
     react_ns = round(policy.braking_of(memory.autopilot).react_s * SECOND_NS)
-    return memory.paced is not None and now_ns < memory.paced_ns + react_ns
+    if memory.paced is None or memory.v_ned is None or now_ns >= memory.paced_ns + react_ns:
+        return False
+    return math.hypot(*memory.paced.v_ned) > math.hypot(*memory.v_ned)
 
 
 def _stream_clocks(policy: Policy, memory: Memory, now_ns: int) -> Hashable:

@@ -15,10 +15,11 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Braking
 from tests.unit.gate.airspace import HOME, around, at, flying
 
-# px4 reacts in 0.7 s and brakes with 2 m/s2 beside and 3 m/s2 above: at 8 m/s it goes
-# 5.6 + 16 = 21.6 m.  One of the sixteen positions that are tried is every 1.35 m.
+# px4 reacts in 1.4 s and brakes with 3.35 m/s2 beside and 9.8 m/s2 above: at 8 m/s it goes
+# 11.2 + 64 / 6.7 = 20.752 m.  One of the sixteen positions that are tried is every 1.297 m.
 DASH = 8.0
-STOP_M, STEP_M = 21.6, 1.35
+STOP_M = 11.2 + 64 / 6.7
+STEP_M = STOP_M / 16
 
 
 def brake(verifier: Verifier, pos_ned: Vec3, v_ned: Vec3, *, floor: bool = True) -> Vec3 | None:
@@ -30,24 +31,24 @@ def brake(verifier: Verifier, pos_ned: Vec3, v_ned: Vec3, *, floor: bool = True)
 @pytest.mark.parametrize(
     ("here", "v_ned", "expected"),
     [
-        (at(140, 0, 5), (0.0, DASH, 0.0), at(140 + 5 * STEP_M, 0, 5)),
-        (at(-140, 0, 5), (0.0, -DASH, 0.0), at(-140 - 5 * STEP_M, 0, 5)),
-        (at(0, 140, 5), (DASH, 0.0, 0.0), at(0, 140 + 5 * STEP_M, 5)),
-        (at(0, -140, 5), (-DASH, 0.0, 0.0), at(0, -140 - 5 * STEP_M, 5)),
+        (at(140, 0, 5), (0.0, DASH, 0.0), at(140 + 6 * STEP_M, 0, 5)),
+        (at(-140, 0, 5), (0.0, -DASH, 0.0), at(-140 - 6 * STEP_M, 0, 5)),
+        (at(0, 140, 5), (DASH, 0.0, 0.0), at(0, 140 + 6 * STEP_M, 5)),
+        (at(0, -140, 5), (-DASH, 0.0, 0.0), at(0, -140 - 6 * STEP_M, 5)),
     ],
     ids=["east", "west", "north", "south"],
 )
 def test_it_is_the_farthest_sixteenth_of_the_way_that_keeps_the_margin(
     here: Vec3, v_ned: Vec3, expected: Vec3
 ) -> None:
-    """148 m is the margin's edge: five steps lead to 146.75 m, six beyond."""
+    """148 m is the margin's edge: six steps lead to 147.78 m, seven beyond."""
     assert brake(flying(), here, v_ned) == pytest.approx(expected)
 
 
 def test_up_it_is_the_same() -> None:
-    """At 9 m/s 6.3 + 13.5 = 19.8 m; the margin's edge is 49.7 m: three steps, to 48.7125 m."""
+    """At 9 m/s 12.6 + 81 / 19.6 = 16.733 m; the margin's edge is 49.7 m: four steps, to 49.18 m."""
     found = brake(flying(), at(3, 7, 45), (0.0, 0.0, -9.0))
-    assert found == pytest.approx(at(3, 7, 45 + 3 * 19.8 / 16))
+    assert found == pytest.approx(at(3, 7, 45 + 4 * (12.6 + 81 / 19.6) / 16))
 
 
 def test_askew_it_stays_on_the_way_to_the_stop() -> None:
@@ -131,6 +132,7 @@ def test_a_breach_names_the_zone_and_the_numbers_it_was_decided_on() -> None:
             "clear_m": 10.0,
             "stop_clear_m": 10.0 - STOP_M,
             "limit_m": 0.5 + 2.0 - 1.5,
+            "hold_over_limit_m": 10.0 - STOP_M - 1.0,
             "stopping_h_m": STOP_M + 0.5 + 2.0,
             "stopping_v_m": 0.2 + 0.3,
         }
@@ -155,7 +157,7 @@ class TestLanding:
         assert found is None
 
     def test_a_tower_beneath_counts_until_the_ground(self) -> None:
-        """Falling at 6 m/s it would go 10.2 m: from 4 m up, to the ground and no farther."""
+        """Falling at 6 m/s it would go 8.4 + 36 / 19.6 = 10.24 m: from 4 m up, to the ground and no farther."""
         cellar = Zone("cellar", False, Circle((3.0, 4.0), 5.0), -30.0, -3.0)
         field = Zone("field", True, Circle((0.0, 0.0), 150.0))
         verifier = Verifier(DEFAULT, (field, cellar), "px4", HOME, origin_known=False)

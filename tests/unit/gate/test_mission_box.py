@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from gcs.gate.airspace.mission_box import BESIDE_M, MissionBox, box_round
-from gcs.gate.airspace.stopping import OwnPath, predicted_stop, stop_point, stops_of
+from gcs.gate.airspace.stopping import OwnPath, StopBy, stop_point, ways_to_stop
 from gcs.gate.policy.parse import DEFAULT
 
-STOPS = stops_of(DEFAULT, "ardupilot")
 EASTWARD = (0.0, 10.0, 0.0)
 BOX = MissionBox((0.0, -20.0, -10.0), (40.0, 30.0, 0.0))
 
@@ -24,8 +23,10 @@ def test_a_little_beside_its_path_counts_as_on_it() -> None:
 
 def test_outside_the_box_it_slows_down_for_nothing() -> None:
     inside, outside = (10.0, 30.0, -5.0), (10.0, 40.0, -5.0)
-    own = predicted_stop(inside, EASTWARD, OwnPath(BOX), STOPS)
-    assert own == stop_point(inside, EASTWARD, STOPS.approach)
-    held = predicted_stop(outside, EASTWARD, OwnPath(BOX), STOPS)
-    assert held == stop_point(outside, EASTWARD, STOPS.braking)
-    assert held[1] > predicted_stop(outside, EASTWARD, OwnPath(), STOPS)[1]
+    braking, approach = DEFAULT.braking_of("ardupilot"), DEFAULT.approach_of("ardupilot")
+    own = ways_to_stop(inside, EASTWARD, OwnPath(BOX), DEFAULT, "ardupilot")
+    assert own == ((StopBy.ITSELF, stop_point(inside, EASTWARD, approach)),)
+    held = ways_to_stop(outside, EASTWARD, OwnPath(BOX), DEFAULT, "ardupilot")
+    assert held == ((StopBy.HOLD, stop_point(outside, EASTWARD, braking)),)
+    nowhere = ways_to_stop(outside, EASTWARD, OwnPath(), DEFAULT, "ardupilot")
+    assert nowhere == ((StopBy.ITSELF, stop_point(outside, EASTWARD, approach)),)

@@ -11,7 +11,7 @@ from gcs.gate.airspace.stopping import distance_h_m, distance_v_m
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.turn import Turn
 from gcs.gate.policy.parse import parse_policy
-from gcs.gate.policy.policy import Approach, Braking, Policy
+from gcs.gate.policy.policy import Approach, Braking, Pace, Policy
 from gcs.gate.policy.zonespec import CircleSpec, ZoneSpec
 from gcs.gate.states import State
 from gcs.toml import TomlError
@@ -159,9 +159,6 @@ class TestInUse:
         ("react_s", 0.0, 10.0, -0.01, 10.5),
         ("a_brake_h_m_s2", 0.1, 50.0, 0.09, 50.5),
         ("a_brake_v_m_s2", 0.1, 50.0, 0.09, 50.5),
-        ("cross_track_m", 0.0, MOST, -0.01, MOST + 1),
-        ("cross_track_m_s", 0.0, MOST, -0.01, MOST + 1),
-        ("a_gain_h_m_s2", 0.0, MOST, -0.01, MOST + 1),
     ],
 )
 def test_approach(key: str, least: float, most: float, below: float, above: float) -> None:
@@ -173,27 +170,57 @@ def test_approach(key: str, least: float, most: float, below: float, above: floa
 
 
 def test_another_autopilot_approaches_with_the_worst_of_each_number() -> None:
-    """Neither of the two is the worse one throughout; the worse cross-track limit is the less."""
+    """Neither of the two is the worse one throughout."""
     policy = parse_policy(
         """
         [approach.px4]
         react_s = 0.2
         a_brake_h_m_s2 = 5.0
         a_brake_v_m_s2 = 2.0
-        cross_track_m = 0.5
-        cross_track_m_s = 0.7
-        a_gain_h_m_s2 = 9.0
         [approach.ardupilot]
         react_s = 0.4
         a_brake_h_m_s2 = 4.0
         a_brake_v_m_s2 = 3.0
-        cross_track_m = 0.6
-        cross_track_m_s = 0.3
-        a_gain_h_m_s2 = 4.0
         """,
         "my.toml",
     )
-    assert policy.approach_of("betaflight") == Approach(0.4, 4.0, 2.0, 0.5, 0.3, 9.0)
+    assert policy.approach_of("betaflight") == Approach(0.4, 4.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("key", "least", "most", "below", "above"),
+    [
+        ("most_m_s", 0.1, MOST, 0.09, MOST + 1),
+        ("gain_m_s", 0.1, MOST, 0.09, MOST + 1),
+        ("end_m_s2", 0.1, 50.0, 0.09, 50.5),
+        ("lag_s", 0.0, 10.0, -0.01, 10.5),
+        ("follow_per_s", 0.05, 10.0, 0.04, 10.5),
+        ("follow_m_s2", 0.1, 50.0, 0.09, 50.5),
+    ],
+)
+@pytest.mark.parametrize("axis", ["level", "vertical"])
+def test_pace(axis: str, key: str, least: float, most: float, below: float, above: float) -> None:
+    for limit in (least, most):
+        policy = parse_policy(f"[pace.px4.{axis}]\n{key} = {limit}", "my.toml")
+        assert getattr(getattr(policy.pace_of("px4"), axis), key) == limit
+    for beyond in (below, above):
+        assert error(f"[pace.px4.{axis}]\n{key} = {beyond}").key == f"pace.px4.{axis}.{key}"
+
+
+def test_another_autopilot_is_paced_by_the_slowest_of_each_number() -> None:
+    """At the same speed a position is nearer to the one that follows faster."""
+    level = {
+        "px4": (5.0, 3.0, 1.0, 0.2, 0.9, 4.0),
+        "ardupilot": (4.0, 6.0, 2.0, 0.7, 0.5, 8.0),
+    }
+    names = ("most_m_s", "gain_m_s", "end_m_s2", "lag_s", "follow_per_s", "follow_m_s2")
+    lines = "".join(
+        f"[pace.{autopilot}.level]\n"
+        + "".join(f"{name} = {x}\n" for name, x in zip(names, numbers, strict=True))
+        for autopilot, numbers in level.items()
+    )
+    policy = parse_policy(lines, "my.toml")
+    assert policy.pace_of("betaflight").level == Pace(4.0, 3.0, 1.0, 0.7, 0.9, 8.0)
 
 
 def test_another_autopilot_brakes_with_the_worst_of_each_number() -> None:

@@ -7,7 +7,7 @@ import pytest
 from gcs.frames import enu_from_ned
 from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.questions.braking import Breach
-from gcs.gate.airspace.stopping import Leg
+from gcs.gate.airspace.stopping import Setpoints
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon
 from gcs.gate.policy.parse import DEFAULT
@@ -17,9 +17,9 @@ from tests.unit.gate.airspace import LAB, OUTER, STILL, TOWER, around, at, flyin
 
 def test_a_goal_is_refused_to_a_vehicle_that_cannot_stop_inside() -> None:
     verifier = flying()
-    # 10 m/s: 7 m of reaction, 25 m of braking; 1 m is asked
-    assert go(verifier, at(0, 0, 2), at(116.9, 0, 2), at(10, 0, 0)) is None
-    assert go(verifier, at(0, 0, 2), at(117.1, 0, 2), at(10, 0, 0)) is Code.CANNOT_STOP
+    # 10 m/s: 14 m of reaction, 100 / 6.7 = 14.93 m of braking; 1 m is asked: 120.07 m
+    assert go(verifier, at(0, 0, 2), at(120.0, 0, 2), at(10, 0, 0)) is None
+    assert go(verifier, at(0, 0, 2), at(120.2, 0, 2), at(10, 0, 0)) is Code.CANNOT_STOP
     assert go(verifier, at(0, 0, 2), at(0, 0, 45), at(0, 0, 6)) is Code.CANNOT_STOP
 
 
@@ -29,14 +29,14 @@ def test_a_predicted_breach_names_the_zone_and_brakes_where_a_goal_may_be() -> N
     assert isinstance(breach, Breach)
     assert breach.zone == "home"
     assert breach.sentence == (
-        "at 10.0 m/s it would come to rest 22.0 m past the edge of inclusion circle 'home', "
+        "at 10.0 m/s it would come to rest 18.9 m past the edge of inclusion circle 'home', "
         "1.0 m asked"
     )
-    assert dict(breach.numbers)["stop_clear_m"] == pytest.approx(-22.0)
+    assert dict(breach.numbers)["stop_clear_m"] == pytest.approx(10.0 - 28.92537)
     assert breach.brake_pos_ned is not None
     assert go(verifier, breach.brake_pos_ned, at(140, 0, 2)) is None
-    # a sixteenth of 32 m is 2 m; four lead to 148 m, the margin's edge, which is too close to say
-    assert enu_from_ned(breach.brake_pos_ned) == pytest.approx((146.0, 0.0, 2.0))
+    # a sixteenth of 28.925 m is 1.8078 m; four lead to 147.23 m, five past the margin's edge
+    assert enu_from_ned(breach.brake_pos_ned) == pytest.approx((147.231343, 0.0, 2.0))
 
 
 def test_within_the_margin_the_brake_is_where_the_vehicle_is() -> None:
@@ -61,14 +61,14 @@ def test_hovering_at_a_goal_at_the_margin_is_no_breach() -> None:
     ):
         assert go(verifier, goal, start) is None
         for noise in (at(0.15, 0.1, 0.2), at(-0.15, 0.1, -0.2)):
-            hovers = Leg(goal, goal)
+            hovers = Setpoints()
             assert verifier.predicted_stop(goal, noise, hovers, floor_applies=True) is None
 
 
 def test_after_a_brake_near_the_fence_hovering_goes_on_and_creeping_out_does_not() -> None:
     verifier = flying()
     edge = at(149.2, 0, 2)  # less than the metre that is asked of a stop
-    hovers = Leg(edge, edge)
+    hovers = Setpoints()
     assert verifier.predicted_stop(edge, at(0.2, 0, 0), hovers, floor_applies=True) is None
     assert verifier.predicted_stop(edge, at(-5, 0, 0), hovers, floor_applies=True) is None
     assert verifier.predicted_stop(edge, at(0.6, 0, 0), hovers, floor_applies=True) is not None
@@ -86,8 +86,8 @@ def test_towards_an_exclusion_zone_it_brakes_and_beside_and_above_it_does_not() 
     assert breach.zone == "tower"
     assert breach.brake_pos_ned is not None
     assert go(verifier, breach.brake_pos_ned, at(8, 0, 2)) is None
-    assert verifier.predicted_stop(at(-13.1, 0, 2), east, floor_applies=True) is None
-    assert verifier.predicted_stop(at(-12.9, 0, 2), east, floor_applies=True) is not None
+    assert verifier.predicted_stop(at(-10.0, 0, 2), east, floor_applies=True) is None
+    assert verifier.predicted_stop(at(-9.9, 0, 2), east, floor_applies=True) is not None
     assert verifier.predicted_stop(at(8, 8, 2), east, floor_applies=True) is None
     assert verifier.predicted_stop(at(8, 0, 22), east, floor_applies=True) is None
     assert verifier.predicted_stop(at(25, 0, 22), at(0, 0, -3), floor_applies=True) is not None
