@@ -69,8 +69,6 @@ def paced(
     rules = bounds.policy.pace_of(bounds.autopilot)
     north, east, down = (goal - pos for goal, pos in zip(goal_ned, pos_ned, strict=True))
     away_m = math.hypot(north, east)
-    if away_m <= LAST_M and abs(down) <= LAST_M:
-        return Paced(goal_ned, STANDING)
     n, e = (north / away_m, east / away_m) if away_m > 0.0 else (0.0, 0.0)
     sign = math.copysign(1.0, down)
     level = _Axis(rules.level, away_m, v_ned[0] * n + v_ned[1] * e, late_s)
