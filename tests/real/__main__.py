@@ -84,20 +84,25 @@ def run(kind: Kind, groups: list[list[Row]], folder: Path, seed: int) -> list[Re
 def line(result: Result) -> str:
     nearest = result.get("nearest_m")
     room = "     -" if nearest is None else f"{nearest:6.2f}"
-    verdict = "WRONG" if result["wrong"] else "ok   "
+    refused = result["told"].startswith("refused")
+    verdict = "WRONG" if result["wrong"] else "refused" if refused else "ok"
     text = (
-        f"{result['autopilot']:10s} {verdict} {result['row']:58s} nearest {room} m"
+        f"{result['autopilot']:10s} {verdict:7s} {result['row']:58s} nearest {room} m"
         f" {result.get('seconds') or 0:5.1f} s top {result.get('top_m_s') or 0:4.1f} m/s"
         f" estimate off {result.get('estimate_off_m') or 0:4.2f} m  {result['told'][:90]}"
     )
-    return f"{text}\n{'':17s}{result['wrong'][:300]}" if result["wrong"] else text
+    return f"{text}\n{'':19s}{result['wrong'][:300]}" if result["wrong"] else text
 
 
 def table(results: list[Result]) -> str:
     wrong = [result for result in results if result["wrong"]]
     outside = sum("OUTSIDE" in result["wrong"] for result in wrong)
     lines = ["", *(line(result) for result in results), ""]
-    lines.append(f"{len(results)} rows, {outside} outside, {len(wrong) - outside} otherwise wrong")
+    refused = sum(result["told"].startswith("refused") for result in results)
+    lines.append(
+        f"{len(results)} rows, {outside} outside, {len(wrong) - outside} otherwise wrong,"
+        f" {refused} refused"
+    )
     return "\n".join(lines)
 
 

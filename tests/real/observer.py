@@ -147,10 +147,11 @@ class Observer:
         lat = lat0 + (from_home[1] + self.home_truth[1]) / metres
         lon = lon0 + (from_home[0] + self.home_truth[0]) / metres / math.cos(math.radians(lat0))
         if self.kind is not PX4:
-            # A station that streams in GUIDED gives up control when it sees another mode.
+            # A station that streams in GUIDED gives up control when it sees another mode, and
+            # sees to it for a second or two that it is a hold.
             self.mode(self.kind.hold_custom_mode)
             self.wait(lambda: self.custom_mode == self.kind.hold_custom_mode, 3.0)
-            time.sleep(0.5)
+            time.sleep(2.0)
             self.mode(self.kind.guided_custom_mode)
             time.sleep(0.5)
         frame, up = GLOBAL_RELATIVE, from_home[2]
