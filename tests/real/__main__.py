@@ -3,6 +3,8 @@
 import argparse
 import json
 import os
+import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -59,13 +61,15 @@ def fly(flight: Flight, row: Row) -> Result:
 
 def run(kind: Kind, groups: list[list[Row]], folder: Path, seed: int) -> list[Result]:
     results: list[Result] = []
-    for number, group in enumerate(groups):
-        flight: Flight | None = None
-        for row in group:
+    flight: Flight | None = None
+    try:
+        for row, begins in ((row, row is group[0]) for group in groups for row in group):
+            if flight is not None and (begins or results[-1]["told"] in ("not ready", "broke")):
+                flight.close()  # a fresh one
+                flight = None
             try:
                 if flight is None:
-                    place = folder / f"{kind.name}_{number}_{len(results)}"
-                    flight = Flight(kind, place, seed)
+                    flight = Flight(kind, folder / f"{kind.name}_{len(results)}", seed)
                 result = fly(flight, row)
             except NotReadyError as error:
                 result = {"autopilot": kind.name, "row": row.name, "told": "", "wrong": str(error)}
@@ -73,9 +77,7 @@ def run(kind: Kind, groups: list[list[Row]], folder: Path, seed: int) -> list[Re
             print(line(result), flush=True)
             with (folder / f"{kind.name}.jsonl").open("a") as out:
                 out.write(json.dumps(result) + "\n")
-            if flight is not None and result["told"] in ("not ready", "broke"):
-                flight.close()  # a fresh one for the next
-                flight = None
+    finally:
         if flight is not None:
             flight.close()
     return results
@@ -111,7 +113,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("what", nargs="?", default="fly", choices=("fly", "record", "judge"))
     parser.add_argument("--autopilot", choices=tuple(KINDS), help="this one alone")
     parser.add_argument("--smoke", action="store_true", help="a few rows, about 3 minutes")
-    parser.add_argument("--only", default="", help="rows whose name contains this")
+    parser.add_argument("--only", default="", help="rows whose name matches this expression")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=40, help="approaches drawn by the seed")
     parser.add_argument("--folder", type=Path, help="for records and results; default: a new one")
@@ -135,7 +137,7 @@ def inside(asked: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory() as runtime:  # no station of this user is joined
         os.environ["XDG_RUNTIME_DIR"] = runtime
         chosen = [rows.smoke(kind)] if asked.smoke else rows.whole(kind, asked.seed, asked.count)
-        groups = [[row for row in group if asked.only in row.name] for group in chosen]
+        groups = [[row for row in group if re.search(asked.only, row.name)] for group in chosen]
         results = run(kind, groups, folder, asked.seed)
     return int(any(result["wrong"] for result in results))
 
@@ -160,7 +162,9 @@ def outside(asked: argparse.Namespace) -> int:
         running.append(subprocess.Popen(command, cwd=autopilots.CHECKOUT))
     try:
         codes = [one.wait() for one in running]
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemExit):
+        for one in running:
+            one.terminate()  # ends what it has started
         codes = [one.wait() for one in running]
     results: list[Result] = []
     for kind in started:
@@ -175,6 +179,7 @@ def outside(asked: argparse.Namespace) -> int:
 
 def main() -> int:
     asked = arguments()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     if asked.what == "judge":
         print(bounds.report())
         return 0

@@ -142,7 +142,7 @@ TRICKS = (
 
 
 def hostile() -> list[Row]:
-    return [Row("hostile", "bridge", goal_m=40.0, word=trick) for trick in TRICKS]
+    return [Row("hostile", "bridge", goal_m=20.0, word=trick) for trick in TRICKS]
 
 
 def missions() -> list[Row]:
