@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.real import autopilots, bounds, record, rows
-from tests.real.autopilots import KINDS, ONBOARD_PORT, Kind
+from tests.real.autopilots import KINDS, Kind
 from tests.real.flight import Flight, NotReadyError
 from tests.real.rows import Row
 from tests.real.trials import KINDS as TRIALS
@@ -55,6 +55,7 @@ def fly(flight: Flight, row: Row) -> Result:
         "seconds": round(flown[-1].at_s - flown[0].at_s, 1) if flown else None,
         "estimate_off_m": round(max(observer.off_m[off:], default=0.0), 2),
         "row_s": round(time.monotonic() - started, 1),
+        "load": round(os.getloadavg()[0], 1),
         "states": [] if station is None else station.said[said:],
     }
 
@@ -91,7 +92,8 @@ def line(result: Result) -> str:
     text = (
         f"{result['autopilot']:10s} {verdict:7s} {result['row']:58s} nearest {room} m"
         f" {result.get('seconds') or 0:5.1f} s top {result.get('top_m_s') or 0:4.1f} m/s"
-        f" estimate off {result.get('estimate_off_m') or 0:4.2f} m  {result['told'][:90]}"
+        f" estimate off {result.get('estimate_off_m') or 0:4.2f} m"
+        f" load {result.get('load') or 0:4.1f}  {result['told'][:90]}"
     )
     return f"{text}\n{'':19s}{result['wrong'][:300]}" if result["wrong"] else text
 
@@ -129,7 +131,7 @@ def inside(asked: argparse.Namespace) -> int:
     if asked.what == "record":
         process = autopilots.start(kind, folder / "vehicle")
         try:
-            vehicle = Vehicle(kind, f"udpin:127.0.0.1:{ONBOARD_PORT}")
+            vehicle = Vehicle(kind)
             record.record(vehicle, asked.part, asked.repeats, folder / f"{asked.part}.jsonl")
         finally:
             autopilots.end(process)

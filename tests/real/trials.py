@@ -38,20 +38,25 @@ def approach(flight: Flight, row: Row) -> Told:
     taken = pilot.take()
     if taken != "complete":
         return taken, f"control: {taken}"
-    length_s = 2.0 + row.leg_m / 6.0
-    timer = threading.Timer(row.figure * length_s, lambda: trouble(flight, row))
-    if row.trouble in ("delay", "loss"):
-        trouble(flight, row)
-    elif row.trouble:
-        if row.trouble == "blackout":  # its figure is how long it is
-            timer = threading.Timer(length_s * (row.goal_m % 1.0), lambda: trouble(flight, row))
+    under_way = threading.Event()
+    under_way.set()
+    happened: list[float] = []
+
+    def happen() -> None:
+        if under_way.is_set():
+            happened.append(flight.observer.now.speed_m_s)
+            trouble(flight, row)
+
+    timer = threading.Timer(row.when * (2.0 + row.leg_m / 6.0), happen)
+    if row.trouble:
         timer.start()
     told = pilot.goto(goal)
+    under_way.clear()
     timer.cancel()
     wrong = ""
-    if row.trouble == "other-station" and told == "complete" and timer.finished.is_set():
-        wrong = "" if flight.observer.now.speed_m_s < 1.0 else "complete, though another one flies"
-    if row.trouble == "gps":
+    if row.trouble == "other-station" and happened and told == "complete":
+        wrong = "complete, though another one flies"
+    if row.trouble == "gps" and happened:
         wrong = gps_is_told(flight)
     flight.observer.at_rest(REST_S)
     flight.relay.trouble()
