@@ -3,6 +3,8 @@
 import argparse
 import json
 import os
+import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -11,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.real import autopilots, bounds, record, rows
-from tests.real.autopilots import KINDS, ONBOARD_PORT, Kind
+from tests.real.autopilots import KINDS, Kind
 from tests.real.flight import Flight, NotReadyError
 from tests.real.rows import Row
 from tests.real.trials import KINDS as TRIALS
@@ -53,19 +55,22 @@ def fly(flight: Flight, row: Row) -> Result:
         "seconds": round(flown[-1].at_s - flown[0].at_s, 1) if flown else None,
         "estimate_off_m": round(max(observer.off_m[off:], default=0.0), 2),
         "row_s": round(time.monotonic() - started, 1),
+        "load": round(os.getloadavg()[0], 1),
         "states": [] if station is None else station.said[said:],
     }
 
 
 def run(kind: Kind, groups: list[list[Row]], folder: Path, seed: int) -> list[Result]:
     results: list[Result] = []
-    for number, group in enumerate(groups):
-        flight: Flight | None = None
-        for row in group:
+    flight: Flight | None = None
+    try:
+        for row, begins in ((row, row is group[0]) for group in groups for row in group):
+            if flight is not None and (begins or results[-1]["told"] in ("not ready", "broke")):
+                flight.close()  # a fresh one
+                flight = None
             try:
                 if flight is None:
-                    place = folder / f"{kind.name}_{number}_{len(results)}"
-                    flight = Flight(kind, place, seed)
+                    flight = Flight(kind, folder / f"{kind.name}_{len(results)}", seed)
                 result = fly(flight, row)
             except NotReadyError as error:
                 result = {"autopilot": kind.name, "row": row.name, "told": "", "wrong": str(error)}
@@ -73,9 +78,7 @@ def run(kind: Kind, groups: list[list[Row]], folder: Path, seed: int) -> list[Re
             print(line(result), flush=True)
             with (folder / f"{kind.name}.jsonl").open("a") as out:
                 out.write(json.dumps(result) + "\n")
-            if flight is not None and result["told"] in ("not ready", "broke"):
-                flight.close()  # a fresh one for the next
-                flight = None
+    finally:
         if flight is not None:
             flight.close()
     return results
@@ -84,20 +87,26 @@ def run(kind: Kind, groups: list[list[Row]], folder: Path, seed: int) -> list[Re
 def line(result: Result) -> str:
     nearest = result.get("nearest_m")
     room = "     -" if nearest is None else f"{nearest:6.2f}"
-    verdict = "WRONG" if result["wrong"] else "ok   "
+    refused = result["told"].startswith("refused")
+    verdict = "WRONG" if result["wrong"] else "refused" if refused else "ok"
     text = (
-        f"{result['autopilot']:10s} {verdict} {result['row']:58s} nearest {room} m"
+        f"{result['autopilot']:10s} {verdict:7s} {result['row']:58s} nearest {room} m"
         f" {result.get('seconds') or 0:5.1f} s top {result.get('top_m_s') or 0:4.1f} m/s"
-        f" estimate off {result.get('estimate_off_m') or 0:4.2f} m  {result['told'][:90]}"
+        f" estimate off {result.get('estimate_off_m') or 0:4.2f} m"
+        f" load {result.get('load') or 0:4.1f}  {result['told'][:90]}"
     )
-    return f"{text}\n{'':17s}{result['wrong'][:300]}" if result["wrong"] else text
+    return f"{text}\n{'':19s}{result['wrong'][:300]}" if result["wrong"] else text
 
 
 def table(results: list[Result]) -> str:
     wrong = [result for result in results if result["wrong"]]
     outside = sum("OUTSIDE" in result["wrong"] for result in wrong)
     lines = ["", *(line(result) for result in results), ""]
-    lines.append(f"{len(results)} rows, {outside} outside, {len(wrong) - outside} otherwise wrong")
+    refused = sum(result["told"].startswith("refused") for result in results)
+    lines.append(
+        f"{len(results)} rows, {outside} outside, {len(wrong) - outside} otherwise wrong,"
+        f" {refused} refused"
+    )
     return "\n".join(lines)
 
 
@@ -106,7 +115,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("what", nargs="?", default="fly", choices=("fly", "record", "judge"))
     parser.add_argument("--autopilot", choices=tuple(KINDS), help="this one alone")
     parser.add_argument("--smoke", action="store_true", help="a few rows, about 3 minutes")
-    parser.add_argument("--only", default="", help="rows whose name contains this")
+    parser.add_argument("--only", default="", help="rows whose name matches this expression")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=40, help="approaches drawn by the seed")
     parser.add_argument("--folder", type=Path, help="for records and results; default: a new one")
@@ -122,7 +131,7 @@ def inside(asked: argparse.Namespace) -> int:
     if asked.what == "record":
         process = autopilots.start(kind, folder / "vehicle")
         try:
-            vehicle = Vehicle(kind, f"udpin:127.0.0.1:{ONBOARD_PORT}")
+            vehicle = Vehicle(kind)
             record.record(vehicle, asked.part, asked.repeats, folder / f"{asked.part}.jsonl")
         finally:
             autopilots.end(process)
@@ -130,7 +139,7 @@ def inside(asked: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory() as runtime:  # no station of this user is joined
         os.environ["XDG_RUNTIME_DIR"] = runtime
         chosen = [rows.smoke(kind)] if asked.smoke else rows.whole(kind, asked.seed, asked.count)
-        groups = [[row for row in group if asked.only in row.name] for group in chosen]
+        groups = [[row for row in group if re.search(asked.only, row.name)] for group in chosen]
         results = run(kind, groups, folder, asked.seed)
     return int(any(result["wrong"] for result in results))
 
@@ -155,7 +164,9 @@ def outside(asked: argparse.Namespace) -> int:
         running.append(subprocess.Popen(command, cwd=autopilots.CHECKOUT))
     try:
         codes = [one.wait() for one in running]
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemExit):
+        for one in running:
+            one.terminate()  # ends what it has started
         codes = [one.wait() for one in running]
     results: list[Result] = []
     for kind in started:
@@ -170,6 +181,7 @@ def outside(asked: argparse.Namespace) -> int:
 
 def main() -> int:
     asked = arguments()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     if asked.what == "judge":
         print(bounds.report())
         return 0

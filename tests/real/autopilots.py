@@ -58,7 +58,6 @@ def start(kind: Kind, folder: Path) -> subprocess.Popen[bytes]:
     with (folder / "output.txt").open("wb") as output:
         return subprocess.Popen(
             [*found, str(folder), *arguments],
-            env={**os.environ, "TMPDIR": str(folder)},  # for PX4's lock: there may be others
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,

@@ -2,40 +2,33 @@
 another ground station, the wind, a GPS receiver that fails."""
 
 import math
+import struct
 import threading
 import time
 from collections.abc import Callable
 from typing import Any
 
-from pymavlink import mavutil
-
 from tests.real.autopilots import PX4, Kind
-from tests.real.truth import MESSAGES, Sample, Truth, Vector
+from tests.real.link import Link
+from tests.real.truth import MESSAGES, RADIUS_M, Vector
 
 OTHER_STATION = 250  # its system id
 GLOBAL_RELATIVE = 6  # MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
 
 
-class Observer:
+class Observer(Link):
     def __init__(self, kind: Kind, port: int) -> None:
-        self.kind = kind
-        self.truth = Truth()
+        super().__init__(kind, port, OTHER_STATION)
         self.off_m: list[float] = []  # of the vehicle's own position, beside each of the truth's
         self.home_local: Vector | None = None  # in the frame of the goals: east, north, up
         self.home_truth: Vector | None = None  # the same place in the truth's; up: as it stood
         self.estimate: Vector | None = None  # in the truth's frame; up is above home
-        self.armed = False
-        self.custom_mode = -1
-        self.texts: list[str] = []
-        self._link: Any = mavutil.mavlink_connection(
-            f"udpin:127.0.0.1:{port}", source_system=OTHER_STATION
-        )
         self._ended = False
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self, seconds: float) -> bool:
         """Whether the truth came in time."""
-        if self._link.wait_heartbeat(timeout=seconds) is None:
+        if self.mavlink.wait_heartbeat(timeout=seconds) is None:
             return False
         self._thread.start()
         end = time.monotonic() + seconds
@@ -50,20 +43,17 @@ class Observer:
         self._ended = True
         if self._thread.is_alive():
             self._thread.join()
-        self._link.close()
+        self.mavlink.close()
 
     def _run(self) -> None:
         while not self._ended:
-            message = self._link.recv_match(blocking=True, timeout=0.2)
+            message = self.mavlink.recv_match(blocking=True, timeout=0.2)
             if message is not None:
-                self._take(message)
+                self.take(message)
 
-    def _take(self, message: Any) -> None:
-        self.truth.take(message)
+    def take(self, message: Any) -> None:
+        super().take(message)
         match message.get_type():
-            case "HEARTBEAT" if message.get_srcComponent() == 1:
-                self.armed = bool(message.base_mode & 128)
-                self.custom_mode = message.custom_mode
             case "HOME_POSITION" if self.truth.samples:
                 east, north, _ = self.truth.enu(message.latitude / 1e7, message.longitude / 1e7, 0)
                 self.home_truth = (east, north, 0.0)
@@ -75,14 +65,8 @@ class Observer:
                 self.off_m.append(
                     math.hypot(*(a - b for a, b in zip(self.estimate[:2], here[:2], strict=True)))
                 )
-            case "STATUSTEXT":
-                self.texts.append(message.text)
 
     # -- what is seen -------------------------------------------------------------------------
-
-    @property
-    def now(self) -> Sample:
-        return self.truth.now
 
     @property
     def position(self) -> Vector:
@@ -116,26 +100,14 @@ class Observer:
 
     # -- what it does -------------------------------------------------------------------------
 
-    def command(self, number: int, *params: float) -> None:
-        words = [*params, *[0.0] * (7 - len(params))]
-        self._link.mav.command_long_send(1, 1, number, 0, *words)
-
-    def mode(self, custom_mode: int) -> None:
-        if self.kind is PX4:
-            self.command(176, 1.0, custom_mode >> 16 & 255, custom_mode >> 24)
-        else:
-            self.command(176, 1.0, custom_mode)
-
     def set(self, name: str, value: float, *, integer: bool = False) -> None:
         """A parameter of the simulation."""
         if integer and self.kind is PX4:
             # PX4 takes the bytes of an integer for the float.
-            import struct
-
             value = struct.unpack("<f", struct.pack("<i", int(value)))[0]
         kind = 6 if integer else 9
         for _ in range(3):
-            self._link.mav.param_set_send(1, 1, name.encode(), value, kind)
+            self.mavlink.mav.param_set_send(1, 1, name.encode(), value, kind)
             time.sleep(0.1)
 
     def fly_to(self, from_home: Vector, seconds: float = 60.0) -> bool:
@@ -143,21 +115,22 @@ class Observer:
         assert self.truth.origin is not None
         assert self.home_truth is not None
         lat0, lon0, _ = self.truth.origin
-        metres = math.radians(1.0) * 6_378_137.0
+        metres = math.radians(1.0) * RADIUS_M
         lat = lat0 + (from_home[1] + self.home_truth[1]) / metres
         lon = lon0 + (from_home[0] + self.home_truth[0]) / metres / math.cos(math.radians(lat0))
         if self.kind is not PX4:
-            # A station that streams in GUIDED gives up control when it sees another mode.
+            # A station that streams in GUIDED gives up control when it sees another mode, and
+            # sees to it for a second or two that it is a hold.
             self.mode(self.kind.hold_custom_mode)
             self.wait(lambda: self.custom_mode == self.kind.hold_custom_mode, 3.0)
-            time.sleep(0.5)
+            time.sleep(2.0)
             self.mode(self.kind.guided_custom_mode)
             time.sleep(0.5)
         frame, up = GLOBAL_RELATIVE, from_home[2]
         if self.kind is PX4:  # which takes the height above the sea
-            fix = self._link.messages["HOME_POSITION"]
+            fix = self.mavlink.messages["HOME_POSITION"]
             frame, up = 5, up + fix.altitude / 1e3
-        self._link.mav.command_int_send(
+        self.mavlink.mav.command_int_send(
             1, 1, frame, 192, 0, 0, -1.0, 1.0, 0.0, math.nan, round(lat * 1e7), round(lon * 1e7), up
         )
         there = self.wait(

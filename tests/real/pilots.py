@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,9 @@ class Library:
 
     def take(self) -> str:
         """Control of a vehicle that somebody else has flown, or that holds."""
+        time.sleep(0.5)  # for the snapshot that shows it
+        if self.station.state == "HOLDING":
+            return outcome_of(lambda: self.station.resume(timeout_s=20.0))
         if self.station.snapshot.control == "OURS":
             return "complete"
         return outcome_of(lambda: self.station.control(timeout_s=20.0))

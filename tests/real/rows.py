@@ -26,6 +26,7 @@ class Row:
     ceiling_m: float = 40.0
     trouble: str = ""  # kill, blackout, delay, loss, other-station, gps; see approaches.py
     figure: float = 0.0  # of the kind or the trouble: m/s, m, s, a share
+    when: float = 0.0  # the trouble begins: a share of the leg's time
     word: str = ""  # of the kind: what is asked for, or what a client tries
     wind_m_s: float = 0.0
     wind_deg: float = 0.0
@@ -37,8 +38,11 @@ class Row:
             words.append(
                 f"{self.leg_m:g} m {self.direction} to {self.goal_m:g} of {self.limit_m:g}"
             )
-        if self.trouble or self.figure:
-            words.append(f"{self.trouble} {self.figure:.3g}".strip())
+        words.append(self.trouble)
+        if self.figure:
+            words.append(f"{self.figure:g}")
+        if self.when:
+            words.append(f"at {self.when:g}")
         if self.wind_m_s:
             words.append(f"wind {self.wind_m_s:g} from {self.wind_deg:g}")
         return " ".join(filter(None, words))
@@ -91,8 +95,12 @@ def approaches(kind: Kind, rng: random.Random, count: int, trouble: str = "") ->
         by = "library" if trouble else rng.choices(PILOTS, (6, 1, 2))[0]
         windy = kind is not PX4 and number % 2
         wind = (rng.choice((4.0, 8.0)), 45.0 * rng.randrange(8)) if windy else (0.0, 0.0)
-        figures = {"blackout": rng.uniform(0.5, 6.0), "loss": 0.25}
-        figure = {**figures, "delay": rng.choice((0.2, 0.5))}.get(trouble, rng.uniform(0.05, 0.9))
+        figures = {
+            "blackout": round(rng.uniform(0.5, 6.0), 1),
+            "loss": 0.25,
+            "delay": rng.choice((0.2, 0.5)),
+        }
+        when = 0.0 if trouble in ("", "loss", "delay") else round(rng.uniform(0.05, 0.9), 2)
         if number % 8 == 7:
             leg, direction, radius = rng.uniform(5.0, 30.0), "up", 60.0
         else:
@@ -101,7 +109,7 @@ def approaches(kind: Kind, rng: random.Random, count: int, trouble: str = "") ->
         limit = 40.0 if direction == "up" else radius
         rows.append(
             Row("approach", by, direction, round(leg, 1), limit - inside_m, radius, 40.0, trouble,
-                round(figure, 2) if trouble else 0.0, "", *wind)
+                figures.get(trouble, 0.0), when, "", *wind)
         )  # fmt: skip
     return rows
 
@@ -142,7 +150,7 @@ TRICKS = (
 
 
 def hostile() -> list[Row]:
-    return [Row("hostile", "bridge", goal_m=40.0, word=trick) for trick in TRICKS]
+    return [Row("hostile", "bridge", goal_m=20.0, word=trick) for trick in TRICKS]
 
 
 def missions() -> list[Row]:

@@ -4,26 +4,23 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from pymavlink import mavutil
+from tests.real.autopilots import ONBOARD_PORT, PX4, Kind
+from tests.real.link import Link
+from tests.real.truth import MESSAGES, Sample, Vector
 
-from tests.real.autopilots import PX4, Kind
-from tests.real.truth import MESSAGES, Sample, Truth, Vector
-
+STATION = 255  # its system id
 SETPOINTS_HZ = 20.0
 POSITION_ONLY = 0b110111111000
 VELOCITY_ONLY = 0b110111000111
 
 
-class Vehicle:
-    def __init__(self, kind: Kind, url: str) -> None:
-        self.kind = kind
-        self.link: Any = mavutil.mavlink_connection(url, source_system=255)
-        self.truth = Truth()
+class Vehicle(Link):
+    """In one thread: what is due is sent between what comes."""
+
+    def __init__(self, kind: Kind) -> None:
+        super().__init__(kind, ONBOARD_PORT, STATION)
         self.estimate: Sample | None = None
-        self.armed = False
-        self.custom_mode = -1
         self.version = ""
-        self.texts: list[str] = []
         self._setpoint: Callable[[], None] = lambda: None
         self._next_s = 0.0
         self._next_beat_s = 0.0
@@ -32,12 +29,12 @@ class Vehicle:
 
     def pump(self, seconds: float = 0.01) -> None:
         """Takes what has come, waiting so long for the first, and sends what is due."""
-        message = self.link.recv_match(blocking=True, timeout=seconds)
+        message = self.mavlink.recv_match(blocking=True, timeout=seconds)
         self._send_what_is_due()
         while message is not None:
-            self._take(message)
+            self.take(message)
             self._send_what_is_due()
-            message = self.link.recv_msg()
+            message = self.mavlink.recv_msg()
 
     def _send_what_is_due(self) -> None:
         now = time.monotonic()
@@ -46,14 +43,11 @@ class Vehicle:
             self._setpoint()
         if now >= self._next_beat_s:
             self._next_beat_s = now + 1.0
-            self.link.mav.heartbeat_send(6, 8, 0, 0, 4)
+            self.mavlink.mav.heartbeat_send(6, 8, 0, 0, 4)
 
-    def _take(self, message: Any) -> None:
-        self.truth.take(message)
+    def take(self, message: Any) -> None:
+        super().take(message)
         match message.get_type():
-            case "HEARTBEAT" if message.get_srcComponent() == 1:
-                self.armed = bool(message.base_mode & 128)
-                self.custom_mode = message.custom_mode
             case "LOCAL_POSITION_NED":
                 self.estimate = Sample(
                     message.time_boot_ms / 1e3,
@@ -63,8 +57,6 @@ class Vehicle:
             case "AUTOPILOT_VERSION":
                 number = message.flight_sw_version
                 self.version = f"{number >> 24}.{number >> 16 & 255}.{number >> 8 & 255}"
-            case "STATUSTEXT":
-                self.texts.append(message.text)
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Pumps until it is so, or so many seconds of the vehicle's clock have passed."""
@@ -78,9 +70,6 @@ class Vehicle:
     def pass_time(self, seconds: float) -> None:
         self.until(lambda: False, seconds)
 
-    def ask(self, command: int, *params: float) -> None:
-        self.link.mav.command_long_send(1, 1, command, 0, *params, *[0.0] * (7 - len(params)))
-
     # -- what it is told ----------------------------------------------------------------------
 
     def to_position(self, position_enu: Vector) -> None:
@@ -93,18 +82,12 @@ class Vehicle:
 
     def _stream(self, mask: int, position_ned: Vector, velocity_ned: Vector) -> None:
         def send() -> None:
-            self.link.mav.set_position_target_local_ned_send(
+            self.mavlink.mav.set_position_target_local_ned_send(
                 0, 1, 1, 1, mask, *position_ned, *velocity_ned, 0, 0, 0, 0, 0
             )
 
         self._setpoint = send
         send()
-
-    def mode(self, custom_mode: int) -> None:
-        if self.kind is PX4:
-            self.ask(176, 1.0, custom_mode >> 16 & 255, custom_mode >> 24)
-        else:
-            self.ask(176, 1.0, custom_mode)
 
     def hold(self) -> None:
         """Told to stop in its own hold mode, as the gate tells it to; the stream ends with it."""
@@ -124,11 +107,11 @@ class Vehicle:
 
     def take_off(self, up_m: float) -> None:
         """From power on: asks for its messages, waits for its position, arms, climbs."""
-        self.link.wait_heartbeat(timeout=60)
+        self.mavlink.wait_heartbeat(timeout=60)
         for number, hertz in ((32, 50.0), (30, 10.0), *((n, 50.0) for n in MESSAGES.values())):
-            self.ask(511, number, 1e6 / hertz)
+            self.command(511, number, 1e6 / hertz)
             self.pass_time(0.05)
-        self.ask(512, 148)
+        self.command(512, 148)
         if not self.until(lambda: self.estimate is not None and bool(self.truth.samples), 120):
             raise SystemExit(f"{self.kind.name}: no position, or no truth: {self.texts[-5:]}")
         begun = time.monotonic()
@@ -139,21 +122,15 @@ class Vehicle:
                 assert self.estimate is not None
                 self.to_position(self.estimate.position_enu)
                 self.mode(self.kind.guided_custom_mode)
-            self.ask(400, 1.0)
+            self.command(400, 1.0)
             self.until(lambda: self.armed, 2.0)
         if self.kind is not PX4:
             self._setpoint = lambda: None
-            self.ask(22, 0, 0, 0, 0, 0, 0, up_m)
+            self.command(22, 0, 0, 0, 0, 0, 0, up_m)
             self.until(lambda: self.up_m > up_m - 1.0, 60.0)
         self.to_position((0.0, 0.0, up_m))
         self.until(lambda: self.up_m > up_m - 1.0, 90.0)
         self.pass_time(4.0)
-
-    # -- what it does -------------------------------------------------------------------------
-
-    @property
-    def now(self) -> Sample:
-        return self.truth.now
 
     @property
     def up_m(self) -> float:
