@@ -128,7 +128,8 @@ class MissionUpload(Transfer):
 
         Where we had repeated the item, its request for the next one was lost: give it that.
         """
-        if self._pending.repeats == 0 or self._given + 1 >= len(self._items):
+        first_or_last = self._asked == 0 or self._given + 1 >= len(self._items)
+        if self._pending.repeats == 0 or first_or_last:
             return []
         return self._give(self._given + 1, now_ns)
 
@@ -146,7 +147,12 @@ class _Fetch(Enum):
 
 
 class MissionDownload(Transfer):
-    """Read the plan that is on board; TransferDone holds its items in order."""
+    """Read the plan that is on board; TransferDone holds its items in order.
+
+    `after_upload`: answers to duplicates of the upload before may come yet (ArduPilot and PX4
+    answer an item after the last with ERROR), so a result other than ACCEPTED is believed only
+    where nothing else comes.
+    """
 
     def __init__(
         self,
@@ -154,8 +160,12 @@ class MissionDownload(Transfer):
         target: Address,
         mission_type: MissionType,
         timing: Timing = SPEC_TIMING,
+        *,
+        after_upload: bool = False,
     ) -> None:
         super().__init__(Parties(own, target, mission_type), timing)
+        self._after_upload = after_upload
+        self._answered: int | None = None
         self._phase = _Fetch.LISTING
         self._total = 0
         self._items: list[MissionItemInt] = []
@@ -182,7 +192,7 @@ class MissionDownload(Transfer):
                 return self._heard(self._parties.concerns(event), now_ns)
             case Wake():
                 repeated = self._pending.wake(now_ns)
-                return self._failed(None, self._silence()) if repeated is None else repeated
+                return self._given_up() if repeated is None else repeated
             case Cancel(why):
                 return self._cancelled(why)
             case _:
@@ -201,7 +211,8 @@ class MissionDownload(Transfer):
                 progress = TransferProgress(len(self._items), self._total)
                 return [progress, *self._ask_or_end(now_ns)]
             case _, MissionAck(type=result) if result != MissionResult.ACCEPTED:
-                return self._refused(result)
+                self._answered = result
+                return [] if self._after_upload else self._refused(result)
             case _:
                 return []
 
@@ -217,6 +228,11 @@ class MissionDownload(Transfer):
             mission_type=self._parties.mission_type,
         )
         return self._pending.put_item(Send(ask), now_ns)
+
+    def _given_up(self) -> list[TransferEffect]:
+        if self._answered is not None:
+            return self._refused(self._answered)
+        return self._failed(None, self._silence())
 
     def _silence(self) -> str:
         if self._phase is _Fetch.LISTING:

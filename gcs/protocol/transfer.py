@@ -36,11 +36,13 @@ PlanMessage: TypeAlias = (
 class Timing:
     """How long a message waits for its answer, and when a silent vehicle is given up.
 
-    The specification recommends 1.5 s, 250 ms for items, and 5 retries.  On a link that loses a
-    quarter both ways 5 retries are too few for 500 items: one and the same message is repeated
-    for `silence_ns`, an item for `item_silence_ns`, and at least `retries` times.  Through a bridge
-    whose links both lose a quarter one of three tries comes through: of 500 items one was nearly
-    always asked for in vain for 15 s.  How long a whole transfer may take is its owner's to say.
+    The specification recommends 1.5 s, 250 ms for items, and 5 retries.  The 250 ms are taken until
+    the link's round trip is measured: on a slow link each item would be sent twice.  On a link that
+    loses a quarter both ways 5 retries are too few for 500 items: one and the same message is
+    repeated for `silence_ns`, an item for `item_silence_ns`, and at least `retries` times.  Through
+    a bridge whose links both lose a quarter one of three tries comes through: of 500 items one was
+    nearly always asked for in vain for 15 s.  How long a whole transfer may take is its owner's to
+    say.
     """
 
     wait_ns: int = 1_500_000_000
@@ -63,29 +65,41 @@ SPEC_TIMING = Timing()
 
 
 class RoundTrip:
-    """How long an answer takes on this link, as TCP reckons it (RFC 6298, with Karn's rule)."""
+    """How long an answer takes on this link, as TCP reckons it (RFC 6298, with Karn's rule).
+
+    An answer to a message that was repeated measures nothing.  The wait for the next one is doubled
+    then, until an answer comes that measures.
+    """
 
     def __init__(self, timing: Timing) -> None:
         self._timing = timing
         self._mean_ns: float | None = None
         self._spread_ns = 0.0
+        self._backoff = 1
 
     def measured(self, took_ns: int) -> None:
         """An answer to a message that was sent once came after `took_ns`."""
+        self._backoff = 1
         if self._mean_ns is None:
             self._mean_ns, self._spread_ns = float(took_ns), took_ns / 2.0
             return
         self._spread_ns += 0.25 * (abs(took_ns - self._mean_ns) - self._spread_ns)
         self._mean_ns += 0.125 * (took_ns - self._mean_ns)
 
+    def ambiguous(self) -> None:
+        """An answer came to an item that was sent more than once."""
+        if self.wait_ns < self._timing.wait_ns:
+            self._backoff *= 2
+
     @property
     def wait_ns(self) -> int:
-        """Before an item is asked for again: the specification's, or less on a quick link."""
-        longest_ns = self._timing.item_wait_ns
-        if self._mean_ns is None:
-            return longest_ns
-        wait_ns = round(self._mean_ns + 4.0 * self._spread_ns)
-        return min(longest_ns, max(self._timing.soonest_ns, wait_ns))
+        """Before an item is asked for again; never longer than for any other message."""
+        wait_ns = self._timing.item_wait_ns
+        if self._mean_ns is not None:
+            soonest_ns = self._timing.soonest_ns
+            spread_ns = max(soonest_ns / 2.0, 4.0 * self._spread_ns)
+            wait_ns = max(soonest_ns, round(self._mean_ns + spread_ns))
+        return min(self._timing.wait_ns, self._backoff * wait_ns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +129,7 @@ class Pending:
         self._timing = timing
         self._round_trip = RoundTrip(timing)
         self._send: Send | None = None
+        self._is_item = False
         self._wait_ns = 0
         self._put_ns = 0
         self._silence_ns = 0
@@ -124,11 +139,13 @@ class Pending:
     def put(self, send: Send, now_ns: int) -> list[TransferEffect]:
         """Send it and start the wait, with all retries ahead."""
         self._silence_ns = self._timing.silence_ns
+        self._is_item = False
         return self._start(send, self._timing.wait_ns, now_ns)
 
     def put_item(self, send: Send, now_ns: int) -> list[TransferEffect]:
         """The same for an item, or for the question for one: as quick as the link is."""
         self._silence_ns = self._timing.item_silence_ns
+        self._is_item = True
         return self._start(send, self._round_trip.wait_ns, now_ns)
 
     def _start(self, send: Send, wait_ns: int, now_ns: int) -> list[TransferEffect]:
@@ -138,8 +155,12 @@ class Pending:
 
     def answered(self, now_ns: int) -> None:
         """What was awaited has come.  After a repeat nobody knows which of them it answers."""
-        if self._send is not None and self.repeats == 0:
+        if self._send is None:
+            return
+        if self.repeats == 0:
             self._round_trip.measured(now_ns - self._put_ns)
+        elif self._is_item:
+            self._round_trip.ambiguous()
 
     def clear(self) -> None:
         self._send = self.deadline_ns = None

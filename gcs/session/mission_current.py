@@ -1,7 +1,8 @@
 """What a vehicle tells of its mission (MISSION_CURRENT), beside the one that was verified.
 
 It tells how many items there are, and newer firmware a number of the mission (`mission_id`).  The
-recorded PX4 1.14 and ArduCopter 4.7 give none.
+recorded PX4 1.14 and ArduCopter 4.7 give none.  A PX4 1.14 without a mission tells nothing, and is
+asked how many items there are (MISSION_REQUEST_LIST).
 """
 
 from __future__ import annotations
@@ -75,6 +76,16 @@ class MissionTold:
         elif now_ns - self._verified_ns >= self._times.real_ns(NEWS_NS):
             self._verified_id = self._verified_id or told.mission_id
             self._seen |= told.total == self._countable(known)
+
+    def counted(self, items: int) -> None:
+        """MISSION_COUNT, of a vehicle that has sent no MISSION_CURRENT yet."""
+        if self._told is None:
+            self._told = MissionCurrent(seq=0, total=items)
+
+    @property
+    def known(self) -> bool:
+        """Whether it has told what is on board."""
+        return self._told is not None
 
     def _look_at_refused(self, told: MissionCurrent) -> None:
         """Is it still the mission that was refused?"""

@@ -15,7 +15,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import StartMission
 from gcs.gate.states import State
-from gcs.protocol.effects import Address, Heard
+from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.adopt import Adopt
@@ -45,7 +45,13 @@ from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, Log, ToGate, Work
 from gcs.wire.ids import Cmd, MissionResult, MissionState, MissionType
-from gcs.wire.messages import MissionAck, MissionCurrent, MissionItemReached
+from gcs.wire.messages import (
+    MissionAck,
+    MissionCount,
+    MissionCurrent,
+    MissionItemReached,
+    MissionRequestList,
+)
 
 TRANSFER_WORDS = frozenset(
     {"mission_upload", "mission_download", "mission_clear", "mission_set_current"}
@@ -242,6 +248,8 @@ class Missions:
                 self._was_active |= state == MissionState.ACTIVE
                 over = state == MissionState.COMPLETE and self._was_active
                 work += self._progress(seq, over)
+            case MissionCount(count=count, mission_type=MissionType.MISSION):
+                self._told.counted(max(0, count - first_item(view.telemetry)))
             case MissionAck(type=MissionResult.ACCEPTED, mission_type=MissionType.MISSION):
                 self._told.forget_refused()  # another one may be on board, of whomever
             case MissionItemReached(seq=seq):
@@ -255,6 +263,14 @@ class Missions:
         """What is wrong with the mission on board, as the vehicle tells of it.  Empty where it was
         verified, or where there is none."""
         return self._told.unverified(self._on_board)
+
+    def ask_how_many(self, view: VehicleView) -> list[Work]:
+        """Ask for the number of items of a vehicle that has told nothing of its mission: a PX4 1.14
+        without one sends no MISSION_CURRENT."""
+        if self._told.known or self._job is not None:
+            return []
+        telemetry = view.telemetry
+        return [Send(MissionRequestList(telemetry.sysid, telemetry.compid, MissionType.MISSION))]
 
     def said(self, text: str, view: VehicleView) -> list[Work]:
         """A text of the vehicle: ArduPilot's of a mission that it was sent, by whomever."""

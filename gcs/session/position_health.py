@@ -54,6 +54,8 @@ class Gps:
     satellites: int | None = None
     accuracy_m: float | None = None
     seen_ns: int = 0
+    awaited_ns: int = 0
+    """Since when it is missed: the positions of the vehicle come all the time."""
     had_fix: bool = False
     fitted: bool = False
     """SYS_STATUS says that there is one, and that it is used."""
@@ -111,6 +113,8 @@ class PositionHealth:
 
     def gps_raw(self, message: GpsRawInt, armed: bool, now_ns: int) -> Iterator[ToGate]:
         gps = self.gps
+        if not gps.seen_ns:
+            gps.had_fix = False  # what SYS_STATUS calls healthy need not be a fix
         gps.fix_type, gps.seen_ns = message.fix_type, now_ns
         satellites = message.satellites_visible
         gps.satellites = None if satellites == UNKNOWN_SATELLITES else satellites
@@ -119,10 +123,14 @@ class PositionHealth:
         counts = gps.had_fix or (armed and gps.fitted)
         yield _condition(Condition.GPS_LOST, counts and not gps.fixed, gps.words)
 
-    def gps_silent(self, silent_ns: int, now_ns: int) -> Iterator[ToGate]:
-        """Once a second, while the vehicle is heard: the receiver is told of no more."""
+    def gps_silent(self, silent_ns: int, now_ns: int, *, positions: bool) -> Iterator[ToGate]:
+        """Once a second: the receiver is told of no more, though positions come.  Where none come
+        (`positions`) it is the link, or the estimator, that something is wrong with."""
         gps = self.gps
-        if gps.had_fix and gps.seen_ns and now_ns - gps.seen_ns > silent_ns:
+        if not positions:
+            gps.awaited_ns = now_ns
+        awaited_ns = max(gps.seen_ns, gps.awaited_ns)
+        if gps.had_fix and gps.seen_ns and now_ns - awaited_ns > silent_ns:
             yield _condition(Condition.GPS_LOST, True, "the vehicle tells nothing of its GPS")
 
     def system_status(self, message: SysStatus, armed: bool) -> Iterator[ToGate]:
@@ -177,6 +185,9 @@ class PositionHealth:
 
     def _judge(self, troubles: list[str], armed: bool, now_ns: int) -> Iterator[ToGate]:
         estimator = self.estimator
+        if not estimator.seen_ns:
+            # SYS_STATUS calls ArduPilot's attitude healthy 20 s before there is a position.
+            estimator.had_good = False
         estimator.troubles, estimator.seen_ns = tuple(troubles), now_ns
         estimator.had_good |= not troubles
         estimator.bad_in_a_row = estimator.bad_in_a_row + 1 if troubles else 0

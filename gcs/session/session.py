@@ -337,7 +337,9 @@ class Session:
                     return []
                 return [*self._links.send(telemetry.link, message, now_ns)]
             case gate_effects.Outcome():
-                return self._operators.outcome(item, vehicle.sysid, now_ns)
+                # Whoever waits for an end looks at the vehicle next: not at how it was before.
+                ended = self._operators.outcome(item, vehicle.sysid, now_ns)
+                return [Emit(self._snapshot(now_ns)), *ended]
             case gate_effects.StreamVerdict():
                 return self._operators.stream_verdict(item, vehicle.sysid, now_ns)
             case gate_effects.SendCommand(kind=CommandKind.ARM):

@@ -202,8 +202,9 @@ class Vehicle:
             work.append(Send(m.Timesync(0, telemetry.delay.ask(now_ns), *target)))
         if late := telemetry.delay.trouble(telemetry.position_age_ns, now_ns):
             work.append(Log(effects.Level.WARNING, vehicle_messages.NODE, late))
-        if now_ns - telemetry.position_ns <= telemetry.position_age_ns:
-            work += telemetry.health.gps_silent(parts.times.real_ns(GPS_SILENT_NS), now_ns)
+        silent_ns = parts.times.real_ns(GPS_SILENT_NS)
+        positions = now_ns - telemetry.position_ns <= telemetry.position_age_ns
+        work += telemetry.health.gps_silent(silent_ns, now_ns, positions=positions)
         missing = telemetry.origin is None and now_ns - parts.met_ns > parts.times.real_ns(
             ORIGIN_PATIENCE_NS
         )

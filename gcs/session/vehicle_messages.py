@@ -146,8 +146,12 @@ class VehicleMessages:
         if answer is None:
             return []
         parts.commands.deny_arming("" if answer.granted else answer.text)
-        level = Level.INFO if answer.granted else Level.WARNING
-        return [Send(answer.ack), Log(level, teller.NODE, answer.text)]
+        work: list[Work] = [Send(answer.ack), *parts.missions.ask_how_many(parts.view(telemetry))]
+        if answer.text != parts.arming_answer:  # PX4 asks once a second while it stands
+            level = Level.INFO if answer.granted else Level.WARNING
+            work.append(Log(level, teller.NODE, answer.text))
+        parts.arming_answer = answer.text
+        return work
 
     def heartbeat(self, link: int, frame: Frame, beat: m.Heartbeat, now_ns: int) -> list[Work]:
         """Choose our vehicle: the first autopilot that is heard, or the one that was named."""

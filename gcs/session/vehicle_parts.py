@@ -89,6 +89,8 @@ class VehicleParts:
         self.watch = Watch(policy, times)
         self.telemetry: Telemetry | None = None
         """What it reports; None until it is heard."""
+        self.arming_answer = ""
+        """What it was told last when it asked whether it may arm."""
         self.mission_paused = False
         """A mission was stopped by a hold, and nothing else was flown since."""
         self.restarts = Restarts(max(STEP_NS, times.real_ns(STEP_NS)))

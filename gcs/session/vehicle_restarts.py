@@ -76,6 +76,8 @@ class Restarts:
     _began: Began | None = None
     _began_anew: Began | None = None
     """What an answer says that does not agree with those before it."""
+    _answered_ns: int = 0
+    """When the last answer came that agreed."""
     _newest_ms: int = 0
     _back: tuple[int, int] | None = None
     """The first stamp of another time, and when it came; no newer one has come since."""
@@ -96,8 +98,10 @@ class Restarts:
     def answered(self, asked_ns: int, clock_ns: int, now_ns: int, *, armed: bool) -> str:
         """The same of an answer to TIMESYNC: what was asked at `asked_ns`, came now."""
         began = Began(asked_ns - clock_ns, now_ns - clock_ns)
-        if armed or self._began is None or not began.apart(self._began, self.step_ns):
-            self._began, self._began_anew = began, None
+        # A clock that goes on, at no less than half of the rate, is slow (a starved simulation).
+        drifts_ns = max(self.step_ns, (now_ns - self._answered_ns) // 2)
+        if armed or self._began is None or not began.apart(self._began, drifts_ns):
+            self._began, self._began_anew, self._answered_ns = began, None, now_ns
             return ""
         first, self._began_anew = self._began_anew, began
         if first is None or began.apart(first, self.step_ns // 2):

@@ -44,6 +44,8 @@ decides on the climb to it, and verifies a mission with it anew before each star
 written while nothing flies.
 """
 UNKNOWN: Final = "it is in no table here, so nobody has looked at what stands on it"
+COUNTS: Final = frozenset({"MIS_TOTAL", "FENCE_TOTAL", "RALLY_TOTAL"})
+"""ArduPilot writes these itself: how many items it was sent.  What it was sent is read anew."""
 MOST_KEPT: Final = 4096
 """Values that are kept at most; an autopilot has 900 to 1,400."""
 _TYPES: Final = frozenset(int(kind) for kind in ParamType)
@@ -180,7 +182,7 @@ class ParameterGuard:
         write = self._writes.get(name.upper())
         if write is not None and (value == write.value or now_ns >= write.until_ns):
             del self._writes[name.upper()]
-        if known is None or known == value or math.isnan(value):
+        if known is None or known == value or math.isnan(value) or name in COUNTS:
             return None
         change = f"{name} was {known:g} and is {value:g} now"
         if write is not None:

@@ -122,7 +122,8 @@ class Collecting:
         return self._ask(now_ns)
 
     def _ask(self, now_ns: int) -> list[Question]:
-        wait_ns = self._round_trip.wait_ns << max(0, self._repeats - QUICK_REPEATS)
+        wait_ns = min(self._timing.item_wait_ns, self._round_trip.wait_ns)
+        wait_ns <<= max(0, self._repeats - QUICK_REPEATS)
         self._asked_ns = now_ns
         self.deadline_ns = now_ns + min(wait_ns, 2 * self._timing.item_wait_ns)
         return [question(len(self.items), self.opened_by.source, self.kind, self._as_int)]

@@ -71,8 +71,10 @@ def send_waiting(turn: Turn) -> None:
     turn.memory.task = replace(task, waiting=None)
     if task.waiting is CommandKind.TAKE_OFF:
         _climb(turn)
-    else:
-        _arm_or_its_mode(turn, "the vehicle shows the mode for it")
+        return
+    _arm_or_its_mode(turn, "the vehicle shows the mode for it")
+    if turn.memory.task is not None and turn.memory.task.waiting is None:
+        turn.set_deadline(turn.policy.control.timeout_s)  # its answer has as long as any
 
 
 def set_guided(turn: Turn) -> None:

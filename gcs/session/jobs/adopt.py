@@ -38,7 +38,7 @@ class Adopt(PreparedJob, StartingJob):
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         download = MissionDownload(*self.parties(view), self.asked.timing)
-        return self.begin(download, 0, view, now_ns)
+        return self.begin(download, view, now_ns)
 
     def progress_of(self) -> str:
         return "reading what is on board"

@@ -31,7 +31,7 @@ class Clear(Job):
 
     def _clear(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         clear = MissionClear(*self.parties(view, self._left[0]), self.asked.timing)
-        return self.begin(clear, 0, view, now_ns)
+        return self.begin(clear, view, now_ns)
 
     def done(
         self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int

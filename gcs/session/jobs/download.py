@@ -33,7 +33,7 @@ class Download(Job):
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         download = MissionDownload(*self.parties(view), self.asked.timing)
-        return [self.accept(), *self.begin(download, 0, view, now_ns)]
+        return [self.accept(), *self.begin(download, view, now_ns)]
 
     def done(
         self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int

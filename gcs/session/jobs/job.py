@@ -43,9 +43,8 @@ from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
 
 NODE = "mission"
-JOB_NS = 60_000_000_000
-ITEM_NS = 1_000_000_000
-"""How long a transfer may take: a minute, and a second an item."""
+STALLED_NS = 60_000_000_000
+"""A transfer that gets no further for so long has failed, whatever is heard meanwhile."""
 
 Transfer: TypeAlias = MissionUpload | MissionDownload | MissionClear | MissionRewind
 
@@ -157,12 +156,10 @@ class Job(ABC):
 
     # --------------------------------------------------------------------------- transfer
 
-    def begin(
-        self, transfer: Transfer, items: int, view: VehicleView, now_ns: int
-    ) -> list[JobWork]:
-        """Start a transfer of about `items` items, in place of the one before."""
+    def begin(self, transfer: Transfer, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """Start a transfer, in place of the one before."""
         self._transfer = transfer
-        self._transfer_ends_ns = now_ns + self.asked.times.real_ns(JOB_NS + ITEM_NS * items)
+        self._transfer_ends_ns = now_ns + self.asked.times.real_ns(STALLED_NS)
         return self._follow(transfer.start(now_ns), view, now_ns)
 
     def stop_transfer(self) -> None:
@@ -188,6 +185,7 @@ class Job(ABC):
                 case Send():
                     work.append(effect)
                 case TransferProgress(done, total):
+                    self._transfer_ends_ns = now_ns + self.asked.times.real_ns(STALLED_NS)
                     client_id, what = self.asked.client_id, self.progress_of()
                     progress = ipc.ProgressEvent(client_id, what, done, total, "items")
                     work.append(Tell(self.asked.request_id, progress))

@@ -41,7 +41,7 @@ class SetCurrent(Job):
         shown = shown_for(self._seq, items, telemetry)
         target = Address(telemetry.sysid, telemetry.compid)
         transfer = MissionRewind(self.asked.own, target, self._seq, shown, self.asked.timing)
-        return [self.accept(), *self.begin(transfer, 0, view, now_ns)]
+        return [self.accept(), *self.begin(transfer, view, now_ns)]
 
     def _refusal(self, view: VehicleView) -> Refusal | None:
         if flies_mission(view):

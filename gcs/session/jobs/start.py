@@ -44,7 +44,7 @@ class Start(StartingJob):
 
     def learnt(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         download = MissionDownload(*self.parties(view), self.asked.timing)
-        return self.begin(download, len(self._on_board.sent), view, now_ns)
+        return self.begin(download, view, now_ns)
 
     def progress_of(self) -> str:
         return "reading back"

@@ -119,7 +119,7 @@ class StartingJob(VerifiedJob):
         self._rewinding = True
         target = Address(view.telemetry.sysid, view.telemetry.compid)
         rewind = MissionRewind(self.asked.own, target, begin, shown, self.asked.timing)
-        return self.begin(rewind, 0, view, now_ns)
+        return self.begin(rewind, view, now_ns)
 
     def verify(
         self, plan: Plan, view: VehicleView, now_ns: int, begin_item: int = 0

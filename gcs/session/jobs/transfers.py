@@ -47,7 +47,7 @@ class BringingJob(Job):
         kind, items = self._left[0]
         messages = tuple(message_of(item) for item in items)
         upload = MissionUpload(*self.parties(view, kind), messages, self.asked.timing)
-        return self.begin(upload, len(items), view, now_ns)
+        return self.begin(upload, view, now_ns)
 
     def progress_of(self) -> str:
         reads_back = isinstance(self._transfer, MissionDownload)
@@ -77,9 +77,9 @@ class BringingJob(Job):
         return super().failed(result, text, view, now_ns)
 
     def _read_back(self, view: VehicleView, now_ns: int) -> list[JobWork]:
-        kind, items = self._left[0]
-        download = MissionDownload(*self.parties(view, kind), self.asked.timing)
-        return self.begin(download, len(items), view, now_ns)
+        kind, _ = self._left[0]
+        download = MissionDownload(*self.parties(view, kind), self.asked.timing, after_upload=True)
+        return self.begin(download, view, now_ns)
 
     def _compare(
         self, received: tuple[WireItem, ...], view: VehicleView, now_ns: int

@@ -458,17 +458,43 @@ class Board:
         return [ack(MissionResult.ACCEPTED)]
 
 
-def cross(machine: Machine, board: Board, dice: random.Random, loss: float) -> TransferEffect:
+class ArduPilotBoard(Board):
+    """As seen of ArduCopter 4.7: a duplicate is an INVALID_SEQUENCE, one after the end an ERROR."""
+
+    def __init__(self) -> None:
+        super().__init__(old=False)
+        self.duplicates = 0
+
+    def hear(self, message: Message) -> list[Message]:
+        match message:
+            case MissionItemInt() if not self._receiving:
+                self.duplicates += 1
+                return [ack(MissionResult.ERROR)]
+            case MissionItemInt(seq=seq) if seq != len(self._coming):
+                self.duplicates += 1
+                return [ack(MissionResult.INVALID_SEQUENCE)]
+            case _:
+                return super().hear(message)
+
+
+def cross(
+    machine: Machine,
+    board: Board,
+    dice: random.Random,
+    loss: float,
+    delays_ms: range = range(1, 60),
+    ask_again_after_ns: int = ITEM_WAIT_NS,
+) -> TransferEffect:
     """Run both over a link that loses, duplicates and delays, until the machine ends."""
     now_ns = 0
     to_board: list[tuple[int, Message]] = []
     to_machine: list[tuple[int, Message]] = []
-    ask_again_ns = ITEM_WAIT_NS
+    ask_again_ns = ask_again_after_ns
 
     def put(wire: list[tuple[int, Message]], message: Message) -> None:
-        copies = 2 if dice.random() < 0.1 else 1
+        copies = 2 if loss and dice.random() < 0.1 else 1
         arrived = [message for _ in range(copies) if dice.random() >= loss]
-        wire.extend((now_ns + dice.randrange(1, 60) * MS, copy) for copy in arrived)
+        wire.extend((now_ns + dice.choice(delays_ms) * MS, copy) for copy in arrived)
 
     def send(effects: list[TransferEffect]) -> TransferEffect | None:
         for effect in effects:
@@ -494,7 +520,7 @@ def cross(machine: Machine, board: Board, dice: random.Random, loss: float) -> T
                 elif ended is None:
                     ended = send(machine.handle(Heard(1, 1, arrival[1]), now_ns))
         if now_ns >= ask_again_ns:
-            ask_again_ns = now_ns + ITEM_WAIT_NS
+            ask_again_ns = now_ns + ask_again_after_ns
             for question in board.ask():
                 put(to_machine, question)
         if ended is None:
@@ -514,6 +540,48 @@ def test_a_plan_survives_a_bad_link_both_ways(seed: int, old: bool) -> None:
     board.plan = tuple(item(seq, OWN) for seq in range(20))
     down = cross(MissionDownload(OWN, VEHICLE, PLAN), board, dice, loss=0.1)
     assert down == TransferDone(PLAN, board.plan)
+
+
+@pytest.mark.parametrize("delay_ms", [100, 200, 500])
+def test_a_slow_link_is_not_taken_for_one_that_loses(delay_ms: int) -> None:
+    """The vehicle is asked again, and asks again, after the round trip: no item goes twice."""
+    board = ArduPilotBoard()
+    plan = tuple(item(seq) for seq in range(50))
+    upload, slow = MissionUpload(OWN, VEHICLE, PLAN, plan), range(delay_ms, delay_ms + 1)
+    up = cross(upload, board, random.Random(1), 0.0, slow, 1_000_000 * MS)
+    assert (up, board.plan, board.duplicates) == (TransferDone(PLAN, plan), plan, 0)
+
+
+def test_a_round_trip_that_was_never_measured_is_found() -> None:
+    """The count had to be repeated, and 1 s is longer than the first wait: a few go twice."""
+    flight = upload(PLAN, tuple(item(seq) for seq in range(20)))
+    flight.wait(WAIT_NS)
+    for seq in range(20):
+        flight.hear(request(seq))
+        flight.wait(1_000 * MS)
+    sent = [one.seq for one in flight.sent if isinstance(one, MissionItemInt)]
+    assert sent[-15:] == list(range(5, 20))
+
+
+def test_when_an_upload_is_read_back_late_answers_to_its_duplicates_end_nothing() -> None:
+    flight = Script(MissionDownload(OWN, VEHICLE, PLAN, after_upload=True))
+    late = [MissionResult.INVALID_SEQUENCE, MissionResult.ERROR]
+    for message in (ack(late[0]), count(1), ack(late[1]), item(0, OWN)):
+        flight.hear(message)
+    assert flight.ending == TransferDone(PLAN, (item(0, OWN),))
+    silent = Script(MissionDownload(OWN, VEHICLE, PLAN, after_upload=True))
+    silent.hear(ack(MissionResult.DENIED))
+    silent.wait(20 * WAIT_NS)
+    assert silent.ending == TransferFailed(
+        PLAN, MissionResult.DENIED, "the vehicle answered DENIED"
+    )
+
+
+def test_an_answer_of_an_upload_before_sends_no_item() -> None:
+    flight = upload()
+    flight.wait(WAIT_NS)
+    flight.hear(ack(MissionResult.INVALID_SEQUENCE))
+    assert [type(message) for message in flight.sent] == [MissionCount] * 2
 
 
 @settings(max_examples=examples(60), deadline=None)

@@ -98,9 +98,10 @@ class Script:
             self._take(updates(message, self.telemetry, self.now_ns))
         return self
 
-    def wait(self, seconds: float) -> Script:
+    def wait(self, seconds: float, *, positions: bool = True) -> Script:
         self.now_ns += round(seconds * SECOND_NS)
-        self._take(self.telemetry.health.gps_silent(3 * SECOND_NS, self.now_ns))
+        silent = self.telemetry.health.gps_silent
+        self._take(silent(3 * SECOND_NS, self.now_ns, positions=positions))
         return self
 
     def _take(self, found: object) -> None:
@@ -215,6 +216,23 @@ def test_real_health_bits_of_flying_vehicles_are_no_trouble() -> None:
     assert Script(vehicle(PX4)).hear(px4_bits, px4_bits).active == {}
     ardu_bits = sensors(0x5361_FC2F, 0x5771_FC2F)
     assert Script(vehicle(ARDUPILOT)).hear(ardu_bits, ardu_bits).active == {}
+
+
+def test_what_sys_status_calls_healthy_is_not_an_estimator_that_was_good() -> None:
+    """ArduCopter 4.7, recorded from 17 to 38 s after its start: AHRS is healthy, and
+    EKF_STATUS_REPORT says 0xa7, with the position held constant."""
+    starting = Script(vehicle(ARDUPILOT), armed=False)
+    held = arducopter(0xA7)
+    assert starting.hear(sensors(0x20_0000, 0x20_0000), held, held, held).active == {}
+    starting.hear(arducopter(0x33F), held, held)
+    assert set(starting.active) == {Condition.ESTIMATOR_UNRELIABLE}
+
+
+def test_a_receiver_is_not_silent_where_the_link_was() -> None:
+    script = Script().hear(gps(3))
+    script.wait(1.5, positions=False).wait(1.5, positions=False).wait(0.1).wait(1.0).wait(1.0)
+    assert script.active == {}
+    assert set(script.wait(1.0).active) == {Condition.GPS_LOST}
 
 
 # ---------------------------------------------------------------------------------- words

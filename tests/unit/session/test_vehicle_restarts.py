@@ -86,6 +86,8 @@ def test_nor_is_one_that_took_long_or_one_that_is_alone() -> None:
 def test_a_simulator_that_is_slower_than_real_time_does_not_restart() -> None:
     heard = [(10.0 + t, 3.0 + 0.3 * t, 10.1 + t) for t in range(20)]
     assert not any(answers(*heard))
+    starved = [(10.0 + t, 3.0 + 0.55 * t, 10.1 + t) for t in range(0, 200, 10)]
+    assert not any(answers(*starved))
 
 
 # -------------------------------------------------------------------------- its heartbeats
