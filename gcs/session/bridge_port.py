@@ -305,7 +305,11 @@ class BridgePort:
             case Answers(link, source, message):
                 return self._links.send_as(source, link, message, now_ns)
             case ToVehicle(raw):
-                return [sent for link in links for sent in self._links.pass_on(link, raw, now_ns)]
+                return [
+                    sent
+                    for link in links
+                    for sent in self._links.pass_on(link, raw, now_ns, foreign=True)
+                ]
             case AsksVehicle(source, message):
                 return [
                     sent

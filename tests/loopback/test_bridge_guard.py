@@ -164,3 +164,20 @@ def test_only_the_client_in_control_sets_up(personality: Personality) -> None:
     param_set(flight, first, name, value, kind)
     flight.run(1.0)
     assert len(flight.to_vehicle("PARAM_SET")) == 1
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_a_command_that_is_hidden_in_a_tune_does_not_leave(
+    personality: Personality, version: int
+) -> None:
+    """A vehicle that loses one byte of the tune would take it: a forced disarm."""
+    flight, client = joined(personality)
+    disarm = dialect.MAVLink_command_long_message(*VEHICLE, ARM, 0, 0, 21196, 0, 0, 0, 0, 0)
+    hidden = bytes(disarm.pack(client.mav, force_mavlink1=version == 1))
+    client.send(dialect.MAVLink_play_tune_v2_message(*VEHICLE, 1, b"MFT200L8"))
+    client.send(dialect.MAVLink_play_tune_v2_message(*VEHICLE, 1, b"MFT" + hidden + b"L8"))
+    flight.run(0.5)
+    assert len(flight.to_vehicle("PLAY_TUNE_V2")) == 1
+    assert not any(hidden in sent.data for sent in flight.sent)
+    assert [one.code for one in flight.decisions("refused")] == ["POLICY"]
+    assert "a whole message stands in its bytes" in client.texts().replace("\n", "")
