@@ -149,6 +149,7 @@ class BridgePort:
         return replace(
             seen,
             plan_transfer=vehicle.plan_transfer,
+            not_on_board=vehicle.not_on_board,
             mission_paused=vehicle.mission_paused,
             stream=self._stream,
             mission_items=vehicle.mission_items,

@@ -37,6 +37,7 @@ from gcs.session.vehicle_parts import VehicleParts
 from gcs.session.words import logged
 from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, Work
 from gcs.wire import messages as m
+from gcs.wire.ids import MissionType
 from gcs.wire.messages import CommandLong
 
 ORIGIN_PATIENCE_NS = 10_000_000_000
@@ -155,6 +156,13 @@ class Vehicle:
         """The station reads or writes a plan of the vehicle, or is about to."""
         parts = self._parts
         return parts.missions.busy or parts.returns.reading or parts.fence.reading
+
+    @property
+    def not_on_board(self) -> tuple[MissionType, ...]:
+        """Of which plans, fence and rally points, it was read that there are none."""
+        parts = self._parts
+        read = {MissionType.FENCE: parts.fence, MissionType.RALLY: parts.returns}
+        return tuple(kind for kind, plan in read.items() if plan.none_on_board)
 
     @property
     def mission_items(self) -> int:

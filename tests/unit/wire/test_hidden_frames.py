@@ -22,7 +22,8 @@ CLIENT = (255, 190)
 
 def crc(body: bytes, msgid: int) -> bytes:
     seed = dialect.mavlink_map[msgid].crc_extra
-    return x25crc(bytearray(body + bytes((seed,)))).crc.to_bytes(2, "little")
+    checksum: int = x25crc(bytearray(body + bytes((seed,)))).crc
+    return checksum.to_bytes(2, "little")
 
 
 def v2(msgid: int, payload: bytes, seq: int = 0) -> bytes:
