@@ -161,8 +161,8 @@ class Vehicle:
     def not_on_board(self) -> tuple[MissionType, ...]:
         """Of which plans, fence and rally points, it was read that there are none."""
         parts = self._parts
-        read = {MissionType.FENCE: parts.fence, MissionType.RALLY: parts.returns}
-        return tuple(kind for kind, plan in read.items() if plan.none_on_board)
+        fence = (MissionType.FENCE,) if parts.fence.none_on_board else ()
+        return (*fence, MissionType.RALLY) if parts.returns.none_on_board else fence
 
     @property
     def mission_items(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -12,6 +13,7 @@ import pytest
 from mcap.reader import NonSeekingReader
 from mcap.writer import Writer
 
+import gcs as gcs_package
 from gcs import ipc
 from gcs.audit import replay
 from gcs.audit.files import sessions
@@ -37,6 +39,7 @@ from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.session.vehicles import Vehicles
 from gcs.session.work import Work
+from gcs.shell.environment import environment
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Frame, plain_frames
 from gcs.wire.messages import Heartbeat
@@ -185,7 +188,8 @@ def test_the_same_file_read_twice_is_attached_once_and_found_both_times() -> Non
     session.feed(FileRead(3, "plans/a.plan", b"two"))
     session.feed(FileWritten(4, "b.plan", "disk full"))
     messages = close(session, tape)
-    assert sorted(len(contents) for contents in tape.attachments.values()) == [1, 1, 1]
+    # Two plans, the policy, and the metadata of the set-up.
+    assert sorted(len(contents) for contents in tape.attachments.values()) == [1, 1, 1, 1]
     result = audited(messages, tape.attachments)
     # Nobody had asked for any of them.
     assert [d.kind for d in result.first] == ["course"] * 4
@@ -374,8 +378,12 @@ def _rewritten(source: Path, target: Path, **to: object) -> Path:
 
 @pytest.fixture
 def flown(tmp_path: Path, beats: FrameWriter) -> Path:
+    """By this version, here: of another one only what happened is compared."""
     recorder = Recorder.open(tmp_path, "y", "20260101-000000", START_NS, sealed=True)
-    session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
+    own = replace(
+        set_up(recorder.path.stem), version=gcs_package.__version__, environment=environment()
+    )
+    session = RecordedSession(recorder, own, START_NS)
     for _ in range(4):
         session.feed(Datagram(0, beats.write(BEAT)))
         session.wait(1.0)

@@ -136,14 +136,18 @@ def test_another_code_is_refused(code: str) -> None:
 def test_of_wrong_codes_a_few_are_looked_at_and_the_right_one_later() -> None:
     """Whoever connects anew for each try has no more of them."""
     script = Script()
-    tries = [script.call(10 + n, "take_control", code=f"{n}") for n in range(9)]
+    payloads = [json.dumps({"code": f"{n}"}).encode() for n in range(9)]
+    tries = [
+        script.feed(Called(10 + n, n, "take_control", p, True)) for n, p in enumerate(payloads)
+    ]
     told = [effects[0].answer.sentence for effects in tries if isinstance(effects[0], Reply)]
     assert [text == TOO_MANY_CODES for text in told] == [False] * 5 + [True] * 4
     assert [effect for effects in tries for effect in effects[1:]] == [
         Notice(TOO_MANY_CODES, warning=True)
     ]
-    assert Join(7) not in script.call(7, "take_control", code=CODE)
-    script.now_ns += 5_000_000_000
+    right = json.dumps({"code": CODE}).encode()
+    assert Join(7) not in script.feed(Called(7, 20, "take_control", right, True))
+    script.now_ns += 5 * SECOND_NS
     assert script.call(8, "take_control", code=CODE)[0] == Join(8)
 
 
