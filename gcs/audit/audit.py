@@ -53,6 +53,8 @@ class AuditResult:
     """What else is to be known: another version, a file that breaks off, what was not compared."""
     whole: bool = True
     """False where a part of the record could not be audited: a note says which."""
+    ended: bool = True
+    """False where it has no end: its station was killed, or its end was cut off."""
 
     @property
     def good(self) -> bool:
@@ -199,8 +201,12 @@ class _Audit:
             self._result.whole = False
             notes.append(self._hole(turns.missing))
         elif not turns.closed:
+            self._result.ended = False
             lost = ", and in the middle of an input, which is left out" if turns.lost_input else ""
-            notes.append(f"the record breaks off{lost}: audited as far as its inputs go")
+            notes.append(
+                f"the record breaks off{lost}: audited as far as its inputs go; whether its "
+                "station was killed or its end was cut off, nothing in it tells"
+            )
 
     def _hole(self, hole: Missing) -> str:
         since_s, until_s = self._t_s(hole.since_ns), self._t_s(hole.until_ns)

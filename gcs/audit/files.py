@@ -7,10 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
-from mcap.records import Attachment, Channel
+from mcap.records import Attachment, Channel, Metadata
 
 from gcs.audit.inputs import CannotReadError, kept_of
-from gcs.audit.messages import INPUT_TOPIC, Attachments, InputMessage, Stored, payload_length
+from gcs.audit.messages import (
+    INPUT_TOPIC,
+    Attachments,
+    InputMessage,
+    Stored,
+    metadata_bytes,
+    metadata_name,
+    payload_length,
+)
 from gcs.record.reading import Condition, Message, Reading
 from gcs.record.seals import PartBegan
 from gcs.session.recorded import Start
@@ -20,10 +28,14 @@ Progress = Callable[[Path, Condition], None]
 
 @dataclass(slots=True)
 class SessionFiles:
-    """The files of one session, the first one first; `damaged` counts what could not be read."""
+    """The files of one session, the first one first; `damaged` counts what could not be read,
+    `misnumbered` messages whose number or publish time the recorder does not write so."""
 
     paths: list[Path]
     damaged: int = 0
+    misnumbered: int = 0
+    behind_bytes: int = 0
+    """What stands behind the end of a file."""
 
     def attachments(self) -> Attachments:
         """Raises BadRecordError and OSError."""
@@ -32,14 +44,35 @@ class SessionFiles:
             for record in Reading(path, chunks=False):
                 if isinstance(record, Attachment):
                     found.setdefault(record.name, []).append(record.data)
+                elif isinstance(record, Metadata):
+                    kept = found.setdefault(metadata_name(record.name), [])
+                    kept.append(metadata_bytes(record.metadata))
         return found
 
     def messages(self, progress: Progress | None = None) -> Iterator[Stored]:
         """Every message, file by file, in file order.  Raises BadRecordError and OSError."""
         for path in self.paths:
             reading = Reading(path)
-            yield from _messages(reading, progress)
+            numbers = Numbers()
+            yield from _messages(reading, progress, numbers)
             self.damaged += reading.condition.damaged
+            self.misnumbered += numbers.wrong
+            self.behind_bytes += reading.condition.behind_bytes
+
+
+class Numbers:
+    """Of the messages of one file: in each channel they count on by one (or, as another library
+    writes them, are all 0), and are published when they are logged."""
+
+    def __init__(self) -> None:
+        self._last: dict[int, int] = {}
+        self.wrong = 0
+
+    def message(self, message: Message) -> None:
+        last = self._last.get(message.channel_id)
+        number = self._last[message.channel_id] = message.sequence
+        counted = last is None or number == last + 1 or number == last == 0
+        self.wrong += not counted or message.publish_time_ns != message.log_time_ns
 
 
 def sessions(paths: Iterable[Path]) -> list[SessionFiles]:
@@ -68,17 +101,21 @@ def _place(path: Path) -> tuple[str, int]:
                     return of, part
                 case Start(setup):
                     return Path(setup.log_path).stem or str(path), 1
-        except (msgspec.MsgspecError, CannotReadError):
+        except (msgspec.MsgspecError, UnicodeDecodeError, CannotReadError):
             pass
         break
     return str(path), 1
 
 
-def _messages(reading: Reading, progress: Progress | None) -> Iterator[Stored]:
+def _messages(
+    reading: Reading, progress: Progress | None, numbers: Numbers | None = None
+) -> Iterator[Stored]:
     channels: dict[int, tuple[str, int | None]] = {}
     for number, record in enumerate(reading):
         if isinstance(record, Message):
             channel = channels.get(record.channel_id)
+            if numbers is not None:
+                numbers.message(record)
             if channel is not None:
                 topic, length = channel
                 yield Stored(topic, record.log_time_ns, record.data, length)

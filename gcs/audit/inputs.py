@@ -49,7 +49,7 @@ def kept_of(kind: str, data: bytes, attachments: Attachments) -> Kept:
         if decoder is None:
             raise CannotReadError(f"there is no input {kind!r}")
         kept = decoder.decode(data)
-    except msgspec.MsgspecError as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
         raise CannotReadError(f"{kind}: {error}") from error
     return _file_read(kept, attachments) if isinstance(kept, FileKept) else cast("Kept", kept)
 
@@ -85,7 +85,7 @@ def input_of_fault(kept: FaultKept) -> Input:
         raise CannotReadError(f"the {kept.kind} that raised was not recorded")
     try:
         return cast("Input", msgspec.json.decode(kept.input, type=kind))
-    except msgspec.MsgspecError as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
         raise CannotReadError(f"{kept.kind}: {error}") from error
 
 

@@ -90,10 +90,19 @@ class Tape:
         """There is no file."""
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
-        """It says again what the set-up says."""
+        self.attachments.setdefault(metadata_name(name), []).append(metadata_bytes(values))
 
     def close(self) -> None:
         """There is no file."""
+
+
+def metadata_name(name: str) -> str:
+    """Under which it stands among the attachments."""
+    return f"metadata {name}"
+
+
+def metadata_bytes(values: dict[str, str]) -> bytes:
+    return msgspec.json.encode(values, order="deterministic")
 
 
 def payload_length(channel_metadata: dict[str, str]) -> int | None:

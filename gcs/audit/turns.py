@@ -131,7 +131,7 @@ class Turns:
             return "", None
         try:
             said = msgspec.json.decode(message.data, type=InputMessage)
-        except msgspec.MsgspecError as error:
+        except (msgspec.MsgspecError, UnicodeDecodeError) as error:
             return "", Unreadable(str(error))
         try:
             return said.kind, kept_of(said.kind, said.data, self._attachments)

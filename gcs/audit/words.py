@@ -199,7 +199,7 @@ def _parts(message: Stored) -> tuple[str, Fields]:
         return "log", {"line": texts.get(_LOG_MESSAGE, ""), "from": texts.get(_LOG_NAME, "")}
     try:
         tree = msgspec.json.decode(message.data)
-    except msgspec.MsgspecError:
+    except (msgspec.MsgspecError, UnicodeDecodeError):
         return message.topic, {
             "bytes": str(len(message.data)),
             "checksum": f"{crc32(message.data):08x}",

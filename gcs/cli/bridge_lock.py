@@ -65,7 +65,7 @@ def lock_vehicle(
         key = read_key_file(key_file)
         given = give_key(key, None, url, vehicle, timeout_s, options.own_sysid)
         had = "had the key already:" if given.had_it else "was given the key"
-        obeys = f"{had} {key.fingerprint}; what is not signed with it gets nothing"
+        obeys = f"{had} {key.fingerprint}; on this link it obeys what is signed with it alone"
         click.echo(f"lock: vehicle {given.vehicle} {obeys}", err=True)
         sysid = int(given.vehicle.split("/")[0])
     clock = Clock()
@@ -73,6 +73,7 @@ def lock_vehicle(
     setup = LockSetup(key, lock, sysid, clock.now_ns() + round(timeout_s * 1e9))
     over_link(setup, url, clock)
     lines = _told(setup, options)
+    lines += setup.open_ports
     if key is None and setup.vehicle:
         lines.append(NO_KEY)
     for line in lines:

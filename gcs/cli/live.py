@@ -26,7 +26,7 @@ Examples:
 HOST:PORT: {ADDRESS_HELP}
 
 In Foxglove: Open connection > Foxglove WebSocket, then import the layout that `gcs log layout`
-writes. A viewer looks, and may abort, hold, land and rtl; to fly it has to call take_control with
+writes. A viewer looks, and may abort and hold; to fly it has to call take_control with
 the code that is printed here. Then a point or pose that is published in the 3D panel is a goal.
 """
 

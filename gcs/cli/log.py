@@ -19,6 +19,7 @@ from gcs.cli.log_import import import_log
 from gcs.cli.log_merge import merge
 from gcs.cli.log_replay import replay
 from gcs.cli.log_report import report
+from gcs.cli.log_sign import sign
 from gcs.cli.record_files import NEW_RECORD, RECORD, reading_progress, told, writing
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
@@ -50,6 +51,7 @@ for command in (
     merge,
     replay,
     report,
+    sign,
 ):
     log.add_command(command)
 

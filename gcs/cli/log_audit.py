@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli.key import read_key_file
+from gcs.cli.options import UTF8
 from gcs.cli.record_files import RECORD, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from gcs.audit.audit import AuditResult, Difference
     from gcs.audit.files import SessionFiles
     from gcs.record.reading import Condition
+    from gcs.wire.signing import SecretKey
 
 _PROGRESS_FROM_BYTES = 500_000
 """Smaller files are audited in less than a second."""
@@ -27,14 +30,23 @@ _PROGRESS_FROM_BYTES = 500_000
 @click.argument("files", type=RECORD, nargs=-1, required=True, metavar="FILE...")
 @click.option("--show", default=10, show_default=True, help="How many differences are printed.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object a session, one a line.")
+@click.option(
+    "--key",
+    type=UTF8,
+    metavar="KEYFILE",
+    help="Each file must be as `gcs log sign` has signed it with this key.",
+)
 @click.pass_context
-def audit(ctx: click.Context, files: tuple[Path, ...], show: int, as_json: bool) -> None:
+def audit(
+    ctx: click.Context, files: tuple[Path, ...], show: int, as_json: bool, key: str | None
+) -> None:
     """Do again what a station did, from its record, and compare.
 
     Every input that was recorded is given to a fresh session: each decision, each frame that was
     sent, each log line and each other message must come out as it is in the record, byte for
     byte. The files of a session that has several parts are named together. The exit code is 1
-    where anything differs.
+    where anything differs, and where a record has no end, as that of a station that was killed.
+    Who knows how can make a record whose parts agree with one another: only --key finds that.
 
     Examples: gcs log audit logs/20260101-120000_flight.mcap  |  gcs log audit logs/*.mcap --json
     """
@@ -47,6 +59,8 @@ def audit(ctx: click.Context, files: tuple[Path, ...], show: int, as_json: bool)
     results = []
     for number, session in enumerate(found):
         result = _audited(session)
+        if key is not None:
+            _check_signatures(session, result, read_key_file(key))
         results.append(result)
         if as_json:
             names = [str(path).encode(errors="backslashreplace").decode() for path in session.paths]
@@ -57,7 +71,8 @@ def audit(ctx: click.Context, files: tuple[Path, ...], show: int, as_json: bool)
             if number:
                 click.echo()
             _print(session, result, show)
-    ctx.exit(ExitCode.DONE if all(each.good for each in results) else ExitCode.DIFFERENT)
+    good = all(each.good and each.ended for each in results)
+    ctx.exit(ExitCode.DONE if good else ExitCode.DIFFERENT)
 
 
 def _audited(session: SessionFiles) -> AuditResult:
@@ -74,10 +89,26 @@ def _audited(session: SessionFiles) -> AuditResult:
         except NoStartError as error:
             text = f"{session.paths[0]}: cannot be audited: {error}"
             raise ExitError(ExitCode.BAD_FILE, text, error.hint) from error
-    if session.damaged:
-        result.whole = False
-        result.notes.append(f"{session.damaged} damaged records of the file could not be read")
+    wrong = {
+        "{} damaged records of the file could not be read": session.damaged,
+        "{} messages have another number or publish time than was written": session.misnumbered,
+        "{} bytes stand behind the end of the record": session.behind_bytes,
+    }
+    for text, count in wrong.items():
+        if count:
+            result.whole = False
+            result.notes.append(text.format(count))
     return result
+
+
+def _check_signatures(session: SessionFiles, result: AuditResult, key: SecretKey) -> None:
+    from gcs.record.signature import why_not_signed
+
+    for path in session.paths:
+        with told(path):
+            why_not = why_not_signed(path, key)
+        result.whole &= not why_not
+        result.notes.append(f"{path.name}: {why_not or f'signed with {key.fingerprint}'}")
 
 
 def _print(session: SessionFiles, result: AuditResult, show: int) -> None:
@@ -95,6 +126,8 @@ def _print(session: SessionFiles, result: AuditResult, show: int) -> None:
         more = result.differences - min(show, len(result.first))
         rest = f", {more} more than are shown" if more > 0 else ""
         click.echo(f"{result.differences} differences{rest}")
+    elif result.whole and not result.ended:
+        click.echo("no difference in what is there, but the record has no end")
     elif result.whole:
         click.echo("no difference: every decision and every message is reproduced")
     else:

@@ -9,7 +9,12 @@ from gcs.config import Wanted
 from gcs.exit_codes import ExitCode
 from gcs.operator.differences import differences, hint, sentence
 from gcs.operator.errors import ExitError
-from gcs.operator.joined import JoinedStation, running_stations, station_on
+from gcs.operator.joined import (
+    JoinedStation,
+    running_stations,
+    station_on,
+    why_no_station_is_found,
+)
 from gcs.shell.stations import Description
 
 HINT = "gcs stations lists them; name one by its link with --link"
@@ -25,6 +30,10 @@ def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description 
     if found is not None or not anywhere:
         return found
     everywhere = running_stations()
+    unsafe = why_no_station_is_found()
+    if unsafe:
+        hint = "remove it, or set XDG_RUNTIME_DIR to a folder of your own, and start it again"
+        raise ExitError(ExitCode.NO_VEHICLE, f"no running station can be found: {unsafe}", hint)
     if len(everywhere) > 1:
         text = "; ".join(described_shortly(each) for each in everywhere)
         raise ExitError(ExitCode.USAGE, f"{len(everywhere)} stations are running: {text}", HINT)

@@ -13,6 +13,7 @@ from typing import TypeAlias
 
 from gcs.record.ros1 import FRAME_BYTES
 from gcs.wire.dialect import MESSAGES, TYPE_CODES, FieldDef, MessageDef
+from gcs.wire.text import clean
 
 Number: TypeAlias = "int | float"
 ReadNumbers: TypeAlias = Callable[[bytes], tuple[Number, ...]]
@@ -52,8 +53,9 @@ def numbers(message: str, *names: str) -> ReadNumbers:
 
 
 def text(message: str, name: str, data: bytes) -> str:
-    """A `char` array, up to its first NUL; what is no UTF-8 becomes replacement characters."""
+    """A `char` array, up to its first NUL; what is no UTF-8, or a control, becomes replacement
+    characters."""
     field = _field(message, name)
     start = FRAME_BYTES + field.offset
     raw = data[start : start + field.size]
-    return raw.partition(b"\0")[0].decode("utf-8", "replace")
+    return clean(raw.partition(b"\0")[0].decode("utf-8", "replace"))

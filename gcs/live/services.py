@@ -78,9 +78,9 @@ class Service:
 SERVICES: Mapping[str, Service] = {
     "abort": Service("abort", Plain, anyone=True),
     "hold": Service("hold", Plain, anyone=True),
-    "land": Service("land", Plain, anyone=True),
-    "rtl": Service("rtl", Plain, anyone=True),
     "take_control": Service("station_take", TakeControl, anyone=True),
+    "land": Service("land", Plain),
+    "rtl": Service("rtl", Plain),
     "arm": Service("arm", Plain),
     "takeoff": Service("takeoff", TakeOff),
     "goto": Service("goto", GoTo),

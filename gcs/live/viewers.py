@@ -38,6 +38,9 @@ MAX_WAITING = 8
 CALL_WAIT_NS = 5_000_000_000
 CALLS_A_SECOND = 5.0
 BURST_CALLS = 10.0
+WRONG_CODES_A_SECOND = 0.2
+BURST_WRONG_CODES = 5.0
+"""Of all viewers together: whoever comes anew for each try has no more of them."""
 LOOKING_A_SECOND = 20.0
 BURST_LOOKING = 30.0
 MAX_BUCKETS = 256
@@ -45,6 +48,7 @@ MAX_BUCKETS = 256
 NOTICE_NS = 2_000_000_000
 """A viewer's mistakes are told to all viewers, at most once in so long."""
 
+TOO_MANY_CODES = "too many wrong control codes were tried: try again in 5 s"
 NEEDS_CONTROL = "this viewer only looks: call take_control with the code that gcs has printed"
 
 
@@ -94,6 +98,9 @@ class Viewers:
         looking = _Bucket(LOOKING_A_SECOND, BURST_LOOKING, BURST_LOOKING, now_ns)
         self._connections = {LOOKING: _Connection(looking)}
         self._buckets: dict[int, _Bucket] = {}
+        self._wrong_codes = _Bucket(
+            WRONG_CODES_A_SECOND, BURST_WRONG_CODES, BURST_WRONG_CODES, now_ns
+        )
         self._snapshot: ipc.Snapshot | None = None
         self._noticed_ns = now_ns - NOTICE_NS
 
@@ -136,9 +143,10 @@ class Viewers:
             return [_refused(call, "BAD_REQUEST", str(error))]
         effects: list[Effect] = []
         if isinstance(request, TakeControl) and not trusted:
-            why = self._why_not_trusted(call, request)
+            why = self._why_not_trusted(call, request, now_ns)
             if why:
-                return [_refused(call, "OTHER_OPERATOR", why)]
+                told = self._notice(TOO_MANY_CODES, now_ns) if why == TOO_MANY_CODES else []
+                return [_refused(call, "OTHER_OPERATOR", why), *told]
             bucket = self._bucket(call.viewer, now_ns)
             self._connections[call.viewer] = _Connection(bucket)
             effects.append(Join(call.viewer))
@@ -152,9 +160,14 @@ class Viewers:
         waiting = _Waiting(call.service, call.call, now_ns + CALL_WAIT_NS)
         return [*effects, self._send(sender, ask, waiting)]
 
-    def _why_not_trusted(self, call: Called, request: TakeControl) -> str:
-        if not hmac.compare_digest(request.code.strip().encode(), self._code.encode()):
+    def _why_not_trusted(self, call: Called, request: TakeControl, now_ns: int) -> str:
+        right = hmac.compare_digest(request.code.strip().encode(), self._code.encode())
+        if not self._wrong_codes.take(now_ns):
+            # Of the right one neither, so that a guess tells nothing.
+            return TOO_MANY_CODES
+        if not right:
             return "that is not the code that gcs has printed"
+        self._wrong_codes.level += 1.0
         if not call.watching:
             return "subscribe to a topic first: else nobody would notice that this viewer has gone"
         if len(self._connections) > MAX_TRUSTED:

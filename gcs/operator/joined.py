@@ -29,6 +29,17 @@ def running_stations() -> list[Description]:
     return stations.running(stations.folder_of())
 
 
+def why_no_station_is_found() -> str:
+    """Why stations of this user may run and are not found; empty where nothing is in the way."""
+    try:
+        stations.check(stations.folder_of())
+    except stations.Unsafe as error:
+        return str(error)
+    except OSError:
+        pass
+    return ""
+
+
 def station_on(links: Sequence[str]) -> Description | None:
     """The running station that has one of these links open."""
     wanted = []

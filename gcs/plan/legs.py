@@ -48,7 +48,7 @@ class ProblemKind(Enum):
     NO_RETURN_HEIGHT = "the vehicle's return height is not known"
     RETURN_ROUTE = "the vehicle's return follows its mission (RTL_TYPE), which is not verified"
     HOME_MOVES = "it moves home, and with it the return, later heights and the fence"
-    NOT_FLOWN = "it is no item that a multirotor is known to fly"
+    NOT_FLOWN = "it is no item that is verified here"
     REFUSED = "this autopilot refuses it at upload"
     NEVER_STARTS = "this autopilot stores it, and then does not start the mission"
     NOT_OF_A_MISSION = "it belongs to a fence or to rally points"

@@ -131,7 +131,7 @@ def _one_item(
 
     kind = KINDS.get(item.command)
     if kind is None:
-        yield finding(Level.ERROR, "a quadrotor is not known to fly this item")
+        yield finding(Level.ERROR, "it is no item that is verified here")
     elif kind is Kind.SET_HOME:
         yield finding(Level.WARNING, "moves home in mid-flight, so that later heights move too")
     elif item.command == Cmd.DO_FENCE_ENABLE and item.params[0] != 1.0:

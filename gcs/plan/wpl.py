@@ -24,6 +24,8 @@ _FIELDS = (*_WHOLE[:4], "p1", "p2", "p3", "p4", "lat", "lon", "alt", "autocontin
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _RELATIVE = (Frame.HOME, Frame.TERRAIN)
 _SEQ_MAX = 65535
+ROWS_MAX = 10_000
+"""No autopilot stores so many, and who verifies more is busy for minutes."""
 ITEMS_A_STEP = 50
 
 
@@ -77,6 +79,8 @@ def _read_rows(file: str, data: bytes, notes: list[Finding]) -> Steps[list[_Row]
     for where, line in lines:
         if len(rows) % ITEMS_A_STEP == 0:
             yield
+        if len(rows) == ROWS_MAX:
+            raise PlanError(file, where, "line", "is one too many", f"at most {ROWS_MAX} items")
         rows.append(_read_row(file, where, line, notes))
     return rows
 

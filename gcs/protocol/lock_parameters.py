@@ -9,7 +9,7 @@ known).  Where the fence is set, too, it is a cylinder about home with an action
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -24,6 +24,19 @@ COPTER_BREACH: Final = range(1, 6)
 ArduCopter knows no other is from memory."""
 COPTER_FENCE_ON: Final = 1
 """FENCE_ENABLE."""
+PORTS: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
+    "px4": (("MAV_SIGN_CFG",),),
+    "ardupilot": (
+        tuple(f"SERIAL{port}_PROTOCOL" for port in range(10)),
+        tuple(f"MAV{channel}_OPTIONS" for channel in range(1, 7)),
+    ),
+}
+"""Parameters that tell which ports take unsigned frames although there is a key; of each row, those
+behind the first one that a vehicle has not are not asked for."""
+_SPEAKS_MAVLINK: Final = frozenset({1, 2, 43})
+"""SERIALn_PROTOCOL: MAVLink 1, MAVLink 2, MAVLink High Latency."""
+_SIGNING_OFF: Final = 0b1
+"""Of MAVn_OPTIONS, ArduPilot 4.7."""
 _MOST_BITS: Final = 1 << 24
 """A float has every whole number below."""
 _STEP_M: Final = 0.5
@@ -114,3 +127,27 @@ def bits_of(value: float) -> int:
     """The bits of a parameter that is a set of them: none, where it is not a number, below 0, or
     greater than a float has every whole number of."""
     return int(value) if 0.0 <= value < _MOST_BITS else 0
+
+
+def open_ports(autopilot: str, values: Mapping[str, float]) -> list[str]:
+    """Where a vehicle that has a key takes unsigned frames, a sentence each; `values` are those of
+    `PORTS`, as far as it has them.
+
+    ArduPilot does so on its first MAVLink port, MAVLINK_COMM_0, whatever its parameters are: an
+    ArduCopter 4.7 took a forced disarm there.  PX4's values are from its documentation.
+    """
+    if autopilot == "px4":
+        return {
+            0.0: ["it takes unsigned frames on every port (MAV_SIGN_CFG = 0)"],
+            1.0: ["it takes unsigned frames on USB, always (MAV_SIGN_CFG = 1)"],
+        }.get(values.get("MAV_SIGN_CFG", math.nan), [])
+    protocols, options = PORTS["ardupilot"]
+    ports = [n for n, name in enumerate(protocols) if values.get(name) in _SPEAKS_MAVLINK]
+    first = f"SERIAL{ports[0]}" if ports else "its first MAVLink port"
+    usb = " (USB, as a rule)" if not ports or ports[0] == 0 else ""
+    lines = [f"{first}{usb} takes unsigned frames, always: keep strangers from it"]
+    for channel, name in enumerate(options):
+        if channel and bits_of(values.get(name, 0.0)) & _SIGNING_OFF:
+            where = f"SERIAL{ports[channel]}" if channel < len(ports) else f"MAVLink port {channel}"
+            lines.append(f"{where} takes unsigned frames, too: signing is off there ({name})")
+    return lines

@@ -11,7 +11,7 @@ from enum import StrEnum
 from typing import Final
 
 from gcs.protocol.autopilot import Autopilot, autopilot_of
-from gcs.protocol.lock_parameters import Locking, Wanted, wanted_of
+from gcs.protocol.lock_parameters import PORTS, Locking, Wanted, open_ports, wanted_of
 from gcs.protocol.parameter_names import names_of
 from gcs.protocol.parameters import BY_NAME, decode_value, encode_value
 from gcs.protocol.signing_setup import HEARTBEAT, LINK_ID, SENDER
@@ -23,6 +23,8 @@ from gcs.wire.signing import GOOD, Checker, SecretKey, Signer, SigningClock
 
 EVERY_NS: Final = 700_000_000
 TRIES: Final = 12
+LOOK_TRIES: Final = 4
+"""Of what is only looked at."""
 
 _TYPES: Final = frozenset(int(kind) for kind in ParamType)
 
@@ -62,6 +64,9 @@ class LockSetup:
         self._deadline_ns = deadline_ns
         self._autopilot: Autopilot | None = None
         self._open: list[Wanted] = []
+        self._looks: list[list[str]] = []
+        """What is only looked at, when all is set: rows of `PORTS`."""
+        self._values: dict[str, float] = {}
         self._set: m.ParamSet | None = None
         """What is asked to be set, until it is read back; None: it is read."""
         self._before = 0.0
@@ -72,6 +77,8 @@ class LockSetup:
         self.others: set[int] = set()
         """System ids of other vehicles that were heard meanwhile, and are as they were."""
         self.changes: list[Change] = []
+        self.open_ports: list[str] = []
+        """Where it takes unsigned frames all the same, a sentence each; without a key nothing."""
         self.missing = ""
         """The parameter at which it ended INCOMPLETE."""
         self.ending: Ending | None = None
@@ -90,7 +97,16 @@ class LockSetup:
             return self._met(frame.sysid, message, now_ns)
         if isinstance(message, m.ParamValue) and message.param_type in _TYPES:
             return self._value(message, now_ns)
+        if isinstance(message, m.ParamError) and message.param_id == self._looked_at:
+            self._looks.pop(0)
+            self._tries = 0
+            return self._ask(now_ns)
         return []
+
+    @property
+    def _looked_at(self) -> str:
+        """Empty before all is set, and after all is looked at."""
+        return self._looks[0][0] if self._looks and not self._open else ""
 
     def wake(self, now_ns: int) -> list[bytes]:
         """Call it a few times a second."""
@@ -113,13 +129,14 @@ class LockSetup:
         self._sysid = sysid
         self._autopilot = autopilot_of(beat.autopilot, beat.type)
         self._open = list(wanted_of(self._autopilot.name, self._lock))
+        if self._signer is not None:
+            self._looks = [list(row) for row in PORTS.get(self._autopilot.name, ())]
         return self._ask(now_ns)
 
     def _ask(self, now_ns: int) -> list[bytes]:
         """Read the next parameter, or set it once more."""
         if not self._open:
-            self.ending = Ending.DONE
-            return []
+            return self._look(now_ns)
         name = self._open[0].name
         if self._tries >= TRIES:
             self.ending, self.missing = Ending.INCOMPLETE, name
@@ -134,7 +151,30 @@ class LockSetup:
             for each in names_of(name)
         ]
 
+    def _look(self, now_ns: int) -> list[bytes]:
+        """Read the next one that is only looked at; where a row ends here, that of the next row."""
+        if self._looks and self._tries >= LOOK_TRIES:
+            self._looks.pop(0)
+            self._tries = 0
+        if not self._looks:
+            if self._signer is not None and self._autopilot is not None:
+                self.open_ports = open_ports(self._autopilot.name, self._values)
+            self.ending = Ending.DONE
+            return []
+        self._tries += 1
+        self._next_ns = now_ns + EVERY_NS
+        target = self._sysid, Component.AUTOPILOT1
+        return [self._signed(m.ParamRequestRead(BY_NAME, *target, self._looked_at), now_ns)]
+
     def _value(self, told: m.ParamValue, now_ns: int) -> list[bytes]:
+        if self._autopilot is not None and told.param_id == self._looked_at:
+            kind = ParamType(told.param_type)
+            value = decode_value(told.param_value, kind, self._autopilot.param_encoding)
+            self._values[told.param_id] = float(value)
+            self._looks[0].pop(0)
+            self._looks = [row for row in self._looks if row]
+            self._tries = 0
+            return self._ask(now_ns)
         if not self._open or self._autopilot is None:
             return []
         wanted = self._open[0]

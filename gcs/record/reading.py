@@ -28,6 +28,12 @@ RECORD_HEAD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 _CHUNK = struct.Struct("<QQQII")
 _PIECE_BYTES = 16 * 1024
+MAX_CHUNK_BYTES = 128 << 20
+"""A chunk that unpacks to more is damaged."""
+MAX_UNPACKED_BYTES = 32 << 20
+MAX_UNPACKED_SHARE = 30
+"""A file may unpack to so much, and to so many times its size; records of stations reach 10 times.
+lz4 can make 255 bytes of one."""
 _KEPT_BYTES = 16 * 1024 * 1024
 """So much of a mapped file, once read, stays in memory."""
 
@@ -74,6 +80,8 @@ class Condition:
     """Records and chunks in the middle that could not be used."""
     unread_bytes: int = 0
     """The end of the file, where a damaged record does not tell where the next one begins."""
+    behind_bytes: int = 0
+    """What stands behind the closing magic: nothing of this record."""
 
 
 class Reading:
@@ -102,13 +110,15 @@ class Reading:
     def _records(self, data: mmap.mmap) -> Iterator[Record]:
         condition = self.condition
         start = len(MAGIC)
-        kept_from = 0
+        kept_from = unpacked = 0
         while start + RECORD_HEAD.size <= condition.size:
             opcode, length = RECORD_HEAD.unpack_from(data, start)
             body = start + RECORD_HEAD.size
             end = body + length
             if opcode == Opcode.FOOTER:
                 condition.closed = data[end : end + len(MAGIC)] == MAGIC
+                if condition.closed:
+                    condition.behind_bytes = condition.size - end - len(MAGIC)
                 start = condition.size if condition.closed else end + len(MAGIC)
                 break
             if end > condition.size:
@@ -122,6 +132,10 @@ class Reading:
             elif opcode == Opcode.CHUNK:
                 records = inflate(data[body:end])
                 condition.damaged += records is None
+                unpacked += len(records or b"")
+                if unpacked > MAX_UNPACKED_BYTES + MAX_UNPACKED_SHARE * condition.size:
+                    reason = f"its {condition.size} bytes unpack to more than {unpacked}: no record"
+                    raise BadRecordError(self.path, reason)
                 yield from self._inner(records or b"")
             elif opcode == 0:
                 break
@@ -217,7 +231,7 @@ def _unpack_lz4(packed: bytes) -> bytes:
     unpacker = lz4.frame.LZ4FrameDecompressor()
     records = bytearray()
     for start in range(0, len(packed), _PIECE_BYTES):
-        if unpacker.eof:
+        if unpacker.eof or len(records) > MAX_CHUNK_BYTES:
             break
         try:
             records += unpacker.decompress(packed[start : start + _PIECE_BYTES])
@@ -232,7 +246,7 @@ def _unpack_zstd(packed: bytes) -> bytes:
     unpacker = zstandard.ZstdDecompressor().decompressobj()
     records = bytearray()
     for start in range(0, len(packed), _PIECE_BYTES):
-        if unpacker.eof:
+        if unpacker.eof or len(records) > MAX_CHUNK_BYTES:
             break
         try:
             records += unpacker.decompress(packed[start : start + _PIECE_BYTES])

@@ -149,6 +149,7 @@ class BridgePort:
         return replace(
             seen,
             plan_transfer=vehicle.plan_transfer,
+            not_on_board=vehicle.not_on_board,
             mission_paused=vehicle.mission_paused,
             stream=self._stream,
             mission_items=vehicle.mission_items,
@@ -306,7 +307,11 @@ class BridgePort:
             case Answers(link, source, message):
                 return self._links.send_as(source, link, message, now_ns)
             case ToVehicle(raw):
-                return [sent for link in links for sent in self._links.pass_on(link, raw, now_ns)]
+                return [
+                    sent
+                    for link in links
+                    for sent in self._links.pass_on(link, raw, now_ns, foreign=True)
+                ]
             case AsksVehicle(source, message):
                 return [
                     sent

@@ -17,6 +17,7 @@ from gcs.session.effects import Effect, Record, Transmit
 from gcs.session.signatures import NO_KEYS, Signatures
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Frame, Garbage, Item, Reason, StreamSplitter, split
+from gcs.wire.hidden_frames import Separator
 from gcs.wire.ids import MavAutopilot, MavState, MavType
 from gcs.wire.messages import Heartbeat, Message
 from gcs.wire.signing import UnsignableError
@@ -77,6 +78,8 @@ class Links:
         self._writers = [FrameWriter(sysid, compid) for _ in range(count)]
         self._splitters = {link: StreamSplitter() for link in streams}
         self._waiting = set(waiting)
+        self._separators = [Separator() for _ in range(count)]
+        """Of the links that vehicles are on, where they have no key."""
         self.counts = [Counts() for _ in range(count)]
         """Of the links that vehicles are on, since the start."""
         self._named: dict[tuple[int, int, int], FrameWriter] = {}
@@ -138,16 +141,25 @@ class Links:
         if not self._signatures.signed(link):
             self._clients[link].spoke(raw)
 
-    def pass_on(self, link: int, raw: bytes, now_ns: int) -> list[Effect]:
-        """A frame on a link, and its record: signed where the link has a key, else unchanged."""
-        return self._and_records(self.unrecorded(link, raw, now_ns))
+    def pass_on(self, link: int, raw: bytes, now_ns: int, *, foreign: bool = False) -> list[Effect]:
+        """A frame on a link, and its record: signed where the link has a key, else unchanged.
 
-    def _and_records(self, transmits: list[Transmit]) -> list[Effect]:
+        `foreign`: a client has written it, and it goes to a vehicle.
+        """
         return [
             effect
-            for sent in transmits
-            for effect in (sent, Record(FrameItem(sent.link, Direction.SENT, sent.data)))
+            for sent in self.unrecorded(link, raw, now_ns)
+            for effect in self._apart(sent, foreign=foreign)
         ]
+
+    def _apart(self, sent: Transmit, *, foreign: bool = False) -> list[Effect]:
+        """What leaves, and its record, which has the frame without what is put before it where it
+        would complete a frame hidden in those before."""
+        record = Record(FrameItem(sent.link, Direction.SENT, sent.data))
+        if sent.link < len(self._separators) and not self._signatures.signed(sent.link):
+            data = self._separators[sent.link].apart(sent.data, foreign=foreign)
+            sent = sent if data is sent.data else Transmit(sent.link, data)
+        return [sent, record]
 
     def unrecorded(self, link: int, raw: bytes, now_ns: int) -> list[Transmit]:
         """The same without its record; nothing where it cannot be signed."""
@@ -190,7 +202,10 @@ class Links:
         client = self._clients.get(link)
         if raw is not None and client is not None:
             raw = client.answer(raw, now_ns)
-        return [] if raw is None else self._and_records(self._leaving(link, raw, now_ns))
+        if raw is None:
+            return []
+        leaving = self._leaving(link, raw, now_ns)
+        return [effect for sent in leaving for effect in self._apart(sent)]
 
     def send(self, link: int, message: Message, now_ns: int) -> list[Effect]:
         """One frame on one link, and its record; nothing where no peer is known."""

@@ -61,6 +61,11 @@ class ReturnPlaces:
         return self._rally.reading
 
     @property
+    def none_on_board(self) -> bool:
+        """They were read, and there is none."""
+        return self._rally.items == ()
+
+    @property
     def first_time(self) -> bool:
         """They were not told yet, since the vehicle appeared."""
         return not self._rally.answered

@@ -47,12 +47,14 @@ _WHAT: Final = {
     Reason.REPLAYED: "sent a second time",
     Reason.TOO_OLD: "signed before this station began, or more than a minute ago",
     Reason.TOO_MANY: "of too many senders",
+    Reason.AHEAD: "signed more than a day ahead of this station",
 }
 _HINTS: Final = {
     Reason.UNSIGNED: "has it the key? `gcs key install FILE --link URL` gives it one; "
     "without --sign-key the station takes unsigned frames",
     Reason.WRONG_KEY: "is the key right? `gcs key show FILE` prints its fingerprint",
     Reason.TOO_OLD: "is the clock of this computer right? it may be ahead of the vehicle's",
+    Reason.AHEAD: "is the clock of this computer right? it may be behind the vehicle's",
 }
 
 

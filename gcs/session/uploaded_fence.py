@@ -86,6 +86,11 @@ class FenceOnBoard:
         """A transfer for this is under way."""
         return self._plan.reading
 
+    @property
+    def none_on_board(self) -> bool:
+        """It was read, and has no item."""
+        return self._plan.items == ()
+
     def start(self, telemetry: Telemetry, now_ns: int) -> None:
         """The vehicle appeared: nothing is known of it.  `follow` begins to read."""
         self._plan.start(telemetry, now_ns)

@@ -37,6 +37,7 @@ from gcs.session.vehicle_parts import VehicleParts
 from gcs.session.words import logged
 from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, Work
 from gcs.wire import messages as m
+from gcs.wire.ids import MissionType
 from gcs.wire.messages import CommandLong
 
 ORIGIN_PATIENCE_NS = 10_000_000_000
@@ -155,6 +156,13 @@ class Vehicle:
         """The station reads or writes a plan of the vehicle, or is about to."""
         parts = self._parts
         return parts.missions.busy or parts.returns.reading or parts.fence.reading
+
+    @property
+    def not_on_board(self) -> tuple[MissionType, ...]:
+        """Of which plans, fence and rally points, it was read that there are none."""
+        parts = self._parts
+        fence = (MissionType.FENCE,) if parts.fence.none_on_board else ()
+        return (*fence, MissionType.RALLY) if parts.returns.none_on_board else fence
 
     @property
     def mission_items(self) -> int:

@@ -1,8 +1,9 @@
 """The stations that run on this machine, as files in a folder of their user.
 
 Each station has a description (JSON) and beside it, on Linux and macOS, its socket.  The folder is
-`$XDG_RUNTIME_DIR/mavgate`, or one of the user's own in the folder for temporary files; on Windows
-`%LOCALAPPDATA%\\mavgate`.  Only its user may look into it.  A description whose station has died
+`$XDG_RUNTIME_DIR/mavgate`, or one of the user's own in the folder for temporary files, or
+`~/.mavgate` where somebody else has made that first; on Windows `%LOCALAPPDATA%\\mavgate`.
+Only its user may look into it.  A description whose station has died
 is removed by whoever finds it.
 """
 
@@ -56,7 +57,16 @@ def folder_of(environment: Mapping[str, str] = os.environ) -> Path:
     runtime = Path(environment.get("XDG_RUNTIME_DIR") or os.devnull)
     if runtime.is_dir():
         return runtime / "mavgate"
-    return Path(tempfile.gettempdir()) / f"mavgate-{os.getuid()}"
+    folder = Path(tempfile.gettempdir()) / f"mavgate-{os.getuid()}"
+    try:
+        check(folder)
+    except Unsafe:
+        # Anybody may have made it first, and could else take `gcs abort` away.
+        with contextlib.suppress(RuntimeError):
+            return Path.home() / ".mavgate"
+    except OSError:
+        pass
+    return folder
 
 
 def made_safe(folder: Path) -> Path:

@@ -13,6 +13,7 @@ from gcs.wire.crc import CRC_EXTRA, mcrf4xx
 from gcs.wire.dialect import MESSAGES, TYPE_CODES, FieldDef, MessageDef
 from gcs.wire.frame import MAGIC_V2, Frame
 from gcs.wire.messages import CLASSES, Message
+from gcs.wire.text import clean
 
 Scalar: TypeAlias = int | float | str
 Value: TypeAlias = Scalar | tuple[Scalar, ...]
@@ -129,12 +130,13 @@ def _getters(fields: tuple[FieldDef, ...]) -> list[_Getter]:
 
 
 def _text_getter(at: int) -> Callable[[_Unpacked], str]:
-    """Text ends at its first NUL; bytes that are not UTF-8 become replacement characters."""
+    """Text ends at its first NUL; bytes that are not UTF-8 become replacement characters, and so
+    do controls (`clean`): the frame keeps them."""
 
     def get(values: _Unpacked) -> str:
         raw = values[at]
         assert isinstance(raw, bytes)
-        return raw.partition(b"\0")[0].decode("utf-8", "replace")
+        return clean(raw.partition(b"\0")[0].decode("utf-8", "replace"))
 
     return get
 

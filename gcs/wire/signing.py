@@ -34,6 +34,12 @@ TICK_NS: Final = 10_000
 TIMESTAMP_MAX: Final = (1 << 48) - 1
 LATE_MAX_TICKS: Final = 60 * 100_000
 """A stream that is new must not be further behind: one minute (MAVLink guide)."""
+AHEAD_MAX_TICKS: Final = 24 * 3600 * 100_000
+"""What one frame may move the clock on by: one day.  Farther ahead nothing is taken before a second
+frame of the same stream follows on the first one: a single one, made or signed wrongly, would else
+block all that is signed after it until the station is begun anew."""
+FOLLOWS_TICKS: Final = 60 * 100_000
+"""So soon it must follow: within a minute by its own time stamps."""
 STREAMS_MAX: Final = 1024
 """Streams that are remembered; only frames that were signed with the key make one."""
 SENT_MAX: Final = 4096
@@ -97,6 +103,8 @@ class Reason(StrEnum):
     TOO_OLD = "too old"
     """The first frame of a stream, and more than a minute behind, or from before we began."""
     TOO_MANY = "too many streams"
+    AHEAD = "too far ahead"
+    """More than a day ahead of what we know, and the first such frame of its stream."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +188,7 @@ class Signer:
 class Checker:
     """Judges the signatures of all that came in under one key."""
 
-    __slots__ = ("_clock", "_key", "_sent", "_signers", "_since", "_streams")
+    __slots__ = ("_ahead", "_clock", "_key", "_sent", "_signers", "_since", "_streams")
 
     def __init__(self, key: Key, clock: SigningClock | None = None, since_ns: int = 0) -> None:
         """`clock`: as that of the key's `Signer`s.  `since_ns` is when we began (unix time): what
@@ -189,6 +197,8 @@ class Checker:
         self._clock = clock or SigningClock()
         self._since = timestamp_of(max(0, since_ns - WAITING_NS))
         self._streams: dict[tuple[int, int, int], int] = {}
+        self._ahead: dict[tuple[int, int, int], int] = {}
+        """The time stamps of streams that began too far ahead."""
         self._signers: set[tuple[int, int]] = set()
         self._sent: dict[tuple[int, int, int], int] = {}
 
@@ -221,18 +231,30 @@ class Checker:
         if timestamp <= self._sent.get(stream, -1):
             return _BAD[Reason.REPLAYED]
         last = self._streams.get(stream)
-        if last is not None:
-            if timestamp <= last:
-                return _BAD[Reason.REPLAYED]
-        elif timestamp < max(self._since, self._clock.now(unix_ns) - LATE_MAX_TICKS):
-            return _BAD[Reason.TOO_OLD]
-        elif len(self._streams) >= STREAMS_MAX:
-            return _BAD[Reason.TOO_MANY]
-        else:
+        if last is not None and timestamp <= last:
+            return _BAD[Reason.REPLAYED]
+        if timestamp > self._clock.now(unix_ns) + AHEAD_MAX_TICKS and not self._follows(
+            stream, timestamp
+        ):
+            return _BAD[Reason.AHEAD]
+        if last is None:
+            if timestamp < max(self._since, self._clock.now(unix_ns) - LATE_MAX_TICKS):
+                return _BAD[Reason.TOO_OLD]
+            if len(self._streams) >= STREAMS_MAX:
+                return _BAD[Reason.TOO_MANY]
             self._signers.add(stream[:2])
         self._streams[stream] = timestamp
         self._clock.heard(timestamp)
         return GOOD
+
+    def _follows(self, stream: tuple[int, int, int], timestamp: int) -> bool:
+        """Whether a frame that is far ahead follows on the one before of its stream."""
+        before = self._ahead.pop(stream, None)
+        if before is not None and 0 < timestamp - before <= FOLLOWS_TICKS:
+            return timestamp < TIMESTAMP_MAX - AHEAD_MAX_TICKS
+        if len(self._ahead) < STREAMS_MAX:
+            self._ahead[stream] = timestamp
+        return False
 
 
 def strip(raw: bytes) -> bytes:

@@ -255,8 +255,9 @@ def test_a_killed_file_is_audited_as_far_as_its_inputs_go(
     killed = tmp_path / "killed.mcap"
     killed.write_bytes(data[: int(len(data) * share)])
     result = gcs_log_audit(killed)
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == 1, result.output
     assert "note: the record breaks off" in result.output
+    assert "no difference in what is there, but the record has no end" in result.output
 
 
 def test_it_may_break_off_at_any_message(stored: tuple[list[Stored], Attachments]) -> None:

@@ -116,7 +116,7 @@ def test_messages_that_change_the_set_up_go_nowhere(personality: Personality) ->
         dialect.MAVLink_rally_point_message(*VEHICLE, 0, 1, 1, 1, 20, 0, 0, 0),
         dialect.MAVLink_gps_rtcm_data_message(0, 3, [1] * 180),
         dialect.MAVLink_mission_count_message(*VEHICLE, 3, 1),
-        dialect.MAVLink_mission_clear_all_message(*VEHICLE, 2),
+        dialect.MAVLink_mission_count_message(*VEHICLE, 3, 2),
     ):
         sent_before = len(flight.to_vehicle(message.get_type()))
         client.send(message)
@@ -164,3 +164,39 @@ def test_only_the_client_in_control_sets_up(personality: Personality) -> None:
     param_set(flight, first, name, value, kind)
     flight.run(1.0)
     assert len(flight.to_vehicle("PARAM_SET")) == 1
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_a_command_that_is_hidden_in_a_tune_does_not_leave(
+    personality: Personality, version: int
+) -> None:
+    """A vehicle that loses one byte of the tune would take it: a forced disarm."""
+    flight, client = joined(personality)
+    disarm = dialect.MAVLink_command_long_message(*VEHICLE, ARM, 0, 0, 21196, 0, 0, 0, 0, 0)
+    hidden = bytes(disarm.pack(client.mav, force_mavlink1=version == 1))
+    client.send(dialect.MAVLink_play_tune_message(*VEHICLE, b"MFT200L8", b""))
+    client.send(dialect.MAVLink_play_tune_message(*VEHICLE, b"MFT200L8", hidden + b"L8"))
+    flight.run(0.5)
+    assert len(flight.to_vehicle("PLAY_TUNE")) == 1
+    assert not any(hidden in sent.data for sent in flight.sent)
+    assert [one.code for one in flight.decisions("refused")] == ["POLICY"]
+    assert "a whole message stands in its bytes" in client.texts().replace("\n", "")
+
+
+@pytest.mark.parametrize("kind", [1, 2], ids=["fence", "rally"])
+def test_an_empty_plan_where_there_is_none_is_accepted_and_goes_nowhere(
+    personality: Personality, kind: int
+) -> None:
+    """QGroundControl sends an empty fence and empty rally points with every plan."""
+    flight, client = joined(personality)
+    flight.run(2.0)
+    for message in (
+        dialect.MAVLink_mission_count_message(*VEHICLE, 0, kind),
+        dialect.MAVLink_mission_clear_all_message(*VEHICLE, kind),
+    ):
+        client.send(message)
+        flight.run(0.5)
+        ack = client.messages("MISSION_ACK")[-1]
+        assert (ack.type, ack.mission_type) == (0, kind)
+        assert flight.to_vehicle(message.get_type()) == []
+    assert flight.decisions("refused") == []

@@ -273,3 +273,11 @@ def test_a_vehicle_without_a_key_is_made_to_ask_all_the_same() -> None:
     flight.run(3.0)
     assert not flight.vehicle.armed
     assert client.ask(ARM, 1, within_s=10) != 0
+
+
+def test_an_ardupilot_s_port_that_takes_unsigned_frames_is_told() -> None:
+    flight = Flight("ardupilot")
+    assert flight.vehicle.parameters.get("SERIAL0_PROTOCOL") == 2
+    lock = locked(flight)
+    assert lock.ending is Ending.DONE
+    assert lock.open_ports[0].startswith("SERIAL0 (USB, as a rule) takes unsigned frames, always")

@@ -9,6 +9,7 @@ from typing import Final, Literal, TypeAlias
 
 from gcs.gate.policy.policy import BridgeRules
 from gcs.wire.dialect import ENUMS
+from gcs.wire.messages import CommandInt, CommandLong
 
 Key: TypeAlias = Literal[
     "fence", "home", "origin", "calibration", "reboot", "termination", "parameters", "downloads"
@@ -55,9 +56,15 @@ _NUMBERS: Final = {
 ROWS: Final[Mapping[int, CommandRow]] = MappingProxyType({_NUMBERS[r.name]: r for r in _ROWS})
 """By MAV_CMD."""
 
-STORAGE_KEEPS: Final = frozenset({0, 1})
-"""param1 of PREFLIGHT_STORAGE that changes no value: read from storage, write to it; 2 to 4 set
-defaults."""
+_READ_OR_WRITE: Final = frozenset({0, 1})
+"""Read from storage, write to it; 2 and above set defaults, or erase."""
+
+
+def storage_keeps(message: CommandLong | CommandInt) -> bool:
+    """Whether PREFLIGHT_STORAGE changes nothing: neither parameters (param1) nor the mission
+    (param2), and begins no log (param3)."""
+    stored = (message.param1, message.param2)
+    return _READ_OR_WRITE.issuperset(stored) and message.param3 == 0
 
 
 def choice_of(key: Key, rules: BridgeRules) -> str:

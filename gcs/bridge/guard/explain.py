@@ -46,7 +46,7 @@ def _by_policy(row: Row, rules: BridgeRules) -> Iterator[str]:
     elif number in KINDS:
         yield "  in a client's mission: carried; the verifier judges the whole mission"
     else:
-        yield "  in a client's mission: refused, as no quadrotor is known to fly it"
+        yield "  in a client's mission: refused, as it is none that is verified here"
 
 
 def parameter_explanation(name: str, rules: BridgeRules) -> str | None:

@@ -14,6 +14,7 @@ from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.wire.ids import FtpError, FtpOpcode
 from gcs.wire.messages import FileTransferProtocol
+from gcs.wire.text import clean
 
 KEY: Final = "policy: bridge.ftp_writes"
 PAYLOAD: Final = 251
@@ -90,7 +91,7 @@ def judge_file(message: FileTransferProtocol, rules: BridgeRules, seen: GuardSee
     # All of the data, whatever its size is said to be: the vehicle may read a path to its NUL.
     system = None if writes_data else _SYSTEM_FILE.search(bytes(payload[HEADER:]))
     if system is not None:
-        files = system[1].decode("utf-8", "replace")
+        files = clean(system[1].decode("utf-8", "replace"))
         sentence = f"{named} is never allowed: what is written to {files} is the vehicle's set-up"
         return _refused(message, seen, FtpError.FILEPROTECTED, Code.POLICY, sentence)
     return Allowed("" if writes_data else f"{named} is forwarded")

@@ -1,6 +1,6 @@
 """The parameters that a client may write, by autopilot: groups of names, each with the reason.
 
-Of the recorded lists these are 10 of a PX4 1.14.3's 874 and 36 of an ArduCopter 4.7-dev's 1,369;
+Of the recorded lists these are 10 of a PX4 1.14.3's 874 and 32 of an ArduCopter 4.7-dev's 1,369;
 what a row says of its names is from memory of the firmwares' own descriptions.  A name that is in
 `safety_parameters.py`, too, is guarded.
 """

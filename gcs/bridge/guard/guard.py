@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.guard.commands import ROWS, STORAGE_KEEPS, choice_of
+from gcs.bridge.guard.commands import ROWS, choice_of, storage_keeps
 from gcs.bridge.guard.files import is_read, judge_file
 from gcs.bridge.guard.parameters import HASH_CHECK, Changed, ParameterGuard, refused_write
 from gcs.bridge.guard.parameters import KEY as PARAMETERS_KEY
@@ -134,7 +134,7 @@ class Guard:
 
     def _storage(self, message: CommandLong | CommandInt, what: str, seen: GuardSeen) -> Judgement:
         """PREFLIGHT_STORAGE."""
-        if message.param1 in STORAGE_KEEPS:
+        if storage_keeps(message):
             return Allowed()
         if self._rules.parameters != "forward":
             return Refused(Refusal(Code.POLICY, f"{what} is not allowed ({PARAMETERS_KEY})"))
@@ -169,7 +169,7 @@ def _is_for_all(message: Message) -> bool:
             return is_read(payload)
         case CommandLong() | CommandInt():
             key = ROWS[message.command].key
-            keeps = key == "parameters" and message.param1 in STORAGE_KEEPS
+            keeps = key == "parameters" and storage_keeps(message)
             return keeps or key == "downloads"
         case _:
             return isinstance(message, FOR_ALL)

@@ -40,8 +40,8 @@ def refused_items(
 def refused_item(command: int, rules: BridgeRules, by_name: Mapping[str, Kind]) -> Refusal | None:
     """Why a mission may not carry this command; None where it may, and where the verifier judges.
 
-    `by_name` is what the policy says of single names.  What the dialect lacks is no item that a
-    vehicle is known to fly, which the verifier says.
+    `by_name` is what the policy says of single names.  What the dialect lacks is no item that is
+    verified here, which the verifier says.
     """
     row = command_rows().get(command)
     if row is None:

@@ -82,7 +82,11 @@ PX4: Final = (
         "EKF2_* ATT_* LPE_* SENS_* CAL_* IMU_* GPS_* HTE_* LND_* LNDMC_* TC_* BARO_* MAG_*",
         learned=True,
     ),
-    _group(_OUTPUTS, "CA_* PWM_* MOT_* DSHOT_* SYS_* UAVCAN_* CYPHAL_* HIL_* PD_*"),
+    _group(
+        _OUTPUTS,
+        "CA_* PWM_* MOT_* DSHOT_* SYS_* UAVCAN_* CYPHAL_* HIL_* PD_* TRIG_PINS* TRIG_PWM_*"
+        " TRIG_INTERFACE MNT_MODE_OUT",
+    ),
     _group(_LINKS, "MAV_* SER_* UXRCE_* XRCE_* RTPS_* ZENOH_*"),
     _group(_OTHER_VEHICLES, "FW_* VT_* VTO_* GND_* ASPD_* NPFG_* RWTO_* UUV_*"),
     _group(_SIMULATED, "SIM_* SIH_*"),
@@ -97,7 +101,10 @@ ARDUCOPTER: Final = (
     ),
     _group(_ARMING, "ARMING_* BRD_* BTN_* INITIAL_MODE LAND_REPOSITION"),
     _group(
-        _PILOT, "RC* FLTMODE* SIMPLE SUPER_SIMPLE PILOT_* PHLD_* THR_DZ TUNE* AUTOTUNE_* TMODE_*"
+        # A screen of parameters (OSD5_PARAM1_KEY ...) is one that the sticks change.
+        _PILOT,
+        "RC* FLTMODE* SIMPLE SUPER_SIMPLE PILOT_* PHLD_* THR_DZ TUNE* AUTOTUNE_* TMODE_*"
+        " OSD*_PARAM*",
     ),
     _group(
         _RETURN,
@@ -115,7 +122,7 @@ ARDUCOPTER: Final = (
         _OUTPUTS,
         "SERVO* RELAY* FRAME_* SCHED_* FSTRATE_* SCR_* CAN_* ESC_* DID_* FORMAT_VERSION"
         " KDE_* CC_* PLDP_* EFI_* GEN_* GRIP_* LGR_* RPM* RSSI_* SPRAY_* TEMP* WINCH_* VTX_*"
-        " NTF_BUZZ_PIN",
+        " NTF_BUZZ_PIN CAM*_TYPE CAM*_RELAY* CAM*_SERVO* CAM*_FEEDBAK* MNT*_TYPE",
     ),
     _group(_OUTPUTS, "MOT_*", learned=True),
     _group(

@@ -28,6 +28,7 @@ from gcs.protocol.autopilot import ARDUPILOT
 from gcs.protocol.effects import Address
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
+from gcs.wire.hidden_frames import hides_frame
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import (
     CommandInt,
@@ -45,6 +46,10 @@ DECODED_IDS: Final = frozenset(kind.MSG_ID for kind in _LOOKED_INTO)
 GUIDED_CURRENT: Final = frozenset({2, 3})
 """MISSION_ITEM.current of an item that ArduPilot flies to at once, or whose height it takes."""
 
+HIDES_A_FRAME: Final = Refusal(
+    Code.POLICY,
+    "a whole message stands in its bytes, which a vehicle that lost one byte would take",
+)
 POINTED_BY_ANOTHER: Final = Refusal(
     Code.OTHER_OPERATOR, "another client is in control, and points the camera"
 )
@@ -87,6 +92,8 @@ class Judge:
         """What is done with it."""
         frame = given.frame
         row, message, kind = self._classified(frame)
+        if hides_frame(frame.raw):
+            return refuse(given, message, row, HIDES_A_FRAME)
         if message is not None and kind is not Kind.DENIED and _is_of_plan(message):
             return self._plans.judge(given, message, row)
         if kind in (Kind.MOTION, Kind.CONFIGURATION):

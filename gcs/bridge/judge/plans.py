@@ -12,6 +12,7 @@ from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.effects import Answers, AsksPlan, BridgeEffect, Refuses, StopsPlan, ToVehicle
 from gcs.bridge.judge.received import Judged, Received
 from gcs.bridge.judge.set_up import SetUpJudge
+from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.plans import effects as plan_effects
 from gcs.bridge.plans.collecting import acknowledgement
 from gcs.bridge.plans.downloads import ASKS_ON_NS, Downloads, Reader
@@ -38,6 +39,10 @@ class PlanJudge:
         """What a client says about missions, fences and rally points."""
         seen, client = given.look(), given.client
         if seen is not None and isinstance(message, MissionCount | MissionClearAll):
+            if _takes_off_nothing(given, message, seen) and not client.plans.busy:
+                kind = message.mission_type
+                done = acknowledgement(given.by.source, MissionResult.ACCEPTED, kind)
+                return Judged(False, [Answers(given.by.link, given.by.addressed, done)])
             judged = self._set_up.refuses(given, message, row, seen)
             if judged is not None:
                 return judged
@@ -76,6 +81,17 @@ class PlanJudge:
         """Nobody who was heard on that link is there any more: its turn to read is over."""
         self._downloads.gone(link)
         self._held = {who: held for who, held in self._held.items() if who[0] != link}
+
+
+def _takes_off_nothing(
+    given: Received, message: MissionCount | MissionClearAll, seen: Seen
+) -> bool:
+    """An empty fence, or empty rally points, where there are none: QGroundControl sends both with
+    every plan (from memory), and whatever the policy says of them, nothing is changed."""
+    if isinstance(message, MissionCount) and message.count:
+        return False
+    is_for_it = given.by.addressed.compid == given.autopilot.compid
+    return is_for_it and message.mission_type in seen.not_on_board
 
 
 def of_plan(

@@ -86,6 +86,8 @@ class Seen:
     """The gate waits for something that it has asked of the vehicle."""
     plan_transfer: bool = False
     """The station reads or writes a plan of the vehicle."""
+    not_on_board: tuple[int, ...] = ()
+    """Mission types, of fences and rally points, of which it is known that there is none."""
     stream: StreamRules | None = None
     """What full stick asks for; None: sticks are refused."""
     has_sticks: bool = False

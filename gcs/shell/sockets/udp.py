@@ -122,7 +122,13 @@ class UdpIn(_Udp):
             self._peers[self._latest] = self._now_ns
         self._latest = peer
         if peer not in self._peers:
-            self._news.append(f"{self.endpoint}: {peer[0]}:{peer[1]} sends to us")
+            text = f"{self.endpoint}: {peer[0]}:{peer[1]} sends to us"
+            since_ns = self._now_ns - THERE_NS
+            others = [each for each, heard_ns in self._peers.items() if heard_ns >= since_ns]
+            if others:
+                named = ", ".join(f"{host}:{port}" for host, port in others)
+                text += f", beside {named}: one of them may play the vehicle to us"
+            self._news.append(text)
             if len(self._peers) == MAX_PEERS:
                 del self._peers[next(iter(self._peers))]
         else:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import errno
 import json
+from dataclasses import replace
 from pathlib import Path
+from typing import cast
 
 import msgspec
 import pytest
+from mcap.reader import NonSeekingReader
+from mcap.writer import Writer
 
+import gcs as gcs_package
 from gcs import ipc
 from gcs.audit import replay
 from gcs.audit.files import sessions
@@ -34,6 +39,7 @@ from gcs.session.session import Session
 from gcs.session.setup import Setup
 from gcs.session.vehicles import Vehicles
 from gcs.session.work import Work
+from gcs.shell.environment import environment
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Frame, plain_frames
 from gcs.wire.messages import Heartbeat
@@ -182,7 +188,8 @@ def test_the_same_file_read_twice_is_attached_once_and_found_both_times() -> Non
     session.feed(FileRead(3, "plans/a.plan", b"two"))
     session.feed(FileWritten(4, "b.plan", "disk full"))
     messages = close(session, tape)
-    assert sorted(len(contents) for contents in tape.attachments.values()) == [1, 1, 1]
+    # Two plans, the policy, and the metadata of the set-up.
+    assert sorted(len(contents) for contents in tape.attachments.values()) == [1, 1, 1, 1]
     result = audited(messages, tape.attachments)
     # Nobody had asked for any of them.
     assert [d.kind for d in result.first] == ["course"] * 4
@@ -278,7 +285,7 @@ def test_after_a_hole_in_the_record_nothing_can_be_audited(two_parts: list[Path]
 
 def test_the_part_before_the_hole_is_audited_by_itself(two_parts: list[Path]) -> None:
     first = gcs("log", "audit", two_parts[0])
-    assert (first.exit_code, "note: the record breaks off" in first.output) == (0, True)
+    assert (first.exit_code, "note: the record breaks off" in first.output) == (1, True)
 
 
 def test_a_part_alone_is_refused_with_the_name_of_the_others(two_parts: list[Path]) -> None:
@@ -321,3 +328,109 @@ def test_sessions_are_told_apart(tmp_path: Path) -> None:
     ended = gcs("log", "audit", *paths, "--json")
     lines = [json.loads(line) for line in ended.output.splitlines()]
     assert [line["paths"] for line in lines] == [[str(path)] for path in paths]
+
+
+# ------------------------------------------------------------------------- who alters a record
+
+
+def _rewritten(source: Path, target: Path, **to: object) -> Path:
+    """The record once more, whole and closed: up to `until_ns`, its metadata `metadata`, each
+    message's number and publish time moved by `sequence` and `publish_ns`."""
+    until_ns = cast("int", to.get("until_ns", 1 << 62))
+    with source.open("rb") as old, target.open("wb") as new:
+        writer = Writer(new)
+        writer.start()
+        reader = NonSeekingReader(old)
+        channels: dict[int, int] = {}
+        for metadata in reader.iter_metadata():
+            values = {**metadata.metadata, **cast("dict[str, str]", to.get("metadata", {}))}
+            writer.add_metadata(metadata.name, values)
+        old.seek(0)
+        for attachment in NonSeekingReader(old).iter_attachments():
+            writer.add_attachment(
+                attachment.create_time,
+                attachment.log_time,
+                attachment.name,
+                attachment.media_type,
+                attachment.data,
+            )
+        old.seek(0)
+        for schema, channel, message in NonSeekingReader(old).iter_messages(log_time_order=False):
+            if message.log_time > until_ns:
+                break
+            if channel.id not in channels:
+                number = 0
+                if schema is not None:
+                    number = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.id] = writer.register_channel(
+                    channel.topic, channel.message_encoding, number, channel.metadata
+                )
+            writer.add_message(
+                channels[channel.id],
+                message.log_time,
+                message.data,
+                message.publish_time + cast("int", to.get("publish_ns", 0)),
+                message.sequence * cast("int", to.get("sequence", 1)),
+            )
+        writer.finish()
+    return target
+
+
+@pytest.fixture
+def flown(tmp_path: Path, beats: FrameWriter) -> Path:
+    """By this version, here: of another one only what happened is compared."""
+    recorder = Recorder.open(tmp_path, "y", "20260101-000000", START_NS, sealed=True)
+    own = replace(
+        set_up(recorder.path.stem), version=gcs_package.__version__, environment=environment()
+    )
+    session = RecordedSession(recorder, own, START_NS)
+    for _ in range(4):
+        session.feed(Datagram(0, beats.write(BEAT)))
+        session.wait(1.0)
+    recorder.close(session.now_ns)
+    return recorder.path
+
+
+@pytest.mark.parametrize(
+    ("to", "told"),
+    [
+        ({"until_ns": START_NS + 2_000_000_000}, "the record has no end"),
+        ({"metadata": {"policy": "another"}}, "metadata mavgate: another content"),
+        ({"sequence": 2}, "another number or publish time"),
+        ({"publish_ns": 1}, "another number or publish time"),
+    ],
+)
+def test_what_is_cut_off_or_altered_beside_the_messages_is_found(
+    flown: Path, tmp_path: Path, to: dict[str, object], told: str
+) -> None:
+    same = gcs("log", "audit", _rewritten(flown, tmp_path / "same.mcap"))
+    assert same.exit_code == 0, same.output
+    found = gcs("log", "audit", _rewritten(flown, tmp_path / "other.mcap", **to))
+    assert found.exit_code == 1
+    assert told in found.output
+
+
+def test_a_second_record_behind_the_first_is_found(flown: Path, tmp_path: Path) -> None:
+    both = tmp_path / "both.mcap"
+    both.write_bytes(flown.read_bytes() * 2)
+    found = gcs("log", "audit", both)
+    assert (found.exit_code, "bytes stand behind the end" in found.output) == (1, True)
+
+
+def test_a_record_is_signed_and_nobody_without_the_key_alters_it(
+    flown: Path, tmp_path: Path
+) -> None:
+    key, other = str(tmp_path / "own.key"), str(tmp_path / "other.key")
+    for each in (key, other):
+        assert gcs("key", "new", each).exit_code == 0
+    assert "it has no signature" in gcs("log", "audit", flown, "--key", key).output
+    assert gcs("log", "sign", flown, "--key", key).exit_code == 0
+    assert gcs("log", "audit", flown, "--key", key).exit_code == 0
+    wrong = gcs("log", "audit", flown, "--key", other)
+    assert (wrong.exit_code, "with another key" in wrong.output) == (1, True)
+    signature = flown.with_name(f"{flown.name}.sig").read_bytes()
+    data = bytearray(flown.read_bytes())
+    data[len(data) // 2] ^= 1
+    flown.write_bytes(data)
+    assert "it was altered after it was signed" in gcs("log", "audit", flown, "--key", key).output
+    assert Path(key).read_text().strip() not in signature.decode()

@@ -76,9 +76,10 @@ def test_every_service_asks_for_what_the_station_knows() -> None:
 
 def test_a_viewer_that_looks_may_ask_for_what_the_station_hears_of_anyone() -> None:
     """And for nothing more: a word that needs control would be given control where nobody has it.
-    `disarm` is no service, giving control back neither, and taking it needs the code."""
+    `disarm` is no service, giving control back neither, and taking it, landing and returning, which
+    move the vehicle, need the code."""
     anyone = {service.word for service in SERVICES.values() if service.anyone}
-    assert anyone == ALWAYS_HEARD - {"disarm", "station_release"}
+    assert anyone == ALWAYS_HEARD - {"disarm", "station_release", "land", "rtl"}
 
 
 def test_the_height_is_the_parameter_s_where_it_is_set() -> None:

@@ -22,6 +22,7 @@ from gcs.live.viewers import (
     MAX_WAITING,
     NEEDS_CONTROL,
     NOTICE_NS,
+    TOO_MANY_CODES,
     Viewers,
 )
 
@@ -82,7 +83,7 @@ def answer(effects: list[Effect]) -> Answer:
 # ------------------------------------------------------------------------- without the code
 
 
-@pytest.mark.parametrize("service", ["abort", "hold", "land", "rtl"])
+@pytest.mark.parametrize("service", ["abort", "hold"])
 def test_who_looks_may_stop_over_the_connection_of_all_who_look(service: str) -> None:
     script = Script()
     assert script.call(7, service) == [Send(LOOKING, ipc.Ask(1, service))]
@@ -90,7 +91,7 @@ def test_who_looks_may_stop_over_the_connection_of_all_who_look(service: str) ->
     assert script.feed(Told(LOOKING, verdict)) == [Reply(1, Answer(True, "accepted", "", 4))]
 
 
-@pytest.mark.parametrize("service", ["arm", "takeoff", "goto", "step", "resume"])
+@pytest.mark.parametrize("service", ["arm", "takeoff", "goto", "step", "resume", "land", "rtl"])
 def test_who_looks_moves_nothing(service: str) -> None:
     told = answer(Script().call(7, service))
     assert told == Answer(False, NEEDS_CONTROL, "OTHER_OPERATOR")
@@ -118,7 +119,7 @@ def test_without_the_code_only_stops_leave(calls: list[tuple[int, str, str]]) ->
             if isinstance(effect, Send):
                 assert effect.viewer == LOOKING
                 assert isinstance(effect.command, ipc.Ask)
-                assert effect.command.word in {"abort", "hold", "land", "rtl"}
+                assert effect.command.word in {"abort", "hold"}
     assert script.viewers.trusted == frozenset()
 
 
@@ -130,6 +131,24 @@ def test_another_code_is_refused(code: str) -> None:
     told = answer(Script().call(7, "take_control", code=code))
     assert (told.accepted, told.code) == (False, "OTHER_OPERATOR")
     assert "code" in told.sentence
+
+
+def test_of_wrong_codes_a_few_are_looked_at_and_the_right_one_later() -> None:
+    """Whoever connects anew for each try has no more of them."""
+    script = Script()
+    payloads = [json.dumps({"code": f"{n}"}).encode() for n in range(9)]
+    tries = [
+        script.feed(Called(10 + n, n, "take_control", p, True)) for n, p in enumerate(payloads)
+    ]
+    told = [effects[0].answer.sentence for effects in tries if isinstance(effects[0], Reply)]
+    assert [text == TOO_MANY_CODES for text in told] == [False] * 5 + [True] * 4
+    assert [effect for effects in tries for effect in effects[1:]] == [
+        Notice(TOO_MANY_CODES, warning=True)
+    ]
+    right = json.dumps({"code": CODE}).encode()
+    assert Join(7) not in script.feed(Called(7, 20, "take_control", right, True))
+    script.now_ns += 5 * SECOND_NS
+    assert script.call(8, "take_control", code=CODE)[0] == Join(8)
 
 
 def test_the_code_gives_a_connection_of_its_own_over_which_it_flies() -> None:
@@ -224,12 +243,12 @@ def test_when_the_station_ends_the_connection_waiting_calls_are_answered() -> No
 
 def test_a_call_that_the_station_does_not_answer_is_answered_in_time() -> None:
     script = Script()
-    script.call(7, "land")
+    script.call(7, "hold")
     assert script.feed(Tick()) == []
     script.now_ns += CALL_WAIT_NS
     assert answer(script.feed(Tick())).code == "NO_ANSWER"
     assert script.feed(Tick()) == []
-    assert script.feed(Told(LOOKING, ipc.VerdictEvent(1, "land", "accepted"))) == []
+    assert script.feed(Told(LOOKING, ipc.VerdictEvent(1, "hold", "accepted"))) == []
 
 
 def test_one_viewer_that_calls_too_often_does_not_keep_another_from_stopping() -> None:
@@ -253,10 +272,10 @@ def test_a_crowd_of_new_viewers_stays_under_what_the_station_takes_of_one_progra
     for tenth in range(100):  # ten seconds
         script.now_ns += SECOND_NS // 10
         for number in range(100):
-            (effect,) = script.feed(Called(1 + tenth * 100 + number, 1, "land", b"", True))
+            (effect,) = script.feed(Called(1 + tenth * 100 + number, 1, "hold", b"", True))
             if isinstance(effect, Send):
                 sent += 1
-                script.feed(Told(LOOKING, ipc.VerdictEvent(sent, "land", "accepted")))
+                script.feed(Told(LOOKING, ipc.VerdictEvent(sent, "hold", "accepted")))
     assert 100 <= sent <= 10 * 20 + 30
     assert len(script.viewers._buckets) <= MAX_BUCKETS
 

@@ -185,7 +185,7 @@ def test_a_landing_at_0_0_is_here() -> None:
         ([TAKEOFF, waypoint(2, 8.5456, 47.39785, 10)], Level.ERROR, "km from item 1"),
         ([TAKEOFF, simple(2, 16, 0, [0, 0, 0, 0, 47.3978, 8.5456, 100])], Level.ERROR, "388.0 m"),
         ([TAKEOFF, simple(2, 16, 10, [0, 0, 0, 0, 47.3978, 8.5456, 9])], Level.WARNING, "terrain"),
-        ([TAKEOFF, simple(2, 30001, 2, [0] * 7)], Level.ERROR, "not known to fly"),
+        ([TAKEOFF, simple(2, 30001, 2, [0] * 7)], Level.ERROR, "verified here"),
         ([TAKEOFF, waypoint(2, 47.39785, 8.5456, 10, 82)], Level.WARNING, "refuses this item"),
         ([TAKEOFF, simple(2, 114, 2, [5] * 7)], Level.WARNING, "never starts the mission"),
         ([TAKEOFF, simple(2, 179, 2, [1, 0, 0, 0, 0, 0, 0])], Level.WARNING, "moves home"),

@@ -6,6 +6,7 @@ import json
 import os
 import stat
 import sys
+import tempfile
 from pathlib import Path
 
 import msgspec
@@ -138,6 +139,18 @@ def test_where_there_is_no_runtime_folder_it_is_the_user_s_own_temporary_one(
     assert stations.folder_of({"XDG_RUNTIME_DIR": str(tmp_path)}) == tmp_path / "mavgate"
     for elsewhere in ({}, {"XDG_RUNTIME_DIR": ""}, {"XDG_RUNTIME_DIR": str(tmp_path / "none")}):
         assert stations.folder_of(elsewhere).name == f"mavgate-{os.getuid()}"
+
+
+def test_where_somebody_else_has_made_that_folder_it_is_one_of_the_user_s_home(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    taken = tmp_path / f"mavgate-{os.getuid()}"
+    assert stations.folder_of({}) == taken
+    taken.mkdir()
+    taken.chmod(0o777)
+    assert stations.folder_of({}) == tmp_path / "home" / ".mavgate"
 
 
 def test_vehicle_and_log_are_written_when_they_change_and_only_then(tmp_path: Path) -> None:

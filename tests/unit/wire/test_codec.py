@@ -122,3 +122,14 @@ def test_messages_of_different_kinds_are_never_equal() -> None:
     current: Message = MissionCurrent(seq=3)
     assert reached != current
     assert reached == MissionItemReached(seq=3)
+
+
+def test_what_a_terminal_would_obey_is_no_part_of_a_text() -> None:
+    """Escape sequences of C0 and C1, line ends, and what turns the direction of writing."""
+    said = "\x1b[2J\u009b31m a\nb\r\u202ec\u2066\x07d\x7f\ttab"
+    raw = FrameWriter(1, 1).write(Statustext(severity=6, text=said))
+    decoded = decode(only(raw))
+    assert isinstance(decoded, Statustext)
+    bad = "\N{REPLACEMENT CHARACTER}"
+    assert decoded.text == f"{bad}[2J{bad}31m a b {bad}c{bad}{bad}d{bad}\ttab"
+    assert said.encode() in raw

@@ -13,6 +13,7 @@ from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import SIGNED, Frame, split
 from gcs.wire.messages import Heartbeat, Statustext
 from gcs.wire.signing import (
+    AHEAD_MAX_TICKS,
     EPOCH_NS,
     GOOD,
     LATE_MAX_TICKS,
@@ -254,6 +255,27 @@ def test_what_another_stream_has_told_of_the_time_counts_for_a_new_one() -> None
     ahead = Peer(timestamp=NOW + 3 * LATE_MAX_TICKS, sysid=1)
     assert reason(checker, ahead.says()) is None
     assert reason(checker, Peer(sysid=2).says()) is Reason.TOO_OLD
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_one_frame_that_is_far_ahead_moves_nothing(known: bool) -> None:
+    clock = SigningClock()
+    checker, peer = Checker(KEY, clock), Peer()
+    if known:
+        assert reason(checker, peer.says()) is None
+    for timestamp in (NOW + AHEAD_MAX_TICKS + 100, TIMESTAMP_MAX - 3):
+        assert reason(checker, Peer(timestamp=timestamp).says()) is Reason.AHEAD
+    assert clock.now(NOW_NS) <= NOW + 10
+    assert reason(checker, peer.says()) is None, "the stream goes on"
+
+
+def test_a_stream_that_is_far_ahead_is_followed_from_its_second_frame() -> None:
+    """A computer without a clock of its own, whose vehicle knows the time."""
+    peer, checker = Peer(timestamp=NOW + 400 * AHEAD_MAX_TICKS), Checker(KEY)
+    assert [reason(checker, peer.says()) for _ in range(3)] == [Reason.AHEAD, None, None]
+    first = Peer(timestamp=NOW + 400 * AHEAD_MAX_TICKS).says()
+    again = Checker(KEY)
+    assert [reason(again, first) for _ in range(3)] == [Reason.AHEAD] * 3, "sent a second time"
 
 
 def test_streams_are_bounded_and_those_that_are_known_go_on() -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -115,12 +118,36 @@ def test_saving_and_loading_parameters_changes_none(param1: float) -> None:
     allowed(guard().judge(command(STORAGE, param1), FLYING))
 
 
-@pytest.mark.parametrize("param1", [2.0, 3.0, 4.0, 1.5, float("nan")])
-def test_setting_parameters_back_is_writing_all_of_them(param1: float) -> None:
-    refused(guard().judge(command(STORAGE, param1), PARKED))
+@pytest.mark.parametrize(
+    "params",
+    [(2.0,), (3.0,), (4.0,), (1.5,), (math.nan,), (0.0, 2.0), (1.0, 2.0), (0.0, 0.0, 1.0)],
+)
+def test_setting_parameters_or_the_mission_back_is_writing_all_of_them(
+    params: tuple[float, ...],
+) -> None:
+    refused(guard().judge(command(STORAGE, *params), PARKED))
     own = guard('parameters = "forward"')
-    allowed(own.judge(command(STORAGE, param1), PARKED))
-    refused(own.judge(command(STORAGE, param1), FLYING))
+    allowed(own.judge(command(STORAGE, *params), PARKED))
+    refused(own.judge(command(STORAGE, *params), FLYING))
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
+        ("home", SET_HOME),
+        ("origin", SET_ORIGIN),
+        ("fence", FENCE_POINT),
+        ("rally", RALLY_POINT),
+        ("signing", SETUP_SIGNING),
+    ],
+)
+def test_who_is_not_in_control_sets_nothing_up_that_the_policy_forwards(
+    key: str, message: Message
+) -> None:
+    own = guard(f'{key} = "forward"')
+    allowed(own.judge(message, PARKED))
+    found = refused(own.judge(message, replace(PARKED, in_control=False)))
+    assert found.refusal.code is Code.OTHER_OPERATOR
 
 
 LENIENT = "\n".join(

@@ -31,9 +31,9 @@ def sent(name: str, *fields: object) -> Message:
     return message
 
 
-def command(number: int, param1: float = 0.0) -> Message:
+def command(number: int, *params: float) -> Message:
     """COMMAND_LONG to the vehicle."""
-    return sent("command_long", 1, 1, number, 0, param1, 0, 0, 0, 0, 0, 0)
+    return sent("command_long", 1, 1, number, 0, *params, *(0.0,) * (7 - len(params)))
 
 
 def guard(rules: str = "", autopilot: str = "px4") -> Guard:

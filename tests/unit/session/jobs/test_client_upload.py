@@ -244,7 +244,7 @@ def test_of_a_mission_that_is_refused_the_reasons_are_told_alone() -> None:
         (item(1, frame=MavFrame.LOCAL_NED), "frame 1 is none of a mission"),
         (item(1, z=math.nan), "has no altitude"),
         (item(1)._replace(x=910_000_000), "latitude"),
-        (item(1, command=31_000), "not known to fly"),
+        (item(1, command=31_000), "verified here"),
         (item(1, Cmd.DO_JUMP, p1=9.0, frame=MavFrame.MISSION), "jumps to seq 9"),
         (item(1, Cmd.NAV_FENCE_CIRCLE_INCLUSION, p1=10.0), "belongs to a fence"),
         (item(2), "seq"),

@@ -142,7 +142,7 @@ def test_an_actuator_is_moved_by_no_mission_and_what_is_let_through_by_name_must
     assert "past the controllers" in script.sentence
     script = upload(servo, autopilot=ARDUPILOT, bridge='extra_harmless = ["DO_SET_SERVO"]')
     assert script.refused is Code.BAD_MISSION
-    assert "not known to fly" in script.sentence
+    assert "verified here" in script.sentence
 
 
 def test_each_item_that_is_not_carried_is_told() -> None:
@@ -246,4 +246,4 @@ def test_no_command_that_is_refused_by_default_rides_in_a_mission(autopilot: Aut
 def test_what_the_dialect_lacks_is_in_no_mission(command: int, autopilot: Autopilot) -> None:
     script = upload(place(command, 15.0), autopilot=autopilot)
     assert script.refused is Code.BAD_MISSION
-    assert "not known to fly" in script.sentence
+    assert "verified here" in script.sentence
