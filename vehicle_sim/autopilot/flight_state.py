@@ -20,7 +20,6 @@ from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.rules import RULES, AutopilotRules
 from vehicle_sim.autopilot.servo_outputs import ServoOutputs
 from vehicle_sim.autopilot.speed_limits import SpeedLimits
-from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.autopilot.tasks.tasks import Hold
 from vehicle_sim.control_loops.trajectory import stopping_point
 from vehicle_sim.engine.step import DT_NS, Blocks, Seat
@@ -42,9 +41,7 @@ class FlightState:
         parameters: Parameters,
         seat: Seat,
         boot: Boot,
-        offboard: Offboard,
     ) -> None:
-        self.offboard: Offboard = offboard
         self.parameters = parameters
         self.personality = personality = parameters.personality
         self.rules: AutopilotRules = RULES[personality]
