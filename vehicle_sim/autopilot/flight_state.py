@@ -174,7 +174,8 @@ class FlightState:
     # ------------------------------------------------------------- its home and its speed
 
     def datum(self) -> Datum:
-        return Datum(self.projection, self.ground, self.home_ned or (0.0, 0.0, 0.0))
+        home_ned = self.home_ned or (0.0, 0.0, 0.0)
+        return Datum(self.projection, self.ground, home_ned, self.rules.zero_keeps_height)
 
     def change_speed(self, speed_m_s: float | None, kind: SpeedType = SpeedType.GROUND) -> None:
         """For the vehicle's own flights, until it is disarmed; None = the default again."""
