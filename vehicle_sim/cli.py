@@ -16,7 +16,6 @@ from vehicle_sim.options import AssignmentType, HomeType, SeedType, SpeedType, W
 
 if TYPE_CHECKING:
     from vehicle_sim.autopilot.boot import Boot
-    from vehicle_sim.autopilot.tasks.guided import Offboard
     from vehicle_sim.reporting import Launch, Reporter
     from vehicle_sim.shell.pacer import Redraw
     from vehicle_sim.shell.runtime import Opened, Plan, StreamChoice
@@ -45,7 +44,6 @@ class Options:
     firmware: Firmware
     boot: Boot
     camera: Literal["still", "none"]
-    offboard: Offboard
     operator_control: bool
     count: int
     airframe: str
@@ -108,14 +106,6 @@ class _BadFileError(Exception):
     default="still",
     show_default=True,
     help="One that takes pictures, or none, as on a bare autopilot.",
-)
-@click.option(
-    "--offboard",
-    type=click.Choice(["smooth", "real"]),
-    default="smooth",
-    show_default=True,
-    help="px4: how it flies setpoints, along a trajectory, or as the real one, which leans by "
-    "48 deg for a step of 10 m and flies half a metre too far.",
 )
 @click.option(
     "--operator-control",
@@ -210,7 +200,6 @@ def main(
     firmware: str | None,
     boot: Boot,
     camera: Literal["still", "none"],
-    offboard: Offboard,
     operator_control: bool,
     count: int,
     airframe: str,
@@ -251,7 +240,6 @@ def main(
                 firmware=played,
                 boot=boot,
                 camera=camera,
-                offboard=offboard,
                 operator_control=operator_control,
                 count=count,
                 airframe=airframe,
@@ -343,7 +331,6 @@ def plan_of(options: Options) -> Plan:
         firmware=options.firmware,
         boot=options.boot,
         camera=options.camera == "still",
-        offboard=options.offboard,
         operator_control=options.operator_control,
         airframe=options.airframe,
         vehicles=vehicles,

@@ -20,7 +20,6 @@ from gcs.wire.frame import Frame, split
 from tests.loopback.flight import Flight, Personality
 from tests.loopback.lossy_link import CLEAR, Weather
 from vehicle_sim.autopilot.firmware import Firmware
-from vehicle_sim.autopilot.tasks.guided import Offboard
 
 VEHICLE = (1, 1)
 STATION = (255, 191)
@@ -146,7 +145,6 @@ class BridgedFlight(Flight):
         down: Weather = CLEAR,
         params: dict[str, float] | None = None,
         firmware: Firmware | None = None,
-        offboard: Offboard = "smooth",
         config: StationConfig = BRIDGE,
         vehicle_key: bytes | None = None,
         station_key: bytes | None = None,
@@ -161,7 +159,6 @@ class BridgedFlight(Flight):
             down=down,
             params=params,
             firmware=firmware,
-            offboard=offboard,
             config=config,
             vehicle_key=vehicle_key,
             station_key=station_key,

@@ -36,7 +36,6 @@ from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.simulation.world import Datagram as Inbound
@@ -83,7 +82,6 @@ class Flight(Looks):
         params: dict[str, float] | None = None,
         firmware: Firmware | None = None,
         boot: Boot = "quick",
-        offboard: Offboard = "smooth",
         config: StationConfig = CONFIG,
         vehicle_key: bytes | None = None,
         station_key: bytes | None = None,
@@ -99,7 +97,7 @@ class Flight(Looks):
         for name, value in (params or {}).items():
             parameters.set(name, value)
         self.vehicle = Autopilot(
-            personality, HOMES[personality], seed, params=parameters, boot=boot, offboard=offboard
+            personality, HOMES[personality], seed, params=parameters, boot=boot
         )
         profile = profile_of(personality, parameters.firmware)
         server = VehicleServer(

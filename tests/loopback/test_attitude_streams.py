@@ -85,7 +85,7 @@ def flying(
     params: dict[str, float] | None = None,
 ) -> tuple[BridgedFlight, Client, Attitudes]:
     """Armed and taken off by the client, hovering above home."""
-    flight = BridgedFlight(personality, policy=policy, params=params, offboard="real")
+    flight = BridgedFlight(personality, policy=policy, params=params)
     client = flight.join()
     flight.connected()
     taken_off(flight, client, up_m)

@@ -28,7 +28,6 @@ from tests.loopback.flight import PERSONALITIES, Flight, Personality
 from tests.loopback.observed import START_NS
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
 from tests.loopback.test_attitude_streams import blow
-from vehicle_sim.autopilot.tasks.guided import Offboard
 
 ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED = 0, 1, 2, 3
 ARM, ORBIT, PAUSE, RTL, LAND, RELEASE = 400, 34, 193, 20, 21, 32100
@@ -46,11 +45,9 @@ TOWER = CircleSpec(3.0, (0.0, 25.0), name="tower", inclusion=False)
 """25 m north of home."""
 
 
-def flying(
-    personality: Personality, policy: Policy = DEFAULT, offboard: Offboard = "smooth"
-) -> tuple[BridgedFlight, Client]:
+def flying(personality: Personality, policy: Policy = DEFAULT) -> tuple[BridgedFlight, Client]:
     """Taken off by the client, hovering above home."""
-    flight = BridgedFlight(personality, policy=policy, offboard=offboard)
+    flight = BridgedFlight(personality, policy=policy)
     client = flight.join()
     flight.connected()
     taken_off(flight, client, UP_M)
@@ -170,9 +167,9 @@ def test_a_circle_is_flown_at_its_radius_speed_and_height(
     assert "refused" not in client.texts()
 
 
-def test_a_px4_without_smoothed_setpoints_keeps_to_its_circle_too() -> None:
-    """Its velocity lags more: 0.87 m were measured at 10 m/s."""
-    flight, client = flying("px4", offboard="real")
+def test_a_fast_px4_keeps_to_its_circle_too() -> None:
+    """Its velocity lags: 0.87 m were measured at 10 m/s."""
+    flight, client = flying("px4")
     assert asked(client, 50.0, 10.0, centre=(0.0, 0.0)) == ACCEPTED
     track = circling(flight, (0.0, 0.0), 50.0)
     track.fly(30.0)

@@ -12,19 +12,16 @@ import pytest
 from gcs.gate.airspace.stopping import travel_m
 from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.states import State
-from tests.loopback.flight import Flight
+from tests.loopback.flight import PERSONALITIES, Flight, Personality
 
-VEHICLES = pytest.mark.parametrize("kind", ["px4", "px4 offboard=real", "ardupilot"])
+VEHICLES = pytest.mark.parametrize("kind", PERSONALITIES)
 RESTS_WITHIN_S = 12.0
 TIGHT = 2.5
 """A prediction this many times as long as what is flown is too long to be of use."""
 
 
-def flight_of(kind: str, policy: str = "") -> Flight:
-    parsed = parse_policy(policy, "my.toml")
-    if kind == "ardupilot":
-        return Flight("ardupilot", policy=parsed)
-    return Flight("px4", policy=parsed, offboard="real" if "real" in kind else "smooth")
+def flight_of(kind: Personality, policy: str = "") -> Flight:
+    return Flight(kind, policy=parse_policy(policy, "my.toml"))
 
 
 def velocity_enu(flight: Flight) -> tuple[float, float, float]:
@@ -43,15 +40,9 @@ def rest(flight: Flight) -> None:
     flight.until(lambda: math.hypot(*velocity_enu(flight)) < 0.1, RESTS_WITHIN_S)
 
 
-@pytest.mark.parametrize(
-    ("kind", "faster_than_m_s"),
-    [
-        *(("px4", speed) for speed in (1.5, 3.0, 4.5)),  # its cruise speed is 5 m/s
-        *(("px4 offboard=real", speed) for speed in (1.5, 3.0, 4.5, 7.0, 9.5)),
-        *(("ardupilot", speed) for speed in (1.5, 3.0, 4.5, 7.0, 9.5)),
-    ],
-)
-def test_an_abort_takes_what_was_predicted(kind: str, faster_than_m_s: float) -> None:
+@VEHICLES
+@pytest.mark.parametrize("faster_than_m_s", [1.5, 3.0, 4.5, 7.0, 9.5])
+def test_an_abort_takes_what_was_predicted(kind: Personality, faster_than_m_s: float) -> None:
     flight = flight_of(kind).hovering(3.0)
     flight.goto(0.0, 130.0, 3.0)
     flight.until(lambda: speed_m_s(flight) >= faster_than_m_s)
@@ -69,7 +60,6 @@ def test_an_abort_takes_what_was_predicted(kind: str, faster_than_m_s: float) ->
     "kind",
     [
         "px4",
-        "px4 offboard=real",
         pytest.param(
             "ardupilot",
             marks=pytest.mark.xfail(
@@ -82,7 +72,7 @@ def test_an_abort_takes_what_was_predicted(kind: str, faster_than_m_s: float) ->
 )
 @pytest.mark.parametrize(("from_up_m", "to_up_m"), [(3.0, 40.0), (28.0, 3.0)])
 def test_an_abort_of_a_climb_or_descent_takes_what_was_predicted(
-    kind: str, from_up_m: float, to_up_m: float
+    kind: Personality, from_up_m: float, to_up_m: float
 ) -> None:
     flight = flight_of(kind).hovering(from_up_m)
     flight.goto(0.0, 0.0, to_up_m)
@@ -113,7 +103,7 @@ ceiling_up_m = 20.0
 @VEHICLES
 @pytest.mark.parametrize(("gust_m_s", "wall_m"), [(2.0, 3.5), (3.0, 5.5), (5.0, 11.0)])
 def test_a_vehicle_that_is_pushed_off_its_leg_is_braked_at_once_and_stays_inside(
-    kind: str, gust_m_s: float, wall_m: float
+    kind: Personality, gust_m_s: float, wall_m: float
 ) -> None:
     """It flies east at 3 m/s, and a wall stands in the north, where a gust drives it.
 
@@ -135,7 +125,7 @@ def test_a_vehicle_that_is_pushed_off_its_leg_is_braked_at_once_and_stays_inside
 
 
 @pytest.mark.parametrize("kind", ["px4", "ardupilot"])
-def test_a_goal_at_the_margin_is_flown_to_from_afar_and_not_braked_for(kind: str) -> None:
+def test_a_goal_at_the_margin_is_flown_to_from_afar_and_not_braked_for(kind: Personality) -> None:
     flight = flight_of(kind, HALL.format(north_m=52.0)).hovering(3.0)
     goal_enu = (0.0, 49.6, 3.0)
     assert flight.done(flight.goto(*goal_enu)) == "complete"
@@ -146,7 +136,7 @@ def test_a_goal_at_the_margin_is_flown_to_from_afar_and_not_braked_for(kind: str
 
 def test_a_step_of_offboard_as_recorded_is_not_braked_for() -> None:
     """10 m, the longest that was recorded, to 3 m from the wall."""
-    flight = flight_of("px4 offboard=real", HALL.format(north_m=13.0)).hovering(3.0)
+    flight = flight_of("px4", HALL.format(north_m=13.0)).hovering(3.0)
     assert flight.done(flight.goto(0.0, 10.0, 3.0)) == "complete"
     flight.run(5.0)
     assert flight.is_in(State.HOVERING)

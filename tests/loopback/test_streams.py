@@ -16,8 +16,7 @@ from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.report import DecisionItem
 from gcs.session.inputs import OperatorGone, OperatorJoined, OperatorLine
-from tests.loopback.flight import Flight
-from vehicle_sim.autopilot.tasks.guided import Offboard
+from tests.loopback.flight import PERSONALITIES, Flight, Personality
 from vehicle_sim.simulation.fault_script import fault_of
 
 HALF_M, CEILING_M = 55.0, 40.0
@@ -36,15 +35,11 @@ PERIOD_S = 0.05
 POSITION_ONLY, VELOCITY_ONLY = 3576, 3527
 """POSITION_TARGET_TYPEMASK."""
 
-KINDS = pytest.mark.parametrize("kind", ["px4", "px4 offboard=real", "ardupilot"])
+KINDS = pytest.mark.parametrize("kind", PERSONALITIES)
 
 
-def flight_of(kind: str) -> Flight:
-    policy = parse_policy(POLICY, "my.toml")
-    if kind == "ardupilot":
-        return Flight("ardupilot", policy=policy).hovering(UP_M)
-    offboard: Offboard = "real" if "real" in kind else "smooth"
-    return Flight("px4", policy=policy, offboard=offboard).hovering(UP_M)
+def flight_of(kind: Personality) -> Flight:
+    return Flight(kind, policy=parse_policy(POLICY, "my.toml")).hovering(UP_M)
 
 
 def sample(flight: Flight, v_enu: Vec3, client: int = 1) -> None:
@@ -83,7 +78,9 @@ def speed_m_s(flight: Flight) -> float:
     [(10.0, 0.0, 0.0), (0.0, -10.0, 0.0), (-6.0, 8.0, 0.0), (0.0, 0.0, 3.0), (0.0, 0.0, -2.0)],
     ids=["east", "south", "north-west", "up", "down"],
 )
-def test_full_speed_straight_at_the_fence_is_held_and_flown_back(kind: str, v_enu: Vec3) -> None:
+def test_full_speed_straight_at_the_fence_is_held_and_flown_back(
+    kind: Personality, v_enu: Vec3
+) -> None:
     flight = flight_of(kind)
     outside_m = stream(flight, v_enu, 14.0)
     assert outside_m < 0.0
@@ -102,7 +99,7 @@ def test_full_speed_straight_at_the_fence_is_held_and_flown_back(kind: str, v_en
 @pytest.mark.slow
 @KINDS
 @pytest.mark.parametrize("v_enu", [(10.0, 0.0, 0.0), (7.0, 7.0, 0.0)], ids=["east", "corner"])
-def test_in_a_wind_towards_the_fence_as_well(kind: str, v_enu: Vec3) -> None:
+def test_in_a_wind_towards_the_fence_as_well(kind: Personality, v_enu: Vec3) -> None:
     flight = flight_of(kind)
     blow(flight, 8.0, 8.0)
     assert stream(flight, v_enu, 16.0) < 0.0
@@ -110,7 +107,7 @@ def test_in_a_wind_towards_the_fence_as_well(kind: str, v_enu: Vec3) -> None:
 
 
 @pytest.mark.parametrize("kind", ["px4", "ardupilot"])
-def test_a_client_that_falls_silent_is_held_and_its_stream_is_over(kind: str) -> None:
+def test_a_client_that_falls_silent_is_held_and_its_stream_is_over(kind: Personality) -> None:
     flight = flight_of(kind)
     stream(flight, (4.0, 0.0, 0.0), 3.0)
     silent_ns = flight.now_ns

@@ -28,7 +28,6 @@ def options(count: int, links: tuple[str, ...] = ()) -> Options:
         firmware="1.14",
         boot="quick",
         camera="still",
-        offboard="smooth",
         operator_control=False,
         count=count,
         airframe="s500",

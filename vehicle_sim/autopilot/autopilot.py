@@ -25,7 +25,6 @@ from vehicle_sim.autopilot.interface import (
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.parts import Parts
-from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import DT_NS, Seat, VehicleSpec, restart
 from vehicle_sim.estimation.estimator import Health
@@ -53,13 +52,12 @@ class Autopilot:
         seat: Seat | None = None,
         boot: Boot = "quick",
         camera: bool = True,
-        offboard: Offboard = "smooth",
     ) -> None:
         self.personality = personality
         self.parameters = parameters = params if params is not None else Parameters(personality)
         seat = seat or Seat(ScalarEngine([VehicleSpec(seed, index, home.lat_deg)], load()), 0)
         self.engine = seat.engine
-        self.state = state = FlightState(home, parameters, seat, boot, offboard)
+        self.state = state = FlightState(home, parameters, seat, boot)
         self.blocks = state.blocks
         self.parts = Parts(state, index, camera)
         self._forward(self.parts)

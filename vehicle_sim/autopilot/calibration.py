@@ -131,6 +131,7 @@ _COPTER: Final[dict[tuple[int, float], Procedure]] = {
         acked_s=0.54,
         positions=True,
     ),
+    (5, 4.0): Procedure((_BEGINS,), 1.0, acked_s=1.0),
     (5, 2.0): Procedure(
         (_BEGINS, Line(1.1, 6, "Trim OK: roll=0.01 pitch=-0.01 yaw=0.00")), 1.1, acked_s=1.1
     ),
@@ -148,7 +149,7 @@ class Calibration:
 
     __slots__ = (
         "_acked", "_asked_ns", "_began_ns", "_highest", "_lowest", "_position", "_said",
-        "_tries", "against_arming", "running",
+        "_tries", "accel_again_ns", "against_arming", "running",
     )  # fmt: skip
 
     def __init__(self) -> None:
@@ -159,6 +160,7 @@ class Calibration:
         self._said = 0
         self._acked = True
         self._tries = 0
+        self.accel_again_ns = 0  # before this ArduPilot calibrates no accelerometer
         self._lowest = self._highest = _STILL
         self.against_arming: tuple[str, ...] = ()
 

@@ -10,7 +10,9 @@ from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 
-_SIMPLE_ACCEL = 4.0  # PREFLIGHT_CALIBRATION's parameter 5
+_LEVEL_OR_SIMPLE_ACCEL: Final = (2.0, 4.0)  # PREFLIGHT_CALIBRATION's parameter 5
+_ACCEL_REST_NS: Final = 5_000_000_000
+"""After one of these ArduCopter rejects the next: recorded 3.7 s after its end, and not 7.1 s."""
 
 
 Calibrate: TypeAlias = Callable[[FlightState, tuple[float, ...]], Result | None]
@@ -48,12 +50,16 @@ def _calibrate_copter(state: FlightState, parameters: tuple[float, ...]) -> Resu
     if state.armed:
         state.say(5, "Disarm to allow calibration")
         return Result.FAILED
-    if parameters[4] == _SIMPLE_ACCEL:
+    accel = parameters[4] in _LEVEL_OR_SIMPLE_ACCEL
+    if accel and state.time_ns < state.calibration.accel_again_ns:
         return Result.TEMPORARILY_REJECTED
     state.calibration.mind_radio(parameters[3])
     procedure = copter_procedure(parameters)
     if procedure is None:
         return Result.UNSUPPORTED
+    if accel:
+        ends_ns = state.time_ns + int(procedure.lasts_s * 1e9)
+        state.calibration.accel_again_ns = ends_ns + _ACCEL_REST_NS
     return state.calibration.begin(procedure, state.time_ns)
 
 

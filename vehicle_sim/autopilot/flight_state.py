@@ -20,7 +20,6 @@ from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.rules import RULES, AutopilotRules
 from vehicle_sim.autopilot.servo_outputs import ServoOutputs
 from vehicle_sim.autopilot.speed_limits import SpeedLimits
-from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.autopilot.tasks.tasks import Hold
 from vehicle_sim.control_loops.trajectory import stopping_point
 from vehicle_sim.engine.step import DT_NS, Blocks, Seat
@@ -42,9 +41,7 @@ class FlightState:
         parameters: Parameters,
         seat: Seat,
         boot: Boot,
-        offboard: Offboard,
     ) -> None:
-        self.offboard: Offboard = offboard
         self.parameters = parameters
         self.personality = personality = parameters.personality
         self.rules: AutopilotRules = RULES[personality]
@@ -177,7 +174,8 @@ class FlightState:
     # ------------------------------------------------------------- its home and its speed
 
     def datum(self) -> Datum:
-        return Datum(self.projection, self.ground, self.home_ned or (0.0, 0.0, 0.0))
+        home_ned = self.home_ned or (0.0, 0.0, 0.0)
+        return Datum(self.projection, self.ground, home_ned, self.rules.zero_keeps_height)
 
     def change_speed(self, speed_m_s: float | None, kind: SpeedType = SpeedType.GROUND) -> None:
         """For the vehicle's own flights, until it is disarmed; None = the default again."""

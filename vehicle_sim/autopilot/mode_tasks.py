@@ -56,7 +56,7 @@ class ModeTasks:
             case Behaviour.GUIDED:
                 if state.rules.guided_forgets_setpoints:
                     self._stream.forget()
-                return Guided(state.parameters, self._stream, state.offboard)
+                return Guided(state.parameters, self._stream)
             case Behaviour.TAKEOFF:
                 return self.take_off(state.parameters.si(Quantity.TAKEOFF_UP_M))
             case Behaviour.MISSION:

@@ -119,6 +119,7 @@ class AutopilotRules:
     waypoints_have_radius: bool  # param 2 of a waypoint is its acceptance radius [m]
     nose_in_flight: str | None  # the parameter that says where the nose points; 0 = as it is
     flies_splines: bool  # NAV_SPLINE_WAYPOINT
+    zero_keeps_height: bool  # an item of altitude 0 is flown as high as the one before it
     terrain_items: bool  # heights above terrain are stored; without its data they are not flown
     payload_item_lasts: str | None  # the parameter with how long DO_GRIPPER and DO_WINCH last [s]
     items_need_sound_place: bool  # an altitude that is no number, or no place on Earth, is refused
@@ -152,7 +153,7 @@ class AutopilotRules:
     channel_map: str  # begin of the parameters that say which channel is which stick
     channel_lasts: str  # the parameter with how long an overridden channel counts [s]
     receiver_grace: str | None  # the parameter with how long after that the sticks are lost [s]
-    receiver_silent: str | None  # the parameter that, if not 0, counts that from the last override
+    receiver_silent: str | None  # the parameter that takes the simulated receiver away, if not 0
     arming_gesture: str  # the parameter that allows arming by the sticks; 0 = not
     gesture_disarms_from: int  # from this value of it on the sticks disarm, too
     own_station: str | None  # the parameter with whose sticks and heartbeats count, by system id
@@ -248,6 +249,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         waypoints_have_radius=True,
         nose_in_flight=None,
         flies_splines=False,
+        zero_keeps_height=False,
         terrain_items=False,
         payload_item_lasts="MIS_PD_TO",
         items_need_sound_place=False,
@@ -372,6 +374,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         waypoints_have_radius=False,
         nose_in_flight="WP_YAW_BEHAVIOR",
         flies_splines=True,
+        zero_keeps_height=True,
         terrain_items=True,
         payload_item_lasts=None,
         items_need_sound_place=True,

@@ -15,6 +15,10 @@ from vehicle_sim.services.ports import CommandContext, CommandEntry
 from vehicle_sim.services.texts import status_text
 from vehicle_sim.wire.ids import Cmd
 
+_ACTUATORS: Final = (range(1, 13), range(33, 41))
+"""Of ACTUATOR_OUTPUT_FUNCTION what PX4 1.14 has: motors and servos, how many from memory."""
+_PX4_FUNCTIONS: Final = 1000.0  # from here on the parameter is one of PX4's own numbers
+
 
 def _accept(context: CommandContext, order: Order) -> Answer:
     """An output without anything on it."""
@@ -49,8 +53,18 @@ def _shoot(context: CommandContext, order: Order) -> Answer:
 
 
 def _actuator_test(context: CommandContext, order: Order) -> Answer:
-    """PX4 tests no actuator while armed; the motors of this vehicle stand still either way."""
+    """PX4 tests no actuator while armed; the motors of this vehicle stand still either way.
+
+    What it has not got is not answered: recorded for p5 of 0, 16, 17, 48, 49 and 101.
+    """
+    if not (order.p5 >= _PX4_FUNCTIONS or any(order.p5 in known for known in _ACTUATORS)):
+        return Answer(Result.UNSUPPORTED, acked=False)
     return Answer(Result.DENIED if context.vehicle.armed else Result.ACCEPTED)
+
+
+def _autotune(context: CommandContext, order: Order) -> Answer:
+    """As recorded on the ground, to start and to stop it; no tuning follows."""
+    return Answer(Result.IN_PROGRESS)
 
 
 def _banner(context: CommandContext, order: Order) -> Answer:
@@ -79,5 +93,6 @@ PAYLOAD: Final[dict[Cmd, CommandEntry]] = {
     **{command: CommandEntry(handler, only="ardupilot") for command, handler in _COPTER.items()},
     Cmd.DO_SET_ACTUATOR: CommandEntry(_accept, only="px4"),
     Cmd.ACTUATOR_TEST: CommandEntry(_actuator_test, only="px4"),
+    Cmd.DO_AUTOTUNE_ENABLE: CommandEntry(_autotune, only="px4"),
     Cmd.LOGGING_START: CommandEntry(_accept, only="px4"),
 }

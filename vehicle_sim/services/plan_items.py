@@ -32,7 +32,7 @@ _KEPT: Final[dict[int, tuple[bool, bool, bool, bool]]] = {
     18: (True, False, True, True),
     19: (True, False, True, True),
     20: (False, False, False, False),
-    21: (True, False, False, False),
+    21: (True, False, False, True),
     22: (True, False, False, False),
     31: (False, True, False, True),
     82: (True, False, False, False),
@@ -165,6 +165,8 @@ def as_ardupilot_gives_back(item: PlanItem, home: Geodetic | None) -> PlanItem:
     )
     if item.command == Cmd.NAV_LOITER_TIME:
         item = replace(item, p3=-1.0 if item.p3 < 0.0 else 1.0)  # of the radius only the sign
+    if item.command == Cmd.NAV_LAND:
+        item = replace(item, p4=-1.0 if item.p4 < 0.0 else 1.0)  # recorded: 0, 1, NaN become 1
     goes_somewhere = item.command <= _LAST_NAV and item.command not in _PLACELESS_NAVS
     if not (goes_somewhere or item.command in _PLACED_DOS):
         return replace(item, frame=MavFrame.GLOBAL)

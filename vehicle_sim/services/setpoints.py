@@ -109,7 +109,7 @@ def _setpoint(
     mask = asked.type_mask
     velocity = _vector(mask, PositionIgnore.VELOCITY, (asked.vx, asked.vy, asked.vz), profile)
     thrust = _vector(mask, PositionIgnore.ACCELERATION, (asked.afx, asked.afy, asked.afz), profile)
-    yaw = _scalar(mask, PositionIgnore.YAW, asked.yaw)
+    yaw = _scalar(mask, PositionIgnore.YAW, asked.yaw, profile)
     if yaw is not None and profile.offset_frames:
         yaw = math.remainder(yaw + heading_rad, 2.0 * math.pi)
     setpoint = Setpoint(
@@ -117,7 +117,7 @@ def _setpoint(
         v_ned=_rotated(velocity, heading_rad) if velocity is not None else None,
         a_ned=_rotated(thrust, heading_rad) if thrust is not None else None,
         yaw_rad=yaw,
-        yaw_rate_rad_s=_scalar(mask, PositionIgnore.YAW_RATE, asked.yaw_rate),
+        yaw_rate_rad_s=_scalar(mask, PositionIgnore.YAW_RATE, asked.yaw_rate, profile),
     )
     if setpoint.pos_ned is None and setpoint.v_ned is None and setpoint.a_ned is None:
         raise BadSetpointError(f"type_mask {mask} leaves nothing to fly to")
@@ -158,14 +158,19 @@ def _vector(mask: int, ignore: PositionIgnore, value: Vec3, profile: Profile) ->
         return None
     lowest = ignore & -ignore
     used = [not ignored & lowest << axis for axis in range(3)]
+    if not profile.whole_masks:
+        used = [use and not math.isnan(part) for use, part in zip(used, value, strict=True)]
+        if not any(used):
+            return None
     if not all(abs(part) <= FARTHEST for part, use in zip(value, used, strict=True) if use):
         raise BadSetpointError(f"{value} is not finite, or beyond all measure")
     x, y, z = (part if use else math.nan for part, use in zip(value, used, strict=True))
     return (x, y, z)
 
 
-def _scalar(mask: int, ignore: PositionIgnore, value: float) -> float | None:
-    if mask & ignore:
+def _scalar(mask: int, ignore: PositionIgnore, value: float, profile: Profile) -> float | None:
+    """None where the mask leaves it out; to PX4, which has no other mask inside, NaN does too."""
+    if mask & ignore or (math.isnan(value) and not profile.whole_masks):
         return None
     if not abs(value) <= FARTHEST:
         raise BadSetpointError(f"{value} is not finite, or beyond all measure")

@@ -17,7 +17,6 @@ from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.engine.choose_engine import engine_for
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.plant.airframe import load
@@ -82,7 +81,6 @@ class Plan:
     view: Url | None = None  # who is sent the truth
     boot: Boot = "quick"
     camera: bool = True
-    offboard: Offboard = "smooth"
     operator_control: bool = False  # one station at a time commands
     grade: SensorGrade = MEMS
 
@@ -124,7 +122,6 @@ def launch(plan: Plan) -> Opened:
             Seat(engine, lane),
             plan.boot,
             plan.camera,
-            plan.offboard,
         )
         vehicle.inject(plan.wind)
         servers.append(

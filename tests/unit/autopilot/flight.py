@@ -21,7 +21,6 @@ from vehicle_sim.autopilot.interface import (
     VehicleEvent,
 )
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.tasks.guided import Offboard
 from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.numerics.vectors import Vec3
@@ -44,12 +43,11 @@ class Flight:
         seed: int = 1,
         boot: Boot = "quick",
         airframe: str = "s500",
-        offboard: Offboard = "smooth",
     ) -> None:
         home = HOMES[personality]
         frame = load(airframe) if airframe in shipped() else parse(SIH.read_text(), SIH.name)
         seat = Seat(ScalarEngine([VehicleSpec(seed, 0, home.lat_deg)], frame), 0)
-        self.vehicle = Autopilot(personality, home, seed, seat=seat, boot=boot, offboard=offboard)
+        self.vehicle = Autopilot(personality, home, seed, seat=seat, boot=boot)
         self.personality: Personality = personality
         self.seen: list[VehicleEvent] = []
 

@@ -148,7 +148,7 @@ class Stepper:
 
     def __init__(self, personality: Personality, airframe: str) -> None:
         self.personality: Personality = personality
-        self.flight = Flight(personality, airframe=airframe, offboard="real").boot()
+        self.flight = Flight(personality, airframe=airframe).boot()
         self.vehicle = self.flight.vehicle
 
     def track(

@@ -78,32 +78,31 @@ def test_a_step_of_a_metre_arrives_within_three_seconds_and_hardly_overshoots(
 def test_a_hop_of_three_metres_takes_about_three_seconds(personality: Personality) -> None:
     flight = guided(personality)
     flight.stream(Setpoint(pos_ned=(0.0, 3.0, -5.0)), 3.0)
-    assert flight.off((0.0, 3.0, -5.0)) < 0.35
+    # PX4 comes to within 0.5 m of a step of 10 m in 3.3 s (I1_step_response).
+    assert flight.off((0.0, 3.0, -5.0)) < (0.5 if personality == "px4" else 0.35)
     assert flight.speed_m_s < 0.5
 
 
-@either
-def test_a_long_leg_is_straight_and_keeps_the_speed_limit(personality: Personality) -> None:
-    flight = guided(personality)
+def test_a_long_leg_is_straight_and_keeps_the_speed_limit() -> None:
+    """ArduCopter's; PX4's is a step for its loops, see below."""
+    flight = guided("ardupilot")
     goal = (30.0, 30.0, -15.0)
     fastest = 0.0
     for _ in range(400):
         flight.stream(Setpoint(pos_ned=goal), 0.05)
         n, e, d = flight.pos
-        # PX4's own gains are weaker: 0.18 m each way from where it hovered.
-        assert abs(n - e) < (0.55 if personality == "px4" else 0.5)
+        assert abs(n - e) < 0.5
         assert abs((-d - 5.0) - n / 3.0) < 1.0
         v = flight.vehicle.truth.v_ned
         fastest = max(fastest, (v[0] ** 2 + v[1] ** 2) ** 0.5)
-    cruise_m_s = {"px4": 5.0, "ardupilot": 10.0}[personality]
-    assert 0.8 * cruise_m_s < fastest < 1.12 * cruise_m_s
+    assert 0.8 * 10.0 < fastest < 1.12 * 10.0
     assert flight.off(goal) < 0.5
     assert flight.astray_m < 1.0
 
 
-def test_px4_as_in_life_flies_a_far_setpoint_as_fast_as_it_ever_flies() -> None:
+def test_px4_flies_a_far_setpoint_as_fast_as_it_ever_flies() -> None:
     """I1_step_response: OFFBOARD's steps are not smoothed; neither cruise speed nor line count."""
-    flight = Flight("px4", offboard="real").airborne(5.0)
+    flight = Flight("px4").airborne(5.0)
     flight.stream(HERE, 1.5)
     assert flight.vehicle.set_mode_kind("guided") is Result.ACCEPTED
     goal = (60.0, 60.0, -15.0)

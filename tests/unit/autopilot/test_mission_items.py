@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, degrees, hypot, remainder, sqrt
+from math import atan2, degrees, hypot, nan, remainder, sqrt
 
 import pytest
 
@@ -403,3 +403,29 @@ def test_a_jump_for_ever_comes_back_until_it_is_taken_away(personality: Personal
         assert flight.vehicle.pause() is Result.ACCEPTED
     else:
         assert flight.vehicle.set_mode_kind("hold") is Result.ACCEPTED
+
+
+@pytest.mark.parametrize("frame", [0, 3])
+def test_ardupilot_keeps_its_height_at_an_altitude_of_0(frame: int) -> None:
+    """As ArduCopter 4.7 flew a waypoint in frame 3, then a spline, then a waypoint in frame 0."""
+    flight = started(
+        "ardupilot",
+        TAKE_OFF,
+        _at(1, 16, 12.0, 0.0, frame),
+        _at(2, 82, 12.0, 12.0, frame),
+        item(3, 16, 0.0, 12.0, 5.0),
+    )
+    lowest_m = 5.0
+    while not reached(flight)[3:]:
+        flight.fly(0.5)
+        if reached(flight):
+            lowest_m = min(lowest_m, flight.up_m)
+    assert lowest_m > 4.0
+
+
+def _at(seq: int, command: int, north_m: float, east_m: float, frame: int) -> PlanItem:
+    """At an altitude of 0."""
+    projection = Flight("ardupilot").vehicle.state.projection
+    place = projection.to_geodetic((north_m, east_m, 0.0))
+    x, y = round(place.lat_deg * 1e7), round(place.lon_deg * 1e7)
+    return PlanItem(seq, frame, command, 0.0, 0.0, 0.0, nan, x, y, 0.0, 1)

@@ -183,6 +183,8 @@ def test_ardupilot_minds_lost_sticks_and_a_lost_station() -> None:
     flight = Flight("ardupilot").boot()
     flight.vehicle.joystick(0, 0, 500, 0, flight.vehicle.time_ns)
     flight.fly(6.0)
+    assert flight.vehicle.armable, "the simulation's receiver is heard again"
+    flight.vehicle.parameters.set("SIM_RC_FAIL", 1)
     refused(flight, "Arm: Radio failsafe on")
     flight.vehicle.parameters.set("FS_THR_ENABLE", 0)
     assert flight.vehicle.armable

@@ -135,7 +135,7 @@ def test_nothing_is_calibrated_while_armed() -> None:
          ["Updating barometer calibration", "Barometer calibration complete"], 0),
         ((0, 0, 0, 0, 2), [Result.ACCEPTED],
          ["Initialising ArduPilot", "Trim OK: roll=0.01 pitch=-0.01 yaw=0.00"], 1090),
-        ((0, 0, 0, 0, 4), [Result.TEMPORARILY_REJECTED], [], 0),
+        ((0, 0, 0, 0, 4), [Result.ACCEPTED], ["Initialising ArduPilot"], 1000),
         *((each, [Result.UNSUPPORTED], [], 0)
           for each in ((3,), (0, 0, 0, 1), (0, 0, 0, 2), (0, 0, 0, 0, 3), (0, 0, 0, 0, 0, 0, 1),
                        (0, 1), ())),
@@ -144,7 +144,7 @@ def test_nothing_is_calibrated_while_armed() -> None:
 def test_ardupilots_are_acked_when_they_end(
     params: tuple[float, ...], results: list[Result], texts: list[str], acked_ms: int
 ) -> None:
-    """D1: the ack of gyro and level comes at the end."""
+    """D1: the ack of gyro and level comes at the end; the simple one was recorded afterwards."""
     bench = on_the_ground("ardupilot")
     heard = bench.send(calibrate(*params))
     early = [result for command, result in acks(heard) if command == CALIBRATE]
@@ -156,6 +156,15 @@ def test_ardupilots_are_acked_when_they_end(
     assert bench.texts(heard)[: len(texts)] == texts
     sticks = params[3:4] > (0,)  # D1: "PreArm: RC calibrating"
     assert bench.result(ARM) == (Result.FAILED if sticks else Result.ACCEPTED)
+
+
+def test_ardupilot_rejects_an_accelerometer_calibration_soon_after_another() -> None:
+    """D1: 3.7 s after the end of a level one; recorded afterwards: not 7.1 s after it."""
+    bench = on_the_ground("ardupilot")
+    level, simple = calibrate(0, 0, 0, 0, 2), calibrate(0, 0, 0, 0, 4)
+    assert told(bench, level, 4_800 * MS)[0] == [Result.ACCEPTED]
+    assert told(bench, simple, 3_400 * MS) == ([Result.TEMPORARILY_REJECTED], [])
+    assert told(bench, simple, 2 * S) == ([Result.ACCEPTED], ["Initialising ArduPilot"])
 
 
 def test_ardupilots_compass_calibration_is_started_and_cancelled() -> None:

@@ -23,7 +23,7 @@ from vehicle_sim.services.plan_items import as_ardupilot_gives_back, from_float,
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.simulation.impairment import Impairment
 from vehicle_sim.wire import messages as m
-from vehicle_sim.wire.ids import MissionResult, MissionType
+from vehicle_sim.wire.ids import Cmd, MissionResult, MissionType
 
 pytestmark = pytest.mark.slow  # a vehicle flies
 
@@ -205,6 +205,13 @@ def test_numbers_that_are_no_place_are_not_scaled() -> None:
     assert to_float(stored, client, 0).x == 1.0
     back = as_ardupilot_gives_back(stored, None)
     assert (back.frame, to_float(back, client, 0).x) == (0, 1.0)
+
+
+@pytest.mark.parametrize(("sent", "back"), [(0.0, 1.0), (1.0, 1.0), (math.nan, 1.0), (-1.0, -1.0)])
+def test_ardupilot_keeps_the_sign_of_a_landings_heading(sent: float, back: float) -> None:
+    """As ArduCopter 4.7 gave four NAV_LAND back."""
+    stored = PlanItem(3, 3, Cmd.NAV_LAND, 0.0, 0.0, 0.0, sent, 1, 1, 0.0, 1)
+    assert as_ardupilot_gives_back(stored, None).p4 == back
 
 
 @pytest.mark.parametrize(

@@ -90,13 +90,21 @@ def test_a_frame_that_the_autopilot_does_not_know_is_refused(
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 3e38])
 @pytest.mark.parametrize("field", range(4), ids=["x", "y", "z", "yaw"])
 def test_nothing_absurd_is_flown_and_the_log_says_so_once(field: int, bad: float) -> None:
-    bench = Bench()
+    bench = Bench("ardupilot")
     x, y, z, yaw = (bad if number == field else 0.0 for number in range(4))
     asked = local(POSITION_AND_YAW, x, y, z, yaw=yaw)
     bench.send(asked)
     bench.send(asked)
     assert flown(bench) == []
     assert len([line for line in bench.logs if line.level == "warning"]) == 1
+
+
+def test_a_number_that_is_none_is_left_out_by_px4() -> None:
+    """MAVLink's NaN is PX4's own "not this one": no heading."""
+    bench = Bench("px4")
+    bench.send(local(POSITION_AND_YAW, 1.0, 2.0, -3.0, yaw=math.nan))
+    assert flown(bench) == [Setpoint(pos_ned=(1.0, 2.0, -3.0))]
+    assert not [line for line in bench.logs if line.level == "warning"]
 
 
 def test_a_mask_that_leaves_nothing_is_refused() -> None:

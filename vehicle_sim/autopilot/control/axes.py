@@ -31,13 +31,13 @@ def every_axis_is_given(setpoint: Setpoint) -> bool:
     )
 
 
-def fly_by_axes(setpoint: Setpoint, s: Situation, limits: MotionLimits) -> Demand:
-    """What to fly for a partial setpoint with every axis given."""
+def fly_by_axes(setpoint: Setpoint, s: Situation, limits: MotionLimits, direct: bool) -> Demand:
+    """What to fly for a partial setpoint with every axis given; `direct` as in `FlyTo`."""
     pos, v = _parts(setpoint.pos_ned), _parts(setpoint.v_ned)
     n, e, d = (_speed(pos[axis], v[axis], s.pos_ned[axis]) for axis in range(3))
     if isfinite(pos[2]) and not isfinite(v[2]):
-        return FlyAtHeight(n, e, pos[2], limits)
-    return FlyVelocity((n, e, d), limits)
+        return FlyAtHeight(n, e, pos[2], limits, direct)
+    return FlyVelocity((n, e, d), limits, direct)
 
 
 def _parts(vector: Vec3 | None) -> Vec3:

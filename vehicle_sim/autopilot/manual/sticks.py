@@ -40,6 +40,7 @@ class Sticks:
 
 
 CENTRED = Sticks(0.0, 0.0, 0.0, 0.5)
+_AT_REST = Sticks(0.0, 0.0, 0.0, 0.0)  # those of SITL's receiver: the throttle at its bottom
 
 
 class _Source(Enum):
@@ -157,18 +158,24 @@ class Radio:
         grace = self._parameters.rules.receiver_grace
         if grace is None:
             return self.sticks(wall_ns) is None
+        if self._has_receiver:
+            return False
+        # As recorded: with no receiver nothing new comes to be read after the last override.
         grace_ns = int(self._parameters.get(grace) * _S_NS)
+        newest_ns = max((at_ns for at_ns in self._heard_ns if at_ns is not None), default=None)
+        return newest_ns is None or wall_ns - newest_ns >= grace_ns
+
+    @property
+    def _has_receiver(self) -> bool:
+        """SITL's own, whose sticks are in use where no override is, once there was one."""
         silent = self._parameters.rules.receiver_silent
-        if silent is not None and self._parameters.get(silent) != 0.0:
-            # As recorded: with no receiver nothing new comes to be read after the last override.
-            newest_ns = max((at_ns for at_ns in self._heard_ns if at_ns is not None), default=None)
-            return newest_ns is None or wall_ns - newest_ns >= grace_ns
-        return self._radio(wall_ns - grace_ns) is None
+        return silent is not None and self._parameters.get(silent) == 0.0 and not self.deaf
 
     def sticks(self, wall_ns: int) -> Sticks | None:
         """The sticks in use, None when there are none now."""
         if self._parameters.rules.joystick_overrides_channels:
-            return self._radio(wall_ns)
+            own = _AT_REST if self._last is not None and self._has_receiver else None
+            return self._radio(wall_ns) or own
         mode = int(self._parameters.get("COM_RC_IN_MODE"))
         for source in _SOURCES[mode]:
             if mode == _KEEP_FIRST and source is not self._first:

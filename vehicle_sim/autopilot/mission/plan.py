@@ -162,6 +162,8 @@ _HERE_IF_ZERO_COPTER = _HERE_IF_ZERO | {
     Cmd.SPLINE,
     Cmd.PAYLOAD_PLACE,
 }
+# Recorded of waypoints and splines; LOITER_TO_ALT goes to the height 0 (from memory).
+_KEEPS_HEIGHT = _HERE_IF_ZERO_COPTER - {Cmd.TAKEOFF, Cmd.LAND, Cmd.LOITER_TO_ALT}
 _SPEED_TYPES = frozenset({0.0, 1.0, 2.0, 3.0})  # SPEED_TYPE: air, ground, climb, descent
 
 _GLOBAL = frozenset({0, 5})  # MAV_FRAME_GLOBAL, _INT: metres above mean sea level
@@ -176,11 +178,12 @@ _MOST_TURNS = 1e4
 
 @dataclass(frozen=True, slots=True)
 class Datum:
-    """What positions are relative to."""
+    """What positions are relative to; `zero_keeps_height`: an item's altitude of 0 says none."""
 
     projection: Projection
     origin: Geodetic
     home_ned: Vec3
+    zero_keeps_height: bool
 
 
 _HERE: dict[Personality, frozenset[int]] = {
@@ -324,11 +327,13 @@ def _on_earth(item: PlanItem) -> bool:
 def place_of(item: PlanItem, datum: Datum, here_ned: Vec3) -> Vec3:
     """Where the item is [m, NED]; without coordinates: over `here_ned`, at its height.
 
-    Without a height: as high as `here_ned`.
+    Without a height, which a height of 0 is to ArduCopter in every global frame: as high as
+    `here_ned`.
     """
-    if not isfinite(item.z):
-        north, east, _ = place_of(replace(item, frame=0, z=0.0), datum, here_ned)
-        return (north, east, here_ned[2])
+    zero = datum.zero_keeps_height and item.z == 0.0 and item.command in _KEEPS_HEIGHT
+    if not isfinite(item.z) or (zero and item.frame != _LOCAL_NED):
+        level_m = datum.origin.alt_amsl_m - here_ned[2]
+        return place_of(replace(item, frame=0, z=level_m), datum, here_ned)
     if item.frame == _LOCAL_NED:
         return (item.x * 1e-4, item.y * 1e-4, item.z)
     if item.frame in _GLOBAL:
@@ -338,8 +343,6 @@ def place_of(item: PlanItem, datum: Datum, here_ned: Vec3) -> Vec3:
         down = datum.home_ned[2] - item.z
         alt_amsl_m = datum.origin.alt_amsl_m - down
     if not has_place(item):
-        # A waypoint at 0, 0 and height 0 is ArduPilot's "here", the height too.
-        here = item.z == 0.0 and item.command in _HERE_IF_ZERO_COPTER - _HERE_IF_ZERO
-        return (here_ned[0], here_ned[1], here_ned[2] if here else down)
+        return (here_ned[0], here_ned[1], down)
     north, east, _ = datum.projection.to_local(Geodetic(item.x * 1e-7, item.y * 1e-7, alt_amsl_m))
     return (north, east, down)

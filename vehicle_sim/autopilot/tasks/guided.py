@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import isfinite
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 from vehicle_sim.autopilot.control.axes import every_axis_is_given, fly_by_axes, is_partial
 from vehicle_sim.autopilot.control.demands import (
@@ -26,12 +26,10 @@ from vehicle_sim.autopilot.control.demands import (
 from vehicle_sim.autopilot.interface import AttitudeSetpoint, Landed, Setpoint, Target
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.tasks.tasks import TakeOff
-from vehicle_sim.control_loops.trajectory import QUICK_M_S3, MotionLimits, slowed
+from vehicle_sim.control_loops.trajectory import MotionLimits, slowed
 from vehicle_sim.numerics.vectors import Vec3
 
 AnySetpoint: TypeAlias = Setpoint | AttitudeSetpoint
-Offboard: TypeAlias = Literal["smooth", "real"]
-"""How PX4 flies setpoints: along a trajectory, or as the real one, to the loops as they are."""
 
 _ENTRY_GAP_NS = 500_000_000  # OFFBOARD wants more than 2 Hz
 _ENTRY_STREAM_NS = 1_000_000_000
@@ -100,12 +98,9 @@ class Guided:
 
     done = True
 
-    __slots__ = ("_braking", "_direct", "_hold", "_parameters", "_rules", "_stream", "_takeoff")
+    __slots__ = ("_braking", "_hold", "_parameters", "_rules", "_stream", "_takeoff")
 
-    def __init__(
-        self, parameters: Parameters, stream: SetpointStream, offboard: Offboard = "smooth"
-    ) -> None:
-        self._direct = parameters.rules.setpoints_fly_direct and offboard == "real"
+    def __init__(self, parameters: Parameters, stream: SetpointStream) -> None:
         self._parameters = parameters
         self._rules = parameters.rules
         self._stream = stream
@@ -181,20 +176,18 @@ class Guided:
             turner.point(setpoint.yaw_rad)
         else:
             turner.turn_by_rate(setpoint.yaw_rate_rad_s or 0.0)
+        top, direct = self._limits_of_setpoints(s), self._rules.setpoints_fly_direct
         if is_partial(setpoint):
-            return fly_by_axes(setpoint, s, s.limits)
+            return fly_by_axes(setpoint, s, top, direct)
         if setpoint.pos_ned is not None:
             self._hold = setpoint.pos_ned
-            top = self._limits_of_velocity(s)
             fastest_m_s = self._parameters.si(Quantity.FASTEST_M_S)
             v_ned = slowed(setpoint.v_ned or STILL, top, fastest_m_s)
             # A goal with a velocity moves on by itself until the next setpoint comes.
             since_ns = self._stream.taken_ns if v_ned != STILL else 0
-            limits = top if self._direct else replace(s.limits, jerk_m_s3=QUICK_M_S3)
-            direct = self._direct
-            return FlyTo(setpoint.pos_ned, limits, v_ned, since_ns=since_ns, direct=direct)
+            return FlyTo(setpoint.pos_ned, top, v_ned, since_ns=since_ns, direct=direct)
         if setpoint.v_ned is not None:
-            return FlyVelocity(setpoint.v_ned, self._limits_of_velocity(s), self._direct)
+            return FlyVelocity(setpoint.v_ned, top, direct)
         if setpoint.a_ned is not None:
             return FlyAcceleration(setpoint.a_ned)
         return FlyTo(self._hold or s.stop_ned, s.limits)
@@ -205,14 +198,13 @@ class Guided:
             return False
         return not int(self._parameters.get("GUID_OPTIONS")) & _THRUST_AS_THRUST
 
-    def _limits_of_velocity(self, s: Situation) -> MotionLimits:
+    def _limits_of_setpoints(self, s: Situation) -> MotionLimits:
         """PX4 flies what it is told, as far as it ever flies; not at its cruise speed."""
         if not self._rules.setpoints_pass_cruise_speed:
             return s.limits
         return replace(
             s.limits,
             speed_m_s=self._parameters.get("MPC_XY_VEL_MAX"),
-            jerk_m_s3=QUICK_M_S3,
             climb_m_s=self._parameters.get("MPC_Z_VEL_MAX_UP"),
             descend_m_s=self._parameters.get("MPC_Z_VEL_MAX_DN"),
         )

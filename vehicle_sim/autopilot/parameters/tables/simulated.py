@@ -33,8 +33,8 @@ ARDUPILOT = (
     real("SIM_GYR1_BIAS_Y",  0.0,  -3.0, 3.0,   "gyroscope is off in pitch by [rad/s]"),
     real("SIM_GYR1_BIAS_Z",  0.0,  -3.0, 3.0,   "gyroscope is off in yaw by [rad/s]"),
     int8("SIM_MAG1_FAIL",    0,    0,    1,     "1: no compass"),
-    int8("SIM_RC_FAIL",      0,    0,    2,     "radio: 0 sticks last as long as overrides "
-                                              "1, 2 no receiver: RC_FS_TIMEOUT from the last one"),
+    int8("SIM_RC_FAIL",      0,    0,    2,     "radio: 0 one with its throttle at the "
+                                              "bottom, after overrides; 1, 2 none"),
     real("SIM_WIND_DIR",     180., 0.0,  360.,  "wind comes from [deg]"),
     real("SIM_WIND_SPD",     0.0,  0.0,  60.0,  "wind [m/s]"),
     real("SIM_WIND_TURB",    0.0,  0.0,  20.0,  "standard deviation of the gusts [m/s]"),
